@@ -76,7 +76,8 @@ def _withTypes(lines, checks):
             more.append(f":param {one}: {said}")
         elif said:
             types.append(f":type {one}: {said}")
-    first = next((n for n, line in enumerate(lines) if line.startswith(":")), None)
+    isField = lambda line: line.startswith((":param", ":return", ":raise"))
+    first = next((n for n, line in enumerate(lines) if isField(line)), None)
     if first is None:
         return [*lines, "", *more, ""]
     last = next((n for n, line in enumerate(lines) if line.startswith((":return", ":raise"))), first)  # fmt: skip

@@ -14,7 +14,7 @@ import sys
 
 import masonry
 import yaml
-from masonry.scene import loads, options, records, supports
+from masonry.scene import connections, loads, options, records, supports
 from masonry.scene.scene import Scene
 from masonry.scene.stages import LATER, STAGES
 
@@ -59,23 +59,29 @@ def summary(thing):
 
 
 #: Methods of a scene that its stages call, and no script.
-FOR_STAGES = {"begin", "checkOpen", "failed", "findBound", "keepState", "masonry", "probe"}  # fmt: skip
+FOR_STAGES = {"begin", "checkOpen", "failed", "masonry", "present", "probe"}
 
 
 def _commands():
     """The commands of a scene by what they are for: dict of a title to their names."""
     described = {}
-    for module, title in ((supports, "What holds it"), (loads, "What loads it"), (records, "What is recorded")):  # fmt: skip
+    for module, title in (
+        (supports, "What holds it"),
+        (connections, "What connects it"),
+        (loads, "What loads it"),
+        (records, "What is recorded"),
+    ):
         described[title] = [n for n, f in vars(Scene).items() if _madeIn(f, module)]
     stages = {}
     for stage in (*STAGES, *LATER):
         family = sys.modules[_inner(stage).__module__]
         stages.setdefault(summary(family).partition(":")[0], []).append(stage.__name__)
+    said = {name for names in (*described.values(), *stages.values()) for name in names}
     own = [
         name
         for name, thing in vars(Scene).items()
-        if not name.startswith("_") and name not in FOR_STAGES
-        if _madeIn(thing, sys.modules[Scene.__module__]) or name == "bracket"
+        if name not in said | {*FOR_STAGES}
+        if not name.startswith("_") and inspect.getdoc(_inner(thing))
     ]
     return described, stages, own
 
@@ -205,7 +211,9 @@ def modules():
     """The names of all modules of the package, packages before what is in them."""
     found = ["masonry"]
     for one in pkgutil.walk_packages(masonry.__path__, "masonry."):
-        if not one.name.rpartition(".")[2].startswith("_"):
+        name = one.name.rpartition(".")[2]
+        # ParaView alone imports its macro, in its own Python
+        if not name.startswith("_") and name != "paraview_macro":
             found.append(one.name)
     return found
 

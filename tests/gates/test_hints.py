@@ -136,7 +136,6 @@ WRONG = {
     "bricks.Wall(lenght=2.2)": 'did you mean "length"?',
     'bricks.stack("4", (0.4, 0.3, 0.3))': 'has incompatible type "str"; expected "int"',
     'materials.dry(friction="0.6")': 'has incompatible type "str"',
-    "materials.masonry(4e9)": "Too many positional arguments",
     "scene.watch((0.2, 0.15, 1.2)).fixd": 'has no attribute "fixd"',
     "from masonry import Arch": 'has no attribute "Arch"',
     'from masonry import study; study.Study("s", runs="200")': 'has incompatible type "str"',

@@ -519,18 +519,15 @@ def test_stones_that_are_pressed_hard_are_moved_by_no_tilt(scene, tmp_path):
 
 @pytest.mark.parametrize("imbalance", [0.0, 0.03])
 def test_a_peak_may_be_above_its_bound_by_two_per_cent_and_the_imbalance(imbalance):
-    from masonry.run.place import Place
-    from masonry.scene.bounds import Bounds
+    from masonry.scene.bound_texts import over
 
-    place = Place(bounds={"lean": {"factor": 0.5, "unit": "g"}})
-    bounds, most = Bounds(None, place), 1.02 + imbalance
+    entries, most = {"lean": {"factor": 0.5, "unit": "g"}}, 1.02 + imbalance
 
     def warned(peak, held):
         """Whether a push to both sides and a load that was held are above their bounds, of 40 kN, 60 kN and 0.5 g."""
-        place.held = {"lean": 0.5 * held}
         run = dict(peak_base_shear_kN=40 * peak, bound_base_shear_kN=40, dynamic_imbalance=imbalance,
                    negative_peak_base_shear_kN=-60 * peak, negative_bound_base_shear_kN=-60)  # fmt: skip
-        return list(bounds.over(run))
+        return list(over(entries, {"lean": 0.5 * held}, run))
 
     assert warned(0.999 * most, 0.999 * 1.02) == []
     push, back = warned(1.001 * most, 0.999 * 1.02)

@@ -86,7 +86,7 @@ def standing(scaling=1.0, height=0.6):
     nothing = lambda *words, **more: None
     running = SimpleNamespace(
         advance=nothing, show=nothing, record=nothing, flush=nothing, mark=nothing,
-        recordedAt=lambda: None,
+        readings=SimpleNamespace(time=None),
     )  # fmt: skip
     motion = SimpleNamespace(checkFall=nothing, fastest=lambda: 0.0)
     made = SimpleNamespace(loading=SimpleNamespace(loadFactor=0.0), supports=SimpleNamespace(), motion=motion)  # fmt: skip

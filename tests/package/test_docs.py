@@ -146,9 +146,9 @@ def test_the_page_of_commands_has_every_command_with_unit_and_bounds(pages):
     page = pages["commands.html"]
     for stage in (*STAGES, *LATER):
         assert f"masonry.Scene.{stage.__name__}" in page.anchors
-    for (
-        word
-    ) in "platen hold watch handle press load wind drift column joint section view bracket stepBack".split():
+    described = "platen hold watch handle press load wind tie spring overlay ground drift column joint section view"
+    own = "bracket bound domain result stepBack resume curve factor finish"
+    for word in f"{described} {own}".split():
         assert f"masonry.Scene.{word}" in page.anchors
     text = " ".join(page.text.split())
     assert "stress (a number at least 0 and at most 1e+12 Pa)" in text

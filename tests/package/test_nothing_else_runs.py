@@ -34,13 +34,11 @@ def test_programs_of_the_package_run_nothing_of_the_present_folder(planted, word
 def test_figures_are_drawn_with_nothing_of_the_present_folder(planted, monkeypatch):
     """The program that draws them runs in a process of its own."""
     from masonry.basics import Unwritable
-    from masonry.scene.outcome import Outcome
+    from masonry.scene.drawing_program import DrawingProgram
 
     monkeypatch.chdir(planted)
-    outcome = Outcome.__new__(Outcome)
-    outcome._drawing, outcome._begun = None, False
     with pytest.raises(Unwritable):
-        outcome.draw("nowhere")
+        DrawingProgram().draw("nowhere")
     assert not (planted / "ran").exists()
 
 

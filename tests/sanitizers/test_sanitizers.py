@@ -9,6 +9,7 @@ from conftest import BUILD, ROOT
 
 
 pytestmark = pytest.mark.long
+TESTS = os.path.join(ROOT, "tests"), os.path.join(ROOT, "tests", "host")
 
 
 def build(sanitizers, name, *targets):
@@ -92,9 +93,7 @@ def test_no_two_threads_race(tmp_path):
     script.write_text(THREADED)
     env = dict(
         os.environ,
-        PYTHONPATH=os.path.join(folder, "packages")
-        + os.pathsep
-        + os.path.join(ROOT, "tests", "host"),
+        PYTHONPATH=os.pathsep.join([os.path.join(folder, "packages"), *TESTS]),
         LD_PRELOAD="libtsan.so.2",
         MASONRY_THREADS="always",
         TSAN_OPTIONS="history_size=7 exitcode=66",

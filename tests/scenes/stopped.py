@@ -23,7 +23,7 @@ from masonry.read.files import readRun
 from masonry.run import checkpoints
 from masonry.run.run import Run
 from masonry.scene import Scene
-from masonry.scene.outcome import Outcome
+from masonry.scene.drawing_program import DrawingProgram
 from masonry.scene.stages import growing
 
 BEGIN = """\
@@ -289,7 +289,7 @@ def carryOut(script, *words, stop=None):
 
         take(run, steps, act)
 
-    draw, Outcome.draw = Outcome.draw, lambda outcome, folder: None
+    draw, DrawingProgram.draw = DrawingProgram.draw, lambda outcome, folder: None
     trial, growing.TRIAL = growing.TRIAL, 0.05  # [s], so that searches are short
     sys.argv, Run._take, status = ["s.py", *words], counted, 0
     output = io.StringIO()
@@ -304,7 +304,7 @@ def carryOut(script, *words, stop=None):
         status = 2
         print(error, file=output)
     finally:
-        sys.argv, Run._take, Outcome.draw = before, take, draw
+        sys.argv, Run._take, DrawingProgram.draw = before, take, draw
         growing.TRIAL = trial
         scene = Scene.present
         if scene is not None:
@@ -326,7 +326,7 @@ def killed(folder, step):
 
     def act(run, taken):
         if taken == step:
-            run._kept = -math.inf
+            run.checkpoints.since = -math.inf
         elif taken > step and os.path.exists(
             os.path.join(run.results.directory, checkpoints.NAME)
         ):

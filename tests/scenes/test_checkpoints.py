@@ -15,7 +15,7 @@ from conftest import ROOT
 from masonry import readCheckpoint, saveCheckpoint
 from masonry.read.files import readCurve, readRun
 from masonry.run import checkpoints
-from masonry.run import run as running
+from masonry.run import frames
 from masonry.run.results import Results
 from masonry.run.run import Run
 from masonry.assembly.structure import Structure
@@ -234,11 +234,11 @@ def test_a_full_disk_is_reported_and_the_run_goes_on(
     seen = {}
 
     def fill(run):
-        run.checkpoint()
+        run.checkpoints.write()
         seen["before"] = open(kept, "rb").read()
         with monkeypatch.context() as full:
             full.setattr(os, "fsync", noSpace)
-            run.checkpoint()
+            run.checkpoints.write()
         seen["after"] = open(kept, "rb").read()
 
     at(60, fill)
@@ -258,7 +258,7 @@ def test_a_run_whose_results_cannot_be_written_goes_on_when_there_is_room(
     scene, tmp_path, at, capsys, monkeypatch, lost
 ):
     monkeypatch.setattr(
-        running, "SLOW_FRAME", math.inf
+        frames, "SLOW_FRAME", math.inf
     )  # no frame is written beside the run
     assert run(tmp_path / "whole", *PUSH) == 0
     out = tmp_path / "full"
@@ -297,7 +297,7 @@ def test_a_frame_that_is_lost_beside_a_run_is_said_and_is_in_no_list(
 ):
     out = tmp_path / "full"
     monkeypatch.setattr(
-        running, "SLOW_FRAME", -1
+        frames, "SLOW_FRAME", -1
     )  # all frames are written beside the run
     at(32, lambda run: os.symlink("/dev/full", out / "joints_0001.vtp"))
     assert run(out, *PUSH) == 1
@@ -320,7 +320,7 @@ def test_a_row_waits_for_a_fifth_of_a_second_at_most(scene, tmp_path, at):
     seen = []
 
     def look(run):
-        read = len(run.results.rows) + len(run._readings)
+        read = run.readings.count
         seen.append((read, len(readCurve(str(tmp_path))["time_s"])))
         at(1, slow)
 
@@ -338,7 +338,7 @@ def test_a_row_waits_for_a_fifth_of_a_second_at_most(scene, tmp_path, at):
 @pytest.mark.parametrize("end", ["checkpoint", "interrupt", "error"])
 def test_rows_that_wait_are_kept(scene, tmp_path, at, end):
     def act(run):
-        waiting = len(run._readings)
+        waiting = len(run.readings.waiting)
         assert waiting > 1
         seen.append(len(run.results.rows) + waiting)
         if end == "checkpoint":
@@ -351,7 +351,7 @@ def test_rows_that_wait_are_kept(scene, tmp_path, at, end):
 
     seen = []
     monkey = pytest.MonkeyPatch()
-    monkey.setattr("masonry.run.run.FLUSH_EVERY", 1e9)
+    monkey.setattr("masonry.run.readings.FLUSH_EVERY", 1e9)
     at(60, act)
     try:
         run(tmp_path, *PUSH, "--no-vtk")

@@ -15,7 +15,7 @@ from masonry.memory import FULL
 from masonry.run.run import Run
 from masonry.scene import outcome
 from masonry.scene.bounds import GIVEN_UP
-from masonry.scene.outcome import Outcome
+from masonry.scene.drawing_program import DrawingProgram
 from small import SMALL, carryOut, parsed
 
 PROMPT = 2.0  # [s] from a signal to the end
@@ -26,7 +26,7 @@ HOST = os.path.dirname(os.path.dirname(os.path.abspath(yade.__file__)))
 @pytest.fixture
 def undrawn(monkeypatch):
     """Figures take longer than these runs."""
-    monkeypatch.setattr(Outcome, "draw", lambda self, directory: None)
+    monkeypatch.setattr(DrawingProgram, "draw", lambda self, directory: None)
 
 
 @pytest.fixture

@@ -110,7 +110,10 @@ def test_a_wall_of_the_law_runs_and_goes_on_from_a_checkpoint_bit_for_bit(
     environment, tmp_path
 ):
     words = "--joints coulomb --until 0.3 --rate 4 --vtk-every 0.1".split()
-    words += [f"--set={kind}.tensileStrength=0" for kind in ("bed", "head", "crack")]
+    words += [
+        f"--set={kind}.tensileStrength=0"
+        for kind in ("support", "bed", "head", "crack")
+    ]
     whole, broken = str(tmp_path / "whole"), str(tmp_path / "broken")
     assert start(environment, *words, "--out", whole).wait() == 0
     process = start(environment, *words, "--out", broken, "--checkpoint-every", "0.001")

@@ -17,10 +17,11 @@ from masonry.assembly.loading import Loading
 from masonry.assembly.structure import Structure
 from masonry.assembly.supports import Supports
 from masonry.read import files
-from masonry.run import lock, run as running
+from masonry.run import keeping, lock, run as running
 from masonry.run.results import Results
+from masonry.run.keeping import Checkpoints
 from masonry.run.run import Run
-from masonry.scene.outcome import Outcome
+from masonry.scene.drawing_program import DrawingProgram
 from small import SMALL, Wall, carryOut, parsed
 
 SHORT = ["--until", "0.05", "--rate", "40", "--no-vtk"]
@@ -30,7 +31,7 @@ LIGHT = Wall("light", length=0.22, courses=4, precompression=0.0, loadHeight=3.0
 @pytest.fixture(autouse=True)
 def undrawn(monkeypatch):
     """Figures take longer than these runs."""
-    monkeypatch.setattr(Outcome, "draw", lambda self, directory: None)
+    monkeypatch.setattr(DrawingProgram, "draw", lambda self, directory: None)
 
 
 def contents(folder):
@@ -195,16 +196,17 @@ def test_a_run_interrupted_between_rows_leaves_the_curve_of_a_whole_one(
     whole = (tmp_path / "whole" / "curve.csv").read_bytes()
     steps = readRun(str(tmp_path / "whole"))["steps"]
     out, left = tmp_path / "broken", []
-    keepSafe = Run._keepSafe
+    keep = Checkpoints.keep
 
     def interrupt(self):
-        keepSafe(self)
-        if self.at.left and self.at.steps >= goal:
-            self.interrupted = True
-            left.append(self.at.left)
+        keep(self)
+        run = self._run
+        if run.at.left and run.at.steps >= goal:
+            run.signals.interrupted = True
+            left.append(run.at.left)
 
     monkeypatch.setattr(running, "LOOK_EVERY", 0.0)
-    monkeypatch.setattr(Run, "_keepSafe", interrupt)
+    monkeypatch.setattr(Checkpoints, "keep", interrupt)
     for share in (0.3, 0.8, 0.9, 0.95):
         goal = int(share * steps)
         again = dict(resume=True) if out.exists() else dict()
@@ -290,7 +292,7 @@ def test_no_earlier_checkpoint_is_promised_where_there_is_none(
         raise OSError(errno.ENOSPC, "No space left on device")
 
     with monkeypatch.context() as m:
-        m.setattr(running, "saveCheckpoint", refuse)
+        m.setattr(keeping, "saveCheckpoint", refuse)
         assert run(out, *SHORT) == 0
     said = capsys.readouterr().err
     assert said.endswith("No space left on device\n")

@@ -65,7 +65,7 @@ def test_a_run_that_is_resumed_has_the_same_notes(tmp_path, monkeypatch):
     def interrupting(self):
         reading = record(self)
         if reading.time > whole[-1]["time_s"] + 2e-3:  # fmt: skip
-            self.interrupted = True
+            self.signals.interrupted = True
         return reading
 
     with monkeypatch.context() as patch:

@@ -14,7 +14,7 @@ import pytest
 from conftest import ROOT
 from masonry.read import report
 from masonry.read.files import readCurve, readRun
-from masonry.scene.outcome import Outcome
+from masonry.scene.drawing_program import DrawingProgram
 from matplotlib.image import imread
 from small import SMALL, carryOut, parsed
 
@@ -60,8 +60,8 @@ def test_a_run_that_goes_on_has_no_report_of_before(scene, tmp_path, monkeypatch
     assert carryOut(SMALL, parsed("--until", "0.1", *words, "--out", str(tmp_path))) == 0  # fmt: skip
     assert {"report.html", "curve.png"} <= set(os.listdir(tmp_path))
     there = []
-    monkeypatch.setattr(Outcome, "beginDrawing", lambda self, folder: there.extend(os.listdir(folder)))  # fmt: skip
-    monkeypatch.setattr(Outcome, "draw", lambda self, folder: None)
+    monkeypatch.setattr(DrawingProgram, "begin", lambda self, folder: there.extend(os.listdir(folder)))  # fmt: skip
+    monkeypatch.setattr(DrawingProgram, "draw", lambda self, folder: None)
     assert carryOut(SMALL, parsed("--until", "0.2", *words, "--resume", str(tmp_path))) == 0  # fmt: skip
     assert "run.json" in there and not {"report.html", "curve.png"} & set(there)
 

@@ -86,7 +86,7 @@ def test_a_resumed_scene_equals_one_without_a_break(tmp_path, stage):
                     before(steps, one)
                     seen.append(scene.running.at.stage)
                     if seen.count(stop) > 5:
-                        scene.running.interrupted = True
+                        scene.running.signals.interrupted = True
 
                 scene.running.advance = advance
             scene.push(top, 0.2)

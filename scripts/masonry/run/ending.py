@@ -36,7 +36,7 @@ def end(run, scene, error):
         return _end(run, scene, error)
     finally:
         if scene.outcome:
-            scene.outcome.end()
+            scene.outcome.drawing.end()
             scene.bounds.drop()
         run.release()
 
@@ -68,7 +68,7 @@ def _end(run, scene, error):
     elif error:
         run.results.run["error"] = str(error)
         try:
-            run.checkpoint()
+            run.checkpoints.write()
             _finish(run, scene)
         except (Unwritable, MemoryError) as other:
             say(f"{other or FULL}; what was written before is kept", sys.stderr)
@@ -78,7 +78,7 @@ def _end(run, scene, error):
     over = run.args.lean and not stopped and not run.interrupted
     kept = False
     try:
-        kept = not over and run.checkpoint()
+        kept = not over and run.checkpoints.write()
         run.kept = kept and run.interrupted
     except Unwritable as unwritable:
         stopped.append(unwritable)
@@ -151,7 +151,7 @@ def _finish(run, scene):
             run.results.close()
         if _draws(run):
             with contextlib.suppress(OSError):  # it is said when they are waited for
-                scene.outcome.beginDrawing(run.results.directory)
+                scene.outcome.drawing.begin(run.results.directory)
     finally:
         _writeMechanism(run, scene)
     _report(run, scene)
@@ -167,7 +167,7 @@ def _draw(run, scene):
     directory = run.results.directory
     try:
         with run.breakable():
-            scene.outcome.draw(directory)
+            scene.outcome.drawing.draw(directory)
     except Interrupted:
         say(
             f"interrupted: the figures are not drawn; /usr/bin/python3 -m masonry.read.figures {directory} draws them, and "
@@ -215,7 +215,7 @@ def _describe(run, scene):
         resumed_at_s=at.resumed,
         steps=at.steps,
         stages=at.listed(),
-        kinds=run.vtk.kinds if run.vtk else [],
+        kinds=run.frames.kinds if run.frames else [],
         seconds={part: round(s, 3) for part, s in at.seconds.items()},
     )
     if run.results.rows:

@@ -7,6 +7,7 @@ from .._masonry import loadScene
 from ..basics import Refused, say
 from .checkpoints import NAME, alike, readState
 
+MOST_NOTES = 1000  # that a run keeps
 PARTS = "setup", "steps", "rows", "frames"  # of a run's time
 
 
@@ -51,6 +52,14 @@ class Place:
     notes: list = field(default_factory=list)  # what the run said, as of run.json
     supportsMoved: bool = False  # whether a stage has moved supports
     resumed: list = field(default_factory=list)  # times at which it was taken up [s]
+
+    def hear(self, text, number, time_s):
+        """Keep what the run said in the stage of a number, unless it has said it before."""
+        stage = self.stages[number - 1][0] if 0 < number <= len(self.stages) else ""
+        note = dict(stage=stage, number=number, time_s=time_s, text=text)
+        known = {one["text"] for one in self.notes}
+        if text not in known and len(self.notes) < MOST_NOTES:
+            self.notes = [*self.notes, note]
 
     def listed(self):
         """The entry ``stages`` of run.json."""
@@ -111,7 +120,7 @@ class Saved:
     - ``scene``: name of the scene; ``options``: those of the run; ``script``: what its script said, as data
     - ``at``: how far the run had come, as of :class:`Place`; ``rows`` of curve.csv
     - ``seconds`` of wall-clock time; ``host``: what it was made with, as of
-      :func:`masonry.run.run.hostNow`
+      :func:`masonry.run.keeping.hostNow`
 
     :param directory: folder of the run
     :raises Refused: if no run can be taken up there

@@ -5,14 +5,17 @@
 what they are.
 """
 
+import contextlib
 import math
 import os
 import sys
 import tempfile
 import time
+from dataclasses import dataclass
+from functools import partial
+from typing import Callable
 
 import numpy as np
-from yade import O, Vector3
 
 from .. import limit
 from ..background import Failed, Task
@@ -21,6 +24,7 @@ from ..limit.assembly import Endless
 from ..memory import FULL
 from ..packages import Missing
 from ..folders import replaced
+from . import limit_loads
 
 #: Largest number of joints for which ``--preset bound`` and domains also look for a collapse without dilatancy, which takes many
 #: solutions of the programme.
@@ -32,9 +36,6 @@ JOINTS = (
 #: Time that limit analysis may take for a load, if nobody asked for it, if somebody did, and if it is done beside a run that
 #: still takes steps [s]. A run that has come to its end, or to a checkpoint, waits until the first of them is over.
 UNASKED, ASKED, BESIDE = 10.0, 600.0, 120.0
-#: By how much a run may be above its bound [-]: joints of finite stiffness, displacements that are not small, and motion,
-#: whose measured share is added.
-TOLERANCE = 0.02
 #: Of the search for a tilt at which both parts of gravity are those of the tilt: its rounds at most, the difference of two
 #: tilts at which it ends, and the largest tilt [rad].
 TILTS, SAME_TILT, STEEPEST = 20, 1e-6, math.radians(89.9)
@@ -46,6 +47,28 @@ GIVEN_UP = (
 #: The note of one that was not found when the run came to its end, or to a checkpoint.
 LATE = "limit analysis: it was not solved in time; scene.bound() takes its time"
 SILENT = 0.3  # so long something beside the run is waited for without a word [s]
+SOON = 1.0  # [s] in which a run that is interrupted waits for its bound
+
+
+@dataclass(frozen=True)
+class Load:
+    """A load whose largest factor is looked for.
+
+    :param name: under which its bound is found, and ``unit`` of its factor
+    :param live: function of a :class:`masonry.limit.assembly.Assembly` that gives the forces at a factor of 1 [N]
+    :param tilts: whether gravity turns with it
+    :param pushed: target and direction of a push, whose own drive is no prop, or None
+    :param gravity: acceleration that acts beside it [m/s²]; None: that of the scene
+    :param pressed: target and normal force [kN] that replaces its press, or None
+    """
+
+    name: str
+    unit: str
+    live: Callable
+    tilts: bool = False
+    pushed: tuple | None = None
+    gravity: tuple | None = None
+    pressed: tuple | None = None
 
 
 class Bounds:
@@ -81,22 +104,14 @@ class Bounds:
         :param beside: whether it is found beside the run, and the entry gets its numbers by :meth:`take`
         """
         for sign in (1, -1) if both else (1,):
-            what = nameOfPush(target, sign * direction)
-            live = lambda a: self._pushed(a, target, sign * direction)
-            entry = self._find(
-                what, "kN", live, lowerUpTo, beside, pushed=(target, direction)
-            )
+            along = sign * direction
+            live = partial(self._pushed, target, along)
+            load = Load(nameOfPush(target, along), "kN", live, pushed=(target, direction))  # fmt: skip
+            entry = self._find(load, lowerUpTo, beside)
         return entry
 
-    def _pushed(self, assembly, target, direction):
-        """The live load of a push: 1 kN along a direction."""
-        load = next(
-            x for x in self.model.loading.loads.values() if x and x.body == target.body
-        )
-        away = load.displacement() if not assembly.stood else np.zeros(3)
-        point = np.array(target.point) + np.array(away)
-        block = assembly.ids.index(target.body)
-        return assembly.force(block, 1e3 * np.array(direction), point)
+    def _pushed(self, target, direction, assembly):
+        return limit_loads.push(self.model, assembly, target, direction)
 
     def domain(self, target, normals, direction, lowerUpTo=0, beside=False):
         """Find the bounds of a push under several normal forces. Returns their entries of run.json.
@@ -106,22 +121,18 @@ class Bounds:
         :param direction: unit vector of the push, horizontal
         :param lowerUpTo: and ``beside``: as of :meth:`push`
         """
-        live = lambda a: self._pushed(a, target, direction)
-        found = []
-        for normal in normals:
-            what = nameInDomain(target, direction, normal)
-            found.append(
-                self._find(
-                    what,
-                    "kN",
-                    live,
-                    lowerUpTo,
-                    beside,
-                    pushed=(target, direction),
-                    pressed=(target, normal),
-                )
+        live, pushed = partial(self._pushed, target, direction), (target, direction)
+        loads = [
+            Load(
+                nameInDomain(target, direction, normal),
+                "kN",
+                live,
+                pushed=pushed,
+                pressed=(target, normal),
             )
-        return found
+            for normal in normals
+        ]
+        return [self._find(load, lowerUpTo, beside) for load in loads]
 
     def lean(self, towards, tilts=False, lowerUpTo=0, beside=False):
         """Find the bound of a horizontal acceleration [g]. Returns its entry of run.json.
@@ -131,14 +142,13 @@ class Bounds:
         :param lowerUpTo: and ``beside``: as of :meth:`push`
         """
         scaled = GRAVITY / self.model.args.density_scaling
-        what = nameOfLean(towards, tilts)
-        live = lambda a: a.weights(scaled * np.array(towards))
+        # of a tilt, the weight is that of the scene at every angle
+        share = self.model.gravity / scaled if tilts else 1.0
+        live = lambda a: share * a.weights(scaled * np.array(towards))
         down = (0, 0, -self.model.gravity)  # it replaces another acceleration
-        if not tilts:
-            return self._find(what, "g", live, lowerUpTo, beside, gravity=down)
-        share = self.model.gravity / scaled
-        turned = lambda a: share * live(a)
-        return self._find(what, "", turned, lowerUpTo, beside, tilts=True, gravity=down)
+        name, unit = nameOfLean(towards, tilts), "" if tilts else "g"
+        load = Load(name, unit, live, tilts, gravity=down)
+        return self._find(load, lowerUpTo, beside)
 
     def forces(self, what, unit, loads, lowerUpTo=0, beside=False):
         """Find the bound of forces that grow together. Returns its entry of run.json.
@@ -149,39 +159,23 @@ class Bounds:
         :param lowerUpTo: and ``beside``: as of :meth:`push`
         """
 
-        def live(assembly):
-            found = np.zeros_like(assembly.held, float)
-            for load, force in loads:
-                block = assembly.ids.index(load.body)
-                found += assembly.force(block, np.array(force), _pointOf(load, assembly))  # fmt: skip
-            return found
+        live = lambda a: limit_loads.sumOf(a, loads)
+        return self._find(Load(what, unit, live), lowerUpTo, beside)
 
-        return self._find(what, unit, live, lowerUpTo, beside)
-
-    def _find(
-        self,
-        what,
-        unit,
-        load,
-        lowerUpTo,
-        beside,
-        tilts=False,
-        pushed=None,
-        gravity=None,
-        pressed=None,
-    ):
+    def _find(self, load, lowerUpTo, beside):
         self.take(True)
-        known, model = self.entries.get(what), self.model
-        acting = self._acting(gravity or model.scheme.now)
+        what, model = load.name, self.model
+        known = self.entries.get(what)
+        acting = limit_loads.beside(model, load.gravity or model.scheme.now)
         same = self.place.beside.get(what, acting) == acting
         self.place.beside = {**self.place.beside, what: acting}
         if known and same and not lowerUpTo and known.get("note") != GIVEN_UP:
             return known
         if not same:  # what was held before was held beside other loads
             self.place.held = {k: v for k, v in self.place.held.items() if k != what}
-        entry = self.entries[what] = {"load": what, "unit": unit}
-        if pressed:
-            entry["pressed_kN"] = pressed[1]
+        entry = self.entries[what] = {"load": what, "unit": load.unit}
+        if load.pressed:
+            entry["pressed_kN"] = load.pressed[1]
         self.endless.discard(what)
         if self.place.supportsMoved:
             reason = (
@@ -197,7 +191,7 @@ class Bounds:
             )
             return entry
         seconds = ASKED if lowerUpTo else BESIDE if beside else UNASKED
-        work = lambda: self._found(what, unit, load, tilts, pushed, gravity, lowerUpTo, seconds, pressed)  # fmt: skip
+        work = lambda: self._found(load, lowerUpTo, seconds)
         if beside:
             self.drop()  # of two mechanisms the last one is kept
             self._task = Task(lambda: self._withFiles(what, work), parts=2)
@@ -212,21 +206,21 @@ class Bounds:
             raise
         return entry
 
-    def _found(self, what, unit, load, tilts, pushed, gravity, lowerUpTo, seconds, pressed=None):  # fmt: skip
+    def _found(self, load, lowerUpTo, seconds):
         """Find a bound. Returns what its entry gets, lines to say, whether nothing gives way, and the :class:`limit.Bound`."""
-        entry, lines = {}, []
+        entry, lines, what, unit = {}, [], load.name, load.unit
         try:
             assembly = limit.read()
             assembly.deadline = time.monotonic() + seconds
-            down = assembly.weights(gravity or self.model.scheme.now)
-            forces = self._forces(assembly, pushed, pressed)
-            if pressed:
-                entry["normal_kN"] = _carriedBy(assembly, down + forces)
-            live = load(assembly)
+            down = assembly.weights(load.gravity or self.model.scheme.now)
+            forces = limit_loads.forces(self.model, assembly, load.pushed, load.pressed)
+            if load.pressed:
+                entry["normal_kN"] = limit_loads.carriedBy(assembly, down + forces)
+            live = load.live(assembly)
 
             def found(find, first):
                 at = lambda cos: find(cos * live, cos * down + forces)
-                return _tilted(at, first) if tilts else at(1.0)
+                return _tilted(at, first) if load.tilts else at(1.0)
 
             bound = found(assembly.largest, 0.0)
             entry.update(bound.describe())
@@ -311,103 +305,7 @@ class Bounds:
         if task:
             task.end()
 
-    def _acting(self, gravity):
-        """What acts beside a load and what holds the structure now: data that can be compared."""
-        loads = [[load.body, *force, load.driven] for load, force in self.model.loading.deadLoads()]  # fmt: skip
-        held = [
-            O.bodies[target.body].state.blockedDOFs
-            for target in self.model.supports.held
-        ]
-        return [list(gravity), loads, held]
-
-    def _forces(self, assembly, pushed, pressed=None):
-        """Presses, dead loads and wind with their whole, and props at the points that drives hold.
-
-        :param pushed: target and direction of a push, whose own drive is no prop, or None
-        :param pressed: target and normal force [kN] that replaces its press, or None
-        """
-        loads = np.zeros_like(assembly.held, float)
-        for load, force in self.model.loading.deadLoads():
-            block, point = assembly.ids.index(load.body), _pointOf(load, assembly)
-            if pressed and load.label == f"{pressed[0].name}_force":
-                own = self.model.supports.weightOf(pressed[0])
-                force = Vector3(force[0], force[1], own - 1e3 * pressed[1])
-            if force.norm():
-                loads += assembly.force(block, np.array(force), point)
-            along = np.array(load.direction.normalized())
-            own = pushed and pushed[0].body == load.body
-            if load.driven and not (own and abs(along @ pushed[1]) > 1 - 1e-9):
-                assembly.props.append((block, along, point))
-        return loads
-
-    # -- what is said ---------------------------------------------------------------------------------------------
-
-    def describe(self, pushes=()):
-        """Entries of run.json.
-
-        :param pushes: names of the pushes that its numbers are of: there, and back
-        """
-        if not self.entries:
-            return {}
-        entries = {"bounds": list(self.entries.values())}
-        known = {what: e for what, e in self.entries.items() if "factor" in e}
-        signs = (1, "bound_base_shear_kN"), (-1, "negative_bound_base_shear_kN")
-        for what, (sign, key) in zip(pushes, signs):
-            if what in known:
-                entries[key] = sign * known[what]["factor"]
-        leans = [e["factor"] for e in known.values() if e["unit"] in ("g", "")]
-        if leans:
-            entries["bound_acceleration"] = leans[0]
-        return entries
-
-    def lines(self, pushes):
-        """Horizontal lines of curve.png, for a push. Parameters as of :meth:`describe`."""
-        entries = self.describe(pushes)
-        for key in ("bound_base_shear_kN", "negative_bound_base_shear_kN"):
-            if key in entries:
-                yield {
-                    "y": entries[key],
-                    "text": f"limit analysis: {abs(entries[key]):.1f} kN at most",
-                }
-
-    def linesOf(self, name):
-        """Horizontal lines of curve.png, for a load that grows, by the name of its bound."""
-        entry = self.entries.get(name, {})
-        for key, text in (
-            ("factor", "at most"),
-            ("without_dilatancy", "without dilatancy"),
-        ):
-            if key in entry:
-                what = f"limit analysis: {entry[key]:.4g} {entry['unit']} {text}"
-                yield {"y": entry[key], "text": " ".join(what.split())}
-
-    def over(self, run):
-        """Sentences about what is above its bound.
-
-        :param run: the entries of run.json
-        """
-        allowed = 1 + TOLERANCE
-        pairs = [
-            (abs(run[reached]), abs(run[bound]), "kN", "the largest force of the push")
-            for reached, bound in (
-                ("peak_base_shear_kN", "bound_base_shear_kN"),
-                ("negative_peak_base_shear_kN", "negative_bound_base_shear_kN"),
-            )
-            if reached in run and bound in run
-        ]
-        held = self.place.held
-        pairs += [
-            (factor, self.entries[what]["factor"], self.entries[what]["unit"], f"{what}: the load that was held")
-            for what, factor in held.items()
-            if "factor" in self.entries.get(what, {})
-        ]  # fmt: skip
-        for reached, bound, unit, what in pairs:
-            most = allowed + (run.get("dynamic_imbalance", 0.0) if unit == "kN" else 0)
-            if reached > most * bound:
-                yield (
-                    f"{what}, {reached:.4g} {unit}, is more than {100 * (most - 1):.1f} % above the upper bound "
-                    f"of limit analysis, {bound:.4g} {unit}: is the run too fast, or does the structure move far?"
-                )
+    # -- files --------------------------------------------------------------------------------------------------
 
     def hold(self, what, factor):
         """Note a load factor under which the structure came to rest, by the name of its bound."""
@@ -471,15 +369,30 @@ def _tilted(find, first):
     return bound
 
 
-def _pointOf(load, assembly):
-    """Where a MasonryLoad acts, on blocks as the assembly has them [m]."""
-    return load.point if assembly.stood else load.point + load.displacement()
+def findBy(scene, kind, *load, lowerUpTo, beside=False):
+    """Find a bound, which Ctrl-C and SIGTERM end at once: a method of :class:`masonry.scene.bounds.Bounds`."""
+    with scene.running.breakable():
+        return getattr(scene.bounds, kind)(*load, lowerUpTo=lowerUpTo, beside=beside)
 
 
-def _carriedBy(assembly, dead):
-    """Vertical force of dead loads on all blocks that are free to move down, compression is positive [kN]: the supports carry
-    it."""
-    return -1e-3 * float(dead[~assembly.held[:, 2], 2].sum())
+def takeFound(scene, wait):
+    """Take the bound that is found beside the run; a run that is interrupted does not wait long for it."""
+    began, running = time.monotonic(), scene.running
+    late = lambda: running.interrupted and time.monotonic() - began > SOON
+    scene.bounds.take(wait, late)
+    if not (running.interrupted or scene.args.lean):
+        with contextlib.suppress(OSError):  # it is said when figures are drawn
+            scene.outcome.drawing.start()
+
+
+def findBound(scene, kind, *load):
+    """Find the bound of a stage, which pushes or leans."""
+    resumed = scene.running.redoes and scene.running.takesUp
+    missing = any(e.get("note") == GIVEN_UP for e in scene.bounds.entries.values())
+    if scene.args.lean and not scene.only or resumed and not missing:
+        return  # in a stage that goes on it was found when that began
+    upTo = SMALL if scene.only else 0
+    findBy(scene, kind, *load, lowerUpTo=upTo, beside=not scene.only)
 
 
 def nameInDomain(target, direction, normal):

@@ -4,6 +4,7 @@
 import collections
 import statistics
 
+from ..basics import say
 from ..bricks import Bricks, summary
 
 MOST_SIZES = 4  # of blocks that are listed
@@ -100,3 +101,15 @@ def _freedom(target):
     held = [f"along {', '.join(along)}"] * bool(along)
     held += [f"about {', '.join(about)}"] * bool(about)
     return f"held {' and '.join(held)}" if held else "free"
+
+
+def noteCourse(description):
+    """Say that the bricks are not those for which the stiffness of the joints was made."""
+    course = description.materials.course
+    heights = {block.high[2] - block.low[2] for block in description.bricks}
+    if course and not any(abs(h - course) < 0.01 * course for h in heights):
+        sizes = ", ".join(f"{1e3 * h:.4g}" for h in sorted(heights)[:5])
+        say(
+            f"note: the joints are for courses of {1e3 * course:.4g} mm, mortar included, and the bricks have {sizes} mm: "
+            "give bricks the same unit= and joint= as the materials"
+        )

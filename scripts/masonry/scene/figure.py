@@ -2,6 +2,7 @@
 """What curve.png shows of a scene: the entry ``figure`` of run.json."""
 
 from ..assembly import columns
+from . import bound_texts
 
 
 def figureOf(outcome):
@@ -50,7 +51,9 @@ def _ofPush(outcome):
         "y_label": "force along the push [kN]",
         "looped": bool(outcome.pushed.history),
         "marks": marks,
-        "bounds": list(outcome.scene.bounds.lines(outcome.pushes)),
+        "bounds": list(
+            bound_texts.linesOfPush(outcome.scene.bounds.entries, outcome.pushes)
+        ),
         **_rowsOf(outcome, data.rows),
     }
 
@@ -81,7 +84,8 @@ def _ofLoad(outcome, number, load):
         for end, what in (("held", "held"), ("not_held", "not held"))
         if found.get(f"displacement_{end}") is not None
     ]
-    unit = bounds.entries.get(name, {}).get("unit") or "-"
+    entry = bounds.entries.get(name, {})
+    unit = entry.get("unit") or "-"
     return {
         "x": {
             "column": "displacement_mm",
@@ -91,7 +95,7 @@ def _ofLoad(outcome, number, load):
         "y_label": f"load{' while it grows' * (kind == 'growth')} [{unit}]",
         "looped": False,
         "marks": marks,
-        "bounds": list(bounds.linesOf(name)),
+        "bounds": list(bound_texts.linesOfGrowth(entry)),
         **_rowsOf(outcome, rows),
     }
 

@@ -10,11 +10,12 @@ from .. import notebook
 from .._masonry import commit, version
 from ..arguments import oneOf, shown
 from ..assembly.engines import LAWS
-from ..basics import Refused
-from ..run import options
+from ..basics import Interrupted, Refused, say
+from ..run import accuracy, batch, options
 from ..run.options import USUAL, reading
 from ..run.presets import BOUND, PRESETS
 from . import fields, history, keywords
+from .ground import readRecord
 from .parsing import Parser
 from .settings import scatterAll, setting
 
@@ -125,6 +126,11 @@ def check(args, masonry, more=(), plane=False, connectors=None):
         masonry.apply(args.set, connectors)
     except Refused as refused:
         problems.append(str(refused))
+    if args.record is not None:
+        try:
+            readRecord(batch.beside(args.record), None, args.scale)
+        except Refused as refused:
+            problems.append(f"--record: {str(refused).removeprefix('shake: ')}")
     for text in args.field:
         try:
             scatterAll(connectors, *fields.read(text))
@@ -133,3 +139,20 @@ def check(args, masonry, more=(), plane=False, connectors=None):
     problems += masonry.missing()
     if problems:
         raise Refused("\n".join(problems))
+
+
+def askAccuracy(name, args):
+    """As :func:`masonry.run.accuracy.ask`. Ends the script in order where there is no answer."""
+    _, ofLine = Parser.last
+    fromLine = ofLine is args and sys.argv and os.path.isfile(sys.argv[0])
+    script = sys.argv[0] if fromLine else None
+    try:
+        return accuracy.ask(name, args, script, sys.argv[1:])
+    except Refused as refused:
+        if notebook.isHere():
+            raise
+        say(refused, sys.stderr)
+        raise SystemExit(2) from None
+    except Interrupted:
+        say("interrupted: the runs that are over are kept, and the same command goes on")  # fmt: skip
+        raise SystemExit(130) from None

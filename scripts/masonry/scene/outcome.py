@@ -2,11 +2,8 @@
 """What comes out of a scene: entries of run.json, and the lines at the end on the terminal."""
 
 import collections
-import contextlib
 import functools
 import math
-import os
-import subprocess
 import sys
 
 from yade import O
@@ -15,14 +12,15 @@ from yade.wrapper import MasonryVtkRecorder
 from ..assembly import blocks
 from ..assembly.blocks import units
 from ..assembly.engines import LAWS
-from ..basics import Unwritable, say, withoutCollector
+from ..basics import say, withoutCollector
 from ..memory import FULL
 from ..packages import Missing
-from ..read import cracks, crew, curves, quantities
+from ..read import cracks, curves, quantities
 from ..read.frames import asFrame
 from ..read.run_data import RunData
 from ..run import accuracy
-from . import facts, history
+from . import bound_texts, facts, history
+from .drawing_program import DrawingProgram
 from .figure import figureOf
 from ..run.options import UNITS
 from .stages import pushing
@@ -44,8 +42,7 @@ class Outcome:
         self.scene, self.model = scene, scene.model
         self.description, self.args = scene.description, scene.args
         self.results = scene.running.results
-        self._drawing = None  # the program that draws the figures and writes the report
-        self._begun = False  # whether it knows the folder
+        self.drawing = DrawingProgram()
         self._facts = self._inWords()
 
     def _inWords(self):
@@ -142,7 +139,7 @@ class Outcome:
             **self._connections(),
             script=shortened(scene.script.words),
             **self._facts,
-            **scene.bounds.describe(self.pushes),
+            **bound_texts.describe(scene.bounds.entries, self.pushes),
         )
         if self.description.views:
             entries["views"] = self.description.views
@@ -244,54 +241,6 @@ class Outcome:
 
     # -- files and terminal ---------------------------------------------------------------------------------------
 
-    def draw(self, directory):
-        """Wait until the figures of a run that has ended are drawn and its report is written, in a program of their own. Raises
-        Unwritable if one of them fails. Without matplotlib a note says that the figures are left out.
-        """
-        try:
-            self.beginDrawing(directory)
-            self._drawing.communicate()
-        except OSError as error:
-            raise Unwritable(f"the figures are not drawn: {error.strerror}") from None
-        finally:
-            status, self._begun = self.end(), False
-        if status == crew.NO_REPORT:
-            raise Unwritable("the report is not written")
-        if status:
-            raise Unwritable("the figures are not drawn")
-
-    def beginDrawing(self, directory):
-        """Name the folder to that program, which then begins; the report waits until :meth:`draw` is called, because figures
-        that the run itself writes stand in it. Raises OSError if there is no process.
-        """
-        if not self._begun:
-            self.prepare()
-            self._drawing.stdin.write(os.fsencode(directory) + crew.END)
-            self._drawing.stdin.flush()
-            self._begun = True
-
-    def prepare(self):
-        """Start the program that draws the figures and writes the report, which loads its libraries while the run goes on, and
-        then waits. Raises OSError if there is no process."""
-        if not self._drawing:
-            # -P: nothing of the present folder is run; in a session of its own, since Ctrl-C is for the run
-            command = [sys.executable, "-P", "-m", "masonry.read.crew"]
-            self._drawing = subprocess.Popen(
-                command, stdin=subprocess.PIPE, start_new_session=True
-            )
-
-    def end(self):
-        """End that program. Returns its exit status, or None if it was not started."""
-        program, self._drawing = self._drawing, None
-        if not program:
-            return None
-        if program.poll() is None:
-            program.kill()
-        status = program.wait()
-        with contextlib.suppress(OSError):
-            program.stdin.close()
-        return status
-
     def figure(self):
         """The entries of run.json by which curve.png is drawn."""
         found = dict(title=self.description.title, figure=figureOf(self))
@@ -331,7 +280,8 @@ class Outcome:
 
     def warnings(self, run):
         """Sentences on what the numbers of a run suffer from, from the entries of run.json."""
-        yield from self.scene.bounds.over(run)
+        bounds = self.scene.bounds
+        yield from bound_texts.over(bounds.entries, bounds.place.held, run)
         if not self.pushed:
             return
         if run.get("too_fast"):

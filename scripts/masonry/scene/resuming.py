@@ -8,7 +8,9 @@ scene in Python as it was when the stage began, and goes on from the state of th
 """
 
 import base64
+import contextlib
 from types import SimpleNamespace
+from typing import Any
 
 from ..run.checkpoints import alike
 from ..run.place import otherVersion
@@ -109,5 +111,42 @@ def _optionsDiffer(scene):
     """Whether the command line says something else about how far the push goes in which the checkpoint was made."""
     if not scene.script.isFirst(PUSHES):
         return False
-    was, now = scene.running.optionsBefore, asData(vars(scene.args))
+    was, now = scene.running.saved.options, asData(vars(scene.args))
     return any(was.get(name) != now[name] for name in ("until", "history"))
+
+
+def saidBefore(scene, word, **said):
+    """Note a command that is no stage. Returns whether the script of a run that is resumed said it before the checkpoint."""
+    scene.script.add(word, said)
+    if not scene.running.takesUp:
+        return False
+    scene.script.compare(scene.running.scriptBefore)
+    return len(scene.script.words) <= len(scene.running.scriptBefore)
+
+
+def resume(scene: Any) -> str:
+    """Go on with a run that was interrupted, as from a following cell of a notebook: the stage that was interrupted is carried
+    out to its end, from the checkpoint that the interruption left.
+
+    Every word of the scene is said again, as ``--resume`` of a script does it, so the result is the same to the last bit.
+    Of a search that the script makes by itscene or by :meth:`bracket`, this is the step that was interrupted.
+
+    :returns: how that stage ended
+    :raises ValueError: if the scene was not interrupted, or left no checkpoint
+    """
+    if not (scene.finished and scene.running.kept):
+        raise ValueError(
+            f"resume: scene {scene.name} has no run that was interrupted and left a checkpoint"
+        )
+    folder, calls, given = scene.results.directory, scene.calls, scene.args
+    (name, *made), beside = scene._made
+    arguments = given.parser.parse_args(["--resume", folder])
+    vars(scene).clear()
+    scene.__init__(name, *made, arguments, **beside)  # type: ignore[misc]
+    ended = None
+    for call in calls:
+        with contextlib.suppress(*[ValueError] * call.refused):
+            ended = call.word(scene, *call.args, **call.settings)
+        if call.found is not None:  # the script knows the record that it gave before
+            scene.description.replace(ended, call.found)
+    return ended

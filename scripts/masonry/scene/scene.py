@@ -26,37 +26,20 @@ import atexit
 import contextlib
 import functools
 import math
-import os
-import sys
-import time
-from typing import (
-    Annotated,
-    Any,
-    Callable,
-    Concatenate,
-    Iterable,
-    Iterator,
-    ParamSpec,
-    Protocol,
-    Sequence,
-    TypeVar,
-    overload,
-)
+from typing import Annotated, Any, Callable, Iterable, Iterator, Sequence
 
-from .._masonry import loadScene, saveScene
-from ..arguments import LONGEST_NAME, Direction, Level, Name, Numbers
+from ..arguments import LONGEST_NAME
 from ..arguments import isA, listOf, number, oneOf, shown, text, validated
 from .. import notebook
-from ..assembly.blocks import vector
 from ..assembly.structure import Structure
-from ..basics import GRAVITY, Interrupted, Refused, say, withoutCollector
+from ..basics import GRAVITY, Interrupted, say, withoutCollector
 from ..bricks import Bricks
-from ..run import accuracy, batch
 from ..run.ending import end
 from ..run.presets import BOUND
 from ..run.results import Results
 from ..run.run import Run
 from . import (
+    bounding,
     connections,
     contact,
     facts,
@@ -68,70 +51,15 @@ from . import (
     stages,
     supports,
 )
-from .bounds import EVERY, GIVEN_UP, SMALL, Bounds, nameInDomain, nameOfLean, nameOfPush
+from .bounds import Bounds, takeFound
 from .description import Description
-from .ground import readRecord
 from .materials import Masonry, linesOf, loadingBlock
 from .outcome import Outcome
-from .parsing import Parser
-from .resuming import State
-from .stages import AT_REST, STAGES, gravity, prepare
-from .stages.answers import Answer
-from .targets import Loaded, MovingPlaten, Target
-from .words import RESULT, SHAKES, Call, Script
-
-
-SOON = 1.0  # [s] in which a run that is interrupted waits for its bound
-OWN = "0"  # the stage of the results of the script, which all stages follow
-
-
-def finding(value: Any, first: Any = None) -> Any:
-    """The kind of a number that was found, or None or what is not a number if it was not."""
-    missing = value is None or isinstance(value, float) and math.isnan(value)
-    return value if missing else number()(value)
-
-
-P = ParamSpec("P")
-Q = ParamSpec("Q")
-R = TypeVar("R", covariant=True)
-
-
-class _Either(Protocol[P, R, Q]):
-    """What a script can call that takes one list of arguments before the first stage, and another one after it."""
-
-    @overload
-    def __call__(  # type: ignore[misc]  # both may be called without arguments, as far as mypy knows
-        self, *args: P.args, **settings: P.kwargs
-    ) -> R:
-        ...
-
-    @overload
-    def __call__(self, *args: Q.args, **settings: Q.kwargs) -> str:
-        ...
-
-
-class _EitherWord(Protocol[P, R, Q]):
-    """The same, of the class of a scene."""
-
-    def __get__(self, scene: Any, cls: Any = None) -> _Either[P, R, Q]:
-        ...
-
-
-def _either(
-    describes: Callable[Concatenate[Any, P], R],
-    stage: Callable[Concatenate[Any, Q], str],
-) -> _EitherWord[P, R, Q]:
-    """A word that describes before the first stage, and is a stage after it."""
-
-    @functools.wraps(describes)
-    def either(scene: Any, *args: Any, **settings: Any) -> Any:
-        word: Any = stage if scene.model else describes
-        return word(scene, *args, **settings)
-
-    either.__doc__ = (
-        f"{describes.__doc__}\n\n    After the first stage: {stage.__doc__}"
-    )
-    return either
+from .resuming import State, resume
+from .stages import STAGES, gravity, prepare, rest
+from .stages import answers
+from .targets import Target
+from .words import SHAKES, Call, Script, either
 
 
 def ofFolder(value: Any, first: Any = None) -> str:
@@ -218,7 +146,7 @@ class Scene:
         arguments = options.ofScene(name, arguments, usual)
         self.name, self.args = name, arguments
         #: what --accuracy found, :class:`masonry.run.accuracy.Asked`, or None
-        self.accuracy = self._askAccuracy()
+        self.accuracy = options.askAccuracy(name, arguments)
         if arguments.crack_surfaces == "off":
             self.description.bricks = list(Bricks(self.description.bricks).whole())
         self.description.deformable = arguments.blocks == "deformable"
@@ -247,23 +175,6 @@ class Scene:
         self.only = arguments.preset == BOUND
         self._entered = False  # whether a ``with`` block ends it
 
-    def _askAccuracy(self):
-        """As :func:`masonry.run.accuracy.ask`. Ends the script in order where there is no answer."""
-        parser, found = Parser.last
-        fromLine = found is self.args and sys.argv and os.path.isfile(sys.argv[0])
-        try:
-            return accuracy.ask(
-                self.name, self.args, sys.argv[0] if fromLine else None, sys.argv[1:]
-            )
-        except Refused as refused:
-            if notebook.isHere():
-                raise
-            say(refused, sys.stderr)
-            raise SystemExit(2) from None
-        except Interrupted:
-            say("interrupted: the runs that are over are kept, and the same command goes on")  # fmt: skip
-            raise SystemExit(130) from None
-
     # -- what describes it ----------------------------------------------------------------------------------------
 
     platen, watch, handle = supports.platen, supports.watch, supports.handle
@@ -273,10 +184,10 @@ class Scene:
     ground = contact.ground
     overlay = connections.overlay
     # Their names are those of stages, too, which are meant after the first stage.
-    hold = _either(supports.hold, stages.hold)
-    press = _either(loads.press, stages.press)
-    load = _either(loads.load, stages.load)
-    wind = _either(loads.wind, stages.wind)
+    hold = either(supports.hold, stages.hold)
+    press = either(loads.press, stages.press)
+    load = either(loads.load, stages.load)
+    wind = either(loads.wind, stages.wind)
 
     @property
     def targets(self) -> dict[str, Target]:
@@ -291,7 +202,8 @@ class Scene:
     tilt, accelerate, lean = stages.tilt, stages.accelerate, stages.lean
     growLoad, growWind = stages.growLoad, stages.growWind
     growPress, shake, run = stages.growPress, stages.shake, stages.run
-    bracket = gravity.bracket
+    bracket, stepBack, resume = gravity.bracket, rest.stepBack, resume
+    bound, domain, result = bounding.bound, bounding.domain, answers.result
 
     curve = showing.curve
 
@@ -328,38 +240,6 @@ class Scene:
         numbers = [number for number in sorted(kept, key=int) if int(number) <= entered]
         return [one for number in numbers for one in kept[number]]
 
-    @validated
-    def result(
-        self,
-        name: Name,
-        value: Annotated[float | None, finding],
-        unit: str = "-",
-        how: str = "the script found it",
-    ) -> None:
-        """Keep a number of one's own with the answers of the stages: in run.json, on the terminal and as a column of study.csv.
-
-        :param name: letters, digits and underscores; another result of this name is replaced
-        :param value: a number; None, or what is not a number, if it was not found
-        :param unit: ``"-"`` if it has none
-        :param how: how it was found, a sentence
-        :raises ValueError: with all problems
-        """
-        if not self.model:
-            raise ValueError(f"result {name}: it comes after the first stage")
-        self.calls.append(Call(Scene.result, (name, value, unit, how), {}))
-        at, before = self.running.at, self.running.scriptBefore
-        later = [word for word, _ in before[len(self.script.words) + 1 :]]
-        if self._saidBefore(RESULT, name=name) and any(w != RESULT for w in later):
-            return  # it was found in the state of that time
-        value = None if value is None or math.isnan(value) else float(value)
-        kept = [one for one in at.answers.get(OWN, []) if one["name"] != name]
-        answer = {
-            "stage": "script",
-            "number": 0,
-            **vars(Answer(name, unit, value, how)),
-        }
-        at.answers = {**at.answers, OWN: [*kept, answer]}
-
     @property
     def factor(self) -> float:
         """The largest load factor under which the structure came to rest in the last stage that found one, for example the
@@ -386,22 +266,11 @@ class Scene:
         problems = self.description.problems(masonry)
         if self.args.points and self.description.functors:
             problems.append(f"--points {self.args.points}: with functors joints keep three points; leave functors=False")  # fmt: skip
-        problems += self._wrongRecord()
         if self.description.contact:
             problems += contact.problems(self.description, self.args)
         options.check(self.args, masonry, problems, self.description.plane, connectors)
         self.assumed = masonry.assumed()
         return masonry
-
-    def _wrongRecord(self):
-        """What is wrong with the record of ``--record``, a list: it is read before anything is built."""
-        if self.args.record is None:
-            return []
-        try:
-            readRecord(batch.beside(self.args.record), None, self.args.scale)
-        except Refused as refused:
-            return [f"--record: {str(refused).removeprefix('shake: ')}"]
-        return []
 
     def begin(self) -> None:
         """Build the scene in YADE, if it does not stand there yet."""
@@ -418,27 +287,16 @@ class Scene:
         self.model = model
         self.running.open(self.columns, facts.properties(description, self.masonry))
         self.bounds = Bounds(model, self.running.at)
-        self.running.takeFound = self._takeFound
+        self.running.takeFound = functools.partial(takeFound, self)
         self.outcome = Outcome(self)
         with self.running.clock("setup"), self.running.breakable(), withoutCollector():
             model.build(loadingBlock())
             self._prepare()
-        self._noteCourse()
+        facts.noteCourse(description)
         self.running.start(model, self.outcome.space(), State(self))
         Scene.present = self
         atexit.unregister(self._remind)  # of a run that goes on
         atexit.register(self._remind)
-
-    def _noteCourse(self):
-        """Say that the bricks are not those for which the stiffness of the joints was made."""
-        course, bricks = self.description.materials.course, self.description.bricks
-        heights = {max(p[2] for p in b.corners) - min(p[2] for p in b.corners) for b in bricks}  # fmt: skip
-        if course and not any(abs(h - course) < 0.01 * course for h in heights):
-            found = ", ".join(f"{1e3 * h:.4g}" for h in sorted(heights)[:5])
-            say(
-                f"note: the joints are for courses of {1e3 * course:.4g} mm, mortar included, and the bricks have {found} mm: "
-                "give bricks the same unit= and joint= as the materials"
-            )
 
     def _prepare(self):
         """Make the engines that stages had made before the checkpoint of a run that is resumed."""
@@ -451,163 +309,6 @@ class Scene:
     def probe(self, stage: str, traits: Any, arguments: Any) -> Any:
         """Say what a study must know of the scene, and end; see :func:`masonry.scene.probing.probe`."""
         return probing.probe(self, stage, traits, arguments)
-
-    def keepState(self, ended: str) -> str:
-        """Keep the state of a structure that is at rest for :meth:`stepBack`. Returns how the stage ended."""
-        if ended == AT_REST:
-            self.model.atRest = saveScene("null")
-            self.model.motion.restart()
-        return ended
-
-    def stepBack(self) -> None:
-        """Take the scene back to its last state at rest, also after a collapse. The load that was held then acts again, also the
-        one that a growth or a bracket has found. Rows of curve.csv stay."""
-        with self.noted(Scene.stepBack):
-            self._stepBack()
-
-    def _stepBack(self):
-        """As :meth:`stepBack`."""
-        if self.only:
-            return
-        known = self.model is not None and self.model.atRest is not None
-        before, at = self.running.scriptBefore, len(self.script.words)
-        if self.running.takesUp and at < len(before):  # it had none yet
-            known = before[at][1].get("known", known)
-        said = self._saidBefore("stepBack", known=known)
-        if not known:
-            raise ValueError(
-                "stepBack: the scene has not been at rest in this run of the script"
-            )
-        self.running.collapsed, self.ended = False, AT_REST
-        self.results.run.pop("collapse", None)
-        if said:
-            return
-        loadScene(self.model.atRest)
-        self.running.mark()
-        self.model.motion.restart()
-
-    def _saidBefore(self, word, **said):
-        """Note a word that is no stage. Returns whether the script of a run that is resumed said it before the checkpoint."""
-        self.script.add(word, said)
-        if not self.running.takesUp:
-            return False
-        self.script.compare(self.running.scriptBefore)
-        return len(self.script.words) <= len(self.running.scriptBefore)
-
-    @validated
-    def bound(
-        self,
-        target: Loaded | None = None,
-        direction: Direction = (1, 0, 0),
-        towards: Level | None = None,
-    ) -> Any:
-        """Limit analysis of the scene as it stands, with a collapse without dilatancy: see :mod:`masonry.limit`.
-
-        Stages that push or lean find their bound by themselves, if there are at most 3000 joints; this is for other
-        loads, and for larger structures.
-
-        :param target: what is pushed, as of :meth:`push`, along ``direction``; its factor is the force of the push [kN]
-        :param towards: horizontal direction of an acceleration, whose factor is in g; give this or ``target``
-        :returns: the entry of run.json: a dict with ``factor``, ``exact`` and the others that :mod:`masonry.run.results`
-            lists
-        """
-        if (target is None) == (towards is None):
-            raise ValueError("bound: give either target or towards")
-        try:
-            with self.noted(Scene.bound, target, direction, towards), self.running.listening():  # fmt: skip
-                return self._bound(target, direction, towards)
-        except Interrupted as error:
-            return self.failed(error)
-
-    def _bound(self, target, direction, towards):
-        """As :meth:`bound`."""
-        self.begin()
-        self.bounds.take(True)
-        if self.collapsed:
-            raise ValueError(
-                "bound: the structure has fallen; stepBack() goes back to its last state at rest"
-            )
-        before = self._saidBefore("bound", target=getattr(target, "name", ""))
-        if target is not None:
-            direction = vector(direction, "bound: direction").normalized()
-            known = self.bounds.entries.get(nameOfPush(target, direction))
-            if before and known:
-                return known
-            return self._find("push", target, direction, lowerUpTo=EVERY)
-        towards = gravity.sideways(self, towards, "bound")
-        known = self.bounds.entries.get(nameOfLean(towards))
-        if before and known:
-            return known
-        return self._find("lean", towards, lowerUpTo=EVERY)
-
-    @validated
-    def domain(
-        self,
-        target: MovingPlaten,
-        normal: Annotated[Numbers, listOf(number("kN", 0, 1e9, above=True))],
-        direction: Level = (1, 0, 0),
-    ) -> list[dict[str, Any]]:
-        """The N-V domain of a pier: limit analysis of a push under several normal forces, as :meth:`bound` for one.
-
-        The loads of the scene stay as they are; only for limit analysis the vertical force on the platen is replaced. So it says
-        nothing new where the platen is held along z. :func:`masonry.capacity.domain` reads what was found, and
-        ``/usr/bin/python3 -m masonry.capacity --domain`` draws it, with the peaks of runs as points.
-
-        :param target: a platen that is pushed, with a :meth:`press` that says where the normal force acts
-        :param normal: forces with which the platen presses on what is below, its weight included: a list [kN]
-        :param direction: of the push, horizontal
-        :returns: the entries of run.json: a list of dicts as of :meth:`bound`, with ``pressed_kN``, the force that was given, and
-            ``normal_kN``, the force at the supports, with the weight of what is above them
-        :raises ValueError: if the platen is not pressed, or is held along z
-        """
-        try:
-            with self.noted(Scene.domain, target, normal, direction), self.running.listening():  # fmt: skip
-                return self._domain(target, normal, direction)
-        except Interrupted as error:
-            return self.failed(error)
-
-    def _domain(self, target, normal, direction):
-        """As :meth:`domain`."""
-        if target.pressed is None:
-            raise ValueError(f"domain: {target.name} is not pressed: press({target.name}, ...) before the first stage says where the normal force acts")  # fmt: skip
-        self.begin()
-        self.bounds.take(True)
-        if "z" in (target.freedom or "") or self.model.loading.isDriven(target, "z"):
-            raise ValueError(f"domain: {target.name} is held along z, so its normal force is no load that could be replaced")  # fmt: skip
-        if self.collapsed:
-            raise ValueError(
-                "domain: the structure has fallen; stepBack() goes back to its last state at rest"
-            )
-        before = self._saidBefore("domain", target=target.name, normal=list(normal))
-        direction = vector(direction, "domain: direction").normalized()
-        names = [nameInDomain(target, direction, one) for one in normal]
-        known = [self.bounds.entries.get(name) for name in names]
-        if before and all(known):
-            return known
-        return self._find("domain", target, normal, direction, lowerUpTo=SMALL)
-
-    def _find(self, kind, *load, lowerUpTo, beside=False):
-        """Find a bound, which Ctrl-C and SIGTERM end at once: a method of :class:`masonry.scene.bounds.Bounds`."""
-        with self.running.breakable():
-            return getattr(self.bounds, kind)(*load, lowerUpTo=lowerUpTo, beside=beside)
-
-    def _takeFound(self, wait):
-        """Take the bound that is found beside the run; a run that is interrupted does not wait long for it."""
-        began, running = time.monotonic(), self.running
-        late = lambda: running.interrupted and time.monotonic() - began > SOON
-        self.bounds.take(wait, late)
-        if not (running.interrupted or self.args.lean):
-            with contextlib.suppress(OSError):  # it is said when figures are drawn
-                self.outcome.prepare()
-
-    def findBound(self, kind: str, *load: Any) -> None:
-        """Find the bound of a stage, which pushes or leans, as :meth:`_find`."""
-        resumed = self.running.redoes and self.running.takesUp
-        missing = any(e.get("note") == GIVEN_UP for e in self.bounds.entries.values())
-        if self.args.lean and not self.only or resumed and not missing:
-            return  # in a stage that goes on it was found when that began
-        upTo = SMALL if self.only else 0
-        self._find(kind, *load, lowerUpTo=upTo, beside=not self.only)
 
     # -- the end --------------------------------------------------------------------------------------------------
 
@@ -653,35 +354,6 @@ class Scene:
         except ValueError:
             call.refused = not self.finished
             raise
-
-    def resume(self) -> str:
-        """Go on with a run that was interrupted, as from a following cell of a notebook: the stage that was interrupted is carried
-        out to its end, from the checkpoint that the interruption left.
-
-        Every word of the scene is said again, as ``--resume`` of a script does it, so the result is the same to the last bit.
-        Of a search that the script makes by itself or by :meth:`bracket`, this is the step that was interrupted.
-
-        :returns: how that stage ended
-        :raises ValueError: if the scene was not interrupted, or left no checkpoint
-        """
-        if not (self.finished and self.running.kept):
-            raise ValueError(
-                f"resume: scene {self.name} has no run that was interrupted and left a checkpoint"
-            )
-        folder, calls, given = self.results.directory, self.calls, self.args
-        (name, *made), beside = self._made
-        arguments = given.parser.parse_args(["--resume", folder])
-        vars(self).clear()
-        self.__init__(name, *made, arguments, **beside)  # type: ignore[misc]
-        ended = None
-        for call in calls:
-            with contextlib.suppress(*[ValueError] * call.refused):
-                ended = call.word(self, *call.args, **call.settings)
-            if (
-                call.found is not None
-            ):  # the script knows the record that it gave before
-                self.description.replace(ended, call.found)
-        return ended
 
     def failed(self, error: BaseException) -> Any:
         """End in order after an error of a stage. In a ``with`` block that does it."""

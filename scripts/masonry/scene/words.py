@@ -7,12 +7,14 @@ import functools
 import inspect
 import math
 from dataclasses import dataclass
-from typing import Any, Callable, Concatenate, ParamSpec, TypeVar
+from typing import Any, Callable, Concatenate, ParamSpec, Protocol, TypeVar, overload
 
 from ..basics import Refused
 
 P = ParamSpec("P")
+Q = ParamSpec("Q")
 R = TypeVar("R")
+S = TypeVar("S", covariant=True)
 
 RESULT = "result"  # the word that keeps a number of the script's own
 PUSHES = "push", "cycle", "follow"  # to the first of them --until and --history apply
@@ -56,6 +58,44 @@ def describes(
         return found
 
     return word
+
+
+class Either(Protocol[P, S, Q]):
+    """What a script can call that takes one list of arguments before the first stage, and another one after it."""
+
+    @overload
+    def __call__(  # type: ignore[misc]  # both may be called without arguments, as far as mypy knows
+        self, *args: P.args, **settings: P.kwargs
+    ) -> S:
+        ...
+
+    @overload
+    def __call__(self, *args: Q.args, **settings: Q.kwargs) -> str:
+        ...
+
+
+class EitherWord(Protocol[P, S, Q]):
+    """The same, of the class of a scene."""
+
+    def __get__(self, scene: Any, cls: Any = None) -> Either[P, S, Q]:
+        ...
+
+
+def either(
+    describes: Callable[Concatenate[Any, P], S],
+    stage: Callable[Concatenate[Any, Q], str],
+) -> EitherWord[P, S, Q]:
+    """A word that describes before the first stage, and is a stage after it."""
+
+    @functools.wraps(describes)
+    def command(scene: Any, *args: Any, **settings: Any) -> Any:
+        word: Any = stage if scene.model else describes
+        return word(scene, *args, **settings)
+
+    command.__doc__ = (
+        f"{describes.__doc__}\n\n    After the first stage: {stage.__doc__}"
+    )
+    return command
 
 
 def argumentsOf(act, first, args, settings):

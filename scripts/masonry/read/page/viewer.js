@@ -82,6 +82,7 @@
       this.camera.up.set(0, 0, 1);
       this.orbit = new THREE.OrbitControls(this.camera, this.canvas);
       this.orbit.enableKeys = false; // keys do more here
+      this.orbit.screenSpacePanning = true; // a wall follows the mouse up and down, too
       [this.orbit.minZoom, this.orbit.maxZoom] = [0.2, 200];
       this.orbit.addEventListener("change", () => this.ask());
       this.build();

@@ -4,13 +4,20 @@
 from __future__ import annotations
 
 import itertools
+import math
 from dataclasses import dataclass
+from typing import Annotated, Any
+
+from ...arguments import Name, number, validated
+from ..resuming import saidBefore
+from ..words import RESULT, Call
 
 #: How a stage ends.
 AT_REST, MOVING, DONE, COLLAPSED = "at rest", "moving", "done", "collapsed"
 #: How a collapse ends that is followed.
 FALLEN_AT_REST, FALLEN_MOVING = f"{COLLAPSED} and at rest", f"{COLLAPSED} and moving"  # fmt: skip
 FALLEN = {COLLAPSED, FALLEN_AT_REST, FALLEN_MOVING}  # ends of what has fallen
+OWN = "0"  # the stage of the results of the script, which all stages follow
 FALL = "fall"  # the stage in which a collapse is followed: masonry.scene.stages.falling
 
 
@@ -75,3 +82,37 @@ def _furthest(answers, name, choose):
     found = [one for one in answers if one["name"] == name]
     known = [one for one in found if one["value"] is not None]
     return choose(known, key=lambda one: one["value"]) if known else found[-1]
+
+
+def finding(value: Any, first: Any = None) -> Any:
+    """The kind of a number that was found, or None or what is not a number if it was not."""
+    missing = value is None or isinstance(value, float) and math.isnan(value)
+    return None if missing else float(number()(value))
+
+
+@validated
+def result(
+    scene: Any,
+    name: Name,
+    value: Annotated[float | None, finding],
+    unit: str = "-",
+    how: str = "the script found it",
+) -> None:
+    """Keep a number of one's own with the answers of the stages: in run.json, on the terminal and as a column of study.csv.
+
+    :param name: letters, digits and underscores; another result of this name is replaced
+    :param value: a number; None, or what is not a number, if it was not found
+    :param unit: ``"-"`` if it has none
+    :param how: how it was found, a sentence
+    :raises ValueError: with all problems
+    """
+    if not scene.model:
+        raise ValueError(f"result {name}: it comes after the first stage")
+    scene.calls.append(Call(result, (name, value, unit, how), {}))
+    at, before = scene.running.at, scene.running.scriptBefore
+    later = [word for word, _ in before[len(scene.script.words) + 1 :]]
+    if saidBefore(scene, RESULT, name=name) and any(w != RESULT for w in later):
+        return  # it was found in the state of that time
+    kept = [one for one in at.answers.get(OWN, []) if one["name"] != name]
+    own = {"stage": "script", "number": 0, **vars(Answer(name, unit, value, how))}
+    at.answers = {**at.answers, OWN: [*kept, own]}

@@ -8,7 +8,7 @@ from typing import Annotated, Any, Callable
 
 from ...arguments import Level, number, validated
 from ...assembly.blocks import vector
-from ..bounds import nameOfLean
+from ..bounds import findBound, nameOfLean
 from .acting import Acceleration, Tilting
 from .growing import TRIAL, WITHIN, ends, follow, found, grow
 from .rest import Resting, waitForRest
@@ -65,7 +65,7 @@ def tilt(
     """
     towards = sideways(scene, towards, "tilt")
     angle, duration = math.radians(degrees), degrees / rate
-    scene.findBound("lean", towards, True)
+    findBound(scene, "lean", towards, True)
     load = Tilting(scene.model, angle, towards, nameOfLean(towards, tilts=True))
     return grow(scene, "tilt", load, duration, towards, within)
 
@@ -90,7 +90,7 @@ def accelerate(
     """
     towards = sideways(scene, towards, "accelerate")
     duration = most / rate
-    scene.findBound("lean", towards)
+    findBound(scene, "lean", towards)
     load = Acceleration(scene.model, most, towards, nameOfLean(towards))
     return grow(scene, "accelerate", load, duration, towards, within)
 
@@ -109,7 +109,7 @@ def lean(
     :param longest: time in the scene after which it is given up [s]; None: 4 s
     """
     towards = sideways(scene, towards, "lean")
-    scene.findBound("lean", towards)
+    findBound(scene, "lean", towards)
     load = Acceleration(scene.model, factor, towards, nameOfLean(towards))
     if scene.only:
         return boundAlone(scene, load)

@@ -273,7 +273,7 @@ class _Search:
         if at.held:
             self.model.atRest = _state(at.heldState)
         if not at.fell and at.lost is None and at.held:
-            if self.running.recordedAt() != O.time:
+            if self.running.readings.time != O.time:
                 self.running.record()
             self.running.flush()
             if not at.over:

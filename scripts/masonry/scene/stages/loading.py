@@ -17,7 +17,7 @@ from yade import O, Vector3
 from ...arguments import Freedoms, Level, validated
 from ...assembly.blocks import vector
 from ...basics import Refused
-from ..bounds import nameOf
+from ..bounds import findBound, nameOf
 from ..loads import Force, Pressure, Stress, checkedForce, doubtPress, windFaces
 from ..targets import AnyTarget, Loaded, MovingPlaten, Part
 from .acting import Forces
@@ -219,7 +219,7 @@ def _putOn(scene, name, made, towards, longest):
     if scene.only:  # what it replaces is no load beside it
         made.put(made.at(before, 0.0))
     if scene.only or not any(before):
-        scene.findBound("forces", made.name, made.unit, made.pairs())
+        findBound(scene, "forces", made.name, made.unit, made.pairs())
     if scene.only:
         ended = boundAlone(scene, made)
         if ended != AT_REST:
@@ -229,7 +229,7 @@ def _putOn(scene, name, made, towards, longest):
 
 
 def _grow(scene, name, made, towards, over, within):
-    scene.findBound("forces", made.name, made.unit, made.pairs())
+    findBound(scene, "forces", made.name, made.unit, made.pairs())
     return grow(scene, name, made, over, towards, within)
 
 

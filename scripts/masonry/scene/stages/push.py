@@ -12,7 +12,7 @@ from ...basics import Refused, say
 from ...read import curves
 from ...read.run_data import BASE, MOVED, TOP, RunData
 from .. import history
-from ..bounds import nameOfPush
+from ..bounds import findBound, nameOfPush
 from ...run.options import Rate
 from ..targets import Loaded
 from ..words import PUSHES
@@ -129,7 +129,7 @@ def _drive(scene, name, target, aims, direction, rate, continued):
         raise ValueError(
             f"{name}: continued: {target.name} has not been pushed along {tuple(direction)} before"
         )
-    scene.findBound("push", target, direction, bool(args.history))
+    findBound(scene, "push", target, direction, bool(args.history))
     names = [nameOfPush(target, sign * direction) for sign in (1, -1)]
     scene.running.note("push", *names)
     if not scene.only:

@@ -8,9 +8,11 @@ from typing import Annotated, Any
 
 from yade import O
 
+from ..._masonry import loadScene, saveScene
 from ...arguments import number, oneOf, validated
 from ...assembly.motion import FAR, REST
 from ...basics import Collapsed, Refused, say
+from ..resuming import saidBefore
 from .answers import AT_REST, MOVING
 from .stage import stage
 
@@ -124,4 +126,36 @@ def waitForRest(scene, at, longest, grow, over=0.0, record=True):
     if record:
         running.record()
     running.flush()
-    return scene.keepState(scene.ended)
+    if scene.ended == AT_REST:
+        model.atRest = saveScene("null")  # for stepBack()
+        model.motion.restart()
+    return scene.ended
+
+
+def stepBack(scene: Any) -> None:
+    """Take the scene back to its last state at rest, also after a collapse. The load that was held then acts again, also the
+    one that a growth or a bracket has found. Rows of curve.csv stay."""
+    with scene.noted(stepBack):
+        _stepBack(scene)
+
+
+def _stepBack(scene):
+    if scene.only:
+        return
+    running, model = scene.running, scene.model
+    known = model is not None and model.atRest is not None
+    before, at = running.scriptBefore, len(scene.script.words)
+    if running.takesUp and at < len(before):  # it had none yet
+        known = before[at][1].get("known", known)
+    said = saidBefore(scene, "stepBack", known=known)
+    if not known:
+        raise ValueError(
+            "stepBack: the scene has not been at rest in this run of the script"
+        )
+    running.collapsed, scene.ended = False, AT_REST
+    scene.results.run.pop("collapse", None)
+    if said:
+        return
+    loadScene(model.atRest)
+    running.checkpoints.mark()
+    model.motion.restart()

@@ -154,7 +154,7 @@ def _carryOut(scene, act, traits, args, settings):
             scene.model.checkFallen()
         _noteEnd(running, before, ended)
         if not traits.farther:
-            running.mark()
+            running.checkpoints.mark()
         _answer(scene, name, traits, before)
         return ended
     except Collapsed as collapse:
@@ -164,10 +164,10 @@ def _carryOut(scene, act, traits, args, settings):
             _noteEnd(running, before, COLLAPSED)
         running.fall(str(collapse))
         try:
-            if running.recordedAt() != O.time:
+            if running.readings.time != O.time:
                 running.record()
             running.flush()
-            running.markFall()
+            running.checkpoints.markFall()
         except FloatingPointError:
             follows = False  # what has fallen may have left finite numbers
             _noteEnd(running, before, COLLAPSED)
@@ -203,7 +203,7 @@ def _follow(scene, name):
         running.at.answers = {**running.at.answers, str(number): kept}
         writeTable(scene)
         _noteEnd(running, begun - 1, scene.ended)
-        running.mark()
+        running.checkpoints.mark()
         return COLLAPSED
     except BaseException as error:
         return scene.failed(error)

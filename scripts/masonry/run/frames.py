@@ -1,0 +1,81 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The ParaView frames of a run."""
+
+import time
+
+from yade import O
+from yade.wrapper import MasonryVtkRecorder
+
+from ..background import Failed, Task
+from ..basics import Unwritable
+
+#: A frame that takes longer is written beside the run [s]; the copy of the process that does it takes some milliseconds.
+SLOW_FRAME = 0.02
+
+
+class Frames:
+    """Writes frames: beside the run if the last one was slow.
+
+    :param directory: folder of the run
+    :param at: :class:`masonry.run.place.Place`, whose ``frames`` are the times of the frames that are whole or being written
+    """
+
+    def __init__(self, directory, at):
+        self._at = at
+        self._recorder = MasonryVtkRecorder(directory=directory)
+        self._task = None  # that writes a frame beside the run
+        self._took = 0.0  # the last one that the run has written itself [s]
+
+    @property
+    def kinds(self):
+        """Names of the joints, by the number that frames have for them."""
+        return self._recorder.kinds
+
+    def collect(self):
+        """Write the lists of frames anew. Raises RuntimeError."""
+        if self._at.frames:
+            self._recorder.times = self._at.frames
+            self._recorder.collect()
+
+    def add(self, final):
+        """Write a frame of the scene as it stands. Raises Unwritable.
+
+        :param final: whether it is the last one, which is whole when this returns
+        """
+        self.wait()
+        self._recorder.times = self._at.frames
+        if self._took > SLOW_FRAME and not final:
+            self._task = Task(self._writeBeside)
+            self._at.frames = [*self._at.frames, O.time]
+        else:
+            began = time.perf_counter()
+            self._write()
+            self._took = time.perf_counter() - began
+            self._at.frames = list(self._recorder.times)
+
+    def _write(self):
+        try:
+            self._recorder()
+        except RuntimeError as error:
+            raise Unwritable(str(error)) from None
+
+    def _writeBeside(self):
+        """In a copy of the process."""
+        self._write()
+        yield True
+
+    def wait(self):
+        """Wait until the frame is whole that is written beside the run. Raises Unwritable if it could not be written: then
+        the run has gone on, and the frame is none of its frames."""
+        task, self._task = self._task, None
+        try:
+            if task:
+                task.result()
+        except (Failed, Unwritable) as failed:
+            *self._at.frames, lost = self._at.frames
+            raise Unwritable(f"the frame at {lost:.6g} s is lost: {failed}") from None
+
+    def end(self):
+        """Leave the frame that is written beside the run."""
+        if self._task:
+            self._task.end()

@@ -1,0 +1,55 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Readings of the model, which become rows of curve.csv some at a time."""
+
+import time
+
+from ..basics import say
+
+FLUSH_EVERY = 0.2  # [s] of wall-clock time: rows are on the disk after it
+
+
+class Readings:
+    """Readings that are not in curve.csv yet. They wait for 0.2 s of wall-clock time at most, and not beyond a checkpoint or the
+    end, so only a kill can lose them, and a run that is resumed after a kill makes them again.
+
+    :param columns: :class:`masonry.assembly.columns.Column` objects
+    :param results: :class:`masonry.run.results.Results`
+    :param live: function that adds a row to yade.plot, or None
+    """
+
+    def __init__(self, columns, results, live):
+        self._values = [column.value for column in columns]
+        self._results, self._live = results, live
+        self.waiting = []  # rows
+        self.time = None  # in the scene, of the last one [s]
+        self._written = self._read = time.perf_counter()  # [s]
+
+    @property
+    def count(self):
+        """How many rows there are, with those that wait."""
+        return len(self._results.rows) + len(self.waiting)
+
+    def add(self, model):
+        """Read the model. Returns the reading."""
+        reading = model.read()
+        for sentence in model.connectors.news():
+            say(f"note: {sentence}")
+        self.waiting.append([value(reading) for value in self._values])
+        self.time = reading.time
+        return reading
+
+    def isDue(self):
+        """Whether the rows should be written, after one was added: the next one is expected as long after it as it came after the
+        last."""
+        now = time.perf_counter()
+        due = now - self._written + now - self._read > FLUSH_EVERY
+        self._read = now
+        return due
+
+    def write(self):
+        """Write the rows that wait. Raises as :meth:`masonry.run.results.Results.append` does."""
+        rows, self.waiting = self.waiting, []
+        self._results.append(rows)
+        for row in rows if self._live else []:
+            self._live(row)
+        self._written = time.perf_counter()

@@ -1,0 +1,113 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Commands of a scene that ask for limit analysis; :mod:`masonry.scene.bounds` carries it out."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any
+
+from ..arguments import Direction, Level, Numbers, listOf, number, validated
+from ..assembly.blocks import vector
+from ..basics import Interrupted
+from .bounds import EVERY, SMALL, findBy, nameInDomain, nameOfLean, nameOfPush
+from .resuming import saidBefore
+from .stages import gravity
+from .targets import Loaded, MovingPlaten
+
+
+@validated
+def bound(
+    scene: Any,
+    target: Loaded | None = None,
+    direction: Direction = (1, 0, 0),
+    towards: Level | None = None,
+) -> Any:
+    """Limit analysis of the scene as it stands, with a collapse without dilatancy: see :mod:`masonry.limit`.
+
+    Stages that push or lean find their bound by themselves, if there are at most 3000 joints; this is for other
+    loads, and for larger structures.
+
+    :param target: what is pushed, as of :meth:`push`, along ``direction``; its factor is the force of the push [kN]
+    :param towards: horizontal direction of an acceleration, whose factor is in g; give this or ``target``
+    :returns: the entry of run.json: a dict with ``factor``, ``exact`` and the others that :mod:`masonry.run.results`
+        lists
+    """
+    if (target is None) == (towards is None):
+        raise ValueError("bound: give either target or towards")
+
+    def find():
+        _begin(scene, "bound")
+        before = saidBefore(scene, "bound", target=getattr(target, "name", ""))
+        if target is not None:
+            along = vector(direction, "bound: direction").normalized()
+            name, load = nameOfPush(target, along), ("push", target, along)
+        else:
+            along = gravity.sideways(scene, towards, "bound")
+            name, load = nameOfLean(along), ("lean", along)
+        known = scene.bounds.entries.get(name)
+        return known if before and known else findBy(scene, *load, lowerUpTo=EVERY)
+
+    return _inOrder(scene, find, bound, target, direction, towards)
+
+
+@validated
+def domain(
+    scene: Any,
+    target: MovingPlaten,
+    normal: Annotated[Numbers, listOf(number("kN", 0, 1e9, above=True))],
+    direction: Level = (1, 0, 0),
+) -> list[dict[str, Any]]:
+    """The N-V domain of a pier: limit analysis of a push under several normal forces, as :meth:`bound` for one.
+
+    The loads of the scene stay as they are; only for limit analysis the vertical force on the platen is replaced. So it says
+    nothing new where the platen is held along z. :func:`masonry.capacity.domain` reads what was found, and
+    ``/usr/bin/python3 -m masonry.capacity --domain`` draws it, with the peaks of runs as points.
+
+    :param target: a platen that is pushed, with a :meth:`press` that says where the normal force acts
+    :param normal: forces with which the platen presses on what is below, its weight included: a list [kN]
+    :param direction: of the push, horizontal
+    :returns: the entries of run.json: a list of dicts as of :meth:`bound`, with ``pressed_kN``, the force that was given, and
+        ``normal_kN``, the force at the supports, with the weight of what is above them
+    :raises ValueError: if the platen is not pressed, or is held along z
+    """
+    if target.pressed is None:
+        raise ValueError(
+            f"domain: {target.name} is not pressed: press({target.name}, ...) before the first stage says where the "
+            "normal force acts"
+        )
+
+    def find():
+        _begin(scene, "domain")
+        isDriven = scene.model.loading.isDriven(target, "z")
+        if "z" in (target.freedom or "") or isDriven:
+            raise ValueError(
+                f"domain: {target.name} is held along z, so its normal force is no load that could be replaced"
+            )
+        before = saidBefore(scene, "domain", target=target.name, normal=list(normal))
+        along = vector(direction, "domain: direction").normalized()
+        known = [
+            scene.bounds.entries.get(nameInDomain(target, along, one)) for one in normal
+        ]
+        if before and all(known):
+            return known
+        return findBy(scene, "domain", target, normal, along, lowerUpTo=SMALL)
+
+    return _inOrder(scene, find, domain, target, normal, direction)
+
+
+def _inOrder(scene, find, command, *said):
+    """What a function finds, noted as a command of the script; Ctrl-C ends the run in order."""
+    try:
+        with scene.noted(command, *said), scene.running.listening():
+            return find()
+    except Interrupted as error:
+        return scene.failed(error)
+
+
+def _begin(scene, name):
+    """Build the scene if it does not stand yet. Raises ValueError if it has fallen."""
+    scene.begin()
+    scene.bounds.take(True)
+    if scene.collapsed:
+        raise ValueError(
+            f"{name}: the structure has fallen; stepBack() goes back to its last state at rest"
+        )

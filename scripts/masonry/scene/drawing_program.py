@@ -1,0 +1,66 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The program beside a run that draws its figures and writes its report: :mod:`masonry.read.crew`."""
+
+import contextlib
+import os
+import subprocess
+import sys
+
+from ..basics import Unwritable
+from ..read import crew
+
+
+class DrawingProgram:
+    """It is started while the run goes on, and begins when it knows the folder."""
+
+    def __init__(self):
+        self._program = None
+        self._begun = False  # whether it knows the folder
+
+    def draw(self, directory):
+        """Wait until the figures of a run that has ended are drawn and its report is written, in a program of their own. Raises
+        Unwritable if one of them fails. Without matplotlib a note says that the figures are left out.
+        """
+        try:
+            self.begin(directory)
+            self._program.communicate()
+        except OSError as error:
+            raise Unwritable(f"the figures are not drawn: {error.strerror}") from None
+        finally:
+            status, self._begun = self.end(), False
+        if status == crew.NO_REPORT:
+            raise Unwritable("the report is not written")
+        if status:
+            raise Unwritable("the figures are not drawn")
+
+    def begin(self, directory):
+        """Name the folder to that program, which then begins; the report waits until :meth:`draw` is called, because figures
+        that the run itself writes stand in it. Raises OSError if there is no process.
+        """
+        if not self._begun:
+            self.start()
+            self._program.stdin.write(os.fsencode(directory) + crew.END)
+            self._program.stdin.flush()
+            self._begun = True
+
+    def start(self):
+        """Start the program that draws the figures and writes the report, which loads its libraries while the run goes on, and
+        then waits. Raises OSError if there is no process."""
+        if not self._program:
+            # -P: nothing of the present folder is run; in a session of its own, since Ctrl-C is for the run
+            command = [sys.executable, "-P", "-m", "masonry.read.crew"]
+            self._program = subprocess.Popen(
+                command, stdin=subprocess.PIPE, start_new_session=True
+            )
+
+    def end(self):
+        """End that program. Returns its exit status, or None if it was not started."""
+        program, self._program = self._program, None
+        if not program:
+            return None
+        if program.poll() is None:
+            program.kill()
+        status = program.wait()
+        with contextlib.suppress(OSError):
+            program.stdin.close()
+        return status
