@@ -177,7 +177,8 @@ def pytest_collect_file(parent, file_path):
 
 def pytest_configure(config):
     given = [pathlib.Path(arg.split("::")[0]).absolute() for arg in config.args]
-    if any(map(needsYade, given)):
+    # pytest-xdist gives all tests to its workers
+    if any(map(needsYade, given)) and config.getoption("dist", "no") == "no":
         # The package registers YADE's classes only if YADE was imported before it, so YADE comes first of all. Its
         # version, which it prints, would stand after pytest's closing line.
         with contextlib.redirect_stdout(None), warnings.catch_warnings():
