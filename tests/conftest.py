@@ -63,7 +63,6 @@ LONG = [
     "test_a_task_of_slurm_runs_the_levels_of_a_record",
     "test_no_bytes_break_a_reader",
     "test_random_tries_beside_a_run_do_no_harm",
-    "test_loop_and_functors_take_turns_twenty_times_while_python_holds_the_old_loops",
     "test_a_stack_that_falls_has_its_answer_and_a_sentence",
     "test_a_wall_killed_in_its_third_half_cycle_goes_on_bit_for_bit",
     "test_the_vertical_load_turns_the_wall_about_its_toe_and_keeps_its_line",

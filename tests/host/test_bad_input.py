@@ -375,6 +375,7 @@ CASES = {
         (blocks, lambda: MasonryZones(bodies=[1, 8, 9]).nodesOf(1), ["body 8 does not exist", "body 9 does not exist"]),
         (lambda: O.bodies.append(utils.sphere((0, 0, 0), 1)), lambda: MasonryZones(bodies=[0]).nodesOf(0), "body 0 is no block of MasonryMat"),
         (nothing, lambda: MasonryZones(divisions=[0, 1, 101]), ["divisions 0 must be 1 to 100", "divisions 101 must be 1 to 100"]),
+        (nothing, lambda: MasonryZones(divisions=[1, 1]), "divisions must be three whole numbers"),
         (
             nothing,
             lambda: MasonryZones(damping=nan, dampingKind="x", blocked="q", gravity=(0, 0, nan)),
