@@ -239,26 +239,23 @@ def scene():
     O.reset()
 
 
+def runProgram(name, *words, check=True, **settings):
+    """Run a program of scripts/, or one at a path, in YADE as a user does: the finished process, whose output is text."""
+    path = name if name.endswith(".py") else os.path.join(ROOT, "scripts", name + ".py")
+    process = subprocess.run(
+        ["yade", "-n", "-x", path, *map(str, words)],
+        **{"capture_output": True, "text": True, "timeout": 300, **settings},
+    )
+    assert not check or process.returncode == 0, process.stdout + process.stderr
+    return process
+
+
 @pytest.fixture
 def runScene(tmp_path):
     """Run a program of scripts/ as a user does; returns the finished process and its folder of results."""
 
-    def run(name, *options, cwd=None, check=True):
-        out = tmp_path / "results"
-        command = [
-            "yade",
-            "-n",
-            "-x",
-            os.path.join(ROOT, "scripts", name + ".py"),
-            "--out",
-            str(out),
-            *options,
-        ]
-        process = subprocess.run(
-            command, capture_output=True, text=True, cwd=cwd or tmp_path, timeout=300
-        )
-        if check:
-            assert process.returncode == 0, process.stdout + process.stderr
-        return process, str(out)
+    def run(name, *options, check=True):
+        out = str(tmp_path / "results")
+        return runProgram(name, "--out", out, *options, check=check, cwd=tmp_path), out
 
     return run
