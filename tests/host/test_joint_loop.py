@@ -279,6 +279,7 @@ def test_a_run_is_the_same_bit_for_bit_with_any_number_of_threads(blocks):
         allowThreads(threads, True)
         interactions = panel(False, blocks, size=12, damping=0.8)
         run(200)
-        ends.append([values.tobytes() for values in state(interactions).values()] + [balance()])  # fmt: skip
+        values = [column.tobytes() for column in state(interactions).values()]
+        ends.append((values, balance()))
     allowThreads(1)
     assert ends[0] == ends[1] == ends[2]

@@ -481,14 +481,16 @@ def takenWithinBounds(value, meant):
     where, kind, ends = BOUNDED[meant]
     whole = "whole number" in meant
     number = isinstance(value, int) or isinstance(value, float) and not whole
-    if not isinstance(value, bool) and number and math.isfinite(value) and all(LIES[what](value, end) for what, end in ends.items()):  # fmt: skip
+    number = number and not isinstance(value, bool) and math.isfinite(value)
+    if number and all(LIES[what](value, end) for what, end in ends.items()):
         assert kind(value) == value, where
         return
     with pytest.raises(ValueError) as refused:
         kind(value)
     said = str(refused.value)
     assert arguments.shown(value) in said and " must be " in said, where
-    assert all({f"{end:g}", f"{end:.0f}"} & {*said.split()} for end in ends.values()), where  # fmt: skip
+    for end in ends.values():
+        assert {f"{end:g}", f"{end:.0f}"} & {*said.split()}, where
 
 
 def test_numbers_at_their_bounds_are_taken_and_those_beyond_are_refused():
@@ -501,7 +503,7 @@ def test_numbers_at_their_bounds_are_taken_and_those_beyond_are_refused():
 
 
 @settings(max_examples=200)
-@given(some.one_of(some.floats(), some.integers(), some.booleans(), some.text(max_size=9)))  # fmt: skip
+@given(some.floats() | some.integers() | some.booleans() | some.text(max_size=9))
 def test_what_lies_outside_of_its_bounds_is_refused_with_value_and_bound(value):
     """The bounds are those that the manual shows: what a kind says against a value of no sort."""
     for meant in BOUNDED:

@@ -178,10 +178,11 @@ def test_a_module_beside_the_scene_is_found_and_its_run_is_resumed(tmp_path):
     (tmp_path / "scenes" / "clay.py").write_text("SIZE = (0.2, 0.1, 0.1)\n")
     # a module of this name is never taken from there
     (tmp_path / "scenes" / "token.py").write_text("raise RuntimeError('taken')\n")
-    run = lambda *words, check=True: runProgram(os.path.join("..", "scenes", "scene.py"), *words, cwd=tmp_path / "elsewhere", check=check)  # fmt: skip
+    path, here = os.path.join("..", "scenes", "scene.py"), tmp_path / "elsewhere"
+    run = lambda *words, **more: runProgram(path, *words, cwd=here, **more)
     run("--no-vtk", "--out", "r")
-    curve = (tmp_path / "elsewhere" / "r" / "curve.csv").read_bytes()
+    curve = (here / "r" / "curve.csv").read_bytes()
     run("--resume", "r")
-    assert (tmp_path / "elsewhere" / "r" / "curve.csv").read_bytes() == curve
+    assert (here / "r" / "curve.csv").read_bytes() == curve
     other = run("--resume", "r", "--damping", "0.2", check=False)
     assert other.returncode == 2 and "--damping is 0.7" in other.stderr
