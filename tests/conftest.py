@@ -63,7 +63,6 @@ LONG = [
     "test_a_task_of_slurm_runs_the_levels_of_a_record",
     "test_no_bytes_break_a_reader",
     "test_random_tries_beside_a_run_do_no_harm",
-    "test_loop_and_functors_take_turns_twenty_times_while_python_holds_the_old_loops",
     "test_a_stack_that_falls_has_its_answer_and_a_sentence",
     "test_a_wall_killed_in_its_third_half_cycle_goes_on_bit_for_bit",
     "test_the_vertical_load_turns_the_wall_about_its_toe_and_keeps_its_line",
@@ -177,7 +176,8 @@ def pytest_collect_file(parent, file_path):
 
 def pytest_configure(config):
     given = [pathlib.Path(arg.split("::")[0]).absolute() for arg in config.args]
-    if any(map(needsYade, given)):
+    # pytest-xdist gives all tests to its workers
+    if any(map(needsYade, given)) and config.getoption("dist", "no") == "no":
         # The package registers YADE's classes only if YADE was imported before it, so YADE comes first of all. Its
         # version, which it prints, would stand after pytest's closing line.
         with contextlib.redirect_stdout(None), warnings.catch_warnings():
@@ -239,26 +239,23 @@ def scene():
     O.reset()
 
 
+def runProgram(name, *words, check=True, **settings):
+    """Run a program of scripts/, or one at a path, in YADE as a user does: the finished process, whose output is text."""
+    path = name if name.endswith(".py") else os.path.join(ROOT, "scripts", name + ".py")
+    process = subprocess.run(
+        ["yade", "-n", "-x", path, *map(str, words)],
+        **{"capture_output": True, "text": True, "timeout": 300, **settings},
+    )
+    assert not check or process.returncode == 0, process.stdout + process.stderr
+    return process
+
+
 @pytest.fixture
 def runScene(tmp_path):
     """Run a program of scripts/ as a user does; returns the finished process and its folder of results."""
 
-    def run(name, *options, cwd=None, check=True):
-        out = tmp_path / "results"
-        command = [
-            "yade",
-            "-n",
-            "-x",
-            os.path.join(ROOT, "scripts", name + ".py"),
-            "--out",
-            str(out),
-            *options,
-        ]
-        process = subprocess.run(
-            command, capture_output=True, text=True, cwd=cwd or tmp_path, timeout=300
-        )
-        if check:
-            assert process.returncode == 0, process.stdout + process.stderr
-        return process, str(out)
+    def run(name, *options, check=True):
+        out = str(tmp_path / "results")
+        return runProgram(name, "--out", out, *options, check=check, cwd=tmp_path), out
 
     return run

@@ -5,7 +5,7 @@ import math
 
 import numpy as np  # noqa: F401
 import pytest  # noqa: F401
-from conftest import ROOT  # noqa: F401
+from conftest import ROOT, runProgram  # noqa: F401
 from yade.wrapper import *  # first: its Scene is not ours
 from masonry import *
 from masonry import addBlock, engine  # noqa: F401

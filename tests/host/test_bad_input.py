@@ -11,11 +11,10 @@ import math
 import os
 import resource
 import runpy
-import subprocess
 import sys
 
 import pytest
-from conftest import ROOT
+from conftest import ROOT, runProgram
 from masonry import Scene as BrickScene
 from masonry import (
     addBlock,
@@ -207,14 +206,10 @@ step = lambda: O.step()
 CASES = {
     "block": [
         (nothing, lambda: addBlock(cube[:4], mat()), "4 corners span 0.13025 m but only 0 m out of a plane: no volume"),
-        (nothing, lambda: addBlock([(i, 0, 0) for i in range(5)], mat()), "5 corners span 4 m but only 0 m out of"),
-        (nothing, lambda: addBlock([(1, 1, 1)] * 8, mat()), "8 corners span 0 m but only 0 m out of a plane"),
         (nothing, lambda: addBlock(box(size=(0.2, 0.1, 1e-12)), mat()), "only 1e-12 m out of a plane: no volume"),
         (nothing, lambda: addBlock(5, None), ["vertices 5 must be a list with at least 4 values", "material None must be a MasonryMat"]),
         (nothing, lambda: addBlock(cube[:7] + cube[:1], mat()), "corner 7 (0, 0, 0) m is given twice"),
         (nothing, lambda: addBlock(cube + [(0.1, 0.05, 0.04)], mat()), "corner 8 (0.1, 0.05, 0.04) m is no corner of the convex block"),
-        (nothing, lambda: addBlock(cube + [(0.11, 0, 0)], mat()), "corner 8 (0.11, 0, 0) m is no corner of the convex block"),
-        (nothing, lambda: addBlock(cube[:7] + [(0.05, 0.05, 0.04)], mat()), "corner 7 (0.05, 0.05, 0.04) m is no corner"),
         (nothing, lambda: addBlock(box(x=1e12), mat()), "0.255641 m is too small to be told so far from the origin"),
         (nothing, lambda: addBlock(cube, mat(density=5e-324)), "its mass of 0 kg and inertia are no numbers above 0"),
     ],
@@ -226,7 +221,6 @@ CASES = {
         (nothing, lambda: update(mat(), poisson=0.3, young=-1), "young -1 Pa must be above 0"),
         (nothing, lambda: update(mat(), poisson=0.3, jointSet=None), "jointSet: expected a text, got None"),
         (nothing, lambda: materials.dryGraniteJoints(120, 0), ["level 120 kN was not tested, there are 100, 175, 250", "height 0 m must be at least 0.001"]),
-        (nothing, lambda: materials.dryGraniteJoints(175, nan), "height nan m must be a finite number at least 0.001"),
     ],
     "joint": [
         (nothing, lambda: MasonryJoint(shearStiffness=-1, elastic=True), "shear stiffness -1 Pa/m must be above 0"),
@@ -250,11 +244,9 @@ CASES = {
     ],
     "table": [
         (nothing, lambda: MasonryJoint(tensionTable=[(1, 0)]), "tension table, needs at least two rows, has 1"),
-        (nothing, lambda: MasonryJoint(tensionTable=[(0, 0), (2, 1)]), "tension table, row 1: must be ratio 1, damage 0 (the peak), is 0, 0"),
         (nothing, lambda: MasonryJoint(tensionTable=[(1, 0.1), (2, 1)]), "row 1: must be ratio 1, damage 0 (the peak), is 1, 0.1"),
         (nothing, lambda: MasonryJoint(shearTable=[(1, 0), (2, 0.5), (3, 0.4)]), "row 3: damage 0.4 falls below 0.5 of the row before"),
         (nothing, lambda: MasonryJoint(tensionTable=[(1, 0), (2, 1.5)]), "row 2: damage 1.5 is outside 0 to 1"),
-        (nothing, lambda: MasonryJoint(tensionTable=[(1, 0), (2, -1)]), "row 2: damage -1 is outside 0 to 1"),
         (nothing, lambda: assign(MasonryJoint(), "tensionTable", None), "expected a list of (ratio, damage) rows, got None"),
         (nothing, lambda: MasonryJoint(tensionTable=[(2, 0), (1, 2), (0, 1)]), ["row 1: must be", "row 2: damage 2", "row 2: ratio 1", "row 3: ratio 0"]),
     ],
@@ -283,7 +275,6 @@ CASES = {
         (lambda: (deformable(), setattr(O, "engines", O.engines[:1] + O.engines[2:])), step, "O.engines: there is no MasonryJointLoop"),
         (lambda: (deformable(), setattr(O, "engines", O.engines[-1:] + O.engines[:-1])), step, "MasonryZones must stand after the joints' loop"),
         (lambda: reorder(lambda e: e + [MasonryZones(bodies=[1])]), step, "was made before MasonryZones had body 1: give the zones to masonry.engines()"),
-        (lambda: (joined(), setattr(O, "dt", 0)), step, "O.dt 0 s must be a finite number above 0"),
         (lambda: (joined(), setattr(O, "dt", nan)), step, "O.dt nan s must be a finite number above 0"),
         (lambda: (joined(0, functors=True), setattr(O, "dt", inf)), step, "O.dt inf s must be a finite number above 0"),
         (lambda: (deformable(), setattr(O, "dt", nan)), step, "O.dt nan s must be a finite number above 0"),
@@ -332,14 +323,12 @@ CASES = {
         (lambda: laid((0, 0, 0), (0, 0, 0.081), (0, 0, 0.1621)), lambda: connect(), "bodies 1 and 2 nearly share a face, with a gap of 0.1 mm"),
         (lambda: laid((0, 0, 0), (0, 0, 0.080)), lambda: connect(), "bodies 0 and 1 lie 1 mm deep in each other; the tolerance is 0.0256 mm"),
         (lambda: laid((0, 0, 0), (0, 0, 0.080)), lambda: connect(allowGaps=True), "bodies 0 and 1 lie 1 mm deep in each other"),
-        (lambda: laid((0, 0, 0), (0, 0, 0)), lambda: connect(), "bodies 0 and 1 lie 81 mm deep in each other"),
         (lambda: laid((0, 0, 0), (0.01, 0, 0.0405)), lambda: connect(), "bodies 0 and 1 lie 40.5 mm deep in each other"),
         (lambda: laid(*[(0, 0, 0.082 * i) for i in range(15)]), lambda: connect(), ["bodies 9 and 10 nearly share", "and 4 more", "help(masonry.connect)"]),
         (lambda: laid((0, 0, 0), (0, 0, 0.080), (0.221, 0, 0)), lambda: connect(), ["bodies 0 and 1 lie 1 mm deep", "bodies 0 and 2 nearly share"]),
         (lambda: turned(1), lambda: connect(), "bodies 0 and 1 nearly share a face, with a gap of 3.83894 mm"),
         (lambda: turned(30), lambda: connect(), "none of 2 bodies shares a face with another"),
         (lambda: laid((0, 0, 0), (0.22, 0, 0.081)), lambda: connect(), "none of 2 bodies shares a face with another (tolerance 0.0001"),
-        (lambda: laid((0, 0, 0), (0.22, 0.102, 0.081)), lambda: connect(), "none of 2 bodies shares a face with another"),
         (lambda: laid((0, 0, 0), (0, 0, 0.5)), lambda: connect(), "none of 2 bodies shares a face with another"),
         (lambda: laid((0, 0, 0), (0, 0, 0.082)), lambda: connect(allowGaps=True), "none of 2 bodies shares a face with another"),
         (lambda: foreign(FrictMat(density=1000)), lambda: connect(), "body 1 has FrictMat, must have a MasonryMat"),
@@ -375,6 +364,7 @@ CASES = {
         (blocks, lambda: MasonryZones(bodies=[1, 8, 9]).nodesOf(1), ["body 8 does not exist", "body 9 does not exist"]),
         (lambda: O.bodies.append(utils.sphere((0, 0, 0), 1)), lambda: MasonryZones(bodies=[0]).nodesOf(0), "body 0 is no block of MasonryMat"),
         (nothing, lambda: MasonryZones(divisions=[0, 1, 101]), ["divisions 0 must be 1 to 100", "divisions 101 must be 1 to 100"]),
+        (nothing, lambda: MasonryZones(divisions=[1, 1]), "divisions must be three whole numbers"),
         (
             nothing,
             lambda: MasonryZones(damping=nan, dampingKind="x", blocked="q", gravity=(0, 0, nan)),
@@ -382,12 +372,10 @@ CASES = {
         ),
         (lambda: addBlock(box(size=(1, 1, 1e-4)), mat()), lambda: MasonryZones(bodies=[0]).nodesOf(0), "cannot be divided: block has a sliver zone"),
         (deformable, lambda: zones().nodesOf(0), "body 0 is no deformable unit"),
-        (deformable, lambda: zones().nodesOf(-1), "body -1 is no deformable unit"),
         (deformable, lambda: zones().referencePoint(1, 99), "body 1 has no node 99"),
         (deformable, lambda: zones().setVelocity(99, (0, 0, 0)), "there is no node 99"),
         (deformable, lambda: zones().setVelocity(0, (nan, 0, 0)), "velocity of a node must be finite numbers [m/s]"),
         (deformable, lambda: assign(zones(), "bodies", [0]), "bodies and divisions cannot change once joints or a run know their nodes"),
-        (deformable, lambda: assign(zones(), "divisions", [2, 1, 1]), "bodies and divisions cannot change"),
         (deformable, lambda: assign(zones(), "damping", 1), "damping 1 must be 0 to 0.99"),
         (lambda: laid(zones=MasonryZones(bodies=[1, 8])), lambda: connect(), "MasonryZones: body 8 does not exist"),
         (lambda: (deformable(), O.bodies.erase(1)), step, "MasonryZones: body 1 does not exist"),
@@ -406,18 +394,14 @@ CASES = {
         (nothing, lambda: wall(length=0.33 / 2), "length 0.165 m is 0.75 units of 0.22 m; it must be whole half units"),
         (nothing, lambda: topped(upTo=0.1), "platen: upTo 0.1 m must be above the bricks, which end at 0.162 m"),
         (nothing, lambda: topped(recorded=0.1), "platen: recorded 0.1 m is not on the platen, which begins at 0.162 m"),
-        (nothing, lambda: wall(name=""), "must be a text that can name a folder"),
         (nothing, lambda: wall(name="a/b"), "must be a text that can name a folder"),
-        (nothing, lambda: wall(name=None), "must be a text that can name a folder"),
         (nothing, lambda: wall(masonry=lambda: 5), "Scene: materials 5 must be a masonry.materials.Masonry"),
         (nothing, lambda: materials.Masonry(FrictMat(), {"bed": 5}), ["> must be a MasonryMat", "joints 'bed': 5 must be a MasonryJoint"]),
         (nothing, lambda: materials.Masonry(mat(), {}), "Masonry: joints {} must have 'bed'"),
     ],
     "option": [
         (joined, lambda: script("wall_comp4", "--divisions", "2"), "--divisions: rigid units are not divided"),
-        (joined, lambda: script("wall_comp4", "--blocks", "soft"), ["argument --blocks: invalid choice: 'soft' (choose from", "rigid", "deformable"]),
         (joined, lambda: script("wall_comp4", "--unti", "5"), "unrecognized arguments: --unti 5"),
-        (joined, lambda: script("wall_comp4", "12"), "unrecognized arguments: 12"),
         (joined, lambda: script("wall_comp4", "--until"), "argument --until: expected one argument"),
         (
             joined,
@@ -428,14 +412,8 @@ CASES = {
         (joined, lambda: script("wall_comp4", "--resume", ""), "argument --resume: must not be empty"),
         (joined, lambda: script("wall_comp4", "--resume", "nowhere"), "--resume: [Errno 2] No such file or directory: 'nowhere/run.checkpoint'"),
         (joined, lambda: script("wall_comp4", "--set", "bed"), "'bed' must read JOINT.PROPERTY=VALUE"),
-        (joined, lambda: script("wall_comp4", "--set", "glue.friction=1"), "no joint 'glue', there are support, bed, head, crack"),
-        (joined, lambda: script("wall_comp4", "--set", "bed.Friction=1"), "no such property, did you mean friction?"),
-        (joined, lambda: script("wall_comp4", "--set", "bed.name=x"), "--set bed.name: a MasonryJoint has no such property"),
-        (joined, lambda: script("wall_comp4", "--set", "bed.cohesion=much"), "--set bed.cohesion=much: must be a number"),
         (joined, lambda: script("wall_comp4", "--set", "bed.cohesion=nan"), 'joint "bed": cohesion nan Pa must be a finite number'),
-        (joined, lambda: script("wall_comp4", "--set", "bed.cap=2"), "--set bed.cap=2: must be on or off"),
         (joined, lambda: script("wall_comp4", "--set", "bed.shearTable=1:0"), "shear table, needs at least two rows, has 1"),
-        (joined, lambda: script("wall_comp4", "--set", "bed.shearTable="), "must be rows as ratio:damage,ratio:damage,..."),
         (joined, lambda: script("wall_comp4", "--set", "bed.shearTable=1:0,2:0.5:3"), "must be rows as ratio:damage,ratio:damage,..."),
         (joined, lambda: script("wall_comp4", "--set", "bed.tensionTable=1:0,1:1"), "row 2: ratio 1 must be above 1 of the row before"),
         (
@@ -449,14 +427,14 @@ CASES = {
             ["--crack-surfaces on: the bricks are in pieces, and these materials have no joint", "cohesion -1 Pa must be at least 0"],
         ),
         (joined, lambda: script("wall_dry", "--level", "120"), ["argument --level: invalid choice: ", "120", "(choose from 100, 175, 250)"]),
-        (joined, lambda: script("wall_dry", "--level", "much"), "argument --level: invalid int value: 'much'"),
+        (joined, lambda: script("couplet", "--normal-stress", "0.5"), "argument --normal-stress: 0.5 MPa must be"),
+        (joined, lambda: script("couplet", "--closure", "0"), "argument --closure: 0.0 mm must be"),
         (joined, lambda: script("couplet", "--normal-stress", "-8"), "pressJoint: -8 MPa crushes the bed joint, whose compressive strength is 7.55 MPa"),
     ],
     "output": [
         (joined, lambda: script("wall_comp4", "--out", ""), "argument --out: must not be empty"),
         (lambda: (joined(), open("file", "w").close()), lambda: script("wall_comp4", "--out", "file"), "/file: File exists"),
         (lambda: (joined(), open("file", "w").close()), lambda: script("couplet", "--out", "file/below"), "/file/below: Not a directory"),
-        (joined, lambda: script("wall_comp0a", "--out", "/dev/full"), "--out: cannot write to /dev/full: File exists"),
         (joined, lambda: script("wall_comp1", "--out", "/proc"), "/proc holds"),
         (joined, lambda: script("wall_comp6", "--out", "/proc/nowhere"), "--out: cannot write to /proc/nowhere: No such file"),
         (joined, lambda: script("wall_dry", "--out", "x" * 300), "File name too long"),
@@ -466,26 +444,20 @@ CASES = {
     "files": [
         (nothing, lambda: read(measure.show, "a", "b"), "name one folder of results, for example results/wall_comp4"),
         (nothing, lambda: read(measure.show, "nowhere"), "cannot read nowhere/run.json: No such file or directory"),
-        (nothing, lambda: read(measure.show, "/dev/full"), "cannot read /dev/full/run.json: Not a directory"),
         (nothing, lambda: read(measure.show, run=""), "run.json: Expecting value: line 1 column 1"),
-        (nothing, lambda: read(measure.show, run='{"scene": '), "run.json: Expecting value: line 1 column 11"),
         (nothing, lambda: read(measure.show, run="[]"), "run.json: is no record of a run"),
         (nothing, lambda: read(measure.show, run=b"\xff\xfe"), "cannot read ./run.json: it is no text"),
         (nothing, lambda: read(measure.show, run="{}"), "not the files of a finished run (KeyError: 'energy_balance_error')"),
         (nothing, lambda: read(measure.show, run=WALL, curve=None), "cannot read ./curve.csv: No such file or directory"),
         (nothing, lambda: read(measure.show, run=WALL, curve=""), "curve.csv: there is no row of numbers"),
-        (nothing, lambda: read(measure.show, run=WALL, curve="time_s\r\n"), "curve.csv: there is no row of numbers"),
         (nothing, lambda: read(measure.show, run=WALL, curve="a,b\r\n1,2\r\n3\r\n"), "curve.csv, line 3: 1 numbers in 2 columns"),
         (nothing, lambda: read(measure.show, run=WALL, curve="a,b\r\n1,x\r\n3,\r\n"), ["line 2: could not convert string to float: 'x'", "line 3: could not"]),
         (nothing, lambda: read(measure.show, run=WALL, curve="a,b\r\n1,nan\r\n"), "curve.csv, line 2: a number is not finite"),
-        (nothing, lambda: read(measure.show, run=WALL, curve=b"\xff\xfe\x00"), "cannot read ./curve.csv: it is no text"),
         (nothing, lambda: read(measure.show, run=WALL, curve="a,b\r\n1,2\r\n"), "nothing was pushed in this run"),
         (nothing, lambda: read(measure.show, run=WALL, curve=CURVE, **{"joints_0000.vtp": "<VTKFile"}), "cannot read ./joints_0000.vtp: it holds no frame"),
         (nothing, lambda: read(measure.show, run=WALL, curve=CURVE, **{"joints_0000.vtp": b"\x00" * 4096}), "cannot read ./joints_0000.vtp: it holds no frame"),
-        (nothing, lambda: read(figures.draw, "nowhere"), "cannot read nowhere/run.json: No such file or directory"),
         (nothing, lambda: read(figures.draw, run=WALL, curve=CURVE), 'run.json has no entry "figure", which says what to draw'),
         (nothing, lambda: readFrame(".", "joints"), "no file joints_*.vt? in ."),
-        (nothing, lambda: read(lambda d: reading.readCurve(d), run=WALL, curve=None), "cannot read ./curve.csv"),
     ],
 }
 # fmt: on
@@ -623,61 +595,6 @@ def test_what_may_be_a_slip_is_reported(
         ), said
 
 
-def arch(count):
-    """Stones of half a ring, thin ones where there are many."""
-    for i in range(count):
-        ends = [math.pi * (i + side) / count for side in (0, 1)]
-        corners = [
-            (r * math.cos(a), y, r * math.sin(a))
-            for r in (1.0, 1.4)
-            for a in ends
-            for y in (0, 0.3)
-        ]
-        addBlock(corners, mat())
-    return count - 1
-
-
-def tiles():
-    for i in range(10):
-        addBlock(box(z=0.03 * i, size=(0.3, 0.3, 0.03)), mat())
-    return 9
-
-
-def mortar():
-    """Bricks with layers of mortar 5 mm thick between them, which are blocks, too."""
-    for column in range(4):
-        for course in range(6):
-            x, z = 0.22 * column, 0.086 * course
-            addBlock(box(x, 0, z), mat())
-            addBlock(box(x, 0, z + 0.081, (0.22, 0.102, 0.005)), mat())
-    return 4 * 11 + 3 * 12
-
-
-def wythes():
-    """Two wythes in running bond, turned and far from the origin."""
-    turn = Quaternion(0.3, -0.5, 0.7, 0.4)
-    turn.normalize()
-    for course in range(4):
-        for row in range(2):
-            for column in range(3):
-                x = 0.22 * column + 0.11 * (course % 2)
-                low = box(x, 0.102 * row, 0.081 * course)
-                addBlock(
-                    [turn * Vector3(*c) + Vector3(5e3, 2e3, 90) for c in low], mat()
-                )
-    return 4 * (2 * 2 + 3) + 3 * 2 * 5
-
-
-@pytest.mark.parametrize(
-    "build", [lambda: arch(16), lambda: arch(150), tiles, mortar, wythes]
-)
-def test_scenes_that_fit_are_joined_without_a_word(scene, build, capsys):
-    joints = build()
-    engines([MasonryJoint()])
-    assert len(connect()) == joints
-    assert "warning" not in capsys.readouterr().out
-
-
 def test_gaps_that_are_meant_are_left(scene):
     laid((0, 0, 0), (0, 0, 0.081), (0.222, 0, 0))
     assert len(connect(allowGaps=True)) == 1
@@ -711,13 +628,7 @@ def test_the_command_line_ends_with_status_2_and_leaves_what_is_there(
     before = tmp_path / "results" / name / "curve.csv"
     before.parent.mkdir(parents=True)
     before.write_text("of another run")
-    program = os.path.join(ROOT, "scripts", name + ".py")
-    run = subprocess.run(
-        ["yade", "-n", "-x", program, *words],
-        capture_output=True,
-        text=True,
-        cwd=tmp_path,
-    )
+    run = runProgram(name, *words, cwd=tmp_path, check=False)
     assert run.returncode == 2
     assert message in run.stderr and "Traceback" not in run.stderr
     assert before.read_text() == "of another run"
@@ -733,17 +644,17 @@ def test_the_command_line_ends_with_status_2_and_leaves_what_is_there(
     ],
 )
 def test_a_disk_that_fills_ends_the_run_in_order(tmp_path, name, words, most, lost):
-    program = os.path.join(ROOT, "scripts", name + ".py")
-    run = subprocess.run(
-        ["yade", "-n", "-x", program, *words, "--out", "results"],
-        capture_output=True,
-        text=True,
+    limit = (int(most), int(most))
+    run = runProgram(
+        name,
+        *words,
+        "--out",
+        "results",
+        check=False,
         cwd=tmp_path,
         env={**os.environ, "IPYTHONDIR": str(tmp_path)},  # YADE's shell keeps a history
         # files that may not grow fail as on a full disk do, with another reason
-        preexec_fn=lambda: resource.setrlimit(
-            resource.RLIMIT_FSIZE, (int(most), int(most))
-        ),
+        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, limit),
     )
     assert run.returncode == 1, run.stdout + run.stderr
     assert "Traceback" not in run.stderr

@@ -249,31 +249,3 @@ def test_a_deformable_run_saved_in_the_middle_goes_on_the_same(
     O.load(path)
     # The host calculates the centre of a block again when it loads a scene, so the nodes move by round-off.
     assert go() == pytest.approx(there, rel=1e-6, abs=1e-8)
-
-
-@pytest.mark.parametrize(
-    "keywords, message",
-    [
-        (dict(divisions=[1, 1]), "divisions must be three whole numbers"),
-        (dict(divisions=[0, 1, 1]), "divisions 0 must be 1 to 100"),
-        (dict(damping=1), "damping 1 must be 0 to 0.99"),
-        (
-            dict(dampingKind="viscous"),
-            "dampingKind 'viscous' must be 'combined' or 'local'",
-        ),
-        (dict(blocked="w"), "blocked 'w' must be made of x, y and z"),
-    ],
-)
-def test_wrong_zones_are_refused(keywords, message):
-    with pytest.raises(ValueError, match=message):
-        MasonryZones(**keywords)
-
-
-def test_units_that_cannot_be_divided_are_named(scene):
-    flat = addBlock(corners((0, 0, 0), (0.2, 0.1, 1e-5)), MasonryMat(density=RHO))
-    with pytest.raises(
-        ValueError, match=f"body {flat} cannot be divided: block has a sliver zone"
-    ):
-        MasonryZones(bodies=[flat]).nodesOf(flat)
-    with pytest.raises(ValueError, match="body 9 does not exist"):
-        MasonryZones(bodies=[9]).nodesOf(9)

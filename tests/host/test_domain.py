@@ -31,7 +31,7 @@ def pier(out, *words, stones=6, rotation="free", material=None, press=0.2e6, **p
 def test_a_dry_pier_tips_about_its_toe_or_slides(tmp_path, stones):
     """A cantilever pushed at its height h: N b/2 = V h about the toe, N with the weight; V = μ N in the joint below the platen,
     with the pressure alone."""
-    made, top = pier(tmp_path / "r", "--preset", "bound", stones=stones)
+    made, top = pier(tmp_path / "r", "--preset", "bound", "--lean", stones=stones)
     made.settle()
     entries = made.domain(top, NORMALS)
     made.finish()

@@ -378,7 +378,7 @@ def stones(out, load, friction=0.7, *words):
     from masonry import Scene, bricks, materials
 
     s = Scene("stones", bricks.stack(3, (0.3, 0.3, 0.2)), materials.dry(friction, density=DENSITY),
-              arguments=["--preset", "bound", "--out", str(out), *words])  # fmt: skip
+              arguments=["--preset", "bound", "--lean", "--out", str(out), *words])  # fmt: skip
     s.platen("bottom")
     highest = s.handle(2, name="stone")
     s.load(highest, load)
@@ -412,7 +412,7 @@ def test_a_tilt_is_the_same_under_another_gravity(scene, tmp_path):
     from masonry import Scene, bricks, materials
 
     moon = Scene("stones", bricks.stack(3, (0.3, 0.3, 0.2)), materials.dry(0.7), gravity=1.62,
-                 arguments=["--preset", "bound", "--out", str(tmp_path)])  # fmt: skip
+                 arguments=["--preset", "bound", "--lean", "--out", str(tmp_path)])  # fmt: skip
     moon.platen("bottom")
     moon.settle()
     moon.tilt(60)

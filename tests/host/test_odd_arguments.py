@@ -457,50 +457,57 @@ def commandsWithKinds():
             yield "option", name, option.kind
 
 
-BOUNDED = [
-    pytest.param(kind, meant, id=f"{name} {argument}")
-    for name, argument, kind in commandsWithKinds()
-    if re.search("number.*(at |above|below|from)", meant := kinds.meaning(kind))
-    and not re.search("list|three|free|dict", meant)
-]
-
-
-def test_bounds_are_found():
-    assert len(BOUNDED) > 100
-
-
-def lies(value, ends, whole):
-    """Whether a value lies within bounds, such as ``{"above": 0.0, "at most": 1.0}``."""
-    number = isinstance(value, int) or isinstance(value, float) and not whole
-    if isinstance(value, bool) or not number or not math.isfinite(value):
-        return False
-    holds = {"at least": operator.ge, "above": operator.gt, "at most": operator.le, "below": operator.lt}  # fmt: skip
-    return all(holds[what](value, end) for what, end in ends.items())
-
-
-@pytest.mark.parametrize("kind, meant", BOUNDED)
-@settings(max_examples=30)
-@given(data=some.data())
-def test_what_lies_outside_of_its_bounds_is_refused_with_value_and_bound(kind, meant, data):  # fmt: skip
-    """The bounds are those that the manual shows: what a kind says against a value of no sort."""
+def boundsOf(meant):
+    """Ends of what the manual says of a number, such as ``{"above": 0.0, "at most": 1.0}``."""
     ends = re.findall(r"(at least|at most|above|below) ([^\s,]+)", meant)
     both = re.search(r"from (\S+) to ([^\s,]+)", meant)
     if both:
         ends += [("at least", both[1]), ("at most", both[2])]
-    ends = {what: float(end) for what, end in ends}
+    return {what: float(end) for what, end in ends}
+
+
+#: Numbers with bounds, each kind once: what takes it, what the manual says of it, and its bounds.
+BOUNDED = {
+    meant: (f"{name} {argument}", kind, boundsOf(meant))
+    for name, argument, kind in commandsWithKinds()
+    if re.search("number.*(at |above|below|from)", meant := kinds.meaning(kind))
+    and not re.search("list|three|free|dict", meant)
+}
+LIES = {"at least": operator.ge, "above": operator.gt, "at most": operator.le, "below": operator.lt}  # fmt: skip
+
+
+def takenWithinBounds(value, meant):
+    """A value that lies within its bounds is taken; any other is refused with value and bound."""
+    where, kind, ends = BOUNDED[meant]
     whole = "whole number" in meant
-    near = [v for end in ends.values() for v in (end, math.nextafter(end, -math.inf), math.nextafter(end, math.inf))]  # fmt: skip
-    near += [int(v) + k for v in near for k in (-1, 0, 1)]
-    values = some.sampled_from(near), some.floats(), some.integers(), some.booleans(), some.text(max_size=9)  # fmt: skip
-    value = data.draw(some.one_of(*values))
-    if lies(value, ends, whole):
-        assert kind(value) == value
+    number = isinstance(value, int) or isinstance(value, float) and not whole
+    number = number and not isinstance(value, bool) and math.isfinite(value)
+    if number and all(LIES[what](value, end) for what, end in ends.items()):
+        assert kind(value) == value, where
         return
     with pytest.raises(ValueError) as refused:
         kind(value)
     said = str(refused.value)
-    assert arguments.shown(value) in said and " must be " in said
-    assert all({f"{end:g}", f"{end:.0f}"} & {*said.split()} for end in ends.values())
+    assert arguments.shown(value) in said and " must be " in said, where
+    for end in ends.values():
+        assert {f"{end:g}", f"{end:.0f}"} & {*said.split()}, where
+
+
+def test_numbers_at_their_bounds_are_taken_and_those_beyond_are_refused():
+    assert len(BOUNDED) > 50
+    for meant, (_, _, ends) in BOUNDED.items():
+        for end in ends.values():
+            near = [end, math.nextafter(end, -math.inf), math.nextafter(end, math.inf)]
+            for value in (*near, *(int(v) + k for v in near for k in (-1, 0, 1))):
+                takenWithinBounds(value, meant)
+
+
+@settings(max_examples=200)
+@given(some.floats() | some.integers() | some.booleans() | some.text(max_size=9))
+def test_what_lies_outside_of_its_bounds_is_refused_with_value_and_bound(value):
+    """The bounds are those that the manual shows: what a kind says against a value of no sort."""
+    for meant in BOUNDED:
+        takenWithinBounds(value, meant)
 
 
 @pytest.mark.parametrize("name", masonry.classes)

@@ -115,38 +115,6 @@ def test_an_engine_in_a_parallel_engine_is_reported(scene, which, capfd):
     steps()
 
 
-def test_damaged_lists_of_a_checkpoint_are_reported(scene, tmp_path):
-    """Lists of a wrong length under a right sum: velocities of nodes, and the forces that combined damping remembers."""
-    from masonry._masonry import loadScene, saveScene
-
-    stack(zones=[1])
-    steps(20)
-    data = saveScene("null")
-    for name, message in (("MasonryZones.velocities", "does not fit"), ("MasonryIntegrator.last", "does not fit|remembers forces of 6 bodies")):  # fmt: skip
-        refused(message, lambda: (loadScene(withTwice(data, name)), steps()))
-        stack(zones=[1])
-    loadScene(data)
-    steps()
-
-
-def withTwice(data, name):
-    """A checkpoint in which a list stands twice as long, with the sum that belongs to it."""
-    title, at, records = data.index(b"\n") + 1, data.index(b"\n") + 9, []
-    while at < len(data) - 8:
-        sizes = [int.from_bytes(data[at + 1 + 8 * i : at + 9 + 8 * i], "little") for i in (0, 1)]  # fmt: skip
-        called = data[at + 17 : at + 17 + sizes[0]]
-        value = data[at + 17 + sizes[0] : at + 17 + sum(sizes)]
-        twice = value * 2 if called.decode().endswith(name) else value
-        records.append(data[at : at + 1] + sizes[0].to_bytes(8, "little") + len(twice).to_bytes(8, "little") + called + twice)  # fmt: skip
-        at += 17 + sum(sizes)
-    body = b"".join(records)
-    whole = data[:title] + (len(body) + 8).to_bytes(8, "little") + body
-    total = 0xCBF29CE484222325
-    for byte in whole:
-        total = (total ^ byte) * 0x100000001B3 % 2**64
-    return whole + total.to_bytes(8, "little")
-
-
 # -- no silence --------------------------------------------------------------------------------------------------------
 
 

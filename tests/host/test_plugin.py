@@ -137,15 +137,6 @@ def test_a_joint_in_any_orientation_has_the_overlap_as_area(scene, seed):
     assert (geom.normal - turn * Vector3(0, 0, 1)).norm() < 1e-9
 
 
-def test_blocks_without_a_shared_face_get_no_joint(scene):
-    with pytest.raises(ValueError):
-        pair(offset=(0.3, 0, 0.5))
-    assert touchingPairs() == []
-    engines([MasonryJoint()], functors=True)
-    with pytest.raises(ValueError, match="bodies 0 and 1 share no face"):
-        utils.createInteraction(0, 1)
-
-
 @pytest.mark.parametrize("seed", range(3))
 def test_a_joint_takes_the_face_that_connect_has_found_as_the_functor_alone_finds_it(
     scene, seed
@@ -206,14 +197,6 @@ def test_direction_joint_set_and_the_users_rule_choose_the_joint(scene):
     ]
 
 
-def test_a_pair_that_no_joint_fits_is_named(scene):
-    with pytest.raises(
-        ValueError,
-        match=r'no joint fits bodies 0 and 1: joint sets "brick" and "brick", normal \(0, 0, 1\); offered: head',
-    ):
-        pair(joints=[MasonryJoint(name="head", direction=(1, 0, 0))])
-
-
 def test_rigid_units_are_lumped_in_series(scene):
     phys = pair().phys
     # See yade_plugin/law/README.md, rigid units.
@@ -265,16 +248,6 @@ def test_forces_and_torques_of_a_joint_balance(scene):
     assert (
         t[0] + t[1] + arm[0].cross(f[0]) + arm[1].cross(f[1])
     ).norm() < 2 * moved * f[0].norm()
-
-
-def test_free_vibration_keeps_its_energy(scene):
-    pair(joints=[MasonryJoint(elastic=True)], damping=0, inPlane=True)
-    s = O.bodies[1].state
-    s.blockedDOFs = "yXZ"
-    s.vel = Vector3(0.01, 0, 0.02)
-    # The trapezoidal rule does not count the first half step.
-    keepsEnergy(0.5 * s.mass * s.vel.squaredNorm(), 500, 2e-3)
-    assert balance()["damping"] == balance()["dissipated_shear"] == 0
 
 
 def test_a_block_that_turns_about_axes_of_its_own_keeps_its_energy(scene):
@@ -374,23 +347,6 @@ def test_the_time_step_bound_holds_with_damping(scene, damping, fraction):
         assert abs(O.bodies[1].state.pos[2] - 1.5 * UNIT[2] + sag) < swing
     if damping:
         assert O.bodies[1].state.pos[2] - 1.5 * UNIT[2] == pytest.approx(-sag, rel=1e-3)
-
-
-def test_a_load_on_a_deformable_unit_is_refused(scene):
-    unit = addBlock(box((0, 0, 0)), MasonryMat(density=1800))
-    zones = MasonryZones(bodies=[unit])
-    engines(
-        [MasonryJoint()],
-        loads=[MasonryLoad(body=unit)],
-        zones=zones,
-        gravity=(0, 0, -5),
-    )
-    assert zones.gravity == Vector3(0, 0, -5)
-    with pytest.raises(ValueError, match="is a deformable unit"):
-        O.step()
-    with pytest.raises(ValueError, match="bodies and divisions cannot change"):
-        zones.divisions = [2, 2, 2]
-        zones.nodesOf(unit)
 
 
 # -- saving -----------------------------------------------------------------------------------------------------------

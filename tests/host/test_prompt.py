@@ -137,16 +137,6 @@ def test_reading_beside_a_run_changes_nothing_of_it(blocks, threads):
 
 
 @pytest.mark.slow
-@THREADS
-@KINDS
-def test_writing_a_property_to_the_same_value_beside_a_run_does_no_harm(
-    blocks, threads
-):
-    code = "end(lambda joints: (write(joints), time.sleep(1e-4)))\nend(look)"
-    inYade(reader(blocks) + code, threads)
-
-
-@pytest.mark.slow
 @KINDS
 def test_a_checkpoint_saved_beside_a_run_is_of_a_whole_step_or_refused(
     blocks, tmp_path
@@ -374,44 +364,6 @@ assert all((before[name] == after[name]).all() for name in before)
 
 
 # -- other engines in the middle -------------------------------------------------------------------------------------
-
-
-@pytest.mark.slow
-@THREADS
-@pytest.mark.parametrize("blocks", ["rigid", "deformable"])
-def test_loop_and_functors_take_turns_twenty_times_while_python_holds_the_old_loops(
-    blocks, threads
-):
-    inYade(
-        f"""
-interactions = panel(True, {blocks!r})
-O.run(400, True)
-whole = state(interactions)
-interactions = panel(True, {blocks!r})
-slow, held = list(O.engines), []
-for turn in range(20):
-    loops = [
-        MasonryJointLoop(geometry=e.geomDispatcher.functors[0], physics=e.physDispatcher.functors[0])
-        if e.label == "joints" else e for e in slow
-    ]
-    held += [e for e in loops if isinstance(e, MasonryJointLoop)]
-    O.engines = slow if turn % 2 else loops
-    O.run(20, True)
-    state(interactions)
-    for old in held:
-        old.dict()
-    if turn % 5 == 4:
-        del held[:3]
-        gc.collect()
-assert O.iter == 400
-for name, values in state(interactions).items():
-    assert np.isfinite(values).all(), name
-    size = np.abs(values).max()
-    # On two threads the host's own loop sums forces in an order that differs from run to run.
-    assert {threads} > 1 or np.abs(values - whole[name]).max() <= 1e-8 * size, name
-""",
-        threads,
-    )
 
 
 @pytest.mark.slow

@@ -232,10 +232,6 @@ def test_a_joint_between_two_parts_is_of_the_part_of_its_upper_brick(tmp_path, s
 @pytest.mark.parametrize(
     "act, message",
     [
-        (lambda s: s.section("a"), "section: z 'a' must be a number from"),
-        (lambda s: s.section(math.nan), "section: z nan m must be a finite number"),
-        (lambda s: s.section(0.1, part="roof"), "section: part 'roof' must be one of wall"),
-        (lambda s: s.section(0.1, name="a b"), "section: name 'a b' must be a name of letters"),
         (lambda s: s.section(3), "no brick reaches z = 3 m; they are from 0 to 0.324 m"),
         (lambda s: s.section(0.324) and s.begin(), "section section0: no joint crosses z = 0.324 m"),
         (lambda s: s.section(0.1).forces(), "section section0: the scene is not built yet"),
@@ -251,28 +247,6 @@ def test_sections_that_cannot_be_are_refused(tmp_path, scene, act, message):
     assert message in str(refused.value)
     wall.running.release()
     wall.finished = True
-
-
-def test_every_run_on_a_platen_records_its_base(tmp_path, scene):
-    """At rest N + weight + load = 0; in a push V is the push, and M its lever arm and what leans; both are the reaction."""
-    wall = made(tmp_path, bricks.Wall(0.66, 0.486), "--rate", "2.5")
-    wall.platen("bottom")
-    top = wall.platen("top", rotation="free", height=0.1)
-    wall.press(top, 0.3e6)
-    wall.settle()
-    pressed, weight = 0.3e6 * 0.66 * 0.102, weightAbove(wall, 0)
-    assert 1e3 * column(wall, "base_N_kN")[-1] == pytest.approx(-(pressed + weight), rel=1e-3)  # fmt: skip
-    wall.push(top, 0.1)
-    pushed = 1e3 * column(wall, "top_shear_kN")[-1]
-    assert 1e3 * column(wall, "base_V_x_kN")[-1] == pytest.approx(pushed, rel=0.008)
-    expected = pushed * 0.586 + pressed * 1e-3 * column(wall, "top_x_mm")[-1]
-    assert 1e3 * column(wall, "base_M_y_kNm")[-1] == pytest.approx(expected, rel=0.003)
-    for head, other in (("base_V_x_kN", "x"), ("base_N_kN", "z")):
-        reaction = column(wall, f"base_force_{other}_kN")[-1]
-        assert column(wall, head)[-1] == pytest.approx(reaction, rel=1e-5)
-    wall.finish()
-    recorded = dict(readRun(str(tmp_path)).get("held_and_loaded") or [])
-    assert "recorded, too" not in recorded
 
 
 def test_a_block_that_leans_has_its_moment_at_the_base(tmp_path, scene):

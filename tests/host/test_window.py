@@ -6,6 +6,7 @@ import subprocess
 
 import numpy as np
 import pytest
+from conftest import runProgram
 import yade.config
 from masonry import Gl1_MasonryBlock, Gl1_MasonryJointPhys
 
@@ -164,9 +165,7 @@ def test_what_is_drawn_is_chosen_for_all_at_once_and_checked(cls, good, bad):
 def test_without_a_display_the_window_says_how_to_get_one(tmp_path):
     script = tmp_path / "scene.py"
     script.write_text("from masonry import window\nwindow.show()\n")
-    done = subprocess.run(
-        ["yade", "-n", "-x", str(script)], capture_output=True, text=True, timeout=120
-    )
+    done = runProgram(str(script), check=False)
     assert done.returncode == 1
     assert (
         "start yade without -n, on a display or under xvfb-run"

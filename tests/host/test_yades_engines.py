@@ -3,7 +3,6 @@
 
 import builtins
 import os
-import subprocess
 
 from hosted import *
 
@@ -67,10 +66,7 @@ def test_the_check_in_yades_form_passes_and_names_what_is_wrong(tmp_path):
     again = tmp_path / "checkMasonryJoint.py"
     with open(path, encoding="utf-8") as file:
         again.write_text(file.read().replace("4400.0", "4300.0"), encoding="utf-8")
-    ends = [
-        subprocess.run(["yade", "-n", "-x", str(p)], capture_output=True, text=True)
-        for p in (path, again)
-    ]
+    ends = [runProgram(str(p), check=False) for p in (path, again)]
     assert ends[0].returncode == 0, ends[0].stderr
     assert "YadeCheckError: largest force [N]: 43" in ends[1].stderr
     assert ends[1].returncode == 1

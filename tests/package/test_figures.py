@@ -9,6 +9,7 @@ import sys
 
 import numpy as np
 import pytest
+from conftest import runProgram
 from masonry.basics import Refused
 from masonry import bricks
 from masonry.read import curve_figure, drawing, elevation, figures, frames
@@ -360,8 +361,7 @@ def test_a_script_of_yade_draws_without_harm(scene, tmp_path):
     folder = writeRun(tmp_path, ["time_s", "f_kN"], [[0, 0], [1, 1]], figure=entry)
     script = tmp_path / "inside.py"
     script.write_text(INSIDE.format(folder=folder))
-    run = subprocess.run(["yade", "-n", "-x", str(script)], capture_output=True, text=True)  # fmt: skip
-    assert run.returncode == 0, run.stdout + run.stderr
+    run = runProgram(str(script))
     assert "refused: cannot read nowhere/run.json" in run.stdout
     inside = {n: (tmp_path / n).read_bytes() for n in ("curve.png", "cracks.png")}
     for name, data in inside.items():

@@ -43,28 +43,27 @@ legal = some.fixed_dictionaries(
 )
 
 
+def clayOf(p, **more):
+    """The masonry of such numbers, and the modulus of its bricks [Pa]."""
+    unitE, ft = p["E"] / p["share"], p["bond"] * p["fv0"] / p["friction"]
+    own = {n: p[n] for n in ("E", "fm", "fv0", "friction", "joint", "poisson")}
+    unit = (p["length"], 0.1, p["height"])
+    return clay(unit_E=unitE, ft=ft, unit=unit, **own, **more), unitE
+
+
 @given(legal)
 @settings(max_examples=80)
 def test_bricks_and_joints_in_series_are_the_masonry(p):
     unitE = p["E"] / p["share"]
     shear = 1 / (2 * (1 + p["poisson"]))
     values = dict(
-        E=p["E"],
-        unit_E=unitE,
-        fm=p["fm"],
-        fv0=p["fv0"],
-        friction=p["friction"],
-        ft=p["bond"] * p["fv0"] / p["friction"],
-        unit=(p["length"], 0.1, p["height"]),
-        joint=p["joint"],
-        poisson=p["poisson"],
         G=p["stiff"] * shear * unitE,
         head_E=p["along"] * unitE,
         Gc=1e6,
         peak_strain=p["strain"] * max(p["fm"] / p["E"], p["fm"] / (p["along"] * unitE)),
     )
     assume(values["peak_strain"] < 0.09)
-    made = clay(**values)
+    made, _ = clayOf(p, **values)
     bed, head = made.joints["bed"], made.joints["head"]
     bedSpacing, headSpacing = p["height"] + p["joint"], p["length"] + p["joint"]
     inSeries = lambda k, spacing, own: 1 / (1 / (k * spacing) + 1 / own)
@@ -87,20 +86,8 @@ def test_bricks_and_joints_in_series_are_the_masonry(p):
 @given(legal, some.floats(0.5e6, 5e6))
 @settings(max_examples=80)
 def test_what_is_assumed_is_what_the_law_can_follow(p, brickStrength):
-    unitE = p["E"] / p["share"]
     assume(p["fm"] / p["E"] * (p["height"] + p["joint"]) < 3e-4)  # else Gc is too small
-    made = clay(
-        E=p["E"],
-        unit_E=unitE,
-        fm=p["fm"],
-        fv0=p["fv0"],
-        friction=p["friction"],
-        ft=p["bond"] * p["fv0"] / p["friction"],
-        unit=(p["length"], 0.1, p["height"]),
-        joint=p["joint"],
-        poisson=p["poisson"],
-        unit_ft=brickStrength,
-    )
+    made, unitE = clayOf(p, unit_ft=brickStrength)
     length, shearing = p["length"] + p["joint"], 2 * (1 + p["poisson"])
     distances = {"bed": p["height"] + p["joint"], "head": length, "crack": length / 2}  # fmt: skip
     for name, distance in distances.items():

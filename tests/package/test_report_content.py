@@ -175,6 +175,7 @@ def test_title_date_versions_and_commit_come_first(pushed):
     facts = [text for tag, text in pushed.texts if tag in ("dt", "dd")]
     assert facts == ["scene", "made_up", "run ended", "2026-05-31 12:00:00 UTC", "versions", "masonry 3.0.0, YADE 2023.02a, Python 3.11.2", "commit", "abc1234"]  # fmt: skip
     assert "Peak 100 kN at 1 mm; limit analysis: at most 125 kN." in pushed.said()
+    assert "is not whole" not in pushed.said()
 
 
 def test_properties_have_engineers_units_and_what_was_assumed_is_marked(pushed):
@@ -452,10 +453,6 @@ def test_whatever_stands_in_an_entry_there_is_a_page(tmp_path):
         text = report.page(report.read(folder(tmp_path, {**RUN, key: value})))
         assert Page(text).headings() == PARTS, key
         assert "alert(1)</script>" not in text, key
-
-
-def test_a_whole_folder_has_no_part_that_failed(pushed):
-    assert "is not whole" not in pushed.said()
 
 
 def test_a_folder_without_a_record_of_a_run_is_refused(tmp_path):

@@ -6,7 +6,7 @@ import os
 import subprocess
 
 import pytest
-from conftest import ROOT
+from conftest import ROOT, runProgram
 
 #: What only pictures, limit analysis, studies and files of bricks need: each takes a tenth of a second or more.
 NOT_NEEDED = ["matplotlib", "meshio", "openturns", "pandas", "scipy", "masonry.study", "numpy.testing"]  # fmt: skip
@@ -25,10 +25,8 @@ json.dump(sorted(set(sys.modules) - before), open("modules.json", "w"))
 def test_a_lean_run_loads_no_library_that_it_does_not_need(tmp_path, scene):
     path = os.path.join(ROOT, "scripts", scene + ".py")
     (tmp_path / "counted.py").write_text(SCRIPT.format(scene=path))
-    command = ["yade", "-n", "-x", "counted.py", "--quick", "--lean", "--out", "run"]
-    command += ["--until", "0.02"] if scene == "wall_comp4" else []
-    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)
-    assert done.returncode == 0, done.stdout + done.stderr
+    words = ["--until", "0.02"] if scene == "wall_comp4" else []
+    runProgram("counted.py", "--quick", "--lean", "--out", "run", *words, cwd=tmp_path)
     assert os.path.exists(tmp_path / "run" / "run.json")
     loaded = json.loads((tmp_path / "modules.json").read_text())
     assert "masonry.scene.scene" in loaded  # they were counted

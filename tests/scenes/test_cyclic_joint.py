@@ -2,7 +2,6 @@
 """One joint in cycles, as validation/cyclic/joint.py drives it, against the closed forms of the paper's law."""
 
 import os
-import subprocess
 import sys
 
 from hosted import *
@@ -20,9 +19,7 @@ def paths(tmp_path_factory):
     """Rows of every path under the paper's law, and the folder that they are in."""
     out = tmp_path_factory.mktemp("joint")
     words = ["--laws", "softening", "--rows", "60", "--steps", "20", "--out", str(out)]
-    command = ["yade", "-n", "-x", os.path.join(FOLDER, "joint.py"), *words]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=300)
-    assert done.returncode == 0, done.stdout + done.stderr
+    runProgram(os.path.join(FOLDER, "joint.py"), *words)
     names = ("tension", "closure", *figures.SHEAR)
     return {name: figures.read(out, "softening", name) for name in names}, out
 

@@ -158,20 +158,10 @@ def test_the_law_has_a_functor_and_its_joints_are_refined_and_handed_over(
     environment, tmp_path, script
 ):
     (tmp_path / "script.py").write_text(script)
-    run = subprocess.run(
-        ["yade", "-n", "-x", str(tmp_path / "script.py")],
-        env=environment,
-        capture_output=True,
-        text=True,
-    )
+    run = runProgram(str(tmp_path / "script.py"), env=environment, check=False)
     assert "DONE" in run.stdout, run.stdout + run.stderr
 
 
 def test_the_option_offers_the_laws_of_the_plugin(environment):
-    run = subprocess.run(
-        ["yade", "-n", "-x", WALL, "--help"],
-        env=environment,
-        capture_output=True,
-        text=True,
-    )
+    run = runProgram(WALL, "--help", env=environment)
     assert "--joints {softening,cyclic,coulomb,brittle}" in run.stdout

@@ -6,7 +6,6 @@ import os
 import shutil
 import signal
 import socket
-import subprocess
 import threading
 import time
 from types import SimpleNamespace
@@ -252,13 +251,11 @@ def test_odd_names_and_terminals_end_in_order(tmp_path):
         "s.finish()\n"
     )
     plain = dict(os.environ, PYTHONIOENCODING="ascii:strict")
-    report = subprocess.run(["yade", "-n", "-x", script], cwd=tmp_path, env=plain, capture_output=True)  # fmt: skip
-    assert report.returncode == 0, report.stderr
+    report = runProgram(str(script), cwd=tmp_path, env=plain, text=False)
     assert b"\\xb5s" in report.stdout
     odd = os.fsencode(tmp_path) + b"/caf\xe9"
-    couplet = os.path.join(ROOT, "scripts", "couplet.py")
-    report = subprocess.run(["yade", "-n", "-x", couplet, "--out", odd], capture_output=True)  # fmt: skip
-    assert report.returncode == 2 and b"is not UTF-8" in report.stderr
+    report = runProgram("couplet", "--out", os.fsdecode(odd), check=False)
+    assert report.returncode == 2 and "is not UTF-8" in report.stderr
     with pytest.raises(Refused, match="its name is not UTF-8"):
         Results(os.fsdecode(odd), ["a_mm"])
     assert not os.path.exists(odd)

@@ -10,7 +10,6 @@ import sys
 from hosted import *
 from masonry.read import viewer
 from masonry.read.frames import readFrame
-from masonry.read.frames import readFrame
 
 MISSING = "" if shutil.which("pvpython") or os.path.exists(os.path.join(viewer.UNPACKED, "usr", "bin", "pvpython")) else "ParaView is not installed"  # fmt: skip
 
@@ -21,10 +20,7 @@ needsParaView = pytest.mark.skipif(bool(MISSING), reason=MISSING)
 def wall(tmp_path_factory):
     """A run of a cantilever that cracks at its heel."""
     out = tmp_path_factory.mktemp("wall") / "out"
-    scene = os.path.join(ROOT, "scripts", "wall_comp1.py")
-    words = ["--until", "6", "--vtk-every", "2", "--rate", "80", "--out", str(out)]
-    run = subprocess.run(["yade", "-n", "-x", scene, *words], capture_output=True, text=True)  # fmt: skip
-    assert run.returncode == 0, run.stdout + run.stderr
+    runProgram("wall_comp1", "--until", 6, "--vtk-every", 2, "--rate", 80, "--out", out)
     return str(out)
 
 

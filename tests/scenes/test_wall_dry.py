@@ -45,16 +45,3 @@ def test_joints_and_units_in_series_give_back_the_masonry(
     # Nine joints, two outer ones.
     expected = (0.875e6 + own) * (9 / joint + 1.2 / young)
     assert -loaded == pytest.approx(expected, rel=tolerance)
-
-
-@pytest.mark.parametrize(
-    "words, message",
-    [
-        (["--level", "120"], "argument --level: invalid choice: "),
-        (["--crack-surfaces", "on"], "these materials have no joint 'crack'"),
-        (["--set", "crack.cohesion=1"], "no joint 'crack'"),
-    ],
-)
-def test_what_a_dry_wall_has_not_is_refused(runScene, words, message):
-    process, _ = runScene("wall_dry", *words, check=False)
-    assert process.returncode == 2 and message in process.stderr

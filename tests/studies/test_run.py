@@ -15,6 +15,7 @@ import time
 
 import cluster
 import pytest
+from conftest import runProgram
 
 from masonry.run import batch
 from masonry.read.cracks import failureMode
@@ -138,11 +139,7 @@ def test_a_row_by_hand_gives_the_same(whole, tmp_path):
     out, *_ = whole
     words = batch.optionWords(batch.readTable(str(out / "table.txt"))[3])
     words.remove("--lean")
-    subprocess.run(
-        ["yade", "-n", "-x", SMALL, *words, "--out", str(tmp_path / "r")],
-        check=True,
-        capture_output=True,
-    )
+    runProgram(SMALL, *words, "--out", tmp_path / "r")
     curve = (tmp_path / "r" / "curve.csv").read_bytes()
     assert curve == (out / "rows" / "0002" / "curve.csv").read_bytes()
     numbers = measure(str(tmp_path / "r"))
