@@ -60,7 +60,7 @@ def table(record, measure):
             yield line(name, find(values))
         except Refused as refused:
             yield f"  {name:20} {refused}"
-    if len(values) >= 3 and values.min() > 0 and np.ptp(values) > 0:
+    if statistics.isLognormal(values):
         fit = statistics.lognormal(values)
         doubt = "" if not fit.fits < 0.05 else ", which does not fit"
         yield f"  lognormal            median {fit.median:.5g}, dispersion {fit.dispersion:.3g} (p = {fit.fits:.2g}{doubt})"
