@@ -111,7 +111,9 @@ WRONG = {
     "runs None must be a whole number": dict(vary={"rate": [1]}),
     "the grid has 2 points": dict(runs=3, vary={"rate": [1, 2]}, design="grid"),
     "must be a list of values": dict(vary={"rate": uniform(1, 2)}, design="grid"),
-    "design 'best' must be random": dict(runs=1, vary={"rate": [1]}, design="best"),
+    "design 'best' must be one of random": dict(
+        runs=1, vary={"rate": [1]}, design="best"
+    ),
     "seed -1 must be": dict(runs=1, vary={"rate": [1]}, seed=-1),
     "option 'out' is the study's own": dict(
         runs=1, vary={"rate": [1]}, options={"out": "x"}
@@ -143,10 +145,17 @@ def test_a_wrong_study_is_refused(message):
         Study("any", **WRONG[message])
 
 
-def test_all_problems_are_reported_at_once():
+@pytest.mark.parametrize(
+    "wrong, messages",
+    [
+        (dict(runs=0, seed=-1, design="best"), ("design", "seed", "runs")),
+        (dict(options={"out": "x"}, vary={}), ("'out'", "nothing varies", "runs")),
+    ],
+)
+def test_all_problems_are_reported_at_once(wrong, messages):
     with pytest.raises(Refused) as refused:
-        Study("any", options={"out": "x"}, runs=0, seed=-1, vary={}, design="best")
-    for message in ("design", "seed", "'out'", "nothing varies", "runs"):
+        Study("any", **wrong)
+    for message in messages:
         assert message in str(refused.value)
 
 

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import functools
 import math
 from collections import Counter
 from dataclasses import dataclass, replace
@@ -83,7 +84,7 @@ class Block:
             )
         for n, corner in enumerate(corners):
             if len(corner) != 3 or not all(
-                type(x) is float or _isNumber(x) for x in corner
+                type(x) is float or isNumber(x) for x in corner
             ):
                 problems.append(
                     f"corner {n} must be three numbers [m], got {shown(corner)}"
@@ -137,15 +138,8 @@ class Bricks:
             raise ValueError(
                 f"Bricks needs a list of blocks, got {shown(blocks)}"
             ) from None
-        refuse(
-            "Bricks",
-            [
-                f"item {n} is {shown(b)}, not a Block"
-                for n, b in enumerate(self._blocks)
-                if not isinstance(b, Block)
-            ],
-        )
-        self._found = {}
+        odd = [(n, b) for n, b in enumerate(self._blocks) if not isinstance(b, Block)]
+        refuse("Bricks", [f"item {n} is {shown(b)}, not a Block" for n, b in odd])
 
     def __len__(self) -> int:
         return len(self._blocks)
@@ -191,15 +185,20 @@ class Bricks:
 
     # -- size -----------------------------------------------------------------------------------------------------
 
-    @property
+    @functools.cached_property
     def low(self) -> tuple[float, ...]:
         """Lowest x, y and z of all blocks [m]."""
-        return self._box()[0]
+        return self._extreme(min, "low")
 
-    @property
+    @functools.cached_property
     def high(self) -> tuple[float, ...]:
         """Highest x, y and z of all blocks [m]."""
-        return self._box()[1]
+        return self._extreme(max, "high")
+
+    def _extreme(self, choose, name):
+        if not self._blocks:
+            raise ValueError("no blocks, so no size")
+        return tuple(map(choose, zip(*(getattr(b, name) for b in self._blocks))))
 
     @property
     def length(self) -> float:
@@ -214,22 +213,11 @@ class Bricks:
     @property
     def volume(self) -> float:
         """[m³]"""
-        return float(self._solids().volumes().sum())
+        return float(self._solids.volumes().sum())
 
-    def _box(self):
-        if "box" not in self._found:
-            if not self._blocks:
-                raise ValueError("no blocks, so no size")
-            lows, highs = zip(*((b.low, b.high) for b in self._blocks))
-            self._found["box"] = tuple(map(min, zip(*lows))), tuple(
-                map(max, zip(*highs))
-            )
-        return self._found["box"]
-
+    @functools.cached_property
     def _solids(self):
-        if "solids" not in self._found:
-            self._found["solids"] = Solids([b.corners for b in self._blocks])
-        return self._found["solids"]
+        return Solids([b.corners for b in self._blocks])
 
     # -- moving and naming ----------------------------------------------------------------------------------------
 
@@ -339,7 +327,7 @@ class Bricks:
         """
         length = math.hypot(*normal)
         normal = tuple(n / length for n in normal)
-        solids = self._solids()
+        solids = self._solids
         refuse("cut", self._degenerate(solids))
         blocks, beyond = [], []
         for n, block in enumerate(self._blocks):
@@ -372,10 +360,9 @@ class Bricks:
 
         :raises ValueError: if the pieces of a brick do not make up a convex solid
         """
-        pieces, problems = {}, []
+        pieces, problems, joined = {}, [], []
         for block in self._blocks:
             pieces.setdefault(block.brick, []).append(block)
-        joined = []
         for number, blocks in pieces.items():
             if len(blocks) > 1:
                 corners = self._joined(blocks)
@@ -393,12 +380,9 @@ class Bricks:
     def _joined(blocks):
         """Corners of the solid that some blocks make up, or None."""
         volume = math.fsum(Solids([b.corners for b in blocks]).volumes())
-        low, high = (
-            tuple(map(f, zip(*(getattr(b, name) for b in blocks))))
-            for f, name in ((min, "low"), (max, "high"))
-        )
-        box = boxCorners(low, high)
-        size = math.prod(b - a for a, b in zip(low, high))
+        both = Bricks(blocks)
+        box = boxCorners(both.low, both.high)
+        size = math.prod(b - a for a, b in zip(both.low, both.high))
         if abs(size - volume) < COINCIDENT * size:
             return box
         from scipy.spatial import ConvexHull  # a run of a wall of boxes needs none
@@ -416,7 +400,7 @@ class Bricks:
 
         Two faces coincide as they do for the plugin: within 1e-4 of the diagonal of the smaller block.
         """
-        return list(self._pairs()[0])
+        return list(self._pairs[0])
 
     @validated
     def freeFaces(
@@ -429,7 +413,7 @@ class Bricks:
         """
         sight = np.array(direction, float)
         sight /= np.linalg.norm(sight)
-        solids = self._solids()
+        solids = self._solids
         refuse("freeFaces", self._degenerate(solids))
         covered = {}
         for joint in self.joints():
@@ -453,10 +437,9 @@ class Bricks:
                     found.append((n, tuple(normal), float(free), tuple(moment / free)))
         return found
 
+    @functools.cached_property
     def _pairs(self):
-        if "pairs" not in self._found:
-            self._found["pairs"] = checks.findJoints(self._solids())
-        return self._found["pairs"]
+        return checks.findJoints(self._solids)
 
     def problems(self) -> list[str]:
         """What is wrong with the blocks: a list of sentences, empty if nothing is.
@@ -470,11 +453,11 @@ class Bricks:
         - a joint of odd size: narrower than a tenth of the thinner block;
         - blocks that have no joint with the rest.
         """
-        if "problems" not in self._found:
-            self._found["problems"] = checks.findProblems(
-                self._blocks, self._solids(), *self._pairs()
-            )
-        return list(self._found["problems"])
+        return list(self._problems)
+
+    @functools.cached_property
+    def _problems(self):
+        return checks.findProblems(self._blocks, self._solids, *self._pairs)
 
 
 @validated
@@ -516,8 +499,3 @@ def refuse(what: str, problems: list[str], most: int = 10) -> None:
     if problems:
         more = [f"and {len(problems) - most} more"] if len(problems) > most else []
         raise ValueError(f"{what}: " + "; ".join([*problems[:most], *more]))
-
-
-def _isNumber(value):
-    floats = (int, float, np.integer, np.floating)
-    return isinstance(value, floats) and not isinstance(value, bool)

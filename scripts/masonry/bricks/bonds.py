@@ -36,10 +36,8 @@ def _englishBond(n, odd):
         return [3]
     if n % 4 == 0:
         return range(4, n, 4)
-    half = 4 * (
-        n // 8
-    )  # a half bat stands near the middle of a course that is no whole number of units long
-    half = max(half, 4)
+    # a half bat stands near the middle of a course that is no whole number of units long
+    half = max(4 * (n // 8), 4)
     return [*range(4, half + 1, 4), *range(half + 2, n, 4)]
 
 
@@ -52,8 +50,7 @@ def _flemishBond(n, odd):
     if n == 4:
         return [2]
     end = {4: [n - 3, n - 2], 0: [n - 3], 2: [n - 3]}[n % 6]
-    last = {4: n - 7, 0: n - 3, 2: n - 5}[
-        n % 6
-    ]  # the last joint behind a header or closer
+    # the last joint behind a header or closer
+    last = {4: n - 7, 0: n - 3, 2: n - 5}[n % 6]
     inner = [k for k in range(3, last + 1) if k % 6 in (1, 3)]
     return sorted({2, *inner, *end})

@@ -19,7 +19,7 @@ from typing import Annotated
 from ..arguments import FilePath, number, validated
 from ..packages import needed
 from .blocks import FARTHEST, Block, Bricks, refuse
-from .checks import where
+from .checks import components, where
 from .geometry import FLAT
 
 #: Points of one solid are the same if they are no further apart than this share of its size; STL as bytes, and text of
@@ -58,7 +58,7 @@ def fromFile(
         ".obj": _readObj,
         ".off": _readOff,
         ".stl": _readStl,
-        ".ply": _readPly,
+        ".ply": _byMeshio,
         ".json": _readJson,
     }
     if ending not in readers:
@@ -191,10 +191,6 @@ def _readStl(path):
     return surfaces
 
 
-def _readPly(path):
-    return _byMeshio(path)
-
-
 def _byMeshio(path):
     meshio = needed("meshio")  # takes a second, and few scenes need it
 
@@ -245,11 +241,8 @@ def _meshes(data, name, found):
     """Every dictionary with the vertices and faces of a COMPAS mesh, with the name that it or its holder has."""
     if isinstance(data, dict):
         own = data.get("attributes")
-        name = (
-            (own.get("name") if isinstance(own, dict) else None)
-            or data.get("name")
-            or name
-        )
+        own = own.get("name") if isinstance(own, dict) else None
+        name = own or data.get("name") or name
         name = name if isinstance(name, str) else ""
         if isinstance(data.get("vertex"), dict) and isinstance(data.get("face"), dict):
             found.append((name, data))
@@ -311,7 +304,10 @@ def _solids(surface, scale, problems):
         if len(open_) > 3:
             problems.append(f"{name}: {len(open_) - 3} more such edges")
         return
-    for n, members in enumerate(_connected(len(faces), mates)):
+    solids = {}
+    for face, first in enumerate(components(len(faces), mates)):
+        solids.setdefault(first, []).append(face)
+    for n, members in enumerate(solids.values()):
         solid = f"{name}, solid {n}"
         corners = _corners(points, faces, numbers, members, solid, problems)
         if corners:
@@ -360,13 +356,10 @@ def _mates(points, faces):
         along = along / np.linalg.norm(along)
         taken = set()
         for n in here:
-            into = np.cross(
-                normals[n], along
-            )  # into the face, at right angles to the edge
-            best = min(
-                (m for m in there),
-                key=lambda m: _turn(into, -normals[n], np.cross(normals[m], -along)),
-            )
+            # into the face, at right angles to the edge
+            into = np.cross(normals[n], along)
+            turn = lambda m: _turn(into, -normals[n], np.cross(normals[m], -along))
+            best = min(there, key=turn)
             if best in taken:
                 open_.append((n, (a, b)))
             taken.add(best)
@@ -385,25 +378,6 @@ def _normal(polygon):
     normal = np.cross(arms, np.roll(arms, -1, axis=0)).sum(axis=0)
     length = np.linalg.norm(normal)
     return normal / length if length > 0 else normal
-
-
-def _connected(count, mates):
-    neighbours = [[] for _ in range(count)]
-    for a, b in mates:
-        neighbours[a].append(b)
-        neighbours[b].append(a)
-    seen, parts = [False] * count, []
-    for start in range(count):
-        if seen[start]:
-            continue
-        seen[start], part = True, [start]
-        for n in part:
-            for m in neighbours[n]:
-                if not seen[m]:
-                    seen[m] = True
-                    part.append(m)
-        parts.append(part)
-    return parts
 
 
 def _corners(points, faces, numbers, members, solid, problems):
@@ -432,14 +406,8 @@ def _corners(points, faces, numbers, members, solid, problems):
                 f"convex"
             )
             return None
-        k = next(
-            (
-                k
-                for k, plane in enumerate(planes)
-                if _same(plane, normal, middle, width)
-            ),
-            len(planes),
-        )
+        same = (_same(plane, normal, middle, width) for plane in planes)
+        k = next((k for k, is_ in enumerate(same) if is_), len(planes))
         if k == len(planes):
             planes.append((normal, middle))
         for n in faces[face]:

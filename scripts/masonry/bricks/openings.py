@@ -169,16 +169,8 @@ def _without(bricks, hole):
             number = brick.number
             if n and not (beds and sides):
                 number, spare = spare, spare + 1
-            found.append(
-                replace(
-                    brick,
-                    low=(p, ya, r),
-                    high=(s, yb, t),
-                    split=None,
-                    number=number,
-                    cut=True,
-                )
-            )
+            box = dict(low=(p, ya, r), high=(s, yb, t), split=None)
+            found.append(replace(brick, **box, number=number, cut=True))
     return found
 
 

@@ -154,9 +154,9 @@ def Dome(
     refuse("dome", problems)
     lowest = math.radians(angle / 2)
     # polar angles of the bed joints, from below
-    highest = (
-        lowest / (2 * courses + 1) if oculus is None else math.asin(oculus / radius)
-    )
+    highest = lowest / (2 * courses + 1)
+    if oculus is not None:
+        highest = math.asin(oculus / radius)
     polar = [lowest + (highest - lowest) * n / courses for n in range(courses + 1)]
     sectors = 2 * stones if staggered else stones
     turns = [_unitVector(n, sectors) for n in range(sectors)]
@@ -164,11 +164,8 @@ def Dome(
 
     def corner(turn, polarAngle, r):
         out = r * math.sin(polarAngle)
-        up = (
-            0.0
-            if r == radius and polarAngle == lowest
-            else r * math.cos(polarAngle) - level
-        )
+        foot = r == radius and polarAngle == lowest
+        up = 0.0 if foot else r * math.cos(polarAngle) - level
         return out * turn[0], out * turn[1], up
 
     radii = radius, radius + thickness

@@ -7,6 +7,7 @@ meet face to face. All positions along a wall are multiples of a quarter unit, e
 
 from __future__ import annotations
 
+import itertools
 import math
 from dataclasses import replace
 from typing import Annotated, Iterable, Sequence
@@ -87,35 +88,28 @@ def Wall(
     :raises ValueError: with all problems
     """
     problems = []
-    unit = _laid(unit, joint, problems)
+    unit = _laid("wall", unit, joint)
     through = bond in ("header", "english", "flemish")
     if through and wythes != 2:
         problems.append(
             f"{bond} bond has headers that go through the wall and needs wythes=2, got {wythes}"
         )
-    step = 4 if bond == "stack" else 2
-    quarters = _quarters(length, unit, "length", step, problems)
-    levels = _levels(height, courses, unit, problems)
-    refuse("wall", problems)
+    size = length, 4 if bond == "stack" else 2, 4
+    (quarters,), levels = _counted("wall", unit, height, courses, problems, wythes, length=size)  # fmt: skip
     thickness, deep = unit[1], unit[0] - joint  # of the wall, where headers go through
     if through:
         if collar is None:
             collar = max(deep - 2 * thickness, 0.0)
         if abs(2 * thickness + collar - deep) > WHOLE * unit[0]:
             fitting = deep - 2 * thickness
-            hint = (
-                f"; collar {fitting:g} m fits"
-                if fitting >= 0
-                else f"; a thickness of {deep / 2:g} m fits"
-            )
+            fits = f"collar {fitting:g} m" if fitting >= 0 else f"a thickness of {deep / 2:g} m"  # fmt: skip
             problems.append(
-                f"headers of {deep:g} m do not fit through two wythes of {thickness:g} m with a collar of {collar:g} m{hint}"
+                f"headers of {deep:g} m do not fit through two wythes of {thickness:g} m with a collar of {collar:g} m; {fits} fits"
             )
     if bond == "header" and quarters < 6:
         problems.append(
             f"header bond needs a length of at least 1.5 units, {1.5 * unit[0]:g} m, got {length:g} m"
         )
-    _few(quarters, levels, wythes, problems)
     refuse("wall", problems)
     collar = collar or 0.0
     ys = [0.0] + [w * thickness + (w - 0.5) * collar for w in range(1, wythes)]
@@ -134,10 +128,8 @@ def Wall(
                 split = 1, ys[1]
             leaf = part if through or wythes == 1 else f"{part} leaf {w0 + 1}"
             bricks.append(LaidBrick(low, high, course, leaf, split))
-    end = quarters * unit[0] / 4
-    kept, lintels = opened(
-        numbered(bricks), openings, unit, levels, (0.0, end), (ys[0], ys[-1]), part
-    )
+    ends = (0.0, quarters * unit[0] / 4), (ys[0], ys[-1])
+    kept, lintels = opened(numbered(bricks), openings, unit, levels, *ends, part)
     return finished(kept + lintels)
 
 
@@ -166,14 +158,9 @@ def Corner(
     :param height: as for :func:`Wall`, like ``unit``, ``courses``, ``halves`` and ``joint``
     :raises ValueError: with all problems
     """
-    problems = []
-    unit = _laid(unit, joint, problems)
-    one = _quarters(length, unit, "length", 2, problems, least=6)
-    two = _quarters(length2, unit, "length2", 2, problems, least=6)
-    levels = _levels(height, courses, unit, problems)
-    refuse("corner", problems)
-    _few(one + two, levels, 1, problems)
-    refuse("corner", problems)
+    unit = _laid("corner", unit, joint)
+    sizes = dict(length=(length, 2, 6), length2=(length2, 2, 6))
+    (one, two), levels = _counted("corner", unit, height, courses, [], 1, **sizes)
     ys = (0.0, unit[1])
     walls = [
         _leaf(one, levels, unit, ys, halves, "wall", openings, start=0),
@@ -209,31 +196,23 @@ def Tee(
     :raises ValueError: with all problems
     """
     problems = []
-    unit = _laid(unit, joint, problems)
-    one = _quarters(length, unit, "length", 2, problems, least=8)
-    two = _quarters(length2, unit, "length2", 2, problems, least=6)
-    levels = _levels(height, courses, unit, problems)
-    middle = None
-    if unit and one:
-        middle = at / unit[0] - 0.5
-        nearest = round(middle)
-        most = one // 4 - 1 if one % 4 == 0 else (one - 2) // 4 - 1
-        nearest = min(max(nearest, 1), most - 1) if most > 1 else nearest
-        if abs(middle - nearest) > WHOLE:
-            problems.append(
-                f"at {at:g} m: the stem must stand over the middle of a brick of the even courses, with a brick on each "
-                f"side; nearest: {(nearest + 0.5) * unit[0]:g} m"
-            )
-        middle = 4 * nearest + 2
-    if unit and unit[1] > 0.75 * unit[0]:
+    unit = _laid("tee", unit, joint)
+    if unit[1] > 0.75 * unit[0]:
         problems.append(
             f"a junction needs a unit no thicker than 0.75 of its length, got {unit[1]:g} m and {unit[0]:g} m"
         )
-    refuse("tee", problems)
-    _few(one + two, levels, 1, problems)
-    refuse("tee", problems)
+    sizes = dict(length=(length, 2, 8), length2=(length2, 2, 6))
+    (one, two), levels = _counted("tee", unit, height, courses, problems, 1, **sizes)
+    middle, most = at / unit[0] - 0.5, one // 4 - 1
+    nearest = round(middle)
+    nearest = min(max(nearest, 1), most - 1) if most > 1 else nearest
+    if abs(middle - nearest) > WHOLE:
+        raise ValueError(
+            f"tee: at {at:g} m: the stem must stand over the middle of a brick of the even courses, with a brick on each "
+            f"side; nearest: {(nearest + 0.5) * unit[0]:g} m"
+        )
     ys = (0.0, unit[1])
-    axis = middle * unit[0] / 4
+    axis = (4 * nearest + 2) * unit[0] / 4
     across = (axis - unit[1] / 2, axis + unit[1] / 2)
     walls = [
         _leaf(one, levels, unit, ys, halves, "wall", openings, crossed=across),
@@ -269,33 +248,26 @@ def Room(
     :raises ValueError: with all problems
     """
     problems = []
-    unit = _laid(unit, joint, problems)
-    one = _quarters(length, unit, "length", 4, problems, least=12)
-    two = _quarters(width, unit, "width", 4, problems, least=12)
-    levels = _levels(height, courses, unit, problems)
-    if unit and unit[1] > unit[0]:
+    unit = _laid("room", unit, joint)
+    if unit[1] > unit[0]:
         problems.append(
             f"a room needs a unit no thicker than its length, got {unit[1]:g} m and {unit[0]:g} m"
         )
-    refuse("room", problems)
-    _few(2 * (one + two), levels, 1, problems)
-    refuse("room", problems)
+    sizes = dict(length=(length, 4, 12), width=(width, 4, 12))
+    (one, two), levels = _counted("room", unit, height, courses, problems, 2, **sizes)
     near = (0.0, unit[1])
     ends = one * unit[0] / 4, two * unit[0] / 4
     far = [(end - unit[1], end) for end in ends]
     lay = lambda n, ys, part, openings, parity: _leaf(
         n, levels, unit, ys, halves, part, openings, start=parity, end=parity
     )
-    return finished(
-        _joined(
-            [
-                lay(one, near, "front", front, 0),
-                _along(lay(two, far[0], "right", right, 1)),
-                lay(one, far[1], "back", back, 0),
-                _along(lay(two, near, "left", left, 1)),
-            ]
-        )
-    )
+    walls = [
+        lay(one, near, "front", front, 0),
+        _along(lay(two, far[0], "right", right, 1)),
+        lay(one, far[1], "back", back, 0),
+        _along(lay(two, near, "left", left, 1)),
+    ]
+    return finished(_joined(walls))
 
 
 @validated
@@ -307,15 +279,10 @@ def stack(
     :param count: number of blocks
     :param size: length, thickness and height of a block [m]
     """
+    wide, deep, high = size
+    boxes = (((0.0, 0.0, n * high), (wide, deep, (n + 1) * high)) for n in range(count))
     return Bricks(
-        Block(
-            boxCorners((0.0, 0.0, n * size[2]), (size[0], size[1], (n + 1) * size[2])),
-            n,
-            part,
-            n,
-            "block",
-        )
-        for n in range(count)
+        Block(boxCorners(*box), n, part, n, "block") for n, box in enumerate(boxes)
     )
 
 
@@ -332,26 +299,39 @@ def block(low: Point, high: Point, part: str = "block", kind: str = "block") -> 
 # -- checks of what a user gives --------------------------------------------------------------------------------------
 
 
-def _laid(unit, joint, problems):
-    """The sides of a unit with its joints, or None with a sentence."""
+def _laid(name, unit, joint):
+    """The sides of a unit with its joints. Raises ValueError."""
     if joint == 0:
         return unit
-    if joint < min(unit[0], unit[2]):
-        return (unit[0] + joint, unit[1], unit[2] + joint)
-    problems.append(
-        f"joint {joint:g} m must be below length and height of the unit {unit} m"
-    )
+    if joint >= min(unit[0], unit[2]):
+        raise ValueError(
+            f"{name}: joint {joint:g} m must be below length and height of the unit {unit} m"
+        )
+    return unit[0] + joint, unit[1], unit[2] + joint
 
 
-def _quarters(length, unit, what, step, problems, least=None):
+def _counted(name, unit, height, courses, problems, times, **sizes):
+    """Lengths in quarter units, and heights of bed joints. Raises ValueError, with problems that are known before, too.
+
+    :param times: walls of all these lengths
+    :param sizes: of each length its value [m], of how many quarter units it must be a multiple, and how many it needs
+    """
+    quarters = [_quarters(size[0], unit, what, *size[1:], problems) for what, size in sizes.items()]  # fmt: skip
+    levels = _levels(height, courses, unit, problems)
+    refuse(name, problems)
+    bricks = times * sum(quarters) / 4 * (len(levels) - 1)
+    if bricks > MOST_BRICKS:
+        raise ValueError(
+            f"{name}: {bricks:.3g} bricks are more than {MOST_BRICKS}: are all lengths in m?"
+        )
+    return quarters, levels
+
+
+def _quarters(length, unit, what, step, least, problems):
     """A length in quarter units, or None with a sentence.
 
-    :param step: of which it must be a multiple
-    :param least: smallest number of quarter units; None: one step, or two for half units
+    :param step: of which it must be a multiple; ``least``: smallest number of quarter units
     """
-    least = least or 4
-    if not unit:
-        return None
     units = length / unit[0]
     steps = 4 * units / step
     if not steps < 1e9:
@@ -378,16 +358,14 @@ def _levels(height, courses, unit, problems):
     """Heights of all bed joints, from 0 to the top [m], or None with a sentence."""
     if courses is not None:
         # a block as flat as corners may lie off their face's plane has no volume
-        least = FLAT * max(unit) if unit else 0.0
+        least = FLAT * max(unit)
         low = [n for n, h in enumerate(courses) if h <= least]
         if low:
             problems.append(
                 f"course {low[0]}: {courses[low[0]]:g} m is too flat, it must be above {least:g} m"
             )
             return None
-        levels = [0.0]
-        for h in courses:
-            levels.append(levels[-1] + h)
+        levels = [0.0, *itertools.accumulate(courses)]
         if height is not None and abs(height - levels[-1]) > WHOLE * levels[-1]:
             problems.append(
                 f"height {height:g} m differs from the sum of all courses, {levels[-1]:g} m"
@@ -395,8 +373,6 @@ def _levels(height, courses, unit, problems):
         return levels
     if height is None:
         problems.append("height [m] or courses must be given")
-        return None
-    if not unit:
         return None
     count = height / unit[2]
     if not count < MOST_BRICKS:
@@ -413,14 +389,6 @@ def _levels(height, courses, unit, problems):
         )
         return None
     return [course * unit[2] for course in range(nearest + 1)]
-
-
-def _few(quarters, levels, wythes, problems):
-    bricks = quarters / 4 * (len(levels) - 1) * wythes
-    if bricks > MOST_BRICKS:
-        problems.append(
-            f"{bricks:.3g} bricks are more than {MOST_BRICKS}: are all lengths in m?"
-        )
 
 
 # -- leaves that meet others ------------------------------------------------------------------------------------------
@@ -447,18 +415,15 @@ def _leaf(
     """
     q, thickness = unit[0] / 4, unit[1]
     length = quarters * q
+    free = (
+        thickness if start is not None else 0.0,
+        length - thickness if end is not None else length,
+    )
     bricks = []
     for course in range(len(levels) - 1):
         shifted = course % 2 if start is None else course % 2 != start
-        for x0, x1, split in _course(
-            quarters,
-            unit,
-            shifted,
-            thickness if start is not None else 0.0,
-            length - thickness if end is not None else length,
-            start is not None,
-            end is not None,
-        ):
+        joined = start is not None, end is not None
+        for x0, x1, split in _course(quarters, unit, shifted, free, joined):
             pieces = [(x0, x1, split)]
             if crossed and course % 2 and x0 < crossed[1] and x1 > crossed[0]:
                 pieces = [(x0, crossed[0], None)] if x0 < crossed[0] else []
@@ -467,19 +432,17 @@ def _leaf(
                 low, high = (a, ys[0], levels[course]), (b, ys[1], levels[course + 1])
                 cut = (0, at) if halves and at is not None else None
                 bricks.append(LaidBrick(low, high, course, part, cut))
-    free = [thickness if start is not None else 0.0]
-    free.append(length - thickness if end is not None else length)
     return opened(numbered(bricks), openings, unit, levels, free, ys, part, crossed)
 
 
-def _course(quarters, unit, shifted, first, last, joinedStart, joinedEnd):
+def _course(quarters, unit, shifted, free, joined):
     """Bricks of a course in running bond: start, end, and where its two halves meet (None: it is no whole brick).
 
     :param shifted: whether the head joints stand half a unit off
-    :param first: where a shifted course starts if another wall meets this one there [m]
-    :param last: where a shifted course ends, likewise [m]
+    :param free: where a shifted course starts and ends [m]
+    :param joined: whether another wall meets this one there
     """
-    q, whole = unit[0] / 4, unit[0]
+    q, whole, (joinedStart, joinedEnd) = unit[0] / 4, unit[0], joined
     length = quarters * q
     if not shifted:
         for k0 in range(0, quarters, 4):
@@ -491,8 +454,7 @@ def _course(quarters, unit, shifted, first, last, joinedStart, joinedEnd):
                 at = length - unit[1] if joinedEnd and k1 == quarters else at
             yield k0 * q, k1 * q, at
         return
-    low = first if joinedStart else 0.0
-    high = last if joinedEnd else length
+    low, high = free
     near = q * (1 - WHOLE)  # least length of a piece
     joints = [k * q for k in range(2, quarters, 4)]
     joints = [x for x in joints if x - low >= near and high - x >= near]
@@ -503,31 +465,17 @@ def _course(quarters, unit, shifted, first, last, joinedStart, joinedEnd):
     if joinedEnd and ends[-1] - ends[-2] > 1.1 * whole:
         ends.insert(-1, ends[-2] + 0.75 * whole)
     for n, (a, b) in enumerate(zip(ends, ends[1:])):
-        at = None
-        if abs(b - a - whole) <= 0.1 * whole * (1 + WHOLE):
-            at = (
-                a + whole / 2
-                if n and n == len(ends) - 2 and joinedEnd
-                else b - whole / 2
-            )
-        yield a, b, at
+        last = n and n == len(ends) - 2 and joinedEnd
+        isWhole = abs(b - a - whole) <= 0.1 * whole * (1 + WHOLE)
+        yield a, b, (a + whole / 2 if last else b - whole / 2) if isWhole else None
 
 
 def _along(leaf):
     """A leaf turned so that it runs along y: x and y change places, so that all coordinates stay exact."""
     swap = lambda p: (p[1], p[0], p[2])
-    return tuple(
-        [
-            replace(
-                b,
-                low=swap(b.low),
-                high=swap(b.high),
-                split=b.split and (1 - b.split[0], b.split[1]),
-            )
-            for b in bricks
-        ]
-        for bricks in leaf
-    )
+    split = lambda cut: cut and (1 - cut[0], cut[1])
+    turn = lambda b: replace(b, low=swap(b.low), high=swap(b.high), split=split(b.split))  # fmt: skip
+    return tuple(list(map(turn, bricks)) for bricks in leaf)
 
 
 def _joined(leaves):

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numpy as np
 
@@ -31,23 +30,22 @@ def forces(push: Pushover, curve: Bilinear, path: FilePath) -> None:
         f"bilinear, {curve.rule}: Vy {curve.yieldForce:.4g} kN, dy {curve.yieldDisplacement:.3g} mm,\n"
         f"{ends}, ductility {curve.ductility:.3g}"
     )
-    with drawing.style():
-        figure = drawing.empty(7, 4.6)
+    with drawing.picture(path, 7, 4.6, DPI) as figure:
         axes = figure.subplots()
         axes.plot(push.displacement, push.force, color=CURVE, lw=1.0, label="the push")
         axes.plot(*_corners(curve), color=IDEAL, lw=1.8, label=label)
         axes.set_ylim(bottom=min(0, 1.1 * float(push.force.min())))
         axes.set_title(str(push.run.get("title", "")))
-        _finish(figure, axes, "displacement [mm]", "force carried at both ends [kN]")
-        drawing.save(figure, path, DPI)
+        drawing.finish(
+            axes, "displacement [mm]", "force carried at both ends [kN]", fontsize=9
+        )
 
 
 def capacity(push: Pushover, found: Demand, path: FilePath) -> None:
     """Draw capacity and demand of the equivalent system: acceleration over displacement. Writes a PNG file."""
     gamma, mass, spectrum = found.system.gamma, found.system.mass, found.spectrum
     asAcceleration = lambda force: 1e3 * force / gamma / mass
-    with drawing.style():
-        figure = drawing.empty(7, 5.2)
+    with drawing.picture(path, 7, 5.2, DPI) as figure:
         axes = figure.subplots()
         sd = 1e3 * spectrum.accelerations * (spectrum.periods / (2 * math.pi)) ** 2
         axes.plot(sd, spectrum.accelerations, color=SPECTRUM, lw=1.4, label="elastic spectrum")  # fmt: skip
@@ -64,14 +62,12 @@ def capacity(push: Pushover, found: Demand, path: FilePath) -> None:
         axes.set_xlim(0, 1.25 * last)
         axes.set_ylim(0, 1.1 * max(spectrum.accelerations.max(), asAcceleration(push.force).max()))  # fmt: skip
         axes.set_title(f"{push.run.get('title', '')}\n{spectrum.name}", fontsize=9)
-        _finish(figure, axes, "displacement of the equivalent system [mm]", "acceleration [m/s²]")  # fmt: skip
-        drawing.save(figure, path, DPI)
+        drawing.finish(axes, "displacement of the equivalent system [mm]", "acceleration [m/s²]", fontsize=9)  # fmt: skip
 
 
 def domain(found: Domain, path: FilePath) -> None:
     """Draw an N-V domain, and runs as points. Writes a PNG file."""
-    with drawing.style():
-        figure = drawing.empty(7, 4.6)
+    with drawing.picture(path, 7, 4.6, DPI) as figure:
         axes = figure.subplots()
         for key, label, dash in (("largest", "limit analysis, at most", "-"), ("withoutDilatancy", "limit analysis, without dilatancy", (0, (5, 3)))):  # fmt: skip
             points = [(one.normal, getattr(one, key)) for one in found.bounds if getattr(one, key) is not None]  # fmt: skip
@@ -82,13 +78,4 @@ def domain(found: Domain, path: FilePath) -> None:
             axes.annotate(run.name, (run.normal, run.shear), textcoords="offset points", xytext=(6, -10), fontsize=8)  # fmt: skip
         axes.set_xlim(left=0)
         axes.set_ylim(bottom=0)
-        _finish(figure, axes, "normal force at the base, compression [kN]", "shear force [kN]")  # fmt: skip
-        drawing.save(figure, path, DPI)
-
-
-def _finish(figure: Any, axes: Any, x: str, y: str) -> None:
-    axes.set_xlabel(x)
-    axes.set_ylabel(y)
-    axes.legend(fontsize=9)
-    axes.grid(alpha=0.3)
-    figure.tight_layout()
+        drawing.finish(axes, "normal force at the base, compression [kN]", "shear force [kN]", fontsize=9)  # fmt: skip

@@ -147,8 +147,15 @@ def compare(
     tests = [readMeasured(text) for text in measured]
     if axesLabels is None:
         axesLabels = tests[0][2]
-    with drawing.style():
-        figure = drawing.empty(7, 4.6)
+    try:
+        _draw(out, tests, curves, names, axesLabels, title)
+    except OSError as error:
+        raise Refused(f"cannot write {out}: {error.strerror}") from None
+    return out
+
+
+def _draw(out, tests, curves, names, labels, title):
+    with drawing.picture(out, 7, 4.6, 150) as figure:
         axes = figure.subplots()
         for n, (a, b, _) in enumerate(tests):
             axes.plot(
@@ -162,17 +169,8 @@ def compare(
         for low, high, line in ((*axes.get_xlim(), axes.axvline), (*axes.get_ylim(), axes.axhline)):  # fmt: skip
             if low < -0.05 * high < 0:  # both sides are more than a margin
                 line(0, color="0.4", lw=0.8, zorder=0)
-        axes.set_xlabel(axesLabels[0])
-        axes.set_ylabel(axesLabels[1])
         axes.set_title(title)
-        axes.grid(alpha=0.3)
-        axes.legend(fontsize=9, framealpha=0.9)
-        figure.tight_layout()
-        try:
-            drawing.save(figure, out, 150)
-        except OSError as error:
-            raise Refused(f"cannot write {out}: {error.strerror}") from None
-    return out
+        drawing.finish(axes, *labels, fontsize=9, framealpha=0.9)
 
 
 def _names(directories, measured):

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Pictures by matplotlib without a window, written whole or not at all. This module needs no YADE."""
 
+import contextlib
 import io
 import os
 
@@ -22,6 +23,30 @@ def style():
     import matplotlib.style
 
     return matplotlib.style.context("default")
+
+
+@contextlib.contextmanager
+def picture(path, width, height, dpi, settings=()):
+    """A figure [inch] that is written at the end of its block.
+
+    :param settings: of matplotlib, a dict, beside those of :func:`style`
+    """
+    with style():
+        import matplotlib
+
+        matplotlib.rcParams.update(settings)
+        figure = empty(width, height)
+        yield figure
+        figure.tight_layout()
+        save(figure, path, dpi)
+
+
+def finish(axes, x, y, **legend):
+    """Labels, legend and grid of a diagram; ``legend`` are settings of its legend."""
+    axes.set_xlabel(x)
+    axes.set_ylabel(y)
+    axes.legend(**legend)
+    axes.grid(alpha=0.3)
 
 
 def save(figure, path, dpi):

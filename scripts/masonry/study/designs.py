@@ -34,9 +34,8 @@ def points(design, count, dimension, seed):
     cube = ot.ComposedDistribution([ot.Uniform(0, 1)] * dimension)
     inside = lambda u: min(max(u, EDGE), 1 - EDGE)
     with _seeded(ot, seed):
-        if (
-            design == "random"
-        ):  # one after the other, so that more rows begin with the same ones
+        if design == "random":
+            # one after the other, so that more rows begin with the same ones
             return [[*map(inside, cube.getRealization())] for _ in range(count)]
         if design == "latin":
             made = ot.LHSExperiment(cube, count, True, True)
@@ -59,14 +58,12 @@ def root(names, correlation):
     matrix = ot.CorrelationMatrix(len(names))
     for (one, two), value in correlation.items():
         matrix[names.index(one), names.index(two)] = value
+    normal = ot.NormalCopula.GetCorrelationFromSpearmanCorrelation
     try:
-        return ot.NormalCopula.GetCorrelationFromSpearmanCorrelation(
-            matrix
-        ).computeCholesky()
+        return normal(matrix).computeCholesky()
     except (TypeError, RuntimeError):
-        raise Refused(
-            "correlation: no numbers have all these correlations at once"
-        ) from None
+        message = "correlation: no numbers have all these correlations at once"
+        raise Refused(message) from None
 
 
 def values(design, count, seed, vary, correlation):
@@ -75,10 +72,8 @@ def values(design, count, seed, vary, correlation):
     :param vary: dict of name -> Distribution or Choice
     """
     if design == "grid":
-        return [
-            dict(zip(vary, row))
-            for row in itertools.product(*(c.values for c in vary.values()))
-        ]
+        rows = itertools.product(*(c.values for c in vary.values()))
+        return [dict(zip(vary, row)) for row in rows]
     names = [n for n, v in vary.items() if isinstance(v, Distribution)]
     chosen = [n for n in vary if n not in names]
     cube = points(design, count, len(vary), seed)

@@ -76,17 +76,13 @@ def mean(expensive, cheap, confidence=CONFIDENCE):
     y, x = _rows(expensive, cheap)
     found = _controlled(y, x[:, None])
     half = _halfWidth(found, confidence)
-    return Estimate(
-        "mean",
-        found.value,
-        found.value - half,
-        found.value + half,
-        found.expensive,
-        found.cheap,
-        found.expensive + found.cheap,
-        len(y),
-        len(x),
-    )
+    ends = found.value - half, found.value + half
+    return _estimate("mean", found, ends, found.expensive + found.cheap)
+
+
+def _estimate(name, found, ends, alone):
+    sizes = found.expensive, found.cheap, alone, found.shared, found.rows
+    return Estimate(name, found.value, *ends, *sizes)
 
 
 def deviation(expensive, cheap, confidence=CONFIDENCE):
@@ -105,12 +101,10 @@ def deviation(expensive, cheap, confidence=CONFIDENCE):
     shared = 4 * b**2 * ofX**2 * ofResiduals * n / bridge.squares
     shared += (residuals**2).var(ddof=1)
     many = (b**2 * (x - x.mean()) ** 2).var(ddof=1)
-    found = _Found(value**2, (shared / n, many / m), (n - 2, m - 1), shared, many)
+    found = _Found(value, shared, many, n, m, n - 2)
     relative = _halfWidth(found, confidence) / value**2
-    low, high = (value * math.exp(sign * relative / 2) for sign in (-1, 1))
-    return Estimate(
-        "standard deviation", value, low, high, shared, many, shared + many, n, m
-    )
+    ends = (value * math.exp(sign * relative / 2) for sign in (-1, 1))
+    return _estimate("standard deviation", found, ends, shared + many)
 
 
 def quantile(expensive, cheap, share, method="bridge", confidence=CONFIDENCE):
@@ -143,22 +137,12 @@ def _quantile(bridge, share, method, confidence):
             "run more of them, or take the bridge"
         )
     value = _quantileAt(bridge, method, share)
-    found = (
-        bridge.probability(value) if method == "bridge" else bridge.controlled(value)
-    )
+    probability = bridge.probability if method == "bridge" else bridge.controlled
+    found = probability(value)
     half = _halfWidth(found, confidence)
-    low, high = (_quantileAt(bridge, method, share + sign * half) for sign in (-1, 1))
-    return Estimate(
-        f"{100 * share:g} % quantile",
-        value,
-        low,
-        high,
-        found.expensive,
-        found.cheap,
-        share * (1 - share),
-        n,
-        len(bridge.x),
-    )
+    ends = (_quantileAt(bridge, method, share + sign * half) for sign in (-1, 1))
+    name = f"{100 * share:g} % quantile"
+    return _estimate(name, found._replace(value=value), ends, share * (1 - share))
 
 
 def estimate(expensive, cheap, method="bridge", confidence=CONFIDENCE):
@@ -166,10 +150,7 @@ def estimate(expensive, cheap, method="bridge", confidence=CONFIDENCE):
 
     Parameters and errors are those of :func:`mean` and :func:`quantile`.
     """
-    found = [
-        mean(expensive, cheap, confidence),
-        deviation(expensive, cheap, confidence),
-    ]
+    found = [make(expensive, cheap, confidence) for make in (mean, deviation)]
     bridge = _Bridge(*_rows(expensive, cheap))
     return found + [_quantile(bridge, share, method, confidence) for share in QUANTILES]
 
@@ -253,9 +234,7 @@ def allocate(pilot, prices, variance=None, budget=None):
     else:
         left = variance - a / shared
         rows = max(shared, math.ceil(b / left)) if left > 0 else shared
-    cost = c * shared + d * rows
-    alone = pilot.alone / (a / shared + b / rows)
-    return Allocation(shared, rows, cost, alone, cost / (c * alone))
+    return saved(pilot._replace(shared=shared, rows=rows), prices)
 
 
 def saved(found, prices):
@@ -281,19 +260,15 @@ def sentence(
     """
     paid = saved(found, prices)
     unit = f" {unit}" if unit else ""
-    ends = [
-        f"{end:.4g}{unit}" if math.isfinite(end) else "an unknown end"
-        for end in (found.low, found.high)
-    ]
+    end = lambda v: f"{v:.4g}{unit}" if math.isfinite(v) else "an unknown end"
     message = (
-        f"{found.name} {found.value:.4g}{unit}, with {100 * confidence:g} % confidence between {ends[0]} and {ends[1]}, "
+        f"{found.name} {found.value:.4g}{unit}, with {100 * confidence:g} % confidence between {end(found.low)} and {end(found.high)}, "
         f"from {found.shared} runs of {names[0]} and {found.rows} of {names[1]} in {_time(paid.cost)}"
     )
     same = f"{names[0]} alone needs {paid.alone:.0f} runs and {_time(paid.cost / paid.share)} for this interval"
     if paid.share < 1:
-        return (
-            f"{message}; {same}, so {100 * (1 - paid.share):.0f} % of the time is saved"
-        )
+        share = f"{100 * (1 - paid.share):.0f} %"
+        return f"{message}; {same}, so {share} of the time is saved"
     return f"{message}; {same}, so nothing is saved: {names[1]} follows {names[0]} too little for its price"
 
 
@@ -307,9 +282,8 @@ def _time(seconds):
 
 # -- mathematics ------------------------------------------------------------------------------------------------------
 
-#: A mean with control variates, or a probability by the bridge. ``parts`` of its variance are those of the shared and
-#: of the cheap rows, ``freedom`` are the degrees of freedom of both; ``expensive`` and ``cheap`` are A and B.
-_Found = namedtuple("_Found", "value parts freedom expensive cheap")
+#: A number, and A and B of its variance. ``freedom`` are the degrees of freedom of A; B has one less than cheap rows.
+_Found = namedtuple("_Found", "value expensive cheap shared rows freedom")
 
 
 def _rows(expensive, cheap):
@@ -340,7 +314,7 @@ def _rows(expensive, cheap):
 
 
 def _controlled(g, z):
-    """The mean of g with control variates z: a :class:`_Controlled`.
+    """The mean of g with control variates z: a :class:`_Found`.
 
     :param g: of the N shared rows
     :param z: of all M rows, a column a variate
@@ -357,23 +331,17 @@ def _controlled(g, z):
     squares = (residuals / np.maximum(1 - leverage, 1 / n)) ** 2
     weights = 1 / n + design @ inverse @ away
     expensive, cheap = float(weights**2 @ squares), float((z @ slopes).var(ddof=1))
-    return _Found(
-        float(g.mean() + away @ slopes),
-        (expensive, cheap / m),
-        (n - 1 - z.shape[1], max(m - 1, 1)),
-        expensive * n,
-        cheap,
-    )
+    value, freedom = float(g.mean() + away @ slopes), n - 1 - z.shape[1]
+    return _Found(value, expensive * n, cheap, n, m, freedom)
 
 
 def _halfWidth(found, confidence):
     """Half of an interval: Student's t, with the degrees of freedom of Welch and Satterthwaite, times the deviation."""
-    variance = sum(found.parts)
+    a, b = found.expensive / found.shared, found.cheap / found.rows
+    variance = a + b
     if variance <= 0:
         return 0.0
-    freedom = variance**2 / sum(
-        p**2 / f for p, f in zip(found.parts, found.freedom)
-    )
+    freedom = variance**2 / (a**2 / found.freedom + b**2 / max(found.rows - 1, 1))
     return special.stdtrit(freedom, (1 + confidence) / 2) * math.sqrt(variance)
 
 
@@ -388,23 +356,18 @@ class _Bridge:
         line = y.mean() + self.slope * (x - x[:n].mean())
         # each residual is smaller than the error that it shows, by its leverage
         grown = 1 / np.sqrt(np.maximum(1 - 1 / n - near**2 / self.squares, 1 / n))
-        self.residuals = self._centred((y - line[:n]) * grown)
+        centred = lambda residuals: residuals - residuals.mean()
+        self.residuals = centred((y - line[:n]) * grown)
         error = math.sqrt(self.residuals @ self.residuals / (n - 2) / self.squares)
         self.near, self.line = near, line
         self.sortedLine, self.sortedResiduals = np.sort(line), np.sort(self.residuals)
         self.sums = np.sort(np.add.outer(self.residuals, line), axis=None)
         #: the same with the slope one standard error less and more, and the difference of both slopes
         self.turned = [
-            np.sort(
-                np.add.outer(self._centred((y - other[:n]) * grown), other), axis=None
-            )
+            np.sort(np.add.outer(centred((y - other[:n]) * grown), other), axis=None)
             for other in (line + sign * error * (x - x[:n].mean()) for sign in (-1, 1))
         ]
         self.turn = 2 * error
-
-    @staticmethod
-    def _centred(residuals):
-        return residuals - residuals.mean()
 
     @staticmethod
     def _below(values, q):
@@ -419,14 +382,10 @@ class _Bridge:
         if self.turn > 0:
             low, high = (self._below(sums, q) for sums in self.turned)
             bySlope = (high - low) / self.turn
-            ofResidual = (
-                ofResidual + bySlope * n * self.near * self.residuals / self.squares
-            )
+            ofResidual += bySlope * n * self.near * self.residuals / self.squares
         ofLine = self._below(self.sortedResiduals, q - self.line)
         expensive, cheap = ofResidual.var() * n / (n - 2), ofLine.var(ddof=1)
-        return _Found(
-            value, (expensive / n, cheap / m), (n - 2, max(m - 1, 1)), expensive, cheap
-        )
+        return _Found(value, expensive, cheap, n, m, n - 2)
 
     def controlled(self, q):
         """The probability that y is not above q, by the indicator: a :class:`_Found`."""

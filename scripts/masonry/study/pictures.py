@@ -24,29 +24,12 @@ SMALL = {
 }
 POINT, LINE, BARS = COLOURS[0], COLOURS[1], COLOURS[0]
 SHARES = [BARS, *COLOURS[2:], "#F0E442"]  # colours of the parts of bars
+BAND_STYLE = dict(color=POINT, alpha=0.2, lw=0)
+ABOVE = dict(loc="lower center", bbox_to_anchor=(0.5, 1.01))  # of a legend
 
 
-class _Picture:
-    """A figure [inch] that is written at the end of its block."""
-
-    def __init__(self, path, width, height):
-        self.path, self.size, self.style = path, (width, height), drawing.style()
-
-    def __enter__(self):
-        import matplotlib
-
-        self.style.__enter__()
-        matplotlib.rcParams.update(SMALL)
-        self.figure = drawing.empty(*self.size)
-        return self.figure
-
-    def __exit__(self, kind, problem, trace):
-        try:
-            if kind is None:
-                self.figure.tight_layout()
-                drawing.save(self.figure, self.path, DPI)
-        finally:
-            self.style.__exit__(kind, problem, trace)
+def _picture(path, width, height):
+    return drawing.picture(path, width, height, DPI, SMALL)
 
 
 # -- one property against another -------------------------------------------------------------------------------------
@@ -73,7 +56,7 @@ def scatter(path, inputs, output, label):
     names, k = list(columns), len(columns)
     size = max(6.0, min(1.35 * k, 11.0))
     dot = float(np.clip(60 / np.sqrt(len(columns[label])), 1.0, 10.0))
-    with _Picture(path, size, size) as figure:
+    with _picture(path, size, size) as figure:
         axes = figure.subplots(k, k, squeeze=False)
         for i, down in enumerate(names):
             for j, right in enumerate(names):
@@ -117,26 +100,14 @@ def tornado(path, effects, label):
     :param effects: what :func:`masonry.study.sensitivity.effects` returns
     """
     names = list(effects)[::-1]
-    with _Picture(path, 6.8, 1.1 + 0.3 * len(names)) as figure:
+    with _picture(path, 6.8, 1.1 + 0.3 * len(names)) as figure:
         left, right = figure.subplots(1, 2, sharey=True, width_ratios=[3, 2])
         rows = np.arange(len(names))
         for axis, field in ((left, "change"), (right, "rank")):
             found = [getattr(effects[name], field) for name in names]
             colours = [LINE if interval.value < 0 else POINT for interval in found]
-            axis.barh(
-                rows, [f.value for f in found], color=colours, alpha=0.75, height=0.65
-            )
-            axis.errorbar(
-                [f.value for f in found],
-                rows,
-                xerr=_errors(found),
-                fmt="none",
-                ecolor="black",
-                elinewidth=0.8,
-                capsize=2.5,
-            )
+            _bars(axis, rows, found, color=colours, height=0.65)
             axis.axvline(0, color="black", lw=0.8)
-            axis.grid(axis="x", alpha=0.3)
         left.set_yticks(rows, map(_shown, names))
         left.set_ylim(-0.7, len(names) - 0.3)
         left.set_xlabel(
@@ -152,7 +123,7 @@ def sobol(path, found, label):
     :param found: what :func:`masonry.study.sensitivity.sobol` returns
     """
     names = list(found.indices)[::-1]
-    with _Picture(path, 6.0, 1.3 + 0.38 * len(names)) as figure:
+    with _picture(path, 6.0, 1.3 + 0.38 * len(names)) as figure:
         axis = figure.subplots()
         rows = np.arange(len(names))
         for field, shift, colour, text in (
@@ -160,33 +131,30 @@ def sobol(path, found, label):
             ("first", -0.18, POINT, "first, alone"),
         ):
             values = [getattr(found.indices[name], field) for name in names]
-            axis.barh(
-                rows - shift,
-                [v.value for v in values],
-                height=0.34,
-                color=colour,
-                alpha=0.75,
-                label=text,
-            )
-            axis.errorbar(
-                [v.value for v in values],
-                rows - shift,
-                xerr=_errors(values),
-                fmt="none",
-                ecolor="black",
-                elinewidth=0.8,
-                capsize=2,
-            )
+            _bars(axis, rows - shift, values, 2, color=colour, height=0.34, label=text)
         axis.set_yticks(rows, map(_shown, names))
         axis.set_ylim(-0.7, len(names) - 0.3)
         axis.set_xlim(0, 1.05)
-        axis.grid(axis="x", alpha=0.3)
         axis.set_xlabel("share of the variance [-]")
         figure.suptitle(
             f"{label}: Sobol indices,\nof a polynomial chaos that explains {100 * found.explained:.0f} % of the variance",
             fontsize=9,
         )
         axis.legend(loc="lower right")
+
+
+def _bars(axis, rows, intervals, cap=2.5, **settings):
+    """Horizontal bars with their intervals."""
+    lengths = [[i.value - i.low, i.high - i.value] for i in intervals]
+    axis.barh(
+        rows,
+        [i.value for i in intervals],
+        xerr=np.maximum(lengths, 0).T,
+        alpha=0.75,
+        error_kw=dict(ecolor="black", elinewidth=0.8, capsize=cap),
+        **settings,
+    )
+    axis.grid(axis="x", alpha=0.3)
 
 
 # -- how it scatters --------------------------------------------------------------------------------------------------
@@ -198,11 +166,10 @@ def histogram(path, values, label, modes=None):
     :param modes: a word for every value, by which bars are divided into colours; None divides none
     """
     values = np.asarray(values, float)
-    words = np.asarray(
-        [f"{len(values)} rows"] * len(values) if modes is None else modes
-    )
+    words = np.asarray(modes or [f"{len(values)} rows"] * len(values))
     named = sorted(set(words), key=lambda word: (-np.sum(words == word), word))
-    with _Picture(path, 6.0, 3.8) as figure:
+    shares = [f"{word}, {100 * np.mean(words == word):.3g} %" for word in named]
+    with _picture(path, 6.0, 3.8) as figure:
         axis = figure.subplots()
         axis.hist(
             [values[words == word] for word in named],
@@ -211,86 +178,52 @@ def histogram(path, values, label, modes=None):
             stacked=True,
             color=[SHARES[n % len(SHARES)] for n in range(len(named))],
             alpha=0.5,
-            label=[
-                word
-                if len(named) == 1
-                else f"{word}, {100 * np.mean(words == word):.3g} %"
-                for word in named
-            ],
+            label=shares if len(named) > 1 else named,
         )
-        if values.min() > 0 and len(values) >= 3 and np.ptp(values) > 0:
-            fit = statistics.lognormal(values)
-            x = np.linspace(*axis.get_xlim(), POINTS)
-            x = x[x > 0]
-            density = stats.lognorm.pdf(x, fit.dispersion, scale=fit.median)
-            axis.plot(
-                x,
-                density,
-                color="black",
-                lw=1.2,
-                label=f"lognormal: median {fit.median:.4g}, dispersion {fit.dispersion:.3g}",
-            )
+        x = np.linspace(*axis.get_xlim(), POINTS)
+        _lognormal(axis, values, x, stats.lognorm.pdf, lw=1.2)
         for share, dashes in zip((0.05, 0.5, 0.95), DASHES[1:]):
             found = statistics.quantile(values, share)
-            axis.axvline(
-                found.value,
-                color=LINE,
-                lw=1.2,
-                ls=dashes,
-                label=f"{100 * share:g} % quantile: {found.value:.4g}",
-            )
+            text = f"{100 * share:g} % quantile: {found.value:.4g}"
+            axis.axvline(found.value, color=LINE, lw=1.2, ls=dashes, label=text)
             low, high = np.clip([found.low, found.high], values.min(), values.max())
             axis.axvspan(low, high, color=LINE, alpha=0.12, lw=0)
         axis.set_xlabel(label)
         axis.set_ylabel("density")
-        axis.legend(loc="lower center", bbox_to_anchor=(0.5, 1.01), ncols=2)
+        axis.legend(**ABOVE, ncols=2)
 
 
 def fragility(path, capacities, label):
     """Probability that the capacity is not above a demand, with its band, and the fitted lognormal distribution."""
     capacities = np.asarray(capacities, float)
     reach = np.ptp(capacities) or abs(capacities[0]) or 1.0
-    demands = np.linspace(
-        capacities.min() - 0.15 * reach, capacities.max() + 0.15 * reach, POINTS
-    )
+    low, high = capacities.min() - 0.15 * reach, capacities.max() + 0.15 * reach
+    demands = np.linspace(low, high, POINTS)
     probability, low, high = statistics.fragility(capacities, demands)
-    with _Picture(path, 6.0, 3.6) as figure:
+    with _picture(path, 6.0, 3.6) as figure:
         axis = figure.subplots()
-        axis.fill_between(
-            demands,
-            low,
-            high,
-            step="post",
-            color=POINT,
-            alpha=0.2,
-            lw=0,
-            label=f"{100 * statistics.CONFIDENCE:g} % confidence",
-        )
-        axis.step(
-            demands,
-            probability,
-            where="post",
-            color=POINT,
-            lw=1.3,
-            label=f"{len(capacities)} rows",
-        )
-        if capacities.min() > 0 and len(capacities) >= 3 and np.ptp(capacities) > 0:
-            fit = statistics.lognormal(capacities)
-            inside = demands > 0
-            axis.plot(
-                demands[inside],
-                stats.lognorm.cdf(demands[inside], fit.dispersion, scale=fit.median),
-                color="black",
-                lw=1,
-                ls=DASHES[1],
-                label=f"lognormal: median {fit.median:.4g}, dispersion {fit.dispersion:.3g}",
-            )
+        band = f"{100 * statistics.CONFIDENCE:g} % confidence"
+        axis.fill_between(demands, low, high, **BAND_STYLE, step="post", label=band)
+        rows = f"{len(capacities)} rows"
+        axis.step(demands, probability, where="post", color=POINT, lw=1.3, label=rows)
+        _lognormal(axis, capacities, demands, stats.lognorm.cdf, lw=1, ls=DASHES[1])
         axis.set_ylim(0, 1)
         axis.set_xlim(demands[0], demands[-1])
-        axis.set_xlabel(f"demand on {label}")
-        axis.set_ylabel("probability that the capacity is below")
-        axis.legend(loc="lower right")
-        axis.grid(alpha=0.3)
+        label = f"demand on {label}"
+        below = "probability that the capacity is below"
+        drawing.finish(axis, label, below, loc="lower right")
+
+
+def _lognormal(axis, values, x, curve, **line):
+    """The lognormal distribution that fits values, if there is one.
+
+    :param curve: function of x, the dispersion and ``scale``, the median
+    """
+    if statistics.isLognormal(values):
+        fit, x = statistics.lognormal(values), x[x > 0]
+        text = f"lognormal: median {fit.median:.4g}, dispersion {fit.dispersion:.3g}"
+        y = curve(x, fit.dispersion, scale=fit.median)
+        axis.plot(x, y, color="black", label=text, **line)
 
 
 # -- incremental dynamic analysis -------------------------------------------------------------------------------------
@@ -313,7 +246,7 @@ def ida(path, rows, fell, quantiles, xLabel, yLabel):
     if not largest > 0:
         raise Refused("no record has a demand at a level at which the structure stood")
     right = 1.15 * largest
-    with _Picture(path, 6.0, 4.2) as figure:
+    with _picture(path, 6.0, 4.2) as figure:
         axis = figure.subplots()
         for (demands, intensities), level in zip(curves, fell):
             axis.plot(demands, intensities, color="0.55", lw=0.7, marker=".", ms=3)
@@ -330,10 +263,7 @@ def ida(path, rows, fell, quantiles, xLabel, yLabel):
         axis.plot([], [], color="0.55", lw=0.5, ls=DASHES[3], label="falls at this level")  # fmt: skip
         axis.set_xlim(0, right)
         axis.set_ylim(bottom=0)
-        axis.set_xlabel(xLabel)
-        axis.set_ylabel(yLabel)
-        axis.legend(loc="lower center", bbox_to_anchor=(0.5, 1.01), ncols=3)
-        axis.grid(alpha=0.3)
+        drawing.finish(axis, xLabel, yLabel, **ABOVE, ncols=3)
 
 
 def _standing(intensities, demands):
@@ -357,17 +287,14 @@ def fitted(path, fit, counts, xLabel, yLabel):
     ends = [x for x, _, _ in known] + [fit.median.value]
     x = 1.3 * max(ends) * np.arange(1, POINTS + 1) / POINTS
     bands = np.array([fit.probability(v) for v in x])
-    with _Picture(path, 6.0, 3.8) as figure:
+    with _picture(path, 6.0, 3.8) as figure:
         axis = figure.subplots()
-        axis.fill_between(x, bands[:, 1], bands[:, 2], color=POINT, alpha=0.2, lw=0, label=f"{100 * fit.confidence:g} % confidence")  # fmt: skip
+        axis.fill_between(x, bands[:, 1], bands[:, 2], **BAND_STYLE, label=f"{100 * fit.confidence:g} % confidence")  # fmt: skip
         axis.plot(x, bands[:, 0], color="black", lw=1.2, label=f"lognormal: median {fit.median.value:.3g}, dispersion {fit.dispersion.value:.3g}")  # fmt: skip
         axis.plot([v for v, _, _ in known], [k / n for _, k, n in known], ls="", marker="o", ms=4, color=LINE, label=f"share of {fit.records} records")  # fmt: skip
         axis.set_ylim(-0.02, 1.02)
         axis.set_xlim(0, x[-1])
-        axis.set_xlabel(xLabel)
-        axis.set_ylabel(yLabel)
-        axis.legend(loc="lower right")
-        axis.grid(alpha=0.3)
+        drawing.finish(axis, xLabel, yLabel, loc="lower right")
 
 
 # -- all curves -------------------------------------------------------------------------------------------------------
@@ -389,35 +316,19 @@ def fan(path, curves, xLabel, yLabel):
         [np.interp(grid, x, y, left=np.nan, right=np.nan) for x, y in curves]
     )
     low, median, high = np.nanquantile(values, (BAND[0], 0.5, BAND[1]), axis=0)
-    with _Picture(path, 6.0, 4.0) as figure:
+    with _picture(path, 6.0, 4.0) as figure:
         axis = figure.subplots()
         alpha = float(np.clip(12 / len(curves), 0.05, 0.6))
-        axis.add_collection(
-            LineCollection(
-                [np.column_stack(c) for c in curves],
-                color="0.35",
-                lw=0.5,
-                alpha=alpha,
-                zorder=1,
-            )
-        )
-        axis.fill_between(
-            grid,
-            low,
-            high,
-            color=POINT,
-            alpha=0.25,
-            lw=0,
-            zorder=2,
-            label="between the 5 % and the 95 % quantile",
-        )
+        lines = [np.column_stack(c) for c in curves]
+        thin = dict(color="0.35", lw=0.5)
+        axis.add_collection(LineCollection(lines, alpha=alpha, zorder=1, **thin))
+        band = "between the 5 % and the 95 % quantile"
+        style = {**BAND_STYLE, "alpha": 0.25}
+        axis.fill_between(grid, low, high, **style, zorder=2, label=band)
         axis.plot(grid, median, color=LINE, lw=1.8, zorder=3, label="median")
-        axis.plot([], [], color="0.35", lw=0.5, label=f"{len(curves)} curves")
+        axis.plot([], [], **thin, label=f"{len(curves)} curves")
         axis.autoscale_view()
-        axis.set_xlabel(xLabel)
-        axis.set_ylabel(yLabel)
-        axis.legend(loc="lower right")
-        axis.grid(alpha=0.3)
+        drawing.finish(axis, xLabel, yLabel, loc="lower right")
 
 
 def _increasing(x, y):
@@ -439,13 +350,6 @@ def _ends(values):
     """Where the bins of a histogram begin and end; values that are all the same stand in the middle."""
     low, high = values.min(), values.max()
     return (low, high) if high > low else (low - 0.5, high + 0.5)
-
-
-def _errors(intervals):
-    """Lengths of error bars below and above."""
-    return np.array(
-        [[max(i.value - i.low, 0), max(i.high - i.value, 0)] for i in intervals]
-    ).T
 
 
 def _shown(name):

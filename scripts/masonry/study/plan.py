@@ -4,13 +4,15 @@
 from __future__ import annotations
 
 import hashlib
+import math
 import os
+import pathlib
 import re
-from typing import Any, Sequence
+from typing import Annotated, Any, Sequence
 
 import numpy as np
 
-from ..arguments import FilePath
+from ..arguments import FilePath, oneOf, validated, whole
 from ..run import batch
 from ..basics import Refused
 from . import designs, incremental
@@ -46,14 +48,15 @@ class Study:
     :raises Refused: with all problems at once
     """
 
+    @validated
     def __init__(
         self,
         scene: FilePath,
         options: dict[str, Any] | None = None,
-        runs: int | None = None,
-        seed: int = 0,
+        runs: Annotated[int, whole(1, MOST)] | None = None,
+        seed: Annotated[int, whole(0, 2**31 - 1)] = 0,
         vary: dict[Any, Any] | None = None,
-        design: str = "random",
+        design: Annotated[str, oneOf(*designs.DESIGNS)] = "random",
         correlation: dict[tuple[str, str], float] | None = None,
         records: FilePath | Sequence[FilePath] | None = None,
         levels: Sequence[float] | None = None,
@@ -65,14 +68,6 @@ class Study:
         self.scene, self.seed, self.design = str(scene), seed, design
         self.options, self.runs = dict(options or {}), runs
         self.vary, self.correlation = {}, {}
-        if design not in designs.DESIGNS:
-            problems.append(f"design {design!r} must be {', '.join(designs.DESIGNS)}")
-        if (
-            isinstance(seed, bool)
-            or not isinstance(seed, int)
-            or not 0 <= seed < 2**31
-        ):
-            problems.append(f"seed {seed!r} must be a whole number from 0 on")
         for name, value in self.options.items():
             problems += _wrongOption(name, value)
         for key, what in dict(vary or {}).items():
@@ -97,14 +92,8 @@ class Study:
             raise Refused("study: " + "\n  ".join(problems))
 
     def _take(self, key, what, problems):
-        names = (
-            (key,)
-            if isinstance(key, str)
-            else tuple(key)
-            if isinstance(key, tuple)
-            else ()
-        )
-        if not names or not all(isinstance(n, str) for n in names):
+        names = (key,) if isinstance(key, str) else key
+        if not isinstance(names, tuple) or not names or not all(isinstance(n, str) for n in names):  # fmt: skip
             problems.append(f"vary: {key!r} must be a name or a tuple of names")
             return
         if isinstance(what, (bool, int, float, str)):
@@ -119,62 +108,44 @@ class Study:
                 f"vary {key!r}: {what!r} is no number, list, distribution or field"
             )
             return
-        properties = all("." in n for n in names)
-        if isinstance(what, Field):
-            if not properties:
-                problems.append(
-                    f"vary {key!r}: only a property of joints can be a field"
-                )
-            if what.mean is not None and len(names) > 1:
-                problems.append(
-                    f"vary {key!r}: a field of several properties is about their own values: field(cov=..., length=...)"
-                )
-            column = batch.FIELD + "+".join(names)
-        else:
-            if len(names) > 1 and not properties:
-                problems.append(
-                    f"vary {key!r}: only properties of joints can be tied in a tuple"
-                )
-            column = "+".join(names)
+        isField, properties = isinstance(what, Field), all("." in n for n in names)
+        wrong = []
+        if isField and not properties:
+            wrong.append("only a property of joints can be a field")
+        if isField and what.mean is not None and len(names) > 1:
+            wrong.append(
+                "a field of several properties is about their own values: field(cov=..., length=...)"
+            )
+        if not isField and len(names) > 1 and not properties:
+            wrong.append("only properties of joints can be tied in a tuple")
+        problems += [f"vary {key!r}: {why}" for why in wrong]
         values = what.values if isinstance(what, Choice) else [0]
         problems += [p for n in names for v in values for p in _wrongOption(n, v)]
-        twice = [
-            n
-            for n in names
-            if n in self.options
-            or any(
-                n in _namesOf(c) and isinstance(w, Field) == isinstance(what, Field)
-                for c, w in self.vary.items()
-            )
-        ]
-        if twice:
-            problems.append(f"{', '.join(twice)}: given twice")
-        self.vary[column] = what
+        alike = [c for c, w in self.vary.items() if isinstance(w, Field) == isField]
+        given = {*self.options, *(n for column in alike for n in _namesOf(column))}
+        if given.intersection(names):
+            twice = ", ".join(n for n in names if n in given)
+            problems.append(f"{twice}: given twice")
+        self.vary[batch.FIELD * isField + "+".join(names)] = what
 
     def _count(self, problems):
+        if self.ida:
+            if self.runs is not None:
+                problems.append(f"runs {self.runs!r}: there are as many as records times levels; leave it out")  # fmt: skip
+            return
         if self.design == "grid":
             odd = [c for c, w in self.vary.items() if isinstance(w, Distribution)]
             if odd:
                 problems.append(
                     f"design 'grid': {', '.join(odd)} must be a list of values"
                 )
-            sizes = [len(w.values) for w in self.vary.values() if isinstance(w, Choice)]
-            size = int(np.prod(sizes)) if sizes else 1
+            choices = [w for w in self.vary.values() if isinstance(w, Choice)]
+            size = math.prod(len(w.values) for w in choices)
             if self.runs not in (None, size):
                 problems.append(f"runs {self.runs}: the grid has {size} points")
             self.runs = size
-        if self.ida:
-            if self.runs is not None:
-                problems.append(f"runs {self.runs!r}: there are as many as records times levels; leave it out")  # fmt: skip
-            return
-        if (
-            isinstance(self.runs, bool)
-            or not isinstance(self.runs, int)
-            or not 1 <= self.runs <= MOST
-        ):
-            problems.append(
-                f"runs {self.runs!r} must be a whole number from 1 to {MOST}"
-            )
+        if self.runs is None or self.runs > MOST:
+            problems.append(f"runs {self.runs} must be a whole number from 1 to {MOST}")
 
     def _correlate(self, correlation, problems):
         joined = lambda key: "+".join(key) if isinstance(key, tuple) else key
@@ -258,14 +229,10 @@ class Study:
 
     def _drawn(self, design, count):
         """What is drawn for some rows, with the options that all have: a list of dicts."""
-        drawn = {n: w for n, w in self.vary.items() if not isinstance(w, Field)}
         fields = {n: w for n, w in self.vary.items() if isinstance(w, Field)}
+        drawn = {n: w for n, w in self.vary.items() if n not in fields}
         found = designs.values(design, count, self.seed, drawn, self.correlation)
-        means = {
-            n[len(batch.FIELD) :]: w.mean
-            for n, w in fields.items()
-            if w.mean is not None
-        }
+        means = {n[len(batch.FIELD) :]: w.mean for n, w in fields.items() if w.mean is not None}  # fmt: skip
         rows = []
         for number, values in enumerate(found, 1):
             seeds = {
@@ -296,21 +263,16 @@ class Study:
         if self.scene.endswith(".py"):
             places = [os.path.join(near, self.scene)]
         else:
-            above = [near]
-            while os.path.dirname(above[-1]) != above[-1]:
-                above.append(os.path.dirname(above[-1]))
-            folders = [
-                near,
-                os.getcwd(),
-                *(os.path.join(f, "scripts") for f in [*above, os.getcwd()]),
-            ]
+            above = [near, *map(str, pathlib.Path(near).parents), os.getcwd()]
+            scripts = [os.path.join(folder, "scripts") for folder in above]
+            folders = [near, os.getcwd(), *scripts]
             places = [os.path.join(f, self.scene + ".py") for f in folders]
         path = next((os.path.abspath(p) for p in places if os.path.isfile(p)), None)
         if path is None:
-            looked = ", ".join(
-                dict.fromkeys(os.path.dirname(os.path.abspath(p)) for p in places)
+            looked = dict.fromkeys(os.path.dirname(os.path.abspath(p)) for p in places)
+            raise Refused(
+                f"study: no scene {self.scene}; looked in {', '.join(looked)}"
             )
-            raise Refused(f"study: no scene {self.scene}; looked in {looked}")
         with open(path, "rb") as f:
             return path, hashlib.sha256(f.read()).hexdigest()
 

@@ -14,6 +14,7 @@ import argparse
 import math
 import os
 import sys
+from collections import Counter
 
 import numpy as np
 
@@ -32,9 +33,8 @@ MODE = "failure_mode"
 def label(name):
     """A column as the label of an axis: its unit, at the end of the name, goes into brackets."""
     words = name.split("_")
-    units = {"kN": "kN", "mm": "mm", "J": "J", "s": "s", "m": "m", "mrad": "mrad", "g": "g"}  # fmt: skip
-    if len(words) > 1 and words[-1] in units:
-        return f"{' '.join(words[:-1])} [{units[words[-1]]}]"
+    if len(words) > 1 and words[-1] in ("kN", "mm", "J", "s", "m", "mrad", "g"):
+        return f"{' '.join(words[:-1])} [{words[-1]}]"
     return " ".join(words)
 
 
@@ -48,19 +48,15 @@ def table(record, measure):
             f"  note: rows that have no {label(measure)} are left out. If they collapsed, or were refused for their values, "
             "the numbers below are on the unsafe side"
         )
-    for name, find in (
-        ("mean", statistics.mean),
-        ("standard deviation", statistics.deviation),
-        *(
-            (f"{100 * q:g} % quantile", lambda v, q=q: statistics.quantile(v, q))
-            for q in estimate.QUANTILES
-        ),
-    ):
+    finds = {"mean": statistics.mean, "standard deviation": statistics.deviation}
+    for q in estimate.QUANTILES:
+        finds[f"{100 * q:g} % quantile"] = lambda v, q=q: statistics.quantile(v, q)
+    for name, find in finds.items():
         try:
             yield line(name, find(values))
         except Refused as refused:
             yield f"  {name:20} {refused}"
-    if len(values) >= 3 and values.min() > 0 and np.ptp(values) > 0:
+    if statistics.isLognormal(values):
         fit = statistics.lognormal(values)
         doubt = "" if not fit.fits < 0.05 else ", which does not fit"
         yield f"  lognormal            median {fit.median:.5g}, dispersion {fit.dispersion:.3g} (p = {fit.fits:.2g}{doubt})"
@@ -68,11 +64,9 @@ def table(record, measure):
 
 def line(name, interval, form="{:.5g}"):
     """A number and its interval as a line of a table."""
-    ends = [
-        form.format(end) if math.isfinite(end) else "unknown"
-        for end in (interval.low, interval.high)
-    ]
-    return f"  {name:20} {form.format(interval.value):>9}   {ends[0]} … {ends[1]}"
+    end = lambda v: form.format(v) if math.isfinite(v) else "unknown"
+    value = form.format(interval.value)
+    return f"  {name:20} {value:>9}   {end(interval.low)} … {end(interval.high)}"
 
 
 def modes(record):
@@ -88,10 +82,9 @@ def statuses(record):
     """A line about rows that have no results, if there are some."""
     others = [text for text in record.cells["status"] if text != "ended"]
     if others:
-        names = ", ".join(
-            f"{others.count(s)} {s or 'not run'}" for s in sorted(set(others))
-        )
-        yield f"rows that have not ended: {names}"
+        counts = sorted(Counter(others).items())
+        names = (f"{count} {status or 'not run'}" for status, count in counts)
+        yield f"rows that have not ended: {', '.join(names)}"
 
 
 def draw(record, measure):
@@ -100,17 +93,9 @@ def draw(record, measure):
     title = label(measure)
     inputs = {name: column for name, column in inputs.items() if np.ptp(column) > 0}
     curves = record.curves(rows, *CURVE)
-    modes = (
-        [record.cells[MODE][row] or "unknown" for row in rows]
-        if MODE in record.cells
-        else None
-    )
-
-    def tornado(path):
-        pictures.tornado(path, sensitivity.effects(inputs, values), title)
-
-    def sobol(path):
-        pictures.sobol(path, sensitivity.sobol(inputs, values), title)
+    modes = record.cells.get(MODE)
+    modes = modes and [modes[row] or "unknown" for row in rows]
+    effects, indices = sensitivity.effects, sensitivity.sobol
 
     def fan(path):
         if not curves:
@@ -119,8 +104,8 @@ def draw(record, measure):
 
     makes = {
         "scatter": lambda path: pictures.scatter(path, inputs, values, title),
-        "tornado": tornado,
-        "sobol": sobol,
+        "tornado": lambda path: pictures.tornado(path, effects(inputs, values), title),
+        "sobol": lambda path: pictures.sobol(path, indices(inputs, values), title),
         "histogram": lambda path: pictures.histogram(path, values, title, modes),
         "fragility": lambda path: pictures.fragility(path, values, title),
         "curves": fan,
@@ -152,10 +137,8 @@ def compare(expensive, cheap, measure, other, method, prices=None):
     y, x, shared, rows = paired(expensive, cheap, measure, other)
     found = estimate.estimate(y, x, method)
     prices = prices or (expensive.price(shared), cheap.price(rows))
-    names = [
-        os.path.basename(os.path.abspath(study.directory))
-        for study in (expensive, cheap)
-    ]
+    folders = expensive.directory, cheap.directory
+    names = [os.path.basename(os.path.abspath(folder)) for folder in folders]
     if not all(math.isfinite(price) and price > 0 for price in prices):
         raise Refused(
             "the prices of the runs are unknown, since times.csv has none: give --prices"
@@ -190,15 +173,12 @@ def incremental(demands, limit, intensities):
         yield f"the demand is the amount of {label(demands.measure)}; where the structure falls, and above, it is infinite"
     else:
         yield "no row has a demand: scene.watch() records one"
-    heads = [f"{100 * share:g} %" for share in QUANTILES]
-    yield f"  {measure:>12} " + "".join(
-        f"{head:>11}" for head in heads
-    ) + f"   records: {reaches}"
+    row = lambda cells: "".join(f"{cell:>11}" for cell in cells)
+    heads = row(f"{100 * share:g} %" for share in QUANTILES)
+    yield f"  {measure:>12} {heads}   records: {reaches}"
     for level, count, known in demands.counts(limit):
-        found = [_cell(value) for value in demands.quantiles(level)]
-        yield f"  {level:12.4g} " + "".join(
-            f"{f:>11}" for f in found
-        ) + f"   {count} of {known}"
+        cells = row(map(_cell, demands.quantiles(level)))
+        yield f"  {level:12.4g} {cells}   {count} of {known}"
     try:
         fit = demands.fragility(limit)
     except Refused as refused:
@@ -296,9 +276,8 @@ def main(words=None):
     """The program. Returns its exit status."""
     args = parser().parse_args(words)
     try:
-        demands, prices = _listed("--demand", args.demand), _listed(
-            "--prices", args.prices
-        )
+        demands = sorted(_listed("--demand", args.demand))
+        prices = _listed("--prices", args.prices)
         if prices and len(prices) != 2:
             raise Refused(
                 f"--prices {args.prices} must be two numbers, for example 60,4"
@@ -319,14 +298,8 @@ def main(words=None):
             for demand, *found in zip(demands, *statistics.fragility(values, demands)):
                 say(line(f"{demand:g}", statistics.Interval(*found), "{:.3f}"))
         if args.cheap:
-            for text in compare(
-                record,
-                Record(args.cheap),
-                args.measure,
-                args.cheap_measure,
-                args.method,
-                prices,
-            ):
+            how = args.measure, args.cheap_measure, args.method, prices
+            for text in compare(record, Record(args.cheap), *how):
                 say(text)
         if not args.no_pictures:
             for text in draw(record, args.measure):
@@ -369,15 +342,9 @@ def _sayIncremental(record, args, limit, intensities):
 def _listed(option, text):
     """Numbers with commas between them."""
     try:
-        numbers = (
-            sorted(map(float, text.split(",")))
-            if option == "--demand" and text
-            else list(map(float, text.split(",")) if text else ())
-        )
+        numbers = list(map(float, text.split(","))) if text else []
     except ValueError:
-        raise Refused(
-            f"{option} {text} must be numbers with commas between them"
-        ) from None
+        raise Refused(f"{option} {text} must be numbers with commas between them") from None  # fmt: skip
     if not all(map(math.isfinite, numbers)):
         raise Refused(f"{option} {text} must be finite numbers")
     return numbers

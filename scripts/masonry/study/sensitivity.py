@@ -96,14 +96,13 @@ def sobol(inputs, output, seed=1, confidence=CONFIDENCE):
             f"Sobol indices of {k} properties need {10 * k} rows or more, there are {n}"
         )
     names = list(inputs)
-    for i in range(k):
-        for j in range(i):
-            found = stats.spearmanr(x[:, i], x[:, j])
-            if found.pvalue < 2 * DEPENDENT / (k * (k - 1)):
-                problems.append(
-                    f"Sobol indices need independent properties, {names[j]} and {names[i]} have a rank correlation of "
-                    f"{found.statistic:.2f}"
-                )
+    for i, j in ((i, j) for i in range(k) for j in range(i)):
+        found = stats.spearmanr(x[:, i], x[:, j])
+        if found.pvalue < 2 * DEPENDENT / (k * (k - 1)):
+            problems.append(
+                f"Sobol indices need independent properties, {names[j]} and {names[i]} have a rank correlation of "
+                f"{found.statistic:.2f}"
+            )
     if np.ptp(y) == 0:
         problems.append("Sobol indices: all results are the same")
     if problems:
@@ -124,14 +123,10 @@ def sobol(inputs, output, seed=1, confidence=CONFIDENCE):
         resampled.append(_shares(powers, _fit(_terms(powers, ranks(rows)), y[rows])))
     half = stats.norm.ppf((1 + confidence) / 2) * np.std(resampled, axis=0)
     low, high = np.clip([shares - half, shares + half], 0, 1)
-    interval = lambda which, i: Interval(
-        shares[which, i], low[which, i], high[which, i]
-    )
-    indices = {
-        name: Indices(interval(0, i), interval(1, i)) for i, name in enumerate(names)
-    }
-    order = sorted(indices, key=lambda name: -indices[name].total.value)
-    return Sobol(explained, {name: indices[name] for name in order})
+    ends = np.stack([shares, low, high], axis=-1)  # (first and total, names, 3)
+    order = np.argsort(-shares[1], kind="stable")
+    indices = {names[i]: Indices(*(Interval(*v) for v in ends[:, i])) for i in order}
+    return Sobol(explained, indices)
 
 
 def _polynomials(u, y):
@@ -146,16 +141,10 @@ def _polynomials(u, y):
     size = k + 1
     while 2 * (size + 1) <= len(u) and max(count(size)) <= DEGREE:
         size += 1
-    fitting = ot.LeastSquaresMetaModelSelectionFactory(
-        ot.LARS(), ot.CorrectedLeaveOneOut()
-    )
-    algorithm = ot.FunctionalChaosAlgorithm(
-        ot.Sample(u),
-        ot.Sample(y[:, None]),
-        uniform,
-        ot.FixedStrategy(basis, size),
-        ot.LeastSquaresStrategy(fitting),
-    )
+    chosen = ot.LeastSquaresMetaModelSelectionFactory(ot.LARS(), ot.CorrectedLeaveOneOut())  # fmt: skip
+    how = ot.FixedStrategy(basis, size), ot.LeastSquaresStrategy(chosen)
+    rows = ot.Sample(u), ot.Sample(y[:, None])
+    algorithm = ot.FunctionalChaosAlgorithm(*rows, uniform, *how)
     algorithm.run()
     # what every property does on its own stays in, so that an index of nothing has an interval, too
     always = set(range(k + 1))

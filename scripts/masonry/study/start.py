@@ -142,23 +142,17 @@ def _checkSpace(folder, needed):
 def _look(study, script, table):
     """Problems of the study that its scene tells when it is built, and the bytes that a row writes."""
     if not shutil.which("yade"):
-        raise Refused(
-            "a study needs yade: apt-get install --no-install-recommends yade"
-        )
+        raise Refused("a study needs yade: apt-get install --no-install-recommends yade")  # fmt: skip
     with tempfile.TemporaryDirectory() as place:
-        path = os.path.join(place, TABLE)
-        with open(path, "w") as f:
-            f.write(table)
-        for name, text in _recordsOf(study).items():
-            os.makedirs(os.path.join(place, FOLDER), exist_ok=True)
-            with open(os.path.join(place, FOLDER, name), "w", encoding="utf-8") as f:
+        os.mkdir(os.path.join(place, FOLDER))
+        records = {f"{FOLDER}/{n}": text for n, text in _recordsOf(study).items()}
+        for name, text in {TABLE: table, **records}.items():
+            with open(os.path.join(place, name), "w", encoding="utf-8") as f:
                 f.write(text)
-        found = _probed(script, path, os.path.join(place, "probe.json"))
+        paths = [os.path.join(place, name) for name in (TABLE, "probe.json")]
+        found = _probed(script, *paths)
         if isinstance(found, str):  # the first row may be to blame
-            found = (
-                _probed(script, path, os.path.join(place, "probe.json"), line=1)
-                or found
-            )
+            found = _probed(script, *paths, line=1) or found
     if isinstance(found, str):
         return [f"its scene cannot be built: {found}"], 0
     with watched(NOTHING):
@@ -176,16 +170,11 @@ def _probed(script, table, path, line=2):
 
     :param line: of the table: the options with which the scene is built; 1: it is built without options
     """
-    env = {
-        **os.environ,
-        batch.VARIABLE: f"{table}:{line}",
-        batch.PROBE: path,
-        "OMP_NUM_THREADS": "1",
-    }
+    row = {batch.VARIABLE: f"{table}:{line}", batch.PROBE: path}
     try:
         done = subprocess.run(
             ["yade", "-n", "--threads=1", "-x", script],
-            env=env,
+            env={**os.environ, **row, "OMP_NUM_THREADS": "1"},
             cwd=os.path.dirname(script),
             stdin=subprocess.DEVNULL,
             capture_output=True,
@@ -212,64 +201,53 @@ def _names(study, found):
         return [
             "its scene takes no options from the command line (arguments=...), and would ignore all that varies"
         ]
-    problems, joints = [], found["joints"]
     shaken = ["record", "scale"] if study.ida else []
-    for name in [*study.options, *study.vary, *shaken]:
-        for one in name.removeprefix(batch.FIELD).split("+"):
-            kind, dot, attribute = one.partition(".")
-            if not dot:
-                if one not in found["options"]:
-                    problems.append(f"{one}: the scene has no such option")
-                elif one in found["unused"]:
-                    problems.append(
-                        f"{one}: the scene ignores it: {found['unused'][one]}"
-                    )
-                continue
-            if kind not in joints or attribute not in found["bounds"]:
-                continue  # the rows tell that
-            properties = joints[kind]
-            if not found["counts"][kind]:
-                problems.append(
-                    f"{one}: the scene has no {kind} joint and would ignore it"
-                )
-            elif properties.get("elastic") and "Stiffness" not in attribute:
-                problems.append(
-                    f"{one}: {kind} joints of the scene are linear elastic and ignore it"
-                )
-            elif properties.get("cap") is False and (
-                attribute.startswith(("compressive", "peakRatio"))
-            ):
-                problems.append(
-                    f"{one}: {kind} joints of the scene do not crush and ignore it"
-                )
-    return problems
+    columns = [*study.options, *study.vary, *shaken]
+    names = [n for c in columns for n in c.removeprefix(batch.FIELD).split("+")]
+    reasons = ((name, _ignored(found, name)) for name in names)
+    return [f"{name}: {why}" for name, why in reasons if why]
+
+
+def _ignored(found, name):
+    """Why the scene ignores an option or a property, or nothing; wrong names of properties are for the rows to tell."""
+    kind, dot, attribute = name.partition(".")
+    if not dot:
+        if name not in found["options"]:
+            return "the scene has no such option"
+        why = found["unused"].get(name)
+        return why and f"the scene ignores it: {why}"
+    joint = found["joints"].get(kind)
+    if joint is None or attribute not in found["bounds"]:
+        return None
+    if not found["counts"][kind]:
+        return f"the scene has no {kind} joint and would ignore it"
+    if joint.get("elastic") and "Stiffness" not in attribute:
+        return f"{kind} joints of the scene are linear elastic and ignore it"
+    ofCap = attribute.startswith(("compressive", "peakRatio"))
+    if joint.get("cap") is False and ofCap:
+        return f"{kind} joints of the scene do not crush and ignore it"
+    return None
 
 
 def _ranges(study, found):
     """Distributions that can give what a property cannot be."""
     problems = []
     for column, what in study.vary.items():
-        if (
-            isinstance(what, Field)
-            and what.kind == "normal"
-            and what.mean is not None
-            and what.mean < 0
-        ):
-            problems.append(f"{column}: mean {what.mean:g} must be above 0")
+        if isinstance(what, Field):
+            if what.kind == "normal" and what.mean is not None and what.mean < 0:
+                problems.append(f"{column}: mean {what.mean:g} must be above 0")
         if not isinstance(what, Distribution):
             continue
         for name in column.split("+"):
             of, _, attribute = name.partition(".")
             bounds = found["connectors"].get(of, found["bounds"]).get(attribute)
-            if not bounds or bounds["low"] is None and bounds["high"] is None:
-                continue
-            share = what.beyond(bounds["low"], bounds["high"])
+            ends = [
+                f"{word} {bounds[end]:g}"
+                for end, word in (("low", "at least"), ("high", "at most"))
+                if bounds and bounds[end] is not None
+            ]
+            share = what.beyond(bounds["low"], bounds["high"]) if ends else 0
             if share > NEVER:
-                ends = [
-                    f"{word} {bounds[e]:g}"
-                    for e, word in (("low", "at least"), ("high", "at most"))
-                    if bounds[e] is not None
-                ]
                 unit = f" {bounds['unit']}" if bounds["unit"] not in ("", "-") else ""
                 problems.append(
                     f"{name}: {what} gives impossible values in {100 * share:.2g} % of all rows: it must be "

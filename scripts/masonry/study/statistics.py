@@ -6,7 +6,7 @@ evenly than independent ones, so that a mean is then better known than its inter
 """
 
 import math
-from collections import namedtuple
+from collections import Counter, namedtuple
 
 import numpy as np
 from scipy import stats
@@ -101,9 +101,13 @@ def share(count, of, confidence=CONFIDENCE):
 def shares(labels, confidence=CONFIDENCE):
     """How often each label occurs: a dict of label -> :class:`Interval`, most frequent first."""
     labels = list(labels)
-    counts = {label: labels.count(label) for label in set(labels)}
-    order = sorted(counts, key=lambda label: (-counts[label], str(label)))
-    return {label: share(counts[label], len(labels), confidence) for label in order}
+    counts = sorted(Counter(labels).items(), key=lambda one: (-one[1], str(one[0])))
+    return {label: share(count, len(labels), confidence) for label, count in counts}
+
+
+def isLognormal(values):
+    """Whether values, an array, can have a lognormal distribution."""
+    return len(values) >= 3 and values.min() > 0 and np.ptp(values) > 0
 
 
 def lognormal(values):

@@ -3,7 +3,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import bisect
+import itertools
+from dataclasses import asdict, dataclass
 from typing import Annotated, Any, Sequence
 
 from ..arguments import isA, isNumber, listOf, number, shown, validated, text
@@ -134,25 +136,19 @@ class Choice:
 
     def of(self, u: float) -> Any:
         """The value at a probability from 0 to 1."""
-        reached = 0.0
-        for value, weight in zip(self.values, self.weights):
-            reached += weight
-            if u < reached:
-                return value
-        return self.values[-1]
+        place = bisect.bisect_right([*itertools.accumulate(self.weights)], u)
+        return self.values[min(place, len(self.values) - 1)]
 
     def describe(self) -> dict[str, Any]:
-        return {
-            "kind": "choice",
-            "values": list(self.values),
-            "weights": list(self.weights),
-        }
+        return {"kind": "choice", **asdict(self)}
 
 
 def _chosen(value, first=None):
     """The kind of a value of a choice."""
-    if isinstance(value, (bool, str)):
-        return value if isinstance(value, bool) else text(value)
+    if isinstance(value, bool):
+        return value
+    if isinstance(value, str):
+        return text(value)
     if isNumber(value):
         return number()(value)
     raise ValueError(f"{shown(value)} must be a number, a text, or True or False")
@@ -188,13 +184,8 @@ class Field:
     length: float
 
     def describe(self) -> dict[str, Any]:
-        return {
-            "kind": "field",
-            "of": self.kind,
-            "mean": self.mean,
-            "cov": self.cov,
-            "length": self.length,
-        }
+        entries = asdict(self)
+        return {"kind": "field", "of": entries.pop("kind"), **entries}
 
     def written(self, seed: int) -> str:
         """As a table has it."""
