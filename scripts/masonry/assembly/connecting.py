@@ -192,15 +192,39 @@ def _isBlock(body):
 
 def _warn(pairs, joints, sizes, engines):
     """Print warnings of what looks like a mistake: other units, blocks without joints, properties without effect."""
-    (thin, thickness), (large, size) = sizes
-    hints = []
-    if thickness < 1e-3:
-        hints.append(f"body {thin} is {thickness:g} m thick: are corners in m?")
-    if size > 50:
-        hints.append(f"body {large} is {size:g} m long: are corners in m, not mm?")
     bodies = {b.id: b for b in O.bodies if _isBlock(b)}
     mats = {(b.mat.label, b.mat.young, b.mat.density): b.mat for b in bodies.values()}
-    for thing in (*mats.values(), *joints):
+    hints = [
+        *_oddSizes(*sizes),
+        *_oddProperties([*mats.values(), *joints]),
+        *_idleProperties(joints),
+        *_oddWeights(mats, engines),
+    ]
+    alone = sorted(set(bodies).difference(*zip(*pairs)))
+    if alone:
+        more = " and more" * (len(alone) > 10)
+        hints.append(f"no joint holds bodies {alone[:10]}{more}")
+    for engine in engines:
+        if isinstance(engine, MasonryLoad) and engine.body in bodies:
+            hints += _farLoad(engine, bodies[engine.body])
+        if isinstance(engine, MasonryZones):
+            hints += _undivided(engine, bodies)
+    for hint in hints:
+        say("warning: " + hint)
+
+
+def _oddSizes(thinnest, largest):
+    """Sentences on blocks that are not in m, from pairs of a body and its size [m]."""
+    (thin, thickness), (large, size) = thinnest, largest
+    if thickness < 1e-3:
+        yield f"body {thin} is {thickness:g} m thick: are corners in m?"
+    if size > 50:
+        yield f"body {large} is {size:g} m long: are corners in m, not mm?"
+
+
+def _oddProperties(things):
+    """Sentences on properties of materials and joints that are usual in another unit."""
+    for thing in things:
         name = thing.name if isinstance(thing, MasonryJoint) else thing.label
         for p in properties(type(thing)):
             value = getattr(thing, p["name"]) if p["other_unit"] else 0
@@ -209,64 +233,55 @@ def _warn(pairs, joints, sizes, engines):
                 what = f"{value:g}: is it a tangent, not an angle in {other}?"
                 if unit != "-":
                     what = f"{value:g} {unit}: is it in {unit}, not {other}?"
-                hints.append(f'{type(thing).__name__} "{name}": {p["name"]} {what}')
+                yield f'{type(thing).__name__} "{name}": {p["name"]} {what}'
+
+
+def _idleProperties(joints):
+    """Sentences on properties that were given and that the law of their joint does not read; of an elastic joint, those that one
+    law alone reads."""
     usual, read = MasonryJoint(), [law["properties"] for law in LAWS.values()]
+    readers = {p["name"]: sum(p["name"] in names for names in read) for p in properties(MasonryJoint)}  # fmt: skip
     for joint in joints:
         own = LAWS[joint.law]["properties"]
-        #: of an elastic joint those that one law alone reads, else those that others read and this one does not
         idle = [
-            p["name"]
-            for p in properties(MasonryJoint)
-            if getattr(joint, p["name"]) != getattr(usual, p["name"])
-            and any(p["name"] in names for names in read)
-            and (
-                sum(p["name"] in names for names in read) == 1
-                if joint.elastic
-                else p["name"] not in own
-            )
+            name
+            for name, count in readers.items()
+            if getattr(joint, name) != getattr(usual, name)
+            and (count == 1 if joint.elastic else count and name not in own)
         ]
         if idle:
             why = "is elastic" if joint.elastic else f'follows the law "{joint.law}"'
-            hints.append(
-                f'MasonryJoint "{joint.name}" {why}: no effect of {", ".join(idle)}'
-            )
-    integrator = next(
-        (e for e in engines if isinstance(e, (MasonryIntegrator, NewtonIntegrator))),
-        None,
-    )
+            yield f'MasonryJoint "{joint.name}" {why}: no effect of {", ".join(idle)}'
+
+
+def _oddWeights(mats, engines):
+    """Sentences on densities that are not in kg/m³."""
+    kinds = MasonryIntegrator, NewtonIntegrator
+    integrator = next((e for e in engines if isinstance(e, kinds)), None)
     gravity = integrator.gravity.norm() if integrator else 0
     for label, _, density in mats:  # density scaling keeps the weight
         if gravity and not 1e3 <= density * gravity <= 1e5:
-            hints.append(
-                f'MasonryMat "{label}": density {density:g} kg/m³ weighs {density * gravity:g} N/m³: is it in kg/m³?'
-            )
-    alone = sorted(set(bodies).difference(*zip(*pairs)))
-    if alone:
-        hints.append(
-            f"no joint holds bodies {alone[:10]}" + (" and more" * (len(alone) > 10))
-        )
-    for engine in engines:
-        if isinstance(engine, MasonryLoad) and engine.body in bodies:
-            body = bodies[engine.body]
-            away = (engine.point - body.state.refPos).norm()
-            if away > 20 * max(v.norm() for v in body.shape.v):
-                hints.append(
-                    f"MasonryLoad: its point lies {away:g} m from body {body.id}: is it in m?"
-                )
-        if isinstance(engine, MasonryZones):
-            count = {i: len(range(*engine.nodesOf(i))) for i in engine.bodies}
-            corners = {i: len(bodies[i].shape.v) for i in count}
-            # of a plane unit that is no hexahedron the nodes are the corners of its base and one in the middle
-            stars = [
-                i
-                for i, n in corners.items()
-                if count[i] == n + 1 or n != 8 and count[i] == n // 2 + 1
-            ]
-            if not count:
-                hints.append("MasonryZones has no bodies")
-            if stars and engine.divisions != [1, 1, 1]:
-                hints.append(
-                    f"MasonryZones: divisions do not apply to bodies {stars[:10]}, which are no hexahedra"
-                )
-    for hint in hints:
-        say("warning: " + hint)
+            yield f'MasonryMat "{label}": density {density:g} kg/m³ weighs {density * gravity:g} N/m³: is it in kg/m³?'
+
+
+def _farLoad(load, body):
+    """A sentence on a load that acts far from its body."""
+    away = (load.point - body.state.refPos).norm()
+    if away > 20 * max(v.norm() for v in body.shape.v):
+        yield f"MasonryLoad: its point lies {away:g} m from body {body.id}: is it in m?"
+
+
+def _undivided(zones, bodies):
+    """Sentences on zones without bodies, and on bodies that divisions do not divide."""
+    count = {i: len(range(*zones.nodesOf(i))) for i in zones.bodies}
+    if not count:
+        yield "MasonryZones has no bodies"
+    corners = {i: len(bodies[i].shape.v) for i in count}
+    # of a plane unit that is no hexahedron the nodes are the corners of its base and one in the middle
+    stars = [
+        i
+        for i, n in corners.items()
+        if count[i] == n + 1 or n != 8 and count[i] == n // 2 + 1
+    ]
+    if stars and zones.divisions != [1, 1, 1]:
+        yield f"MasonryZones: divisions do not apply to bodies {stars[:10]}, which are no hexahedra"

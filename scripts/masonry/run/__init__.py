@@ -4,7 +4,8 @@
 - :mod:`masonry.run.run`: a run in stages; :mod:`masonry.run.place`: how far it has come;
   :mod:`masonry.run.ending`: how it ends
 - :mod:`masonry.run.results`: the files that a run leaves, and the keys of run.json; :mod:`masonry.run.lock`: whose folder it is
-- :mod:`masonry.run.checkpoints`: the state of a scene on disk
+- :mod:`masonry.run.checkpoints`: the state of a scene on disk; :mod:`masonry.run.keeping`: when a run leaves one
+- :mod:`masonry.run.readings`: rows of curve.csv; :mod:`masonry.run.frames`: frames for ParaView; :mod:`masonry.run.signals`: Ctrl-C
 - :mod:`masonry.run.options`: the options that all scenes share; :mod:`masonry.run.presets`: those that trade accuracy for time, and
   :mod:`masonry.run.accuracy`: a push whose error is found
 - :mod:`masonry.run.batch`: rows of a table for ``yade-batch``

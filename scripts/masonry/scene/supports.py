@@ -69,56 +69,27 @@ def platen(
     """
     bottom = where == "bottom"
     level = description.low[2] if bottom else description.high[2]
-    side = "below" if bottom else "above"
-    problems = []
-    if bottom and rotation == "free":
-        problems.append("platen: the one at the bottom is fixed and cannot turn")
-    if bottom and guided:
-        problems.append(f"platen: guided {guided!r} is for the one at the top")
-    if bottom and drive:
-        problems.append(f"platen: drive {drive!r} is for the one at the top")
     springs = springs or {}
-    if springs and not bottom:
-        problems.append(
-            "platen: springs are for the one at the bottom; spring() is for any"
-        )
-    if description.plane and set(springs) & set("yXZ"):
-        problems.append(f"platen: springs {springs}: the scene is in the x-z plane; Scene(..., plane=False) is in space")  # fmt: skip
-    if "y" in drive and description.plane:
-        problems.append(f"platen: drive {drive!r}: the scene is in the x-z plane; Scene(..., plane=False) is in space")  # fmt: skip
+    problems = _problems(description, bottom, rotation, guided, drive, springs)
     if upTo is not None and not 0 < (level - upTo if bottom else upTo - level):
+        side = "below" if bottom else "above"
         problems.append(
             f"platen: upTo {upTo} m must be {side} the bricks, which end at {level:g} m"
         )
     if problems:
         raise Refused("\n".join(problems))
-    touching = [
-        p
-        for block in description.bricks
-        for p in block.corners
-        if part in (None, block.part) and abs(p[2] - level) < 1e-6 * (1 + abs(level))
-    ]
-    if not touching:
-        raise ValueError(
-            f"platen: part {part!r} does not reach the {where}, z = {level:g} m"
-        )
-    low = [min(p[i] for p in touching) for i in range(2)]
-    high = [max(p[i] for p in touching) for i in range(2)]
-    if any(a == b for a, b in zip(low, high)):
-        raise ValueError(
-            f"platen: no horizontal side of a brick lies at the {where}, z = {level:g} m"
-        )
+    low, high = _sideAt(description, level, where, part)
     outer = level - height if bottom else level + height
     outer = outer if upTo is None else upTo
     box = ((*low, min(level, outer)), (*high, max(level, outer)))
     middle = ((low[0] + high[0]) / 2, (low[1] + high[1]) / 2, outer)
-    freedom = (
-        "xyzXYZ"
-        if bottom
-        else ("yXYZ" if description.plane else "XYZ")
-        if rotation != "free"
-        else ("yXZ" if description.plane else "")
-    )
+    plane = description.plane
+    if bottom:
+        freedom = "xyzXYZ"
+    elif rotation == "free":
+        freedom = "yXZ" if plane else ""
+    else:
+        freedom = "yXYZ" if plane else "XYZ"
     freedom += "".join(axis for axis in guided if axis not in freedom)
     freedom = "".join(axis for axis in freedom if axis not in springs)
     point = middle if point is None else point
@@ -142,6 +113,44 @@ def platen(
     if springs:
         _standOn(description, target, springs, middle)
     return target
+
+
+def _problems(description, bottom, rotation, guided, drive, springs):
+    """Sentences on what a platen at the bottom, at the top or in the plane cannot have."""
+    found = []
+    if bottom and rotation == "free":
+        found.append("platen: the one at the bottom is fixed and cannot turn")
+    for name, value in {"guided": guided, "drive": drive}.items():
+        if bottom and value:
+            found.append(f"platen: {name} {value!r} is for the one at the top")
+    if springs and not bottom:
+        found.append("platen: springs are for the one at the bottom; spring() is for any")  # fmt: skip
+    inSpace = {"springs": springs if set(springs) & set("yXZ") else "", "drive": drive if "y" in drive else ""}  # fmt: skip
+    for name, value in inSpace.items():
+        if description.plane and value:
+            found.append(f"platen: {name} {value!r}: the scene is in the x-z plane; Scene(..., plane=False) is in space")  # fmt: skip
+    return found
+
+
+def _sideAt(description, level, where, part):
+    """The opposite corners (x, y) of what the bricks of a part have at a level [m]. Raises ValueError."""
+    touching = [
+        p
+        for block in description.bricks
+        for p in block.corners
+        if part in (None, block.part) and abs(p[2] - level) < 1e-6 * (1 + abs(level))
+    ]
+    if not touching:
+        raise ValueError(
+            f"platen: part {part!r} does not reach the {where}, z = {level:g} m"
+        )
+    low = [min(p[i] for p in touching) for i in range(2)]
+    high = [max(p[i] for p in touching) for i in range(2)]
+    if any(a == b for a, b in zip(low, high)):
+        raise ValueError(
+            f"platen: no horizontal side of a brick lies at the {where}, z = {level:g} m"
+        )
+    return low, high
 
 
 def _standOn(description, target, springs, point):

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from types import SimpleNamespace
 from typing import Annotated
 
 from yade.wrapper import MasonryJoint, MasonryMat
@@ -222,110 +223,13 @@ def masonry(
     the least that does not, and its source says so; a given one that is too small is a warning with that least.
     :func:`leastEnergy` has the formula. Joints to platens take the bed joint.
     """
-    given = {n: v for n, v in locals().items() if v is not None}
+    values = SimpleNamespace(**locals())
+    given = {n: v for n, v in vars(values).items() if v is not None}
     problems = _problems(given)
     if problems:
         raise Refused("\n".join(f"materials.masonry: {one}" for one in problems))
-    poisson = 0.2 if poisson is None else poisson
-    length, _, height = (side + joint for side in unit)
-    halves = 0.5 * length / unit_E  # what is lumped into crack joints [m/Pa]
-    shearing = 2 * (1 + poisson)  # E/G of the bricks [-]
-
-    bed, head = _Kind("bed", {}), _Kind("head", {})
-    kn = 1 / (height * (1 / E - 1 / unit_E))
-    ks = kn / shearing
-    if G is not None:
-        ks = 1 / (height * (1 / G - shearing / unit_E))
-    bed.values["normalStiffness"] = kn
-    bed.take("shearStiffness", ks, G is not None, f"kn/(2 (1 + nu)), nu = {poisson:g}")
-    same = "like the bed joint: the same mortar, as thick"
-    headKn = kn if head_E is None else 1 / (length * (1 / head_E - 1 / unit_E))
-    head.take("normalStiffness", headKn, head_E is not None, same)
-    ratio = "the bed joint's ratio to kn"
-    head.take(
-        "shearStiffness", headKn * ks / kn, False, same if head_E is None else ratio
-    )
-
-    if ft is None:
-        factor = WRENCH if bond_ratio is None else bond_ratio
-        ft = bond_wrench / factor
-        reason = f"bond_wrench {bond_wrench:g} Pa over {factor:g}: linear stresses of the test overestimate"
-        if bond_ratio is None:
-            reason += "; van der Pluijm (1999)"
-        bed.sources["tensileStrength"] = reason
-    energies = (
-        ("modeIFractureEnergy", "tensileStrength", ft, kn, GfI, TENSION_INDEX, 1.0),
-        ("modeIIFractureEnergy", "cohesion", fv0, ks, GfII, SHEAR_INDEX, shearing),
-    )
-    share = 1.0 if head_share is None else head_share
-    for name, strengthName, strength, stiffness, energy, index, soft in energies:
-        bed.values[strengthName] = strength
-        if strength > 0:
-            lumped = soft * height / unit_E
-            bed.energy(name, strength, stiffness, lumped, energy, index)
-        head.take(
-            strengthName, share * strength, head_share is not None, "like the bed joint"
-        )
-        if share * strength > 0:
-            own = stiffness * headKn / kn
-            energy = None if energy is None else share * energy
-            lumped = soft * length / unit_E  # of whole bricks
-            head.energy(name, share * strength, own, lumped, energy, index)
-    lasting = friction if residual_friction is None else residual_friction
-    for kind in (bed, head):
-        kind.values["friction"] = friction
-        kind.take(
-            "residualFriction", lasting, residual_friction is not None, "the friction"
-        )
-        kind.take("residualCohesion", 0.0, False, "no cohesion is left of a bond")
-        kind.take("dilatancy", dilatancy or 0.0, dilatancy is not None, "none")
-    head.sources["friction"] = "like the bed joint"
-
-    energy, source = (Gc, "") if Gc is not None else compressiveFractureEnergy(fm)
-    if Gc is None and not MODEL_CODE[0] <= fm <= MODEL_CODE[1]:
-        say(
-            f"warning: materials.masonry: fm {fm / 1e6:g} MPa is outside of 12 to 80 MPa, the range of Model Code 90 for the "
-            f"compressive fracture energy: Gc is {energy:.4g} J/m², {source}"
-        )
-    for kind, modulus, spacing in ((bed, E, height), (head, head_E or E, length)):
-        kind.take("compressiveStrength", fm, kind is bed, "like the bed joint")
-        kind.take("compressiveFractureEnergy", energy, Gc is not None, source)
-        if kind is head and head_E is None:
-            spacing = height  # the joint is that of the bed
-        strain = 2 * fm / modulus if peak_strain is None else peak_strain
-        closure = spacing * (strain - fm / unit_E)
-        why = "peak strain 2 fm/E, parabola of Kaushik, Rai and Jain (2007)"
-        n = kind.values["normalStiffness"] * closure / fm
-        kind.take("peakRatio", n, peak_strain is not None, why)
-
-    crack = _Kind("crack", {"elastic": True})
-    crackKn = 100 / halves
-    stiff = "100 times that of half a brick"
-    crack.take("normalStiffness", crackKn, False, stiff)
-    crack.take("shearStiffness", crackKn / shearing, False, stiff)
-    if unit_ft is not None:
-        like = "as of the crack joints of calciumSilicate()"
-        crack.values.update(elastic=False, cap=False, tensileStrength=unit_ft)
-        cohesion = 2 * unit_ft if unit_fv0 is None else unit_fv0
-        slides = 0.75 if unit_friction is None else unit_friction
-        crack.take("cohesion", cohesion, unit_fv0 is not None, f"2 unit_ft, {like}")
-        for name in ("friction", "residualFriction"):
-            crack.take(name, slides, unit_friction is not None, like)
-        crack.take("residualCohesion", 0.0, False, "no cohesion is left of a bond")
-        crack.take("dilatancy", 0.0, False, "none")
-        crack.energy(
-            "modeIFractureEnergy", unit_ft, crackKn, halves, unit_GfI, TENSION_INDEX
-        )
-        crack.energy(
-            "modeIIFractureEnergy",
-            cohesion,
-            crackKn / shearing,
-            shearing * halves,
-            unit_GfII,
-            SHEAR_INDEX,
-        )
     joints = {}
-    for kind in (bed, head, crack):
+    for kind in (*_mortarJoints(values), _crackJoint(values)):
         try:
             joints[kind.name] = kind.made()
         except ValueError as error:
@@ -340,9 +244,137 @@ def masonry(
     if unit_ft is None:
         why = "unit_ft was not given: bricks do not crack"
         state(joints["crack"], **{**joints["crack"].assumed(), "elastic": why})
-    brick = MasonryMat(label="brick", young=unit_E, poisson=poisson, density=density)
-    usual = {} if "poisson" in given else {"poisson": "usual for masonry units"}
-    return Masonry(state(brick, **usual), joints, course=height)
+    nu = _poisson(values)
+    brick = MasonryMat(label="brick", young=unit_E, poisson=nu, density=density)
+    usual = {"poisson": "usual for masonry units"} if poisson is None else {}
+    course = unit[2] + joint
+    return Masonry(state(brick, **usual), joints, course=course)
+
+
+def _poisson(v):
+    return 0.2 if v.poisson is None else v.poisson
+
+
+def _spacings(v):
+    """The distances from one bed joint to the next, and from one head joint to the next [m]."""
+    return v.unit[2] + v.joint, v.unit[0] + v.joint
+
+
+def _mortarJoints(v):
+    """Bed and head joints, from the arguments of :func:`masonry`."""
+    bed, head = _Kind("bed", {}), _Kind("head", {})
+    _stiffnesses(v, bed, head)
+    _bond(v, bed, head)
+    lasting = v.friction if v.residual_friction is None else v.residual_friction
+    for kind in (bed, head):
+        kind.values["friction"] = v.friction
+        given = v.residual_friction is not None
+        kind.take("residualFriction", lasting, given, "the friction")
+        kind.take("residualCohesion", 0.0, False, "no cohesion is left of a bond")
+        kind.take("dilatancy", v.dilatancy or 0.0, v.dilatancy is not None, "none")
+    head.sources["friction"] = "like the bed joint"
+    _crushing(v, bed, head)
+    return bed, head
+
+
+def _stiffnesses(v, bed, head):
+    """Stiffness of bed and head joints: bricks and joints in series."""
+    height, length = _spacings(v)
+    nu = _poisson(v)
+    shearing = 2 * (1 + nu)  # E/G of the bricks [-]
+    kn = 1 / (height * (1 / v.E - 1 / v.unit_E))
+    ks = kn / shearing
+    if v.G is not None:
+        ks = 1 / (height * (1 / v.G - shearing / v.unit_E))
+    bed.values["normalStiffness"] = kn
+    bed.take("shearStiffness", ks, v.G is not None, f"kn/(2 (1 + nu)), nu = {nu:g}")
+    same = "like the bed joint: the same mortar, as thick"
+    alike = v.head_E is None
+    headKn = kn if alike else 1 / (length * (1 / v.head_E - 1 / v.unit_E))
+    head.take("normalStiffness", headKn, not alike, same)
+    why = same if alike else "the bed joint's ratio to kn"
+    head.take("shearStiffness", headKn * ks / kn, False, why)
+
+
+def _bond(v, bed, head):
+    """Strength and energy of bed and head joints in tension and in shear."""
+    ft = v.ft
+    if ft is None:
+        factor = WRENCH if v.bond_ratio is None else v.bond_ratio
+        ft = v.bond_wrench / factor
+        reason = f"bond_wrench {v.bond_wrench:g} Pa over {factor:g}: linear stresses of the test overestimate"
+        if v.bond_ratio is None:
+            reason += "; van der Pluijm (1999)"
+        bed.sources["tensileStrength"] = reason
+    height, length = _spacings(v)
+    kn, ks = (bed.values[name] for name in ("normalStiffness", "shearStiffness"))
+    headKn, shearing = head.values["normalStiffness"], 2 * (1 + _poisson(v))
+    energies = (
+        ("modeIFractureEnergy", "tensileStrength", ft, kn, v.GfI, TENSION_INDEX, 1.0),
+        ("modeIIFractureEnergy", "cohesion", v.fv0, ks, v.GfII, SHEAR_INDEX, shearing),
+    )
+    share = 1.0 if v.head_share is None else v.head_share
+    for name, strengthName, strength, stiffness, energy, index, soft in energies:
+        bed.values[strengthName] = strength
+        if strength > 0:
+            lumped = soft * height / v.unit_E
+            bed.energy(name, strength, stiffness, lumped, energy, index)
+        given = v.head_share is not None
+        head.take(strengthName, share * strength, given, "like the bed joint")
+        if share * strength > 0:
+            own = stiffness * headKn / kn
+            energy = None if energy is None else share * energy
+            lumped = soft * length / v.unit_E  # of whole bricks
+            head.energy(name, share * strength, own, lumped, energy, index)
+
+
+def _crushing(v, bed, head):
+    """Strength, energy and peak ratio of bed and head joints in compression."""
+    energy, source = (v.Gc, "") if v.Gc is not None else compressiveFractureEnergy(v.fm)
+    if v.Gc is None and not MODEL_CODE[0] <= v.fm <= MODEL_CODE[1]:
+        say(
+            f"warning: materials.masonry: fm {v.fm / 1e6:g} MPa is outside of 12 to 80 MPa, the range of Model Code 90 for the "
+            f"compressive fracture energy: Gc is {energy:.4g} J/m², {source}"
+        )
+    height, length = _spacings(v)
+    # without a modulus of its own the head joint is that of the bed
+    along = (v.E, height) if v.head_E is None else (v.head_E, length)
+    for kind, (modulus, spacing) in ((bed, (v.E, height)), (head, along)):
+        kind.take("compressiveStrength", v.fm, kind is bed, "like the bed joint")
+        kind.take("compressiveFractureEnergy", energy, v.Gc is not None, source)
+        strain = 2 * v.fm / modulus if v.peak_strain is None else v.peak_strain
+        closure = spacing * (strain - v.fm / v.unit_E)
+        why = "peak strain 2 fm/E, parabola of Kaushik, Rai and Jain (2007)"
+        n = kind.values["normalStiffness"] * closure / v.fm
+        kind.take("peakRatio", n, v.peak_strain is not None, why)
+
+
+def _crackJoint(v):
+    """The joint between the halves of a brick."""
+    halves = 0.5 * _spacings(v)[1] / v.unit_E  # what is lumped into it [m/Pa]
+    shearing = 2 * (1 + _poisson(v))
+    crack = _Kind("crack", {"elastic": True})
+    kn = 100 / halves
+    stiff = "100 times that of half a brick"
+    crack.take("normalStiffness", kn, False, stiff)
+    crack.take("shearStiffness", kn / shearing, False, stiff)
+    if v.unit_ft is None:
+        return crack
+    like = "as of the crack joints of calciumSilicate()"
+    crack.values.update(elastic=False, cap=False, tensileStrength=v.unit_ft)
+    cohesion = 2 * v.unit_ft if v.unit_fv0 is None else v.unit_fv0
+    slides = 0.75 if v.unit_friction is None else v.unit_friction
+    crack.take("cohesion", cohesion, v.unit_fv0 is not None, f"2 unit_ft, {like}")
+    for name in ("friction", "residualFriction"):
+        crack.take(name, slides, v.unit_friction is not None, like)
+    crack.take("residualCohesion", 0.0, False, "no cohesion is left of a bond")
+    crack.take("dilatancy", 0.0, False, "none")
+    for name, strength, stiffness, lumped, energy, index in (
+        ("modeIFractureEnergy", v.unit_ft, kn, halves, v.unit_GfI, TENSION_INDEX),
+        ("modeIIFractureEnergy", cohesion, kn / shearing, shearing * halves, v.unit_GfII, SHEAR_INDEX),
+    ):  # fmt: skip
+        crack.energy(name, strength, stiffness, lumped, energy, index)
+    return crack
 
 
 def _problems(given):
@@ -376,40 +408,34 @@ def _problems(given):
         most = n(other, n("friction"))
         if n(one) is not None and most is not None and n(one) > most:
             found.append(f"{one} {n(one):g} must be at most {other} {most:g}")
-    tensile, source = n("ft"), "ft"
-    if n("bond_wrench") is not None:
-        ratio = n("bond_ratio", WRENCH)
-        tensile, source = n("bond_wrench") / ratio, f"bond_wrench/{ratio:g} ="
-    for strength, what, cohesion, slides, names in (
-        (tensile, source, n("fv0"), n("friction"), "fv0/friction"),
-        (
-            n("unit_ft"),
-            "unit_ft",
-            n("unit_fv0"),
-            n("unit_friction", 0.75),
-            "unit_fv0/unit_friction",
-        ),
-    ):
-        if None in (strength, cohesion, slides) or strength * slides <= cohesion * (
-            1 + 1e-12
-        ):
-            continue
-        found.append(
-            f"{what} {strength:g} Pa must be at most {names} = {cohesion / slides:g} Pa, the apex of the Coulomb cone"
-        )
-    if None not in (n("peak_strain"), n("fm"), n("E")) and n("peak_strain") < n(
-        "fm"
-    ) / n("E"):
+    found += _aboveCone(n)
+    strains = None not in (n("peak_strain"), n("fm"), n("E"))
+    if strains and n("peak_strain") < n("fm") / n("E"):
         found.append(
             f"peak_strain {n('peak_strain'):g} must be at least fm/E = {n('fm') / n('E'):g}, that of elastic masonry"
         )
     if "bond_ratio" in given and "bond_wrench" not in given:
         found.append("bond_ratio goes with bond_wrench")
-    alone = [
-        name
-        for name in ("unit_GfI", "unit_fv0", "unit_friction", "unit_GfII")
-        if name in given
-    ]
+    alone = [one for one in ("unit_GfI", "unit_fv0", "unit_friction", "unit_GfII") if one in given]  # fmt: skip
     if alone and "unit_ft" not in given:
         found.append(f"{', '.join(alone)} without unit_ft: bricks do not crack then")
     return found
+
+
+def _aboveCone(n):
+    """Sentences on tensile strengths above the apex of the Coulomb cone.
+
+    :param n: function of a name that gives what was given, or None
+    """
+    tensile, source = n("ft"), "ft"
+    if n("bond_wrench") is not None:
+        ratio = n("bond_ratio", WRENCH)
+        tensile, source = n("bond_wrench") / ratio, f"bond_wrench/{ratio:g} ="
+    bond = tensile, source, n("fv0"), n("friction"), "fv0/friction"
+    cracks = n("unit_ft"), "unit_ft", n("unit_fv0"), n("unit_friction", 0.75), "unit_fv0/unit_friction"  # fmt: skip
+    for strength, what, cohesion, slides, names in (bond, cracks):
+        known = None not in (strength, cohesion, slides)
+        if known and strength * slides > cohesion * (1 + 1e-12):
+            yield (
+                f"{what} {strength:g} Pa must be at most {names} = {cohesion / slides:g} Pa, the apex of the Coulomb cone"
+            )

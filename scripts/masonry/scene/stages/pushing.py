@@ -160,15 +160,9 @@ def drivePush(scene, name, args, began, continued=False):
     every = max(1, int(rowSpacing(args) / (args.rate * O.dt)))
     model.loading.goal = at.passed + 1, goals[at.passed].displacement
     if first:
-        at.origin = model.loading.origin = origin
         run.at.origins = {**run.at.origins, began: origin}
-        at.now = at.since = O.time
-        at.moved = 1e3 * run.record().along
-        run.frame()
+        _beginPush(scene, name, args, at, origin, whole)
         at.nextFrame = spacing
-        at.period = _measuredPeriod(scene, name, args, whole)
-        at.places = model.motion.positions() if at.period else []
-        run.at.swings = {**run.at.swings, str(run.entered): [at.period, 0.0, 0.0]}
     model.loading.origin = at.origin
 
     def detail():
@@ -178,7 +172,7 @@ def drivePush(scene, name, args, began, continued=False):
             f"{travelled:.1f} of {whole:g} mm, at {at.moved:6.2f} mm  {shear:7.2f} kN"
         )
 
-    velocity, moves, undamped = None, True, None
+    moves, undamped = True, None
     while moves:
         goal = goals[at.passed]
         model.loading.goal = at.passed + 1, goal.displacement
@@ -188,8 +182,8 @@ def drivePush(scene, name, args, began, continued=False):
             undamped = free
             model.scheme.damp(0.0, "local") if free else model.scheme.dampByOptions()
         full = goal.direction * args.rate * 1e-3
-        if velocity != full * growth:
-            velocity = load.velocity = full * growth
+        if load.velocity != full * growth:
+            load.velocity = full * growth
         # A velocity that grew in stairs would make the pushed block swing in time with them.
         if start < growth:
             load.ramp = run.at.left or steps
@@ -203,13 +197,7 @@ def drivePush(scene, name, args, began, continued=False):
             _noteSwing(run, model, at)
         shear, travelled = 1e-3 * reading.baseShear, at.travelled(goal.direction)
         mean = at.note(shear, max(at.period, AVERAGED / args.rate))
-        how = None
-        if at.hasLost(goal.direction, mean):
-            how = "less than a fifth of the peak of its force is left"
-        elif model.loading.hasSunk(reading.sunk + min(0.0, reading.along * model.loading.direction[2])):  # fmt: skip
-            how = "the pushed point has come down by half a course"
-        elif at.retreats(goal.direction, whole):
-            how = "it moves against its push"
+        how = _lost(model, at, reading, goal.direction, mean, whole)
         if args.history:
             at.since, at.growth = at.now, growth
         run.show(max(0, travelled / whole), detail)
@@ -223,6 +211,36 @@ def drivePush(scene, name, args, began, continued=False):
     run.flush()
     if how:
         raise Collapsed(f"at {at.moved:.2f} mm {how}")
+
+
+def _beginPush(scene, name, args, at, origin, path):
+    """Begin a push: its first row and frame, and the first period of the structure along it.
+
+    :param at: what the push remembers
+    :param path: length of the whole path [mm]
+    """
+    run, model = scene.running, scene.model
+    at.origin = model.loading.origin = origin
+    at.now = at.since = O.time
+    at.moved = 1e3 * run.record().along
+    run.frame()
+    at.period = _measuredPeriod(scene, name, args, path)
+    at.places = model.motion.positions() if at.period else []
+    run.at.swings = {**run.at.swings, str(run.entered): [at.period, 0.0, 0.0]}
+
+
+def _lost(model, at, reading, direction, mean, whole):
+    """Why a wall has collapsed, or None.
+
+    :param mean: base shear over a time, as of :meth:`Pushing.note` [kN]
+    :param whole: length of the whole path [mm]
+    """
+    if at.hasLost(direction, mean):
+        return "less than a fifth of the peak of its force is left"
+    sunk = reading.sunk + min(0.0, reading.along * model.loading.direction[2])
+    if model.loading.hasSunk(sunk):
+        return "the pushed point has come down by half a course"
+    return "it moves against its push" if at.retreats(direction, whole) else None
 
 
 def _measuredPeriod(scene, name, args, path):

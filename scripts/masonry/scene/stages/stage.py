@@ -158,27 +158,37 @@ def _carryOut(scene, act, traits, args, settings):
         _answer(scene, name, traits, before)
         return ended
     except Collapsed as collapse:
-        scene.ended = COLLAPSED
-        follows = scene.description.contact is not None and not scene.bracketing
-        if not follows:  # else it ends with the fall
-            _noteEnd(running, before, COLLAPSED)
-        running.fall(str(collapse))
-        try:
-            if running.readings.time != O.time:
-                running.record()
-            running.flush()
-            running.checkpoints.markFall()
-        except FloatingPointError:
-            follows = False  # what has fallen may have left finite numbers
-            _noteEnd(running, before, COLLAPSED)
-        _answer(scene, name, traits, before)
-        if follows:
-            return _follow(scene, name)
-        return COLLAPSED
+        return _fall(scene, name, traits, before, str(collapse))
     except BaseException as error:
         if before is not None and running.entered == before:
             scene.script.words.pop()  # it has done nothing, and a run that goes on need not say it again
         return scene.failed(error)
+
+
+def _fall(scene, name, traits, before, what):
+    """End a stage in which the structure has fallen, or go on with the fall.
+
+    :param before: how many stages the run had entered before it
+    :param what: has fallen, and how far
+    """
+    running = scene.running
+    scene.ended = COLLAPSED
+    follows = scene.description.contact is not None and not scene.bracketing
+    if not follows:  # else it ends with the fall
+        _noteEnd(running, before, COLLAPSED)
+    running.fall(what)
+    try:
+        if running.readings.time != O.time:
+            running.record()
+        running.flush()
+        running.checkpoints.markFall()
+    except FloatingPointError:
+        follows = False  # what has fallen may have left finite numbers
+        _noteEnd(running, before, COLLAPSED)
+    _answer(scene, name, traits, before)
+    if follows:
+        return _follow(scene, name)
+    return COLLAPSED
 
 
 def _follow(scene, name):
