@@ -333,3 +333,14 @@ def test_frames_have_ties_and_springs(tmp_path):
     arrays = head["arrays"]
     assert arrays["tiePoints"]["count"] == 12
     assert arrays["tieCondition"]["row"] == 2 and arrays["tieMoved"]["row"] == 12
+
+
+@pytest.mark.parametrize("stiffness", [2e5, 1e8])
+def test_a_structure_that_sinks_into_soft_soil_has_not_fallen(tmp_path, stiffness):
+    scene = Scene("soil", bricks.stack(4, (0.5, 0.5, 0.5)), materials.dry(0.6, density=2000), arguments=[*LEAN, "--out", str(tmp_path)])  # fmt: skip
+    scene.platen("bottom", springs={"z": stiffness})
+    assert scene.settle() == "at rest"
+    weight = 9.81 * sum(O.bodies[body].state.mass for body in [*scene.model.ids, scene.targets["base"].body])  # fmt: skip
+    sunk = -1e-3 * scene.curve()["base_z_mm"][-1]
+    assert sunk * stiffness == pytest.approx(weight, rel=0.01)
+    scene.finish()

@@ -258,3 +258,24 @@ def test_without_follow_the_run_ends_where_it_fell(tmp_path):
     assert scene.ended == COLLAPSED and "ground" not in scene.targets
     assert not [a for a in scene.answers if a["stage"] == "fall"]
     scene.finish()
+
+
+def test_what_is_released_keeps_its_momentum_and_nothing_brakes_its_flight(tmp_path):
+    """A block without joints, which falls by half a metre; the settling brakes it until its collapse is noticed."""
+    made = bricks.block((0, 0, 0.5), (SIDE, SIDE, 0.7)) + bricks.stack(2, (SIDE,) * 3).moved(dx=3)  # fmt: skip
+    for stage in ("run", "settle"):
+        scene = Scene("flight", made, materials.dry(0.6, density=2000), allowGaps=True, collapse="follow", arguments=["--lean", "--out", str(tmp_path / stage)])  # fmt: skip
+        scene.ground(0.0)
+        block = scene.hold(0, name="block")
+        scene.hold(1, name="pier")
+        scene.settle()
+        scene.release(block, "xyzXYZ")
+        scene.run(1.0) if stage == "run" else scene.settle()
+        energy = O.bodies[block.body].state.mass * GRAVITY * 0.5
+        column = scene.results.column
+        braked = max(column("damping_J"))
+        assert braked < (1e-3 if stage == "run" else 0.05) * energy
+        assert max(abs(v) for v in column("balance_error")) < 1e-3
+        kinetic = max(fall["most"] for fall in scene.model.fallen().values())
+        assert kinetic == pytest.approx(energy - braked, rel=0.01)
+        scene.finish()

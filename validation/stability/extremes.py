@@ -27,7 +27,7 @@ import traceback
 from masonry import AT_REST, COLLAPSED, MOVING, MasonryJoint, MasonryMat, Scene
 from masonry import bricks, materials
 from masonry.basics import GRAVITY, Refused
-from masonry.scene.outcome import Outcome
+from masonry.scene.drawing_program import DrawingProgram
 from masonry.scene.stages import growing, rest
 from yade import O
 
@@ -583,7 +583,7 @@ def carryOut(make):
     :param make: function of a folder that gives a :class:`Play`
     """
     play, said, trial = None, io.StringIO(), growing.TRIAL
-    drawn, Outcome.draw = Outcome.draw, lambda outcome, folder: None
+    drawn, DrawingProgram.draw = DrawingProgram.draw, lambda outcome, folder: None
     found = {"class": "failed", "why": ""}
     with tempfile.TemporaryDirectory() as folder:
         try:
@@ -601,7 +601,7 @@ def carryOut(make):
             if not isinstance(error, Wrong):
                 found["why"] += "\n" + traceback.format_exc()
         finally:
-            Outcome.draw, growing.TRIAL = drawn, trial
+            DrawingProgram.draw, growing.TRIAL = drawn, trial
             if play:
                 play.scene.finished = True
                 play.scene.running.release()

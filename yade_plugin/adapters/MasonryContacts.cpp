@@ -17,12 +17,10 @@ void MasonryContacts::action() {
 
 void MasonryContacts::lookAtFalls(SceneStore& store) {
     if (!takesJoints || scene->iter % lookEvery != 0) return;
-    const auto present = std::make_pair(store.revision(), converted);
-    if (heldFor_ != present) held_ = heldByJoints(store);
-    heldFor_ = present;
+    const auto held = heldByJoints(store);
     std::vector<int> loose;
-    for (int body : awake())
-        if (!held_[std::size_t(body)]) loose.push_back(body);
+    for (int body = 0; body < store.bodies.size(); ++body)
+        if (store.bodies.has(body) && !held[std::size_t(body)]) loose.push_back(body);
     falls_.look(store, loose, diameters());
     if (dampsLoose) return;
     for (int body : loose)

@@ -109,8 +109,6 @@ private:
 
     JointConversion conversion_; // holds no state: what it keeps follows from the scene
     FallenBlocks falls_;
-    std::vector<unsigned char> held_;     // heldByJoints() ...
-    std::pair<long, int> heldFor_{-1, 0}; // ... at this SceneStore::revision(), after so many hand-overs
 };
 
 } // namespace masonry

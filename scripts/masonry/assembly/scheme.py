@@ -110,6 +110,12 @@ class Scheme:
         O.dt = self.args.dt_fraction * self.limit
         return self.limit
 
+    def keepStable(self):
+        """Shorten the time step where blocks that have moved, or joints that have become contacts, have a smaller limit."""
+        limit = timeStepLimit()
+        if limit < self.limit:
+            self.chooseTimeStep(limit)
+
     def setGravity(self, gravity):
         """Gravity from now on [m/s²]; deformable units follow."""
         self.integrator.gravity = gravity

@@ -212,9 +212,12 @@ class Structure:
         """From now on no drive and no support moves, no numerical damping brakes blocks that have come loose, and impacts of
         joints that close take energy."""
         self.scheme.countImpacts(True)
-        for target in self.supports.held:
-            if target.fixed:
-                O.bodies[target.body].state.vel = Vector3.Zero
+        for target in self.supports.held:  # one that was released moves on
+            state = O.bodies[target.body].state
+            axes = zip("xyz", state.vel)
+            state.vel = Vector3(
+                *(0.0 if a in state.blockedDOFs else v for a, v in axes)
+            )
         for label, load in self.loading.loads.items():
             if "_drive" in label:
                 load.velocity = load.ramp = 0

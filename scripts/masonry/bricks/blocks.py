@@ -54,6 +54,10 @@ LOOKING = math.cos(math.radians(45))  # of the angle between a face and where it
 ALONG = 1 - 1e-6  # of the angle between normals of one face of a convex block
 
 
+#: Kinds of blocks that every masonry has: they are of its unit unless it says otherwise.
+KINDS = "brick", "lintel", "voussoir", "block"
+
+
 @dataclass(frozen=True)
 class Block:
     """One convex block, rigid or deformable: a brick, or a piece of one.
@@ -63,7 +67,7 @@ class Block:
         share is a crack surface of the brick, not a mortar joint
     :param part: name of the part of the structure, such as "wall" or "arch". Figures draw part by part
     :param course: number of the course, or of the voussoir, from 0; -1: none
-    :param kind: "brick", "lintel", "voussoir" or "block". Materials can be chosen by it
+    :param kind: one of :data:`KINDS`, or another one for which the materials have something of its own
     """
 
     corners: tuple

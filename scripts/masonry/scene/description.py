@@ -13,6 +13,7 @@ import numpy as np
 from ..arguments import shown, vector
 from ..assembly import columns
 from ..basics import GRAVITY, Refused
+from ..bricks.blocks import KINDS
 from .contact import Contact
 
 
@@ -79,12 +80,21 @@ class Description:
 
     def problems(self, materials):
         """What does not go together, with the joints that the options choose: a list of sentences."""
+        found = []
         if self.halves and "crack" not in materials.joints:
-            return [
+            found.append(
                 "--crack-surfaces on: the bricks are in pieces, and these materials have no joint 'crack' between them; "
                 "make whole bricks with halves=False, or choose --crack-surfaces off"
-            ]
-        return []
+            )
+        known = {*KINDS, *materials.units, *materials.stiff}
+        strange = {block.kind for block in self.bricks} - known
+        if strange and not materials.choose:
+            named = ", ".join(map(repr, sorted(strange)))
+            found.append(
+                f"the materials have nothing for blocks of the kind {named}: materials.withBeam(...) or withFloor(...) says what a beam "
+                "or a floor is made of, and units={kind: ...} what other blocks are made of"
+            )
+        return found
 
     def connectorsOf(self, kind):
         """Connectors of one class of records, in the order in which they were named."""

@@ -33,10 +33,12 @@ def rayleigh(
     return 2 * ratio * one * two / (one + two), 2 * ratio / (one + two)
 
 
-LOWEST_PEAK, HIGHEST_PEAK = (
-    1.5,
-    30.0,
-)  # [m/s²] peaks beyond these may be in g, or in cm/s²
+#: Peaks beyond these may be in g, or in cm/s² [m/s²].
+LOWEST_PEAK, HIGHEST_PEAK = 1.5, 30.0
+#: No record has a larger peak [m/s²], several times the largest that was measured; and none has its samples farther apart [s].
+LARGEST_PEAK, COARSEST = 200.0, 0.5
+#: What stands for a sample that is missing, in any unit.
+MISSING = {-999.0, -9999.0, -99999.0}
 
 
 def record(value: Any, first: Any = None) -> Any:
@@ -85,11 +87,26 @@ def readRecord(
         raise Refused(
             f"shake: every {every!r} s, the time between samples, must be above 0"
         )
+    if every > COARSEST:
+        raise Refused(
+            f"shake: every {every:g} s, the time between samples, must be at most {COARSEST:g} s: is it in s, not ms?"
+        )
+    missing = [n for n, v in enumerate(values) if v in MISSING]
+    if missing:
+        raise Refused(
+            f"shake: {len(missing)} samples stand for missing values, the first is number {missing[0]}, {values[missing[0]]:g}"
+        )
     peak = abs(scale) * max(abs(v) for v in values)
     if unit is None and peak > 0 and not LOWEST_PEAK <= peak <= HIGHEST_PEAK:
         other = "g" if peak < LOWEST_PEAK else "cm/s²"
         raise Refused(
             f"shake: the peak of the record is {peak:g}, which is {peak / 9.81:.2g} g if it is in m/s²: is it in {other}? "
             f"Say unit='{other}', or unit='m/s²' if it is"
+        )
+    found = UNITS[unit or "m/s²"] * peak
+    if found > LARGEST_PEAK:
+        raise Refused(
+            f"shake: the peak of the record, {found / 9.81:.3g} g in {unit or 'm/s²'}, must be at most {LARGEST_PEAK / 9.81:.2g} g: "
+            "is it in another unit?"
         )
     return [UNITS[unit or "m/s²"] * v for v in values], every

@@ -65,12 +65,18 @@ def windFaces(
 def press(
     description: Any, platen: MovingPlaten, stress: Stress, riding: bool = True
 ) -> None:
-    """Press a platen on the bricks below it. The load grows in :meth:`settle`, and stays.
+    """Press a platen on the bricks below it. The load grows in :meth:`settle`, and stays. A platen has one press, as its stress is
+    the whole that the bricks feel; dead loads and winds add up.
 
     :param stress: mean vertical stress that the bricks feel [Pa]; the weight of the platen is part of it
     :param riding: whether the load moves with the platen; else it keeps its line in space, as over rollers
     """
     doubtPress(stress, "press")
+    if platen.pressed is not None:
+        raise ValueError(
+            f"press: {platen.name} is pressed already, with {platen.pressed:g} Pa: say the whole stress once, or press it again after "
+            "the first stage"
+        )
     platen.pressed, platen.riding = float(stress), riding
 
 

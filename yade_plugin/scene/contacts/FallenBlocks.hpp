@@ -7,7 +7,7 @@
 
 namespace masonry {
 
-// A block that has come near others without a joint between them.
+// A block that no joints hold.
 struct Fall {
     int body;
     double since; // when it was first seen so [s]

@@ -49,6 +49,7 @@ def followFall(scene: Any, tilted: bool) -> str:
         if not running.takesUp:
             running.frame()  # whose cracks are drawn
     model.scheme.dampByOptions()  # what stands comes to rest; blocks that are loose are not damped so
+    model.scheme.keepStable()
     model.letFall()
     gravity = abs(box.gravity) or GRAVITY
     size = max(box.size(index) for index in range(len(box.bricks)))

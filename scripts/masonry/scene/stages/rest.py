@@ -23,6 +23,8 @@ EVERY = 100  # steps between two looks
 #: If time steps are long: steps in which a part of the loads is put on, a third at most, and after which it is seen whether a
 #: block has fallen far.
 SHORTER = 1, 2, 5, 10, 20, 50, EVERY
+#: Periods of a structure on springs to the ground in which loads grow, so that it sinks slowly, however soft they are.
+PERIODS = 4.0
 SETTLING = 0.5  # most local damping of deformable units in settle(): with more they creep to rest
 
 
@@ -86,7 +88,8 @@ def waitForRest(scene, at, longest, grow, over=0.0, record=True):
     model, running, box = scene.model, scene.running, scene.description
     ramp = rampTime(scene.args)
     ramp *= max(1.0, (box.high[2] - box.low[2]) / 3)
-    ramp = max(ramp, over)
+    onSprings = model.connectors.slowest(model.supports.freeMass)
+    ramp = max(ramp, over, PERIODS * onSprings)
     growing = max(1, int(ramp / O.dt))
     every = max(n for n in SHORTER if n == 1 or n <= growing / 3)
     longest = longest or 20 * ramp

@@ -155,17 +155,16 @@ def shake(
 
 @stage(farther=("seconds",), real=True, answers=displacements)
 @validated
-def run(scene: Any, seconds: Duration, damping: Damping | None = None) -> str:
-    """Let time pass.
+def run(scene: Any, seconds: Duration, damping: Damping = 0.0) -> str:
+    """Let time pass, as it is: nothing brakes but what joints and contacts lose.
 
     :param seconds: time in the scene [s]
-    :param damping: damping constant during it [-]; None: that of the options
+    :param damping: numerical damping constant of the options' kind [-]
     """
     at = scene.running.stage("run", Damped())
-    changed = scene.model.scheme.trueMasses("run")
-    if damping is not None:
-        scene.model.scheme.damp(damping, scene.args.damping_kind)
-    if damping is not None or changed:
-        at.limit = scene.model.scheme.chooseTimeStep(at.limit)
+    scheme = scene.model.scheme
+    scheme.trueMasses("run")
+    scheme.damp(damping, scene.args.damping_kind)
+    at.limit = scheme.chooseTimeStep(at.limit)
     timed(scene, at, scene.share * seconds, lambda done, beyond: None)
     return DONE

@@ -146,6 +146,8 @@ def _carryOut(scene, act, traits, args, settings):
         scene.model.scheme.dampByOptions()
         scene.model.scheme.countImpacts(traits.real)
         follows = scene.description.contact is not None
+        if follows:
+            scene.model.scheme.keepStable()
         if follows and running.redoes and running.at.stage == FALL:
             return _follow(scene, name)
         running.endsAtFall = follows and not traits.real
