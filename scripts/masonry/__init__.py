@@ -196,8 +196,14 @@ def _register():
             end(memory.FULL)
         if "undefined symbol" not in str(error):
             raise
-        from yade.config import version
+        from yade.config import suffix, version
+        from yade.math import getDigits10
 
+        if getDigits10(1) != 15:
+            raise ImportError(
+                f"yade{suffix} calculates with {getDigits10(1)} digits, and the masonry plugin only with those of a double, 15: "
+                "use a YADE with double precision"
+            ) from None
         raise ImportError(
             f"this YADE ({version}) does not fit the masonry plugin, which was built for another one: expected a "
             "function or table, found none (bash scripts/setup.sh builds it for the YADE of this machine): "
