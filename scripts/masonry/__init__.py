@@ -201,8 +201,7 @@ def _register():
 
         if getDigits10(1) != 15:
             raise ImportError(
-                f"yade{suffix} calculates with {getDigits10(1)} digits, and the masonry plugin only with those of a double, 15: "
-                "use a YADE with double precision"
+                f"yade{suffix} calculates with {getDigits10(1)} digits, the masonry plugin with double precision only"
             ) from None
         raise ImportError(
             f"this YADE ({version}) does not fit the masonry plugin, which was built for another one: expected a "
