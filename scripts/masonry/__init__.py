@@ -199,14 +199,9 @@ def _register():
         from yade.config import suffix, version
         from yade.math import getDigits10
 
-        if getDigits10(1) != 15:
-            raise ImportError(
-                f"yade{suffix} calculates with {getDigits10(1)} digits, the masonry plugin with double precision only"
-            ) from None
         raise ImportError(
-            f"this YADE ({version}) does not fit the masonry plugin, which was built for another one: expected a "
-            "function or table, found none (bash scripts/setup.sh builds it for the YADE of this machine): "
-            + str(error)
+            f"yade{suffix} {version}, of {getDigits10(1)} digits, does not fit the masonry plugin, built for another one, of 15 "
+            f"(bash scripts/setup.sh builds it for the YADE of this machine): {error}"
         ) from None
     import yade.wrapper
 
