@@ -179,8 +179,7 @@ static void registerAll() {
         "Three lists for masonry.connect(): pairs (id1, id2) of bodies that share a face; pairs (id1, id2, gap, bound) "
         "that nearly share one or overlap, with the gap and the largest one accepted; (id, size) of the thinnest and "
         "of the largest block. Gaps and sizes in m. With keepFaces the joints that are made next take the faces that "
-        "were "
-        "found, until dropFaces() is called.");
+        "were found, until dropFaces() is called.");
     py::def("allowThreads", &allowThreads, (py::arg("most"), py::arg("always") = false),
             "Let steps use so many threads [-] where that is quicker, or always. For masonry.assembly.threads.");
     py::def(

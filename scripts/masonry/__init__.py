@@ -196,12 +196,12 @@ def _register():
             end(memory.FULL)
         if "undefined symbol" not in str(error):
             raise
-        from yade.config import version
+        from yade.config import suffix, version
+        from yade.math import getDigits10
 
         raise ImportError(
-            f"this YADE ({version}) does not fit the masonry plugin, which was built for another one: expected a "
-            "function or table, found none (bash scripts/setup.sh builds it for the YADE of this machine): "
-            + str(error)
+            f"yade{suffix} {version}, of {getDigits10(1)} digits, does not fit the masonry plugin, built for another one, of 15 "
+            f"(bash scripts/setup.sh builds it for the YADE of this machine): {error}"
         ) from None
     import yade.wrapper
 

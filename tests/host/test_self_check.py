@@ -4,6 +4,7 @@
 import importlib.util
 import os
 import re
+import shutil
 import subprocess
 import sys
 
@@ -181,6 +182,17 @@ def test_a_yade_of_an_unknown_version_is_used_on_the_users_word_only(monkeypatch
     run = inFreshYade(UNKNOWN)
     assert "TAKEN 4800000000.0" in run.stdout, run.stdout + run.stderr
     assert "WARNED: RuntimeWarning YADE 2099.1 is not known" in run.stdout
+
+
+@pytest.mark.slow
+def test_a_yade_of_another_precision_is_refused_by_name(tmp_path):
+    program = shutil.which("yade-mpfr150")
+    configure = ["cmake", "-S", ROOT, "-B", str(tmp_path), f"-DMASONRY_YADE={program}"]
+    built = subprocess.run(configure, capture_output=True, text=True)
+    assert built.returncode and f"the YADE of {program} does not" in built.stderr
+    check = [program, "-n", "-x", f"{ROOT}/tests/host/checkMasonryJoint.py"]
+    run = subprocess.run(check, capture_output=True, text=True)
+    assert run.returncode and "of 150 digits, does not fit" in run.stderr
 
 
 @pytest.mark.slow

@@ -5,6 +5,7 @@ import builtins
 import os
 
 from hosted import *
+from yade import plot, timing, utils
 
 
 def standing(friction):
@@ -34,7 +35,7 @@ def test_connect_chooses_the_time_step_that_a_script_has_not(scene):
 
 def test_forces_motions_and_records_of_yades_engines_hold_beside_ours(scene, tmp_path, capfd):  # fmt: skip
     """A force of YADE's that grows to 0.6 of the weight moves a block where friction is 0.5: it slides from there on. Its
-    work is not known, which is said once, and the run goes on."""
+    work, and that of a motion of YADE's, are in the energy balance."""
     block, weight = standing(0.5)
     push = ForceEngine(ids=[block], force=(0, 0, 0))
     rows = []
@@ -56,8 +57,33 @@ def test_forces_motions_and_records_of_yades_engines_hold_beside_ours(scene, tmp
     assert rows[-1][1] > 1e-3
     assert O.bodies[0].state.displ()[1] == pytest.approx(1e-3 * O.time, rel=0.01)
     assert list(tmp_path.glob("yade-*"))
-    said = capfd.readouterr().err
-    assert said.count("the work of ForceEngine is not known") == 1, said
+    assert balance()["dissipated_shear"] > 0.5 * weight * 1e-3
+    assert abs(balance()["error"]) < 1e-3
+    assert "warning" not in capfd.readouterr().err
+
+
+@pytest.mark.slow
+def test_tables_tags_plots_and_timing_are_those_of_yade(scene, tmp_path, monkeypatch):
+    """A value of a table of yade-batch reaches the scene and O.tags; a PyRunner fills yade.plot; and
+    yade.timing knows each engine of ours."""
+    table = tmp_path / "table"
+    table.write_text("friction\n0.3\n0.4\n", encoding="utf-8")
+    monkeypatch.setenv("YADE_BATCH", f"{table}:3")
+    assert utils.readParamsFromTable(friction=0.5) == 1
+    from yade.params.table import friction
+
+    standing(friction)
+    plot.reset()
+    record = lambda: plot.addData(t=O.time, **balance())  # noqa: E731
+    monkeypatch.setattr(builtins, "record", record, raising=False)
+    O.engines += [PyRunner(command="record()", iterPeriod=10, initRun=True)]
+    monkeypatch.setattr(O, "timingEnabled", True)
+    timing.reset()
+    run(100)
+    assert friction == 0.4 and O.tags["params"] == "friction=0.4"
+    assert len(plot.data["t"]) == len(plot.data["kinetic"]) == 10
+    ours = [e for e in O.engines if type(e).__name__.startswith("Masonry")]
+    assert len(ours) > 2 and all(e.execCount == 100 and e.execTime > 0 for e in ours)
 
 
 @pytest.mark.slow

@@ -84,9 +84,8 @@ public:
             py::objects::add_to_namespace(
                 cls, "set", py::raw_function(&Adapter::setTogether, 1),
                 "Set properties together: set(friction=0.6, residualFriction=0.6). They are checked together, as "
-                "values "
-                "that depend on each other must be. If something is wrong, the error has all problems, and the object "
-                "stays as it was. Returns the object.");
+                "values that depend on each other must be. If something is wrong, the error has all problems, and the "
+                "object stays as it was. Returns the object.");
         }
         Derived::extras(cls);
     }

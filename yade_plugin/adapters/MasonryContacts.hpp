@@ -73,21 +73,16 @@ public:
                 "Number of pairs that pressed on each other in the last step.")
             .def("forceOf", &MasonryContacts::forceBetween, py::args("id1", "id2"),
                  "Force of body id1 on body id2 in the last step [N], global axes. It is zero if they do not touch, "
-                 "but for "
-                 "the first step after a contact, in which they may get energy back.")
+                 "but for the first step after a contact, in which they may get energy back.")
             .def("pairs", &MasonryContacts::pairs,
                  "Pairs of blocks between which a force acted in the last step, that is, which touch or have just "
-                 "parted: a "
-                 "list of tuples of the ids of both, and the force [N] and the torque about its centre [N m] on the "
-                 "second, global axes.")
+                 "parted: a list of tuples of the ids of both, and the force [N] and the torque about its centre [N m] "
+                 "on the second, global axes.")
             .def("fallen", &MasonryContacts::fallen,
                  "Blocks that have come loose where joints are handed over, by their ids: a dict of id -> dict with "
-                 "since, "
-                 "when that was [s]; fell, when the block had turned by 60° or moved by its diameter since the "
-                 "reference "
-                 "state [s], None if it has not; most, its largest kinetic energy since then [J]; and at, when it had "
-                 "that "
-                 "[s]. Looked at every tenth step.");
+                 "since, when that was [s]; fell, when the block had turned by 60° or moved by its diameter since the "
+                 "reference state [s], None if it has not; most, its largest kinetic energy since then [J]; and at, "
+                 "when it had that [s]. Looked at every tenth step.");
     }
 
     bool dampsLoose = true;

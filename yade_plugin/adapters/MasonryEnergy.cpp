@@ -77,17 +77,6 @@ std::string firstNotFinite(const yade::Scene& scene) {
     return "of the joints";
 }
 
-// The class of an engine of YADE that loads bodies or moves them, whose work nothing counts; empty if there is none.
-std::string foreignWorker(const yade::Scene& scene) {
-    for (const auto& engine : scene.engines) {
-        const auto base = engine->getBaseClassName();
-        const bool acts = base == "PartialEngine" || base == "KinematicEngine" || base == "TranslationEngine" ||
-                          base == "RotationEngine";
-        if (acts && !engine->dead) return engine->getClassName();
-    }
-    return "";
-}
-
 } // namespace
 
 // Looks every tenth step, and when the time step or the joints have changed. Let r be the time step over its limit. The
@@ -113,7 +102,7 @@ void MasonryEnergy::watchOver(SceneStore& store) {
                                  std::to_string(scene->iter) + "; " + masonry::describedLimit(store));
     }
     largestInput = std::max(largestInput, std::abs(all.work + all.falls));
-    if (motion > 100 * largestInput + 1e-12 && foreignWorker(*scene).empty()) {
+    if (motion > 100 * largestInput + 1e-12) {
         const auto what = "unstable: motion out of nothing at step " + std::to_string(scene->iter) + ", " +
                           text(motion) + " J where " + text(largestInput) + " J of work were done; " +
                           masonry::describedLimit(store) +
@@ -165,16 +154,6 @@ void MasonryEnergy::lookAtBalance(const SceneStore& store) {
 void MasonryEnergy::warnOfBalance(double error) {
     if (!(error > 0.01 && error > 2 * reportedError)) return;
     reportedError = error;
-    const auto worker = foreignWorker(*scene);
-    if (!worker.empty()) {
-        if (!warned)
-            std::cerr << "warning: the work of " + worker +
-                             " is not known: the energy balance is off by it, and motion out of nothing ends no run. "
-                             "MasonryLoad loads and moves a block, too, and counts its work\n"
-                      << std::flush;
-        warned = true;
-        return;
-    }
     warned = true;
     std::cerr << "warning: at step " + std::to_string(stepThen) + " the energy balance is off by " +
                      text(std::round(1000 * error) / 10) +

@@ -19,16 +19,14 @@ public:
     static constexpr const char* doc =
         "Keeps the energy balance of a run: work of loads, prescribed motions and gravity = kinetic + elastic + "
         "dissipated in the joints by mode + damping. MasonryIntegrator and MasonryZones count the energies of what "
-        "they "
-        "move. With NewtonIntegrator this engine must stand directly before it, and counts them by its equations. The "
-        "error of the balance is round-off and the small terms of finite rotation. It also watches over the run: a "
-        "time "
-        "step above its limit, motion that grows without work and numbers that are not finite stop it with an error "
-        "that begins with 'unstable:' or 'numbers'. A collapse ends it with an error that begins with 'collapsed:': a "
-        "block has turned, slid, been crushed or gone away so far that the joints, whose geometry is that of the "
-        "reference state, mean nothing any more; see turnLimit, slideLimit, closureLimit and openingLimit. An energy "
-        "balance that is off by more than 1 % of the work done is reported on the terminal's error stream, and again "
-        "if it becomes twice as large.";
+        "they move. With NewtonIntegrator this engine must stand directly before it, and counts them by its equations. "
+        "The error of the balance is round-off and the small terms of finite rotation. It also watches over the run: a "
+        "time step above its limit, motion that grows without work and numbers that are not finite stop it with an "
+        "error that begins with 'unstable:' or 'numbers'. A collapse ends it with an error that begins with "
+        "'collapsed:': a block has turned, slid, been crushed or gone away so far that the joints, whose geometry is "
+        "that of the reference state, mean nothing any more; see turnLimit, slideLimit, closureLimit and openingLimit. "
+        "An energy balance that is off by more than 1 % of the work done is reported on the terminal's error stream, "
+        "and again if it becomes twice as large.";
 
     // See attributes() for the meaning and unit of each. Users set `watch` and the limits only.
     bool watch = true;
@@ -59,8 +57,7 @@ public:
         GravityWork::describe<E>(visit);
         visit("watch", &E::watch,
               described("Whether a run that is unstable or has collapsed is stopped, and a wrong energy balance is "
-                        "reported. If "
-                        "an unstable run is not stopped, a time step above criticalTimeStep() gives wrong "
+                        "reported. If an unstable run is not stopped, a time step above criticalTimeStep() gives wrong "
                         "results that look sound, because damping keeps the unstable motion within bounds"));
         visit("turnLimit", &E::turnLimit,
               number("rad", "Rotation of two joined blocks against each other at which a run has collapsed, looked at "
@@ -123,11 +120,8 @@ public:
         cls.def("balance", &MasonryEnergy::balance,
                 "All energies of the last step [J]: external, gravity, refining, kinetic, damping, elastic_ and "
                 "dissipated_ tension, shear, compression; elastic_connectors and dissipated_connectors of ties and "
-                "springs where "
-                "there are "
-                "some; handing, elastic_contacts, friction_contacts and damping_contacts of MasonryContacts where "
-                "there is one; "
-                "and error, the balance's error relative to the work done [-].")
+                "springs where there are some; handing, elastic_contacts, friction_contacts and damping_contacts of "
+                "MasonryContacts where there is one; and error, the balance's error relative to the work done [-].")
             .def("given", &MasonryEnergy::given,
                  "Count the kinetic energy of the present motion as work done from outside. Call this directly after "
                  "setting velocities by hand, if the run has made a step before.");

@@ -9,7 +9,7 @@ namespace masonry {
 
 void MasonryIntegrator::action() {
     const EngineScope turn(*scene, *this);
-    advance(*scene, turn->bodies, turn->loads);
+    advance(*scene, turn->bodies, turn->loads, turn->foreignForces);
     turn.end();
 }
 

@@ -14,8 +14,7 @@ public:
     static constexpr const char* doc =
         "Moves the rigid bodies by the equations of NewtonIntegrator (paper eqs. (1)-(3)) and counts their energies. "
         "Leaves out what masonry does not need: periodic cells, clumps and bounds for a collider. NewtonIntegrator "
-        "with "
-        "MasonryEnergy remains as the reference.";
+        "with MasonryEnergy remains as the reference.";
 
     template <class Visit> static void attributes(Visit&& visit) {
         using I = MasonryIntegrator;

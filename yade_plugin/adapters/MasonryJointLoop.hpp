@@ -14,9 +14,8 @@ public:
     static constexpr const char* baseName = "GlobalEngine";
     static constexpr const char* doc =
         "A step of all masonry joints, in columns and on all threads. Stands in the place of InteractionLoop, which "
-        "does "
-        "the same with the functors of this plugin and remains as the reference. A run is the same, bit for bit, with "
-        "any number of threads. It makes no joints: masonry.connect() does.";
+        "does the same with the functors of this plugin and remains as the reference. A run is the same, bit for bit, "
+        "with any number of threads. It makes no joints: masonry.connect() does.";
 
     shared_ptr<Ig2_MasonryBlock_MasonryBlock_MasonryJointGeom> geometry;
     shared_ptr<Ip2_MasonryMat_MasonryMat_MasonryJointPhys> physics;

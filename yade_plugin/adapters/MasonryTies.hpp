@@ -12,11 +12,9 @@ public:
     static constexpr const char* baseName = "GlobalEngine";
     static constexpr const char* doc =
         "Bars between points of two rigid bodies, or of one and the ground: elastic, yielding at a force, breaking at "
-        "an "
-        "elongation, with prestress or slack, with or without compression. A bar has no mass and does not bend. Its "
-        "force "
-        "acts along the line between its ends, which move with their bodies however far. Stands after the loop of the "
-        "joints and before MasonryLoad.";
+        "an elongation, with prestress or slack, with or without compression. A bar has no mass and does not bend. Its "
+        "force acts along the line between its ends, which move with their bodies however far. Stands after the loop "
+        "of the joints and before MasonryLoad.";
 
     template <class Visit> static void attributes(Visit&& visit) {
         using T = MasonryTies;

@@ -16,17 +16,12 @@ public:
         "are those of the faces' triangles: three along every face where the unit is held across the joint, else the "
         "corners and the centroid of each triangle. A unit whose nodes are held in one direction, and which is a right "
         "prism along it, as a brick in a wall in its plane, is a plane unit: its nodes stand in its middle plane "
-        "alone, "
-        "its zones are triangles in plane stress as thick as the unit, four to a cell, and points of joints stand in "
-        "the "
-        "middle plane. Other units that are held so keep their tetrahedra; both can meet in a joint. A unit remains "
-        "one body with the shape of its block; its position "
-        "and "
-        "orientation follow the centre of mass and the mean rotation. Strains are taken as small in axes that turn "
-        "with "
-        "the unit. Stands after the loop of the joints; integrators of rigid bodies do not move these bodies. Give "
-        "this "
-        "engine to Ig2_MasonryBlock_MasonryBlock_MasonryJointGeom.zones before joints are made.";
+        "alone, its zones are triangles in plane stress as thick as the unit, four to a cell, and points of joints "
+        "stand in the middle plane. Other units that are held so keep their tetrahedra; both can meet in a joint. A "
+        "unit remains one body with the shape of its block; its position and orientation follow the centre of mass and "
+        "the mean rotation. Strains are taken as small in axes that turn with the unit. Stands after the loop of the "
+        "joints; integrators of rigid bodies do not move these bodies. Give this engine to "
+        "Ig2_MasonryBlock_MasonryBlock_MasonryJointGeom.zones before joints are made.";
 
     template <class Visit> static void attributes(Visit&& visit) {
         using Z = MasonryZones;

@@ -242,10 +242,14 @@ std::vector<Polygon> nearestCells(const Polygon& polygon, const std::vector<Poin
 }
 
 Point longestEdge(const Polygon& p) {
+    // Round-off decides at which corner a polygon begins, so of edges of one length not the first is taken, but the one
+    // that points most in this direction, at a right angle to which no edge of a usual block lies.
+    const Point preferred(1, 0.618, 0.272);
     Point longest = Point::Zero();
     for (std::size_t i = 0; i < p.size(); ++i) {
         const Point edge = p[(i + 1) % p.size()] - p[i];
-        if (edge.squaredNorm() > longest.squaredNorm() * (1 + 1e-9)) longest = edge;
+        const double excess = edge.squaredNorm() - longest.squaredNorm(), roundOff = 1e-9 * longest.squaredNorm();
+        if (excess > roundOff || (excess > -roundOff && edge.dot(preferred) > longest.dot(preferred))) longest = edge;
     }
     return longest.normalized();
 }

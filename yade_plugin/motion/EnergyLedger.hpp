@@ -7,7 +7,7 @@ namespace masonry {
 // All entries are in J. Half of the work in a step is done with the velocity before it, half with the velocity after
 // it. The second half is pending until the next step, so that all other entries belong to the same instant.
 struct EnergyLedger {
-    double external = 0;        // work of prescribed motions so far
+    double external = 0;        // work of prescribed motions and foreign forces so far
     double damped = 0;          // taken by damping so far
     double pendingExternal = 0; // second half of the last step's work, which the next step adds to `external`
     double pendingDamped = 0;   // second half of what damping took in the last step

@@ -30,7 +30,8 @@ void Integrator::setLastForces(const std::vector<Vector3r>& all) {
     }
 }
 
-void Integrator::advance(yade::Scene& scene, BodyColumns& bodies, const std::vector<Load*>& loads) {
+void Integrator::advance(yade::Scene& scene, BodyColumns& bodies, const std::vector<Load*>& loads,
+                         const std::vector<ForeignForce>& foreign) {
     const int count = bodies.size();
     if (std::size_t(count) < last_[0].size())
         throw std::invalid_argument("MasonryIntegrator remembers forces of " + std::to_string(last_[0].size()) +
@@ -43,6 +44,13 @@ void Integrator::advance(yade::Scene& scene, BodyColumns& bodies, const std::vec
         bodyAt(scene, load->body, "MasonryLoad.body");
         load->workBefore(scene.dt, bodies.state(load->body));
     }
+    const auto halfOfForeignWork = [&] {
+        double power = 0;
+        for (const auto& [body, force, torque] : foreign)
+            power += force.dot(bodies.state(body).vel) + torque.dot(bodies.state(body).angVel);
+        return 0.5 * scene.dt * power;
+    };
+    const double foreignWork = halfOfForeignWork();
     // The pieces over which energies are summed up do not depend on the number of threads, so neither do the sums.
     constexpr int piece = RigidMotion::most;
     const int pieces = (count + piece - 1) / piece;
@@ -59,6 +67,8 @@ void Integrator::advance(yade::Scene& scene, BodyColumns& bodies, const std::vec
         moment += sum.moment;
     }
     fallen = workOfGravity(fallen, gravity, moment, before);
+    external += foreignWork;
+    pendingExternal += halfOfForeignWork();
     for (auto* load : loads) {
         const auto& s = bodies.state(load->body);
         load->workAfter(scene.dt, s.vel, s.angVel);

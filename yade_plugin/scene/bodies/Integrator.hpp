@@ -9,6 +9,7 @@
 namespace masonry {
 
 class Load;
+struct ForeignForce;
 
 class Integrator : public EnergyLedger, public GravityWork {
 public:
@@ -21,7 +22,7 @@ public:
     std::vector<std::string> problems() const;
 
     // Makes a step of all rigid bodies, and counts its energies and the work of the loads.
-    void advance(yade::Scene&, BodyColumns&, const std::vector<Load*>&);
+    void advance(yade::Scene&, BodyColumns&, const std::vector<Load*>&, const std::vector<ForeignForce>&);
 
     // In saved files and checkpoints: two vectors for each body, force per mass [m/s²] and torque per inertia [1/s²] in
     // the last step.

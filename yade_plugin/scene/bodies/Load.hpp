@@ -1,11 +1,17 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A load on a rigid block, at a point fixed to it. An engine derives from it.
+// A load on a rigid block, at a point fixed to it, from which an engine derives; and loads that are not ours.
 #pragma once
 #include "host/Yade.hpp"
 
 namespace masonry {
 
 using yade::Vector3r;
+
+// What engines of others load a rigid body with in a step, about its centre.
+struct ForeignForce {
+    int body;
+    Vector3r force, torque; // [N], [N m]
+};
 
 class Load {
 public:

@@ -3,7 +3,6 @@
 #include "scene/bodies/Blocks.hpp"
 #include "scene/bodies/Changes.hpp"
 #include "scene/bodies/Integrator.hpp"
-#include "scene/bodies/Load.hpp"
 #include "scene/contacts/Connectors.hpp"
 #include "scene/contacts/Contacts.hpp"
 #include "scene/joints/Zones.hpp"
@@ -113,7 +112,7 @@ void SceneStore::readEngines() {
     allContacts.clear();
     loop = nullptr;
     zones = nullptr;
-    watched = false;
+    watched = foreign = false;
     integrator = nullptr;
     hostIntegrator = nullptr;
     first = last = nullptr;
@@ -142,8 +141,19 @@ void SceneStore::readEngines() {
             note(integrator, dynamic_cast<Integrator*>(engine.get()))) {
             if (!first) first = engine.get();
             last = engine.get();
-        }
+        } else if (!first && name != "ForceResetter")
+            foreign = true;
     }
+}
+
+// With functors the first engine of ours comes after the joints, whose forces are then no longer apart from others.
+void SceneStore::readForeignForces() {
+    foreignForces.clear();
+    if (!foreign || !loop || bodies.size() == 0) return;
+    const auto on = scene_.forces().sums(bodies.size());
+    for (int b = 0; b < bodies.size(); ++b)
+        if (bodies.has(b) && !bodies.isUnit[b] && !(on.forces[b].isZero(0) && on.torques[b].isZero(0)))
+            foreignForces.push_back({b, on.forces[b], on.torques[b]});
 }
 
 namespace {

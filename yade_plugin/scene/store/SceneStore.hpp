@@ -2,13 +2,13 @@
 // The view of a scene that all engines of this plugin share: its engines, bodies and joints. It is read again when they
 // have changed. It owns the columns in which the state of joints and rigid bodies lives.
 #pragma once
+#include "scene/bodies/Load.hpp"
 #include "scene/contacts/Collapse.hpp"
 #include "scene/joints/SceneContents.hpp"
 
 namespace masonry {
 
 class Integrator;
-class Load;
 class Zones;
 
 class SceneStore : public SceneContents {
@@ -41,13 +41,15 @@ public:
     Zones* zones = nullptr;
     Integrator* integrator = nullptr;
     const yade::NewtonIntegrator* hostIntegrator = nullptr;
-    const yade::Engine* first = nullptr;    // the first of this plugin's engines in a step
-    const yade::Engine* last = nullptr;     // the last of this plugin's engines in a step; recorders do not count
-    std::string endsWith;                   // why the run ends after this step; empty: it goes on
-    bool watched = false;                   // whether an engine watches over the run: it looks for a collapse itself
-    std::vector<Load*> allLoads;            // also those that are dead, whose work so far counts
-    std::vector<Connectors*> allConnectors; // likewise
-    std::vector<Contacts*> allContacts;     // likewise
+    const yade::Engine* first = nullptr;     // the first of this plugin's engines in a step
+    const yade::Engine* last = nullptr;      // the last of this plugin's engines in a step; recorders do not count
+    bool foreign = false;                    // whether engines of others stand before the first, and may load bodies
+    std::vector<ForeignForce> foreignForces; // theirs in the present step
+    std::string endsWith;                    // why the run ends after this step; empty: it goes on
+    bool watched = false;                    // whether an engine watches over the run: it looks for a collapse itself
+    std::vector<Load*> allLoads;             // also those that are dead, whose work so far counts
+    std::vector<Connectors*> allConnectors;  // likewise
+    std::vector<Contacts*> allContacts;      // likewise
 
     // Looks whether a block has collapsed.
     Collapse findCollapse(const CollapseLimits&);
@@ -59,6 +61,7 @@ public:
     void opened() {
         openedStep_ = scene_.iter;
         endsWith.clear();
+        readForeignForces();
     }
 
     // For checkBeforeStep().
@@ -77,6 +80,7 @@ private:
     bool sameEngines() const; // whether the engines are those that were read
     bool sameJoints() const;  // whether the joints are those that were read
     void readEngines();
+    void readForeignForces();
     void readJoints();
 
     boost::weak_ptr<yade::Factorable> life_;
