@@ -64,7 +64,6 @@ LONG = [
     "test_no_bytes_break_a_reader",
     "test_random_tries_beside_a_run_do_no_harm",
     "test_a_stack_that_falls_has_its_answer_and_a_sentence",
-    "test_a_wall_killed_in_its_third_half_cycle_goes_on_bit_for_bit",
     "test_the_vertical_load_turns_the_wall_about_its_toe_and_keeps_its_line",
     "test_a_wall_of_deformable_units_bends_in_the_page",
     "test_a_wall_of_the_law_runs_and_goes_on_from_a_checkpoint_bit_for_bit",
@@ -248,6 +247,23 @@ def runProgram(name, *words, check=True, **settings):
     )
     assert not check or process.returncode == 0, process.stdout + process.stderr
     return process
+
+
+@pytest.fixture(scope="session")
+def comp4(tmp_path_factory):
+    """The folder of a run of the wall COMP-4 beyond its peak: a stepped crack from corner to corner."""
+    folder = str(tmp_path_factory.mktemp("comp4"))
+    words = "--preset fast --until 4 --vtk-every 0.5 --out".split()
+    runProgram("wall_comp4", *words, folder, timeout=900)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def chromium():
+    import browser
+
+    with browser.browser() as found:
+        yield found
 
 
 @pytest.fixture

@@ -62,20 +62,6 @@ def test_cycles_take_energy_and_the_balance_closes(scene):
     assert abs(energy["error"]) < 1e-6
 
 
-def test_a_run_goes_on_from_a_checkpoint_bit_for_bit(scene, tmp_path):
-    load = stack(MasonryJoint(name="bed", **CYCLIC))
-    sway(load, 1000, 3)
-    file = str(tmp_path / "run.checkpoint")
-    saveCheckpoint(file)
-    O.run(1500, True)
-    whole = states()
-    O.reset()
-    stack(MasonryJoint(name="bed", **CYCLIC))
-    loadCheckpoint(file)
-    O.run(1500, True)
-    assert states() == whole
-
-
 def test_a_scene_that_was_saved_goes_on(scene, tmp_path):
     load = stack(MasonryJoint(name="bed", **CYCLIC))
     sway(load, 1000, 3)

@@ -143,13 +143,6 @@ def test_a_joint_of_a_block_without_contacts_is_not_handed_over(scene):
     assert contacts.handed == 0
 
 
-def test_without_hand_over_the_run_ends_as_ever(scene):
-    contacts = standing(follow=False)
-    with pytest.raises(RuntimeError, match="^collapsed: block 1 has turned by"):
-        until(2)
-    assert contacts.handed == 0
-
-
 def test_a_stack_that_falls_has_the_same_bits_with_threads_and_from_a_checkpoint(scene, tmp_path):  # fmt: skip
     found = []
     for threads in (1, 2):

@@ -72,7 +72,7 @@ def test_less_is_lost_with_more_restitution(scene):
 
 
 @pytest.mark.parametrize("case", CASES)
-@pytest.mark.parametrize("step", [0.1, 0.4, 0.8])
+@pytest.mark.parametrize("step", [pytest.param(0.1, marks=pytest.mark.slow), 0.4, 0.8])
 def test_impacts_never_give_energy(scene, case, step):
     for seed in range(3):
         # blocks that turn far have an error of the balance without impacts, too

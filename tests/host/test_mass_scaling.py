@@ -145,8 +145,3 @@ def test_a_run_that_is_resumed_before_or_after_a_brick_cracks_goes_on_the_same(
         loadCheckpoint(str(tmp_path / f"{part}"))
         run(500)
         assert state(zones) == whole[part]
-
-
-def test_a_negative_scaling_is_refused():
-    with pytest.raises(ValueError, match="massScaling -1 must be at least 0"):
-        MasonryZones(massScaling=-1)

@@ -213,16 +213,3 @@ print("ALONE")
 """
     )
     assert "ALONE" in run.stdout, run.stdout + run.stderr
-
-
-def test_without_yade_the_package_still_reads_results():
-    run = subprocess.run(
-        [
-            sys.executable,
-            "-c",
-            "import masonry.run.results, sys; print('yade' in sys.modules)",
-        ],
-        capture_output=True,
-        text=True,
-    )
-    assert run.stdout.strip() == "False", run.stderr

@@ -12,7 +12,6 @@ from hypothesis import strategies as st
 from masonry import capacity
 from masonry.basics import Refused
 from masonry.capacity import __main__ as program
-from masonry.capacity import spectra
 from test_bilinear import PUSH, WHOLE, curve, run
 from test_figures import writeRun
 
@@ -524,9 +523,3 @@ def test_a_run_of_another_pier_is_a_note(tmp_path):
     folder = scene(tmp_path / "pier", *bounds((20, 25, 5.4)), units=10, joints={"bed": {"friction": 0.5}})  # fmt: skip
     other = run(tmp_path / "run", *WHOLE, **made)
     assert capacity.domain(folder, [other]).notes == ["run: its properties of joints are not those of the domain: is it the same pier?"]  # fmt: skip
-
-
-def test_every_public_name_is_documented():
-    for name in capacity.__all__:
-        assert getattr(capacity, name).__doc__, name
-    assert spectra.LONGEST == 4.0

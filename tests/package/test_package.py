@@ -3,11 +3,9 @@
 
 import math
 import os
-import re
 import resource
 
 import pytest
-from conftest import ROOT
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from masonry import materials
@@ -332,29 +330,6 @@ def test_the_damped_share_is_that_of_damping_in_what_was_taken_since_the_first_r
     assert curves.dampedShare(at(2).get) == 0  # nothing is taken
     bounced = {**rows, "damping_J": [5.0, 4.0]}  # by round-off it may fall
     assert curves.dampedShare(bounced.get) == 0
-
-
-@pytest.mark.parametrize("reader", ["curve_figure", "elevation", "measure"])
-def test_readers_ask_only_for_keys_of_run_json_that_are_documented(reader):
-    source = open(
-        os.path.join(ROOT, "scripts", "masonry", "read", reader + ".py")
-    ).read()
-    documented = set(re.findall(r"``(\w+)``", results.__doc__))
-    asked = re.findall(
-        r"""\b(?:run|wall)(?:\["\w+"\])?(?:\[|\.get\()["'](\w+)""", source
-    )
-    asked = set(asked)
-    assert asked and not asked - documented
-
-
-@pytest.mark.parametrize("reader", ["elevation"])
-def test_readers_ask_only_for_columns_that_are_described(reader):
-    source = open(
-        os.path.join(ROOT, "scripts", "masonry", "read", reader + ".py")
-    ).read()
-    known = {*columns.heads(columns.PUSH + columns.HISTORY + columns.BALANCE)}
-    asked = set(re.findall(r'\b(?:curve|data)\["(\w+)"\]', source))
-    assert asked and not asked - known
 
 
 def test_a_column_says_its_unit_in_its_name_and_in_its_meaning():

@@ -4,7 +4,6 @@
 import fnmatch
 import json
 import os
-import re
 import subprocess
 import sys
 
@@ -31,31 +30,6 @@ def test_every_figure_and_table_is_made_by_one_result():
     for path in made:
         makers = [r.name for r in EVERY.values() if any(fnmatch.fnmatch(path, p) for p in r.makes)]  # fmt: skip
         assert len(makers) == 1, (path, makers)
-
-
-def test_every_program_is_run_by_a_result_or_imported_by_one():
-    # The benchmark measures times, which are no results that stay: nothing remakes them.
-    programs = [f for f in committed() if f.endswith(".py") and not f.startswith("benchmark/")]  # fmt: skip
-    words = {w for r in EVERY.values() for c in r.commands for w in c}
-    texts = {p: open(os.path.join(remake.HERE, p)).read() for p in programs}
-    for path in programs:
-        name = os.path.basename(path)[:-3]
-        imported = any(re.search(rf"\b(import|from) [\w, ]*\b{name}\b", t) for p, t in texts.items() if p != path)  # fmt: skip
-        named = any(w == f"validation/{path}" for w in words)
-        started = any(f'"{name}.py"' in t for p, t in texts.items() if p != path)
-        assert named or imported or started or path == "remake.py", path
-
-
-def test_commands_sources_and_needs_are_there():
-    for result in EVERY.values():
-        for command in result.commands:
-            for word in command:
-                if word.startswith("validation/"):
-                    assert os.path.exists(os.path.join(ROOT, word)), (result.name, word)
-        for pattern in result.sources:
-            assert remake.glob.glob(os.path.join(ROOT, pattern)) or pattern.endswith("case.json"), (result.name, pattern)  # fmt: skip
-        for folder in result.results:  # nothing outside of a folder of results
-            assert ".." not in folder and not os.path.isabs(folder) and folder.strip("*/")  # fmt: skip
 
 
 def test_results_come_after_those_that_they_need():
@@ -135,29 +109,3 @@ def test_what_is_stale_is_made_recorded_and_in_the_table(tree, capfd):
     assert capfd.readouterr().out == ""  # nothing is stale
     assert remake.main(["--built", "abc", "--force", "one"]) == 0
     assert os.listdir(folder) == ["new"]
-
-
-def test_a_missed_limit_is_a_result_and_another_error_is_not(tree):
-    path, result = tree
-    (path / "validation/one/run.py").write_text("raise SystemExit(1)")
-    assert not remake.make(result, "f")
-    assert remake.make(remake.replace(result, limits=True), "f")
-    (path / "validation/one/run.py").write_text("raise SystemExit(2)")
-    assert not remake.make(remake.replace(result, limits=True), "f")
-
-
-def test_a_plugin_of_other_sources_is_refused(monkeypatch):
-    found = {"rev-parse": "abc", "diff": "scripts/masonry/basics.py"}
-    monkeypatch.setattr(remake, "git", lambda word, *words: found[word])
-    with pytest.raises(SystemExit, match="have changed since: bash scripts/setup.sh"):
-        remake.builtFrom()
-    found["diff"] = ""
-    assert remake.builtFrom()
-    found["rev-parse"] = ""
-    with pytest.raises(SystemExit, match="which is not known here"):
-        remake.builtFrom()
-
-
-def test_the_table_of_the_readme_has_its_place():
-    text = open(remake.README).read()
-    assert all(text.count(mark) == 1 for mark in remake.MARKS)

@@ -12,9 +12,33 @@ import subprocess
 import tempfile
 import time
 
+import numpy as np
+import pytest
+from matplotlib.image import imread
+
 PROGRAM = shutil.which("chromium")
 MISSING = "" if PROGRAM else "Chromium is not installed (apt-get install --no-install-recommends chromium)"  # fmt: skip
 PATIENCE = 120  # for an answer [s]
+needed = [
+    pytest.mark.skipif(bool(MISSING), reason=MISSING),
+    pytest.mark.long,
+    pytest.mark.xdist_group("browser"),
+]
+BRICK, RED, BLUE = (232, 215, 184), (214, 39, 40), (31, 119, 180)
+
+
+def near(pixels, colour, within=0.08):
+    """How many pixels have nearly a colour, given from 0 to 255."""
+    return int((np.abs(pixels - np.array(colour) / 255) < within).all(axis=2).sum())
+
+
+def seen(chromium, tmp_path, element=None):
+    """Colours of the window, an array (high, wide, 3) from 0 to 1, after an element has been brought into it."""
+    if element:
+        chromium.value(f"(document.querySelector('{element}').scrollIntoView(), 0)")
+    path = str(tmp_path / "seen.png")
+    chromium.picture(path)
+    return imread(path)[..., :3]
 
 
 class Browser:

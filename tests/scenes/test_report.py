@@ -9,18 +9,14 @@ import subprocess
 import sys
 
 import browser
-import numpy as np
 import pytest
-from conftest import ROOT
+from browser import BRICK, RED, near, seen
 from masonry.read import report
 from masonry.read.files import readCurve, readRun
 from masonry.scene.drawing_program import DrawingProgram
-from matplotlib.image import imread
 from small import SMALL, carryOut, parsed
 
 MOST = 3e6  # [bytes] of the report of COMP-4
-BRICK, RED = (232, 215, 184), (214, 39, 40)
-needsBrowser = pytest.mark.skipif(bool(browser.MISSING), reason=browser.MISSING)
 
 
 # -- when there is one ------------------------------------------------------------------------------------------------
@@ -77,42 +73,19 @@ def test_a_bound_alone_has_a_report_without_a_curve(scene, tmp_path):
 # -- what its reader sees ---------------------------------------------------------------------------------------------
 
 
-@pytest.fixture(scope="module")
-def comp4(tmp_path_factory):
-    """The report of the wall COMP-4, pushed beyond its peak."""
-    folder = tmp_path_factory.mktemp("comp4")
-    path = os.path.join(ROOT, "scripts", "wall_comp4.py")
-    run = subprocess.run(["yade", "-n", "-x", path, "--preset", "fast", "--until", "4", "--vtk-every", "0.5", "--out", str(folder)], capture_output=True, text=True)  # fmt: skip
-    assert run.returncode == 0, run.stdout + run.stderr
-    return str(folder / "report.html")
-
-
-@pytest.fixture(scope="module")
-def chromium():
-    with browser.browser() as found:
-        yield found
+@pytest.fixture
+def pushed(comp4):
+    """The report of the wall COMP-4."""
+    return os.path.join(comp4, "report.html")
 
 
 @pytest.fixture
-def opened(chromium, comp4):
+def opened(chromium, pushed):
     chromium.problems.clear()
     chromium.requests.clear()
-    chromium.open(comp4, height=900)
+    chromium.open(pushed, height=900)
     chromium.value("masonryViews[0].then(found => { window.view = found; return 0 })")
     return chromium
-
-
-def near(pixels, colour, within=0.08):
-    """How many pixels have nearly a colour, given from 0 to 255."""
-    return int((np.abs(pixels - np.array(colour) / 255) < within).all(axis=2).sum())
-
-
-def seen(chromium, tmp_path, element):
-    """Colours of the window after an element has been brought into it."""
-    chromium.value(f"(document.querySelector('{element}').scrollIntoView(), 0)")
-    path = str(tmp_path / "seen.png")
-    chromium.picture(path)
-    return imread(path)[..., :3]
 
 
 RING = "(() => { const r = document.querySelector('.now'); return [Number(r.getAttribute('cx')), Number(r.getAttribute('cy'))] })()"  # fmt: skip
@@ -124,16 +97,13 @@ def moved(chromium, frame):
     chromium.drawn()
 
 
-pictured = [needsBrowser, pytest.mark.long, pytest.mark.xdist_group("browser")]
-
-
 class TestInABrowser:
-    pytestmark = pictured
+    pytestmark = browser.needed
 
-    def test_it_opens_without_a_request_or_an_error_and_is_small(self, opened, comp4):
-        assert opened.requests == ["file://" + comp4]
+    def test_it_opens_without_a_request_or_an_error_and_is_small(self, opened, pushed):
+        assert opened.requests == ["file://" + pushed]
         assert opened.problems == []
-        assert os.path.getsize(comp4) < MOST
+        assert os.path.getsize(pushed) < MOST
         text = opened.value("document.body.innerText")
         assert "TUD-COMP-4" in text and "is not whole" not in text
         assert re.search(r"Peak 11\d(\.\d)? kN at \d\.\d+ mm", text.replace("\u00a0", " "))  # fmt: skip
@@ -164,19 +134,17 @@ class TestInABrowser:
 
     def test_all_that_can_be_set_has_a_name_and_all_pictures_have_a_text(self, opened):
         names = opened.value("[...document.querySelectorAll('canvas, input, select, button, summary')].map(e => e.getAttribute('aria-label') || (e.labels && e.labels[0] ? e.labels[0].textContent : e.textContent))")  # fmt: skip
-        assert all(names)
+        assert all(names) and len(names) >= 12
         assert opened.value("[...document.images].every(i => i.alt && i.naturalWidth > 0)")  # fmt: skip
         assert opened.value("[...document.querySelectorAll('[role=img]')].every(s => s.getAttribute('aria-label'))")  # fmt: skip
         assert opened.value("document.images.length") == 2  # mechanism and cracks
 
-    def test_light_dark_and_a_narrow_screen(self, chromium, comp4, tmp_path):
+    def test_light_dark_and_a_narrow_screen(self, chromium, pushed, tmp_path):
         for dark in (False, True):
-            chromium.open(comp4, dark=dark)
-            path = str(tmp_path / "page.png")
-            chromium.picture(path)
-            corner = imread(path)[5, 5, :3]
+            chromium.open(pushed, dark=dark)
+            corner = seen(chromium, tmp_path)[5, 5]
             assert corner.max() < 0.2 if dark else corner.min() > 0.95
-        chromium.open(comp4, width=390, height=780)
+        chromium.open(pushed, width=390, height=780)
         assert chromium.value("document.documentElement.scrollWidth") <= 390
 
     def test_paper_is_a4_black_on_white_without_controls(self, opened, tmp_path):
@@ -198,9 +166,10 @@ class TestInABrowser:
         assert 3 <= len(re.findall(rb"/Type\s*/Page\b", printed)) <= 16
 
 
+@pytest.mark.xdist_group("browser")
 def test_the_program_needs_no_yade(comp4, tmp_path):
     path = str(tmp_path / "wall.html")
     code = "import sys; from masonry.read.report.__main__ import main; assert main(sys.argv[1:]) == 0; assert 'yade' not in sys.modules"  # fmt: skip
-    done = subprocess.run([sys.executable, "-c", code, os.path.dirname(comp4), "-o", path], capture_output=True, text=True)  # fmt: skip
+    done = subprocess.run([sys.executable, "-c", code, comp4, "-o", path], capture_output=True, text=True)  # fmt: skip
     assert done.returncode == 0, done.stderr
-    assert open(path).read() == open(comp4).read()
+    assert open(path).read() == open(os.path.join(comp4, "report.html")).read()

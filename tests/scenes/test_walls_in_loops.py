@@ -3,9 +3,6 @@
 
 import os
 import re
-import signal
-import subprocess
-import time
 
 from hosted import *
 from masonry import readCheckpoint
@@ -286,35 +283,6 @@ def test_loops_interrupted_anywhere_leave_the_curve_of_a_whole_run(
         resume = True
     assert len(set(points)) > 3
     assert files(out) == files(tmp_path / "whole")
-
-
-def test_a_wall_killed_in_its_third_half_cycle_goes_on_bit_for_bit(runScene, tmp_path):
-    words = ["--history", "0.5,1", "--rate", "40", "--vtk-every", "0.5"]
-    _, whole = runScene("wall_dry", *words)
-    out = tmp_path / "killed"
-    kept = str(out / "run.checkpoint")
-    scene = os.path.join(ROOT, "scripts", "wall_dry.py")
-    command = ["yade", "-n", "-x", scene]
-    often = ["--checkpoint-every", "0.002"]
-    process = subprocess.Popen([*command, *words, *often, "--out", str(out)])
-
-    def passed():
-        there = os.path.exists(kept)
-        return readCheckpoint(kept)["at"]["memory"].get("passed", 0) if there else 0
-
-    while passed() < 3:  # +0.5, -0.5 and 0 mm are behind
-        assert process.poll() is None
-        time.sleep(0.005)
-    process.kill()
-    assert process.wait() == -signal.SIGKILL
-    assert passed() >= 3
-    again = ["--resume", str(out), "--checkpoint-every", "5"]
-    assert subprocess.run([*command, *again]).returncode == 0
-    assert files(out) == files(whole)  # with the last frame, which is the final state
-    one, other = readRun(whole), readRun(str(out))
-    assert len(other["resumed_at_s"]) == 1
-    for name in ("cycles", "history", "steps", "negative_peak_base_shear_kN"):
-        assert one[name] == other[name]
 
 
 def test_a_finished_history_can_be_extended(scene, tmp_path):

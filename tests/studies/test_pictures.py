@@ -191,20 +191,6 @@ def test_bars_of_a_histogram_are_divided_by_failure_modes(drawn):
     }
 
 
-def test_a_histogram_of_rows_that_are_all_alike_is_one_bar(drawn):
-    pictures.histogram("h.png", [100.0] * 5, PEAK)
-    (axis,) = drawn["h.png"].axes
-    bars = [bar for bar in axis.containers[0] if bar.get_height() > 0]
-    assert (
-        len(bars) == 1 and bars[0].get_x() < 100 < bars[0].get_x() + bars[0].get_width()
-    )
-
-
-def test_a_scatter_matrix_of_nothing_that_varies_is_refused(drawn):
-    with pytest.raises(Refused, match="no number varies"):
-        pictures.scatter("s.png", {"bed.cohesion": np.full(50, 1e5)}, VALUES[:50], PEAK)
-
-
 def test_a_fragility_curve_goes_from_0_to_1_within_its_band(drawn):
     pictures.fragility("f.png", VALUES, PEAK)
     (axis,) = drawn["f.png"].axes
@@ -238,12 +224,6 @@ def test_a_fan_has_all_curves_and_the_median_of_those_that_go_on(drawn):
         max(segment[:, 1].max() for segment in axis.collections[0].get_segments()) < 51
     )
     assert "9 curves" in byLabel(axis)
-
-
-def test_a_median_ends_where_half_of_the_curves_have(drawn):
-    curves = [(np.linspace(0, end, 51), np.linspace(0, end, 51)) for end in (5, 5, 10)]
-    pictures.fan("c.png", curves, "x [mm]", "y [kN]")
-    assert byLabel(drawn["c.png"].axes[0])["median"].get_xdata()[-1] == 5
 
 
 def test_a_scatter_matrix_shows_what_varies_and_leaves_out_what_does_not(drawn):
@@ -434,10 +414,6 @@ def test_the_report_tells_and_draws_all(studies, capsys):
         path = os.path.join(expensive, name + ".png")
         assert path in said and 5e3 < os.path.getsize(path) < 3e5
     assert "no sobol.png: Sobol indices of 3 properties need 30 rows" in said
-
-
-def test_prices_are_the_times_of_the_jobs(studies):
-    assert records.Record(studies[0]).price([0, 1]) == 10.5
 
 
 def test_rows_that_failed_are_reported_and_left_out(tmp_path, capsys):
