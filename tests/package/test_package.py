@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from masonry import materials
 from masonry.assembly import columns
-from masonry.read import curves, files
+from masonry.read import curves, files, run_data
 from masonry.run import presets, results
 from masonry.scene import options, targets
 from masonry.scene.settings import applySettings, setting
@@ -248,11 +248,13 @@ def test_rows_that_a_full_disk_takes_stay_whole(tmp_path):
 
 
 def test_a_pulse_at_one_end_is_no_peak_at_both():
-    base = [0.0, 10.0, 11.0, 13.0, 11.5, 9.0]
-    top = [0.5, 10.2, 11.1, 11.2, 12.9, 9.0]
-    assert curves.peakAtBothEnds(top, base) == 11.5
-    assert curves.peakAtBothEnds(base, base) == 13
-    assert curves.peakAtBothEnds([], []) == 0
+    columns = {
+        "base_shear_kN": [0.0, 10.0, 11.0, 13.0, 11.5, 9.0],
+        "top_shear_kN": [0.5, 10.2, 11.1, 11.2, 12.9, 9.0],
+        "displacement_mm": [0, 1, 2, 3, 4, 5],
+    }
+    stages = [{"first_row": 0, "load": ["push"]}]
+    assert run_data.RunData({"stages": stages}, columns.get).peakForce() == 11.5
 
 
 def test_dynamic_imbalance_is_the_share_of_the_force_that_does_not_arrive():

@@ -13,7 +13,6 @@ import os
 import sys
 
 import numpy as np
-from masonry.read.curves import peakAtBothEnds
 from masonry.basics import Refused
 from masonry.study import Study, estimate, lognormal, statistics
 from masonry.study.continuing import rowsOf
@@ -96,7 +95,9 @@ def recorded(wall, name):
         raise Refused(
             f"{found.directory}: {len(found) - len(curves)} rows have no curve"
         )
-    found.cells[BOTH_ENDS] = [repr(float(peakAtBothEnds(*curve))) for curve in curves]
+    found.cells[BOTH_ENDS] = [
+        repr(float(max(map(min, zip(*curve))))) for curve in curves
+    ]
     return found
 
 

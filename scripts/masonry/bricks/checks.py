@@ -7,14 +7,7 @@ from statistics import median
 
 import numpy as np
 
-from .geometry import (
-    COINCIDENT,
-    NEARLY_OPPOSITE,
-    OPPOSITE,
-    REACH,
-    clip,
-    measures,
-)
+from .geometry import COINCIDENT, NEARLY_OPPOSITE, OPPOSITE, REACH, clip, measures
 
 #: A block is a sliver if it is thinner than this share of the middle thickness (the median) of the blocks of its kind.
 #: The thinnest brick that a mason cuts, a queen closer or a quarter bat, has more. Assumed.

@@ -129,9 +129,8 @@ class Alike:
             row[list(face)] = True
         limit = (FLAT * size)[:, None, None]
         with np.errstate(invalid="ignore"):
-            self.fit = np.where(on, np.abs(heights) <= limit, heights < -limit).all(
-                axis=(1, 2)
-            )
+            fit = np.where(on, np.abs(heights) <= limit, heights < -limit)
+        self.fit = fit.all(axis=(1, 2))
         self.thickness = -heights.min(axis=2).max(axis=1)  # along the thinnest normal
 
     def volumes(self):
@@ -208,13 +207,10 @@ class Solids:
 
     def middles(self):
         """Centroids [m], (n, 3)."""
-        found = np.full((self.count, 3), np.nan)
-        for group in self.groups:
-            found[group.index] = group.middles()
-        return found
+        return self._each(Alike.middles, 3)
 
-    def _each(self, measure):
-        found = np.full(self.count, np.nan)
+    def _each(self, measure, *shape):
+        found = np.full((self.count, *shape), np.nan)
         for group in self.groups:
             found[group.index] = measure(group)
         return found
@@ -291,26 +287,27 @@ class Solids:
 
     def separation(self, one, two):
         """How far two solids are apart [m] by the separating axis theorem; negative for an overlap: its smallest depth."""
-        corners, edges, axes = [], [], []
+        corners, sides, axes = [], [], []
         for solid in (one, two):
             group = self.groups[self.groupOf[solid]]
             row = self.rowOf[solid]
             corners.append(group.corners[row])
             axes.append(group.normals[row])
-            pairs = {
-                tuple(sorted(pair))
-                for face in group.faces
-                for pair in zip(face, face[1:] + face[:1])
-            }
-            ends = group.corners[row][np.array(sorted(pairs))]
+            ends = group.corners[row][np.array(sorted(edges(group.faces)))]
             along = ends[:, 1] - ends[:, 0]
-            edges.append(along / np.linalg.norm(along, axis=1)[:, None])
-        across = np.cross(edges[0][:, None], edges[1][None]).reshape(-1, 3)
+            sides.append(along / np.linalg.norm(along, axis=1)[:, None])
+        across = np.cross(sides[0][:, None], sides[1][None]).reshape(-1, 3)
         length = np.linalg.norm(across, axis=1)
         across = across[length > 1e-6] / length[length > 1e-6, None]
         a, b = (c @ np.concatenate([*axes, across]).T for c in corners)
         gaps = np.maximum(b.min(axis=0) - a.max(axis=0), a.min(axis=0) - b.max(axis=0))
         return gaps.max()
+
+
+def edges(faces):
+    """Edges of a solid: pairs of corner numbers, the smaller first."""
+    pairs = (pair for face in faces for pair in zip(face, face[1:] + face[:1]))
+    return {(min(pair), max(pair)) for pair in pairs}
 
 
 def _parted(a, i, b, j):
@@ -359,11 +356,8 @@ def measures(polygon, normal):
     twice = mx = my = mz = 0.0
     for (ax, ay, az), (bx, by, bz) in zip(polygon[1:], polygon[2:]):
         ax, ay, az, bx, by, bz = ax - x0, ay - y0, az - z0, bx - x0, by - y0, bz - z0
-        part = (
-            (ay * bz - az * by) * nx
-            + (az * bx - ax * bz) * ny
-            + (ax * by - ay * bx) * nz
-        )
+        part = (ay * bz - az * by) * nx + (az * bx - ax * bz) * ny
+        part += (ax * by - ay * bx) * nz
         twice += part
         mx, my, mz = mx + part * (ax + bx), my + part * (ay + by), mz + part * (az + bz)
     perimeter = sum(map(dist, polygon, polygon[1:] + polygon[:1]))
@@ -387,18 +381,11 @@ def cutCorners(corners, faces, point, normal, width):
         return None, tuple(corners)
     if not any(s < 0 for s in sides):
         return tuple(corners), None
-    edges = {
-        (min(pair), max(pair))
-        for face in faces
-        for pair in zip(face, face[1:] + face[:1])
-    }
     new = []
-    for a, b in sorted(edges):
+    for a, b in sorted(edges(faces)):
         if sides[a] * sides[b] < 0:
-            share = heights[a] / (heights[a] - heights[b])
-            new.append(
-                tuple(u + share * (v - u) for u, v in zip(corners[a], corners[b]))
-            )
+            share, ends = heights[a] / (heights[a] - heights[b]), zip(corners[a], corners[b])  # fmt: skip
+            new.append(tuple(u + share * (v - u) for u, v in ends))
     above = [c for c, s in zip(corners, sides) if s >= 0] + new
     below = [c for c, s in zip(corners, sides) if s <= 0] + new
     return tuple(above), tuple(below)

@@ -13,17 +13,8 @@ from dataclasses import replace
 from typing import Annotated, Iterable, Sequence
 
 from ..arguments import isA, listOf, number, oneOf, validated, whole
-from .blocks import (
-    FARTHEST,
-    Block,
-    Bricks,
-    Gap,
-    Length,
-    Point,
-    Sides,
-    boxCorners,
-    refuse,
-)
+from .blocks import FARTHEST, Block, Bricks, Gap, Length, Point, Sides
+from .blocks import boxCorners, refuse
 from .bonds import layout
 from .geometry import FLAT
 from .openings import WHOLE, LaidBrick, Opening, finished, numbered, opened

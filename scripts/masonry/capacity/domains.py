@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 import os
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import Any, Sequence
 
 import numpy as np
@@ -19,6 +19,16 @@ from ..arguments import FilePath, isNumber
 from ..basics import GRAVITY, Refused
 from ..read.bilinear import pushover
 from ..read.files import filesOf, readRun
+
+
+#: Names in a JSON file of attributes that have a unit.
+ENTRIES = {
+    "normal": "normal_kN",
+    "largest": "largest_kN",
+    "withoutDilatancy": "without_dilatancy_kN",
+    "shear": "peak_kN",
+    "displacement": "displacement_mm",
+}
 
 
 @dataclass(frozen=True)
@@ -48,9 +58,8 @@ class Domain:
 
     bounds: list[BoundPoint]  #: by their normal forces
     runs: list[RunPoint]
-    notes: list[
-        str
-    ]  #: sentences: normal forces without a bound, and why; runs that seem to be of another pier
+    #: sentences: normal forces without a bound, and why; runs that seem to be of another pier
+    notes: list[str]
 
     def shear(self, normal: float) -> float:
         """The bound of the shear force under a normal force [kN], between two of the domain by a line. A domain is convex, so
@@ -67,26 +76,12 @@ class Domain:
 
     def entries(self) -> dict[str, Any]:
         """The domain as an entry of a JSON file, with units in the names."""
+        named = lambda one: {
+            ENTRIES.get(n, n): value for n, value in asdict(one).items()
+        }
         return {
-            "bounds": [
-                {
-                    "normal_kN": one.normal,
-                    "largest_kN": one.largest,
-                    "without_dilatancy_kN": one.withoutDilatancy,
-                    "exact": one.exact,
-                }
-                for one in self.bounds
-            ],
-            "runs": [
-                {
-                    "name": one.name,
-                    "normal_kN": one.normal,
-                    "peak_kN": one.shear,
-                    "displacement_mm": one.displacement,
-                    "source": one.source,
-                }
-                for one in self.runs
-            ],
+            "bounds": [*map(named, self.bounds)],
+            "runs": [*map(named, self.runs)],
             "notes": self.notes,
         }
 
@@ -163,15 +158,11 @@ def domain(directory: FilePath, runs: Sequence[FilePath] = ()) -> Domain:
                 )
             )
     if not bounds:
-        raise Refused(
-            "\n".join(
-                notes
-                or [
-                    f"{directory}: run.json has no domain: say scene.domain(top, normal=[...]) in the scene, after its presses, and run it, "
-                    "for limit analysis alone with --preset bound"
-                ]
-            )
+        none = (
+            f"{directory}: run.json has no domain: say scene.domain(top, normal=[...]) in the scene, after its presses, and run it, "
+            "for limit analysis alone with --preset bound"
         )
+        raise Refused("\n".join(notes or [none]))
     points = []
     for one in runs:
         points.append(runPoint(one))

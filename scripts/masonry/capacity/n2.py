@@ -10,7 +10,7 @@ import math
 from dataclasses import dataclass, replace
 from typing import Annotated, Any
 
-from ..arguments import Numbers, isA, items, isNumber, number, validated
+from ..arguments import Numbers, isA, isNumber, listOf, number, validated
 from ..basics import Refused
 from ..read.bilinear import Bilinear, Pushover
 from ..read.bilinear import ofRun as bilinearOf
@@ -49,25 +49,25 @@ def equivalent(
     return Equivalent(mass, gamma, "mass and transformation factor are given")
 
 
-def ofMasses(masses: Numbers, shape: Numbers) -> Equivalent:
+@validated
+def ofMasses(
+    masses: Annotated[Numbers, listOf(number("kg", 0, above=True))],
+    shape: Annotated[Numbers, listOf(number())],
+) -> Equivalent:
     """The equivalent system of masses that move along a shape, equations (B.2) and (B.3).
 
     :param masses: of the storeys or points (n) [kg]
     :param shape: their displacements over that of the point whose displacement the push records (n) [-]
     :raises Refused: with what is wrong
     """
-    both = items(masses), items(shape)
-    if None in both or not both[0] or len(both[0]) != len(both[1] or ()):
+    if len(masses) != len(shape):
         raise Refused("masses and shape must be lists of equal length: a mass [kg] and a displacement [-] for each point")  # fmt: skip
-    fine = all(isNumber(v) and math.isfinite(v) for one in both for v in one)
-    if not fine or min(both[0]) <= 0:
-        raise Refused(f"masses {masses!r} must be numbers above 0 kg, and shape {shape!r} finite numbers")  # fmt: skip
-    mass = float(sum(m * p for m, p in zip(*both)))
-    squares = float(sum(m * p * p for m, p in zip(*both)))
+    mass = float(sum(m * p for m, p in zip(masses, shape)))
+    squares = float(sum(m * p * p for m, p in zip(masses, shape)))
     if mass <= 0:
         raise Refused(f"the equivalent mass of masses {masses!r} with the shape {shape!r} is {mass:.4g} kg, it must be above 0")  # fmt: skip
     listed = lambda values: ", ".join(f"{v:g}" for v in values)
-    return Equivalent(mass, mass / squares, f"masses of {listed(both[0])} kg with the shape {listed(both[1])}, equations (B.2) and (B.3)")  # fmt: skip
+    return Equivalent(mass, mass / squares, f"masses of {listed(masses)} kg with the shape {listed(shape)}, equations (B.2) and (B.3)")  # fmt: skip
 
 
 def ofRun(run: dict[str, Any], directory: str = "run.json") -> Equivalent:

@@ -10,7 +10,7 @@ from typing import Annotated, Any
 
 import numpy as np
 
-from ..arguments import FilePath, Numbers, number, oneOf, validated
+from ..arguments import FilePath, Numbers, number, oneOf, validated, whole
 from ..basics import ACCELERATION_UNITS, GRAVITY, Refused
 from ..read.files import readWhole
 
@@ -74,7 +74,7 @@ class Spectrum:
 def elastic(
     ag: Annotated[float, number("", 0, 10000, above=True)],
     unit: Annotated[str, oneOf(*UNITS)],
-    type: int,
+    type: Annotated[int, whole(1, 2)],
     ground: Annotated[str, oneOf(*"ABCDE")],
     importance: Annotated[float, number("-", 0.1, 10)] = 1.0,
     damping: Annotated[float, number("%", 0, 100, above=True)] = 5.0,
@@ -92,8 +92,6 @@ def elastic(
     :raises Refused: with what is wrong
     """
     factor = UNITS[unit]
-    if type not in PARAMETERS or isinstance(type, bool):
-        raise Refused(f"elastic: type {type!r} must be 1 or 2")
     soil, tb, tc, td = PARAMETERS[type][ground] if parameters is None else _four(parameters)  # fmt: skip
     correction = max(math.sqrt(10 / (5 + damping)), LEAST_CORRECTION)
     peak = ag * factor * importance

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import math
 import time
+from collections import namedtuple
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -210,7 +211,8 @@ class Assembly:
         free = ~self.held
         rows = np.full(self.held.shape, -1)
         rows[free] = np.arange(free.sum())
-        size = _typical(self.points - self.centres[self.pairs[self.joint, 0]])
+        arms = self.points - self.centres[self.pairs[self.joint, 0]]
+        size = float(np.mean(np.linalg.norm(arms, axis=1))) or 1.0
         force = _force(dead if np.any(dead[free]) else live, free)
         programme = Programme(self, rows, size, force)
         programme.joints(turn, fixed)
@@ -296,13 +298,12 @@ class Assembly:
 
     def _contacts(self):
         """The points on which forces act: corners of dry joints, else the points of the engine."""
-        at, area, joint = [], [], []
-        starts = np.searchsorted(self.joint, np.arange(len(self.pairs) + 1))
-        for j in range(len(self.pairs)):
+        at, area, joint = [np.zeros((0, 3))], [np.zeros(0)], []
+        starts = np.searchsorted(self.joint, np.arange(1, len(self.pairs)))
+        parts = (np.split(values, starts) for values in (self.points, self.areas))
+        for j, (points, areas) in enumerate(zip(*parts)):
             if self.elastic[j]:
                 continue
-            points = self.points[starts[j] : starts[j + 1]]
-            areas = self.areas[starts[j] : starts[j + 1]]
             if self.dry[j]:
                 points = np.asarray(self.polygons[j])
                 if self.plane:
@@ -312,23 +313,11 @@ class Assembly:
             at.append(points)
             area.append(areas)
             joint += [j] * len(points)
-        if not at:
-            return _Contacts(np.zeros((0, 3)), np.zeros(0), np.zeros(0, int))
-        return _Contacts(np.concatenate(at), np.concatenate(area), np.array(joint))
+        return _Contacts(np.concatenate(at), np.concatenate(area), np.array(joint, int))
 
 
-@dataclass
-class _Contacts:
-    """Points on which forces act: place [m], area [m²] and number of the joint."""
-
-    at: np.ndarray
-    area: np.ndarray
-    joint: np.ndarray
-
-
-def _typical(lengths):
-    """A typical length of many vectors."""
-    return float(np.mean(np.linalg.norm(lengths, axis=1))) or 1.0
+#: Points on which forces act: place [m], area [m²] and number of the joint.
+_Contacts = namedtuple("_Contacts", "at area joint")
 
 
 def _force(load, free):

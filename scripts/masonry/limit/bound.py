@@ -114,17 +114,15 @@ class Bound:
             shear = np.abs((self.along * slide).sum(axis=1)).sum()
         shear = abs(shear)
         closing = np.where(np.isfinite(a.crushing[c.joint]), np.maximum(-opening, 0), 0)
+        tension = (a.tension[c.joint] * c.area * np.maximum(opening, 0)).sum()
+        live = abs((self.factor * self.live * self.velocities).sum())
+        dead = np.abs((self.dead * self.velocities).sum(axis=1)).sum()
         return {
             "friction": max(0.0, shear - cohesion),
             "cohesion": float(cohesion),
-            "tension": float(
-                (a.tension[c.joint] * c.area * np.maximum(opening, 0)).sum()
-            ),
+            "tension": float(tension),
             "crushing": float((pressed * closing).sum()),
-            "loads": float(
-                abs((self.factor * self.live * self.velocities).sum())
-                + np.abs((self.dead * self.velocities).sum(axis=1)).sum()
-            ),
+            "loads": float(live + dead),
         }
 
     @property
@@ -169,55 +167,46 @@ class Bound:
         :param load: name of the live load
         :param unit: of the factor
         """
-        states = self.joints()
-        counts = ", ".join(
-            f"{(states == kind).sum()} {kind[:-1] if kind != 'crushes' else 'crush'}"
-            for kind in ("opens", "slides", "crushes")
-            if (states == kind).any()
-        )
-        what = (
-            "no joint slides, so this is what rigid blocks carry"
-            if self.exact
-            else "an upper bound, since " + self._reason()
-        )
-        if not self.dilates:
-            what = "joints that slip do not open" + (
-                ""
-                if self.settled
-                else f"; {100 * self.overstressed:.1g} % of the forces are above friction"
-            )
+        verbs = {"opens": "open", "slides": "slide", "crushes": "crush"}
+        moving = {verbs[kind]: n for kind, n in self._counts().items() if n}
+        counts = ", ".join(f"{count} {verb}" for verb, count in moving.items())
+        if self.dilates and self.exact:
+            what = "no joint slides, so this is what rigid blocks carry"
+        elif self.dilates:
+            what = "an upper bound, since " + self._reason()
+        else:
+            what = "joints that slip do not open"
+            if not self.settled:
+                what += f"; {100 * self.overstressed:.1g} % of the forces are above friction"
         return f"limit analysis: {load} {self.factor:.{digits}g} {unit} ({what}); joints: {counts or 'none moves'}"
 
+    def _counts(self):
+        """How many joints do what in the mechanism."""
+        states = self.joints()
+        kinds = "opens", "slides", "crushes"
+        return {kind: int((states == kind).sum()) for kind in kinds}
+
     def _reason(self):
-        powers = self.powers
-        whole = powers["loads"]
-        reasons = []
+        powers, reasons = self.powers, []
+        takes = lambda *kinds: any(powers[k] > SLIDES * powers["loads"] for k in kinds)
         if self.weaker is not None:
             reasons.append(f"open joints slip at {self.weaker:.4g} already")
-        if powers["friction"] > SLIDES * whole:
+        if takes("friction"):
             reasons.append("joints slide")
-        if any(
-            powers[kind] > SLIDES * whole
-            for kind in ("cohesion", "tension", "crushing")
-        ):
+        if takes("cohesion", "tension", "crushing"):
             reasons.append("joints lose strength")
         return " and ".join(reasons) or "joints that are open may slip"
 
     def describe(self) -> dict[str, Any]:
         """The entries of run.json: a dict."""
-        states = self.joints()
+        powers = self.powers
         return {
             "factor": self.factor,
             "exact": self.exact,
             "open_joints_slip": self.weaker,
             "dilates": self.dilates,
-            "joints": {
-                kind: int((states == kind).sum())
-                for kind in ("opens", "slides", "crushes")
-            },
-            "powers": {
-                k: v / (self.powers["loads"] or 1) for k, v in self.powers.items()
-            },
+            "joints": self._counts(),
+            "powers": {k: v / (powers["loads"] or 1) for k, v in powers.items()},
             "facets": 0 if self.assembly.plane else FACETS,
             "facet_error": self.facetError,
         }
@@ -286,11 +275,9 @@ class Bound:
             point_data={"displacement": blocks["displacement"]},
             cell_data={"body": [np.array(body)]},
         ).write(os.path.join(directory, MECHANISM[0]))
-        fans, owner = [], []
-        for number, nodes in enumerate(joints["cells"]):
-            for second, third in zip(nodes[1:], nodes[2:]):
-                fans.append((nodes[0], second, third))
-                owner.append(number)
+        cells = joints["cells"]
+        fans = [(c[0], *two) for c in cells for two in zip(c[1:], c[2:])]
+        owner = np.repeat(np.arange(len(cells)), [len(c) - 2 for c in cells])
         names = ("opening", "slide", "crushing", "normal", "damage_tension", "damage_shear")  # fmt: skip
         Mesh(
             joints["points"],

@@ -68,13 +68,8 @@ class Programme:
         """All joints, props, ties and springs. Parameters as of :meth:`Assembly._solve`."""
         a = self.assembly
         self._rigid()
-        for block, direction, point in a.props:
-            load = a.force(block, direction, point)[block]
-            load[3:] /= self.size
-            kept = (self.rows[block] >= 0) & (load != 0)
-            column, rows = self._new(1, -np.inf, np.inf), self.rows[block][kept]
-            self._equal.append((rows, np.repeat(column, len(rows)), load[kept]))
-        for loads, least, most in a.links:
+        props = [([(b, a.force(b, *prop)[b])], -np.inf, np.inf) for b, *prop in a.props]
+        for loads, least, most in [*props, *a.links]:
             column = self._new(1, least / self.force, most / self.force)
             for block, load in loads:
                 load = np.concatenate([load[:3], load[3:] / self.size])
@@ -93,17 +88,16 @@ class Programme:
         if not len(which):
             return
         areas = np.bincount(a.joint, a.areas, len(a.pairs))
-        middle = np.column_stack(
-            [np.bincount(a.joint, a.areas * x, len(a.pairs)) for x in a.points.T]
-        )[which]
-        middle /= areas[which][:, None]
-        axes = np.eye(3)[[0, 2]] if a.plane else np.eye(3)
-        for axis in axes:
+        moments = [np.bincount(a.joint, a.areas * x, len(a.pairs)) for x in a.points.T]
+        middle = np.column_stack(moments)[which] / areas[which][:, None]
+        forces, turns = (np.eye(3)[[0, 2]], np.eye(3)[[1]]) if a.plane else (np.eye(3),) * 2  # fmt: skip
+        tiled = lambda axis: np.tile(axis, (len(which), 1))
+        for axis in forces:
             columns = self._new(len(which), -np.inf, np.inf)
-            self._forces(which, middle, np.tile(axis, (len(which), 1)), columns)
-        for axis in np.eye(3)[[1]] if a.plane else np.eye(3):
+            self._forces(which, middle, tiled(axis), columns)
+        for axis in turns:
             columns = self._new(len(which), -np.inf, np.inf)
-            self._forces(which, middle, None, columns, np.tile(axis, (len(which), 1)))
+            self._forces(which, middle, None, columns, tiled(axis))
 
     def _dry(self, which, turn):
         """Contacts of dry joints in space: forces within the friction cone, as sums of its edges."""

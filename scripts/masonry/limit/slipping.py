@@ -37,9 +37,8 @@ def loosened(assembly, live, dead):
             break
         if _belongs(assembly, bound) and (least is None or bound.factor < least.factor):
             least = bound
-        pressed = np.bincount(
-            assembly.contacts.joint, bound.normal, len(assembly.pairs)
-        )
+        joint = assembly.contacts.joint
+        pressed = np.bincount(joint, bound.normal, len(assembly.pairs))
         bare = pressed < UNPRESSED * pressed.max()
         friction = np.where(bare, 0, smooth.friction)
         if (friction == smooth.friction).all():

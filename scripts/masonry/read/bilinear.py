@@ -390,15 +390,8 @@ def ofRun(
     """
     push = directory if isinstance(directory, Pushover) else pushover(directory)
     try:
-        found = bilinear(
-            push.displacement,
-            push.force,
-            rule,
-            secant,
-            fall,
-            mechanism,
-            push.data.pulse,
-        )
+        curve = push.displacement, push.force
+        found = bilinear(*curve, rule, secant, fall, mechanism, push.data.pulse)
     except Refused as refused:
         raise Refused(f"{push.directory}: {refused}") from None
     unreached = found.unreached

@@ -28,11 +28,8 @@ def widths(frame: dict[str, Any]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     slide = np.linalg.norm(frame["slide"], axis=1)
     opened = frame["opening"] > np.maximum(CRACK, 0.5 * slide)
     damaged = np.maximum(frame["damage_tension"], frame["damage_shear"]) > DAMAGED
-    return (
-        np.maximum(frame["opening"], slide),
-        opened,
-        damaged & (opened | (slide > CRACK)),
-    )
+    cracked = damaged & (opened | (slide > CRACK))
+    return np.maximum(frame["opening"], slide), opened, cracked
 
 
 def widest(joints: Any) -> tuple[float, Any, Any]:
@@ -77,9 +74,7 @@ def layOut(
     names = ("opening", "slide", "shear", "crushing", "past")
     beds = {name: np.zeros((courses + 1, columns)) for name in names}
     upright = {name: np.zeros((courses, columns - 1)) for name in names}
-    _, first, joint = np.unique(
-        frame["bodies"], axis=0, return_index=True, return_inverse=True
-    )
+    _, first, joint = np.unique(frame["bodies"], axis=0, return_index=True, return_inverse=True)  # fmt: skip
     area = frame["area"]
     total = lambda values: np.bincount(joint, area * values)
     centres = centresOf(frame["points"], frame["cells"])
@@ -193,10 +188,9 @@ def diagonal(
     - parallel_cracks [-]: upright joints open more than CRACK in an inner course, on average: the diagonal cracks that a
       horizontal line crosses
     """
-    position = np.concatenate(
-        [acrossDiagonal(j["shear"].shape, j is upright).ravel() for j in (bed, upright)]
-    )
-    energy = np.concatenate([j["shear"].ravel() for j in (bed, upright)])
+    energies = bed["shear"], upright["shear"]
+    places = [acrossDiagonal(e.shape, e is energies[1]) for e in energies]
+    energy, position = (np.concatenate([*map(np.ravel, v)]) for v in (energies, places))
     energy, position = (v[np.isfinite(position)] for v in (energy, position))
     near, lost = np.abs(position) < NEAR, energy.sum()
     gaping = upright["opening"] > CRACK
@@ -339,11 +333,8 @@ def failureMode(
     if grows:
         return "none yet"
     opened = max(numbers[f"flexural_opening_{side}_mm"] for side in ("base", "top"))
-    if (
-        numbers["slid_share"] >= SLID[0]
-        and numbers["sliding_energy_share"] >= SLID[1]
-        and numbers["slid_mm"] > opened
-    ):
+    shares = numbers["slid_share"], numbers["sliding_energy_share"]
+    if shares[0] >= SLID[0] and shares[1] >= SLID[1] and numbers["slid_mm"] > opened:
         return "bed sliding"
     if numbers["diagonal_reach"] >= 0.5 * min(wall["courses"], wall["half_units"]):
         return "diagonal cracking"

@@ -31,13 +31,7 @@ def plan(
         raise Refused(
             f'{directory}: run.json has no entry "figure", which says what to draw: an older version of the plugin made it'
         )
-    spec = {
-        "y_label": "",
-        "looped": False,
-        "marks": [],
-        "bounds": [],
-        **spec,
-    }
+    spec = {"y_label": "", "looped": False, "marks": [], "bounds": [], **spec}
     for axis in (spec["x"], *spec["y"]):
         if axis["column"] not in data:
             raise Refused(
@@ -142,10 +136,7 @@ def _energies(axes, x, label, stack, work):
         axes.plot(x, values, lw=1, label=name)
     if work is not None:
         axes.plot(x, work, color="black", lw=1, ls="--", label="work done")
-    axes.set_xlabel(label)
-    axes.set_ylabel("energy since the first row [J]")
-    axes.legend(fontsize=8)
-    axes.grid(alpha=0.3)
+    drawing.finish(axes, label, "energy since the first row [J]", fontsize=8)
 
 
 def _curves(axes, spec, data, x, ideal=None):
@@ -154,14 +145,8 @@ def _curves(axes, spec, data, x, ideal=None):
     first = data[spec["y"][0]["column"]]
     for n, axis in enumerate(spec["y"]):
         wide = (0.7, 0.4) if looped else (1.2, 0.6)
-        axes.plot(
-            x,
-            data[axis["column"]],
-            color=LINES[n % len(LINES)],
-            lw=wide[n > 0],
-            label=axis["label"],
-            zorder=1 if n else 2,
-        )
+        look = dict(color=LINES[n % len(LINES)], lw=wide[n > 0], zorder=1 if n else 2)
+        axes.plot(x, data[axis["column"]], **look, label=axis["label"])
     if ideal:
         axes.plot(*ideal, color="tab:blue", lw=1.6, ls=(0, (5, 3)), label="bilinear")
     if looped:
@@ -178,28 +163,15 @@ def _curves(axes, spec, data, x, ideal=None):
         at, value = mark["x"], mark["y"]
         left = (at > 0) if looped else at > 0.7 * x.max() + 0.3 * x.min()
         axes.plot(at, value, "o", color="tab:red", ms=5)
-        axes.annotate(
-            mark["text"],
-            (at, value),
-            textcoords="offset points",
-            xytext=(6, -14)
-            if mark.get("below")
-            else (-6 if left and not looped else 6, 8)
-            if value >= 0
-            else (-6, -14),
-            ha="right" if left else "left",
-        )
+        away = (-6 if left and not looped else 6, 8) if value >= 0 else (-6, -14)
+        place = dict(textcoords="offset points", ha="right" if left else "left")
+        away = (6, -14) if mark.get("below") else away
+        axes.annotate(mark["text"], (at, value), xytext=away, **place)
     for bound in spec["bounds"]:
         axes.axhline(bound["y"], color="0.35", lw=0.9, ls=(0, (6, 3)), zorder=0)
-        axes.annotate(
-            bound["text"],
-            (0.01, bound["y"]),
-            xycoords=("axes fraction", "data"),
-            textcoords="offset points",
-            xytext=(0, 3),
-            fontsize=8,
-            color="0.25",
-        )
+        place = dict(xycoords=("axes fraction", "data"), textcoords="offset points")
+        text = bound["text"], (0.01, bound["y"]), (0, 3)
+        axes.annotate(*text, **place, fontsize=8, color="0.25")
     axes.set_ylabel(spec["y_label"])
     if len(spec["y"]) > 1 or looped or ideal:
         axes.legend(loc="lower right")

@@ -84,15 +84,6 @@ def stiffness(displacement: Numbers, force: Numbers, ramp: int = 0) -> float:
     return sum(u * f for u, f in first[: end + 1]) / squares if squares else 0.0
 
 
-def peakAtBothEnds(top: Numbers, base: Numbers) -> float:
-    """The largest force that top and base carried at once: in every row the smaller of both counts. It is 0 if there are no rows.
-
-    When a crack tears at once, a wave runs through the wall, and for some hundredths of a millimetre one end feels a force
-    that the other does not. Such a pulse counts in the peak at the base, but not here.
-    """
-    return max(map(min, zip(top, base)), default=0.0)
-
-
 def suddenLoss(displacement: Numbers, top: Numbers, base: Numbers) -> tuple[float, float]:  # fmt: skip
     """The largest fall of the force of a push within :data:`SUDDEN`, over its peak [-], and the displacement at which it begins.
 
@@ -153,25 +144,18 @@ def initialStiffness(displacement: Numbers, force: Numbers) -> float:
     A push that begins under a force of more than a hundredth of the peak, as of a drive that held a weight before, counts
     from that force.
     """
-    if not force:
+    moved, force = np.asarray(displacement, float), np.asarray(force, float)
+    if not len(force):
         return 0.0
-    if abs(force[0]) > 0.01 * max(force):
-        force = [f - force[0] for f in force]
-    peak = max(force)
-    points = []
-    for d, f in zip(displacement, force):
-        if f > 0.25 * peak:
-            break
-        if f > 0.05 * peak:
-            points.append((d, f))
-    if len(points) < 2:  # to the first row with another displacement
-        rows = list(zip(displacement, force))
-        points = rows[:1] + [row for row in rows if row[0] != displacement[0]][:1]
-    n = len(points)
-    meanD, meanF = sum(p[0] for p in points) / n, sum(p[1] for p in points) / n
-    spread = sum((d - meanD) ** 2 for d, _ in points)
-    products = sum((d - meanD) * (f - meanF) for d, f in points)
-    return products / spread if spread > 0 else 0.0
+    if abs(force[0]) > 0.01 * force.max():
+        force = force - force[0]
+    end = int(np.argmax(np.append(force > 0.25 * force.max(), True)))
+    rows = np.flatnonzero(force[:end] > 0.05 * force.max())
+    if len(rows) < 2:  # to the first row with another displacement
+        rows = np.append(0, np.flatnonzero(moved != moved[0])[:1])
+    away = moved[rows] - moved[rows].mean()
+    spread = away @ away
+    return float(away @ force[rows] / spread) if spread > 0 else 0.0
 
 
 def firstCrack(
@@ -212,9 +196,7 @@ def cycleNumbers(
     if not moved:
         return []
     top, damping = column("top_shear_kN"), column("damping_J")
-    modes = [
-        column(f"dissipated_{mode}_J") for mode in ("tension", "shear", "compression")
-    ]
+    modes = (column(f"dissipated_{m}_J") for m in ("tension", "shear", "compression"))
     dissipated = [sum(values) for values in zip(*modes)]
     found = []
     for cycle in loops.cycles(moved, base, threshold):
@@ -222,11 +204,9 @@ def cycleNumbers(
         grown = lambda values: float(
             loops.stretch(values, start, end)[[0, -1]] @ [-1, 1]
         )
-        numbers = {
-            name: None if math.isnan(value) else value
-            for name, value in cycle._asdict().items()
-        }
-        numbers.pop("start"), numbers.pop("end")
+        known = cycle._asdict()
+        del known["start"], known["end"]
+        numbers = {n: None if math.isnan(value) else value for n, value in known.items()}  # fmt: skip
         found.append(
             dict(
                 rows=[math.ceil(start), math.floor(end)],

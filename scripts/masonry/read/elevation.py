@@ -15,7 +15,7 @@ from . import drawing
 from .cracks import CRACK, CRUSHED, crushed, widths
 from .curve_figure import plan, unitOf
 from .files import readCurve, readRun
-from .frames import frameTimes, readFrame
+from .frames import frameAt, frameTimes, readFrame
 from .views import REACH, magnificationOf, outline, viewOf
 
 ASKEW = 0.14  # cosine from which a joint is drawn as an area, not as a line: 8° between its face and the line of sight
@@ -205,9 +205,8 @@ class Elevation:
         s, ends = self.structure, []
         for body, end in zip(tie["bodies"], np.array(tie["ends_m"])):
             moved = np.zeros(3)
-            if (
-                body in s.corners
-            ):  # it moves with its corners; without one it is held by the ground
+            # it moves with its corners; without one it is held by the ground
+            if body in s.corners:
                 nodes = s.corners[body]
                 arms = s.blocks["points"][nodes] - end
                 basis = np.column_stack([arms, np.ones(len(arms))])
@@ -243,10 +242,8 @@ def figureOf(structure: Structure, title: str, magnification: float | None = Non
         magnification = magnificationOf(size, np.concatenate([one.inPlane for one in elevations]))  # fmt: skip
     boxes = [one.box(magnification) for one in elevations]
     sizes = np.array([high - low for low, high in boxes])
-    columns, scale = max(
-        ((n, _scale(sizes, n)) for n in range(1, len(sizes) + 1)),
-        key=lambda one: one[1],
-    )
+    columns = max(range(1, len(sizes) + 1), key=lambda n: _scale(sizes, n))
+    scale = _scale(sizes, columns)
     rows = [range(n, min(n + columns, len(sizes))) for n in range(0, len(sizes), columns)]  # fmt: skip
     wides = [scale * max(sizes[c::columns, 0]) for c in range(columns)]
     highs = [scale * max(sizes[n, 1] for n in row) for row in rows]
@@ -350,12 +347,9 @@ def frameOfCracks(run: dict[str, Any], directory: FilePath) -> int:
 
     :param run: entries of run.json
     """
-    times = frameTimes(directory)
     answers = {a["name"]: a["value"] for a in run.get("answers") or [] if a["stage"] == "fall"}  # fmt: skip
     found = [answers[n] for n in ("noticed_at", "first_fall") if n in answers]
-    if not found:
-        return len(times) - 1
-    return int(np.argmin(np.abs(np.asarray(times) - min(found))))
+    return frameAt(directory, min(found)) if found else len(frameTimes(directory)) - 1
 
 
 def whenOf(run: dict[str, Any], directory: FilePath, number: int) -> str:
@@ -366,7 +360,5 @@ def whenOf(run: dict[str, Any], directory: FilePath, number: int) -> str:
         spec = plan(run, data, directory)["x"]
         if spec["column"] != "time_s":
             value, unit = np.interp(time, data["time_s"], data[spec["column"]]), unitOf(spec)  # fmt: skip
-            return (
-                f"at {value:.1f} {unit}" if unit == "mm" else f"at {value:.3g} {unit}"
-            )
+            return f"at {value:{'.1f' if unit == 'mm' else '.3g'}} {unit}"
     return f"at {time:.3g} s"

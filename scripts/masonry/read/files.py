@@ -59,11 +59,10 @@ def readCurve(directory: FilePath) -> dict[str, list[float]]:
 def readRun(directory: FilePath) -> dict[str, Any]:
     """run.json of a run as a dict; this module's docstring lists its keys. Raises Refused if there is none."""
     path = os.path.join(directory, "run.json")
+    text = readText(path)
     try:
-        run = fromJson(readText(path))
+        run = fromJson(text)
     except ValueError as error:
-        if isinstance(error, Refused):
-            raise
         raise Refused(f"{path}: {error}") from None
     if not isinstance(run, dict):
         raise Refused(f"{path}: is no record of a run")

@@ -32,17 +32,12 @@ def framePaths(directory: FilePath, kind: str) -> list[str]:
     :param kind: ``blocks``, ``joints`` or ``connectors``
     :raises Refused: if there is none
     """
-    number = lambda path: int(re.search(r"_(\d+)\.vt[up]$", path)[1])
-    paths = [
-        path
-        for path in glob.glob(
-            os.path.join(glob.escape(os.fspath(directory)), kind + "_*.vt[up]")
-        )
-        if re.search(r"_\d+\.vt[up]$", path)
-    ]
-    if not paths:
+    pattern = os.path.join(glob.escape(os.fspath(directory)), kind + "_*.vt[up]")
+    found = {path: re.search(r"_(\d+)\.vt[up]$", path) for path in glob.glob(pattern)}
+    numbers = {path: int(match[1]) for path, match in found.items() if match}
+    if not numbers:
         raise Refused(f"no file {kind}_*.vt? in {directory}")
-    return sorted(paths, key=number)
+    return sorted(numbers, key=lambda path: numbers[path])
 
 
 def frameTimes(directory: FilePath) -> list[float]:
@@ -55,6 +50,11 @@ def frameTimes(directory: FilePath) -> list[float]:
         raise Refused(f"cannot read {path}: {error.strerror}") from None
     except (ElementTree.ParseError, TypeError, ValueError) as error:
         raise Refused(f"cannot read {path}: {error}") from None
+
+
+def frameAt(directory: FilePath, time: float) -> int:
+    """Number of the frame nearest to a time [s], from 0."""
+    return int(np.argmin(np.abs(np.array(frameTimes(directory)) - time)))
 
 
 def readFrame(directory: FilePath, kind: str, number: int = -1) -> dict[str, Any]:
@@ -97,11 +97,9 @@ def asFrame(found: Any, names: Sequence[str] | None = None) -> dict[str, Any]:
 
     :param names: the arrays that are needed, beside the cells; None: all of them, which takes twice as long
     """
-    frame: dict[str, Any] = {
-        name: np.array(found[name]) for name in names or found if name != "cells"
-    }
-    frame["cells"] = [np.array(cell) for cell in found["cells"]]
-    return frame
+    arrays = [name for name in names or found if name != "cells"]
+    cells = [np.array(cell) for cell in found["cells"]]
+    return {**{name: np.array(found[name]) for name in arrays}, "cells": cells}
 
 
 POLYHEDRON, TETRAHEDRON = 42, 10  # numbers of VTK for the cells of blocks
@@ -139,10 +137,8 @@ def _surfaces(root):
 
 def _opened(root):
     """The piece of a parsed file, and a function that reads its arrays."""
-    if (root.get("compressor"), root.get("byte_order")) != (
-        "vtkZLibDataCompressor",
-        "LittleEndian",
-    ):
+    form = root.get("compressor"), root.get("byte_order")
+    if form != ("vtkZLibDataCompressor", "LittleEndian"):
         raise ValueError("it was not written by MasonryVtkRecorder")
     appended = root.find("AppendedData")
     if appended.get("encoding") != "base64":
@@ -156,10 +152,9 @@ def _frame(root):
     """What :func:`readFrame` returns, of the parsed file."""
     piece, read = _opened(root)
     frame = {"points": read(piece.find("Points/DataArray"))}
-    for array in piece.findall("PointData/DataArray") + piece.findall(
-        "CellData/DataArray"
-    ):
-        frame[array.get("Name")] = read(array)
+    for place in ("PointData", "CellData"):
+        for array in piece.findall(f"{place}/DataArray"):
+            frame[array.get("Name")] = read(array)
     frame["cells"] = []
     for kind in ("Verts", "Lines", "Polys") if root.get("type") == "PolyData" else ("Cells",):  # fmt: skip
         ends, corners = (
@@ -189,10 +184,8 @@ def _array(array, text, size):
     blocks = struct.unpack_from("<" + size, decode(start, width))[0]
     head = width * (3 + blocks)
     sizes = struct.unpack_from(f"<{3 + blocks}{size}", decode(start, head))[3:]
-    data, parts, at = decode(start + letters(head), sum(sizes)), [], 0
-    for length in sizes:
-        parts.append(zlib.decompress(data[at : at + length]))
-        at += length
+    data, ends = decode(start + letters(head), sum(sizes)), np.cumsum(sizes)
+    parts = [zlib.decompress(data[b - n : b]) for n, b in zip(sizes, ends)]
     numbers = np.frombuffer(b"".join(parts), "<" + TYPES[array.get("type")])
     components = int(array.get("NumberOfComponents") or 1)
     return numbers.reshape(-1, components) if components > 1 else numbers

@@ -259,9 +259,7 @@ def cycles(
         lost = work(moved, force, start, end)
         stiffness = secantStiffness(moved, force, high, low)
         forces = stretch(force, start, end)
-        residual = lambda i: residualDisplacement(
-            moved, force, pair[i].extreme, until[i]
-        )
+        residuals = [residualDisplacement(moved, force, half.extreme, last) for half, last in zip(pair, until)]  # fmt: skip
         found.append(
             Cycle(
                 start=start,
@@ -274,8 +272,8 @@ def cycles(
                 smallest_kN=float(forces.min()),
                 stiffness_kN_per_mm=stiffness,
                 damping=equivalentDamping(lost, stiffness, amplitude),
-                residual_positive_mm=residual(rising),
-                residual_negative_mm=residual(1 - rising),
+                residual_positive_mm=residuals[rising],
+                residual_negative_mm=residuals[1 - rising],
             )
         )
     return found

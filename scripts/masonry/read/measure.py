@@ -13,7 +13,6 @@ from __future__ import annotations
 import glob
 import os
 import sys
-import xml.etree.ElementTree as ElementTree
 from typing import Any, Iterator
 
 import numpy as np
@@ -22,14 +21,8 @@ from ..arguments import FilePath
 from ..basics import Refused, say
 from . import cracks, loops, quantities
 from .files import filesOf, onFolder, readCurve, readRun
-from .frames import readFrame
+from .frames import frameAt, readFrame
 from .run_data import BASE, TOP, RunData
-
-
-def frameAt(directory: FilePath, time: float) -> int:
-    """Number of the joints' frame nearest to a time [s]."""
-    sets = ElementTree.parse(os.path.join(directory, "joints.pvd")).iter("DataSet")
-    return int(np.argmin([abs(float(s.get("timestep")) - time) for s in sets]))
 
 
 def wallNumbers(directory: FilePath) -> dict[str, Any]:

@@ -7,7 +7,9 @@ from __future__ import annotations
 import os
 from typing import Any
 
+from ..arguments import FilePath
 from ..basics import plain
+from ..folders import replaced
 from ..packages import needed
 
 #: What a whole page may do: run what stands in it. The browser refuses every request to a network.
@@ -32,6 +34,12 @@ def rendered(path: str, **values: Any) -> str:
 
     environment.filters["script"] = asScript
     return environment.get_template(path).render(own=own, policy=POLICY, **values)
+
+
+def write(path: FilePath, text: str) -> None:
+    """Write a page, whole or not at all. Raises OSError, also if its name is that of a symbolic link."""
+    with replaced(path, encoding="utf-8") as file:
+        file.write(text)
 
 
 def asScript(code: str) -> Any:

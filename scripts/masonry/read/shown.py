@@ -62,9 +62,8 @@ class Curve:
     def __getitem__(self, name):
         if name not in self._columns:
             close = nearest(name, self._columns)
-            raise KeyError(
-                f"no column {name!r}{close or '; there are ' + ', '.join(self._columns)}"
-            )
+            others = close or f"; there are {', '.join(self._columns)}"
+            raise KeyError(f"no column {name!r}{others}")
         return self._columns[name]
 
     def __iter__(self):

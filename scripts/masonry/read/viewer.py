@@ -26,7 +26,7 @@ from . import gltf, page
 from .cracks import CRACK, DAMAGED
 from .elevation import whenOf
 from .files import filesOf, readCurve, readRun
-from .frames import frameTimes
+from .frames import frameAt, frameTimes
 from .model import GROUND, OPEN, PLATEN, Model
 
 #: Folder into which python3-paraview can be unpacked where it cannot be installed beside python3-vtk9.
@@ -72,7 +72,7 @@ def frameNear(directory: FilePath, at: Any) -> int:
         raise Refused(
             f"--at: {directory} has frames from {min(times):g} to {max(times):g} s, not at {value:g} s"
         )
-    return int(np.argmin(np.abs(np.array(times) - value)))
+    return frameAt(directory, value)
 
 
 def sceneOf(directory: FilePath, number: int, magnification: float | None, shape: float, still: bool) -> dict[str, Any]:  # fmt: skip
@@ -134,9 +134,8 @@ def inParaView(directories: Sequence[FilePath], at: Any, magnification: float | 
         "picture": target if still else None,
         "film": target if film else None,
     }  # fmt: skip
-    widest = max(
-        run["widest_mm"] for run in job["runs"]
-    )  # one scale of colours for all
+    # one scale of colours for all
+    widest = max(run["widest_mm"] for run in job["runs"])
     for run in job["runs"]:
         run["widest_mm"] = widest
     unpacked = os.path.join(UNPACKED, "usr")

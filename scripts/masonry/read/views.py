@@ -44,20 +44,16 @@ def viewOf(points, normals, areas, sight=None):
         if best is None or sides[0] * sides[1] < best[0] * best[1] * (1 - 1e-9):
             best = (*sides, along, across)
     first, second, along, across = best
-    if second > 1.05 * first or (
-        second > first / 1.05 and abs(across[0]) > abs(along[0])
-    ):
+    towardsX = abs(across[0]) > abs(along[0])
+    if second > 1.05 * first or second > first / 1.05 and towardsX:
         first, second, along, across = second, first, across, along
     if sight is not None:
         away = -np.array(sight, float) / np.linalg.norm(sight)
     else:
         away = np.array([0, 0, 1.0])
         total = areas.sum()
-        standing = [
-            side
-            for side in (across, along)
-            if total and areas @ (normals[:, :2] @ side) ** 2 < 1e-6 * total
-        ]
+        stands = lambda side: areas @ (normals[:, :2] @ side) ** 2 < 1e-6 * total
+        standing = [side for side in (across, along) if total and stands(side)]
         if standing or second <= height:
             away = np.append(standing[0] if standing else across, 0)
     return _viewFrom(away, points, sight is None)
@@ -84,11 +80,8 @@ def _viewFrom(away, points, either):
             continue
         start = start + (points @ direction).min() * direction
         angle = np.degrees(np.arctan2(direction[1], direction[0]))
-        labels.append(
-            f"along the part, {angle:.0f}° from x [m]"
-            if abs(direction[2]) < 1e-6
-            else "upwards in the picture [m]"
-        )
+        level = f"along the part, {angle:.0f}° from x [m]"
+        labels.append(level if abs(direction[2]) < 1e-6 else "upwards in the picture [m]")  # fmt: skip
     return View(right, up, towards, start, labels, name)
 
 

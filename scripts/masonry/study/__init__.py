@@ -23,42 +23,23 @@ python3-openturns); a grid of numbers and choices needs no more than Python.
 import importlib
 from typing import TYPE_CHECKING
 
-#: Public names by the module that has them. They are loaded when they are used first, because a row needs none of them.
-_NAMES = {
-    "plan": ["Study"],
-    "incremental": ["Sa"],
-    "variables": [
-        "Distribution",
-        "Field",
-        "choice",
-        "field",
-        "lognormal",
-        "normal",
-        "uniform",
-    ],
-}
-__all__ = [name for names in _NAMES.values() for name in names]
+_VARIABLES = "Distribution", "Field", "choice", "field", "lognormal", "normal", "uniform"  # fmt: skip
+#: Public names with the module that has them. They are loaded when they are used first, because a row needs none of them.
+_NAMES = {"Study": "plan", "Sa": "incremental", **dict.fromkeys(_VARIABLES, "variables")}  # fmt: skip
+__all__ = [*_NAMES]
 
 
 if TYPE_CHECKING:
     from .incremental import Sa
     from .plan import Study
-    from .variables import (
-        Distribution,
-        Field,
-        choice,
-        field,
-        lognormal,
-        normal,
-        uniform,
-    )
+    from .variables import Distribution, Field, choice, field
+    from .variables import lognormal, normal, uniform
 else:
 
     def __getattr__(name):
-        for module, names in _NAMES.items():
-            if name in names:
-                return getattr(importlib.import_module(f"{__name__}.{module}"), name)
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+        if name not in _NAMES:
+            raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+        return getattr(importlib.import_module(f"{__name__}.{_NAMES[name]}"), name)
 
 
 def __dir__():

@@ -23,6 +23,13 @@ from .start import NOTHING, begin
 KEPT = "what was computed is kept, and the same command goes on when there is space"
 
 
+SWITCHES = {
+    "--slurm": "run the rows on a cluster: one job array",
+    "--prepare": "check the study and make its folder; run nothing",
+    "--gather": "write study.csv of what is there; run nothing",
+}
+
+
 def parser():
     p = argparse.ArgumentParser(
         prog="python3 -m masonry.study",
@@ -43,19 +50,8 @@ def parser():
         default=len(os.sched_getaffinity(0)),
         help="runs at a time (default: %(default)s, all cores)",
     )
-    p.add_argument(
-        "--slurm", action="store_true", help="run the rows on a cluster: one job array"
-    )
-    p.add_argument(
-        "--prepare",
-        action="store_true",
-        help="check the study and make its folder; run nothing",
-    )
-    p.add_argument(
-        "--gather",
-        action="store_true",
-        help="write study.csv of what is there; run nothing",
-    )
+    for name, what in SWITCHES.items():
+        p.add_argument(name, action="store_true", help=what)
     return p
 
 
@@ -70,7 +66,7 @@ def load(path):
         raise Refused(
             f"{path} must make one masonry.study.Study, it makes {len(studies)}"
         )
-    return [*studies.values()][0]
+    return studies.popitem()[1]
 
 
 def tell(folder):

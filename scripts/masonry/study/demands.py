@@ -40,36 +40,24 @@ class Demands:
         self.intensityName = chains.plan["measure"]
         self.directory = record.directory
         self.names = [one["name"] for one in chains.plan["records"]]
-        status, fallen = record.cells["status"], record.cells.get("collapsed", [])
+        status = np.array(record.cells["status"])
+        fallen = np.array(record.cells.get("collapsed", [""] * len(record))) == "True"
+        ended, above = status == "ended", status == "above collapse"
         self.measure = measure or _usual(record)
         found = np.full(len(record), np.nan)
         if self.measure:
             found = abs(record.numbers(self.measure))
+        found[~ended | fallen] = np.nan
+        found[ended & fallen | above] = math.inf
+        each = [chains.intensity(n + 1) for n in range(len(record))]
+        byRecord = lambda values: np.reshape(values, (len(self.names), chains.each))
+        levels, fell, stood = map(byRecord, (each, ended & fallen, ended & ~fallen))
         #: of every record its rows, the lowest level first: intensity and demand, NaN where it is not known
-        self.rows = [([], []) for _ in self.names]
+        self.rows = [*zip(levels.tolist(), byRecord(found).tolist())]
         #: of every record the level at which the structure fell; infinite: it stood
-        self.fell = [math.inf] * len(self.names)
-        for n in range(len(record)):
-            one, intensity = chains.record(n + 1), chains.intensity(n + 1)
-            collapsed = status[n] == "ended" and fallen[n] == "True"
-            if collapsed:
-                self.fell[one] = min(self.fell[one], intensity)
-            known = status[n] == "ended" and not collapsed
-            self.rows[one][0].append(intensity)
-            self.rows[one][1].append(
-                math.inf if collapsed or status[n] == "above collapse"
-                else found[n] if known else math.nan
-            )  # fmt: skip
+        self.fell = np.where(fell, levels, math.inf).min(axis=1).tolist()
         #: of every record the intensities at which the structure stood, also where nothing was watched
-        self.stood = [
-            [i for i, n in zip(self.rows[r][0], self._numbers(r)) if status[n] == "ended" and fallen[n] != "True"]
-            for r in range(len(self.names))
-        ]  # fmt: skip
-
-    def _numbers(self, record):
-        """The rows of a record in study.csv, from 0."""
-        each = len(self.rows[record][0])
-        return range(record * each, (record + 1) * each)
+        self.stood = [row[own].tolist() for row, own in zip(levels, stood)]
 
     @property
     def levels(self):
@@ -154,10 +142,5 @@ def _between(intensities, demands, at):
 def _quantile(values, share):
     """A quantile of sorted numbers, of which some may be infinite: even between two of them."""
     place = share * (len(values) - 1)
-    below = int(place)
-    part = place - below
-    if part == 0:
-        return float(values[below])
-    if math.isinf(values[below + 1]):
-        return math.inf
-    return float(values[below] + part * (values[below + 1] - values[below]))
+    low, high = (float(values[end(place)]) for end in (math.floor, math.ceil))
+    return high if math.isinf(high) else low + (place % 1) * (high - low)

@@ -6,6 +6,7 @@ the same to the last digit whoever ran the rows. ``times.csv`` has what is not: 
 """
 
 import csv
+import functools
 import io
 import os
 import re
@@ -29,10 +30,8 @@ class Folder:
 
     def __init__(self, path):
         self.path = os.path.abspath(path)
-        self._chains = None
-        self._ended = (
-            {}
-        )  # whether the structure fell, by the numbers of rows that have ended
+        #: whether the structure fell, by the numbers of rows that have ended
+        self._ended = {}
 
     def of(self, *names):
         return os.path.join(self.path, *names)
@@ -57,9 +56,7 @@ class Folder:
         try:
             record = folders.fromJson(readWhole(self.of(STUDY)))
         except (OSError, ValueError):
-            raise Refused(
-                f"{self.path} is no folder of a study: it has no {STUDY}"
-            ) from None
+            raise Refused(f"{self.path} is no folder of a study: it has no {STUDY}") from None  # fmt: skip
         if not _isStudy(record):
             raise Refused(f"{self.of(STUDY)} is damaged: it describes no study")
         return record
@@ -78,12 +75,10 @@ class Folder:
     def isHeld(self, number):
         return held(self.row(number))
 
-    @property
+    @functools.cached_property
     def chains(self):
         """:class:`masonry.study.incremental.Chains` of the study."""
-        if self._chains is None:
-            self._chains = Chains(self.description()["study"])
-        return self._chains
+        return Chains(self.description()["study"])
 
     def hasFallen(self, number):
         """Whether a row has ended with a structure that fell when it was shaken."""
@@ -147,15 +142,7 @@ def written(path, text):
 
 
 #: How lines begin that are no reason of a failure.
-_CHATTER = (
-    "Yade: ",
-    "Running script",
-    "XMLRPC",
-    "TCP python",
-    "Welcome to",
-    "Using python",
-    "note: ",
-)
+_CHATTER = ("Yade: ", "Running script", "XMLRPC", "TCP python", "Welcome to", "Using python", "note: ")  # fmt: skip
 _ERROR = re.compile(r"[\w.]*(Error|Exception|Exit|Interrupt)\b")
 
 
@@ -231,6 +218,5 @@ def _varied(name, text):
 
 def _csv(head, lines):
     out = io.StringIO()
-    writer = csv.writer(out, lineterminator="\n")
-    writer.writerows([head, *lines])
+    csv.writer(out, lineterminator="\n").writerows([head, *lines])
     return out.getvalue()

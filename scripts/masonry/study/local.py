@@ -86,17 +86,11 @@ class Local:
     def _show(self):
         done, failed = self.runs - len(self.open), len(self.failed)
         more = f", {failed} failed" if failed else ""
-        self.progress.show(
-            "study",
-            done / self.runs,
-            lambda: f"{done - failed} of {self.runs} rows{more}",
-            None,
-            not self.open,
-        )
+        said = lambda: f"{done - failed} of {self.runs} rows{more}"
+        self.progress.show("study", done / self.runs, said, None, not self.open)
 
     def _fail(self, number, why):
         self.failed[number] = why
         self.open.remove(number)
-        say(
-            f"\nrow {batch.named(number)} failed: {why}; see {self.folder.row(number)}.log"
-        )
+        log = self.folder.row(number) + ".log"
+        say(f"\nrow {batch.named(number)} failed: {why}; see {log}")

@@ -125,23 +125,18 @@ def paired(expensive, cheap, measure, other=None):
             f"{expensive.directory} varies {', '.join(expensive.varied)}, and {cheap.directory} {', '.join(cheap.varied)}"
         )
     else:
-        keys = {}
-        for study in (expensive, cheap):
-            columns = [study.cells[name] for name in expensive.varied]
-            keys[study] = list(zip(*columns))
-            if len(set(keys[study])) < len(keys[study]):
-                problems.append(
-                    f"{study.directory}: rows have the same properties, so that it cannot be told which are shared"
-                )
+        rowsOf = lambda study: [*zip(*(study.cells[n] for n in expensive.varied))]
+        keys = {study: rowsOf(study) for study in (expensive, cheap)}
+        problems += [
+            f"{study.directory}: rows have the same properties, so that it cannot be told which are shared"
+            for study, own in keys.items()
+            if len(set(own)) < len(own)
+        ]
     if problems:
         raise Refused("\n".join(problems))
     y, x = expensive.numbers(measure), cheap.numbers(other or measure)
     place = {key: row for row, key in enumerate(keys[cheap]) if np.isfinite(x[row])}
-    shared = [
-        row
-        for row, key in enumerate(keys[expensive])
-        if key in place and np.isfinite(y[row])
-    ]
+    shared = [n for n, key in enumerate(keys[expensive]) if key in place and np.isfinite(y[n])]  # fmt: skip
     first = [place[keys[expensive][row]] for row in shared]
     others = sorted(set(place.values()) - set(first))
     return y[shared], x[first + others], shared, first + others
@@ -154,9 +149,8 @@ FIDELITY = {"preset", "density_scaling", "units", *presets.USUAL}
 def _unlike(one, two):
     """What two studies differ in beside FIDELITY: name and both values, as far as their study.json tells."""
     try:
-        studies = [
-            Folder(study.directory).description()["study"] for study in (one, two)
-        ]
+        folders = (Folder(study.directory) for study in (one, two))
+        studies = [folder.description()["study"] for folder in folders]
     except Refused:
         return
     first, second = ({"scene": study["scene"], **study["options"]} for study in studies)

@@ -230,6 +230,18 @@ def drawIncremental(demands, limit):
     yield from _drawn(demands.directory, {"ida": curves, "fragility": fragility})
 
 
+#: Options beside the folder, and what ``--help`` says of them.
+OPTIONS = {
+    "--measure": f"column of study.csv; by default {MEASURE}, or the first answer of a stage if there is no push",
+    "--demand": "demands, with commas between them, for which the probability that the measure is not above them is told",
+    "--cheap": "folder of a study of the same rows and more whose runs are cheaper: another preset, rate, time step or mesh",
+    "--cheap-measure": "column of that study, if it is another one: bound_base_shear_kN of the preset bound",
+    "--prices": "seconds of a run of the study and of one of --cheap, with a comma; the mean times of the runs by default",
+    "--limit": "of an incremental dynamic analysis: the demand whose fragility is found; without it that of collapse. --measure is "
+    "the demand, and --demand has intensities at which the probability is printed",
+}
+
+
 def parser():
     """What the program takes."""
     parser = argparse.ArgumentParser(
@@ -237,37 +249,11 @@ def parser():
         description="Statistics and pictures of a study.",
     )
     parser.add_argument("study", help="folder of a study, with its study.csv")
-    parser.add_argument(
-        "--measure",
-        help=f"column of study.csv; by default {MEASURE}, or the first answer of a stage if there is no push",
-    )
-    parser.add_argument(
-        "--demand",
-        help="demands, with commas between them, for which the probability that the measure is not above them is told",
-    )
-    parser.add_argument(
-        "--cheap",
-        help="folder of a study of the same rows and more whose runs are cheaper: another preset, rate, time step or mesh",
-    )
-    parser.add_argument(
-        "--cheap-measure",
-        help="column of that study, if it is another one: bound_base_shear_kN of the preset bound",
-    )
-    parser.add_argument(
-        "--method",
-        default="bridge",
-        choices=("bridge", "indicator"),
-        help='how --cheap finds quantiles; help("masonry.study.estimate") tells',
-    )
-    parser.add_argument(
-        "--prices",
-        help="seconds of a run of the study and of one of --cheap, with a comma; the mean times of the runs by default",
-    )
-    parser.add_argument(
-        "--limit",
-        help="of an incremental dynamic analysis: the demand whose fragility is found; without it that of collapse. --measure is "
-        "the demand, and --demand has intensities at which the probability is printed",
-    )
+    for name, what in OPTIONS.items():
+        parser.add_argument(name, help=what)
+    how = 'how --cheap finds quantiles; help("masonry.study.estimate") tells'
+    methods = ("bridge", "indicator")
+    parser.add_argument("--method", default=methods[0], choices=methods, help=how)
     parser.add_argument("--no-pictures", action="store_true", help="the table alone")
     return parser
 

@@ -108,7 +108,7 @@ class Job:
         checkpoint = os.path.join(folder.row(number), "run.checkpoint")
         for _ in range(ATTEMPTS):
             resumes = os.path.exists(checkpoint)
-            before = self._said(number)
+            before = log.seek(0, os.SEEK_END)
             status = self._yade(number, log)
             if self.stopped:
                 return 130
@@ -134,13 +134,6 @@ class Job:
         if self.stopped:
             self._child.send_signal(signal.SIGTERM)
         return self._child.wait()
-
-    def _said(self, number):
-        """Bytes of the log so far."""
-        try:
-            return os.path.getsize(self.folder.row(number) + ".log")
-        except OSError:
-            return 0
 
     def _tail(self, number, begin=0):
         """The end of the log, of what was written after its first bytes."""
@@ -183,9 +176,9 @@ def _sceneOf(folder, named):
 
 def requeue(job):
     """Ask Slurm to run this task again, if it is one that ran out of time."""
-    env = os.environ
-    if job.stopped == signal.SIGUSR1 and "SLURM_JOB_ID" in env:
-        subprocess.run(["scontrol", "requeue", env["SLURM_JOB_ID"]])
+    task = os.environ.get("SLURM_JOB_ID")
+    if job.stopped == signal.SIGUSR1 and task:
+        subprocess.run(["scontrol", "requeue", task])
 
 
 def main(words):
@@ -214,9 +207,8 @@ def _rows(words):
     if beyond:
         raise Refused(f"no row {', '.join(beyond)}: {words[0]} has {runs}")
     say(f"note: this runs {job.script}")
-    worst, numbers = 0, []
-    for word in words[1:]:
-        numbers += [int(word), *job.folder.chains.higher(int(word))]
+    worst, higher = 0, job.folder.chains.higher
+    numbers = [n for word in words[1:] for n in (int(word), *higher(int(word)))]
     for number in dict.fromkeys(numbers):
         status = job.run(number)
         if status:

@@ -20,9 +20,8 @@ ARRAY = 1001  # tasks that an array has at most where Slurm does not say
 
 def check():
     """Refuse a machine without Slurm."""
-    missing = [
-        name for name in ("sbatch", "squeue", "scontrol") if not shutil.which(name)
-    ]
+    needed = "sbatch", "squeue", "scontrol"
+    missing = [name for name in needed if not shutil.which(name)]
     if missing:
         raise Refused(
             f"--slurm: no {', '.join(missing)} here: run this where jobs are submitted, or apt-get install slurm-client"
@@ -32,17 +31,15 @@ def check():
 def _asked(command):
     done = subprocess.run(command, capture_output=True, text=True)
     if done.returncode:
-        raise Refused(
-            f"--slurm: {command[0]}: {done.stderr.strip() or f'exit status {done.returncode}'}"
-        )
+        why = done.stderr.strip() or f"exit status {done.returncode}"
+        raise Refused(f"--slurm: {command[0]}: {why}")
     return done.stdout
 
 
 def _largest():
     """How many tasks an array may have."""
-    found = re.search(
-        r"MaxArraySize\s*=\s*(\d+)", _asked(["scontrol", "show", "config"])
-    )
+    config = _asked(["scontrol", "show", "config"])
+    found = re.search(r"MaxArraySize\s*=\s*(\d+)", config)
     return max(1, int(found[1] if found else ARRAY) - 1)
 
 
@@ -52,9 +49,8 @@ def waiting(folder):
         job = readWhole(folder.of(JOB)).decode().strip()
     except OSError:
         return None
-    done = subprocess.run(
-        ["squeue", "--noheader", "--jobs", job], capture_output=True, text=True
-    )
+    command = ["squeue", "--noheader", "--jobs", job]
+    done = subprocess.run(command, capture_output=True, text=True)
     return job if done.returncode == 0 and done.stdout.strip() else None
 
 
@@ -94,15 +90,9 @@ def submit(folder, runs, words):
         say("all rows are ended: --gather writes study.csv")
         return 0
     written(folder.of(SCRIPT), script(folder, rows, _largest()))
-    command = [
-        "sbatch",
-        "--parsable",
-        f"--output={folder.of(batch.ROWS)}/slurm-%a.out",
-        f"--chdir={folder.path}",
-        *words,
-        folder.of(SCRIPT),
-    ]
-    job = _asked(command).strip().split(";")[0]
+    log = f"--output={folder.of(batch.ROWS)}/slurm-%a.out"
+    where = f"--chdir={folder.path}", *words, folder.of(SCRIPT)
+    job = _asked(["sbatch", "--parsable", log, *where]).strip().split(";")[0]
     written(folder.of(JOB), job + "\n")
     say(
         f"{len(rows)} rows in job array {job}: squeue --jobs {job} shows it, --gather writes study.csv"

@@ -198,9 +198,8 @@ def _probed(script, table, path, line=2):
 def _names(study, found):
     """Names that the scene ignores."""
     if not found["heard"]:
-        return [
-            "its scene takes no options from the command line (arguments=...), and would ignore all that varies"
-        ]
+        why = "its scene takes no options from the command line (arguments=...), and would ignore all that varies"
+        return [why]
     shaken = ["record", "scale"] if study.ida else []
     columns = [*study.options, *study.vary, *shaken]
     names = [n for c in columns for n in c.removeprefix(batch.FIELD).split("+")]

@@ -20,7 +20,7 @@ import html
 
 from ...arguments import FilePath, whole
 from ...basics import Refused
-from ...folders import replaced
+from .. import pages
 from ..pages import rendered
 from .data import dataOf
 from .library import three
@@ -65,9 +65,7 @@ def write(directory: FilePath, path: FilePath, number: int | None = None, magnif
 
     :raises OSError: if the file cannot be written, or if its name is that of a symbolic link
     """
-    text = page(directory, number, magnification)
-    with replaced(path, encoding="utf-8") as file:
-        file.write(text)
+    pages.write(path, page(directory, number, magnification))
 
 
 def show(directory, number=None, height=HEIGHT):

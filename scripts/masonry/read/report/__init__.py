@@ -21,11 +21,11 @@ from typing import Any, Callable, Iterable
 
 from ...arguments import FilePath
 from ...basics import Refused
-from ...folders import replaced
+from .. import pages
 from ..page.library import three
 from ..pages import rendered
 from . import response, structure, trust
-from .pieces import note
+from .pieces import missing as absent
 from .record import Record
 
 NAME = "report.html"  # in the folder of a run
@@ -86,12 +86,10 @@ def _made(part, record):
     try:
         for piece in part(record):
             found.append(piece)
-    except Refused as missing:
-        found.append(note(str(missing), "missing"))
+    except Refused as refused:
+        found.append(absent(str(refused)))
     except (LookupError, AttributeError, TypeError, ValueError, ArithmeticError) as problem:  # fmt: skip
-        found.append(
-            note(f"This part is not whole, because run.json is damaged or of another version ({type(problem).__name__}: {problem}).", "missing")
-        )  # fmt: skip
+        found.append(absent(f"This part is not whole, because run.json is damaged or of another version ({type(problem).__name__}: {problem})."))  # fmt: skip
     return found
 
 
@@ -101,6 +99,4 @@ def write(record: Record, path: FilePath) -> None:
     :param record: what :func:`read` gave
     :raises OSError: if the file cannot be written, or if its name is that of a symbolic link
     """
-    text = page(record)
-    with replaced(path, encoding="utf-8") as file:
-        file.write(text)
+    pages.write(path, page(record))

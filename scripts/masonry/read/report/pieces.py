@@ -6,6 +6,7 @@ from __future__ import annotations
 import math
 from typing import Any, Iterable, NamedTuple, Sequence
 
+from ... import arguments
 from ..quantities import Number
 
 UNKNOWN = "not known"
@@ -15,11 +16,7 @@ _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 def isNumber(value: Any) -> bool:
     """Whether a value is a finite number."""
-    return (
-        isinstance(value, (int, float))
-        and not isinstance(value, bool)
-        and math.isfinite(value)
-    )
+    return arguments.isNumber(value) and math.isfinite(value)
 
 
 def written(value: Any, digits: int = DIGITS) -> str:
@@ -87,11 +84,16 @@ def table(heads: Sequence[str], lines: Iterable[Sequence[Any]], caption: str, ki
 
 
 def note(text: str, kind: str = "note", strong: str = "") -> Piece:
-    """A paragraph; ``kind`` is ``note``, ``warning``, or ``missing`` for what a report would have and the run has not.
+    """A paragraph; ``kind`` is ``note``, ``lead``, ``warning`` or ``missing``.
 
     :param strong: what stands before the text in bold
     """
     return Piece("note", {"text": text, "kind": kind, "strong": strong})
+
+
+def missing(text: str) -> Piece:
+    """A sentence in place of what a report would have and the run has not."""
+    return note(text, "missing")
 
 
 def figure(picture: Any, caption: str, alt: str = "", frames: str = "") -> Piece:

@@ -79,15 +79,9 @@ class Record:
         except (OSError, UnicodeDecodeError):
             self.problems.append(why)
             return {}
-        lines = list(csv.reader(text.splitlines()))
-        if len(lines) < 2:
-            return {}
-        heads, rows, torn = lines[0], [], 0
-        for line in lines[1:]:
-            if len(line) != len(heads):
-                torn += 1
-                continue
-            rows.append([_finite(text) for text in line])
+        heads, *lines = [*csv.reader(text.splitlines())] or [[]]
+        rows = [[*map(_finite, line)] for line in lines if len(line) == len(heads)]
+        torn = len(lines) - len(rows)
         if torn:
             self.problems.append(f"curve.csv: {torn:,} lines do not have a number for every column, and are left out of this report")  # fmt: skip
         found = {name: [row[n] for row in rows] for n, name in enumerate(heads)}
@@ -222,11 +216,8 @@ class Record:
     @property
     def pushes(self) -> list[int]:
         """Numbers of the stages that push, from 1."""
-        return [
-            n
-            for n, stage in enumerate(self.stages, start=1)
-            if isinstance(stage.get("load"), list) and stage["load"][:1] == ["push"]
-        ]
+        loads = [stage.get("load") for stage in self.stages]
+        return [n for n, load in enumerate(loads, 1) if isinstance(load, list) and load[:1] == ["push"]]  # fmt: skip
 
     @property
     def isPush(self) -> bool:

@@ -12,7 +12,7 @@ import numpy as np
 from .. import bilinear, curve_figure, drawing, quantities
 from ..curve_figure import energies, unitOf
 
-from .pieces import Badged, Number, figure, folded, isNumber, note, numbers, share, table, withUnit, written  # fmt: skip
+from .pieces import Badged, Number, figure, folded, isNumber, missing, note, numbers, share, table, withUnit, written  # fmt: skip
 from .record import Record
 from .structure import answersOf, nameOf, sought, valueOf
 
@@ -26,7 +26,7 @@ def curve(record: Record) -> Iterator[Any]:
     spec = record.spec
     if spec is None or not len(record.rows):
         why = "; ".join(p for p in record.problems if "curve" in p)
-        yield note(f"There is no curve: {why or 'the run has no rows'}.", kind="missing")  # fmt: skip
+        yield missing(f"There is no curve: {why or 'the run has no rows'}.")  # fmt: skip
         return
     x = record.column(spec["x"]["column"])
     data = {name: values[record.rows] for name, values in record.columns.items()}
@@ -66,11 +66,11 @@ OF_IDEAL = {
 def _ideal(record):
     """The bilinear idealisation of a push, by every rule."""
     if not record.isPush:
-        yield note("The run has no push, so there is no bilinear curve.", kind="missing")  # fmt: skip
+        yield missing("The run has no push, so there is no bilinear curve.")  # fmt: skip
         return
     ideals = record.ideals
     if all(isinstance(one, str) for one in ideals.values()):
-        yield note(f"There is no bilinear curve: {ideals['masonry']}.", kind="missing")
+        yield missing(f"There is no bilinear curve: {ideals['masonry']}.")
         return
     known = {
         rule: {n.name: n for n in one.numbers()}
@@ -127,7 +127,7 @@ def found(record: Record) -> Iterator[Any]:
         yield from _states(record)
         yield numbers(quantities.shown(record.numbers, "push", "loops", "one way"), "Numbers of the push")  # fmt: skip
     else:
-        yield note(f"{NO_PUSH}, so there are no drifts at a peak or at a first crack.", kind="missing")  # fmt: skip
+        yield missing(f"{NO_PUSH}, so there are no drifts at a peak or at a first crack.")  # fmt: skip
     yield from _drifts(record)
     yield from _answers(record.run)
 
@@ -148,7 +148,7 @@ def _states(record):
     if data.height:
         yield note(f"The drift is the displacement of the masonry, without what a platen slips on it, over its height above the lowest brick, {written(data.height)} m; 1 mrad is 0.1 %. The displacement is that of the pushed point.")  # fmt: skip
     else:
-        yield note("The height of the recorded point is not known, or the push is not horizontal, so there are no drifts.", kind="missing")  # fmt: skip
+        yield missing("The height of the recorded point is not known, or the push is not horizontal, so there are no drifts.")  # fmt: skip
 
 
 def _drifts(record):
@@ -198,7 +198,7 @@ def bound(record: Record) -> Iterator[Any]:
     """The bound by limit analysis."""
     entries = [b for b in record.run.get("bounds") or [] if isinstance(b, dict)]
     if not entries:
-        yield note("There is no bound: limit analysis is made where a structure is pushed, leans or tilts, of up to 3,000 joints, and not with --lean. Source: run.json: bounds.", kind="missing")  # fmt: skip
+        yield missing("There is no bound: limit analysis is made where a structure is pushed, leans or tilts, of up to 3,000 joints, and not with --lean. Source: run.json: bounds.")  # fmt: skip
         return
     lines = []
     for one in entries:
@@ -240,12 +240,12 @@ def energy(record: Record) -> Iterator[Any]:
     rows = np.arange(record.rows.min(), record.rows.max() + 1) if len(record.rows) else record.rows  # fmt: skip
     columns = {n: v[rows] for n, v in record.columns.items() if n.endswith("_J")}
     if not columns or not len(record.rows):
-        yield note("There is no energy balance: curve.csv has no rows with energies.", kind="missing")  # fmt: skip
+        yield missing("There is no energy balance: curve.csv has no rows with energies.")  # fmt: skip
         return
     finite = np.isfinite(list(columns.values())).all(axis=0)
     columns = {n: v[finite] for n, v in columns.items()}
     if finite.sum() < 2:
-        yield note("There is no energy balance: less than two rows have all energies.", kind="missing")  # fmt: skip
+        yield missing("There is no energy balance: less than two rows have all energies.")  # fmt: skip
         return
     stack, work = energies(columns)
     change = lambda name: float(columns[name][-1] - columns[name][0])
@@ -257,17 +257,13 @@ def energy(record: Record) -> Iterator[Any]:
     inputs, elastic, spent = of("in"), of("stored"), of("spent")
     total = sum(map(change, inputs))
     part = lambda value: share(value / total) if total > 0 else written(None)
-    lines = [
-        (known[n[:-2]][0], withUnit(change(n), "J"), part(change(n)), f"curve.csv: {n}")
-        for n in inputs
-    ]  # fmt: skip
-    lines.append(("all that was put in", withUnit(total, "J"), part(total), "sum of these"))  # fmt: skip
+    line = lambda what, value, source: (what, withUnit(value, "J"), part(value), source)
+    own = lambda n: line(known[n[:-2]][0], change(n), f"curve.csv: {n}")
     stored = sum(map(change, elastic))
-    lines.append(("elastic energy of all parts", withUnit(stored, "J"), part(stored), f"curve.csv: {', '.join(elastic)}"))  # fmt: skip
-    lines += [
-        (known[n[:-2]][0], withUnit(change(n), "J"), part(change(n)), f"curve.csv: {n}")
-        for n in spent
-    ]  # fmt: skip
+    lines = [*map(own, inputs)]
+    lines.append(line("all that was put in", total, "sum of these"))
+    lines.append(line("elastic energy of all parts", stored, f"curve.csv: {', '.join(elastic)}"))  # fmt: skip
+    lines += map(own, spent)
     rest = total - stored - sum(map(change, spent))
     lines.append(("what is missing in the balance", withUnit(rest, "J", 2), part(rest), "difference"))  # fmt: skip
     since = "from the first to the last row that the curve shows"
@@ -301,7 +297,7 @@ def cycles(record: Record) -> Iterator[Any]:
     """Equivalent damping of cycles."""
     entries = record.run.get("cycles")
     if not entries:
-        yield note("The run has no whole cycles, so there is no equivalent damping.", kind="missing")  # fmt: skip
+        yield missing("The run has no whole cycles, so there is no equivalent damping.")  # fmt: skip
         return
     columns = [one for one in quantities.OF_CYCLES if one[-1]]
     heads = [f"{name} [{'%' if key == 'damping' else unit}]" for key, name, unit, *_ in columns]  # fmt: skip
@@ -326,7 +322,7 @@ def base(record: Record) -> Iterator[Any]:
         return
     names = [f"{held}_force_{axis}_kN" for held in record.run.get("held") or [] for axis in "xyz"]  # fmt: skip
     reactions = [name for name in names if name in record.columns]
-    yield note("The moment at the base is not known: no section was recorded. scene.section(z) in the script records the normal force, the shear force and the moment of a horizontal section.", kind="missing")  # fmt: skip
+    yield missing("The moment at the base is not known: no section was recorded. scene.section(z) in the script records the normal force, the shear force and the moment of a horizontal section.")  # fmt: skip
     if not reactions and "base_shear_kN" in record.columns and record.isPush:
         reactions = ["base_shear_kN"]
     if reactions:

@@ -7,7 +7,7 @@ from typing import Any, Iterator
 
 from .. import quantities
 
-from .pieces import Badged, Number, figure, folded, isNumber, listed, note, numbers, table, withUnit, written  # fmt: skip
+from .pieces import Badged, Number, figure, folded, isNumber, listed, missing, note, numbers, table, withUnit, written  # fmt: skip
 from .record import Record
 
 #: Units in which properties are shown, and the factor from SI units.
@@ -16,6 +16,14 @@ SHOWN = {"Pa": ("MPa", 1e-6), "Pa/m": ("N/mm³", 1e-9), "J/m²": ("N/mm", 1e-3),
 OF_CAP = {"compressiveStrength", "elasticLimitRatio", "residualStrengthRatio", "peakRatio", "compressiveFractureEnergy", "capNormal", "capShear", "capLinear"}  # fmt: skip
 #: Energies that count where there is the strength that they soften.
 SOFTENING = {"modeIFractureEnergy": "tensileStrength", "modeIIFractureEnergy": "cohesion"}  # fmt: skip
+#: Counts of a run, by their entries in run.json.
+COUNTS = {
+    "units": "blocks of the model, bricks or their halves",
+    "joint_count": "joints between blocks",
+    "subcontacts": "points of joints when the run began",
+    "refined_joints": "joints that got more points",
+    "nodes": "nodes of deformable units",
+}
 STIFFNESSES = {"normalStiffness", "shearStiffness"}
 MOST_WORDS = 12  # of a script that are shown at once
 MOST_LEADING = 3  # answers at the head of a report
@@ -111,18 +119,11 @@ def built(record: Record) -> Iterator[Any]:
     if record.elevation:
         yield figure(*record.elevation)
     else:
-        yield note(f"There is no drawing of what was built: {record.missing}", kind="missing")  # fmt: skip
+        yield missing(f"There is no drawing of what was built: {record.missing}")  # fmt: skip
     rows = [(name, text, "run.json: built") for name, text in run.get("built") or []]
-    counts = (
-        ("units", "blocks of the model, bricks or their halves"),
-        ("joint_count", "joints between blocks"),
-        ("subcontacts", "points of joints when the run began"),
-        ("refined_joints", "joints that got more points"),
-        ("nodes", "nodes of deformable units"),
-    )
     rows += [
         (what, written(run[key]), f"run.json: {key}")
-        for key, what in counts
+        for key, what in COUNTS.items()
         if run.get(key) and not (key == "units" and run.get("built"))
     ]
     kinds = run.get("joints_by_kind")
@@ -145,16 +146,11 @@ def _units(run):
         ("Poisson's ratio of the units", "poisson", "poisson", 1, "-", "Lateral over longitudinal strain of the material of the bricks."),
         ("density of the units", "density", "density_kg_per_m3", 1, "kg/m³", "Mass of a brick over its volume."),
     )  # fmt: skip
-    found = [
-        Number(
-            _marked(what, f"unit.{name}" in assumed),
-            factor * unit[key] if isNumber(unit.get(key)) else None,
-            shown,
-            meaning,
-            f"run.json: unit_material.{key}",
-        )
-        for what, name, key, factor, shown, meaning in rows
-    ]
+    found = []
+    for what, name, key, factor, shown, meaning in rows:
+        value = factor * unit[key] if isNumber(unit.get(key)) else None
+        named, source = _marked(what, f"unit.{name}" in assumed), f"run.json: unit_material.{key}"  # fmt: skip
+        found.append(Number(named, value, shown, meaning, source))
     yield numbers(found, "Units")
 
 
@@ -166,16 +162,14 @@ def _namesOf(run):
     """Names of the properties that were assumed; those of the support are those of the bed joint where it takes these."""
     names = {str(a.get("name")) for a in run.get("assumed") or []}
     if "support" in names:
-        names |= {
-            "support." + n.partition(".")[2] for n in names if n.startswith("bed.")
-        }
+        names |= {n.replace("bed.", "support.", 1) for n in names if n.startswith("bed.")}  # fmt: skip
     return names
 
 
 def _joints(run):
     joints = run.get("joints")
     if not joints:
-        yield note(OLDER, kind="missing")
+        yield missing(OLDER)
         return
     units, meanings = run.get("joint_units") or {}, run.get("joint_meanings") or {}
     counted = run.get("joints_by_kind") or joints  # kinds without joints do not count
@@ -212,11 +206,12 @@ def _lawOf(joint):
 
 def _cell(joint, name, factor, isAssumed):
     """A property of a kind of joint."""
-    if joint.get("elastic") and name not in STIFFNESSES:
-        return "–"
-    if name in OF_CAP and not joint.get("cap", True):
-        return "–"
-    if name in SOFTENING and not joint.get(SOFTENING[name]):
+    isIgnored = (
+        joint.get("elastic") and name not in STIFFNESSES
+        or name in OF_CAP and not joint.get("cap", True)
+        or name in SOFTENING and not joint.get(SOFTENING[name])
+    )  # fmt: skip
+    if isIgnored:
         return "–"
     value = joint.get(name)
     text = written(factor * value) if isNumber(value) else written(None)
@@ -226,7 +221,7 @@ def _cell(joint, name, factor, isAssumed):
 def _assumed(run):
     entries = run.get("assumed")
     if entries is None:
-        yield note(OLDER, kind="missing")
+        yield missing(OLDER)
         return
     if not entries:
         yield note("Nothing was assumed: every property of the materials was given. Source: run.json: assumed.")  # fmt: skip
@@ -300,8 +295,8 @@ def _connections(run):
 
 def _named(name, value):
     """An entry with its unit, which ends its name."""
-    unit = next((u for ending, u in ENDINGS if name.endswith(ending)), "")
-    ending = next((ending for ending, _ in ENDINGS if name.endswith(ending)), "")
+    ends = ((ending, unit) for ending, unit in ENDINGS if name.endswith(ending))
+    ending, unit = next(ends, ("", ""))
     words = name.removesuffix(ending).replace("_", " ")
     return f"{words} {_values(value)} {unit}".strip()
 

@@ -7,7 +7,7 @@ from typing import Any, Iterator
 
 from .. import quantities
 
-from .pieces import UNKNOWN, Number, Piece, figure, isNumber, listed, note, numbers, table, withUnit, written  # fmt: skip
+from .pieces import UNKNOWN, Number, Piece, figure, isNumber, listed, missing, note, numbers, table, withUnit, written  # fmt: skip
 from .record import Record
 
 
@@ -21,7 +21,7 @@ def pictures(record: Record) -> Iterator[Any]:
             text += f" It has {shown} of the {count} frames of the run, so that this file stays small; scripts/view.py --html writes one with all."  # fmt: skip
         yield note(text)
     else:
-        yield note(f"There is no turning picture: {record.missing}", kind="missing")
+        yield missing(f"There is no turning picture: {record.missing}")
     cracks = record.image("cracks.png")
     if cracks:
         yield figure(cracks, f"Cracks {record.whenCracked}: open joints red, slid joints blue, crushed joints black. Source: cracks.png.")  # fmt: skip
@@ -35,7 +35,7 @@ def trust(record: Record) -> Iterator[Any]:
     if said:
         yield listed(said, "Warnings", "warning")
     elif warnings is None:
-        yield note("run.json of this older version does not list the warnings of the run.", kind="missing")  # fmt: skip
+        yield missing("run.json of this older version does not list the warnings of the run.")  # fmt: skip
     else:
         yield note("The run has no warnings. Source: run.json: warnings.")
     yield from _said(run)
