@@ -253,3 +253,4 @@ def test_a_reading_that_is_not_finite_ends_the_run_with_the_rows_before(
         carryOut(SMALL, parsed("--no-vtk", "--until", "0.5", "--out", str(tmp_path)))
     assert len(readCurve(str(tmp_path))["time_s"]) == 19
     assert "finite numbers in vertical_mm" in readRun(str(tmp_path))["error"]
+    assert (tmp_path / "curve.png").exists()
