@@ -7,7 +7,7 @@ import sys
 import time
 
 from hosted import *
-from masonry import AT_REST, COLLAPSED, DONE
+from masonry import AT_REST, COLLAPSED, DONE, MOVING
 from masonry._masonry import saveScene
 from masonry.basics import Collapsed
 from masonry.scene.stages import gravity, loading
@@ -414,3 +414,25 @@ def test_wrong_loads_of_later_stages_are_refused(scene, tmp_path, act, message):
     s.settle()
     with pytest.raises(ValueError, match=message):
         act(s, stone)
+
+
+@pytest.mark.parametrize("stage", ["growLoad", "load"])
+def test_a_perfect_column_holds_no_more_than_its_buckling_load(tmp_path, stage):
+    """A chain of n rigid blocks on elastic joints with the rotational stiffness k buckles at 4 k/h sin²(π/(4 n + 2))."""
+    n, side, stiffness = 10, 0.2, 5e8
+    joint = MasonryJoint(elastic=True, normalStiffness=stiffness, shearStiffness=2e8)
+    light = materials.Masonry(MasonryMat(young=2e10, poisson=0.2, density=200), {"bed": joint})  # fmt: skip
+    scene = Scene("column", bricks.stack(n, (side,) * 3), light, arguments=["--lean", "--out", str(tmp_path)])  # fmt: skip
+    scene.platen("bottom")
+    head = scene.handle((side / 2, side / 2, n * side - 0.01))
+    scene.settle()
+    turning = stiffness * side**4 / 12
+    euler = 4 * turning / side * np.sin(np.pi / (4 * n + 2)) ** 2
+    if stage == "growLoad":
+        scene.growLoad(head, (0, 0, -3 * euler), within=0.02)
+        low, high = (1e3 * answer(scene, name) for name in ("factor_held", "factor_not_held"))  # fmt: skip
+        assert 0.97 * euler < low < euler < high < 1.03 * euler
+    else:
+        ends = [scene.load(head, (0, 0, -share * euler)) for share in (0.97, 1.03)]
+        assert ends == [AT_REST, MOVING]
+    scene.finish()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The first period of a structure along a direction, measured on its present state.
+"""The first period of a structure along a direction, and whether it buckles, measured on its present state.
 
 A uniform acceleration that begins at once and stays sets an elastic structure swinging about the place to which it moves.
 Of its modes n, with the angular frequencies ω_n and the shares c_n of the mass, the momentum is then proportional to
@@ -7,6 +7,10 @@ Of its modes n, with the angular frequencies ω_n and the shares c_n of the mass
 others pass through zero at the same moment. So half a period is over when the momentum is first back at zero. It is
 the integral over time of all forces on what can move: weights, loads, supports and drives. This needs nothing but
 these forces, so it is the same for rigid and deformable blocks, walls with openings and arches.
+
+Where a load is near that at which the structure buckles, the stiffness against a push sideways vanishes. Then the momentum does
+not come back to zero: beyond that load it grows faster than that of a body that nothing holds, which is the force times the
+time.
 
 A structure that is said to be at rest still moves a little. So it is done to both sides, and the difference counts.
 """
@@ -23,6 +27,10 @@ SAMPLE = 2e-5  # [s] between two readings of the forces, at true masses
 FEWEST = 10  # readings in half a period, else it is too short to be found within half a per cent
 #: How far the first side goes, over its own half period, so that the difference of both sides has its zero [-].
 BEYOND = 1.1, 2.0
+#: Of the search for buckling: acceleration over gravity [-], time between two readings, and that after which a push that has not
+#: come back counts as one that grows [s]; how many readings are looked at first; and how much faster than a body that nothing
+#: holds a structure moves that buckles [-].
+SMALL, LOOK, LONGEST, FIRST_LOOKS, FASTER = 1e-6, 5e-4, 5.0, 32, 1.1
 
 
 def firstPeriod(structure, direction, longest):
@@ -68,6 +76,41 @@ def firstPeriod(structure, direction, longest):
     # The first velocity is that after a whole step, as if the acceleration had begun half a step before, and the sum of the
     # forces begins at the first of them, half a step after that velocity would have been zero.
     return 2 * O.dt * (1 + every * (n + back[n - 1] / (back[n - 1] - back[n])))
+
+
+def buckles(structure, direction):
+    """Whether a small push along a direction grows, or does not come back within :data:`LONGEST`. Afterwards the scene is as
+    before, to the last bit. It takes the steps of some periods.
+
+    Seen are modes in which the structure moves to one side; the push is so small that no joint notices it.
+
+    :param structure: :class:`masonry.assembly.structure.Structure`, at rest
+    :param direction: unit vector
+    """
+    before = saveScene("null")
+    scaling = structure.args.density_scaling**0.5
+    every = max(1, round(LOOK * scaling / O.dt))
+    push = SMALL * GRAVITY / structure.args.density_scaling * direction
+    looks, most = FIRST_LOOKS, LONGEST * scaling / (every * O.dt)
+    try:
+        while True:
+            sides = []
+            for sign in (1, -1):
+                momenta = _momenta(structure, direction, sign * push, every)
+                sides.append([next(momenta) for _ in range(looks)])
+                loadScene(before)
+            there, back = sides
+            momentum = [a - b for a, b in zip(there, back)]
+            if min(momentum) <= 0:
+                return False
+            free = looks * momentum[0]  # of a body that nothing holds
+            if not momentum[-1] <= FASTER * free or looks >= most:
+                return True
+            looks *= 4
+    except RuntimeError:  # it falls
+        return True
+    finally:
+        loadScene(before)
 
 
 def _momenta(structure, direction, acceleration, every):

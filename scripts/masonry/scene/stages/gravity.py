@@ -150,7 +150,8 @@ def putOn(scene, name, load, towards, longest, over=0.0):
         load.put([was + share * (end - was) for was, end in zip(first, ends)])
         model.loading.loadFactor = share * at.goal
 
-    ended = waitForRest(scene, at, longest or TRIAL, growing, over=over)
+    vertical = abs(towards[2]) > 0.5
+    ended = waitForRest(scene, at, longest or TRIAL, growing, over=over, buckling=vertical)  # fmt: skip
     if ended == AT_REST:
         scene.bounds.hold(load.name, at.goal)
     return ended

@@ -21,7 +21,7 @@ from yade import O
 from ..._masonry import loadScene, saveScene
 from ...assembly.motion import REST
 from ...basics import Collapsed, say
-from .rest import CALM, EVERY, LOOKS, rampTime
+from .rest import CALM, EVERY, LOOKS, buckles, rampTime
 from .answers import AT_REST, DONE, Answer
 from .timed import Timed, timed
 
@@ -34,7 +34,12 @@ KEPT_BYTES = 100e6  # that they may have in all; a checkpoint during the growth 
 #: come to rest [-]: see :meth:`masonry.assembly.motion.Motion.fastest`.
 SURE = 0.25
 #: How trials end that are not held.
-WHY = "it fell", "it moved faster and faster", f"it was still moving after {TRIAL:g} s"
+WHY = (
+    "it fell",
+    "it moved faster and faster",
+    f"it was still moving after {TRIAL:g} s",
+    "it buckles: a small push sideways grows",
+)
 FAR = 0.95  # of an exact bound: when less is held, a note says so
 SETTING_OFF = 3.0  # the structure has left rest where its speed is so many times the usual one [-]
 
@@ -54,6 +59,8 @@ class Growing(Timed):
     steps: int = 0  # that the growth took
     # -- of the search
     over: int = 0  # 1 when it has ended, and only the last state at rest is kept
+    #: 1 when the largest load that was held was seen to buckle; from then on every trial is looked at so.
+    buckled: int = 0
     trials: Sequence[Any] = ()
     held: list | None = (
         None  # factor and displacement [mm] of the largest load that was held
@@ -248,6 +255,10 @@ class _Search:
         while not at.over:
             if at.goal < 0:
                 chosen = self._next()
+                if chosen is None and at.held and not at.buckled and self._buckles():
+                    at.buckled, at.climbs = 1, 0
+                    at.lost, at.held = [*at.held, 1, 3], None
+                    continue
                 if chosen is None:
                     return
                 at.source, at.goal, state, at.calm = chosen
@@ -255,6 +266,8 @@ class _Search:
                 if state is not None:
                     loadScene(_state(state))
             held = self._trial()
+            if held and at.buckled and self._buckles():
+                held, at.ended = False, 3
             end = [at.goal, 1e3 * self.model.loading.alongNow()]
             if held:
                 at.held, at.heldState = end, _text(saveScene("null"))
@@ -355,6 +368,12 @@ class _Search:
     def _alongThen(self):
         loadScene(_state(self.at.lastState))
         return self.model.loading.alongNow()
+
+    def _buckles(self):
+        """Whether the structure that is at rest under the load that was held last buckles."""
+        if self.at.goal < 0:
+            loadScene(_state(self.at.heldState))
+        return buckles(self.scene)
 
     # -- a trial --------------------------------------------------------------------------------------------------
 
