@@ -125,7 +125,7 @@ const Size sizes[] = {
     {"GlobalEngine", sizeof(GlobalEngine), "PeriodicEngine", "virtPeriod"},
     {"LawFunctor", sizeof(LawFunctor), "Law2_ScGeom_CpmPhys_Cpm", "yieldSurfType"},
     {"IPhysFunctor", sizeof(IPhysFunctor), "Ip2_FrictMat_FrictMat_FrictPhys", "kn"},
-    {"IGeomFunctor", sizeof(IGeomFunctor), "Ig2_Box_Sphere_ScGeom", "interactionDetectionFactor"},
+    {"IGeomFunctor", sizeof(IGeomFunctor), "Ig2_Sphere_Sphere_ScGeom", "interactionDetectionFactor"},
     {"GlExtraDrawer", sizeof(GlExtraDrawer), "GlExtra_LawTester", "tester"},
 };
 
