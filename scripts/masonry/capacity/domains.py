@@ -98,13 +98,9 @@ def runPoint(directory: FilePath) -> RunPoint:
     push = pushover(directory)
     at = push.data.peak()
     normal, source = _normal(push, at)
-    return RunPoint(
-        name=os.path.basename(os.path.normpath(push.directory)),
-        normal=normal,
-        shear=float(push.force[at]),
-        displacement=float(push.displacement[at]),
-        source=source,
-    )
+    name = os.path.basename(os.path.normpath(push.directory))
+    peak = float(push.force[at]), float(push.displacement[at])
+    return RunPoint(name, normal, *peak, source)
 
 
 def _normal(push, at):
@@ -125,10 +121,8 @@ def _normal(push, at):
         area = wall["length_m"] * wall["thickness_m"]
         weight = material["density_kg_per_m3"] * GRAVITY * area * wall["height_m"]
         pressed = wall["precompression_Pa"] * area
-        return (
-            1e-3 * (pressed + weight),
-            "precompression and weight in run.json, with a top that moves freely up and down",
-        )
+        source = "precompression and weight in run.json, with a top that moves freely up and down"
+        return 1e-3 * (pressed + weight), source
 
 
 def domain(directory: FilePath, runs: Sequence[FilePath] = ()) -> Domain:
@@ -149,14 +143,7 @@ def domain(directory: FilePath, runs: Sequence[FilePath] = ()) -> Domain:
             found = [entry["normal_kN"], entry["factor"]]
             if not all(isNumber(one) and math.isfinite(one) for one in found):
                 raise Refused(f"{directory}: {entry['load']}: the normal force and the bound must be finite numbers, not {found}")  # fmt: skip
-            bounds.append(
-                BoundPoint(
-                    normal=entry["normal_kN"],
-                    largest=entry["factor"],
-                    withoutDilatancy=entry.get("without_dilatancy"),
-                    exact=entry["exact"],
-                )
-            )
+            bounds.append(BoundPoint(*found, entry.get("without_dilatancy"), entry["exact"]))  # fmt: skip
     if not bounds:
         none = (
             f"{directory}: run.json has no domain: say scene.domain(top, normal=[...]) in the scene, after its presses, and run it, "

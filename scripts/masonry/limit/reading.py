@@ -138,9 +138,8 @@ class _Placement:
         states = [b.state for b in blocks]
         self.was = np.array(_rows([s.refPos for s in states]))
         self.now = np.array(_rows([s.pos for s in states]))
-        self.turns = np.array(
-            [_matrix(s.ori * s.refOri.conjugate()) for s in states], float
-        )
+        turns = [_matrix(s.ori * s.refOri.conjugate()) for s in states]
+        self.turns = np.array(turns, float)
         sizes = np.array([max(v.norm() for v in b.shape.v) for b in blocks])
         angles = np.linalg.norm(self.turns - np.eye(3), axis=(1, 2))
         moved = np.linalg.norm(self.now - self.was, axis=1) + sizes * angles
@@ -177,11 +176,8 @@ def _matrix(turn):
 
 def _strengths(p):
     """Tensile strength, cohesion, friction, compressive strength, and whether a joint never gives way."""
-    values = (
-        p.tensileStrength,
-        max(p.cohesion, p.residualCohesion),
-        max(p.friction, p.residualFriction),
-    )
+    cohesion, friction = max(p.cohesion, p.residualCohesion), max(p.friction, p.residualFriction)  # fmt: skip
+    values = p.tensileStrength, cohesion, friction
     if p.elastic or not p.cap:
         return *values, math.inf, p.elastic
     # of eq. (8c) without shear: Cnn σ² - Cn σ = fc²

@@ -164,8 +164,7 @@ def _checked(displacement, force):
             "of one push"
         )
     at = int(force.argmax())
-    begun = abs(force[0]) > BEGIN * peak or abs(moved[0]) > BEGIN * max(moved[at], 0)
-    if begun:
+    if abs(force[0]) > BEGIN * peak or abs(moved[0]) > BEGIN * max(moved[at], 0):
         raise Refused(
             f"the curve begins with {force[0]:.4g} kN at {moved[0]:.4g} mm: a bilinear curve is of a push that begins at rest, "
             f"with at most {100 * BEGIN:g} % of the peak, {peak:.4g} kN, and of the displacement there, {moved[at]:.4g} mm"
@@ -271,12 +270,11 @@ def _end(moved, force, at, fall, pulse):
         )
         return float(moved[-1]), unreached, []
     end = float(np.interp(place, np.arange(len(moved)), moved))
-    again, notes = moved[(moved > end + pulse) & (force >= level)], []
-    if len(again):
-        notes = [
-            f"after it fell to {fall:g} of its peak at {end:.4g} mm, the force came back above that, up to {again.max():.4g} mm"
-        ]
-    return end, "", notes
+    again = moved[(moved > end + pulse) & (force >= level)]
+    if not len(again):
+        return end, "", []
+    note = f"after it fell to {fall:g} of its peak at {end:.4g} mm, the force came back above that, up to {again.max():.4g} mm"
+    return end, "", [note]
 
 
 def _annexB(moved, force, forms, end):

@@ -158,10 +158,8 @@ def _draw(out, tests, curves, names, labels, title):
     with drawing.picture(out, 7, 4.6, 150) as figure:
         axes = figure.subplots()
         for n, (a, b, _) in enumerate(tests):
-            axes.plot(
-                a, b, color="0.15", lw=1.0, ls=DASHES[n % 4], zorder=1.5,
-                label=names[len(curves) + n],
-            )  # fmt: skip
+            look = dict(color="0.15", lw=1.0, ls=DASHES[n % 4], zorder=1.5)
+            axes.plot(a, b, **look, label=names[len(curves) + n])
         for n, (a, b) in enumerate(curves):
             colour = COLOURS[n % len(COLOURS)]
             dash = DASHES[n // len(COLOURS) % len(DASHES)]

@@ -144,18 +144,18 @@ def initialStiffness(displacement: Numbers, force: Numbers) -> float:
     A push that begins under a force of more than a hundredth of the peak, as of a drive that held a weight before, counts
     from that force.
     """
-    moved, force = np.asarray(displacement, float), np.asarray(force, float)
-    if not len(force):
+    moved, forces = np.asarray(displacement, float), np.asarray(force, float)
+    if not len(forces):
         return 0.0
-    if abs(force[0]) > 0.01 * force.max():
-        force = force - force[0]
-    end = int(np.argmax(np.append(force > 0.25 * force.max(), True)))
-    rows = np.flatnonzero(force[:end] > 0.05 * force.max())
+    if abs(forces[0]) > 0.01 * forces.max():
+        forces = forces - forces[0]
+    end = int(np.argmax(np.append(forces > 0.25 * forces.max(), True)))
+    rows = np.flatnonzero(forces[:end] > 0.05 * forces.max())
     if len(rows) < 2:  # to the first row with another displacement
         rows = np.append(0, np.flatnonzero(moved != moved[0])[:1])
     away = moved[rows] - moved[rows].mean()
     spread = away @ away
-    return float(away @ force[rows] / spread) if spread > 0 else 0.0
+    return float(away @ forces[rows] / spread) if spread > 0 else 0.0
 
 
 def firstCrack(

@@ -69,9 +69,8 @@ class Model:
         """
         self.directory, self.run = directory, readRun(directory)
         with filesOf(directory):
-            self.title = str(
-                self.run.get("title") or os.path.basename(os.path.abspath(directory))
-            )
+            name = os.path.basename(os.path.abspath(directory))
+            self.title = str(self.run.get("title") or name)
             times = self._times()
             self.count = count = len(times)
             if number is not None and not 0 <= number < count:
@@ -120,9 +119,8 @@ class Model:
         self.looks[self.bodies == self.run.get("ground_body")] = GROUND
         self.framed = self.looks[self.owner] != GROUND
         # the side of a zone that another zone has, too, is inside the unit
-        _, where, often = np.unique(
-            np.sort(triangles, axis=1), axis=0, return_inverse=True, return_counts=True
-        )
+        corners = np.sort(triangles, axis=1)
+        _, where, often = np.unique(corners, axis=0, return_inverse=True, return_counts=True)  # fmt: skip
         outside = (often[where.ravel()] == 1) | rigid[cells]
         triangles, cells = triangles[outside], cells[outside]
         inside = np.array([self.points[c].mean(axis=0) for c in first["cells"]])[cells]

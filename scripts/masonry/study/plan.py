@@ -235,16 +235,12 @@ class Study:
         means = {n[len(batch.FIELD) :]: w.mean for n, w in fields.items() if w.mean is not None}  # fmt: skip
         rows = []
         for number, values in enumerate(found, 1):
-            seeds = {
-                n: w.written(self._seed(k, number))
-                for k, (n, w) in enumerate(fields.items())
-            }
+            seeds = {}
+            for k, (name, what) in enumerate(fields.items()):
+                sequence = np.random.SeedSequence([self.seed, k, number])
+                seeds[name] = what.written(int(sequence.generate_state(1)[0]))
             rows.append({"lean": True, **self.options, **means, **values, **seeds})
         return rows
-
-    def _seed(self, field, row):
-        """The seed of a field in a row."""
-        return int(np.random.SeedSequence([self.seed, field, row]).generate_state(1)[0])
 
     def table(self) -> str:
         """The table of the rows, as text: see :mod:`masonry.run.batch`."""
@@ -283,16 +279,13 @@ def _namesOf(column):
 
 def _wrongOption(name, value):
     """What is wrong with an option or a property, as a list."""
+    why = ""
     if not isinstance(name, str) or not re.fullmatch(r"[A-Za-z_]\w*(\.\w+)?", name):
-        return [
-            f"{name!r} must be an option, with underscores for dashes, or JOINT.PROPERTY"
-        ]
-    if name in batch.OWN:
-        return [f"option {name!r} is the study's own"]
-    if value is not None and not isinstance(value, (bool, int, float, str)):
-        return [f"{name}: {value!r} must be a number, a text, or True or False"]
-    if isinstance(value, str) and re.search(r"[\s#]|^[=*]?$", value):
-        return [
-            f"{name}: {value!r} cannot stand in a table of YADE: it is empty or has a blank or #"
-        ]
-    return []
+        why = f"{name!r} must be an option, with underscores for dashes, or JOINT.PROPERTY"
+    elif name in batch.OWN:
+        why = f"option {name!r} is the study's own"
+    elif value is not None and not isinstance(value, (bool, int, float, str)):
+        why = f"{name}: {value!r} must be a number, a text, or True or False"
+    elif isinstance(value, str) and re.search(r"[\s#]|^[=*]?$", value):
+        why = f"{name}: {value!r} cannot stand in a table of YADE: it is empty or has a blank or #"
+    return [why] if why else []

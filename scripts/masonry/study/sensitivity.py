@@ -52,9 +52,8 @@ def effects(inputs, output, confidence=CONFIDENCE):
     design = np.column_stack([np.ones(n), (x - x.mean(axis=0)) / scale])
     slopes, _, rank, _ = np.linalg.lstsq(design, y, rcond=None)
     if rank < k + 1:
-        raise Refused(
-            "the sensitivity: varied properties follow from each other, which cannot be told apart"
-        )
+        why = "varied properties follow from each other, which cannot be told apart"
+        raise Refused(f"the sensitivity: {why}")
     residuals = y - design @ slopes
     scatter = residuals @ residuals / free * np.linalg.inv(design.T @ design).diagonal()
     t = stats.t.ppf((1 + confidence) / 2, free)

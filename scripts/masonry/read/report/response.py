@@ -314,9 +314,8 @@ def cycles(record: Record) -> Iterator[Any]:
 
 def base(record: Record) -> Iterator[Any]:
     """Normal force, shear force and moment: of the sections that were recorded, else forces on what is held."""
-    names = [
-        n for n in record.run.get("recorded_sections") or [] if n in record.columns
-    ]
+    sections = record.run.get("recorded_sections") or []
+    names = [n for n in sections if n in record.columns]
     if names:
         yield _forces(record, names, "Forces of the sections that were recorded")
         return
@@ -338,7 +337,8 @@ def _forces(record, names, caption):
     lines = []
     for name in names:
         values, unit = record.columns[name], name.rpartition("_")[2]
-        finite = values[record.rows][np.isfinite(values[record.rows])]
+        shown = values[record.rows]
+        finite = shown[np.isfinite(shown)]
         ends = [finite.min(), finite.max()] if len(finite) else [np.nan] * 2
         most = max(map(abs, ends))
         texts = [
