@@ -163,7 +163,7 @@ WORDS = {
     "accelerate": (settled, dict(most=0.02, towards=LEVEL, rate=1.0, within=0.5)),
     "lean": (settled, dict(factor=0.01, towards=LEVEL, longest=0.05)),
     "shake": (settled, dict(accelerations=[0.0, 2.0, 0.0], every=0.002, direction=LEVEL, scale=1.0, unit=None, after=0.0, damping=0.1, massDamping=0.0, stiffnessDamping=0.0)),
-    "run": (settled, dict(seconds=0.01, damping=None)),
+    "run": (settled, dict(seconds=0.01, damping=0.0)),
     "growLoad": (settled, dict(target=TOP, force=(100.0, 0, 0), **GROWS)),
     "growWind": (lambda: settled(space), {**WINDS, **GROWS}),
     "growPress": (settled, dict(platen=TOP, stress=1e4, **GROWS)),

@@ -399,8 +399,8 @@ def test_vtk_reads_the_deformed_shape_of_a_frame_and_its_cracks(run, tmp_path, n
     found = readByVtk(path, 0)
     ((parts, triangles, low, high),) = found["at"]
     assert found["animations"] == 0
-    # on the faces of both blocks; some triangles have no area
-    assert parts == 3 and 24 + 2 * faces - 2 <= triangles <= 24 + 2 * faces
+    # on the faces of both blocks; triangles whose corners lie in a line have no area
+    assert parts == 3 and 24 + 2 * faces - 4 <= triangles <= 24 + 2 * faces
     expected = bounds(model.points + magnification * model.displacements(0))
     assert low == pytest.approx(expected[0], abs=1e-6)
     assert high == pytest.approx(expected[1], abs=1e-6)

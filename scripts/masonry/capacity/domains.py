@@ -140,10 +140,10 @@ def domain(directory: FilePath, runs: Sequence[FilePath] = ()) -> Domain:
             if "factor" not in entry:
                 notes.append(f"{entry['load']}: {entry['note']}")
                 continue
-            found = [entry["normal_kN"], entry["factor"]]
+            normal, largest = found = entry["normal_kN"], entry["factor"]
             if not all(isNumber(one) and math.isfinite(one) for one in found):
-                raise Refused(f"{directory}: {entry['load']}: the normal force and the bound must be finite numbers, not {found}")  # fmt: skip
-            bounds.append(BoundPoint(*found, entry.get("without_dilatancy"), entry["exact"]))  # fmt: skip
+                raise Refused(f"{directory}: {entry['load']}: the normal force and the bound must be finite numbers, not {[*found]}")  # fmt: skip
+            bounds.append(BoundPoint(normal, largest, entry.get("without_dilatancy"), entry["exact"]))  # fmt: skip
     if not bounds:
         none = (
             f"{directory}: run.json has no domain: say scene.domain(top, normal=[...]) in the scene, after its presses, and run it, "

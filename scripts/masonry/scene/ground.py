@@ -103,10 +103,10 @@ def readRecord(
             f"shake: the peak of the record is {peak:g}, which is {peak / 9.81:.2g} g if it is in m/s²: is it in {other}? "
             f"Say unit='{other}', or unit='m/s²' if it is"
         )
-    found = UNITS[unit or "m/s²"] * peak
-    if found > LARGEST_PEAK:
+    strongest = UNITS[unit or "m/s²"] * peak
+    if strongest > LARGEST_PEAK:
         raise Refused(
-            f"shake: the peak of the record, {found / 9.81:.3g} g in {unit or 'm/s²'}, must be at most {LARGEST_PEAK / 9.81:.2g} g: "
+            f"shake: the peak of the record, {strongest / 9.81:.3g} g in {unit or 'm/s²'}, must be at most {LARGEST_PEAK / 9.81:.2g} g: "
             "is it in another unit?"
         )
     return [UNITS[unit or "m/s²"] * v for v in values], every
