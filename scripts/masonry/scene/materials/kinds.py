@@ -22,9 +22,9 @@ from ...arguments import (
     validated,
 )
 from ...assembly.engines import LAWS
-from ...bricks import Bricks
 from ...basics import Refused
-from ..settings import Property, Settable, applySettings
+from ..settings import applySettings
+from . import beams
 from .assumptions import AS_BED, copied, entriesOf, isDefault, missing, state
 
 FACTOR = number("", 0, above=True)  # the kind of what a variation gives
@@ -72,28 +72,6 @@ def _varied(value, first=None):
     return value
 
 
-def _pieces(value, first=None):
-    """The kind of the pieces of a beam or a floor."""
-    if not (isinstance(value, Bricks) and len(value)):
-        raise ValueError(f"{shown(value)} must be what bricks.Beam or bricks.Floor gives")  # fmt: skip
-    return value
-
-
-def _bearing(value, first=None):
-    """The kind of what is between a beam or a floor and the masonry below."""
-    if isinstance(value, str) and value != "fixed":
-        raise ValueError(f"{shown(value)} must be 'fixed', a friction [-] or None")
-    return value if value is None or value == "fixed" else number("", 0, 5)(value)
-
-
-Modulus = Annotated[float, number("Pa", 0, 1e15, above=True)]
-Density = Annotated[float, number("kg/m³", 0, 1e6, above=True)]
-Poisson = Annotated[float, number("", -1, 0.5, above=True, below=True)]
-InPlane = Annotated[float, number("N/m", 0, 1e15, above=True)]  # a stiffness of a floor
-STIFFER = 1e4  # how much stiffer than the pieces of a beam the joints are that stand for nothing else [-]
-RIGID = 1e14  # Young's modulus of a piece that does not deform [Pa]
-
-
 @validated
 @dataclass
 class Masonry:
@@ -113,8 +91,8 @@ class Masonry:
     :param joints: dict of MasonryJoint by these names; ``bed`` must be there. ``support`` takes the bed joint if it is
         missing, with its strength and friction, and follows what ``--set`` says of it; a random field of the bed joint
         leaves it as it is
-    :param units: dict of MasonryMat by the ``kind`` of a block, for example ``{"lintel": concrete}``; other kinds are of
-        the unit
+    :param units: dict of MasonryMat by the ``kind`` of a block, for example ``{"lintel": concrete}``; bricks, lintels,
+        voussoirs and blocks that are not in it are of the unit
     :param choose: function (block1, block2, geom) of your own, of the records of two bricks or None for a platen; it
         returns the name of a joint, or None for the rule above
     :param brief: whether a scene prints only how many properties are assumed, as of a published set
@@ -159,8 +137,12 @@ class Masonry:
         :param settings: list of (name, property, text of the value)
         :param connectors: ties, springs and fibre layers of the scene by name, or None
         """
-        beams = {name: _OfBeam(name, self) for name in self.stiff if self._isBeam(name)}
-        applySettings({**self.joints, **beams, **(connectors or {})}, settings)
+        made = {
+            name: beams.OfBeam(name, self)
+            for name in self.stiff
+            if beams.isBeam(self, name)
+        }
+        applySettings({**self.joints, **made, **(connectors or {})}, settings)
         try:
             self._follow()
         except ValueError as error:
@@ -198,7 +180,7 @@ class Masonry:
             if attribute in numbers:
                 found.append((joint, attribute, value, step))
             else:
-                if self._isBeam(joint):
+                if beams.isBeam(self, joint):
                     problems.append(f"vary: {one!r}: a beam has its young and its density all over, which --set {joint}.young=... changes")  # fmt: skip
                     continue
                 close = nearest(one, [f"{joint}.{n}" for n in numbers])
@@ -211,106 +193,15 @@ class Masonry:
         self.varied += found
         return self
 
-    @validated
-    def withBeam(
-        self,
-        beam: Annotated[Any, _pieces],
-        young: Modulus,
-        density: Density,
-        poisson: Poisson = 0.2,
-        bearing: Annotated[float | str | None, _bearing] = None,
-    ) -> Masonry:
-        """Say what a beam of :func:`masonry.bricks.Beam` is made of. It is elastic. Returns the same masonry.
-
-        Its pieces are joined by the joint of its name, with the bending stiffness E I and the shear stiffness 5/6 G A of the
-        beam. Torsion has G (Iy + Iz), which is too stiff for flat sections.
-
-        :param beam: its pieces
-        :param young: [Pa]; ``poisson``: [-]
-        :param density: [kg/m³]
-        :param bearing: what is between it and masonry: None: a bed joint; a number: a dry joint of this friction [-];
-            ``"fixed"``: an elastic joint. The joint is called NAME_bearing
-        """
-        name, pitch = self._newKind("withBeam", beam)
-        shear = young / (2 * (1 + poisson))
-        # in series with the pieces, whose elasticity is lumped into their joints: E / l, and 5/6 G / l
-        glue = MasonryJoint(name=name, elastic=True, normalStiffness=STIFFER * young / pitch, shearStiffness=5 * shear / pitch)  # fmt: skip
-        unit = MasonryMat(label=name, young=young, poisson=poisson, density=density)
-        return self._take(name, unit, glue, bearing)
-
-    @validated
-    def withFloor(
-        self,
-        floor: Annotated[Any, _pieces],
-        shear: InPlane,
-        mass: Annotated[float, number("kg/m²", 0, 1e6, above=True)],
-        across: InPlane | None = None,
-        bearing: Annotated[float | str | None, _bearing] = 0.5,
-    ) -> Masonry:
-        """Say what a floor of :func:`masonry.bricks.Floor` is. It shears elastically in its plane. Returns the same masonry.
-
-        :param floor: its strips
-        :param shear: shear stiffness G t of its plane [N/m]: a square floor of which one edge is held moves by V / (G t) when a
-            force V acts along the other one
-        :param mass: with what lies on it [kg/m²]
-        :param across: stiffness E t across the strips [N/m]; None: ten times ``shear``, which is assumed
-        :param bearing: as of :meth:`withBeam`; the default, a friction of 0.5, is of joists that lie on masonry
-        """
-        name, pitch = self._newKind("withFloor", floor)
-        low, high = floor[0].low, floor[0].high
-        height = high[2] - low[2]
-        # strips are nearly rigid, so their joints have all of the stiffness: forces are G t / pitch times the slip
-        glue = MasonryJoint(
-            name=name,
-            elastic=True,
-            normalStiffness=(10 * shear if across is None else across)
-            / (pitch * height),  # fmt: skip
-            shearStiffness=shear / (pitch * height),
-        )
-        if across is None:
-            state(glue, normalStiffness="assumed by withFloor(): across its strips a floor is ten times as stiff as in shear")  # fmt: skip
-        unit = MasonryMat(label=name, young=RIGID, poisson=0.0, density=mass / height)
-        return self._take(name, unit, glue, bearing)
-
-    def _newKind(self, word, pieces):
-        """The kind of the pieces of a beam or a floor, and the distance of their middles [m]. Raises Refused."""
-        kinds, problems = {block.kind for block in pieces}, []
-        name = min(kinds)
-        if len(kinds) > 1:
-            problems.append(f"{word}: the pieces are of the kinds {', '.join(sorted(kinds))}: give those of one beam or floor")  # fmt: skip
-        if name in self.units or name in self.joints:
-            problems.append(f"{word}: this masonry has {name!r} already; give the beam or floor another name")  # fmt: skip
-        if len(pieces) < 2:
-            problems.append(f"{word}: {name} is one piece, which is rigid: bricks.Beam(..., pieces=8) bends")  # fmt: skip
-        if problems:
-            raise Refused("\n".join(problems))
-        return name, math.dist(pieces[0].middle, pieces[1].middle)
-
-    def _take(self, name, unit, glue, bearing):
-        """Take the material and the joints of a beam or a floor."""
-        self.units[name], self.joints[name] = unit, glue
-        self.stiff = self.stiff | {name}
-        if bearing is not None:
-            bed = self.joints["bed"]
-            values = dict(name=f"{name}_bearing", normalStiffness=bed.normalStiffness, shearStiffness=bed.shearStiffness)  # fmt: skip
-            if bearing == "fixed":
-                values["elastic"] = True
-            else:
-                values.update(tensileStrength=0, cohesion=0, friction=bearing, residualFriction=bearing, cap=False)  # fmt: skip
-            self.joints[f"{name}_bearing"] = MasonryJoint(**values)
-        return self
-
-    def _isBeam(self, name):
-        """Whether a name is that of a beam: pieces of a floor do not deform."""
-        return name in self.stiff and self.units[name].young < RIGID
-
     def _numbersOf(self, joint):
         """Names of the properties of a joint that are numbers, or none if there is no such joint, or if it is that of a beam,
         whose stiffness is that of its pieces."""
-        if self._isBeam(joint):
+        if beams.isBeam(self, joint):
             return []
         values = self.joints[joint].dict() if joint in self.joints else {}
         return [n for n, v in values.items() if isNumber(v)]
+
+    withBeam, withFloor = beams.withBeam, beams.withFloor
 
     @validated
     def variant(
@@ -435,31 +326,6 @@ class Masonry:
         return self._made[key]
 
     _made = property(lambda self: self.__dict__.setdefault("_kept", {}))
-
-
-class _OfBeam(Settable):
-    """What ``--set`` changes of a beam: its material. The stiffness of its joints follows."""
-
-    WORD = "beam"
-
-    def __init__(self, name, masonry):
-        self.name = name
-        self.unit, self.joint = masonry.units[name], masonry.joints[name]
-
-    def known(self) -> dict[str, Property]:
-        return {
-            "young": Property("Pa", 0, RIGID, True),
-            "density": Property("kg/m³", 0, 1e6, True),
-        }
-
-    def values(self) -> dict[str, float | None]:
-        return {name: getattr(self.unit, name) for name in self.known()}
-
-    def take(self, values: dict[str, float]) -> None:
-        share = values.get("young", self.unit.young) / self.unit.young
-        names = ("normalStiffness", "shearStiffness")
-        self.joint.updateAttrs({n: share * getattr(self.joint, n) for n in names})
-        self.unit.updateAttrs(values)
 
 
 def byName(joints: Iterable[MasonryJoint], brittle: bool) -> dict[str, MasonryJoint]:

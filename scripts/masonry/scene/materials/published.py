@@ -13,7 +13,8 @@ from yade.wrapper import MasonryJoint, MasonryMat
 
 from ...arguments import isNumber, number, shown, validated
 from .assumptions import state
-from .kinds import Masonry, Poisson, byName
+from .beams import Poisson
+from .kinds import Masonry, byName
 
 
 def calciumSilicate() -> Masonry:
