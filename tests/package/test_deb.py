@@ -1,0 +1,42 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The Debian package that ``scripts/package.sh`` makes: what is in it, and that a wall runs with it."""
+
+import os
+import subprocess
+
+import masonry
+import pytest
+from conftest import ROOT, runProgram
+
+pytestmark = pytest.mark.long
+
+
+@pytest.fixture(scope="module")
+def package(tmp_path_factory):
+    """The fields of the package, and the folder in which it is unpacked."""
+    who = {"DEBFULLNAME": "A Maintainer", "DEBEMAIL": "maintainer@example.org"}
+    subprocess.run(["bash", "scripts/package.sh"], cwd=ROOT, env={**os.environ, **who}, check=True, timeout=900)  # fmt: skip
+    folder = os.path.join(ROOT, "build", "package")
+    (path,) = (os.path.join(folder, n) for n in os.listdir(folder) if n.endswith(".deb"))  # fmt: skip
+    out = tmp_path_factory.mktemp("unpacked")
+    subprocess.run(["dpkg-deb", "-x", path, out], check=True)
+    said = subprocess.run(["dpkg-deb", "-f", path], capture_output=True, text=True, check=True)  # fmt: skip
+    fields = dict(line.split(": ", 1) for line in said.stdout.splitlines() if ": " in line)  # fmt: skip
+    return fields, out / "usr" / "lib" / "python3" / "dist-packages"
+
+
+def test_the_package_is_of_this_version_and_has_each_file(package):
+    fields, modules = package
+    assert fields["Version"].startswith(masonry.__version__ + "+")
+    assert "python3-jinja2" in fields["Depends"] and "yade (= " in fields["Depends"]
+    sources = os.path.join(ROOT, "scripts", "masonry")
+    kept = [os.path.relpath(os.path.join(at, name), sources) for at, _, names in os.walk(sources) for name in names if not name.endswith(".pyc")]  # fmt: skip
+    missing = [one for one in kept if not (modules / "masonry" / one).exists()]
+    assert len(kept) > 100 and missing == []
+
+
+def test_a_wall_runs_with_the_package_and_has_its_report(package, tmp_path):
+    _, modules = package
+    env = {**os.environ, "PYTHONPATH": str(modules)}
+    runProgram("wall_comp4", "--quick", "--out", tmp_path / "r", env=env)
+    assert (tmp_path / "r" / "report.html").stat().st_size > 1e5
