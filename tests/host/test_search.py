@@ -157,10 +157,20 @@ def test_a_trial_ends_when_the_structure_moves_faster_and_faster(scene):
 # -- the search -------------------------------------------------------------------------------------------------------
 
 
-def search(monkeypatch, capacity, moving, last, fell, within, states, setsOff):
+def search(
+    monkeypatch,
+    capacity,
+    moving,
+    last,
+    fell,
+    within,
+    states,
+    setsOff,
+    buckling=math.inf,
+):
     """A search on a structure that holds loads below its capacity from rest, and below another one from a state in which it
-    moves. Returns its memory, the scene and the trials: factor, whether it began at rest, the state it began with, and
-    whether it was held."""
+    moves, and that buckles from a third load on. Returns its memory, the scene and the trials: factor, whether it began at rest,
+    the state it began with, and whether it was held."""
     written, here, trials = [], {"state": None}, []
     text = lambda factor: base64.b64encode(repr(factor).encode()).decode()
     load, made = Load(most=1.2 * last), standing()
@@ -182,6 +192,9 @@ def search(monkeypatch, capacity, moving, last, fell, within, states, setsOff):
             here["factor"], here["state"] = at.goal, repr(at.goal).encode()
             at.ended = 0
             return held
+
+        def _buckles(self):
+            return (at.goal if at.goal >= 0 else at.held[0]) >= buckling
 
     here["factor"] = last
 
@@ -229,6 +242,28 @@ def test_a_search_brackets_what_the_structure_holds_from_rest(
         else:
             found.end()
         assert float(made.model.atRest) == pytest.approx(held)
+
+
+@settings(max_examples=150)
+@given(
+    buckles=some.floats(0.02, 1.3),
+    last=some.floats(0.5, 20.0),
+    within=some.sampled_from([0.002, 0.05]),
+    states=some.integers(1, 60),
+)
+def test_a_search_brackets_the_load_at_which_a_structure_buckles(
+    buckles, last, within, states
+):
+    with pytest.MonkeyPatch.context() as patch:
+        buckling = buckles * last
+        at, _, trials, _ = search(patch, 9 * last, 9 * last, last, False, within, states, 1, buckling)  # fmt: skip
+        held, lost = at.held[0], at.lost and at.lost[0]
+        assert len(trials) < 60 and held < buckling
+        if lost is None:
+            assert held == pytest.approx(last)
+        else:
+            assert lost >= buckling and growing.WHY[at.lost[3]].startswith("it buckles")
+            assert lost - held <= within * max(lost, growing.LEAST * last) * (1 + 1e-9)
 
 
 def test_a_structure_that_never_rests_is_tried_down_to_no_load_and_has_no_number():

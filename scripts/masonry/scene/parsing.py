@@ -41,6 +41,7 @@ class Parser(argparse.ArgumentParser):
     def __init__(self, **settings):
         super().__init__(allow_abbrev=False, **settings)
         self.problems = []
+        self.raises = False  # whether wrong options raise Refused, and end no program
         self.free = those("free")
         # argparse knows no exponents and no lists: -5e-1 and -1,2x3 would be options
         self._negative_number_matcher = re.compile(
@@ -65,7 +66,19 @@ class Parser(argparse.ArgumentParser):
         super()._print_message(plain(message or ""), file)
 
     def error(self, message):
+        if self.raises:
+            raise Refused("\n".join([*self.problems, message]))
         super().error("\n  ".join([*self.problems, message]))
+
+    def refusals(self, words):
+        """The options that words give, or None, and why they are refused, a list of sentences."""
+        self.raises = True
+        try:
+            return self._parsed(words, None), []
+        except Refused as refused:
+            return None, str(refused).splitlines()
+        finally:
+            self.raises = False
 
     def parse_args(self, args=None, namespace=None):
         """The options of the command line, or, in a run of ``yade-batch``, those of a row of its table: masonry.run.batch."""

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What a scene knows, for those who are about to run it many times: see :mod:`masonry.study`. There is no run."""
 
-import contextlib
-import io
 import json
 import math
 import os
@@ -136,13 +134,9 @@ def _rows(scene, parser):
 
 def _refused(scene, parser, words):
     """Why a row is refused, a list of sentences. Its fields are looked at where they are far out."""
-    errors = io.StringIO()
-    try:
-        with contextlib.redirect_stderr(errors):
-            args = parser._parsed(words, None)
-    except SystemExit:
-        text = errors.getvalue()
-        return (text.partition("error: ")[2] or text).strip().splitlines()
+    args, refusals = parser.refusals(words)
+    if refusals:
+        return refusals
     try:
         connectors = copiedAll(scene.description.settable())
         masonry = scene.description.materials.variant(args, [*connectors])

@@ -7,6 +7,10 @@ back to. Then it takes such a state, leaves the load as it is, and waits: the lo
 under it. Between the largest load that was held and the smallest that was not it goes on in halves, from the state at rest
 under the first. At the end the load that was not held is tried once more from that state, in which nothing moves: so it does
 not matter how fast the load grew.
+
+A perfectly symmetric structure comes to rest under loads far above that at which it buckles. So the largest load that was held is
+looked at with a small push to the side (:func:`masonry.assembly.period.buckles`), which leaves no trace. If that grows, the load is
+not held, and every later trial is looked at so.
 """
 
 from __future__ import annotations

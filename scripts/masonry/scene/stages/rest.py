@@ -65,7 +65,8 @@ def settle(
     At rest the supports carry what is above them but for half a per cent, and hardly anything moves. Presses and dead
     loads grow when it is called first; they stay when it is called again, for example after :meth:`release`.
 
-    :param longest: time in the scene after which it is given up [s]; None: 0.4 s, and longer for tall structures
+    :param longest: time in the scene after which it is given up [s]; None: 0.4 s, and longer for tall structures and for
+        soft springs under platens
     :param damping: kind of damping in this stage, ``"local"`` or ``"combined"``; None: that of the options. Local
         damping, of 0.5 at most in deformable units, takes the vibrations out sooner, and holds a mechanism back
     :param record: whether its end is a row of curve.csv
