@@ -24,8 +24,8 @@ from ...arguments import (
 from ...assembly.engines import LAWS
 from ...basics import Refused
 from ..settings import applySettings
-from . import beams
 from .assumptions import AS_BED, copied, entriesOf, isDefault, missing, state
+from .beams import OfBeam, isBeam, withBeam, withFloor
 
 FACTOR = number("", 0, above=True)  # the kind of what a variation gives
 
@@ -137,11 +137,7 @@ class Masonry:
         :param settings: list of (name, property, text of the value)
         :param connectors: ties, springs and fibre layers of the scene by name, or None
         """
-        made = {
-            name: beams.OfBeam(name, self)
-            for name in self.stiff
-            if beams.isBeam(self, name)
-        }
+        made = {name: OfBeam(name, self) for name in self.stiff if isBeam(self, name)}
         applySettings({**self.joints, **made, **(connectors or {})}, settings)
         try:
             self._follow()
@@ -180,7 +176,7 @@ class Masonry:
             if attribute in numbers:
                 found.append((joint, attribute, value, step))
             else:
-                if beams.isBeam(self, joint):
+                if isBeam(self, joint):
                     problems.append(f"vary: {one!r}: a beam has its young and its density all over, which --set {joint}.young=... changes")  # fmt: skip
                     continue
                 close = nearest(one, [f"{joint}.{n}" for n in numbers])
@@ -196,12 +192,12 @@ class Masonry:
     def _numbersOf(self, joint):
         """Names of the properties of a joint that are numbers, or none if there is no such joint, or if it is that of a beam,
         whose stiffness is that of its pieces."""
-        if beams.isBeam(self, joint):
+        if isBeam(self, joint):
             return []
         values = self.joints[joint].dict() if joint in self.joints else {}
         return [n for n, v in values.items() if isNumber(v)]
 
-    withBeam, withFloor = beams.withBeam, beams.withFloor
+    withBeam, withFloor = withBeam, withFloor
 
     @validated
     def variant(
