@@ -8,7 +8,7 @@ from hosted import *
 from yade import plot, timing, utils
 
 
-def standing(friction):
+def standing(friction, **settings):
     """A block on a held one, without bond; returns its id and the weight that friction carries [N]."""
     lower, upper = (
         addBlock(box((0, 0, z), (0.6, 0.3, 0.3)), MasonryMat(density=2500))
@@ -18,7 +18,7 @@ def standing(friction):
     joint = MasonryJoint(
         tensileStrength=0, cohesion=0, friction=friction, residualFriction=friction, cap=False
     )  # fmt: skip
-    engines([joint], damping=0.3)
+    engines([joint], damping=0.3, **settings)
     connect()
     return upper, 0.6 * 0.3 * 0.3 * 2500 * G
 
@@ -60,6 +60,17 @@ def test_forces_motions_and_records_of_yades_engines_hold_beside_ours(scene, tmp
     assert balance()["dissipated_shear"] > 0.5 * weight * 1e-3
     assert abs(balance()["error"]) < 1e-3
     assert "warning" not in capfd.readouterr().err
+
+
+@pytest.mark.parametrize("functors, place", [(False, 2), (True, 1), (True, 2)])
+def test_work_that_is_not_counted_is_said_and_ends_no_run(scene, capfd, functors, place):  # fmt: skip
+    """Behind the loop of the joints, and with functors, forces of YADE's engines are not apart from those of joints."""
+    block, weight = standing(0.5, functors=functors)
+    ours = list(O.engines)
+    O.engines = [*ours[:place], ForceEngine(ids=[block], force=(0.6 * weight, 0, 0)), *ours[place:]]  # fmt: skip
+    run(3000)
+    assert O.bodies[block].state.displ()[0] > 1e-3
+    assert capfd.readouterr().err.count("the work of ForceEngine is not counted") == 1
 
 
 @pytest.mark.slow

@@ -30,7 +30,8 @@ LIGHT = Wall("light", length=0.22, courses=4, precompression=0.0, loadHeight=3.0
 @pytest.fixture(autouse=True)
 def undrawn(monkeypatch):
     """Figures take longer than these runs."""
-    monkeypatch.setattr(DrawingProgram, "draw", lambda self, directory: None)
+    for name in ("begin", "draw"):
+        monkeypatch.setattr(DrawingProgram, name, lambda self, directory: None)
 
 
 def contents(folder):

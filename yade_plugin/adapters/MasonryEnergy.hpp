@@ -163,7 +163,7 @@ private:
     std::string findCollapse(SceneStore&);
     // Ends the run at once if a block has collapsed; `besides` says what else is wrong.
     void stopIfCollapsed(SceneStore&, const std::string& besides = "");
-    void warnOfBalance(double error);
+    void warnOfBalance(const SceneStore&, double error);
 
     double checkedStep_ = 0;    // time step at the last check [s]
     long checkedRevision_ = -1; // SceneStore::revision() at the last check

@@ -242,8 +242,8 @@ std::vector<Polygon> nearestCells(const Polygon& polygon, const std::vector<Poin
 }
 
 Point longestEdge(const Polygon& p) {
-    // Round-off decides at which corner a polygon begins, so of edges of one length not the first is taken, but the one
-    // that points most in this direction, at a right angle to which no edge of a usual block lies.
+    // Round-off decides at which corner a polygon begins. So of edges of one length not the first is taken, but the one
+    // that points most in this direction. No edge of a usual block is at a right angle to it.
     const Point preferred(1, 0.618, 0.272);
     Point longest = Point::Zero();
     for (std::size_t i = 0; i < p.size(); ++i) {

@@ -61,9 +61,8 @@ class Run:
         self.endsAtFall = False
         #: whether the present stage lets the dead loads grow, and is no test yet
         self.loading = False
-        self.memory = (
-            SimpleNamespace()
-        )  # what the stage remembers that was entered last
+        #: what the stage remembers that was entered last
+        self.memory = SimpleNamespace()
         #: function that takes what is found beside the run: with True it waits for that
         self.takeFound = lambda wait: None
         self.checkpoints = Checkpoints(self)

@@ -129,7 +129,7 @@ def resume(scene: Any) -> str:
     out to its end, from the checkpoint that the interruption left.
 
     Every word of the scene is said again, as ``--resume`` of a script does it, so the result is the same to the last bit.
-    Of a search that the script makes by itscene or by :meth:`bracket`, this is the step that was interrupted.
+    Of a search that the script makes by itself or by :meth:`bracket`, this is the step that was interrupted.
 
     :returns: how that stage ended
     :raises ValueError: if the scene was not interrupted, or left no checkpoint

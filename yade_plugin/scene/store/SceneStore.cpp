@@ -116,6 +116,8 @@ void SceneStore::readEngines() {
     integrator = nullptr;
     hostIntegrator = nullptr;
     first = last = nullptr;
+    uncounted.clear();
+    std::string before; // an engine of YADE that loads or moves bodies, ahead of ours
     for (const auto& engine : scene_.engines) {
         engines_.emplace_back(engine.get(), engine->dead);
         auto* load = dynamic_cast<Load*>(engine.get());
@@ -141,9 +143,15 @@ void SceneStore::readEngines() {
             note(integrator, dynamic_cast<Integrator*>(engine.get()))) {
             if (!first) first = engine.get();
             last = engine.get();
-        } else if (!first && name != "ForceResetter")
-            foreign = true;
+        } else if (name != "ForceResetter") {
+            foreign = foreign || !first;
+            const auto base = engine->getBaseClassName();
+            if (base == "PartialEngine" || base == "KinematicEngine" || base == "TranslationEngine" ||
+                base == "RotationEngine")
+                (first ? uncounted : before) = name;
+        }
     }
+    if (!loop && uncounted.empty()) uncounted = before;
 }
 
 // With functors the first engine of ours comes after the joints, whose forces are then no longer apart from others.
