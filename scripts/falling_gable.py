@@ -21,7 +21,7 @@ wall = bricks.Wall(LENGTH, EAVES, unit=(0.45, 2 * THICK, COURSE), halves=False)
 wall += gable.where(inside).moved(0, THICK / 2, EAVES).named("gable")
 
 stone = materials.masonry(
-    E=1e9, unit_E=5e9, fm=3e6, fv0=0.05e6, friction=0.6, bond_wrench=0.04e6, unit=(0.45, THICK, 0.14), joint=0.01, density=2000
+    E=1e9, unit_E=5e9, fc=3e6, fv0=0.05e6, friction=0.6, bond_wrench=0.04e6, unit=(0.45, THICK, 0.14), joint=0.01, density=2000
 )  # fmt: skip
 # pulses of one second, a whole sine each, with a peak of 3 and 4 m/s²
 pulses = [

@@ -294,6 +294,17 @@ def vector(unit="", most=1e100):
     return take
 
 
+def series(value, first=None):
+    """The kind of a list of numbers in one dimension, as an array."""
+    try:
+        found = np.asarray(value, float)
+    except (TypeError, ValueError, OverflowError):
+        found = None
+    if found is None or found.ndim != 1:
+        raise ValueError(f"{shown(value)} must be a list of numbers")
+    return found
+
+
 def direction(level=False):
     """The kind of a direction: three numbers, of any length but zero.
 
@@ -347,6 +358,7 @@ def orFunction(kind):
 Name = Annotated[str, name]
 Names = Annotated[Union[str, Sequence[str]], names]
 FilePath = Annotated[Union[str, os.PathLike[str]], path]
+Series = Annotated[Numbers, series]
 Direction = Annotated[Numbers, direction()]
 Level = Annotated[Numbers, direction(level=True)]
 Freedoms = Annotated[Axes, axes("xyzXYZ")]

@@ -185,7 +185,7 @@ RING = dict(thickness=0.3, stones=9, span=None, radius=2.0, angle=90)
 FIELD = dict(cov=0.2, length=0.5, seed=1)
 ABOUT = dict(mean=1.0, cov=0.1, low=0.5, high=2.0)
 CLAY = dict(
-    E=4e9, unit_E=9e9, fm=12e6, fv0=0.2e6, friction=0.6, unit=(0.25, 0.12, 0.065), joint=0.01, density=1800, ft=None,
+    E=4e9, unit_E=9e9, fc=12e6, fv0=0.2e6, friction=0.6, unit=(0.25, 0.12, 0.065), joint=0.01, density=1800, ft=None,
     bond_wrench=0.3e6, bond_ratio=1.5, G=1.2e9, head_E=3e9, poisson=0.2, GfI=20.0, GfII=200.0, Gc=2e4, peak_strain=4e-3,
     residual_friction=0.5, dilatancy=0.1, head_share=0.5, unit_ft=1.5e6, unit_GfI=60.0, unit_fv0=3e6, unit_friction=0.75,
     unit_GfII=500.0,
@@ -239,7 +239,7 @@ CALLS = {
     "materials.calciumSilicateJoints": (nothing, materials.calciumSilicateJoints, dict(brittle=False)),
     "materials.dryGranite": (nothing, materials.dryGranite, dict(level=100, height=0.15)),
     "materials.dryGraniteJoints": (nothing, materials.dryGraniteJoints, dict(level=100, height=0.15, brittle=False)),
-    "materials.compressiveFractureEnergy": (nothing, materials.compressiveFractureEnergy, dict(fm=1e7)),
+    "materials.compressiveFractureEnergy": (nothing, materials.compressiveFractureEnergy, dict(fc=1e7)),
     "materials.leastEnergy": (nothing, materials.leastEnergy, dict(strength=1e5, stiffness=1e10, lumped=0.0)),
     "materials.linesOf": (nothing, materials.linesOf, dict(entries=[], brief=False)),
     "materials.withResidual": (nothing, materials.withResidual, dict(names=["bed.friction"], joints=materials.calciumSilicateJoints())),

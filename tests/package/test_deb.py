@@ -8,7 +8,10 @@ import masonry
 import pytest
 from conftest import ROOT, runProgram
 
-pytestmark = [pytest.mark.long, pytest.mark.xdist_group("deb")]  # one worker makes the package
+pytestmark = [
+    pytest.mark.long,
+    pytest.mark.xdist_group("deb"),
+]  # one worker makes the package
 
 
 @pytest.fixture(scope="module")

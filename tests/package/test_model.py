@@ -318,7 +318,7 @@ def test_a_notebook_gets_the_page_in_a_frame_that_reaches_nothing(run):
     assert tag == "iframe" and attributes["sandbox"] == "allow-scripts"
     assert attributes["srcdoc"] == picture.page == page.page(str(run))
     assert "height:400px" in attributes["style"]
-    with pytest.raises(Refused, match="height: 10 must be a whole number from 200 to 5000 pixels"):  # fmt: skip
+    with pytest.raises(Refused, match="show: height 10 must be a whole number from 200 to 5000"):  # fmt: skip
         page.show(str(run), height=10)
 
 

@@ -12,7 +12,7 @@ from masonry import AT_REST, Scene, bricks, materials
 from masonry.basics import Refused
 
 SIZE, MORTAR = (0.25, 0.12, 0.065), 0.010
-CLAY = dict(E=4e9, unit_E=9e9, fm=14e6, fv0=0.25e6, friction=0.6, ft=0.2e6, unit=SIZE, joint=MORTAR, density=1800)  # fmt: skip
+CLAY = dict(E=4e9, unit_E=9e9, fc=14e6, fv0=0.25e6, friction=0.6, ft=0.2e6, unit=SIZE, joint=MORTAR, density=1800)  # fmt: skip
 
 
 def clay(**changes):
@@ -28,7 +28,7 @@ legal = some.fixed_dictionaries(
     dict(
         E=some.floats(1e9, 8e9),
         share=some.floats(0.05, 0.9),  # E over unit_E
-        fm=some.floats(2e6, 20e6),
+        fc=some.floats(2e6, 20e6),
         fv0=some.floats(0.05e6, 0.5e6),
         friction=some.floats(0.4, 1.0),
         bond=some.floats(0.01, 1.0),  # ft over fv0/friction
@@ -38,7 +38,7 @@ legal = some.fixed_dictionaries(
         joint=some.floats(0.001, 0.02),
         stiff=some.floats(0.1, 0.9),  # G over its bound
         along=some.floats(0.2, 0.9),  # head_E over unit_E
-        strain=some.floats(1.5, 2.5),  # peak strain over fm/E
+        strain=some.floats(1.5, 2.5),  # peak strain over fc/E
     )
 )
 
@@ -46,7 +46,7 @@ legal = some.fixed_dictionaries(
 def clayOf(p, **more):
     """The masonry of such numbers, and the modulus of its bricks [Pa]."""
     unitE, ft = p["E"] / p["share"], p["bond"] * p["fv0"] / p["friction"]
-    own = {n: p[n] for n in ("E", "fm", "fv0", "friction", "joint", "poisson")}
+    own = {n: p[n] for n in ("E", "fc", "fv0", "friction", "joint", "poisson")}
     unit = (p["length"], 0.1, p["height"])
     return clay(unit_E=unitE, ft=ft, unit=unit, **own, **more), unitE
 
@@ -60,7 +60,7 @@ def test_bricks_and_joints_in_series_are_the_masonry(p):
         G=p["stiff"] * shear * unitE,
         head_E=p["along"] * unitE,
         Gc=1e6,
-        peak_strain=p["strain"] * max(p["fm"] / p["E"], p["fm"] / (p["along"] * unitE)),
+        peak_strain=p["strain"] * max(p["fc"] / p["E"], p["fc"] / (p["along"] * unitE)),
     )
     assume(values["peak_strain"] < 0.09)
     made, _ = clayOf(p, **values)
@@ -70,9 +70,9 @@ def test_bricks_and_joints_in_series_are_the_masonry(p):
     assert inSeries(bed.normalStiffness, bedSpacing, unitE) == pytest.approx(p["E"])
     assert inSeries(head.normalStiffness, headSpacing, unitE) == pytest.approx(values["head_E"])  # fmt: skip
     assert inSeries(bed.shearStiffness, bedSpacing, shear * unitE) == pytest.approx(values["G"])  # fmt: skip
-    # brick and joint together have the peak strain at fm
-    closure = bed.peakRatio * p["fm"] / bed.normalStiffness
-    strain = closure / bedSpacing + p["fm"] / unitE
+    # brick and joint together have the peak strain at fc
+    closure = bed.peakRatio * p["fc"] / bed.normalStiffness
+    strain = closure / bedSpacing + p["fc"] / unitE
     assert strain == pytest.approx(values["peak_strain"])
     assert made.joints["support"].dict() == {**bed.dict(), "name": "support"}
     # the crack surface leaves 0.99 of half a brick
@@ -86,7 +86,7 @@ def test_bricks_and_joints_in_series_are_the_masonry(p):
 @given(legal, some.floats(0.5e6, 5e6))
 @settings(max_examples=80)
 def test_what_is_assumed_is_what_the_law_can_follow(p, brickStrength):
-    assume(p["fm"] / p["E"] * (p["height"] + p["joint"]) < 3e-4)  # else Gc is too small
+    assume(p["fc"] / p["E"] * (p["height"] + p["joint"]) < 3e-4)  # else Gc is too small
     made, unitE = clayOf(p, unit_ft=brickStrength)
     length, shearing = p["length"] + p["joint"], 2 * (1 + p["poisson"])
     distances = {"bed": p["height"] + p["joint"], "head": length, "crack": length / 2}  # fmt: skip
@@ -98,7 +98,7 @@ def test_what_is_assumed_is_what_the_law_can_follow(p, brickStrength):
         assert joint.modeIFractureEnergy >= max(0.029e-3 * joint.tensileStrength, 1.099 * tension)  # fmt: skip
         assert joint.modeIIFractureEnergy >= max(0.093e-3 * joint.cohesion, 1.099 * shear)  # fmt: skip
     bed = made.joints["bed"]
-    assert bed.peakRatio == pytest.approx(1 + 1 / (1 - p["share"]))  # of 2 fm/E
+    assert bed.peakRatio == pytest.approx(1 + 1 / (1 - p["share"]))  # of 2 fc/E
     assert bed.shearStiffness * shearing == pytest.approx(bed.normalStiffness)
     assert bed.residualFriction == p["friction"] and bed.dilatancy == 0
     said = sources(made)
@@ -107,20 +107,20 @@ def test_what_is_assumed_is_what_the_law_can_follow(p, brickStrength):
 
 
 def test_the_compressive_fracture_energy_is_that_of_its_sources():
-    energy = lambda fm: materials.compressiveFractureEnergy(fm)[0]
+    energy = lambda fc: materials.compressiveFractureEnergy(fc)[0]
     assert energy(20e6) == pytest.approx(22160)  # 15 + 8.6 - 1.44 N/mm
     assert energy(10e6) == pytest.approx(16000) and energy(100e6) == pytest.approx(33000)  # fmt: skip
     for edge in (12e6, 80e6):  # the parts nearly meet
         assert energy(edge * (1 - 1e-9)) == pytest.approx(energy(edge * (1 + 1e-9)), rel=0.03)  # fmt: skip
 
 
-@pytest.mark.parametrize("fm, said", [(5e6, "1.6 mm·fm"), (14e6, ""), (90e6, "0.33 mm·fm")])  # fmt: skip
-def test_outside_its_range_a_formula_is_a_warning(fm, said, capsys):
-    made = clay(fm=fm, E=40e9, unit_E=120e9)
+@pytest.mark.parametrize("fc, said", [(5e6, "1.6 mm·fc"), (14e6, ""), (90e6, "0.33 mm·fc")])  # fmt: skip
+def test_outside_its_range_a_formula_is_a_warning(fc, said, capsys):
+    made = clay(fc=fc, E=40e9, unit_E=120e9)
     printed = capsys.readouterr().out
     assert ("outside of 12 to 80 MPa" in printed and said in printed) == bool(said)
     assert said in sources(made)["bed.compressiveFractureEnergy"]
-    clay(fm=fm, E=40e9, unit_E=120e9, Gc=40000)
+    clay(fc=fc, E=40e9, unit_E=120e9, Gc=40000)
     assert not capsys.readouterr().out
 
 
@@ -157,7 +157,7 @@ def test_the_least_fracture_energy_is_that_of_the_law_or_of_rigid_units():
 
 def test_soft_head_joints_have_the_energy_that_their_own_stiffness_needs():
     """ft² / kn of the head joint, where units are stiff; 0.029 mm times ft would snap back."""
-    head = clay(head_E=0.05e9, fm=2e6, Gc=1e6, peak_strain=0.09).joints["head"]
+    head = clay(head_E=0.05e9, fc=2e6, Gc=1e6, peak_strain=0.09).joints["head"]
     soft = 0.25 + 0.010
     assert head.normalStiffness == pytest.approx(1 / (soft / 0.05e9 - soft / 9e9))
     for strength, stiffness, energy in (
@@ -210,11 +210,18 @@ def test_bricks_crack_if_their_strength_is_given():
         (dict(G=4e9), "G 4e+09 Pa must be below that of the bricks, unit_E/(2 (1 + nu)) = 3.75e+09 Pa"),
         (dict(residual_friction=0.7), "residual_friction 0.7 must be at most friction 0.6"),
         (dict(dilatancy=0.5, residual_friction=0.4), "dilatancy 0.5 must be at most residual_friction 0.4"),
-        (dict(peak_strain=1e-3), "peak_strain 0.001 must be at least fm/E = 0.0035"),
+        (dict(peak_strain=1e-3), "peak_strain 0.001 must be at least fc/E = 0.0035"),
         (dict(Gc=3000), "compressive fracture energy 3000 J/m² is too small for peak ratio"),
         (dict(unit_GfI=60), "unit_GfI without unit_ft: bricks do not crack then"),
         (dict(bond_ratio=2), "bond_ratio goes with bond_wrench"),
-        (dict(density=None, fm=None), "fm, density must be given"),
+        (dict(density=None, joint=None), "joint, density must be given"),
+        (dict(fc=None), "give fc, the mean compressive strength of the masonry, or fk"),
+        (dict(fk=8e6), "give fc, the mean"),
+        (dict(fc=None, unit_fb=20e6), "or unit_fb with mortar_fm"),
+        (dict(fm=5e6), "fm is the strength of the mortar in EN 1996 and on data sheets: give fc"),
+        (dict(K=0.5), "K goes with unit_fb and mortar_fm"),
+        (dict(fc=None, unit_fb=80e6, mortar_fm=5e6), "unit_fb 8e+07 Pa must be at most 7.5e+07 Pa"),
+        (dict(fc=None, unit_fb=4e6, mortar_fm=10e6), "mortar_fm 1e+07 Pa must be at most twice unit_fb"),
     ],
 )  # fmt: skip
 def test_wrong_values_are_refused_with_the_bound(changes, message):
@@ -223,10 +230,24 @@ def test_wrong_values_are_refused_with_the_bound(changes, message):
     assert message in str(refused.value)
 
 
+@pytest.mark.parametrize(
+    "strength, fc",
+    [
+        (dict(fk=6e6), 7.2e6),
+        (dict(unit_fb=10e6, mortar_fm=5e6), 5.361e6),  # 1.2 × 0.55 × 10^0.7 × 5^0.3
+        (dict(unit_fb=10e6, mortar_fm=5e6, K=0.45), 4.386e6),
+    ],
+)
+def test_the_mean_strength_is_found_by_eurocode_6(strength, fc):
+    bed = clay(fc=None, **strength).joints["bed"]
+    assert bed.compressiveStrength == pytest.approx(fc, rel=1e-3)
+    assert "EN 1052-1" in bed.assumed()["compressiveStrength"]
+
+
 def test_all_wrong_values_are_named_at_once():
     with pytest.raises(Refused) as refused:
-        clay(fm=-1, joint=1, density=None, friction=9)
-    for word in ("fm -1", "joint 1 m", "density must be given", "friction 9"):  # fmt: skip
+        clay(fc=-1, joint=1, density=None, friction=9)
+    for word in ("fc -1", "joint 1 m", "density must be given", "friction 9"):  # fmt: skip
         assert word in str(refused.value)
 
 
@@ -252,7 +273,7 @@ def test_softening_that_snaps_back_is_a_warning_and_no_scene(
     energy, joint, strength, stiffness, distance, changes, tmp_path, capsys
 ):
     # so stiff a joint has most of its elasticity from the units
-    changes = dict(E=7e9, fm=20e6, unit_E=7.5e9, **changes)
+    changes = dict(E=7e9, fc=20e6, unit_E=7.5e9, **changes)
     made = clay(**changes).joints[joint]
     soft = 2.4 if "II" in energy else 1.0  # E/G of the bricks
     least = materials.leastEnergy(getattr(made, strength), getattr(made, stiffness), soft * distance / 7.5e9)  # fmt: skip

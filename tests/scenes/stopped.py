@@ -35,7 +35,7 @@ TIMES = "date wall_clock_s seconds microseconds_per_step nanoseconds_per_subcont
 
 
 class Stopped(BaseException):
-    """The process is killed here."""
+    """The process is killed here, or given up."""
 
 
 # -- scripts -----------------------------------------------------------------------------------------------------------
@@ -266,10 +266,11 @@ class Writer:
 # -- runs --------------------------------------------------------------------------------------------------------------
 
 
-def carryOut(script, *words, stop=None):
+def carryOut(script, *words, stop=None, most=math.inf):
     """Run a script in this process. Returns its exit status, and how many steps were taken.
 
     :param words: of the command line
+    :param most: steps after which it is given up
     :param stop: function of the run and the number of steps that were taken, which is called after each of them
     """
     folder, before, take = os.getcwd(), sys.argv, Run._take
@@ -286,6 +287,8 @@ def carryOut(script, *words, stop=None):
             taken[0] += 1
             if stop:
                 stop(run, taken[0])
+            if taken[0] >= most:
+                raise Stopped()
 
         take(run, steps, act)
 

@@ -126,7 +126,7 @@ class Case:
         return materials.masonry(
             E=E,
             unit_E=E / dice.uniform(0.1, 0.95),
-            fm=fm,
+            fc=fm,
             Gc=min(max(fm * fm / E * self.height * dice.power(0.5, 2), 10), 1e7),
             fv0=fv0,
             friction=friction,

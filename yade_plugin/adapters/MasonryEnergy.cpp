@@ -138,7 +138,8 @@ void MasonryEnergy::lookAtBalance(const SceneStore& store) {
         all.lostInConnectors = connectorsThen[2];
         all.inContacts = contactsThen;
         all.given = givenThen; // joints are refined after they were looked at
-        warnOfBalance(store, std::abs(balanceOf(all, storedThen, lostThen).error));
+        const auto then = balanceOf(all, storedThen, lostThen);
+        warnOfBalance(store, std::abs(then.error) / comparedWith(then.size));
     }
     if (scene->iter % 1000 != 0 || scene->iter == 0) return;
     const auto now = presentBalance(store);
@@ -269,21 +270,32 @@ MasonryEnergy::Balance MasonryEnergy::balanceOf(const Inventory& all, const Vect
     const double out = moving + drag + inUnits + stored[0] + stored[1] + stored[2] + lost.sum() + inConnectors +
                        lostInConnectors + inContacts.sum();
     const double size = std::max(std::abs(work) + std::abs(falls), std::abs(out));
-    return {all, stored, lost, size, size > 0 ? (in - out) / size : 0};
+    return {all, stored, lost, in - out, size};
+}
+
+// Where next to no work was done, the error is round-off, and its ratio to that work says nothing. So the work counts
+// as no less than the largest until now, nor than that of the scene's weight over a nanometre.
+double MasonryEnergy::comparedWith(double size) {
+    double mass = 0;
+    for (const auto& body : scene->bodies->body)
+        if (body && body->state) mass += body->state->mass;
+    largestWork = std::max({largestWork, size, 9.81e-9 * mass});
+    return largestWork > 0 ? largestWork : 1;
 }
 
 py::dict MasonryEnergy::balance() {
     const BetweenSteps still;
     auto& store = SceneStore::present();
     store.update(SceneStore::ScanScope::Joints); // a full look would take too long: every row of curve.csv calls this
-    const auto [inventory, stored, lost, size, error] = presentBalance(store);
+    const auto [inventory, stored, lost, error, size] = presentBalance(store);
     const auto [work, falls, moving, drag, inUnits, given, inConnectors, lostInConnectors, inContacts] = inventory;
     // Dissipated energies should never fall. They can: where a joint opens or closes within a step, the trapezoidal
     // rule takes the mean of the tractions before and after, and the error is counted as dissipated, also where it is
     // negative. A long undamped series of such steps makes energy. Damping or shorter steps prevent that.
     mostLost = mostLost.cwiseMax(lost);
-    largestError = std::max(largestError, std::abs(error));
-    if (size > 0) largestMade = std::max(largestMade, (mostLost - lost).sum() / size);
+    const double compared = comparedWith(size);
+    largestError = std::max(largestError, std::abs(error) / compared);
+    largestMade = std::max(largestMade, (mostLost - lost).sum() / compared);
     py::dict all;
     all["external"] = work;
     all["gravity"] = falls;
@@ -312,7 +324,7 @@ py::dict MasonryEnergy::balance() {
         all["friction_contacts"] = inContacts[1];
         all["damping_contacts"] = inContacts[2];
     }
-    all["error"] = error;
+    all["error"] = error / compared;
     return all;
 }
 

@@ -49,6 +49,7 @@ public:
     double largestError = 0;
     double largestMade = 0;
     double largestInput = 0;
+    double largestWork = 0;
     Vector3r mostLost = Vector3r::Zero();
 
     template <class Visit> static void attributes(Visit&& visit) {
@@ -104,15 +105,23 @@ public:
               number("J", "Elastic energy of contacts, and energies lost in their friction and damping, at that look"),
               Hidden);
         visit("stepThen", &E::stepThen, number("", "Step of the last look at the balance; -1: there was none"), Hidden);
-        visit("largestError", &E::largestError,
-              number("-", "Largest error of the balance seen by balance(), relative to the work done"), ReadOnly);
+        visit(
+            "largestError", &E::largestError,
+            number("-", "Largest error of the balance seen by balance(), relative to the largest work done until then"),
+            ReadOnly);
         visit("largestMade", &E::largestMade,
-              number("-", "Largest fall of the dissipated energies below their largest values, as seen by balance(), "
-                          "relative to the work done: energy made by joints that open or close within a step"),
+              number("-",
+                     "Largest fall of the dissipated energies below their largest values, as seen by balance(), "
+                     "relative to the largest work done until then: energy made by joints that open or close within "
+                     "a step"),
               ReadOnly);
         visit("mostLost", &E::mostLost, number("J", "Largest dissipated energies seen by balance(), by mode"), Hidden);
         visit("largestInput", &E::largestInput,
               number("J", "Largest work of loads, prescribed motions and gravity so far"), Hidden);
+        visit(
+            "largestWork", &E::largestWork,
+            number("J", "Largest work done so far, or if it is more, that of the weight of the scene over a nanometre"),
+            Hidden);
         visit("begun", &E::begun, described("Whether the kinetic energy at the first step has been counted"), Hidden);
     }
 
@@ -121,7 +130,8 @@ public:
                 "All energies of the last step [J]: external, gravity, refining, kinetic, damping, elastic_ and "
                 "dissipated_ tension, shear, compression; elastic_connectors and dissipated_connectors of ties and "
                 "springs where there are some; handing, elastic_contacts, friction_contacts and damping_contacts of "
-                "MasonryContacts where there is one; and error, the balance's error relative to the work done [-].")
+                "MasonryContacts where there is one; and error, the balance's error relative to the largest work done "
+                "until now [-].")
             .def("given", &MasonryEnergy::given,
                  "Count the kinetic energy of the present motion as work done from outside. Call this directly after "
                  "setting velocities by hand, if the run has made a step before.");
@@ -148,11 +158,12 @@ private:
     struct Balance {
         Inventory all;
         Vector3r stored, lost; // in the joints, by mode: tension, shear, compression [J]
+        double error;          // [J]
         double size;           // of the work done [J]
-        double error;          // relative to that [-]
     };
     static Balance balanceOf(const Inventory&, const Vector3r& stored, const Vector3r& lost);
     Balance presentBalance(const SceneStore&) const;
+    double comparedWith(double size); // the work [J] to which an error of the balance is relative
     void lookAtBalance(const SceneStore&);
     py::dict balance();
     void given();

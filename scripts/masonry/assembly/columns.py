@@ -110,7 +110,7 @@ BALANCE = [
     Column(
         "balance_error",
         "-",
-        "error of the energy balance, relative to the work done",
+        "error of the energy balance, relative to the largest work done until then",
         _energy("error"),
     ),
 ]

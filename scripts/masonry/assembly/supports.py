@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What holds a structure, and what its platens and held bricks feel: forces, displacements, and whether it is at rest."""
 
-import math
-
 from yade import O, Vector3
+
+from ..basics import GRAVITY
 
 FILLED = 1e-9  # of a platen's side: what may be free of bricks if it is said to be full
 
@@ -154,7 +154,9 @@ class Supports:
             size = loads
         missing = (applied + carried).norm() / (size or 1.0)
         moving = abs(energy["kinetic"])
-        return missing, moving / elastic if elastic else math.inf
+        # without loads there is next to no energy, and motion is compared with the weight over a picometre
+        least = 1e-12 * GRAVITY * self.freeMass
+        return missing, moving / max(elastic, least) if moving else 0.0
 
     def contactOf(self, target):
         """Area of a platen's joints [m²], and their middle [m]."""

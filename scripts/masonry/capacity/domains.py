@@ -11,11 +11,11 @@ from __future__ import annotations
 import math
 import os
 from dataclasses import asdict, dataclass
-from typing import Any, Sequence
+from typing import Annotated, Any, Sequence
 
 import numpy as np
 
-from ..arguments import FilePath, isNumber
+from ..arguments import FilePath, isNumber, listOf, path, validated
 from ..basics import GRAVITY, Refused
 from ..read.bilinear import pushover
 from ..read.files import filesOf, readRun
@@ -86,6 +86,7 @@ class Domain:
         }
 
 
+@validated
 def runPoint(directory: FilePath) -> RunPoint:
     """Normal force and shear force at the peak of the push of a run.
 
@@ -125,7 +126,10 @@ def _normal(push, at):
         return 1e-3 * (pressed + weight), source
 
 
-def domain(directory: FilePath, runs: Sequence[FilePath] = ()) -> Domain:
+@validated
+def domain(
+    directory: FilePath, runs: Annotated[Sequence[FilePath], listOf(path, 0)] = ()
+) -> Domain:
     """The N-V domain of a scene, with runs as points.
 
     :param directory: folder of results of a scene that says ``scene.domain(...)``

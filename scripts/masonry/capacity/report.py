@@ -7,10 +7,10 @@ from __future__ import annotations
 import json
 import os
 import sys
-from typing import Any, Sequence
+from typing import Annotated, Any, Sequence
 
 from .. import folders
-from ..arguments import FilePath
+from ..arguments import FilePath, isA, listOf, number, oneOf, path, validated
 from ..basics import Refused, say
 from ..packages import Missing
 from ..read import bilinear
@@ -28,15 +28,16 @@ ASSUMED = (
 )
 
 
+@validated
 def assess(
     directory: FilePath,
-    spectrum: Spectrum | None = None,
-    system: n2.Equivalent | None = None,
-    rule: str = "en1998",
-    mechanism: float | None = None,
+    spectrum: Annotated[Spectrum, isA(Spectrum)] | None = None,
+    system: Annotated[n2.Equivalent, isA(n2.Equivalent)] | None = None,
+    rule: Annotated[str, oneOf(*bilinear.RULES)] = "en1998",
+    mechanism: Annotated[float, number("mm", 0, above=True)] | None = None,
     limited: bool = False,
     iterate: bool = False,
-    height: float | None = None,
+    height: Annotated[float, number("m", 0, above=True)] | None = None,
     out: FilePath | None = None,
 ) -> dict[str, Any]:
     """Write capacity.json and capacity.png of a run: the bilinear curve of its push, its drifts and, for a spectrum, the
@@ -88,8 +89,11 @@ def assess(
     return found
 
 
+@validated
 def assessDomain(
-    directory: FilePath, runs: Sequence[FilePath] = (), out: FilePath | None = None
+    directory: FilePath,
+    runs: Annotated[Sequence[FilePath], listOf(path, 0)] = (),
+    out: FilePath | None = None,
 ) -> Domain:
     """Write domain.json and domain.png: the N-V domain of a scene, with runs as points. Returns the domain.
 

@@ -26,13 +26,14 @@ that at the loaded point, so its peak is ``peak_at_both_ends_kN`` of run.json. T
 from __future__ import annotations
 
 import math
+import os
 import sys
 from dataclasses import dataclass, replace
-from typing import Annotated, Any, Sequence
+from typing import Annotated, Any, Sequence, Union
 
 import numpy as np
 
-from ..arguments import FilePath, Numbers, number, oneOf, validated
+from ..arguments import FilePath, Numbers, Series, number, oneOf, path, validated
 from ..basics import Refused, say
 from . import curves, loops, quantities
 from .files import filesOf, onFolder
@@ -141,10 +142,9 @@ def _area(moved, force, end):
     return loops.area(f, d), last
 
 
-def _checked(displacement, force):
-    """Both as arrays. Raises Refused if they are no push."""
-    moved, force = np.asarray(displacement, float), np.asarray(force, float)
-    if moved.ndim != 1 or moved.shape != force.shape:
+def _checked(moved, force):
+    """Displacements that do not go back, and forces. Raises Refused if they are no push."""
+    if moved.shape != force.shape:
         raise Refused(
             f"a curve must have as many displacements as forces, not {moved.size} and {force.size}"
         )
@@ -198,8 +198,8 @@ def _checkPeak(moved, force, stiffness):
 
 @validated
 def bilinear(
-    displacement: Numbers,
-    force: Numbers,
+    displacement: Series,
+    force: Series,
     rule: Annotated[str, oneOf(*RULES)] = "masonry",
     secant: Annotated[float, number("-", 0, 1, above=True, below=True)] = SECANT,
     fall: Annotated[float, number("-", 0, 1, above=True, below=True)] = FALL,
@@ -340,6 +340,7 @@ class Pushover:
         return self.data.run
 
 
+@validated
 def pushover(directory: FilePath) -> Pushover:
     """Read the curve of the push of a run.
 
@@ -373,8 +374,18 @@ def pushover(directory: FilePath) -> Pushover:
         return Pushover(str(directory), data, moved, data.carried(), tuple(notes))
 
 
+def _pushOf(value, first=None):
+    """The kind of what :func:`pushover` read, or of a folder of results."""
+    return value if isinstance(value, Pushover) else path(value)
+
+
+#: A folder of results, or what :func:`pushover` read of it.
+PushOf = Annotated[Union[str, "os.PathLike[str]", Pushover], _pushOf]
+
+
+@validated
 def ofRun(
-    directory: FilePath | Pushover,
+    directory: PushOf,
     rule: str = "masonry",
     secant: float = SECANT,
     fall: float = FALL,
@@ -404,7 +415,7 @@ def ofRun(
 
 @validated
 def drifts(
-    directory: FilePath | Pushover,
+    directory: PushOf,
     height: Annotated[float, number("m", 0, above=True)] | None = None,
     fall: float = FALL,
 ) -> list[Number]:

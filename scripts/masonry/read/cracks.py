@@ -70,6 +70,7 @@ def layOut(
         too, the same of all bed joints with those to the support and to the loading block, (courses + 1, half units)
     """
     half, height = wall["unit_m"][0] / 2, wall["unit_m"][2]
+    left, foot = wall.get("corner_m", (0.0, 0.0))
     courses, columns = wall["courses"], wall["half_units"]
     names = ("opening", "slide", "shear", "crushing", "past")
     beds = {name: np.zeros((courses + 1, columns)) for name in names}
@@ -79,7 +80,8 @@ def layOut(
     total = lambda values: np.bincount(joint, area * values)
     centres = centresOf(frame["points"], frame["cells"])
     whole = total(1)
-    x, z = total(centres[:, 0]) / whole / half, total(centres[:, 2]) / whole / height
+    x = (total(centres[:, 0]) / whole - left) / half
+    z = (total(centres[:, 2]) / whole - foot) / height
     values = {
         "opening": total(frame["opening"]) / whole,
         "slide": total(np.linalg.norm(frame["slide"], axis=1)) / whole,
@@ -286,13 +288,15 @@ MEASURED = {
 
 
 def pattern(frame: dict[str, Any], wall: dict[str, Any], looped: bool = False) -> dict[str, Any]:  # fmt: skip
-    """Numbers of the crack pattern of a wall; ``frame``, of which the arrays NEEDED are enough, and ``wall`` as of
-    :func:`layOut`.
+    """Numbers of the crack pattern of a wall, seen from the side from which it is pushed to the right; ``frame``, of which the
+    arrays NEEDED are enough, and ``wall`` as of :func:`layOut`.
 
     :param looped: whether the wall was pushed back, too: then the numbers of the diagonal and of crushing are there once more, of
         the wall that is seen from behind, with ``_mirrored`` at the end of the name
     """
     bed, upright = layOut(frame, wall)
+    if wall.get("pushed_towards", 1) < 0:
+        bed, upright = mirrored(bed), mirrored(upright)
     found = patternNumbers(bed, upright)
     if looped:
         bed, upright = mirrored(bed), mirrored(upright)
@@ -349,4 +353,7 @@ def failureMode(
 
 def mirrored(joints: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
     """The joints of :func:`layOut` of a wall that is seen from behind: what fell to the right falls to the left."""
-    return {n: values[:, ::-1] for n, values in joints.items() if n != "beds"}
+    return {
+        name: mirrored(values) if name == "beds" else values[:, ::-1]
+        for name, values in joints.items()
+    }

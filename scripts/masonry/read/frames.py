@@ -15,18 +15,23 @@ import re
 import struct
 import zlib
 from xml.etree import ElementTree
-from typing import Any, Sequence
+from typing import Annotated, Any, Sequence
 
 import numpy as np
 
-from ..arguments import FilePath
+from ..arguments import FilePath, number, oneOf, validated, whole
 from ..basics import Refused
 
+#: A kind of files.
+Kind = Annotated[str, oneOf("blocks", "joints", "connectors")]
+#: Number of a frame.
+FrameNumber = Annotated[int, whole(-(10**9))]
 #: Types of numbers in the files.
 TYPES = {"Float64": "f8", "Float32": "f4", "Int64": "i8", "Int32": "i4", "UInt8": "u1"}
 
 
-def framePaths(directory: FilePath, kind: str) -> list[str]:
+@validated
+def framePaths(directory: FilePath, kind: Kind) -> list[str]:
     """Paths of all frames of a run, in the order of time.
 
     :param kind: ``blocks``, ``joints`` or ``connectors``
@@ -40,6 +45,7 @@ def framePaths(directory: FilePath, kind: str) -> list[str]:
     return sorted(numbers, key=lambda path: numbers[path])
 
 
+@validated
 def frameTimes(directory: FilePath) -> list[float]:
     """Times of all frames of a run in the order of time, as joints.pvd has them [s]."""
     path = os.path.join(directory, "joints.pvd")
@@ -52,12 +58,16 @@ def frameTimes(directory: FilePath) -> list[float]:
         raise Refused(f"cannot read {path}: {error}") from None
 
 
-def frameAt(directory: FilePath, time: float) -> int:
+@validated
+def frameAt(directory: FilePath, time: Annotated[float, number("s")]) -> int:
     """Number of the frame nearest to a time [s], from 0."""
     return int(np.argmin(np.abs(np.array(frameTimes(directory)) - time)))
 
 
-def readFrame(directory: FilePath, kind: str, number: int = -1) -> dict[str, Any]:
+@validated
+def readFrame(
+    directory: FilePath, kind: Kind, number: FrameNumber = -1
+) -> dict[str, Any]:
     """A frame of blocks, joints or connectors as a dict: ``points`` [m], ``cells`` (arrays of point numbers), and every data
     array.
 
@@ -65,11 +75,12 @@ def readFrame(directory: FilePath, kind: str, number: int = -1) -> dict[str, Any
     :param number: of the frame, from 0; negative numbers count from the end
     :raises Refused: if there is no such frame, or if its file is damaged
     """
-    return _read(framePaths(directory, kind)[number], _frame)
+    return _read(_pathOf(directory, kind, number), _frame)
 
 
+@validated
 def readSurfaces(
-    directory: FilePath, number: int = 0
+    directory: FilePath, number: FrameNumber = 0
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Triangles around the blocks of a frame, as :func:`readFrame` numbers points and cells.
 
@@ -77,7 +88,14 @@ def readSurfaces(
         rigid blocks, else they are zones of deformable units, all of whose sides are given, also those inside the unit
     :raises Refused: as of :func:`readFrame`
     """
-    return _read(framePaths(directory, "blocks")[number], _surfaces)
+    return _read(_pathOf(directory, "blocks", number), _surfaces)
+
+
+def _pathOf(directory, kind, number):
+    paths = framePaths(directory, kind)
+    if not -len(paths) <= number < len(paths):
+        raise Refused(f"no frame {number} in {directory}: there are {len(paths)}")
+    return paths[number]
 
 
 def _read(path, parsed):

@@ -17,7 +17,7 @@ from typing import Any, Iterator
 
 import numpy as np
 
-from ..arguments import FilePath
+from ..arguments import FilePath, validated
 from ..basics import Refused, say
 from . import cracks, loops, quantities
 from .files import filesOf, onFolder, readCurve, readRun
@@ -25,6 +25,7 @@ from .frames import frameAt, readFrame
 from .run_data import BASE, TOP, RunData
 
 
+@validated
 def wallNumbers(directory: FilePath) -> dict[str, Any]:
     """All numbers of a wall's run. Those of the crack pattern are left out if there are no ParaView files."""
     data = RunData.read(directory)
@@ -42,6 +43,7 @@ def wallNumbers(directory: FilePath) -> dict[str, Any]:
     return {**quantities.known(data), **more}
 
 
+@validated
 def jointNumbers(directory: FilePath, name: str) -> dict[str, Any]:
     """Areas under the curves of a joint whose means are recorded: its fracture energies, if it was torn, sheared or crushed.
 
@@ -64,6 +66,7 @@ def jointNumbers(directory: FilePath, name: str) -> dict[str, Any]:
     return {prefix + end: value for end, value in found.items()}
 
 
+@validated
 def measure(directory: FilePath) -> dict[str, Any]:
     """Numbers of a run as a dict by name: those at the top level of run.json, and those measured here.
 

@@ -96,11 +96,11 @@ A run with a push has these, too:
   both are within it; ``fidelity``, what was chosen; ``quantities``, a list with ``name``, ``unit``, ``value``, ``half_width``,
   ``half_width_percent``, ``parts_percent`` by the source of the error, and ``how`` it was found; ``not_covered``; and
   ``companions``, the runs beside this one: ``name``, ``options``, ``peak`` [kN], ``work`` [J], ``seconds``, ``collapsed``, ``folder``
-- ``wall``, of a whole wall in running bond in the x-z plane that a platen pushes: ``length_m``, ``height_m``,
-  ``thickness_m``, ``courses``, ``half_units`` (the length, in half units), ``unit_m`` (length, thickness and height of a
+- ``wall``, of a whole wall in running bond in the x-z plane that a platen pushes: ``corner_m`` (x and z of its lower left
+  corner), ``length_m``, ``height_m``, ``thickness_m``, ``courses``, ``half_units`` (the length, in half units), ``unit_m`` (length, thickness and height of a
   unit), ``precompression_Pa``, ``load_height_m`` (height of the push above the base, None if the platen cannot turn),
-  ``measure_height_m`` (height of the displacement above the base) and ``load_line_fixed`` (whether the vertical load
-  keeps its line in space)
+  ``measure_height_m`` (height of the displacement above the base), ``pushed_towards`` (1 along x, -1 against it) and
+  ``load_line_fixed`` (whether the vertical load keeps its line in space)
 - ``history``, of one that follows one: ``text``, what the option said; ``points``, how many points it has; ``turning_points``, how often
   it turns; ``path_mm``, the length of the way; ``noise_mm``, up to which an excursion is no half cycle; of a list
   ``amplitudes_mm``, pairs of an amplitude [mm] and its number of cycles; of a file its path ``file`` and the fingerprint

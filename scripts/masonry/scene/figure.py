@@ -32,7 +32,7 @@ def figureOf(outcome):
 
 def _ofPush(outcome):
     target, data = outcome.model.loading.target, outcome.data
-    height = f"{target.recorded[2]:.3g} m above the base"
+    height = f"{target.recorded[2] - outcome.description.low[2]:.3g} m above the base"
     marks = []
     if data.rows:
         moved = data["displacement_mm"]

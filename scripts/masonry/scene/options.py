@@ -88,8 +88,9 @@ def ofScene(name, arguments, usual):
         raise Refused(
             f"scene {name}: arguments must be a list of words, such as {arguments.split()!r}, got {arguments!r}"
         )
-    if isinstance(arguments, (list, tuple)):
-        wrong = [one for one in arguments if not isinstance(one, str)]
+    if not isinstance(arguments, (argparse.Namespace, type(None))):
+        words = arguments if isinstance(arguments, (list, tuple)) else [arguments]
+        wrong = [one for one in words if not isinstance(one, str)]
         if wrong:
             raise Refused(f"scene {name}: arguments must be a list of words, got {shown(wrong[0])}")  # fmt: skip
     if arguments is None or isinstance(arguments, (list, tuple)):

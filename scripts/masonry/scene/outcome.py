@@ -143,7 +143,7 @@ class Outcome:
         )
         if self.description.views:
             entries["views"] = self.description.views
-        wall = wallOf(self.description, model.loading.target) if self.pushed else None
+        wall = wallOf(self.description, model.loading) if self.pushed else None
         if wall:
             entries["wall"] = wall
         return entries
@@ -244,9 +244,7 @@ class Outcome:
     def figure(self):
         """The entries of run.json by which curve.png is drawn."""
         found = dict(title=self.description.title, figure=figureOf(self))
-        wall = (
-            wallOf(self.description, self.model.loading.target) if self.pushed else None
-        )
+        wall = wallOf(self.description, self.model.loading) if self.pushed else None
         return {**found, "wall": wall} if wall else found
 
     def write(self, directory, draws=True):

@@ -2,12 +2,13 @@
 """Whether a structure is a whole wall in running bond in the x-z plane, of which crack patterns are measured."""
 
 
-def wallOf(description, target):
+def wallOf(description, loading):
     """The entry ``wall`` of run.json, or None if the structure is no such wall, or if no platen pushes it.
 
     :param description: :class:`masonry.scene.description.Description`
-    :param target: what is pushed
+    :param loading: :class:`masonry.assembly.loading.Loading`, which knows what is pushed, and where to
     """
+    target = loading.target
     low, high = description.low, description.high
     sides = [
         [f(p[i] for p in block.corners) for i in range(3)]
@@ -35,6 +36,7 @@ def wallOf(description, target):
     ):
         return None
     return {
+        "corner_m": [low[0], low[2]],
         "length_m": length,
         "height_m": high[2] - low[2],
         "thickness_m": high[1] - low[1],
@@ -42,7 +44,8 @@ def wallOf(description, target):
         "half_units": columns,
         "unit_m": [2 * half, high[1] - low[1], height],
         "precompression_Pa": target.pressed or 0.0,
-        "load_height_m": None if "Y" in target.freedom else target.point[2],
-        "measure_height_m": target.recorded[2],
+        "load_height_m": None if "Y" in target.freedom else target.point[2] - low[2],
+        "measure_height_m": target.recorded[2] - low[2],
+        "pushed_towards": -1 if loading.direction[0] < 0 else 1,
         "load_line_fixed": not target.riding,
     }

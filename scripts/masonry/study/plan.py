@@ -12,7 +12,7 @@ from typing import Annotated, Any, Sequence
 
 import numpy as np
 
-from ..arguments import FilePath, oneOf, validated, whole
+from ..arguments import FilePath, isA, oneOf, validated, whole
 from ..run import batch
 from ..basics import Refused
 from . import designs, incremental
@@ -52,12 +52,12 @@ class Study:
     def __init__(
         self,
         scene: FilePath,
-        options: dict[str, Any] | None = None,
+        options: Annotated[dict[str, Any], isA(dict)] | None = None,
         runs: Annotated[int, whole(1, MOST)] | None = None,
         seed: Annotated[int, whole(0, 2**31 - 1)] = 0,
-        vary: dict[Any, Any] | None = None,
+        vary: Annotated[dict[Any, Any], isA(dict)] | None = None,
         design: Annotated[str, oneOf(*designs.DESIGNS)] = "random",
-        correlation: dict[tuple[str, str], float] | None = None,
+        correlation: Annotated[dict[tuple[str, str], float], isA(dict)] | None = None,
         records: FilePath | Sequence[FilePath] | None = None,
         levels: Sequence[float] | None = None,
         scales: Sequence[float] | None = None,

@@ -17,13 +17,17 @@ finds three.js.
 from __future__ import annotations
 
 import html
+from typing import Annotated
 
-from ...arguments import FilePath, whole
-from ...basics import Refused
+from ...arguments import FilePath, number, validated, whole
 from .. import pages
+from ..frames import FrameNumber
 from ..pages import rendered
 from .data import dataOf
 from .library import three
+
+#: A factor on displacements.
+Factor = Annotated[float, number("-", 0)]
 
 HEIGHT = 620  # of a picture in a notebook [pixels]
 
@@ -38,7 +42,8 @@ def assets() -> str:
     return rendered("page/assets.html", library=library, licence=licence)
 
 
-def fragment(directory: FilePath, number: int | None = None, magnification: float | None = None) -> str:  # fmt: skip
+@validated
+def fragment(directory: FilePath, number: FrameNumber | None = None, magnification: Factor | None = None) -> str:  # fmt: skip
     """The picture of a run as an element ``<div class="masonry-view">`` with its data, for a page that has :func:`assets`.
 
     It is as wide as what it stands in, and 70 % of that high. All frames of the run are in it.
@@ -53,14 +58,16 @@ def fragment(directory: FilePath, number: int | None = None, magnification: floa
     return rendered("page/fragment.html", head=head, numbers=numbers)
 
 
-def page(directory: FilePath, number: int | None = None, magnification: float | None = None) -> str:  # fmt: skip
+@validated
+def page(directory: FilePath, number: FrameNumber | None = None, magnification: Factor | None = None) -> str:  # fmt: skip
     """A whole page with the picture of a run; parameters and errors as of :func:`fragment` and :func:`assets`."""
     library, licence = three()
     head, numbers = dataOf(directory, number, magnification)
     return rendered("page/page.html", head=head, numbers=numbers, library=library, licence=licence)  # fmt: skip
 
 
-def write(directory: FilePath, path: FilePath, number: int | None = None, magnification: float | None = None) -> None:  # fmt: skip
+@validated
+def write(directory: FilePath, path: FilePath, number: FrameNumber | None = None, magnification: Factor | None = None) -> None:  # fmt: skip
     """Write :func:`page` to a file, whole or not at all; the other parameters and errors are those of :func:`page`.
 
     :raises OSError: if the file cannot be written, or if its name is that of a symbolic link
@@ -68,16 +75,13 @@ def write(directory: FilePath, path: FilePath, number: int | None = None, magnif
     pages.write(path, page(directory, number, magnification))
 
 
-def show(directory, number=None, height=HEIGHT):
+@validated
+def show(directory: FilePath, number: FrameNumber | None = None, height: Annotated[int, whole(200, 5000)] = HEIGHT) -> Picture:  # fmt: skip
     """The picture of a run for a notebook, which shows what the last line of a cell returns.
 
     :param height: of the picture [pixels], 200 to 5000; the others, and the errors, are those of :func:`fragment`
     :returns: a :class:`Picture`
     """
-    try:
-        height = whole(200, 5000)(height)
-    except ValueError as problem:
-        raise Refused(f"height: {problem} pixels") from None
     return Picture(directory, page(directory, number), height)
 
 

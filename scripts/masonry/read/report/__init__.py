@@ -19,7 +19,7 @@ from __future__ import annotations
 
 from typing import Any, Callable, Iterable
 
-from ...arguments import FilePath
+from ...arguments import FilePath, validated
 from ...basics import Refused
 from .. import pages
 from ..page.library import three
@@ -45,6 +45,7 @@ PARTS: tuple[tuple[str, str, Callable[[Record], Iterable[Any]]], ...] = (
 )
 
 
+@validated
 def read(directory: FilePath) -> Record:
     """Read the files of a run.
 

@@ -29,6 +29,12 @@ INDEX_SOURCE = "ductility index of Lourenço (2008)"
 MODEL_CODE = 12e6, 80e6
 BELOW_RANGE, ABOVE_RANGE = 1.6e-3, 0.33e-3
 
+#: Mean over characteristic compressive strength of masonry [-], EN 1052-1.
+MEAN = 1.2
+#: K of EN 1996-1-1:2005, table 3.3, for clay and calcium silicate units of group 1 in general purpose mortar [-]. Equation (3.2),
+#: to which it belongs, is for units and mortars of at most these strengths [Pa].
+GROUP_1, STRONGEST = 0.55, {"unit_fb": 75e6, "mortar_fm": 20e6}
+
 #: By how much an assumed fracture energy is above the least that the law can follow [-].
 MARGIN = 1.1
 
@@ -43,24 +49,32 @@ EnergyOfBrick = Annotated[float, number("J/m²", 0.1, 1e6)]
 Mortar = Annotated[float, number("m", 0, 0.1)]
 
 
+def _ofMortar(value, first=None):
+    """The kind of an argument that is never right."""
+    raise ValueError(
+        "is the strength of the mortar in EN 1996 and on data sheets: give fc, the mean strength of the masonry, or fk, or mortar_fm "
+        "with unit_fb"
+    )
+
+
 @validated
-def compressiveFractureEnergy(fm: Crushing) -> tuple[float, str]:
+def compressiveFractureEnergy(fc: Crushing) -> tuple[float, str]:
     """Compressive fracture energy of masonry [J/m²], and where it is from.
 
-    Gc = 15 + 0.43 fm - 0.0036 fm² with fm in MPa and Gc in N/mm, for fm from 12 to 80 MPa, after Model Code 90; below and
-    above that 1.6 mm and 0.33 mm times fm, as Lourenço (2008) recommends.
+    Gc = 15 + 0.43 fc - 0.0036 fc² with fc in MPa and Gc in N/mm, for fc from 12 to 80 MPa, after Model Code 90; below and
+    above that 1.6 mm and 0.33 mm times fc, as Lourenço (2008) recommends.
 
-    :param fm: compressive strength [Pa]
+    :param fc: compressive strength [Pa]
     """
     low, high = MODEL_CODE
-    if fm < low:
-        return BELOW_RANGE * fm, "1.6 mm·fm, Lourenço (2008) for fm below 12 MPa"
-    if fm > high:
-        return ABOVE_RANGE * fm, "0.33 mm·fm, Lourenço (2008) for fm above 80 MPa"
-    found = fm / 1e6
+    if fc < low:
+        return BELOW_RANGE * fc, "1.6 mm·fc, Lourenço (2008) for fc below 12 MPa"
+    if fc > high:
+        return ABOVE_RANGE * fc, "0.33 mm·fc, Lourenço (2008) for fc above 80 MPa"
+    found = fc / 1e6
     return (
         1e3 * (15 + 0.43 * found - 0.0036 * found**2),
-        "15 + 0.43 fm - 0.0036 fm² N/mm, Model Code 90 after Lourenço (2008)",
+        "15 + 0.43 fc - 0.0036 fc² N/mm, Model Code 90 after Lourenço (2008)",
     )
 
 
@@ -136,12 +150,17 @@ def masonry(
     *,
     E: Modulus,
     unit_E: Modulus,
-    fm: Crushing,
     fv0: OfBond,
     friction: Friction,
     unit: Sides,
     joint: Mortar,
     density: Annotated[float, number("kg/m³", 100, 1e4)],
+    fc: Crushing | None = None,
+    fk: Crushing | None = None,
+    unit_fb: Crushing | None = None,
+    mortar_fm: Crushing | None = None,
+    K: Annotated[float, number("", 0.1, 1)] | None = None,
+    fm: Annotated[None, _ofMortar] = None,
     ft: OfBond | None = None,
     bond_wrench: OfBond | None = None,
     bond_ratio: Annotated[float, number("", 1, 5)] | None = None,
@@ -166,7 +185,7 @@ def masonry(
     ::
 
         clay = materials.masonry(
-            E=4e9, unit_E=9e9, fm=10e6, fv0=0.2e6, friction=0.6, bond_wrench=0.3e6,
+            E=4e9, unit_E=9e9, fc=10e6, fv0=0.2e6, friction=0.6, bond_wrench=0.3e6,
             unit=(0.25, 0.12, 0.065), joint=0.010, density=1800)
 
     What is not given is assumed by the formulas below; a scene prints it once, and run.json has it under ``assumed``.
@@ -174,7 +193,10 @@ def masonry(
 
     :param E: Young's modulus of the masonry under compression across its bed joints [Pa]
     :param unit_E: Young's modulus of the bricks [Pa], above E
-    :param fm: compressive strength of the masonry [Pa]
+    :param fc: mean compressive strength of the masonry [Pa]; give this, ``fk``, or ``unit_fb`` with ``mortar_fm``
+    :param fk: characteristic compressive strength of the masonry [Pa]; fc is 1.2 fk, as in EN 1052-1
+    :param unit_fb: normalised mean compressive strength of the bricks [Pa], and ``mortar_fm`` that of the mortar [Pa]:
+        fk = K fb^0.7 fm^0.3 with all in MPa, EN 1996-1-1:2005, equation (3.2), for general purpose mortar
     :param fv0: initial shear strength of the bed joints (EN 1052-3) [Pa], the cohesion
     :param friction: coefficient of friction of the bed joints [-]
     :param ft: **direct** tensile strength of the bed joints [Pa]; give this or ``bond_wrench``
@@ -188,6 +210,9 @@ def masonry(
 
     These can be given:
 
+    :param K: of the equation of ``unit_fb`` [-], from table 3.3 of EN 1996-1-1:2005; default 0.55, of clay and calcium silicate
+        units of group 1
+    :param fm: never: in EN 1996 it is the strength of the mortar
     :param bond_ratio: flexural over direct tensile strength of the bond [-]; default 1.5, after van der Pluijm (1999)
     :param G: shear modulus of the masonry [Pa]: 1/ks = s (1/G - 1/Gu), where s = height + joint, Gu = unit_E/(2 (1 + nu)).
         Default: ks = kn/(2 (1 + nu))
@@ -198,7 +223,7 @@ def masonry(
     :param GfII: mode II fracture energy of bed joints without normal stress [J/m²]; default 0.093 mm times fv0, Lourenço
         (2008)
     :param Gc: compressive fracture energy [J/m²]; default as of :func:`compressiveFractureEnergy`
-    :param peak_strain: strain of the masonry at fm [-]; default 2 fm/E, that of a parabola which begins with the modulus
+    :param peak_strain: strain of the masonry at fc [-]; default 2 fc/E, that of a parabola which begins with the modulus
         E, the branch up to the peak of Kaushik, Rai and Jain (2007), J. Mater. Civ. Eng. 19(9)
     :param residual_friction: [-]; default: the friction
     :param dilatancy: tan(psi) [-]; default 0
@@ -216,8 +241,8 @@ def masonry(
     is so stiff that it leaves 0.99 of the stiffness of a half. Blocks contain their mortar and have the modulus unit_E,
     rigid ones lumped into their joints.
 
-    Crushing: the closure of a joint at its strength is ucp = s (peak_strain - fm/unit_E), what the bricks leave of the
-    strain, and the law's peak ratio n = kn ucp/fm. Head joints have the same strength and Gc.
+    Crushing: the closure of a joint at its strength is ucp = s (peak_strain - fc/unit_E), what the bricks leave of the
+    strain, and the law's peak ratio n = kn ucp/fc. Head joints have the same strength and Gc.
 
     An assumed energy in tension or shear with which softening would snap back between rigid units is raised to 1.1 times
     the least that does not, and its source says so; a given one that is too small is a warning with that least.
@@ -225,7 +250,11 @@ def masonry(
     """
     values = SimpleNamespace(**locals())
     given = {n: v for n, v in vars(values).items() if v is not None}
-    problems = _problems(given)
+    problems = _strengthProblems(given)
+    if not problems:
+        values.fc, values.ofStrength = _compressiveStrength(values)
+        given["fc"] = values.fc
+    problems += _problems(given)
     if problems:
         raise Refused("\n".join(f"materials.masonry: {one}" for one in problems))
     joints = {}
@@ -234,7 +263,7 @@ def masonry(
             joints[kind.name] = kind.made()
         except ValueError as error:
             problems += [
-                f"{one}; Gc and peak_strain, and fm and E, decide"
+                f"{one}; Gc and peak_strain, and fc and E, decide"
                 * ("too small for peak ratio" in one)
                 or one
                 for one in str(error).splitlines()
@@ -249,6 +278,36 @@ def masonry(
     usual = {"poisson": "usual for masonry units"} if poisson is None else {}
     course = unit[2] + joint
     return Masonry(state(brick, **usual), joints, course=course)
+
+
+def _strengthProblems(given):
+    """Sentences on what is given of the compressive strength."""
+    of = {"unit_fb", "mortar_fm"}
+    ways = [*({"fc", "fk"} & given.keys()), *([of] if of & given.keys() else [])]
+    if len(ways) != 1 or (of in ways and not of <= given.keys()):
+        return ["give fc, the mean compressive strength of the masonry, or fk, the characteristic one, or unit_fb with mortar_fm"]  # fmt: skip
+    if of not in ways:
+        return ["K goes with unit_fb and mortar_fm"] if "K" in given else []
+    found = [
+        f"{name} {given[name]:g} Pa must be at most {most:g} Pa: equation (3.2) of EN 1996-1-1"
+        for name, most in STRONGEST.items()
+        if given[name] > most
+    ]
+    if given["mortar_fm"] > 2 * given["unit_fb"]:
+        found.append(f"mortar_fm {given['mortar_fm']:g} Pa must be at most twice unit_fb: equation (3.2) of EN 1996-1-1")  # fmt: skip
+    return found
+
+
+def _compressiveStrength(v):
+    """Mean compressive strength of the masonry [Pa], and where it comes from; empty if it is given."""
+    if v.fc is not None:
+        return v.fc, ""
+    if v.fk is not None:
+        return MEAN * v.fk, f"{MEAN:g} fk, EN 1052-1"
+    K = GROUP_1 if v.K is None else v.K
+    fk = 1e6 * K * (v.unit_fb / 1e6) ** 0.7 * (v.mortar_fm / 1e6) ** 0.3
+    group = "" if v.K else f" with K = {K:g} of units of group 1"
+    return MEAN * fk, f"{MEAN:g} fk, EN 1052-1; fk {fk:.4g} Pa by equation (3.2) of EN 1996-1-1:2005{group}"  # fmt: skip
 
 
 def _poisson(v):
@@ -330,22 +389,23 @@ def _bond(v, bed, head):
 
 def _crushing(v, bed, head):
     """Strength, energy and peak ratio of bed and head joints in compression."""
-    energy, source = (v.Gc, "") if v.Gc is not None else compressiveFractureEnergy(v.fm)
-    if v.Gc is None and not MODEL_CODE[0] <= v.fm <= MODEL_CODE[1]:
+    energy, source = (v.Gc, "") if v.Gc is not None else compressiveFractureEnergy(v.fc)
+    if v.Gc is None and not MODEL_CODE[0] <= v.fc <= MODEL_CODE[1]:
         say(
-            f"warning: materials.masonry: fm {v.fm / 1e6:g} MPa is outside of 12 to 80 MPa, the range of Model Code 90 for the "
+            f"warning: materials.masonry: fc {v.fc / 1e6:g} MPa is outside of 12 to 80 MPa, the range of Model Code 90 for the "
             f"compressive fracture energy: Gc is {energy:.4g} J/m², {source}"
         )
     height, length = _spacings(v)
     # without a modulus of its own the head joint is that of the bed
     along = (v.E, height) if v.head_E is None else (v.head_E, length)
     for kind, (modulus, spacing) in ((bed, (v.E, height)), (head, along)):
-        kind.take("compressiveStrength", v.fm, kind is bed, "like the bed joint")
+        isGiven, origin = kind is bed and not v.ofStrength, v.ofStrength
+        kind.take("compressiveStrength", v.fc, isGiven, origin if kind is bed else "like the bed joint")  # fmt: skip
         kind.take("compressiveFractureEnergy", energy, v.Gc is not None, source)
-        strain = 2 * v.fm / modulus if v.peak_strain is None else v.peak_strain
-        closure = spacing * (strain - v.fm / v.unit_E)
-        why = "peak strain 2 fm/E, parabola of Kaushik, Rai and Jain (2007)"
-        n = kind.values["normalStiffness"] * closure / v.fm
+        strain = 2 * v.fc / modulus if v.peak_strain is None else v.peak_strain
+        closure = spacing * (strain - v.fc / v.unit_E)
+        why = "peak strain 2 fc/E, parabola of Kaushik, Rai and Jain (2007)"
+        n = kind.values["normalStiffness"] * closure / v.fc
         kind.take("peakRatio", n, v.peak_strain is not None, why)
 
 
@@ -409,10 +469,10 @@ def _problems(given):
         if n(one) is not None and most is not None and n(one) > most:
             found.append(f"{one} {n(one):g} must be at most {other} {most:g}")
     found += _aboveCone(n)
-    strains = None not in (n("peak_strain"), n("fm"), n("E"))
-    if strains and n("peak_strain") < n("fm") / n("E"):
+    strains = None not in (n("peak_strain"), n("fc"), n("E"))
+    if strains and n("peak_strain") < n("fc") / n("E"):
         found.append(
-            f"peak_strain {n('peak_strain'):g} must be at least fm/E = {n('fm') / n('E'):g}, that of elastic masonry"
+            f"peak_strain {n('peak_strain'):g} must be at least fc/E = {n('fc') / n('E'):g}, that of elastic masonry"
         )
     if "bond_ratio" in given and "bond_wrench" not in given:
         found.append("bond_ratio goes with bond_wrench")

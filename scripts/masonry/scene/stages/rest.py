@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Annotated, Any
 
@@ -103,6 +104,8 @@ def waitForRest(scene, at, longest, grow, over=0.0, record=True, buckling=False)
     growing = max(1, int(ramp / O.dt))
     every = max(n for n in SHORTER if n == 1 or n <= growing / 3)
     longest = longest or 20 * ramp
+    if math.isinf(O.dt):
+        raise Refused("every brick is held, so nothing can move")
     most = int(longest / O.dt)
     if most < 1:
         raise Refused(

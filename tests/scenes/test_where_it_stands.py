@@ -1,0 +1,85 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Where a structure stands, and which way it looks, changes no number of a run but those of places."""
+
+import functools
+
+from hosted import *
+from masonry.read import quantities
+
+#: What is done to the bricks, and to a horizontal direction of a load.
+PLACES = {
+    "far away": (lambda b: b.moved(7.3, -3.1, 2.2), lambda x, y: (x, y, 0)),
+    "a unit to the left": (lambda b: b.moved(-0.22), lambda x, y: (x, y, 0)),
+    "turned about": (lambda b: b.turned(180), lambda x, y: (-x, -y, 0)),
+}
+HERE = (lambda b: b, lambda x, y: (x, y, 0))
+#: Entries of run.json that no quantity lists.
+MORE = ["collapsed", "failure_mode", "recorded_height_m", "drift_height_m", "base_weight"]  # fmt: skip
+#: Numbers with noise: what is left where others cancel, and what belongs to the machine.
+NOISE = {"energy_balance_error", "energy_made", "wall corner_m", "wall pushed_towards"} | {
+    one.key for one in quantities.QUANTITIES if one.group == "cost"
+}  # fmt: skip
+
+
+def pushedWall(words, stand, towards):
+    blocks = stand(bricks.Wall(length=0.88, height=0.81))
+    scene = Scene("wall", blocks, materials.calciumSilicate(), rate=20, arguments=words)  # fmt: skip
+    _, top = scene.platen("bottom"), scene.platen("top", rotation="free")
+    scene.press(top, 2e4)
+    scene.settle()
+    scene.push(top, 0.6, direction=towards(1, 0))
+    scene.finish()
+
+
+def leaningArch(words, stand, towards):
+    blocks = bricks.Arch(thickness=0.15, depth=0.3, stones=7, radius=0.925, angle=157.5, skewback=0.2)  # fmt: skip
+    stones = materials.dry(friction=0.7, normalStiffness=1e11)
+    scene = Scene("arch", stand(blocks), stones, arguments=words)
+    for brick, name in ((7, "left"), (8, "right")):
+        scene.hold(brick, name=name)
+    scene.settle()
+    scene.accelerate(1.0, towards=towards(1, 0))
+    scene.finish()
+
+
+def fallingStack(words, stand, towards):
+    blocks = stand(bricks.stack(5, (0.2, 0.25, 0.2)))
+    scene = Scene("stack", blocks, materials.dry(0.7), collapse="follow", plane=False, arguments=words)  # fmt: skip
+    scene.platen("bottom")
+    scene.settle()
+    scene.lean(0.4, towards=towards(1, 0))
+    scene.finish()
+
+
+SCATTER = {pushedWall: 0.03, leaningArch: 1e-6, fallingStack: 0.15}
+
+
+@functools.cache
+def here(build, folder):
+    return answers(build, folder, *HERE)
+
+
+def answers(build, folder, stand, towards):
+    """All numbers of a run: the quantities, those of its joints and pattern, and the answers of its stages."""
+    O.reset()
+    build(["--out", folder, "--lean", "--no-vtk"], stand, towards)
+    run = readRun(folder)
+    measured = {key: run[key] for key in [*quantities.BY_KEY, *MORE] if key in run}
+    stages = {f"{n} {one['name']}": one["value"] for n, one in enumerate(run["answers"])}  # fmt: skip
+    wall = {f"wall {key}": value for key, value in run.get("wall", {}).items()}
+    found = {**measured, **stages, **wall}
+    return {key: value for key, value in found.items() if key not in NOISE}
+
+
+@pytest.mark.parametrize("place", PLACES)
+@pytest.mark.parametrize("build", [pushedWall, leaningArch, fallingStack])
+def test_no_number_depends_on_the_place(scene, tmp_path_factory, build, place):
+    folder = tmp_path_factory.getbasetemp() / "here" / build.__name__
+    folder.parent.mkdir(exist_ok=True)
+    expected = here(build, str(folder))
+    found = answers(build, str(tmp_path_factory.mktemp("there")), *PLACES[place])
+    assert found.keys() == expected.keys() and len(found) >= 4
+    for key in found:
+        # round-off grows where joints crack, and more where blocks fall
+        near = pytest.approx(expected[key], rel=SCATTER[build], abs=1e-4, nan_ok=True)
+        assert found[key] == near, f"{key}: {found[key]}, here {expected[key]}"
