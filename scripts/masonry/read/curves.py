@@ -23,20 +23,19 @@ SHEAR = 2 / 3
 def dynamicImbalance(top: Numbers, base: Numbers) -> float:
     """How much of the force of a push does not arrive at its base [-]: 0 if all does, 1 and more if none does.
 
-    It is the root mean square of top less base shear over the largest of either, from half the peak at the base to that
-    peak. If this peak is less than half of the largest force, all rows count. Inertia makes the difference swing about
-    zero, and damping makes it drag.
+    It is the root mean square of top less base shear over the largest of either: the larger of that from half the peak at the
+    base to that peak, and of that from there to the end. If this peak is less than half of the largest force, all rows count
+    together. Inertia makes the difference swing about zero, and damping makes it drag.
     """
-    forces = [abs(b) for b in base]
-    largest = max([*map(abs, top), *forces], default=0)
+    differences, forces = np.subtract(top, base), np.abs(base)
+    largest = max(np.abs(top).max(initial=0), forces.max(initial=0))
     if not largest:
         return 0.0
-    peak, rows = max(forces), slice(None)
-    if peak >= largest / 2:
-        start = next(i for i, f in enumerate(forces) if f >= peak / 2)
-        rows = slice(start, forces.index(peak) + 1)
-    squares = [(t - b) ** 2 for t, b in zip(top[rows], base[rows])]
-    return math.sqrt(sum(squares) / len(squares)) / largest
+    peak, parts = int(forces.argmax()), [differences]
+    if forces[peak] >= largest / 2:
+        start = int((forces >= forces[peak] / 2).argmax())
+        parts = [differences[start : peak + 1], differences[peak:]]
+    return float(max(np.sqrt(np.mean(part**2)) for part in parts) / largest)
 
 
 def quasiStatic(top: Numbers, base: Numbers, weight: float = SHEAR) -> list[float]:

@@ -36,7 +36,7 @@ def peaks(scene, rows):
         at = data.peak(side)
         how = (
             f"the largest force that supports and loaded point carried at once; the supports alone had {data[BASE][at]:.4g} kN then, and "
-            f"{100 * imbalance:.1f} % of the force did not reach them on the way there. How far rate, mesh and points change it is "
+            f"{100 * imbalance:.1f} % of the force did not reach them on the way there or behind it. How far rate, mesh and points change it is "
             "not known from one run"
         )
         found.append(Answer(name, "kN", data.peakForce(side), how))
