@@ -163,7 +163,7 @@ def optionsOfScenes():
 
 # -- the plugin's classes ---------------------------------------------------------------------------------------------
 
-_PROPERTY = re.compile(r"^(?P<meaning>.*?)(?: Default: (?P<usual>.*?)\.?)?$", re.S)
+_PROPERTY = re.compile(r"^(?P<meaning>.*?)(?: :ydefault:`(?P<usual>.*?)`)?$", re.S)
 
 
 def _attributes(cls):

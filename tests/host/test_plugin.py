@@ -67,7 +67,9 @@ def test_numbers_say_their_unit_and_default():
             if isinstance(value, property) and isinstance(
                 getattr(cls(), attribute), float
             ):
-                assert "[" in value.__doc__ and "Default: " in value.__doc__, attribute
+                assert (
+                    "[" in value.__doc__ and ":ydefault:`" in value.__doc__
+                ), attribute
 
 
 def test_every_member_of_the_joint_properties_is_described_once():

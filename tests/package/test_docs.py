@@ -22,6 +22,7 @@ import notebooks
 import staging
 import tree
 from masonry import arguments
+from yade import wrapper
 
 NEEDS = {
     "sphinx": "python3-sphinx",
@@ -251,3 +252,38 @@ def test_a_notebook_becomes_a_page():
     notebook["cells"][1]["outputs"] = [{"output_type": "error", "ename": "ValueError", "evalue": "bad"}]  # fmt: skip
     with pytest.raises(ValueError, match="one: ValueError: bad"):
         notebooks.markdown(notebook, "one", kept.__setitem__)
+
+
+#: A documentation of classes as YADE makes its own: its roles, and autodoc of classes in yade.wrapper.
+LIKE_YADES = """
+import sys
+sys.path[:0] = {path!r}
+import yade.config, masonry
+from docutils import nodes
+
+extensions = ["sphinx.ext.autodoc"]
+
+
+def shown(name, raw, text, line, inliner, options=None, content=()):
+    return [nodes.literal(raw, text)], []
+
+
+def setup(app):
+    for name in ("yref", "ysrc", "ydefault", "yattrtype", "yattrflags"):
+        app.add_role(name, shown)
+"""
+
+
+@needsSphinx
+@pytest.mark.long
+def test_yades_documentation_takes_the_classes_of_the_plugin(tmp_path):
+    names = [name for name in dir(wrapper) if "Masonry" in name]
+    assert len(names) > 15
+    (tmp_path / "conf.py").write_text(LIKE_YADES.format(path=sys.path))
+    pages = [f".. autoclass:: yade.wrapper.{name}\n   :members:\n" for name in names]
+    (tmp_path / "index.rst").write_text("\n".join(["Classes", "=======", "", *pages]))
+    command = [sys.executable, "-m", "sphinx", "-q", "-W", "-b", "text", ".", "out"]
+    made = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)
+    assert made.returncode == 0, made.stderr
+    text = (tmp_path / "out" / "index.txt").read_text()
+    assert "friction" in text and "Peak friction coefficient tan(phi_p)" in text

@@ -177,7 +177,7 @@ std::string documentation(const Attribute& attribute, void* standard) {
     if (fixed)
         about += " Read-only.";
     else if (attribute.hasDefault())
-        about += " Default: " + std::string(py::extract<std::string>(py::str(attribute.value(standard)))) + ".";
+        about += " :ydefault:`" + std::string(py::extract<std::string>(py::str(attribute.value(standard)))) + "`";
     return about;
 }
 

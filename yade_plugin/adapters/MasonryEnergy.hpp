@@ -127,8 +127,9 @@ public:
 
     template <class PyClass> static void extras(PyClass& cls) {
         cls.def("balance", &MasonryEnergy::balance,
-                "All energies of the last step [J]: external, gravity, refining, kinetic, damping, elastic_ and "
-                "dissipated_ tension, shear, compression; elastic_connectors and dissipated_connectors of ties and "
+                "All energies of the last step [J]: external, gravity, refining, kinetic, damping; elastic_tension and "
+                "dissipated_tension, and likewise of shear and compression; elastic_connectors and "
+                "dissipated_connectors of ties and "
                 "springs where there are some; handing, elastic_contacts, friction_contacts and damping_contacts of "
                 "MasonryContacts where there is one; and error, the balance's error relative to the largest work done "
                 "until now [-].")

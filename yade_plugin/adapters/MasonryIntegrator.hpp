@@ -21,8 +21,9 @@ public:
         visit("damping", &I::damping,
               number("-", "Damping constant alpha").atLeast(0).atMost(0.99).source("paper eq. (3): 0.8"));
         visit("dampingKind", &I::dampingKind,
-              described("'local': -alpha |F| sgn(v), paper eq. (3); 'combined': alpha |F| (sgn(dF/dt) - sgn(v)) / 2, "
-                        "which also calms vibration about a steady motion"));
+              described(
+                  "'local': -alpha abs(F) sgn(v), paper eq. (3); 'combined': alpha abs(F) (sgn(dF/dt) - sgn(v)) / 2, "
+                  "which also calms vibration about a steady motion"));
         visit("massDamping", &I::massDamping,
               number("1/s", "Mass-proportional viscous damping: every free axis of a damped body, and the nodes of "
                             "MasonryZones, get the force -massDamping times momentum. A mode of angular frequency w "

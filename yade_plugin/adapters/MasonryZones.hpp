@@ -42,10 +42,11 @@ public:
                   .atLeast(0));
         visit("damping", &Z::damping,
               number("-", "Damping constant alpha").atLeast(0).atMost(0.99).source("paper eq. (3): 0.8"));
-        visit("dampingKind", &Z::dampingKind,
-              described(
-                  "'combined': alpha |F| (sgn(dF/dt) - sgn(v)) / 2, which also calms vibration about a steady motion; "
-                  "'local': -alpha |F| sgn(v), paper eq. (3), which leaves that vibration and resists the motion"));
+        visit(
+            "dampingKind", &Z::dampingKind,
+            described(
+                "'combined': alpha abs(F) (sgn(dF/dt) - sgn(v)) / 2, which also calms vibration about a steady motion; "
+                "'local': -alpha abs(F) sgn(v), paper eq. (3), which leaves that vibration and resists the motion"));
         visit("blocked", &Z::blocked,
               described("Directions in which the nodes are held: 'y' for a wall loaded in its plane, in plane stress"));
         visit("gravity", &Z::gravity,
