@@ -117,6 +117,7 @@ def trial(looks, source=0.2, goal=0.5, scaling=1.0, speeds=None):
     scene, load, number = standing(scaling), Load(), iter(range(10**6))
     at = growing.Growing(goal=goal, source=source, marks=[])
     scene.model.supports.unrest = lambda: (0.0, 0.0) if looks(next(number)) else (2 * REST, 2 * CALM)  # fmt: skip
+    scene.model.supports.slowest = lambda: 0.0
     if speeds:
         scene.model.motion.fastest = lambda: speeds(at.taken)
     held = growing._Search(scene, at, load, 0.01)._trial()

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Ties, springs and whatever else connects bricks beside the joints: their engines, forces and news."""
 
-import math
-
 from yade import O, Vector3
 
 
@@ -44,15 +42,6 @@ class Connectors:
         """
         for kind, made in self.engines.items():
             kind.grow(self.description.connectorsOf(kind), made, share)
-
-    def slowest(self, mass):
-        """The longest period of a mass on the springs under platens, along an axis [s]; 0 without them."""
-        found = [0.0]
-        for one in self.description.connectors:
-            if one.isSupport and one.ends[0].target and one.ends[0].target.box:
-                stiffness = [one.stiffness[i] for i in self.axes if one.stiffness[i]]
-                found += [2 * math.pi * math.sqrt(mass / k) for k in stiffness]
-        return max(found)
 
     def onGround(self):
         """Force of ties and springs on the ground, to which they are fixed, along the axes of the scene [N]."""

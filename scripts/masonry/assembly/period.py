@@ -79,8 +79,8 @@ def firstPeriod(structure, direction, longest):
 
 
 def buckles(structure, direction):
-    """Whether a small push along a direction grows, or does not come back within :data:`LONGEST`. Afterwards the scene is as
-    before, to the last bit. It takes the steps of some periods.
+    """Whether a small push along a direction grows, or does not come back within :data:`LONGEST`, or within the longest period on
+    springs if that is longer. Afterwards the scene is as before, to the last bit. It takes the steps of some periods.
 
     Seen are modes in which the structure moves to one side; the push is so small that no joint notices it.
 
@@ -91,7 +91,8 @@ def buckles(structure, direction):
     scaling = structure.args.density_scaling**0.5
     every = max(1, round(LOOK * scaling / O.dt))
     push = SMALL * GRAVITY / structure.args.density_scaling * direction
-    looks, most = FIRST_LOOKS, LONGEST * scaling / (every * O.dt)
+    longest = max(LONGEST * scaling, structure.supports.slowest())
+    looks, most = FIRST_LOOKS, longest / (every * O.dt)
     try:
         while True:
             sides = []

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What holds a structure, and what its platens and held bricks feel: forces, displacements, and whether it is at rest."""
 
+import math
+
 from yade import O, Vector3
 
 from ..basics import GRAVITY
@@ -157,6 +159,24 @@ class Supports:
         # without loads there is next to no energy, and motion is compared with the weight over a picometre
         least = 1e-12 * GRAVITY * self.freeMass
         return missing, moving / max(elastic, least) if moving else 0.0
+
+    def slowest(self):
+        """The longest period of what is free, as one rigid body on the springs of a platen [s]; 0 without springs. Its weight makes a
+        rotation slower; where that overturns it, there is no period."""
+        held, found = {target.body for target in self.held}, [0.0]
+        free = [body.state for body in O.bodies if body.id not in held]
+        for one in self.description.connectors:
+            if not (one.isSupport and one.ends[0].target and one.ends[0].target.box):
+                continue
+            arms = [(s.mass, s.pos - Vector3(*one.ends[0].point)) for s in free]
+            weight = self.structure.gravity * sum(m * r[2] for m, r in arms)  # lever
+            inertias = [
+                sum(m * (r.dot(r) - r[i] ** 2) for m, r in arms) for i in (0, 1)
+            ]
+            pairs = [(self.freeMass, one.stiffness[i]) for i in range(3)]
+            pairs += [(inertia, k - weight) for inertia, k in zip(inertias, one.rotation) if k]  # fmt: skip
+            found += [2 * math.pi * math.sqrt(m / k) for m, k in pairs if k > 0]
+        return max(found)
 
     def contactOf(self, target):
         """Area of a platen's joints [m²], and their middle [m]."""

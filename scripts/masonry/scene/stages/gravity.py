@@ -11,7 +11,7 @@ from ...assembly.blocks import vector
 from ..bounds import findBound, nameOfLean
 from .acting import Acceleration, Tilting
 from .growing import TRIAL, WITHIN, ends, follow, found, grow
-from .rest import Resting, waitForRest
+from .rest import WAITED, Resting, waitForRest
 from .answers import AT_REST, MOVING
 from .stage import stage
 from .timed import Duration
@@ -132,7 +132,8 @@ def putOn(scene, name, load, towards, longest, over=0.0):
     :param name: of the stage
     :param load: :class:`masonry.scene.stages.acting.Acting`
     :param towards: direction along which displacements are counted
-    :param longest: time in the scene after which it is given up [s]; None: :data:`masonry.scene.stages.growing.TRIAL`
+    :param longest: time in the scene after which it is given up [s]; None: :data:`masonry.scene.stages.growing.TRIAL`, and longer
+        on soft springs
     :param over: time in which it grows at least [s]
     """
     running, model, scene.loadUnit = scene.running, scene.model, load.unit
@@ -151,7 +152,8 @@ def putOn(scene, name, load, towards, longest, over=0.0):
         model.loading.loadFactor = share * at.goal
 
     vertical = abs(towards[2]) > 0.5
-    ended = waitForRest(scene, at, longest or TRIAL, growing, over=over, buckling=vertical)  # fmt: skip
+    longest = longest or max(TRIAL, WAITED * model.supports.slowest())
+    ended = waitForRest(scene, at, longest, growing, over=over, buckling=vertical)
     if ended == AT_REST:
         scene.bounds.hold(load.name, at.goal)
     return ended

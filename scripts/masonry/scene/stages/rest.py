@@ -27,6 +27,10 @@ EVERY = 100  # steps between two looks
 SHORTER = 1, 2, 5, 10, 20, 50, EVERY
 #: Periods of a structure on springs to the ground in which loads grow, so that it sinks slowly, however soft they are.
 PERIODS = 4.0
+#: Periods on springs for which a trial waits at least.
+WAITED = 10.0
+#: Height over the least width from which a structure that has settled is looked at for buckling [-].
+SLENDER = 8.0
 SETTLING = 0.5  # most local damping of deformable units in settle(): with more they creep to rest
 
 
@@ -53,6 +57,15 @@ def buckles(scene: Any) -> bool:
         return any(period.buckles(scene.model, Vector3(a == "x", a == "y", 0)) for a in axes)  # fmt: skip
 
 
+def isSlender(scene: Any) -> bool:
+    """Whether a structure is so high over its width that it may buckle under its own weight, or stands on springs."""
+    wide, deep, high = (
+        b - a for a, b in zip(scene.description.low, scene.description.high)
+    )
+    least = wide if scene.description.plane else min(wide, deep)
+    return high >= SLENDER * least or scene.model.supports.slowest() > 0
+
+
 @stage(bounded=True, grows=True)
 @validated
 def settle(
@@ -71,7 +84,7 @@ def settle(
     :param damping: kind of damping in this stage, ``"local"`` or ``"combined"``; None: that of the options. Local
         damping, of 0.5 at most in deformable units, takes the vibrations out sooner, and holds a mechanism back
     :param record: whether its end is a row of curve.csv
-    :returns: ``AT_REST``; ``MOVING`` if it is not at rest by then; ``COLLAPSED``
+    :returns: ``AT_REST``; ``MOVING`` if it is not at rest by then, or buckles; ``COLLAPSED``
     """
     if scene.only:
         scene.model.loading.grow(1.0)
@@ -83,7 +96,7 @@ def settle(
     if damping:
         most = SETTLING if model.zones and damping == "local" else 1.0
         model.scheme.damp(min(most, args.damping), damping)
-    return waitForRest(scene, memory, longest, grow, record=record)
+    return waitForRest(scene, memory, longest, grow, record=record, buckling=isSlender(scene))  # fmt: skip
 
 
 def waitForRest(scene, at, longest, grow, over=0.0, record=True, buckling=False):
@@ -99,11 +112,11 @@ def waitForRest(scene, at, longest, grow, over=0.0, record=True, buckling=False)
     model, running, box = scene.model, scene.running, scene.description
     ramp = rampTime(scene.args)
     ramp *= max(1.0, (box.high[2] - box.low[2]) / 3)
-    onSprings = model.connectors.slowest(model.supports.freeMass)
-    ramp = max(ramp, over, PERIODS * onSprings)
+    slowest = model.supports.slowest()
+    ramp = max(ramp, over, PERIODS * slowest)
     growing = max(1, int(ramp / O.dt))
     every = max(n for n in SHORTER if n == 1 or n <= growing / 3)
-    longest = longest or 20 * ramp
+    longest = longest or max(20 * ramp, WAITED * slowest)
     if math.isinf(O.dt):
         raise Refused("every brick is held, so nothing can move")
     most = int(longest / O.dt)

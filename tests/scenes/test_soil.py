@@ -1,0 +1,37 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""A tower on soil that turns: it leans by its weight, and above a height it falls over however small the load is."""
+
+from hosted import *
+from masonry import AT_REST, MOVING
+
+SIDE, HEIGHT, DENSITY = 2.0, 20.0, 2000.0  # [m], [m], [kg/m³]
+#: Weight times the height of the middle [N m]: a soil that is less stiff per radian does not hold the tower upright.
+OVERTURNING = DENSITY * G * SIDE**2 * HEIGHT**2 / 2
+
+
+def tower(folder, stiffness):
+    blocks = bricks.stack(2, (SIDE, SIDE, HEIGHT / 2))
+    stones = materials.dry(friction=0.7, density=DENSITY, normalStiffness=5e10)
+    scene = Scene("tower", blocks, stones, arguments=["--out", str(folder), "--lean"])
+    springs = {"x": 1e8, "z": 1e8, "Y": stiffness}
+    scene.platen("bottom", springs=springs, height=0.01)
+    scene.watch(-1, name="top")
+    return scene
+
+
+def test_a_tower_leans_as_its_soil_gives_way_and_waits_for_its_slow_period(scene, tmp_path):  # fmt: skip
+    stiffness, pressure = 1.3 * OVERTURNING, 100.0  # its period is 14 s
+    scene = tower(tmp_path, stiffness)
+    assert scene.settle() == AT_REST
+    assert scene.wind(pressure, (1, 0, 0)) == AT_REST
+    moment = pressure * SIDE * HEIGHT**2 / 2
+    lean = moment / (stiffness - OVERTURNING)
+    middle = 0.75 * HEIGHT  # of the upper stone
+    scene.finish()
+    assert readCurve(tmp_path)["top_x_mm"][-1] == pytest.approx(1e3 * lean * middle, rel=0.03)  # fmt: skip
+
+
+def test_a_tower_that_its_soil_does_not_hold_upright_is_not_at_rest(scene, tmp_path, capsys):  # fmt: skip
+    scene = tower(tmp_path, 0.9 * OVERTURNING)
+    assert scene.settle() == MOVING
+    assert "buckles" in capsys.readouterr().out
