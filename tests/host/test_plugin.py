@@ -51,14 +51,6 @@ def test_a_class_stands_in_yade_with_docs_keywords_and_dict(name):
         cls(1)
 
 
-def test_numbers_say_their_unit_and_default():
-    for cls in (MasonryMat, MasonryJoint):
-        for attribute, value in cls.__dict__.items():
-            known = isinstance(value, property) and getattr(cls(), attribute)
-            if isinstance(known, float):
-                assert "[" in value.__doc__ and ":ydefault:`" in value.__doc__, attribute
-
-
 def test_every_member_of_the_joint_properties_is_described_once():
     """Adding a property is its member and its description: none is forgotten, none is described twice."""
     path = os.path.join(ROOT, "yade_plugin", "law", "common", "JointProperties.hpp")
@@ -87,6 +79,7 @@ def test_the_description_of_an_attribute_is_what_its_docs_say(name):
         value = getattr(cls(), p["name"])
         if isinstance(value, float):
             assert p["unit"], p["name"]
+            assert ":ydefault:`" in doc or cls not in (MasonryMat, MasonryJoint)
             assert p["low"] <= value <= p["high"], p["name"]
 
 
