@@ -265,12 +265,6 @@ std::vector<BetweenUnits> ofTheWalls() {
 
 } // namespace
 
-TEST_CASE("lumped units are in series with the joint") {
-    const auto k = BetweenUnits{bed, 0.081}.lumped();
-    CHECK(k.normal == within(5.04e10, 0.001));
-    CHECK(k.shear == within(2.17e10, 0.002));
-}
-
 TEST_CASE("pulled or sheared every joint peaks at its strength, and takes its fracture energy between any units") {
     for (const auto& kind : ofTheWalls())
         for (const auto& k : {own(kind.joint), kind.lumped()}) {
@@ -441,16 +435,6 @@ TEST_CASE("the brittle Coulomb set drops at the first yield and never crushes") 
     CHECK(shear.state.normalStress == within(-1e-3 * shear.k.normal - 0.5e6, 1e-9));
 }
 
-TEST_CASE("an elastic joint carries anything") {
-    JointProperties q = bed;
-    q.elastic = true;
-    Path p(q);
-    p.move({1e-3, {2e-3, -1e-3}}, 10);
-    CHECK(p.state.normalStress == within(1e-3 * q.normalStiffness, 1e-12));
-    CHECK(p.state.shearStress.a == within(2e-3 * q.shearStiffness, 1e-12));
-    CHECK(p.work == within(p.stored(), 1e-12));
-}
-
 TEST_CASE("ten thousand steps or ten to the same end of a monotonic path give the same answer") {
     const auto same = [](Jump first, Jump then) {
         Path few(bed), many(bed);
@@ -512,36 +496,28 @@ TEST_CASE("refusals name the joint, the value with its unit and the bound, all a
         {[](P& p) { p.peakRatio = 0.5; }, "peak ratio 0.5 must be at least 1"},
         {[](P& p) { p.capNormal = 0; }, "cap normal 0 must be above 0"},
         {[](P& p) { p.capShear = -1; }, "cap shear -1 must be at least 0"},
-        {[](P& p) {
-             p.tensionTable = {{1, 0}};
-         },
-         "tension table, needs at least two rows, has 1"},
-        {[](P& p) {
-             p.tensionTable = {{1.1, 0}, {2, 1}};
-         },
-         "tension table, row 1: must be ratio 1, damage 0 (the peak), is 1.1, 0"},
-        {[](P& p) {
-             p.shearTable = {{1, 0}, {2, 0.5}, {2, 1}};
-         },
-         "shear table, row 3: ratio 2 must be above 2 of the row before"},
-        {[](P& p) {
-             p.shearTable = {{1, 0}, {2, 0.5}, {3, 0.4}};
-         },
-         "shear table, row 3: damage 0.4 falls below 0.5 of the row before"},
-        {[](P& p) {
-             p.shearTable = {{1, 0}, {2, 1.5}};
-         },
-         "shear table, row 2: damage 1.5 is outside 0 to 1"},
-        {[=](P& p) {
-             p.shearTable = {{1, 0}, {nan, 1}};
-         },
-         "shear table, row 2: ratio and damage must be finite numbers"},
         {[](P& p) { p.cohesion = p.tensileStrength = 0, p.residualFriction = 0.3; },
          "friction softens from 0.43 to 0.3 without cohesion: give a shear table, no exponential one follows from zero "
          "cohesion"},
     };
     for (const auto& c : cases)
         CHECK(refused(c.spoil) == std::string("joint \"bed\": ") + c.message);
+    const struct {
+        std::vector<TableRow> rows;
+        const char* message;
+    } tables[] = {
+        {{{1, 0}}, "needs at least two rows, has 1"},
+        {{{1.1, 0}, {2, 1}}, "row 1: must be ratio 1, damage 0 (the peak), is 1.1, 0"},
+        {{{1, 0}, {2, 0.5}, {2, 1}}, "row 3: ratio 2 must be above 2 of the row before"},
+        {{{1, 0}, {2, 0.5}, {3, 0.4}}, "row 3: damage 0.4 falls below 0.5 of the row before"},
+        {{{1, 0}, {2, 1.5}}, "row 2: damage 1.5 is outside 0 to 1"},
+        {{{1, 0}, {nan, 1}}, "row 2: ratio and damage must be finite numbers"},
+    };
+    for (const auto& c : tables) {
+        CHECK(refused([&](P& p) { p.tensionTable = c.rows; }) ==
+              std::string("joint \"bed\": tension table, ") + c.message);
+        CHECK(refused([&](P& p) { p.shearTable = c.rows; }) == std::string("joint \"bed\": shear table, ") + c.message);
+    }
 }
 
 // ---- random paths ------------------------------------------------------------------------------------------------
