@@ -105,7 +105,7 @@ def pull(load, distance, duration):
     return np.array([(O.step(), carried())[1] for _ in range(int(duration / O.dt))])
 
 
-def hold(load, steps=20000):
+def reaction(load, steps=20000):
     load.velocity = 0
     run(steps)
     return load.reaction
@@ -136,7 +136,7 @@ def test_rigid_and_stiff_deformable_bricks_agree(scene):
     for deformable in (False, True):
         load = couplet(deformable, MasonryJoint(name="bed"), young=E * 100)
         pull(load, -4e-7, 0.02)
-        reactions.append(hold(load))
+        reactions.append(reaction(load))
     assert reactions[1] == pytest.approx(reactions[0], rel=0.01)
 
 
@@ -182,7 +182,7 @@ def test_the_stiffness_of_a_pair_is_that_of_bricks_and_joint_in_series(scene):
     area = UNIT[0] * UNIT[1]
     series = area / (2 * UNIT[2] / E + 1 / elastic.normalStiffness)
     # The plates hold the ends of the bricks sideways. That can only make them stiffer, by a part of nu².
-    assert 1 < hold(load) / (series * load.displacement()[2]) < 1 + 2 * NU**2
+    assert 1 < reaction(load) / (series * load.displacement()[2]) < 1 + 2 * NU**2
 
 
 @pytest.mark.slow

@@ -48,8 +48,7 @@ def resultants(joint):
 
 
 def energies(kind):
-    now = balance()
-    return sum(v for name, v in balance.items() if name.startswith(kind))
+    return sum(v for name, v in balance().items() if name.startswith(kind))
 
 
 def states(joint):

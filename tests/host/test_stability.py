@@ -68,9 +68,8 @@ def test_the_limit_follows_joints_and_damping(scene, blocks, functors):
     limit = criticalTimeStep()[0]
     O.dt = 0.99 * limit
     O.run(20, True)
-    for engine in O.engines:
-        if isinstance(engine, (MasonryZones, MasonryIntegrator)):
-            engine.damping = 0.8
+    for damped in filter(None, (engine("integrator"), ofKind(MasonryZones))):
+        damped.damping = 0.8
     with pytest.raises(RuntimeError, match="unstable: the time step is"):
         run(20)
     assert criticalTimeStep()[0] == pytest.approx(limit / math.sqrt(1.8), rel=1e-6)
