@@ -96,9 +96,8 @@ def test_the_force_of_a_pair_is_opposite_on_both_blocks_and_has_one_line(scene, 
         assert rest.norm() <= 1e-12 * force.norm() * (arm.norm() + sizes.max())
 
 
-@pytest.mark.parametrize("angle", [20, 26])
-def test_a_block_rests_on_an_incline_below_the_angle_of_friction(scene, angle):
-    s = inclined(angle)
+def test_a_block_rests_on_an_incline_just_below_the_angle_of_friction(scene):
+    s = inclined(26)  # 26.6° is the angle
     there = Vector3(s.pos)
     until(2.5)
     # A creep of 1e-6 m in 60 s would be 3e-8 m here.
