@@ -38,6 +38,56 @@ def hold(*bodies):
         O.bodies[body].state.blockedDOFs = "xyzXYZ"
 
 
+def pile(count=2, x=0.0, size=UNIT, turn=Quaternion.Identity, material=None, **how):
+    """Bricks on each other, of which the lowest is held; their ids."""
+    unit = material or unitMaterial()
+    places = [(x, 0, k * size[2]) for k in range(count)]
+    ids = [addBlock(box(place, size, turn), unit, **how) for place in places]
+    hold(ids[0])
+    return ids
+
+
+def join(joints=None, share=0.5, **around):
+    """The engines and the joints of the blocks, and this share of the largest time step."""
+    engines(
+        joints if isinstance(joints, list) else [joints or MasonryJoint()], **around
+    )
+    made = connect()
+    O.dt = share * criticalTimeStep()[0]
+    return made
+
+
+def insert(load):
+    """Put an engine behind the loop of the joints."""
+    O.engines = [*O.engines[:2], load, *O.engines[2:]]
+    return load
+
+
+def alone(kind=MasonryIntegrator, energy=False, **around):
+    """The engines of bodies that have no joints; returns the one that moves them."""
+    integrator = kind(**{"gravity": (0, 0, 0), **around})
+    O.engines = [ForceResetter(), *[MasonryEnergy()] * energy, integrator]
+    return integrator
+
+
+def spin(state, velocity):
+    """Let a body turn with this angular velocity, also where its rotations are free."""
+    state.angVel = velocity
+    own = state.ori.conjugate() * velocity
+    state.angMom = state.ori * Vector3(*(i * w for i, w in zip(state.inertia, own)))
+
+
+def saveAndLoad(through, path, build):
+    """Through YADE's own file, or a checkpoint into the scene that is built anew."""
+    if through == "file":
+        O.save(path + ".yade.gz")
+        O.load(path + ".yade.gz")
+    else:
+        saveCheckpoint(path)
+        build()
+        loadCheckpoint(path)
+
+
 def run(steps=1):
     """Take steps one by one: O.run(steps, True) may end before it waits, and then only prints an error."""
     for _ in range(steps):

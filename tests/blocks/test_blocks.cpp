@@ -201,21 +201,6 @@ TEST_CASE("the rule of Gauss and Lobatto has the ends, and is exact to degree 2n
     }
 }
 
-TEST_CASE("the rotational stiffness of a row is the true one from three points on, and three times as large with two") {
-    const Polygon rectangle{{0, 0, 0}, {0.3, 0, 0}, {0.3, 0.1, 0}, {0, 0.1, 0}};
-    const auto stiffness = [&](int n) { // for a stiffness of 1 N/m³, about the middle [N m]
-        double sum = 0;
-        for (const auto& s : subdivide(rectangle, Point::UnitZ(), Point::UnitX(), n, 1))
-            sum += s.area * std::pow(s.centre.x() - 0.15, 2);
-        return sum;
-    };
-    const double exact = 0.3 * 0.1 * 0.3 * 0.3 / 12;
-    CHECK(stiffness(1) == 0);
-    CHECK(stiffness(2) == within(3 * exact, 1e-12));
-    for (int n : {3, 4, 5, 16, 99})
-        CHECK(stiffness(n) == within(exact, 1e-12));
-}
-
 TEST_CASE("subcontacts keep the area and the moments of any convex polygon, and lie on it") {
     std::mt19937 dice(2);
     std::uniform_real_distribution<> u(0, 1);

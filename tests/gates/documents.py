@@ -45,12 +45,8 @@ def anchors(source):
 
 def withoutBlocks(source):
     """The document without its fenced blocks of code; the lines keep their numbers."""
-    return re.sub(
-        r"^```.*?^```",
-        lambda block: "\n" * block[0].count("\n"),
-        source,
-        flags=re.MULTILINE | re.DOTALL,
-    )
+    lines = lambda block: "\n" * block[0].count("\n")
+    return re.sub(r"^```.*?^```", lines, source, flags=re.MULTILINE | re.DOTALL)
 
 
 def _exists(name, folder, root):
@@ -67,12 +63,9 @@ def _isModule(name, root):
     if os.path.isfile(path + ".py") or os.path.isdir(path):
         return True
     package, member = os.path.split(path)  # a name in a module, `masonry.window.show`
-    for module in (package + ".py", os.path.join(package, "__init__.py")):
-        if os.path.isfile(module) and re.search(
-            rf"\b{member}\b", open(module, encoding="utf-8").read()
-        ):
-            return True
-    return False
+    modules = package + ".py", os.path.join(package, "__init__.py")
+    texts = [tree.read(one, root) for one in modules if os.path.isfile(one)]
+    return any(re.search(rf"\b{member}\b", text) for text in texts)
 
 
 def sourceOf(path, root):
@@ -121,10 +114,9 @@ def problems(path, root=tree.ROOT):
             at(plain, match, f"no module {match[1]}")
     for match in _PATH.finditer(plain):
         name = match[1]
+        places = [os.path.join(root, base) for base in (folder, *FOLDERS)]
         first = name.split("/")[0]
-        ours = any(
-            os.path.isdir(os.path.join(root, b, first)) for b in (folder, *FOLDERS)
-        )
+        ours = any(os.path.isdir(os.path.join(place, first)) for place in places)
         if ours and not name.startswith(MADE) and not _exists(name, folder, root):
             at(plain, match, f"no file {name}")
     return found

@@ -38,13 +38,15 @@ def clangFormat():
             return program
 
 
+def _quiet(folder):
+    return dict(cwd=folder, capture_output=True, text=True)
+
+
 def unformattedCpp(paths, root=tree.ROOT):
     """Files and lines that clang-format would change, as ``path:line``."""
     if not paths:
         return []
-    run = subprocess.run(
-        [clangFormat(), "--dry-run", *paths], cwd=root, capture_output=True, text=True
-    )
+    run = subprocess.run([clangFormat(), "--dry-run", *paths], **_quiet(root))
     found = re.findall(r"^(\S+?:\d+):\d+: (?:warning|error)", run.stderr, re.MULTILINE)
     return list(dict.fromkeys(found))
 
@@ -53,12 +55,9 @@ def unformattedPython(paths, root=tree.ROOT):
     """Files that black would change."""
     if not paths:
         return []
-    run = subprocess.run(
-        ["black", "--check", "--config", os.path.join(tree.ROOT, "pyproject.toml"), *paths],
-        cwd=root,
-        capture_output=True,
-        text=True,
-    )  # fmt: skip
+    config = os.path.join(tree.ROOT, "pyproject.toml")
+    command = ["black", "--check", "--config", config, *paths]
+    run = subprocess.run(command, **_quiet(root))
     wrong = [x for x in run.stderr.splitlines() if x.startswith(("would ", "error"))]
     if run.returncode and not wrong:
         wrong = [run.stderr.strip()]
@@ -74,17 +73,17 @@ def unusedImports(path, root=tree.ROOT):
     source = tree.read(path, root)
     lines = source.splitlines()
     parsed = ast.parse(source)
-    kept = set()
-    for node in ast.walk(parsed):
-        if isinstance(node, (ast.Import, ast.ImportFrom)):
-            statement = lines[node.lineno - 1 : node.end_lineno]
-            if any(re.search("# noqa:.*F401", line) for line in statement):
-                kept.add(node.lineno)
-    return sorted(
-        (m.lineno, m.message_args[0])
+    imports = [
+        n for n in ast.walk(parsed) if isinstance(n, (ast.Import, ast.ImportFrom))
+    ]
+    said = lambda node: "\n".join(lines[node.lineno - 1 : node.end_lineno])
+    kept = {node.lineno for node in imports if re.search("# noqa:.*F401", said(node))}
+    unused = [
+        m
         for m in checker.Checker(parsed, path).messages
-        if isinstance(m, messages.UnusedImport) and m.lineno not in kept
-    )
+        if isinstance(m, messages.UnusedImport)
+    ]
+    return sorted((m.lineno, m.message_args[0]) for m in unused if m.lineno not in kept)
 
 
 def withoutUnused(source, unused):
@@ -101,13 +100,10 @@ def withoutUnused(source, unused):
         if isinstance(node, ast.ImportFrom):
             prefix = "." * node.level + (node.module or "")
             prefix += "." if node.module else ""
-        node.names = [
-            a for a in node.names if prefix + a.name not in names[node.lineno]
-        ]
-        new = ast.unparse(node) + "\n" if node.names else ""
-        lines[node.lineno - 1 : node.end_lineno] = (
-            [" " * node.col_offset + new] if new else []
-        )
+        unused = names[node.lineno]
+        node.names = [a for a in node.names if prefix + a.name not in unused]
+        new = [" " * node.col_offset + ast.unparse(node) + "\n"] if node.names else []
+        lines[node.lineno - 1 : node.end_lineno] = new
     return "".join(lines)
 
 
@@ -128,9 +124,8 @@ def write():
             source = withoutUnused(tree.read(path), unused)
             with open(os.path.join(tree.ROOT, path), "w", encoding="utf-8") as file:
                 file.write(source)
-    subprocess.run(
-        ["black", "--quiet", *tree.files((".py",))], cwd=tree.ROOT, check=True
-    )
+    python = tree.files((".py",))
+    subprocess.run(["black", "--quiet", *python], cwd=tree.ROOT, check=True)
     cpp = tree.files(tree.CPP)
     subprocess.run([clangFormat(), "-i", *cpp], cwd=tree.ROOT, check=True)
 

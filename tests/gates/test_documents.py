@@ -19,9 +19,8 @@ def planted(tmp_path, text):
         "# A heading, with `code`\n\n# Twice\n\n# Twice\n"
     )
     (tmp_path / "document.md").write_text(text)
-    return [
-        line.split(": ", 1)[1] for line in documents.problems("document.md", tmp_path)
-    ]
+    found = documents.problems("document.md", tmp_path)
+    return [line.split(": ", 1)[1] for line in found]
 
 
 def test_what_leads_somewhere_is_left_alone(tmp_path):

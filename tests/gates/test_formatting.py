@@ -49,9 +49,8 @@ def test_no_import_is_unused():
 def test_a_line_that_clang_format_would_change_is_found(tmp_path):
     (tmp_path / ".clang-format").write_text(tree.read(".clang-format"))
     (tmp_path / "good.cpp").write_text("int one() { return 1; }\n")
-    (tmp_path / "bad.cpp").write_text(
-        "int one() { return 1; }\nint  two(){return 2;}\n"
-    )
+    bad = "int one() { return 1; }\nint  two(){return 2;}\n"
+    (tmp_path / "bad.cpp").write_text(bad)
     names = ["good.cpp", "bad.cpp"]
     assert formatting.unformattedCpp(names, tmp_path) == ["bad.cpp:2"]
 
@@ -84,13 +83,8 @@ def one():
 def test_unused_imports_are_found_and_taken_out(tmp_path):
     (tmp_path / "example.py").write_text(UNUSED)
     found = formatting.unusedImports("example.py", tmp_path)
-    assert found == [
-        (2, "os"),
-        (3, "sys"),
-        (4, "json.loads as parse"),
-        (5, ".neighbour"),
-        (10, "re"),
-    ]
+    assert found[:2] == [(2, "os"), (3, "sys")]
+    assert found[2:] == [(4, "json.loads as parse"), (5, ".neighbour"), (10, "re")]
     clean = formatting.withoutUnused(UNUSED, found)
     assert "import math\nfrom json import dumps\nimport signal" in clean
     assert "    import string\n" in clean

@@ -26,7 +26,10 @@ PUBLIC = """
     study.incremental study.plan study.variables
 """.split()
 #: Stages are words of a scene, in modules that hold more.
-STAGES = "rest push drive supports gravity loading shake".split()
+STAGES = [
+    f"scene.stages.{name}"
+    for name in "rest push drive supports gravity loading shake".split()
+]
 MYPY = [sys.executable, "-m", "mypy", "--config-file", os.path.join(tree.ROOT, "pyproject.toml")]  # fmt: skip
 needsMypy = pytest.mark.skipif(
     subprocess.run([*MYPY[:3], "--version"], capture_output=True).returncode != 0,
@@ -66,20 +69,17 @@ def test_a_missing_hint_is_found():
     assert withoutHint(node) == ["a", "d", "c", "return"]
 
 
-@pytest.mark.parametrize("module", PUBLIC)
+@pytest.mark.parametrize("module", [*PUBLIC, *STAGES])
 def test_what_users_call_has_hints(module):
-    found = {name: withoutHint(node) for name, node in functions(source(module))}  # fmt: skip
-    assert found
-    assert {name: missing for name, missing in found.items() if missing} == {}
-
-
-@pytest.mark.parametrize("module", STAGES)
-def test_stages_have_hints(module):
-    found = {
-        name: withoutHint(node)
-        for name, node in functions(source(f"scene.stages.{module}"))
-        if any("validated" in ast.unparse(d) for d in node.decorator_list)
-    }
+    isStage = lambda node: any(
+        "validated" in ast.unparse(d) for d in node.decorator_list
+    )
+    every = [
+        pair
+        for pair in functions(source(module))
+        if module in PUBLIC or isStage(pair[1])
+    ]
+    found = {name: withoutHint(node) for name, node in every}
     assert found
     assert {name: missing for name, missing in found.items() if missing} == {}
 
@@ -87,13 +87,9 @@ def test_stages_have_hints(module):
 def mypy(tmp_path_factory, *words):
     """Run mypy; returns what it says."""
     cache = tmp_path_factory.getbasetemp() / "mypy"  # shared by the tests of this run
-    run = subprocess.run(
-        [*MYPY, "--cache-dir", str(cache), *words],
-        capture_output=True,
-        text=True,
-        cwd=os.path.join(tree.ROOT, "scripts"),
-        timeout=300,
-    )
+    around = dict(cwd=os.path.join(tree.ROOT, "scripts"), timeout=300)
+    command = [*MYPY, "--cache-dir", str(cache), *words]
+    run = subprocess.run(command, capture_output=True, text=True, **around)
     return run.stdout + run.stderr
 
 

@@ -14,9 +14,8 @@ TESTS = os.path.join(ROOT, "tests")
 
 def withoutYade(*words):
     program = os.path.join(TESTS, "gates", "without_yade.py")
-    run = subprocess.run(
-        [sys.executable, program, *words], capture_output=True, text=True, cwd=ROOT
-    )
+    command = [sys.executable, program, *words]
+    run = subprocess.run(command, capture_output=True, text=True, cwd=ROOT)
     return run.returncode, run.stdout + run.stderr
 
 

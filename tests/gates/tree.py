@@ -7,12 +7,8 @@ import subprocess
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 CPP = (".cpp", ".hpp", ".inl")
 SHELL = (".sh",)
-LEFT_OUT = (
-    "build",
-    "results",
-    "__pycache__",
-    ".",
-)  # how folders begin that git ignores
+#: How folders begin that git ignores.
+LEFT_OUT = ("build", "results", "__pycache__", ".")
 
 
 def files(endings, root=ROOT):
@@ -20,11 +16,8 @@ def files(endings, root=ROOT):
 
     Inside a clone these are the files that git knows or would add, elsewhere all files.
     """
-    listing = subprocess.run(
-        ["git", "-C", root, "ls-files", "-co", "--exclude-standard", "-z"],
-        capture_output=True,
-        text=True,
-    )
+    command = ["git", "-C", root, "ls-files", "-co", "--exclude-standard", "-z"]
+    listing = subprocess.run(command, capture_output=True, text=True)
     if listing.returncode == 0:
         found = set(listing.stdout.split("\0")) - {""}
     else:
@@ -32,11 +25,8 @@ def files(endings, root=ROOT):
         for folder, folders, names in os.walk(root):
             folders[:] = [f for f in folders if not f.startswith(LEFT_OUT)]
             found |= {os.path.relpath(os.path.join(folder, n), root) for n in names}
-    return sorted(
-        f
-        for f in found
-        if f.endswith(endings) and os.path.isfile(os.path.join(root, f))
-    )
+    wanted = [f for f in found if f.endswith(endings)]
+    return sorted(f for f in wanted if os.path.isfile(os.path.join(root, f)))
 
 
 def read(path, root=ROOT):

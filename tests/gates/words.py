@@ -1,21 +1,16 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Words that this code uses with private meanings, and what to write in their place.
 
-    /usr/bin/python3 tests/gates/words.py            how many there are, by file and by word
+    /usr/bin/python3 tests/gates/words.py            every place in the tree
     /usr/bin/python3 tests/gates/words.py FILE ...   every place in these files
-    /usr/bin/python3 tests/gates/words.py --write    sets the numbers in words.json to those of today
 
 Two rules hold. A name of the code (C++ and Python) has none of the words in ``NAMES`` as a part: ``stepsLeft`` and
 ``steps_left`` both have the part ``left``. And comments, docstrings and documents have none of the words in ``PROSE``;
-the other words are ordinary English there. Names of tests are sentences, so the second rule holds for them. The files
-that do not keep the rules yet stand in ``words.json`` with a number, and that number may only fall: ``--write`` refuses
-to raise the sum. After files have been moved, ``--write`` gives them their new names.
+the other words are ordinary English there. Names of tests are sentences, so the second rule holds for them.
 """
 
-import collections
 import functools
 import io
-import json
 import os
 import re
 import sys
@@ -73,8 +68,8 @@ PROSE = {
     "homes": "places, owners",
 }
 
+BEFORE_DOCSTRING = (tokenize.NEWLINE, tokenize.INDENT)
 ENDINGS = tree.CPP + (".py", ".md")
-NUMBERS = os.path.join(os.path.dirname(os.path.abspath(__file__)), "words.json")
 ABOUT_WORDS = "tests/gates/"  # these files name the words
 
 _PARTS = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+")
@@ -97,7 +92,7 @@ def inName(name):
 
 def inProse(text):
     """Banned words in a comment or document. Names of the code between backticks are left to the other rule."""
-    plain = re.sub(r"`[^`\n]*`", "", text)
+    plain = re.sub(r"`+[^`\n]*`+", "", text)
     return [w for w in re.findall(r"[a-z]+", plain.lower()) if w in PROSE]
 
 
@@ -136,10 +131,7 @@ def ofPython(source):
             else:
                 words = inName(token.string)
             found += [(line, w, token.string) for w in words]
-        elif token.type == tokenize.STRING and before in (
-            tokenize.NEWLINE,
-            tokenize.INDENT,
-        ):
+        elif token.type == tokenize.STRING and before in BEFORE_DOCSTRING:
             found += [(line, w, "docstring") for w in inProse(token.string)]
         if token.type not in (tokenize.NL, tokenize.COMMENT, tokenize.DEDENT):
             before = token.type
@@ -147,67 +139,29 @@ def ofPython(source):
 
 
 def ofDocument(source):
-    return [
-        (number, word, "document")
-        for number, line in enumerate(source.splitlines(), 1)
-        for word in inProse(line)
-    ]
+    lines = enumerate(source.splitlines(), 1)
+    return [(n, word, "document") for n, line in lines for word in inProse(line)]
 
 
 def violations(path, root=tree.ROOT):
+    """A sentence for each place of a file."""
     source = tree.read(path, root)
     if path.endswith(".py"):
-        return ofPython(source)
-    return ofDocument(source) if path.endswith(".md") else ofCpp(source)
+        found = ofPython(source)
+    else:
+        found = ofDocument(source) if path.endswith(".md") else ofCpp(source)
+    for line, word, where in found:
+        prose = where in ("comment", "docstring", "document")
+        instead = PROSE[word] if prose else {**PROSE, **NAMES}[word]
+        yield f"{path}:{line}: {word} in {where}; rather: {instead}"
 
 
-def counts():
-    """How many violations each file of the tree has, without those that have none."""
+def all():
+    """The same of the tree."""
     paths = [p for p in tree.files(ENDINGS) if not p.startswith(ABOUT_WORDS)]
-    found = {path: len(violations(path)) for path in paths}
-    return {path: number for path, number in found.items() if number}
-
-
-def risen(now, kept):
-    """Files with more violations than they may have, as text."""
-    return [
-        f"{path}: {number} instead of at most {kept.get(path, 0)}"
-        for path, number in now.items()
-        if number > kept.get(path, 0)
-    ]
-
-
-def kept():
-    with open(NUMBERS, encoding="utf-8") as file:
-        return json.load(file)
-
-
-def main(arguments):
-    if arguments == ["--write"]:
-        now = counts()
-        if os.path.exists(NUMBERS) and sum(now.values()) > sum(kept().values()):
-            print("\n".join(risen(now, kept())), file=sys.stderr)
-            return 1
-        with open(NUMBERS, "w", encoding="utf-8") as file:
-            json.dump(now, file, indent=1)
-            file.write("\n")
-        return 0
-    if arguments:
-        for path in arguments:
-            for line, word, where in violations(path, os.getcwd()):
-                prose = where in ("comment", "docstring", "document")
-                instead = PROSE[word] if prose else {**PROSE, **NAMES}[word]
-                print(f"{path}:{line}: {word} in {where}; rather: {instead}")
-        return 0
-    words = collections.Counter()
-    for path, number in sorted(counts().items(), key=lambda entry: -entry[1]):
-        ofFile = collections.Counter(word for _, word, _ in violations(path))
-        words += ofFile
-        listed = ", ".join(f"{word} {n}" for word, n in ofFile.most_common())
-        print(f"{number:5d}  {path}: {listed}")
-    print("sum:", sum(words.values()), dict(words.most_common()))
-    return 0
+    return [line for path in paths for line in violations(path)]
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    here = [line for path in sys.argv[1:] for line in violations(path, os.getcwd())]
+    print("\n".join(here if sys.argv[1:] else all()))

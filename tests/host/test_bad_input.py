@@ -7,53 +7,34 @@ A case is what the scene is, what is done to it, and what the message must say.
 import contextlib
 import io
 import json
-import math
 import os
 import resource
 import runpy
 import sys
 
-import pytest
-from conftest import ROOT, runProgram
-from masonry import Scene as BrickScene
-from masonry import (
-    addBlock,
-    connect,
-    criticalTimeStep,
-    engines,
-    materials,
-)
+from hosted import *
+from hosted import bricks as parts, unitMaterial as mat
 from masonry.read import figures, files as reading, measure
 from masonry.read.frames import readFrame
 from masonry.run import results
-from masonry.bricks import Wall as BrickWall, boxCorners
-from yade import Body, O, Quaternion, Vector3, utils
-from yade.wrapper import *
+from yade import Body, utils
 
 nan, inf = math.nan, math.inf
-BRICK = (0.220, 0.102, 0.081)
+ABOVE = (0, 0, UNIT[2])
 
 
 # -- scenes -----------------------------------------------------------------------------------------------------------
 
 
-def box(x=0, y=0, z=0, size=BRICK):
-    return list(boxCorners((x, y, z), [a + b for a, b in zip((x, y, z), size)]))
-
-
-def mat(**changes):
-    return MasonryMat(**{"density": 1800, **changes})
-
-
-def blocks(*places, size=BRICK):
+def blocks(*places, size=UNIT):
     """Bricks with their lower corners at these places, the first fixed; two on each other if no place is given."""
     unit = mat()
-    for place in places or ((0, 0, 0), (0, 0, BRICK[2])):
-        addBlock(box(*place, size=size), unit)
-    O.bodies[0].state.blockedDOFs = "xyzXYZ"
+    for place in places or ((0, 0, 0), ABOVE):
+        addBlock(box(place, size), unit)
+    hold(0)
 
 
-def laid(*places, size=BRICK, **settings):
+def laid(*places, size=UNIT, **settings):
     """Bricks as blocks() places them, and the engines, without joints."""
     blocks(*places, size=size)
     engines([MasonryJoint()], **settings)
@@ -61,11 +42,9 @@ def laid(*places, size=BRICK, **settings):
 
 def joined(steps=3, **settings):
     """Two bricks with their joint, some steps on their way."""
-    laid(**settings)
-    connect()
-    O.dt = 0.5 * criticalTimeStep()[0]
-    for _ in range(steps):
-        O.step()
+    blocks()
+    join(**settings)
+    run(steps)
 
 
 def deformable(steps=3, bodies=(1,)):
@@ -100,8 +79,7 @@ def state(body, **settings):
 def foreign(material):
     """A brick that addBlock() made, and on it one that a script made of its shape alone."""
     addBlock(box(), mat())
-    corners = [Vector3(*c) for c in box(z=BRICK[2])]
-    shape, centroid, orientation = MasonryBlock.around(corners)
+    shape, centroid, orientation = MasonryBlock.around(box(ABOVE))
     body = Body(shape=shape, material=material)
     body.state.mass = material.density * shape.volume
     body.state.inertia = material.density * shape.inertia
@@ -114,7 +92,7 @@ def turned(degrees):
     """A brick on an edge of another."""
     addBlock(box(), mat())
     turn = Quaternion(Vector3(0, 1, 0), math.radians(-degrees))
-    addBlock([turn * Vector3(*c) + Vector3(0, 0, BRICK[2]) for c in box()], mat())
+    addBlock([corner + Vector3(*ABOVE) for corner in box(turn=turn)], mat())
     engines([MasonryJoint()])
 
 
@@ -157,7 +135,7 @@ def wall(
 ):
     """A wall of two courses, and what is said of it."""
     usual = dict(length=0.44, height=0.162)
-    act(BrickScene(name, BrickWall(**{**usual, **changes}), masonry(), arguments=[]))
+    act(Scene(name, parts.Wall(**{**usual, **changes}), masonry(), arguments=[]))
 
 
 def pressed(stress):
@@ -195,7 +173,7 @@ def brokenRule(*_):
     raise ValueError("my rule is broken")
 
 
-cube = box()
+cube = list(corners((0, 0, 0), UNIT))
 tetrahedron = [(0, 0, 0), (0.2, 0, 0), (0, 0.2, 0), (0, 0, 0.2)]
 nothing = lambda: None
 step = lambda: O.step()
@@ -210,59 +188,33 @@ CASES = {
         (nothing, lambda: addBlock(5, None), ["vertices 5 must be a list with at least 4 values", "material None must be a MasonryMat"]),
         (nothing, lambda: addBlock(cube[:7] + cube[:1], mat()), "corner 7 (0, 0, 0) m is given twice"),
         (nothing, lambda: addBlock(cube + [(0.1, 0.05, 0.04)], mat()), "corner 8 (0.1, 0.05, 0.04) m is no corner of the convex block"),
-        (nothing, lambda: addBlock(box(x=1e12), mat()), "0.255641 m is too small to be told so far from the origin"),
+        (nothing, lambda: addBlock(box((1e12, 0, 0)), mat()), "0.255641 m is too small to be told so far from the origin"),
         (nothing, lambda: addBlock(cube, mat(density=5e-324)), "its mass of 0 kg and inertia are no numbers above 0"),
     ],
     "material": [
         (nothing, lambda: MasonryMat(label="b", young=0, poisson=1, density=nan), ['MasonryMat "b": young 0', "poisson 1 must", "density nan"]),
         (nothing, lambda: MasonryMat(young="stiff", jointSet=5), ["young: expected a number, got stiff", "jointSet: expected a text, got 5"]),
         (nothing, lambda: MasonryMat("brick"), "takes keyword arguments only"),
-        (nothing, lambda: assign(mat(), "young", None), "young: expected a number, got None"),
-        (nothing, lambda: update(mat(), poisson=0.3, young=-1), "young -1 Pa must be above 0"),
         (nothing, lambda: update(mat(), poisson=0.3, jointSet=None), "jointSet: expected a text, got None"),
         (nothing, lambda: materials.dryGraniteJoints(120, 0), ["level 120 kN was not tested, there are 100, 175, 250", "height 0 m must be at least 0.001"]),
     ],
     "joint": [
         (nothing, lambda: MasonryJoint(shearStiffness=-1, elastic=True), "shear stiffness -1 Pa/m must be above 0"),
-        (nothing, lambda: MasonryJoint(tensileStrength=0.3e6), "300000 Pa is above the apex of the Coulomb cone, cohesion/friction = 255814 Pa"),
-        (nothing, lambda: MasonryJoint(compressiveFractureEnergy=15), "15 J/m² is too small for peak ratio 68.5 (needs at least 12208 J/m², more between rigid units)"),
         (nothing, lambda: MasonryJoint(name="b", cohesion=-1, friction=nan, peakRatio=0), ["cohesion -1", "friction nan", "peak ratio 0"]),
-        (
-            nothing,
-            lambda: MasonryJoint(residualCohesion=1e6, residualFriction=0.5, dilatancy=1),
-            ["residual cohesion 1e+06 Pa must be at most 110000", "residual friction 0.5 must be at most 0.43", "dilatancy 1 must be at most 0.5"],
-        ),
         (nothing, lambda: MasonryJoint(friction="x", cohesion="y"), ["friction: expected a number, got x", "cohesion: expected a number, got y"]),
-        (
-            nothing,
-            lambda: MasonryJoint(cohesion=0, tensileStrength=0, residualFriction=0.3),
-            "friction softens from 0.43 to 0.3 without cohesion: give a shear table",
-        ),
         (nothing, lambda: assign(MasonryJoint(), "friction", -1), "friction -1 must be at least 0"),
         (nothing, lambda: update(MasonryJoint(), cohesion=2e5, friction=-1), "friction -1 must be at least 0"),
         (nothing, lambda: MasonryJoint().compressionCurve([0, nan]), "closure nan m must be a finite number"),
-    ],
-    "table": [
-        (nothing, lambda: MasonryJoint(tensionTable=[(1, 0)]), "tension table, needs at least two rows, has 1"),
-        (nothing, lambda: MasonryJoint(tensionTable=[(1, 0.1), (2, 1)]), "row 1: must be ratio 1, damage 0 (the peak), is 1, 0.1"),
-        (nothing, lambda: MasonryJoint(shearTable=[(1, 0), (2, 0.5), (3, 0.4)]), "row 3: damage 0.4 falls below 0.5 of the row before"),
-        (nothing, lambda: MasonryJoint(tensionTable=[(1, 0), (2, 1.5)]), "row 2: damage 1.5 is outside 0 to 1"),
         (nothing, lambda: assign(MasonryJoint(), "tensionTable", None), "expected a list of (ratio, damage) rows, got None"),
         (nothing, lambda: MasonryJoint(tensionTable=[(2, 0), (1, 2), (0, 1)]), ["row 1: must be", "row 2: damage 2", "row 2: ratio 1", "row 3: ratio 0"]),
     ],
     "engines": [
-        (
-            joined,
-            lambda: engines([], loads=5, zones="x", damping=2, subcontacts=0),
-            ["joints [] must be a list with at least 1 value", "loads 5 must be", "zones 'x' must be", "damping 2", "subcontacts 0 must"],
-        ),
+        (joined, lambda: engines([], loads=5, zones="x", damping=2, subcontacts=0),
+         ["joints [] must be a list with at least 1 value", "loads 5 must be", "zones 'x' must be", "damping 2", "subcontacts 0 must"]),
         (lambda: reorder(lambda e: e[:3]), step, "O.engines: there is no MasonryIntegrator (masonry.engines() puts them in order)"),
         (lambda: (joined(), setattr(O.engines[-1], "dead", True)), step, "O.engines: there is no MasonryIntegrator"),
-        (
-            lambda: reorder(lambda e: e[-1:] + e[:-1]),
-            step,
-            "MasonryIntegrator must stand after the joints' loop; MasonryEnergy must stand before MasonryIntegrator",
-        ),
+        (lambda: reorder(lambda e: e[-1:] + e[:-1]), step,
+         "MasonryIntegrator must stand after the joints' loop; MasonryEnergy must stand before MasonryIntegrator"),
         (lambda: reorder(lambda e: e[1:]), step, "MasonryJointLoop must stand after a ForceResetter"),
         (lambda: reorder(lambda e: e[:1] + e[2:]), step, "O.engines: there is no MasonryJointLoop"),
         (lambda: reorder(lambda e: e + e[-1:]), step, 'MasonryIntegrator "integrator" stands there twice'),
@@ -270,8 +222,6 @@ CASES = {
         (lambda: reorder(lambda e: e[:2] + [MasonryJointLoop()] + e[2:]), step, "MasonryJointLoop stands beside MasonryJointLoop"),
         (lambda: reorder(lambda e: [MasonryLoad(body=1)] + e), step, "MasonryLoad must stand after the joints' loop"),
         (lambda: reorder(lambda e: e + [MasonryLoad(body=1)]), step, "MasonryLoad must stand before MasonryIntegrator"),
-        (lambda: reorder(lambda e: e[:2] + e[:1:-1]), step, "MasonryEnergy must stand before MasonryIntegrator"),
-        (lambda: (deformable(), setattr(O, "engines", O.engines[:-1])), step, "bodies 0 and 1 needs its MasonryZones in O.engines"),
         (lambda: (deformable(), setattr(O, "engines", O.engines[:1] + O.engines[2:])), step, "O.engines: there is no MasonryJointLoop"),
         (lambda: (deformable(), setattr(O, "engines", O.engines[-1:] + O.engines[:-1])), step, "MasonryZones must stand after the joints' loop"),
         (lambda: reorder(lambda e: e + [MasonryZones(bodies=[1])]), step, "was made before MasonryZones had body 1: give the zones to masonry.engines()"),
@@ -283,11 +233,8 @@ CASES = {
         (lambda: (joined(), setattr(O.interactions[0, 1], "phys", MasonryJointPhys())), step, "bodies 0 and 1 is not one that connect() made"),
         (lambda: (joined(0, functors=True), setattr(O.interactions[0, 1], "phys", MasonryJointPhys())), step, "is not one that connect() made"),
         (lambda: (joined(), setattr(O.interactions[0, 1], "geom", MasonryJointGeom())), step, "is not one that connect() made"),
-        (
-            nothing,
-            lambda: MasonryIntegrator(damping=1, dampingKind="viscous", gravity=(0, nan, 0)),
-            ["damping 1 must be 0 to 0.99", "dampingKind 'viscous' must be 'combined' or 'local'", "gravity must be finite numbers"],
-        ),
+        (nothing, lambda: MasonryIntegrator(damping=1, dampingKind="viscous", gravity=(0, nan, 0)),
+         ["damping 1 must be 0 to 0.99", "dampingKind 'viscous' must be 'combined' or 'local'", "gravity must be finite numbers"]),
         (joined, lambda: assign(O.engines[-1], "damping", nan), "damping nan must be a finite number, 0 to 0.99"),
         (nothing, lambda: MasonryEnergy(kinetic=1), "MasonryEnergy.kinetic is read-only"),
     ],
@@ -301,19 +248,13 @@ CASES = {
         (laid, lambda: connect(lambda *_: "bed"), "rule must return a MasonryJoint or None, got 'bed' for bodies 0 and 1"),
         (laid, lambda: connect(brokenRule), "my rule is broken"),
         (joined, lambda: connect(), "bodies 0 and 1 have a joint: connect() is called once"),
-        (
-            lambda: (blocks(), engines([MasonryJoint(name="head", direction=(1, 0, 0))])),
-            lambda: connect(),
-            'no joint fits bodies 0 and 1: joint sets "brick" and "brick", normal (0, 0, 1); offered: head',
-        ),
+        (lambda: (blocks(), engines([MasonryJoint(name="head", direction=(1, 0, 0))])), lambda: connect(),
+         'no joint fits bodies 0 and 1: joint sets "brick" and "brick", normal (0, 0, 1); offered: head'),
         (lambda: (blocks(), engines([MasonryJoint(name="steel", jointSet="plate")], functors=True)), lambda: connect(), "offered: steel"),
         (laid, lambda: Ip2_MasonryMat_MasonryMat_MasonryJointPhys().assign(None, None), "needs an interaction and a MasonryJoint, got None"),
         (nothing, lambda: Ip2_MasonryMat_MasonryMat_MasonryJointPhys().assign(Interaction(), MasonryJoint()), "body 0 does not exist"),
-        (
-            nothing,
-            lambda: Ig2_MasonryBlock_MasonryBlock_MasonryJointGeom(subcontacts=0, rows=1001, tolerance=0, rowDirection=(nan, 0, 0)),
-            ["subcontacts 0 must be 1 to 1000", "rows 1001 must be", "tolerance 0 must be", "rowDirection must be finite numbers"],
-        ),
+        (nothing, lambda: Ig2_MasonryBlock_MasonryBlock_MasonryJointGeom(subcontacts=0, rows=1001, tolerance=0, rowDirection=(nan, 0, 0)),
+         ["subcontacts 0 must be 1 to 1000", "rows 1001 must be", "tolerance 0 must be", "rowDirection must be finite numbers"]),
         (lambda: laid((0, 0, 0), (0, 0, 5), functors=True), lambda: utils.createInteraction(0, 1), "bodies 0 and 1 share no face: no joint can be made"),
     ],
     "geometry": [
@@ -329,7 +270,6 @@ CASES = {
         (lambda: turned(1), lambda: connect(), "bodies 0 and 1 nearly share a face, with a gap of 3.83894 mm"),
         (lambda: turned(30), lambda: connect(), "none of 2 bodies shares a face with another"),
         (lambda: laid((0, 0, 0), (0.22, 0, 0.081)), lambda: connect(), "none of 2 bodies shares a face with another (tolerance 0.0001"),
-        (lambda: laid((0, 0, 0), (0, 0, 0.5)), lambda: connect(), "none of 2 bodies shares a face with another"),
         (lambda: laid((0, 0, 0), (0, 0, 0.082)), lambda: connect(allowGaps=True), "none of 2 bodies shares a face with another"),
         (lambda: foreign(FrictMat(density=1000)), lambda: connect(), "body 1 has FrictMat, must have a MasonryMat"),
         (lambda: foreign(mat()), lambda: connect(), "body 1 lies 171.649 mm from its reference place state.refPos, which addBlock() sets"),
@@ -341,21 +281,15 @@ CASES = {
         (lambda: (joined(), setattr(O.bodies[1].state, "mass", 0)), lambda: criticalTimeStep(), "body 1 has a mass of 0 kg"),
     ],
     "load": [
-        (
-            nothing,
-            lambda: MasonryLoad(point=(nan, 0, 0), force=(inf, 0, 0), velocity=nan, direction=(0, 0, 0)),
-            ["point must be finite numbers [m]", "force must be finite numbers [N]", "velocity nan m/s", "direction must not be zero"],
-        ),
+        (nothing, lambda: MasonryLoad(point=(nan, 0, 0), force=(inf, 0, 0), velocity=nan, direction=(0, 0, 0)),
+         ["point must be finite numbers [m]", "force must be finite numbers [N]", "velocity nan m/s", "direction must not be zero"]),
         (nothing, lambda: MasonryLoad(reaction=5), "MasonryLoad.reaction is read-only"),
         (loaded, lambda: assign(O.engines[2], "force", (0, 0, nan)), "force must be finite numbers [N]"),
         (lambda: loaded(body=77), step, "MasonryLoad.body 77 does not exist"),
         (lambda: loaded(body=0, driven=True), step, "body 0 is blocked in the driven direction"),
         (lambda: (loaded(), O.bodies.erase(1)), step, "MasonryLoad.body 1 does not exist"),
-        (
-            lambda: (deformable(0), setattr(O, "engines", O.engines[:2] + [MasonryLoad(body=1)] + O.engines[2:])),
-            step,
-            "MasonryLoad.body 1 is a deformable unit",
-        ),
+        (lambda: (deformable(0), setattr(O, "engines", O.engines[:2] + [MasonryLoad(body=1)] + O.engines[2:])), step,
+         "MasonryLoad.body 1 is a deformable unit"),
         (nothing, lambda: MasonryLoad(body=99).displacement(), "MasonryLoad.body 99 does not exist"),
     ],
     "zones": [
@@ -365,11 +299,8 @@ CASES = {
         (lambda: O.bodies.append(utils.sphere((0, 0, 0), 1)), lambda: MasonryZones(bodies=[0]).nodesOf(0), "body 0 is no block of MasonryMat"),
         (nothing, lambda: MasonryZones(divisions=[0, 1, 101]), ["divisions 0 must be 1 to 100", "divisions 101 must be 1 to 100"]),
         (nothing, lambda: MasonryZones(divisions=[1, 1]), "divisions must be three whole numbers"),
-        (
-            nothing,
-            lambda: MasonryZones(damping=nan, dampingKind="x", blocked="q", gravity=(0, 0, nan)),
-            ["damping nan must be a finite number, 0 to 0.99", "dampingKind 'x' must be", "blocked 'q' must be made of x, y and z", "gravity must be finite numbers"],
-        ),
+        (nothing, lambda: MasonryZones(damping=nan, dampingKind="x", blocked="q", gravity=(0, 0, nan)),
+         ["damping nan must be a finite number, 0 to 0.99", "dampingKind 'x' must be", "blocked 'q' must be made of x, y and z", "gravity must be finite numbers"]),
         (lambda: addBlock(box(size=(1, 1, 1e-4)), mat()), lambda: MasonryZones(bodies=[0]).nodesOf(0), "cannot be divided: block has a sliver zone"),
         (deformable, lambda: zones().nodesOf(0), "body 0 is no deformable unit"),
         (deformable, lambda: zones().referencePoint(1, 99), "body 1 has no node 99"),
@@ -403,29 +334,19 @@ CASES = {
         (joined, lambda: script("wall_comp4", "--divisions", "2"), "--divisions: rigid units are not divided"),
         (joined, lambda: script("wall_comp4", "--unti", "5"), "unrecognized arguments: --unti 5"),
         (joined, lambda: script("wall_comp4", "--until"), "argument --until: expected one argument"),
-        (
-            joined,
-            lambda: script("wall_comp4", "--until", "x", "--rate", "0", "--blocks", "soft", "--nonsense"),
-            ["--until: 'x' must be a number", "--rate: 0.0 mm/s must", "--blocks: invalid choice", "unrecognized arguments: --nonsense"],
-        ),
+        (joined, lambda: script("wall_comp4", "--until", "x", "--rate", "0", "--blocks", "soft", "--nonsense"),
+         ["--until: 'x' must be a number", "--rate: 0.0 mm/s must", "--blocks: invalid choice", "unrecognized arguments: --nonsense"]),
         (joined, lambda: script("wall_comp4", "--rate", "-5", "--until"), ["--rate: -5.0 mm/s must be at least 0.001", "--until: expected one argument"]),
         (joined, lambda: script("wall_comp4", "--resume", ""), "argument --resume: must not be empty"),
         (joined, lambda: script("wall_comp4", "--resume", "nowhere"), "--resume: [Errno 2] No such file or directory: 'nowhere/run.checkpoint'"),
         (joined, lambda: script("wall_comp4", "--set", "bed"), "'bed' must read JOINT.PROPERTY=VALUE"),
         (joined, lambda: script("wall_comp4", "--set", "bed.cohesion=nan"), 'joint "bed": cohesion nan Pa must be a finite number'),
-        (joined, lambda: script("wall_comp4", "--set", "bed.shearTable=1:0"), "shear table, needs at least two rows, has 1"),
         (joined, lambda: script("wall_comp4", "--set", "bed.shearTable=1:0,2:0.5:3"), "must be rows as ratio:damage,ratio:damage,..."),
         (joined, lambda: script("wall_comp4", "--set", "bed.tensionTable=1:0,1:1"), "row 2: ratio 1 must be above 1 of the row before"),
-        (
-            joined,
-            lambda: script("wall_comp4", "--divisions", "3", "--set", "bed.friction=-1", "--set", "x.y=1"),
-            ["rigid units are not divided", "friction -1 must be at least 0", "no joint 'x'"],
-        ),
-        (
-            joined,
-            lambda: script("wall_dry", "--crack-surfaces", "on", "--set", "bed.cohesion=-1"),
-            ["--crack-surfaces on: the bricks are in pieces, and these materials have no joint", "cohesion -1 Pa must be at least 0"],
-        ),
+        (joined, lambda: script("wall_comp4", "--divisions", "3", "--set", "bed.friction=-1", "--set", "x.y=1"),
+         ["rigid units are not divided", "friction -1 must be at least 0", "no joint 'x'"]),
+        (joined, lambda: script("wall_dry", "--crack-surfaces", "on", "--set", "bed.cohesion=-1"),
+         ["--crack-surfaces on: the bricks are in pieces, and these materials have no joint", "cohesion -1 Pa must be at least 0"]),
         (joined, lambda: script("wall_dry", "--level", "120"), ["argument --level: invalid choice: ", "120", "(choose from 100, 175, 250)"]),
         (joined, lambda: script("couplet", "--normal-stress", "0.5"), "argument --normal-stress: 0.5 MPa must be"),
         (joined, lambda: script("couplet", "--closure", "0"), "argument --closure: 0.0 mm must be"),
@@ -468,28 +389,13 @@ CURVE = "time_s,displacement_mm,base_shear_kN,top_shear_kN\r\n0,0,1,1\r\n1,1,2,2
 
 def snapshot():
     """All numbers that a refused input must leave as they were."""
-    return repr(
-        (
-            O.iter,
-            O.time,
-            O.dt,
-            [(type(e).__name__, e.label) for e in O.engines],
-            [
-                (
-                    b.state.pos,
-                    b.state.ori,
-                    b.state.vel,
-                    b.state.mass,
-                    b.state.blockedDOFs,
-                )
-                for b in O.bodies
-            ],
-            [
-                (i.id1, i.id2, i.geom.jumps, i.phys.stress, i.phys.dissipated)
-                for i in O.interactions
-            ],
-        )
-    )
+    kinds = [(type(e).__name__, e.label) for e in O.engines]
+    motion = lambda s: (s.pos, s.ori, s.vel, s.mass, s.blockedDOFs)
+    made = lambda i: (i.id1, i.id2, i.geom.jumps, i.phys.stress, i.phys.dissipated)
+    bodies, joints = [motion(b.state) for b in O.bodies], [
+        made(i) for i in O.interactions
+    ]
+    return repr((O.iter, O.time, O.dt, kinds, bodies, joints))
 
 
 @pytest.mark.parametrize(
@@ -526,8 +432,7 @@ def joint(**changes):
 
 def unit(**changes):
     """Two bricks of this material."""
-    for z in (0, BRICK[2]):
-        addBlock(box(z=z), mat(**changes))
+    pile(material=mat(**changes))
     engines([MasonryJoint()])
     connect()
 
@@ -541,7 +446,7 @@ def bricks(size, *more):
 def wedge():
     """A brick, and on it a deformable block that is no hexahedron."""
     addBlock(box(), mat())
-    addBlock([(x, y, z + BRICK[2]) for x, y, z in tetrahedron], mat())
+    addBlock([(x, y, z + UNIT[2]) for x, y, z in tetrahedron], mat())
     zones = MasonryZones(bodies=[1], divisions=[2, 1, 2])
     engines([MasonryJoint()], zones=zones)
     connect()
@@ -556,7 +461,7 @@ def loads(**settings):
 HINTS = [
     (lambda: bricks((220, 102, 81)), "body 0 is 255.666 m long: are corners in m, not mm?"),
     (lambda: bricks((2.2e-4, 1.02e-4, 8.1e-5)), "body 0 is 8.1e-05 m thick: are corners in m?"),
-    (lambda: bricks(BRICK, (5, 0, 0), (6, 0, 0)), "no joint holds bodies [2, 3]"),
+    (lambda: bricks(UNIT, (5, 0, 0), (6, 0, 0)), "no joint holds bodies [2, 3]"),
     (lambda: unit(young=4800, label="brick"), 'MasonryMat "brick": young 4800 Pa: is it in Pa, not MPa?'),
     (lambda: unit(density=1.8), "density 1.8 kg/m³ weighs 17.658 N/m³: is it in kg/m³?"),
     (lambda: unit(density=1.8e6), "density 1.8e+06 kg/m³ weighs 1.7658e+07 N/m³: is it in kg/m³?"),
@@ -589,10 +494,9 @@ def test_what_may_be_a_slip_is_reported(
     except ValueError as error:  # what does not fit the size of the units is refused
         assert "snap back" in str(error)
     said = capsys.readouterr().out
+    warnings = [line for line in said.splitlines() if line.startswith("warning: ")]
     for hint in [hints] if isinstance(hints, str) else hints:
-        assert any(
-            line.startswith("warning: ") and hint in line for line in said.splitlines()
-        ), said
+        assert any(hint in line for line in warnings), said
 
 
 def test_gaps_that_are_meant_are_left(scene):
@@ -612,14 +516,8 @@ def test_a_tolerance_of_the_users_makes_the_joint(scene):
 @pytest.mark.parametrize(
     "name, words, message",
     [
-        (
-            "wall_comp4",
-            ["--rate", "0", "--until", "x"],
-            "--rate: 0.0 mm/s must be at least",
-        ),
-        ("wall_dry", ["--crack-surfaces", "on"], "these materials have no joint"),
+        ("wall_comp4", ["--rate", "0"], "--rate: 0.0 mm/s must be at least"),
         ("couplet", ["--normal-stress", "-8"], "crushes the bed joint"),
-        ("couplet", ["--out", "/dev/full"], "--out: cannot write to /dev/full"),
     ],
 )
 def test_the_command_line_ends_with_status_2_and_leaves_what_is_there(
@@ -667,9 +565,6 @@ def test_a_disk_that_fills_ends_the_run_in_order(tmp_path, name, words, most, lo
     assert reading.readRun(str(tmp_path / "results"))["steps"] > 0
     assert not (tmp_path / "results" / lost).exists() or lost == "curve.csv"
     if "--no-vtk" not in words:
-        frames = [
-            len(list((tmp_path / "results").glob(f"{kind}_*")))
-            for kind in ("blocks", "joints")
-        ]
-        assert frames == [1, 1]
+        for kind in ("blocks", "joints"):
+            assert len(list((tmp_path / "results").glob(f"{kind}_*"))) == 1
         assert len(readFrame(str(tmp_path / "results"), "joints")["cells"]) > 100

@@ -19,39 +19,27 @@ def samples():
     for _ in range(40):
         yield box(place(), size())
     for _ in range(40):
-        turn = Quaternion(*[rng.gauss(0, 1) for _ in range(4)])
-        turn.normalize()
+        turn = Quaternion(*[rng.gauss(0, 1) for _ in range(4)]).normalized()
         shift = Vector3(*place())
         yield [turn * p + shift for p in box((0, 0, 0), size())]
     for _ in range(40):
-        near, thick, wide = (
-            rng.uniform(0.5, 5),
-            rng.uniform(0.05, 1),
-            rng.uniform(0.1, 1),
-        )
-        one = rng.uniform(0, 3)
-        two = one + rng.uniform(0.02, 0.5)
-        yield [
-            Vector3(r * math.cos(a), y, r * math.sin(a))
-            for r in (near, near + thick)
-            for a in (one, two)
-            for y in (0, wide)
-        ]
+        near, thick = rng.uniform(0.5, 5), rng.uniform(0.05, 1)
+        wide, one = rng.uniform(0.1, 1), rng.uniform(0, 3)
+        angles = one, one + rng.uniform(0.02, 0.5)
+        rays = [Vector3(math.cos(a), 0, math.sin(a)) for a in angles]
+        edges = [r * ray for r in (near, near + thick) for ray in rays]
+        yield [edge + Vector3(0, y, 0) for edge in edges for y in (0, wide)]
     for corners in (3, 4, 5, 6, 7):
-        yield [
-            Vector3(
-                0.2 * math.cos(2 * math.pi * i / corners),
-                0.2 * math.sin(2 * math.pi * i / corners),
-                z,
-            )
-            for i in range(corners)
-            for z in (0, 0.1)
-        ]
+        angles = [2 * math.pi * i / corners for i in range(corners)]
+        rays = [Vector3(math.cos(a), math.sin(a), 0) for a in angles]
+        yield [0.2 * ray + Vector3(0, 0, z) for ray in rays for z in (0, 0.1)]
     for _ in range(60):
-        yield [
-            Vector3(*(rng.gauss(0, 0.2) for _ in range(3)))
-            for _ in range(rng.randint(4, 14))
-        ]
+        yield cloud(rng, rng.randint(4, 14))
+
+
+def cloud(rng, count):
+    """So many points about the origin."""
+    return [Vector3(*(rng.gauss(0, 0.2) for _ in range(3))) for _ in range(count)]
 
 
 # -- shape ------------------------------------------------------------------------------------------------------------
@@ -102,7 +90,7 @@ def test_a_block_of_many_corners_is_the_same_wherever_its_memory_lies():
     rng = random.Random(2)
     kept = []
     for _ in range(200):
-        points = [Vector3(*(rng.gauss(0, 0.2) for _ in range(3))) for _ in range(40)]
+        points = cloud(rng, 40)
         first = MasonryBlock.around(points)
         kept.append(MasonryBlock.around(points[: rng.randint(4, 40)]))
         second = MasonryBlock.around(points)
@@ -136,8 +124,7 @@ def test_points_without_volume_are_refused():
 
 
 def test_a_body_with_a_block_without_corners_is_refused(scene):
-    addBlock(box((0, 0, 0)), MasonryMat(density=1800))
-    addBlock(box((0, 0, UNIT[2])), MasonryMat(density=1800))
+    pile()
     O.bodies[1].shape = MasonryBlock()
     engines([MasonryJoint()])
     with pytest.raises(ValueError, match="body 1 has a MasonryBlock without corners"):
@@ -166,47 +153,20 @@ def stack(kinds, functors=False, zones=False, steps=1500):
         make([turn * p for p in box((0.03 * course, 0, UNIT[2] * course))], material)
     O.bodies[0].state.blockedDOFs = "xyzXYZ"
     held = MasonryZones(bodies=[1], divisions=[2, 1, 1]) if zones else None
-    load = MasonryLoad(
-        body=2,
-        point=O.bodies[2].state.pos,
-        driven=True,
-        direction=turn * Vector3(1, 0, 0.25),
-        velocity=0.02,
-        label="load",
-    )
-    engines([MasonryJoint()], loads=[load], zones=held, functors=functors)
-    connect()
-    O.dt = 0.5 * criticalTimeStep()[0]
+    driven = dict(driven=True, direction=turn * Vector3(1, 0, 0.25), velocity=0.02)
+    load = MasonryLoad(body=2, point=O.bodies[2].state.pos, label="load", **driven)
+    join(loads=[load], zones=held, functors=functors)
     run(steps)
     return state()
 
 
 def state():
-    joints = [
-        (
-            i.id1,
-            i.id2,
-            i.phys.stress,
-            i.phys.damage,
-            i.phys.slip,
-            i.geom.jumps,
-            i.geom.areas,
-        )
-        for i in O.interactions
-    ]
-    bodies = [
-        (
-            b.state.pos,
-            b.state.ori,
-            b.state.vel,
-            b.state.angVel,
-            b.state.mass,
-            b.state.inertia,
-        )
-        for b in O.bodies
-    ]
-    load = next(e for e in O.engines if e.label == "load")
-    return O.iter, load.reaction, joints, bodies
+    phys = lambda p: (p.stress, p.damage, p.slip)
+    ours = lambda i: (i.id1, i.id2, *phys(i.phys), i.geom.jumps, i.geom.areas)
+    joints = [ours(i) for i in O.interactions]
+    motion = lambda s: (s.pos, s.ori, s.vel, s.angVel, s.mass, s.inertia)
+    bodies = [motion(b.state) for b in O.bodies]
+    return O.iter, engine("load").reaction, joints, bodies
 
 
 @polyhedra
@@ -259,16 +219,8 @@ def test_a_scene_with_the_functor_for_polyhedra_goes_on_working(scene):
 def test_a_saved_block_is_the_same_block(scene, tmp_path, extension):
     stack([addBlock] * 3)
     path = str(tmp_path / ("run" + extension))
-    shapes = lambda: [
-        (
-            list(b.shape.v),
-            b.shape.triangles,
-            b.shape.volume,
-            b.shape.inertia,
-            b.shape.color,
-        )
-        for b in O.bodies
-    ]
+    looks = lambda s: (list(s.v), s.triangles, s.volume, s.inertia, s.color)
+    shapes = lambda: [looks(b.shape) for b in O.bodies]
     before = shapes()
     O.save(path)
     run(300)

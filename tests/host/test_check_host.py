@@ -11,9 +11,8 @@ import yade.config
 import yade.wrapper
 from conftest import ROOT
 
-spec = importlib.util.spec_from_file_location(
-    "check_host", os.path.join(ROOT, "scripts", "check_host.py")
-)
+PATH = os.path.join(ROOT, "scripts", "check_host.py")
+spec = importlib.util.spec_from_file_location("check_host", PATH)
 host = importlib.util.module_from_spec(spec)
 spec.loader.exec_module(host)
 KNOWN = {known.version: known for known in host.knownYades()}
@@ -53,42 +52,25 @@ def test_each_fault_in_each_class_is_shown_with_its_name(version):
         return line
 
     for name, (size, functions) in known.classes.items():
+        slot, last = name + ", virtual function ", len(functions) - 1
+        table = lambda other: other.classes[name][1]
         for at in range(len(functions)):
-            slot = f"{name}, virtual function {at} of "
-
-            def more(other):
-                other.classes[name][1].insert(at, "stranger()")
-
-            assert difference(more).startswith(slot), slot
-        last = len(functions) - 1
-
-        def fewer(other):
-            other.classes[name][1].pop()
-
-        def exchanged(other):
-            table = other.classes[name][1]
-            table[last], table[last - 1] = table[last - 1], table[last]
-
-        def grown(other):
-            other.classes[name] = (size or 0) + 8, functions
-
-        def gone(other):
-            del other.classes[name]
-
-        assert difference(fewer).startswith(
-            f"{name}, virtual function {last} of {last}: "
-        )
+            more = difference(lambda other: table(other).insert(at, "stranger()"))
+            assert more.startswith(f"{slot}{at} of ")
+        fewer = difference(lambda other: table(other).pop())
+        assert fewer.startswith(f"{slot}{last} of {last}: ")
         if functions[last] != functions[last - 1]:
-            assert difference(exchanged).startswith(
-                f"{name}, virtual function {last - 1} of"
-            )
-        assert difference(grown).startswith(f"{name}: {size} bytes in")
+            swap = lambda other: table(other).insert(last - 1, table(other).pop())
+            assert difference(swap).startswith(f"{slot}{last - 1} of")
+        grown = {name: ((size or 0) + 8, functions)}
+        grows = difference(lambda other: other.classes.update(grown))
+        assert grows.startswith(f"{name}: {size} bytes in")
         if name != host.OPTIONAL:
-            assert difference(gone) == f"{name}: not in this YADE"
+            gone = difference(lambda other: other.classes.pop(name))
+            assert gone == f"{name}: not in this YADE"
     for call in known.calls:
-        assert "not in this YADE: " in difference(
-            lambda other: other.calls.remove(call)
-        )
+        gone = difference(lambda other: other.calls.remove(call))
+        assert "not in this YADE: " in gone
 
 
 def test_the_tables_name_all_that_the_module_calls():

@@ -14,34 +14,38 @@ FUNCTORS = pytest.mark.parametrize("functors", [False, True], ids=["loop", "func
 
 
 def energy():
-    return next((e for e in O.engines if isinstance(e, MasonryEnergy)), None)
+    return ofKind(MasonryEnergy)
 
 
 def dry(**other):
-    return MasonryJoint(
-        **{
-            **dict(name="dry", tensileStrength=0, cohesion=0, cap=False),
-            **dict(friction=0.7, residualFriction=0.7),
-            **dict(normalStiffness=1e10, shearStiffness=5e9),
-            **other,
-        }
-    )
+    bond = dict(name="dry", tensileStrength=0, cohesion=0, cap=False)
+    rubs = dict(friction=0.7, residualFriction=0.7)
+    stiff = dict(normalStiffness=1e10, shearStiffness=5e9)
+    return MasonryJoint(**{**bond, **rubs, **stiff, **other})
 
 
 def standing(joint=None, size=(B, 0.25, H), base=0.2, gravity=(0, 0, -G), **around):
     """A free block on a fixed one, in the plane."""
     O.reset()
-    mat = MasonryMat(density=1800, young=1e12, poisson=0.16)
+    mat = unitMaterial(young=1e12)
     addBlock(corners((0, 0, -base), (size[0], size[1], 0)), mat, inPlane=True)
     addBlock(corners((0, 0, 0), size), mat, inPlane=True)
-    O.bodies[0].state.blockedDOFs = "xyzXYZ"
-    engines(
-        [joint or dry()],
-        **{**dict(gravity=gravity, damping=0, inPlane=True), **around},
-    )
-    connect()
-    O.dt = 0.8 * criticalTimeStep()[0]
+    hold(0)
+    around = {"damping": 0, "inPlane": True, **around}
+    join(joint or dry(), 0.8, gravity=gravity, **around)
     return O.bodies[1].state
+
+
+#: A block that is lower than it is wide.
+FLAT = (0.25, 0.25, 0.1)
+
+
+def sliding(speed, friction=0.1, **around):
+    """A flat block that is thrown along the plane on rigid joints, and cannot turn."""
+    s = standing(dry(friction=friction, residualFriction=friction), FLAT, **around)
+    s.blockedDOFs = "yXYZ"
+    s.vel = Vector3(speed, 0, 0)
+    return s
 
 
 def go(seconds):
@@ -51,9 +55,8 @@ def go(seconds):
 def collapses(seconds, message):
     with pytest.raises(RuntimeError, match="^collapsed: " + message) as text:
         go(seconds)
-    assert re.search(
-        r"at step \d+00, \S+ s\. Joints are for small displacements", str(text.value)
-    )
+    when = r"at step \d+00, \S+ s\. Joints are for small displacements"
+    assert re.search(when, str(text.value))
     return str(text.value)
 
 
@@ -64,9 +67,8 @@ def collapses(seconds, message):
 def test_a_block_that_tips_over_is_named_with_its_rotation(scene, functors):
     s = standing(functors=functors, gravity=(1.2 * G * B / H, 0, -G))
     assert energy().collapsedBlock == -1 and energy().collapse == ""
-    text = collapses(
-        5, r"block 1 has turned by 6\d(\.\d)?° against block 0, the limit is 60°"
-    )
+    turned = r"block 1 has turned by 6\d(\.\d)?° against block 0, the limit is 60°"
+    text = collapses(5, turned)
     since = s.angVel.norm() * 100 * O.dt  # the last look
     assert 0 <= s.ori.toAngleAxis()[0] - math.radians(60) < since
     assert energy().collapsedBlock == 1
@@ -97,58 +99,33 @@ def test_a_scene_without_an_energy_balance_ends_too(scene):
 
 @FUNCTORS
 def test_a_block_that_slides_off_its_neighbour_is_named_with_the_slide(scene, functors):
-    s = standing(
-        dry(friction=0.1, residualFriction=0.1), (0.25, 0.25, 0.1), functors=functors
+    s = sliding(3, functors=functors)
+    slid = (
+        r"block 1 has slid 0\.2\d+ m along its joint with block 0, which is 0.25 m long"
     )
-    s.blockedDOFs = "yXYZ"
-    s.vel = Vector3(3, 0, 0)
-    collapses(
-        1,
-        r"block 1 has slid 0\.2\d+ m along its joint with block 0, which is 0.25 m long",
-    )
+    collapses(1, slid)
     assert 0 < s.pos[0] - s.refPos[0] - 0.25 < 3 * 100 * O.dt
 
 
 def test_a_joint_crushed_to_nothing_is_reported_when_one_block_lies_in_the_other(scene):
-    soft = dry(
-        cap=True,
-        compressiveStrength=1e5,
-        residualStrengthRatio=0,
-        peakRatio=20,
-        compressiveFractureEnergy=3000,
-    )
-    s = standing(soft, (0.25, 0.25, 0.1), gravity=(0, 0, -100 * G))
+    soft = dict(cap=True, compressiveStrength=1e5, residualStrengthRatio=0)
+    soft.update(peakRatio=20, compressiveFractureEnergy=3000)
+    s = standing(dry(**soft), FLAT, gravity=(0, 0, -100 * G))
     s.blockedDOFs = "xyXYZ"
-    collapses(
-        2,
-        r"block 1 lies 0\.1\d* m deep in block 0, and the smaller of the two is 0.1 m thick there",
-    )
+    deep = r"block 1 lies 0\.1\d* m deep in block 0, and the smaller of the two is 0.1 m thick there"
+    collapses(2, deep)
     assert -0.12 < s.pos[2] - s.refPos[2] < -0.1
 
 
 @pytest.mark.parametrize("direction", ["loop", "functors", "deformable"])
 def test_a_stack_pulled_apart_is_reported_when_a_block_has_left(scene, direction):
-    mat = unitMaterial()
-    size = (0.22, 0.102, 0.081)
-    for k in range(3):
-        addBlock(corners((0, 0, k * size[2]), (*size[:2], (k + 1) * size[2])), mat)
-    for k in (0, 2):
-        O.bodies[k].state.blockedDOFs = "xyzXYZ"
+    hold(pile(3)[2])
     zones = MasonryZones(bodies=[1]) if direction == "deformable" else None
-    engines(
-        [MasonryJoint()],
-        gravity=(0, 0, -G),
-        zones=zones,
-        functors=direction == "functors",
-    )
-    connect()
-    O.dt = 0.5 * criticalTimeStep()[0]
+    join(gravity=(0, 0, -G), zones=zones, functors=direction == "functors")
     O.bodies[2].state.vel = Vector3(0, 0, 10)
     # The largest extent of the smaller block is its diagonal.
-    collapses(
-        1,
-        r"block 1 has left block 2 by 0.2[5-9]\d* m, more than the size of the smaller block, 0.256 m",
-    )
+    gone = r"block 1 has left block 2 by 0.2[5-9]\d* m, more than the size of the smaller block, 0.256 m"
+    collapses(1, gone)
 
 
 def test_the_first_body_of_a_scene_is_named_as_any_other(scene):
@@ -176,16 +153,14 @@ def test_a_collapse_in_a_step_that_another_engine_fails_does_not_end_the_next(sc
 
 
 def test_a_collapse_goes_before_motion_out_of_nothing_and_tells_both(scene):
-    s = standing(dry(friction=0.1, residualFriction=0.1), (0.25, 0.25, 0.1))
+    s = standing(dry(friction=0.1, residualFriction=0.1), FLAT)
     go(120 * O.dt)
     while O.iter % 100 != 10:
         O.step()
     s.pos += Vector3(0.3, 0, 0)
     s.vel = Vector3(30, 0, 0)
-    with pytest.raises(
-        RuntimeError,
-        match=r"^collapsed: block 1 has slid .* Besides, unstable: motion out of nothing",
-    ):
+    both = "^collapsed: block 1 has slid .* Besides, unstable: motion out of nothing"
+    with pytest.raises(RuntimeError, match=both):
         go(20 * O.dt)
 
 
@@ -213,11 +188,7 @@ def test_a_block_that_rocks_at_nine_tenths_of_its_slenderness_is_exact_and_no_co
 
 
 def test_a_block_that_slides_half_its_length_is_no_collapse(scene):
-    s = standing(dry(friction=0.5, residualFriction=0.5), (0.25, 0.25, 0.1))
-    s.blockedDOFs = "yXYZ"
-    s.vel = Vector3(
-        math.sqrt(2 * 0.5 * G * 0.125), 0, 0
-    )  # stops after half of its length
+    s = sliding(math.sqrt(2 * 0.5 * G * 0.125), 0.5)  # stops after half of its length
     go(0.5)
     assert s.pos[0] - s.refPos[0] == pytest.approx(0.125, rel=0.01)
     assert energy().collapsedBlock == -1
@@ -236,15 +207,20 @@ def test_a_base_that_turns_with_all_its_blocks_is_no_collapse(scene):
 # -- the balance -----------------------------------------------------------------------------------------------------
 
 
+def pushed(share, steps, watch=True):
+    """A block under a force up, a share of its weight, whose work nobody counts."""
+    weight = G * standing(joint=MasonryJoint(elastic=True), damping=0.3).mass
+    energy().watch = watch
+    O.forces.setPermF(1, Vector3(0, 0, share * weight))
+    go(steps * O.dt)
+
+
 def test_a_balance_that_is_off_is_reported_once(scene, capfd):
-    s = standing(joint=MasonryJoint(elastic=True), damping=0.3)
-    O.forces.setPermF(1, Vector3(0, 0, -5 * G * s.mass))  # work that nobody counts
-    go(2500 * O.dt)
+    pushed(-5, 2500)
     text = capfd.readouterr().err
     assert text.count("the energy balance is off by") == 1
-    off = float(
-        re.search(r"at step 1000 the energy balance is off by (\S+) %", text)[1]
-    )
+    said = re.search(r"at step 1000 the energy balance is off by (\S+) %", text)
+    off = float(said[1])
     assert off == pytest.approx(100 * abs(energy().balance()["error"]), rel=0.3)
     assert energy().warned
 
@@ -252,20 +228,14 @@ def test_a_balance_that_is_off_is_reported_once(scene, capfd):
 @pytest.mark.parametrize("off", [0.0, 0.009, 0.011, 0.05])
 def test_a_balance_is_reported_from_one_per_cent_of_the_work_on(scene, capfd, off):
     """An uncounted force F beside the weight W moves the block by u: (W + F) u is taken up, and W u is counted."""
-    s = standing(joint=MasonryJoint(elastic=True), damping=0.3)
-    weight = G * s.mass
-    O.forces.setPermF(1, Vector3(0, 0, -weight * off / (1 - off)))  # F/(W + F) is off
-    go(2500 * O.dt)
+    pushed(-off / (1 - off), 2500)  # F/(W + F) is off
     assert energy().balance()["error"] == pytest.approx(-off, abs=2e-4)
     assert energy().warned == (off > 0.01)
     assert ("the energy balance is off by" in capfd.readouterr().err) == (off > 0.01)
 
 
 def test_nothing_is_reported_of_a_balance_without_the_watch(scene, capfd):
-    s = standing(joint=MasonryJoint(elastic=True), damping=0.3)
-    energy().watch = False
-    O.forces.setPermF(1, Vector3(0, 0, -5 * G * s.mass))
-    go(2500 * O.dt)
+    pushed(-5, 2500, watch=False)
     assert "balance" not in capfd.readouterr().err
     assert not energy().warned
 
@@ -284,9 +254,7 @@ def test_a_wrong_balance_is_reported_again_when_it_is_twice_as_large(scene, capf
 
 
 def test_a_force_that_takes_energy_is_reported_as_one_that_brings_it(scene, capfd):
-    s = standing(joint=MasonryJoint(elastic=True), damping=0.3)
-    O.forces.setPermF(1, Vector3(0, 0, 0.5 * G * s.mass))
-    go(1500 * O.dt)
+    pushed(0.5, 1500)
     assert energy().balance()["error"] > 0.1
     assert "the energy balance is off by" in capfd.readouterr().err
 
@@ -305,7 +273,7 @@ MOVING = {  # properties of the joint, its damping [s], velocity [m/s], and an e
 def test_nothing_is_reported_while_undamped_blocks_move(scene, capfd, kind):
     """Their energies change in every step, so a sound balance is one of energies of one instant."""
     properties, damping, speed, taken = MOVING[kind]
-    s = standing(dry(**properties), (0.25, 0.25, 0.1))
+    s = standing(dry(**properties), FLAT)
     engine("joints").stiffnessDamping = damping
     O.dt = 0.1 * criticalTimeStep()[0]
     s.blockedDOFs = "yXYZ"
@@ -324,7 +292,7 @@ def test_the_balance_of_a_run_that_a_collapse_ended_is_that_of_one_instant(
     scene, functors
 ):
     """A block slides off; in the last step its kinetic energy changes by far more than round-off."""
-    s = standing(dry(**RUBBING), (0.25, 0.25, 0.1), functors=functors)
+    s = standing(dry(**RUBBING), FLAT, functors=functors)
     s.blockedDOFs = "yXYZ"
     s.vel = Vector3(3, 0, 0)
     O.dt *= 0.1

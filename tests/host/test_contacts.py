@@ -8,17 +8,15 @@ import sys
 from hosted import *
 
 STIFF = 1e10  # Pa/m
+ABOUT_Y = Vector3(0, 1, 0)
 CUBE = [(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)]
 
 
 def box(size, middle=(0, 0, 0), turn=Quaternion.Identity, held=False, density=1800):
-    corners = [
-        Vector3(*middle) + turn * Vector3(*[size[i] * (c[i] - 0.5) for i in range(3)])
-        for c in CUBE
-    ]
-    body = addBlock(corners, MasonryMat(density=density, young=4.8e9, poisson=0.16))
-    if held:
-        O.bodies[body].state.blockedDOFs = "xyzXYZ"
+    sides = [Vector3(*[s * (c - 0.5) for s, c in zip(size, corner)]) for corner in CUBE]
+    points = [Vector3(*middle) + turn * side for side in sides]
+    body = addBlock(points, unitMaterial(density=density))
+    hold(*[body] * held)
     return body
 
 
@@ -28,20 +26,26 @@ def ground(turn=Quaternion.Identity, size=(4, 2, 0.4)):
 
 
 def prepare(step=0.5, gravity=(0, 0, -G), **properties):
-    contacts = MasonryContacts(
-        **{
-            **dict(normalStiffness=STIFF, friction=0.5, restitution=0.5),
-            **properties,
-        }
-    )
-    O.engines = [
-        ForceResetter(),
-        contacts,
-        MasonryEnergy(label="energy"),
-        MasonryIntegrator(damping=0, gravity=gravity),
-    ]
+    made = contacts(**{"restitution": 0.5, **properties})
+    energy = MasonryEnergy(label="energy")
+    mover = MasonryIntegrator(damping=0, gravity=gravity)
+    O.engines = [ForceResetter(), made, energy, mover]
     O.dt = step * criticalTimeStep()[0]
-    return contacts
+    return made
+
+
+def contacts(**properties):
+    return MasonryContacts(**{"normalStiffness": STIFF, "friction": 0.5, **properties})
+
+
+def inclined(angle, step=0.5):
+    """A brick on an incline of so many degrees; its state after half a second."""
+    turn = Quaternion(ABOUT_Y, math.radians(angle))
+    ground(turn)
+    s = O.bodies[box(UNIT, turn * Vector3(0, 0, UNIT[2] / 2), turn)].state
+    prepare(step)
+    until(0.5)
+    return s
 
 
 @pytest.mark.slow
@@ -92,14 +96,8 @@ def test_the_force_of_a_pair_is_opposite_on_both_blocks_and_has_one_line(scene, 
         assert rest.norm() <= 1e-12 * force.norm() * (arm.norm() + sizes.max())
 
 
-@pytest.mark.parametrize("angle", [20, 26])
-def test_a_block_rests_on_an_incline_below_the_angle_of_friction(scene, angle):
-    turn = Quaternion(Vector3(0, 1, 0), math.radians(angle))
-    ground(turn)
-    brick = box(UNIT, turn * Vector3(0, 0, UNIT[2] / 2), turn)
-    prepare()
-    s = O.bodies[brick].state
-    until(0.5)
+def test_a_block_rests_on_an_incline_just_below_the_angle_of_friction(scene):
+    s = inclined(26)  # 26.6° is the angle
     there = Vector3(s.pos)
     until(2.5)
     # A creep of 1e-6 m in 60 s would be 3e-8 m here.
@@ -109,12 +107,7 @@ def test_a_block_rests_on_an_incline_below_the_angle_of_friction(scene, angle):
 
 @pytest.mark.slow
 def test_a_block_on_an_incline_does_not_creep_in_a_minute(scene):
-    turn = Quaternion(Vector3(0, 1, 0), math.radians(20))
-    ground(turn)
-    brick = box(UNIT, turn * Vector3(0, 0, UNIT[2] / 2), turn)
-    prepare(0.9)
-    s = O.bodies[brick].state
-    until(0.5)
+    s = inclined(20, 0.9)
     there = Vector3(s.pos)
     until(60)
     assert (s.pos - there).norm() < 1e-9
@@ -137,9 +130,6 @@ def test_a_block_slides_down_an_incline_as_friction_says(scene, angle):
     expected = G * (math.sin(slope) - 0.5 * math.cos(slope))
     assert found == pytest.approx(expected, rel=1e-6)
     assert abs(balance()["error"]) < 1e-4
-
-
-ABOUT_Y = Vector3(0, 1, 0)
 
 
 def test_a_bar_that_turns_meets_what_lay_beside_it(scene):
@@ -262,18 +252,15 @@ def heap(count, seed=3, abreast=1):
     ground(size=(20, 20, 0.4))
     dice = np.random.default_rng(seed)
     for n in range(count):
-        turn = Quaternion(*dice.normal(size=4))
-        turn.normalize()
+        turn = Quaternion(*dice.normal(size=4)).normalized()
         place = (0.15 * dice.uniform(-1, 1), 0.15 * dice.uniform(-1, 1))
         level, column = divmod(n, abreast)
         box((0.11, 0.102, 0.081), (place[0] + 0.5 * column, place[1], 0.1 + 0.16 * level), turn)  # fmt: skip
 
 
 def states():
-    return [
-        tuple(s.pos) + tuple(s.vel) + tuple(s.angVel) + tuple(s.ori)
-        for s in (b.state for b in O.bodies)
-    ]
+    known = lambda s: (*s.pos, *s.vel, *s.angVel, *s.ori)
+    return [known(b.state) for b in O.bodies]
 
 
 @pytest.mark.slow
@@ -319,12 +306,6 @@ def test_threads_and_a_checkpoint_in_flight_change_no_bit(scene, tmp_path):
     assert balance() == loss
 
 
-def contacts(**properties):
-    return MasonryContacts(
-        **{**dict(normalStiffness=STIFF, friction=0.5), **properties}
-    )
-
-
 @pytest.mark.parametrize(
     "made, message",
     [
@@ -347,21 +328,18 @@ def test_what_cannot_be_is_refused(scene, made, message):
 
 def test_the_engine_stands_after_the_resetter_and_refuses_deformable_units(scene):
     ground()
-    brick = box(UNIT, (0, 0, 0.2))
-    O.engines = [contacts(), MasonryIntegrator()]
-    with pytest.raises(ValueError, match="must stand after a ForceResetter"):
-        O.step()
-    O.reset()
-    ground()
-    brick = box(UNIT, (0, 0, 0.2))
-    O.engines = [
-        ForceResetter(),
-        contacts(),
-        MasonryIntegrator(),
-        MasonryZones(bodies=[brick]),
-    ]
-    with pytest.raises(ValueError, match="body 1 is a deformable unit"):
-        O.step()
+    box(UNIT, (0, 0, 0.2))
+    made = [contacts(), MasonryIntegrator()]
+    for around, message in (
+        (made, "must stand after a ForceResetter"),
+        (
+            [ForceResetter(), *made, MasonryZones(bodies=[1])],
+            "body 1 is a deformable unit",
+        ),
+    ):
+        O.engines = around
+        with pytest.raises(ValueError, match=message):
+            O.step()
 
 
 @pytest.mark.skipif("Polyhedra" not in globals(), reason="this YADE has no Polyhedra")

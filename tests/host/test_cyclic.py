@@ -8,44 +8,20 @@ CYCLIC = dict(law="cyclic", shearStiffnessLoss=0.3)
 
 def stack(joint, functors=False):
     """Three bricks on each other; the middle one is free, the top one is driven along x."""
-    mat = MasonryMat(young=4.8e9, poisson=0.16, density=1800)
-    ids = []
-    for level in range(3):
-        corners = [
-            (x, y, 0.081 * level + z)
-            for x in (0, 0.22)
-            for y in (0, 0.102)
-            for z in (0, 0.081)
-        ]
-        ids.append(addBlock(corners, mat, inPlane=True))
-    O.bodies[ids[0]].state.blockedDOFs = "xyzXYZ"
-    load = MasonryLoad(
-        body=ids[2],
-        point=(0.11, 0.051, 0.243),
-        force=(0, 0, -2e3),
-        direction=(1, 0, 0),
-        driven=True,
-        velocity=0.02,
-        label="push",
-    )
-    joints = joint if isinstance(joint, list) else [joint]
-    engines(joints, loads=[load], functors=functors, damping=0.3)
-    connect()
-    O.dt = 0.5 * criticalTimeStep()[0]
+    pile(3, inPlane=True)
+    load = MasonryLoad(body=2, point=(0.11, 0.051, 0.243), force=(0, 0, -2e3))
+    load.updateAttrs(dict(direction=(1, 0, 0), driven=True, velocity=0.02))
+    join(joint, loads=[load], functors=functors, damping=0.3)
     return load
 
 
 def states():
-    return [
-        (i.phys.stress, i.phys.slip, i.phys.damage, i.phys.opening)
-        for i in O.interactions.all()
-    ]
+    known = "stress slip damage opening".split()
+    return [[getattr(i.phys, name) for name in known] for i in O.interactions]
 
 
-def flat(value):
-    if isinstance(value, (list, tuple)) or hasattr(value, "norm"):
-        return [number for part in value for number in flat(part)]
-    return [value]
+def finite():
+    return all(np.isfinite(part).all() for joint in states() for part in joint)
 
 
 def sway(load, steps=3000, turns=4):
@@ -57,9 +33,8 @@ def sway(load, steps=3000, turns=4):
 def test_cycles_take_energy_and_the_balance_closes(scene):
     load = stack(MasonryJoint(name="bed", **CYCLIC))
     sway(load)
-    energy = next(e for e in O.engines if hasattr(e, "balance")).balance()
-    assert energy["dissipated_shear"] > 0
-    assert abs(energy["error"]) < 1e-6
+    assert balance()["dissipated_shear"] > 0
+    assert abs(balance()["error"]) < 1e-6
 
 
 def test_a_scene_that_was_saved_goes_on(scene, tmp_path):
@@ -81,7 +56,7 @@ def test_an_elastic_joint_may_stand_beside_cyclic_ones_under_the_functors(scene)
     ]
     load = stack(joints, functors=True)
     sway(load, 100, 1)
-    assert any(abs(value) > 0 for value in flat(states()))
+    assert any(np.any(part) for joint in states() for part in joint)
 
 
 def test_a_functor_of_another_law_is_reported(scene):
@@ -94,30 +69,24 @@ def test_a_functor_of_another_law_is_reported(scene):
 def test_a_joint_can_change_its_law_between_steps(scene):
     load = stack(MasonryJoint(name="bed"))
     sway(load, 500, 2)
-    joint = next(iter(O.interactions.all())).phys.joint
-    damage = [i.phys.damage for i in O.interactions.all()]
-    joint.law = "cyclic"
+    damage = lambda: np.array([i.phys.damage for i in O.interactions])
+    before = damage()
+    next(iter(O.interactions)).phys.joint.law = "cyclic"
     sway(load, 500, 2)
-    for old, interaction in zip(damage, O.interactions.all()):
-        for before, now in zip(flat(old), flat(interaction.phys.damage)):
-            assert now >= before - 1e-12
-    assert all(math.isfinite(value) for value in flat(states()))
+    assert (damage() >= before - 1e-12).all() and finite()
 
 
 @pytest.mark.parametrize(
     "properties, message",
     [
-        (
-            dict(shearStiffnessLoss=1),
-            "shear stiffness loss 1 must be 0 to 0.99",
-        ),
+        (dict(shearStiffnessLoss=1), "shear stiffness loss 1 must be 0 to 0.99"),
         (
             dict(initialClosingStiffness=1e12, tensileStrength=0),
-            "initial closing stiffness 1e.12 Pa/m must be below the normal stiffness",
+            "1e.12 Pa/m must be below the normal stiffness",
         ),
         (
             dict(initialClosingStiffness=1e10, closureLimit=1e-4),
-            "tensile strength 100000 Pa must be 0 for a joint that closes on a curve",
+            "must be 0 for a joint that closes on a curve",
         ),
         (
             dict(closureLimit=1e-4),

@@ -7,44 +7,16 @@ from motion_cases import gravityWork
 WAYS = pytest.mark.parametrize("direction", ["rigid", "deformable", "functors"])
 
 
-def integrator():
-    return next(e for e in O.engines if e.label == "integrator")
-
-
-def stack(
-    direction, joint=None, damping=0.5, gravity=(0, 0, 0), blocked="", joined=True
-):
-    """Two bricks on a fixed one. ``way``: rigid or deformable units, or YADE's own loop and integrator."""
+def stack(direction, joint=None, damping=0.5, free=(1, 2), blocked="", **around):
+    """Two bricks on a fixed one: rigid, or those that are free deformable, or with YADE's own loop and integrator."""
     O.reset()
-    mat = unitMaterial()
-    for k in range(3):
-        body = addBlock(
-            corners((0, 0, k * UNIT[2]), (*UNIT[:2], (k + 1) * UNIT[2])), mat
-        )
-        O.bodies[body].state.blockedDOFs = blocked if k else "xyzXYZ"
-    zones = None
+    for body in pile(3)[1:]:
+        O.bodies[body].state.blockedDOFs = blocked
     if direction == "deformable":
-        zones = MasonryZones(bodies=[1, 2], damping=damping)
-    engines(
-        [joint or MasonryJoint(elastic=True)],
-        damping=damping,
-        gravity=gravity,
-        zones=zones,
-        functors=direction == "functors",
-    )
-    if joined:
-        connect()
-        O.dt = 0.5 * criticalTimeStep()[0]
-
-
-def weight():
-    return G * sum(O.bodies[k].state.mass for k in (1, 2))
-
-
-def ramp(steps):
-    for n in range(steps):
-        integrator().gravity = (0, 0, -G * min(1, (n + 1) / steps))
-        O.step()
+        around["zones"] = MasonryZones(bodies=list(free), damping=damping)
+    around = {"gravity": (0, 0, 0), **around}
+    joint = joint or MasonryJoint(elastic=True)
+    join(joint, damping=damping, functors=direction == "functors", **around)
 
 
 @WAYS
@@ -61,13 +33,14 @@ def test_the_balance_closes_while_gravity_turns(scene, direction):
     turned, steps = 0.6, 3000
     for n in range(steps):
         a = turned * (n + 1) / steps
-        integrator().gravity = Vector3(G * math.sin(a), 0.1 * G * a, -G * math.cos(a))
+        gravity = Vector3(G * math.sin(a), 0.1 * G * a, -G * math.cos(a))
+        engine("integrator").gravity = gravity
         O.step()
     b = balance()
     assert b["gravity"] > 0
     assert abs(b["error"]) < 1e-6
     if direction == "deformable":
-        assert ofKind(MasonryZones).gravity == integrator().gravity
+        assert ofKind(MasonryZones).gravity == gravity
 
 
 @pytest.mark.parametrize("direction", ["rigid", "functors"])
@@ -75,17 +48,14 @@ def test_blocks_moved_before_the_first_step_fall_from_where_they_are(scene, dire
     """connect() refuses blocks that were moved before it, so the joints are those of the reference."""
     dry = MasonryJoint(tensileStrength=0, cohesion=0, friction=0, residualFriction=0)
     stack(direction, dry, damping=0, gravity=(0, 0, -G))
-    for k in (1, 2):
-        O.bodies[k].state.pos += Vector3(0, 0, 0.05 * k)
-    start = [O.bodies[k].state.pos[2] for k in (1, 2)]
+    bodies = [O.bodies[k].state for k in (1, 2)]
+    for k, s in enumerate(bodies, 1):
+        s.pos += Vector3(0, 0, 0.05 * k)
+    start = [s.pos[2] for s in bodies]
     run(1000)
     # The balance belongs to the beginning of the last step.
-    fallen = sum(
-        O.bodies[k].state.mass
-        * (z - O.bodies[k].state.pos[2] + O.dt * O.bodies[k].state.vel[2])
-        for k, z in zip((1, 2), start)
-    )
-    b = balance()
+    ways = [z - s.pos[2] + O.dt * s.vel[2] for s, z in zip(bodies, start)]
+    fallen, b = sum(s.mass * z for s, z in zip(bodies, ways)), balance()
     assert fallen > 0
     assert b["gravity"] == pytest.approx(G * fallen, rel=1e-9)
     assert abs(b["error"]) < 1e-9
@@ -119,14 +89,13 @@ def test_deformable_units_know_one_gravity(scene):
     zones.gravity = (0, 0, -1)  # before the run the integrator's is taken over
     O.step()
     assert zones.gravity == Vector3(0, 0, -G)
-    integrator().gravity = (1, 0, -2)
+    engine("integrator").gravity = (1, 0, -2)
     O.step()
     assert zones.gravity == Vector3(1, 0, -2)
     zones.gravity = (0, 0, -1)
     refused = r"MasonryZones.gravity \(0, 0, -1\) m/s² is not that of the integrator, \(1, 0, -2\)"
-    with pytest.raises(
-        ValueError, match=refused + ".* set the gravity of the integrator alone"
-    ):
+    refused += ".* set the gravity of the integrator alone"
+    with pytest.raises(ValueError, match=refused):
         O.step()
 
 
@@ -134,18 +103,14 @@ def test_deformable_units_know_one_gravity(scene):
 @pytest.mark.parametrize("through", ["checkpoint", "file"])
 def test_the_work_goes_on_after_saving_and_loading(scene, direction, through, tmp_path):
     ends = []
-    path = str(tmp_path / ("scene.yade.gz" if through == "file" else "c"))
     for interrupted in (False, True):
         stack(direction)
-        ramp(300)
-        if interrupted and through == "file":
-            O.save(path)
-            O.load(path)
-        elif interrupted:
-            saveCheckpoint(path)
-            stack(direction)
-            loadCheckpoint(path)
-        integrator().gravity = (0.5, 0, -12)
+        for n in range(300):
+            engine("integrator").gravity = (0, 0, -G * (n + 1) / 300)
+            O.step()
+        if interrupted:
+            saveAndLoad(through, str(tmp_path / "c"), lambda: stack(direction))
+        engine("integrator").gravity = (0.5, 0, -12)
         run(200)
         ends.append(balance())
     if through == "file" or direction == "functors":  # sums in another order
@@ -159,14 +124,9 @@ def test_the_work_goes_on_after_saving_and_loading(scene, direction, through, tm
 def test_a_load_on_a_block_that_vibrates_does_force_times_displacement(
     scene, direction
 ):
-    stack(direction, damping=0, joined=False)
     load = MasonryLoad(body=2, force=(0, 0, -500), point=(0.11, 0.051, 3 * UNIT[2]))
-    if direction == "deformable":  # loads act on rigid bodies
-        ofKind(MasonryZones).bodies = [1]
-    at = O.engines.index(ofKind(MasonryEnergy))
-    O.engines = [*O.engines[:at], load, *O.engines[at:]]
-    connect()
-    O.dt = 0.2 * criticalTimeStep()[0]
+    # loads act on rigid bodies, so that one unit alone is deformable
+    stack(direction, damping=0, free=[1], share=0.2, loads=[load])
     for _ in range(500):
         before = O.bodies[2].state.pos[2] - O.bodies[2].state.refPos[2]
         O.step()

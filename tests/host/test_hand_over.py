@@ -10,39 +10,24 @@ STIFF = 1e10  # [Pa/m]
 
 
 def joint(**other):
-    return MasonryJoint(
-        **{
-            **dict(name="dry", tensileStrength=0, cohesion=0, cap=False),
-            **dict(friction=0.7, residualFriction=0.7),
-            **dict(normalStiffness=STIFF, shearStiffness=0.5 * STIFF),
-            **other,
-        }
-    )
+    bond = dict(name="dry", tensileStrength=0, cohesion=0, cap=False)
+    rubs = dict(friction=0.7, residualFriction=0.7)
+    stiff = dict(normalStiffness=STIFF, shearStiffness=0.5 * STIFF)
+    return MasonryJoint(**{**bond, **rubs, **stiff, **other})
 
 
-def standing(count=1, push=1.2, step=0.5, joint=joint, follow=True, **around):
+def standing(count=1, push=1.2, step=0.5, joint=joint, **around):
     """Blocks on top of each other, on the ground, under a horizontal gravity that is `push` times the one that tips them."""
     O.reset()
-    mat = MasonryMat(density=1800, young=1e12, poisson=0.16)
+    mat = unitMaterial(young=1e12)
     addBlock(corners((-3, -1, -0.4), (3, 1, 0)), mat)
     for i in range(count):
         addBlock(corners((0, 0, i * H / count), (B, B, (i + 1) * H / count)), mat)
-    O.bodies[0].state.blockedDOFs = "xyzXYZ"
+    hold(0)
     gravity = push * G * B / H, 0, -G
     engines([joint()], gravity=gravity, **{"damping": 0, **around})
-    contacts = MasonryContacts(
-        normalStiffness=STIFF,
-        tangentialRatio=0.5,
-        friction=0.7,
-        takesJoints=follow,
-    )
-    all = list(O.engines)
-    loop = next(
-        n
-        for n, e in enumerate(all)
-        if isinstance(e, (MasonryJointLoop, InteractionLoop))
-    )
-    O.engines = [*all[: loop + 1], contacts, *all[loop + 1 :]]
+    like = dict(normalStiffness=STIFF, tangentialRatio=0.5, friction=0.7)
+    contacts = insert(MasonryContacts(takesJoints=True, **like))
     connect()
     O.dt = step * criticalTimeStep()[0]
     return contacts
@@ -59,7 +44,7 @@ def test_a_block_tips_over_lands_on_its_side_and_rests(scene):
     assert contacts.handed == 1 and contacts.touching() == 1
     assert abs(balance()["error"]) < 1e-6
     until(1.0)
-    mover = next(e for e in O.engines if isinstance(e, MasonryIntegrator))
+    mover = ofKind(MasonryIntegrator)
     mover.gravity = (0, 0, -G)
     until(2.5)
     s = O.bodies[1].state

@@ -44,7 +44,7 @@ def untilImpact():
 
 def bits():
     values = [v for b in O.bodies for v in (*b.state.pos, *b.state.vel, *b.state.angVel)]  # fmt: skip
-    return np.array([*values, *engine("energy").balance().values()]).tobytes()
+    return np.array([*values, *balance().values()]).tobytes()
 
 
 CASES = {
@@ -61,14 +61,14 @@ def test_a_block_that_rocks_keeps_what_that_of_housner_keeps(scene, size):
     for points, least, most in ((3, -0.005, 0.015), (8, -0.005, 0.07)):
         rigid, kept = restitution(size, restitution=0, points=points)
         assert least < kept - rigid < most, points
-    balance = engine("energy").balance()
-    assert balance["impacts"] > 0 and abs(balance["error"]) < 1e-4
+    now = balance()
+    assert now["impacts"] > 0 and abs(now["error"]) < 1e-4
 
 
 def test_less_is_lost_with_more_restitution(scene):
     kept = [restitution((B, H), restitution=e, points=3)[1] for e in (0, 0.5, 0.9, 1)]
     assert kept == sorted(kept) and kept[-1] > 0.98
-    assert engine("energy").balance()["impacts"] == 0
+    assert balance()["impacts"] == 0
 
 
 @pytest.mark.parametrize("case", CASES)
@@ -79,16 +79,16 @@ def test_impacts_never_give_energy(scene, case, step):
         stack(step=step, **{**CASES[case], "restitution": 1.0})
         for part in range(20):
             shake(0.05, seed + 10 * part)
-        without = abs(engine("energy").balance()["error"])
+        without = abs(balance()["error"])
         stack(step=step, **CASES[case])
         most = fallen = 0
         for part in range(20):
             shake(0.05, seed + 10 * part)
             now = engine("joints").impactWork
             fallen, most = max(fallen, most - now), max(most, now)
-        balance = engine("energy").balance()
+        now = balance()
         assert most > 0.2 and fallen < 0.01 * most
-        assert abs(balance["error"]) < max(3e-3, 1.5 * without)
+        assert abs(now["error"]) < max(3e-3, 1.5 * without)
 
 
 @pytest.mark.parametrize("case", CASES)
@@ -124,9 +124,9 @@ def test_what_is_pressed_or_bonded_has_no_impacts(scene):
         O.bodies[block].state.vel = Vector3(0, 0, -speed)
         engine("energy").given()
         run(1000)
-        balance = engine("energy").balance()
-        assert balance["impacts"] == 0
-        assert balance["external"] > 0  # the motion that was given
+        now = balance()
+        assert now["impacts"] == 0
+        assert now["external"] > 0  # the motion that was given
 
 
 def test_without_impacts_nothing_is_taken_and_the_last_half_is_counted(scene):
@@ -140,4 +140,4 @@ def test_without_impacts_nothing_is_taken_and_the_last_half_is_counted(scene):
     taken = engine("joints").impactWork
     shake(0.5)
     assert engine("joints").impactWork == taken
-    assert abs(engine("energy").balance()["error"]) < 1e-3
+    assert abs(balance()["error"]) < 1e-3

@@ -9,10 +9,7 @@ def couplets(count, joint):
     O.reset()
     mat = unitMaterial()
     for n in range(count):
-        for k in (0, 1):
-            low = (0.25 * n, 0, k * UNIT[2])
-            high = (low[0] + UNIT[0], UNIT[1], low[2] + UNIT[2])
-            O.bodies[addBlock(corners(low, high), mat)].state.blockedDOFs = "xyzXYZ"
+        hold(pile(x=0.25 * n, material=mat)[1])
         O.bodies[2 * n + 1].state.vel = Vector3(0.02, 0, 0.05)
     engines([MasonryJoint()], gravity=(0, 0, 0), damping=0, rows=1)
     made = connect(lambda one, two, geom: joint())
@@ -21,7 +18,7 @@ def couplets(count, joint):
 
 
 def loop():
-    return next(e for e in O.engines if isinstance(e, MasonryJointLoop))
+    return ofKind(MasonryJointLoop)
 
 
 def stresses(made):
@@ -41,28 +38,19 @@ def test_equal_values_in_many_objects_are_one_group(scene):
     assert stresses(made) == one
 
 
-@pytest.mark.parametrize(
-    "values",
-    [
-        dict(name="other"),
-        dict(tensileStrength=0.05e6),
-        dict(cap=False),
-        dict(tensionTable=[(1, 0), (40, 1)]),
-    ],
-    ids=lambda v: next(iter(v)),
-)
-def test_other_values_are_another_group(scene, values):
+OTHERS = dict(name="other", tensileStrength=0.05e6, cap=False)
+OTHERS["tensionTable"] = [(1, 0), (40, 1)]
+
+
+@pytest.mark.parametrize("name", OTHERS)
+def test_other_values_are_another_group(scene, name):
     couplets(40, MasonryJoint)
     assert loop().groups == 1
-    made = couplets(
-        40, iter([MasonryJoint(**values if n == 7 else {}) for n in range(40)]).__next__
-    )
+    joints = [MasonryJoint(**{name: OTHERS[name]} if n == 7 else {}) for n in range(40)]
+    made = couplets(40, iter(joints).__next__)
     assert loop().groups == 2
-    assert [
-        n
-        for n, i in enumerate(made)
-        if i.phys.joint.dict() != made[0].phys.joint.dict()
-    ] == [7]
+    known = [i.phys.joint.dict() for i in made]
+    assert [n for n, values in enumerate(known) if values != known[0]] == [7]
 
 
 def test_a_later_change_of_one_object_acts_on_its_own_joints_alone(scene):
@@ -91,10 +79,4 @@ def test_every_joint_keeps_its_own_object_through_a_file(scene, tmp_path):
     assert loop().groups == 1
     made[3].phys.joint.cohesion = 0.2e6
     assert loop().groups == 2
-    assert [i.phys.joint.cohesion for i in made] == [
-        0.11e6,
-        0.11e6,
-        0.11e6,
-        0.2e6,
-        0.11e6,
-    ]
+    assert [i.phys.joint.cohesion for i in made] == [0.11e6] * 3 + [0.2e6, 0.11e6]

@@ -27,11 +27,8 @@ FOLDERS = ("bodies", "joints", "contacts", "store", "checks")  # of scene
 
 #: What registered classes share, so it is in adapters/ without being one.
 SHARED = {
-    "Adapter.hpp",
-    "Assumptions.hpp",
-    "Attribute.hpp",
-    "Colours.hpp",
-    "FunctorOfLaw.hpp",
+    f"{name}.hpp"
+    for name in "Adapter Assumptions Attribute Colours FunctorOfLaw".split()
 }
 
 
@@ -54,9 +51,8 @@ def test_a_layer_includes_only_what_it_may_know(layer):
         if layer not in WITH_YADE:
             for path in re.findall(r"#include <([^>]+)>", open(name).read()):
                 known = STANDARD | ALSO.get(os.path.basename(name), set())
-                assert (
-                    "/" not in path or path.split("/")[0] in known
-                ), f"{name} includes {path}"
+                first = path.partition("/")
+                assert not first[1] or first[0] in known, f"{name} includes {path}"
 
 
 def test_a_folder_of_the_scene_includes_only_those_before_it():
@@ -65,10 +61,9 @@ def test_a_folder_of_the_scene_includes_only_those_before_it():
     for n, name in enumerate(FOLDERS):
         for source in sources(os.path.join(folder, name)):
             for path in included(source):
-                if path.startswith("scene/"):
-                    assert (
-                        path.split("/")[1] in FOLDERS[:n]
-                    ), f"{source} includes {path}"
+                layer, _, rest = path.partition("/")
+                known = layer != "scene" or rest.split("/")[0] in FOLDERS[:n]
+                assert known, f"{source} includes {path}"
 
 
 def circles(folder):
@@ -83,9 +78,8 @@ def circles(folder):
         for path in included(name):
             beside = os.path.join(os.path.dirname(name), path)
             start = os.path.dirname(name) if os.path.exists(beside) else folder
-            other = os.path.relpath(
-                os.path.join(start, os.path.splitext(path)[0]), folder
-            )
+            there = os.path.join(start, os.path.splitext(path)[0])
+            other = os.path.relpath(there, folder)
             if other != pair:
                 knows[pair].add(other)
 
@@ -99,13 +93,9 @@ def circles(folder):
         return found
 
     reach = {pair: reached(pair) for pair in knows}
-    return sorted(
-        {
-            tuple(sorted(other for other in reach[pair] if pair in reach[other]))
-            for pair in knows
-            if pair in reach[pair]
-        }
-    )
+    within = [pair for pair in knows if pair in reach[pair]]
+    circle = lambda pair: sorted(o for o in reach[pair] if pair in reach[o])
+    return sorted({tuple(circle(pair)) for pair in within})
 
 
 @pytest.mark.parametrize("layer", MAY_INCLUDE)
@@ -134,9 +124,8 @@ def test_a_circle_through_the_source_of_a_header_is_seen(tmp_path):
 def test_every_file_of_adapters_holds_one_class_that_yade_sees():
     for name in glob.glob(os.path.join(PLUGIN, "adapters", "*.hpp")):
         if os.path.basename(name) not in SHARED:
-            keys = re.findall(
-                r"BOOST_CLASS_EXPORT_KEY\(masonry::(\w+)\)", open(name).read()
-            )
+            key = r"BOOST_CLASS_EXPORT_KEY\(masonry::(\w+)\)"
+            keys = re.findall(key, open(name).read())
             assert keys == [os.path.basename(name)[: -len(".hpp")]], name
 
 

@@ -10,12 +10,7 @@ SIDE = 0.1  # [m]
 
 
 def cube(x=0.0, z=0.0):
-    return [
-        (x + i * SIDE, j * SIDE, z + k * SIDE)
-        for i in (0, 1)
-        for j in (0, 1)
-        for k in (0, 1)
-    ]
+    return box((x, 0, z), (SIDE, SIDE, SIDE))
 
 
 def stack(number=3, zones=(), lone=False, functors=False, reset=True):
@@ -30,15 +25,8 @@ def stack(number=3, zones=(), lone=False, functors=False, reset=True):
     O.bodies[0].state.blockedDOFs = "xyzXYZ"
     load = MasonryLoad(body=number - 1, point=(0.05, 0.05, SIDE * number), force=(0, 0, -10))  # fmt: skip
     joint = MasonryJoint(name="j", normalStiffness=1e10, shearStiffness=5e9, elastic=True)  # fmt: skip
-    engines(
-        [joint],
-        loads=[load],
-        zones=MasonryZones(bodies=list(zones)) if zones else None,
-        functors=functors,
-    )
-    made = connect()
-    O.dt = 0.3 * criticalTimeStep()[0]
-    return made
+    zones = MasonryZones(bodies=list(zones)) if zones else None
+    return join(joint, 0.3, loads=[load], zones=zones, functors=functors)
 
 
 def steps(count=2):
@@ -149,14 +137,10 @@ def test_what_joints_were_made_with_cannot_be_changed(scene, functors):
     joint, mat = joints[0].phys.joint, O.bodies[1].mat
     geometry = O.engines[1].geomDispatcher.functors[0] if functors else O.engines[1].geometry  # fmt: skip
     before = joints[0].phys.normalStiffness
-    for thing, name, value in (
-        (joint, "normalStiffness", 1e7),
-        (joint, "shearStiffness", 1e7),
-        (mat, "young", 1e6),
-        (mat, "poisson", 0.3),
-        (geometry, "subcontacts", 7),
-        (geometry, "rows", 2),
-    ):
+    changes = [(joint, "normalStiffness", 1e7), (joint, "shearStiffness", 1e7)]
+    changes += [(mat, "young", 1e6), (mat, "poisson", 0.3)]
+    changes += [(geometry, "subcontacts", 7), (geometry, "rows", 2)]
+    for thing, name, value in changes:
         old = getattr(thing, name)
         refused(f"{name} .* would have no effect", lambda: setattr(thing, name, value))
         assert getattr(thing, name) == old

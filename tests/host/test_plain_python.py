@@ -31,21 +31,18 @@ def environment(**more):
 
 
 def python(*words, cwd=None, env=None):
-    return subprocess.run(
-        [sys.executable, *words],
-        capture_output=True,
-        text=True,
-        cwd=cwd,
-        env=env or environment(),
-        timeout=120,
-    )
+    around = dict(cwd=cwd, env=env or environment(), timeout=200)
+    command = [sys.executable, *words]
+    return subprocess.run(command, capture_output=True, text=True, **around)
 
 
 def played(tmp_path, begin, *words, end=""):
-    """Run a scene in plain Python after some lines."""
+    """Run a scene in plain Python after some lines, which must not fail."""
     script = tmp_path / "plain.py"
     script.write_text(begin + SCENE + end)
-    return python(str(script), *words, cwd=tmp_path)
+    run = python(str(script), *words, cwd=tmp_path)
+    assert run.returncode == 0, run.stderr
+    return run
 
 
 def done(code, **more):
@@ -76,7 +73,6 @@ other.start()
 other.join()
 """
     run = played(tmp_path, begin, "--out", "elsewhere", end=end)
-    assert run.returncode == 0, run.stderr
     assert run.stdout.count("threads 1\n") == 2 and "plain: at rest" in run.stdout
     assert "Using python version" not in run.stdout and not run.stderr
     assert (tmp_path / "elsewhere" / "run.json").exists()
@@ -98,7 +94,6 @@ def test_a_process_without_HOME_starts_yade():
 def test_a_yade_that_was_imported_before_has_one_thread(tmp_path):
     end = "import ctypes; print('threads', ctypes.CDLL(None).omp_get_max_threads())"
     run = played(tmp_path, FOUND + "import yade\n", end=end)
-    assert run.returncode == 0, run.stderr
     assert "threads 1" in run.stdout and "plain: at rest" in run.stdout
 
 
@@ -139,11 +134,9 @@ def test_the_importer_of_yade_works_before_and_after(tmp_path):
     (tmp_path / "yadeimport.py").symlink_to("/usr/bin/yade")
     first = "import sys; sys.path.insert(0, '.'); import yadeimport\n"
     run = played(tmp_path, first)
-    assert run.returncode == 0, run.stderr
     assert "plain: at rest" in run.stdout
     after = "from yadeimport import *\nassert O.iter > 0 and utils.sphere and yade.wrapper.MasonryMat"
-    run = played(tmp_path, "import sys; sys.path.insert(0, '.')\n", end=after)
-    assert run.returncode == 0, run.stderr
+    played(tmp_path, "import sys; sys.path.insert(0, '.')\n", end=after)
 
 
 @pytest.mark.slow
@@ -155,8 +148,7 @@ IPython.core.getipython.get_ipython = lambda: types.SimpleNamespace(kernel=True)
 sys.argv = ['ipykernel_launcher.py', '-f', 'x.json']
 """
     end = "assert sys.argv[1:] == ['-f', 'x.json']"
-    run = played(tmp_path, begin.lstrip(), end=end)
-    assert run.returncode == 0, run.stderr
+    played(tmp_path, begin.lstrip(), end=end)
 
 
 # -- where it cannot --------------------------------------------------------------------------------------------------
@@ -212,7 +204,6 @@ def test_a_scene_beside_the_sources_uses_the_installed_package(tmp_path):
     shutil.copytree(os.path.join(ROOT, "scripts", "masonry"), tmp_path / "masonry")
     end = "import sys; print(sys.modules['masonry.scene'].__file__)"
     run = played(tmp_path, "", end=end)
-    assert run.returncode == 0, run.stderr
     assert run.stdout.splitlines()[-1].startswith(INSTALLED)
 
 
@@ -235,14 +226,9 @@ def both(tmp_path, name, *words):
     for how in (["yade", "-n", "-x"], [sys.executable]):
         folder = tmp_path / how[0].rpartition("/")[2]
         folder.mkdir(exist_ok=True)
-        run = subprocess.run(
-            [*how, scene, *words],
-            capture_output=True,
-            text=True,
-            cwd=folder,
-            env=environment(),
-            timeout=200,
-        )
+        around = dict(cwd=folder, env=environment(), timeout=200)
+        command = [*how, scene, *words]
+        run = subprocess.run(command, capture_output=True, text=True, **around)
         yield run, folder / "out"
 
 
@@ -271,22 +257,12 @@ def test_a_scene_is_the_same_in_plain_python(tmp_path, name):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    "words",
-    [
-        ["--rate", "fast"],
-        ["--set", "bed.tensileStrength=-1"],
-        ["--no-such-option"],
-        ["--resume", "nowhere"],
-    ],
-)
+@pytest.mark.parametrize("words", [["--rate", "fast"], ["--resume", "nowhere"]])
 def test_what_is_refused_is_refused_alike(tmp_path, words):
     (one, first), (two, second) = both(tmp_path, "couplet", *words)
     assert one.returncode == two.returncode != 0
-    alike = [
-        [n for n in lines(*run) if "File " not in n and not n.startswith(("  ", "usage"))]
-        for run in ((one, first), (two, second))
-    ]  # fmt: skip
+    ours = lambda n: "File " not in n and not n.startswith(("  ", "usage"))
+    alike = [list(filter(ours, lines(*run))) for run in ((one, first), (two, second))]
     assert alike[0] == alike[1]
 
 
@@ -305,13 +281,8 @@ def test_the_help_is_that_of_the_program_that_runs_the_scene(tmp_path):
 def test_a_run_that_is_stopped_goes_on_to_the_same_bits(tmp_path, number):
     scene = os.path.join(ROOT, "scripts", "wall_comp1.py")
     words = [sys.executable, scene, "--until", "6", "--no-vtk"]
-    run = subprocess.Popen(
-        [*words, "--out", "out"],
-        cwd=tmp_path,
-        env=environment(),
-        stdout=subprocess.PIPE,
-        text=True,
-    )
+    around = dict(cwd=tmp_path, env=environment(), stdout=subprocess.PIPE, text=True)
+    run = subprocess.Popen([*words, "--out", "out"], **around)
     for line in run.stdout:
         if line.startswith("push "):
             break
@@ -323,17 +294,14 @@ def test_a_run_that_is_stopped_goes_on_to_the_same_bits(tmp_path, number):
     assert json.loads((tmp_path / "out" / "run.json").read_text())["interrupted"]
     assert python(scene, "--resume", "out", cwd=tmp_path).returncode == 0
     assert python(*words[1:], "--out", "whole", cwd=tmp_path).returncode == 0
-    whole, stopped = (
-        (tmp_path / name / "curve.csv").read_bytes() for name in ("whole", "out")
-    )
-    assert whole == stopped
+    curve = lambda name: (tmp_path / name / "curve.csv").read_bytes()
+    assert curve("whole") == curve("out")
 
 
 @pytest.mark.slow
 def test_several_scenes_follow_each_other_in_one_process(tmp_path):
     more = SCENE.replace('"plain"', '"second"').replace("stack(2", "stack(3")
     run = played(tmp_path, "", end=more)
-    assert run.returncode == 0, run.stderr
     assert "plain: at rest" in run.stdout and "second: at rest" in run.stdout
     units = [json.loads((tmp_path / "results" / n / "run.json").read_text())["units"] for n in ("plain", "second")]  # fmt: skip
     assert units == [2, 3]

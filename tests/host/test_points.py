@@ -51,9 +51,8 @@ def pointsOf(held, size=(0.22, 0.102, 0.081), where=(0, 0, 1), zones=None, **kw)
     """Points of the joint of two blocks whose upper one has these degrees of freedom blocked."""
     O.reset()
     units = [mat(), MasonryMat(young=1e10, poisson=0.2, density=DENSITY)]
-    lower = box((0, 0, 0), size, units[0])
+    fix(box((0, 0, 0), size, units[0]))
     upper = box([a * b for a, b in zip(where, size)], size, units[1])
-    fix(lower)
     O.bodies[upper].state.blockedDOFs = held
     if zones is not None:
         zones = MasonryZones(bodies=[upper], divisions=[1, 1, 1], blocked=zones)

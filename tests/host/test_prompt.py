@@ -8,20 +8,8 @@ import os
 import subprocess
 import sys
 
-import masonry  # noqa: F401: it registers the classes in yade.wrapper
-import pytest
-from masonry import (
-    MasonryJoint,
-    MasonryMat,
-    MasonryZones,
-    addBlock,
-    classes,
-    connect,
-    criticalTimeStep,
-    engines,
-)
-from references import box
-from yade import O
+from hosted import *
+from masonry import classes
 from yade import wrapper
 
 HERE = os.path.dirname(__file__)
@@ -31,18 +19,15 @@ import sys
 sys.path.insert(1, "/usr/lib/x86_64-linux-gnu/yade-double/py")
 import yade
 import gc, hashlib, os, threading, time
-import numpy as np
-from yade import O, Vector3
-from masonry import *
+from hosted import *
 from hosted import balance as energy
-from test_joint_loop import CASES, state
+from test_joint_loop import state
 from test_joint_loop import panel as made
-from yade.wrapper import *
 
 def panel(*how, **more):
     found = made(*how, **more)
     # the runs go on after bricks have been pushed through each other
-    next(e for e in O.engines if isinstance(e, MasonryEnergy)).watch = False
+    ofKind(MasonryEnergy).watch = False
     return found
 
 def bits(interactions):
@@ -63,13 +48,9 @@ def inYade(code, threads=1, timeout=120):
         PYTHONFAULTHANDLER="1",
         PYTHONPATH=os.pathsep.join([os.environ.get("PYTHONPATH", ""), *folders]),
     )
-    run = subprocess.run(
-        [sys.executable, "-c", BEGIN + code + "\nprint('ENDED')\n"],
-        capture_output=True,
-        text=True,
-        env=env,
-        timeout=timeout,
-    )
+    command = [sys.executable, "-c", BEGIN + code + "\nprint('ENDED')\n"]
+    around = dict(capture_output=True, text=True, env=env, timeout=timeout)
+    run = subprocess.run(command, **around)
     message = (run.stdout + run.stderr)[-3000:]
     assert run.returncode == 0, f"ended with {run.returncode}:\n{message}"
     assert run.stdout.rstrip().endswith("ENDED"), message
@@ -120,6 +101,7 @@ def end(beside=None):
     assert O.iter == STEPS, (O.iter, STEPS)
     return bits(interactions)
 """
+LOOK = READER.split("def end")[0].format(steps=0)
 STEPS = {"rigid": 9000, "deformable": 1500}
 KINDS = pytest.mark.parametrize("blocks", STEPS)
 THREADS = pytest.mark.parametrize("threads", [1, 2])
@@ -193,7 +175,7 @@ tries = [
     lambda: setattr(moves, "damping", dice.uniform(0.1, 0.8)),
     lambda: energy(),
     lambda: criticalTimeStep(),
-    lambda: next(e for e in O.engines if isinstance(e, MasonryEnergy)).given(),
+    lambda: ofKind(MasonryEnergy).given(),
     lambda: MasonryVtkRecorder().joints(),
     lambda: saveCheckpoint(path),
     lambda: loadCheckpoint(path),
@@ -213,7 +195,7 @@ O.wait()
 O.step()
 assert O.iter > 10 and 0 < refused < 0.3 * {count}, (O.iter, refused)
 """
-    inYade(READER.split("def end")[0].format(steps=0) + code, threads, timeout=300)
+    inYade(LOOK + code, threads, timeout=300)
 
 
 @THREADS
@@ -228,7 +210,7 @@ for n in range(60):
     O.pause()
     O.step()
 """
-    inYade(READER.split("def end")[0].format(steps=0) + code, threads, timeout=60)
+    inYade(LOOK + code, threads, timeout=60)
 
 
 @THREADS
@@ -257,7 +239,7 @@ for n in range(8):
 O.pause()
 O.step()
 """
-    inYade(READER.split("def end")[0].format(steps=0) + code, threads)
+    inYade(LOOK + code, threads)
 
 
 @pytest.mark.slow
@@ -281,30 +263,12 @@ assert O.iter == STEPS and bits(interactions) == plain
 # -- what outlives its scene -----------------------------------------------------------------------------------------
 
 #: What is read -> whether it is state of a scene, and so an error once the scene is gone.
-READ = {
-    "phys.stress": True,
-    "phys.damage": True,
-    "phys.slip": True,
-    "phys.regime": True,
-    "phys.dissipated": True,
-    "geom.jumps": True,
-    "zones.displacements": True,
-    "zones.velocities": True,
-    "zones.nodesOf(2)": True,
-    "zones.masses": False,
-    "zones.dict()": False,
-    "phys.dict()": False,
-    "geom.areas": False,
-    "geom.centres": False,
-    "energy.balance()": False,
-    "load.displacement()": False,
-    "load.reaction": False,
-    "loop.dict()": False,
-    "integrator.kinetic": False,
-    "joint.cohesion": False,
-    "joint.updateAttrs(dict(cohesion=2e4, tensileStrength=1e4))": False,
-    "zones.setVelocity(0, Vector3(0, 0, 1))": False,
-}
+STATE = """phys.stress phys.damage phys.slip phys.regime phys.dissipated geom.jumps
+zones.displacements zones.velocities zones.nodesOf(2)""".split()
+OTHER = """zones.masses zones.dict() phys.dict() geom.areas geom.centres energy.balance() load.displacement()
+load.reaction loop.dict() integrator.kinetic joint.cohesion joint.updateAttrs(dict(cohesion=2e4,tensileStrength=1e4))
+zones.setVelocity(0,Vector3(0,0,1))""".split()
+READ = {**dict.fromkeys(STATE, True), **dict.fromkeys(OTHER, False)}
 GONE = {
     "reset": "O.reset()",
     "loaded": "O.loadTmp()",
@@ -322,9 +286,8 @@ O.run(20, True)
 O.saveTmp()
 one = next(i for i in interactions if i.phys.joint.name == "weak")
 phys, geom, joint = one.phys, one.geom, one.phys.joint
-kind = lambda cls: next(e for e in O.engines if isinstance(e, cls))
-zones, energy_, load = kind(MasonryZones), kind(MasonryEnergy), kind(MasonryLoad)
-loop, integrator = kind(MasonryJointLoop), kind(MasonryIntegrator)
+zones, energy_, load = ofKind(MasonryZones), ofKind(MasonryEnergy), ofKind(MasonryLoad)
+loop, integrator = ofKind(MasonryJointLoop), ofKind(MasonryIntegrator)
 names = dict(phys=phys, geom=geom, joint=joint, zones=zones, energy=energy_, load=load, loop=loop,
              integrator=integrator, Vector3=Vector3)
 {GONE[gone]}
@@ -383,43 +346,24 @@ assert O.iter == 3000
 
 # -- blocks that come and go -----------------------------------------------------------------------------------------
 
-UNIT = (0.22, 0.102, 0.081)
-
-
-def brick(level, x=0.0):
-    low = (x, 0, level * UNIT[2])
-    high = (x + UNIT[0], UNIT[1], (level + 1) * UNIT[2])
-    mat = MasonryMat(density=1800, young=4.8e9, poisson=0.16)
-    return addBlock(box(low, high), mat)
-
-
-def stack(deformable=False, functors=False):
-    for level in range(3):
-        brick(level)
-    O.bodies[0].state.blockedDOFs = "xyzXYZ"
-    zones = MasonryZones(bodies=[1, 2]) if deformable else None
-    engines([MasonryJoint()], zones=zones, functors=functors)
-    connect()
-    O.dt = 0.5 * criticalTimeStep()[0]
-
 
 @pytest.mark.parametrize("steps", [0, 1, 150], ids=lambda n: f"after {n} steps")
 @pytest.mark.parametrize("deformable", [False, True], ids=["rigid", "deformable"])
 def test_a_block_added_after_connect_is_named(scene, deformable, steps):
-    stack(deformable)
-    for _ in range(steps):
-        O.step()
-    late = brick(3)
+    pile(3)
+    join(zones=MasonryZones(bodies=[1, 2]) if deformable else None)
+    run(steps)
+    late = addBlock(box((0, 0, 3 * UNIT[2])), unitMaterial())
     with pytest.raises(ValueError, match=rf"body {late} was added after connect\(\)"):
         O.step()
 
 
-ERASED = [
-    pytest.param(3, id="a deformable block without a joint"),
-    pytest.param(2, id="a deformable block with a joint"),
-    pytest.param(1, id="a rigid block with joints"),
-    pytest.param(0, id="the base"),
-]
+ERASED = {
+    "a deformable block without a joint": 3,
+    "a deformable block with a joint": 2,
+    "a rigid block with joints": 1,
+    "the base": 0,
+}
 
 
 @pytest.mark.parametrize("steps", [0, 30], ids=lambda n: f"after {n} steps")
@@ -427,16 +371,11 @@ ERASED = [
 def test_a_block_that_is_erased_is_an_error_or_left_out(erased, steps):
     inYade(
         f"""
-from test_prompt import brick
-for level in range(3):
-    brick(level)
-brick(0, 1.0)
-O.bodies[0].state.blockedDOFs = "xyzXYZ"
-engines([MasonryJoint()], zones=MasonryZones(bodies=[2, 3]))
-interactions = connect()
-O.dt = 0.5 * criticalTimeStep()[0]
+pile(3)
+addBlock(box((1, 0, 0)), unitMaterial())
+interactions = join(zones=MasonryZones(bodies=[2, 3]))
 O.run({steps}, True) if {steps} else None
-O.bodies.erase({erased})
+O.bodies.erase({ERASED[erased]})
 for act in (
     lambda: O.step(), lambda: O.step(), lambda: [O.step() for _ in range(200)], lambda: energy(),
     lambda: criticalTimeStep(), lambda: saveCheckpoint("/dev/null/x"), lambda: [i.phys.stress for i in interactions],
@@ -489,17 +428,16 @@ def misspelt(name):
 def test_a_misspelt_property_is_an_error_that_names_the_right_one(name):
     cls = getattr(wrapper, name)
     instance = cls()
+    made = lambda one, name, value: cls(**{name: value})
+    updated = lambda one, name, value: one.updateAttrs({name: value})
     for right in ownProperties(cls):
         if len(right) == 1:  # there are no two letters to swap
             continue
         wrong = misspelt(right)
         assert wrong != right and not hasattr(instance, wrong)
-        with pytest.raises(AttributeError, match=f"{wrong}.*{right}"):
-            setattr(instance, wrong, 0)
-        with pytest.raises(AttributeError, match=f"{wrong}.*{right}"):
-            cls(**{wrong: 0})
-        with pytest.raises(AttributeError, match=f"{wrong}.*{right}"):
-            instance.updateAttrs({wrong: 0})
+        for act in (setattr, made, updated):
+            with pytest.raises(AttributeError, match=f"{wrong}.*{right}"):
+                act(instance, wrong, 0)
 
 
 @pytest.mark.slow
@@ -507,7 +445,7 @@ def test_every_property_of_an_object_of_no_scene_can_be_read_and_set_to_what_it_
     """In a YADE of its own: MasonryJointPhys().yielding of commit 0e9b866 ends the process."""
     inYade(
         """
-import masonry  # noqa: F401: it registers the classes in yade.wrapper
+import masonry
 for cls in masonry.classes:
     instance = globals()[cls]()
     for name, own in vars(type(instance)).items():

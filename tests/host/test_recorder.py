@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The files of MasonryVtkRecorder hold, column by column, what Python reads of the same instant."""
 
-import references
 from hosted import *
 from masonry.read.frames import asFrame, readFrame
 from test_joint_loop import CASES, panel
@@ -12,31 +11,30 @@ from vtkmodules.vtkIOXML import vtkXMLPolyDataReader, vtkXMLUnstructuredGridRead
 REGIMES = ["elastic", "opening", "slipping", "crushing"]
 
 
-def written(folder, name):
-    """Columns of cells and of points, places of points, and for each cell the numbers of its points."""
-    kind = vtkXMLPolyDataReader if name == "joints" else vtkXMLUnstructuredGridReader
+def arrays(folder, name):
+    """What VTK reads of a file, and the arrays of its cells and of its points."""
+    kind, ending = vtkXMLUnstructuredGridReader, "vtu"
+    if name == "joints":
+        kind, ending = vtkXMLPolyDataReader, "vtp"
     reader = kind()
-    ending = "vtp" if name == "joints" else "vtu"
     reader.SetFileName(str(folder / f"{name}_0000.{ending}"))
     reader.Update()
     data = reader.GetOutput()
-    columns = lambda of: {
-        of.GetArrayName(n): vtk_to_numpy(of.GetArray(n))
-        for n in range(of.GetNumberOfArrays())
-    }
+    of = lambda part: [part.GetArray(n) for n in range(part.GetNumberOfArrays())]
+    return data, of(data.GetCellData()), of(data.GetPointData())
+
+
+def written(folder, name):
+    """Columns of cells and of points, places of points, and for each cell the numbers of its points."""
+    data, *parts = arrays(folder, name)
+    cells, points = ({a.GetName(): vtk_to_numpy(a) for a in part} for part in parts)
     corners, types = [], []
     for n in range(data.GetNumberOfCells()):
         # VTK gives the same object for every cell, with other contents.
         cell = data.GetCell(n)
         corners.append([cell.GetPointId(i) for i in range(cell.GetNumberOfPoints())])
         types.append(cell.GetCellType())
-    return (
-        columns(data.GetCellData()),
-        columns(data.GetPointData()),
-        vtk_to_numpy(data.GetPoints().GetData()),
-        corners,
-        types,
-    )
+    return cells, points, vtk_to_numpy(data.GetPoints().GetData()), corners, types
 
 
 @pytest.fixture(params=CASES)
@@ -67,38 +65,28 @@ def test_every_column_of_the_joints_is_that_of_python(frame):
     joints = [O.interactions[i.id1, i.id2] for i in O.interactions]
     rows = [(i, n) for i in joints for n in range(len(i.geom.areas))]
     assert len(cells["area"]) == len(rows)
-    once = {}  # each attribute of each joint is read once only, because that is slow
-
-    def of(i, part, name):
-        key = (i.id1, i.id2, name)
-        if key not in once:
-            once[key] = getattr(getattr(i, part), name)
-        return once[key]
-
-    expected = {
-        "area": lambda i, n: of(i, "geom", "areas")[n],
-        "opening": lambda i, n: of(i, "geom", "jumps")[n][0],
-        "slip": lambda i, n: of(i, "phys", "slip")[n],
-        "slide": lambda i, n: of(i, "geom", "jumps")[n][1] * i.geom.tangent
-        + of(i, "geom", "jumps")[n][2] * i.geom.normal.cross(i.geom.tangent),
-        "normal": lambda i, n: i.geom.normal,
-        "normal_stress": lambda i, n: of(i, "phys", "stress")[n][0],
-        "shear_stress": lambda i, n: math.hypot(*list(of(i, "phys", "stress")[n])[1:]),
-        "shear_traction": lambda i, n: of(i, "phys", "stress")[n][1] * i.geom.tangent
-        + of(i, "phys", "stress")[n][2] * i.geom.normal.cross(i.geom.tangent),
-        "damage_tension": lambda i, n: of(i, "phys", "damage")[n][0],
-        "damage_shear": lambda i, n: of(i, "phys", "damage")[n][1],
-        "damage_compression": lambda i, n: of(i, "phys", "damage")[n][2],
-        "joint_dissipated": lambda i, n: of(i, "phys", "dissipated"),
-        "regime": lambda i, n: REGIMES.index(of(i, "phys", "regime")[n]),
-        "bodies": lambda i, n: (i.id1, i.id2),
-    }
-    for name, value in expected.items():
-        there = cells[name]
-        here = np.array([np.array(value(i, n), dtype=float) for i, n in rows])
+    expected = {}
+    for i in joints:
+        jumps, stress = np.array(i.geom.jumps), np.array(i.phys.stress)
+        tangent = i.geom.tangent
+        sides = np.array([tangent, i.geom.normal.cross(tangent)])
+        every = [[1.0]] * len(jumps)  # what all points of a joint have
+        of = {"area": i.geom.areas, "opening": jumps[:, 0], "slip": i.phys.slip}
+        of.update(slide=jumps[:, 1:] @ sides, normal=every * np.array(i.geom.normal))
+        of.update(normal_stress=stress[:, 0], shear_traction=stress[:, 1:] @ sides)
+        of["shear_stress"] = np.hypot(*stress[:, 1:].T)
+        for n, mode in enumerate(("tension", "shear", "compression")):
+            of["damage_" + mode] = np.array(i.phys.damage)[:, n]
+        of["joint_dissipated"] = every * np.array(i.phys.dissipated)
+        of["regime"] = [REGIMES.index(regime) for regime in i.phys.regime]
+        of["bodies"] = every * np.array((i.id1, i.id2))
+        for name, values in of.items():
+            expected.setdefault(name, []).extend(values)
+    for name, values in expected.items():
+        here = np.array(values, dtype=float)
         size = np.abs(here).max()
         assert size > 0, name
-        assert np.abs(there - here).max() <= 1e-12 * size, name
+        assert np.abs(cells[name] - here).max() <= 1e-12 * size, name
     # Python does not show crushing and dilation by themselves. Of a closed joint they follow from sigma = kn (opening +
     # crushing - dilation), where the dilation is at most dilatancy times slip. A joint of the cyclic law may have lost stiffness.
     crushed = cells["crushing"]
@@ -128,14 +116,9 @@ def test_a_cell_of_a_joint_lies_around_its_subcontact_and_has_its_area(frame):
             # In the plane of the joint.
             assert all(abs((p - centre).dot(i.geom.normal)) < 1e-9 for p in points)
             middle = sum(points, Vector3.Zero) / len(points)
-            doubled = sum(
-                (
-                    (a - middle).cross(b - middle)
-                    for a, b in zip(points, points[1:] + points[:1])
-                ),
-                Vector3.Zero,
-            )
-            whole += 0.5 * doubled.norm()
+            arms = [point - middle for point in points]
+            pairs = zip(arms, arms[1:] + arms[:1])
+            whole += 0.5 * sum((a.cross(b) for a, b in pairs), Vector3.Zero).norm()
             row += 1
         assert whole == pytest.approx(sum(i.geom.areas), rel=1e-6)
     assert row == len(corners)
@@ -175,33 +158,24 @@ def test_the_points_of_blocks_move_as_bodies_and_nodes_do(frame):
     cells, points, places, corners, types = written(folder, "blocks")
     zones = next((e for e in O.engines if isinstance(e, MasonryZones)), None)
     deformable = list(zones.bodies) if zones else []
-    first = 0
-    size = max(np.abs(points["displacement"]).max(), 1e-9)
+    reference, moved, speed = [], [], []
     for body in deformable:
-        low, beyond = zones.nodesOf(body)
-        for node in range(low, beyond):
-            assert (
-                Vector3(*places[first]) - zones.referencePoint(body, node)
-            ).norm() < 1e-9
-            moved = Vector3(*points["displacement"][first]) - zones.displacements[node]
-            assert moved.norm() < 1e-9 * size
-            speed = Vector3(*points["velocity"][first]) - zones.velocities[node]
-            assert speed.norm() < 1e-9
-            first += 1
-    for b in O.bodies:
-        if b.id in deformable:
-            continue
-        s = b.state
-        for corner in b.shape.v:
-            reference = s.refPos + s.refOri * corner
-            now = s.pos + s.ori * corner
-            assert (Vector3(*places[first]) - reference).norm() < 1e-9
-            moved = Vector3(*points["displacement"][first]) - (now - reference)
-            assert moved.norm() < 1e-9 * size
-            speed = s.vel + s.angVel.cross(s.ori * corner)
-            assert (Vector3(*points["velocity"][first]) - speed).norm() < 1e-9
-            first += 1
-    assert first == len(places)
+        nodes = range(*zones.nodesOf(body))
+        reference += [zones.referencePoint(body, node) for node in nodes]
+        moved += [zones.displacements[node] for node in nodes]
+        speed += [zones.velocities[node] for node in nodes]
+    rigid = [b for b in O.bodies if b.id not in deformable]
+    for s, corner in [(b.state, corner) for b in rigid for corner in b.shape.v]:
+        reference.append(s.refPos + s.refOri * corner)
+        moved.append(s.pos + s.ori * corner - reference[-1])
+        speed.append(s.vel + s.angVel.cross(s.ori * corner))
+    size = max(np.abs(points["displacement"]).max(), 1e-9)
+    for found, expected, apart in (
+        (places, reference, 1e-9),
+        (points["displacement"], moved, 1e-9 * size),
+        (points["velocity"], speed, 1e-9),
+    ):
+        assert np.linalg.norm(found - np.array(expected), axis=1).max() < apart
     tetrahedra = [k for k, kind in enumerate(types) if kind == 10]
     assert bool(tetrahedra) == bool(deformable)
     assert {int(cells["body"][k]) for k in tetrahedra} == set(deformable)
@@ -209,36 +183,20 @@ def test_the_points_of_blocks_move_as_bodies_and_nodes_do(frame):
 
 
 @pytest.mark.parametrize(
-    "turn", [Quaternion.Identity, references.TURN], ids=["straight", "turned"]
+    "turn", [Quaternion.Identity, IN_SPACE], ids=["straight", "turned"]
 )
 def test_stresses_of_zones_are_those_of_a_brick_that_is_pressed(scene, tmp_path, turn):
     """A deformable brick between plates under pressure p carries -p along it and nothing else, in the global axes."""
-    from masonry import (
-        MasonryJoint,
-        MasonryLoad,
-        MasonryMat,
-        addBlock,
-        connect,
-        criticalTimeStep,
-        engines,
-    )
-
-    plate = MasonryMat(density=1800, young=1e16, jointSet="plate")
-    mat = MasonryMat(density=1800, young=4.8e9, poisson=0.0)
-    put = lambda low, high, m: addBlock(references.box(low, high, turn), m)
-    base = put((0, 0, -0.05), (0.22, 0.1, 0), plate)
-    unit = put((0, 0, 0), (0.22, 0.1, 0.08), mat)
-    top = put((0, 0, 0.08), (0.22, 0.1, 0.13), plate)
-    O.bodies[base].state.blockedDOFs = "xyzXYZ"
+    plate, mat = unitMaterial(young=1e16, jointSet="plate"), unitMaterial(poisson=0.0)
+    put = lambda z, height, m: addBlock(box((0, 0, z), (0.22, 0.1, height), turn), m)
+    hold(put(-0.05, 0.05, plate))
+    unit, top = put(0, 0.08, mat), put(0.08, 0.05, plate)
     O.bodies[top].state.blockedDOFs = "XYZ"
-    up, pressure = turn * Vector3(0, 0, 1), 0.4e6
-    load = MasonryLoad(
-        body=top, point=O.bodies[top].state.pos, force=-pressure * 0.022 * up
-    )
+    force, pressure = turn * Vector3(0, 0, -0.4e6 * 0.022), 0.4e6
+    load = MasonryLoad(body=top, point=O.bodies[top].state.pos, force=force)
     zones = MasonryZones(bodies=[unit], damping=0.8)
-    engines([MasonryJoint(elastic=True)], gravity=(0, 0, 0), loads=[load], zones=zones)
-    connect()
-    O.dt = 0.8 * criticalTimeStep()[0]
+    around = dict(gravity=(0, 0, 0), loads=[load], zones=zones)
+    join(MasonryJoint(elastic=True), 0.8, **around)
     for _ in range(6000):
         O.step()
         O.bodies[top].state.vel *= 0.995  # the loaded plate has no damping of its own
@@ -249,13 +207,7 @@ def test_stresses_of_zones_are_those_of_a_brick_that_is_pressed(scene, tmp_path,
     own = cells["body"] == unit
     assert own.sum() == 12
     for six, principal in zip(cells["stress"][own], cells["principal_stress"][own]):
-        there = np.array(
-            [
-                [six[0], six[3], six[5]],
-                [six[3], six[1], six[4]],
-                [six[5], six[4], six[2]],
-            ]
-        )
+        there = six[[[0, 3, 5], [3, 1, 4], [5, 4, 2]]]
         assert np.abs(there - expected).max() < 0.01 * pressure
         assert np.abs(np.sort(principal) - [-pressure, 0, 0]).max() < 0.01 * pressure
     assert np.abs(cells["stress"][~own]).max() == 0
@@ -269,19 +221,11 @@ def test_every_column_is_described_and_says_its_unit(frame):
     _, folder, _ = frame
     described = MasonryVtkRecorder.fields()
     seen = set()
-    for name, kind, ending in (
-        ("joints", vtkXMLPolyDataReader, "vtp"),
-        ("blocks", vtkXMLUnstructuredGridReader, "vtu"),
-    ):
-        reader = kind()
-        reader.SetFileName(str(folder / f"{name}_0000.{ending}"))
-        reader.Update()
-        data = reader.GetOutput()
-        for columns in (data.GetCellData(), data.GetPointData()):
-            for n in range(columns.GetNumberOfArrays()):
-                column = columns.GetArray(n)
-                unit = column.GetInformation().Get(vtkDataArray.UNITS_LABEL())
-                about = described[column.GetName()]
-                assert f"[{unit}]" in about if unit else "[" not in about
-                seen.add(column.GetName())
+    for name in ("joints", "blocks"):
+        _, cells, points = arrays(folder, name)
+        for column in (*cells, *points):
+            unit = column.GetInformation().Get(vtkDataArray.UNITS_LABEL())
+            about = described[column.GetName()]
+            assert f"[{unit}]" in about if unit else "[" not in about
+            seen.add(column.GetName())
     assert seen == set(described) - OF_CONNECTORS

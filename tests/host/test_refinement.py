@@ -3,46 +3,30 @@
 
 from hosted import *
 from masonry.assembly.engines import functorLoop
-from masonry.bricks import boxCorners as corners
 from test_checkpoint import bits
 from test_joint_loop import panel
 
-LENGTH, WIDTH, HEIGHT = 0.22, 0.102, 0.081
+LENGTH, WIDTH, HEIGHT = UNIT
 AREA = LENGTH * WIDTH
 JOINT = dict(
-    name="bed",
-    normalStiffness=1e11,
-    shearStiffness=4e10,
-    tensileStrength=0.1e6,
-    modeIFractureEnergy=16,
-    cohesion=0.2e6,
-    modeIIFractureEnergy=160,
-    friction=0.6,
-    residualFriction=0.6,
-    compressiveStrength=8e6,
-    elasticLimitRatio=0.5,
-    peakRatio=20,
-    compressiveFractureEnergy=20000,
+    **dict(normalStiffness=1e11, shearStiffness=4e10),
+    **dict(tensileStrength=0.1e6, modeIFractureEnergy=16),
+    **dict(cohesion=0.2e6, modeIIFractureEnergy=160),
+    **dict(friction=0.6, residualFriction=0.6),
+    **dict(compressiveStrength=8e6, compressiveFractureEnergy=20000),
+    **dict(elasticLimitRatio=0.5, peakRatio=20),
 )
 
 
 def couplet(refine=3, inPlane=True, subcontacts=3, rows=None, **properties):
     """Two bricks on each other, the lower one fixed; the upper one moves as :func:`move` says."""
     O.reset()
-    unit = MasonryMat(density=1800, young=1e13, poisson=0.2)
-    low = addBlock(corners((0, 0, 0), (LENGTH, WIDTH, HEIGHT)), unit, inPlane=inPlane)
-    top = addBlock(corners((0, 0, HEIGHT), (LENGTH, WIDTH, 2 * HEIGHT)), unit, inPlane=inPlane)  # fmt: skip
-    O.bodies[low].state.blockedDOFs = "xyzXYZ"
+    unit = unitMaterial(young=1e13, poisson=0.2)
+    _, top = pile(material=unit, inPlane=inPlane)
     load = MasonryLoad(body=top, point=(LENGTH / 2, WIDTH / 2, HEIGHT), damped=True, label="load")  # fmt: skip
-    engines(
-        [MasonryJoint(**{**JOINT, **properties})],
-        damping=0.7,
-        gravity=(0, 0, 0),
-        subcontacts=subcontacts,
-        rows=rows,
-        inPlane=inPlane,
-        loads=[load],
-    )
+    around = dict(damping=0.7, gravity=(0, 0, 0), inPlane=inPlane, loads=[load])
+    around.update(subcontacts=subcontacts, rows=rows)
+    engines([MasonryJoint(**{**JOINT, **properties})], **around)
     joint = connect()[0]
     engine("joints").points = refine
     O.dt = 0.5 * O.bodies[top].state.mass ** 0.5 / math.sqrt(4 * 1e11 * AREA)
@@ -64,8 +48,7 @@ def resultants(joint):
 
 
 def energies(kind):
-    balance = engine("energy").balance()
-    return sum(v for name, v in balance.items() if name.startswith(kind))
+    return sum(v for name, v in balance().items() if name.startswith(kind))
 
 
 def states(joint):
@@ -135,9 +118,9 @@ def test_a_cracked_joint_takes_its_crack_along_and_the_balance_closes(law):
     assert len(after) == 12
     assert after[0] >= before[0] and after[-1] == 0
     assert after == sorted(after, reverse=True)  # the crack goes in from one edge
-    balance = engine("energy").balance()
-    assert balance["refining"] == engine("joints").refiningEnergy != 0
-    assert abs(balance["error"]) < 1e-6
+    now = balance()
+    assert now["refining"] == engine("joints").refiningEnergy != 0
+    assert abs(now["error"]) < 1e-6
     assert energies("dissipated") > lost
 
 
@@ -254,7 +237,7 @@ def test_the_balance_closes_as_it_does_without(case):
     for refine in (3, 12):
         pushed(refine, case)
         run(300)
-        errors.append(abs(engine("energy").balance()["error"]))
+        errors.append(abs(balance()["error"]))
     assert engine("joints").refinedJoints > 3
     assert errors[1] < max(3 * errors[0], 1e-6)
 
@@ -293,26 +276,27 @@ def test_files_and_functors_take_joints_with_other_numbers_of_points(tmp_path):
     assert len(found["area"]) == sum(sizes)
     assert sum(found["area"]) == pytest.approx(sum(sum(i.geom.areas) for i in interactions))  # fmt: skip
 
-    O.engines = [
-        ForceResetter(),
-        functorLoop(engine("joints").geometry, engine("joints").physics),
-        *[e for e in O.engines if isinstance(e, (MasonryLoad, MasonryEnergy))],
-        engine("integrator"),
-    ]
+    functors = functorLoop(engine("joints").geometry, engine("joints").physics)
+    kept = [e for e in O.engines if isinstance(e, (MasonryLoad, MasonryEnergy))]
+    O.engines = [ForceResetter(), functors, *kept, engine("integrator")]
     run(20)
-    assert [
-        len(i.geom.areas) for i in interactions
-    ] == sizes  # the functors refine none
+    # the functors refine none
+    assert [len(i.geom.areas) for i in interactions] == sizes
     # without MasonryJointLoop nobody has the energy that joints got when they were refined
-    assert abs(engine("energy").balance()["error"]) < 2e-3
+    assert abs(balance()["error"]) < 2e-3
 
 
 # ---- joints in space ------------------------------------------------------------------------------------------------
 
 
-def bent(points=0, subcontacts=3, rows=None, **properties):
-    """The couplet, whose upper brick is free in space."""
-    joint = couplet(points, inPlane=False, subcontacts=subcontacts, rows=rows, **properties)  # fmt: skip
+def bent(points, across, force, parts, **how):
+    """The couplet in space, pressed by a force that grows, off its middle by so much [m] along both sides of the joint."""
+    joint = couplet(points, inPlane=False, **how)
+    x, y = across
+    engine("load").point = Vector3(LENGTH / 2 + x, WIDTH / 2 + y, HEIGHT)
+    for n in range(1, parts + 1):
+        engine("load").force = Vector3(0, 0, -force * n / parts)
+        run(20)
     return joint
 
 
@@ -328,11 +312,7 @@ def moments(joint):
 def test_an_elastic_joint_in_space_keeps_force_moments_and_energy(law, points):
     found = {}
     for count in (3, points):
-        joint = bent(3, law=law)
-        engine("load").point = Vector3(LENGTH / 2 + 0.01, WIDTH / 2 - 0.004, HEIGHT)
-        for n in range(1, 101):
-            engine("load").force = Vector3(0, 0, -0.56e5 * n / 100)
-            run(20)
+        joint = bent(3, (0.01, -0.004), 0.56e5, 100, law=law)
         assert not any(max(list(d)) for d in joint.phys.damage)
         engine("joints").points = count
         run(10)
@@ -348,13 +328,9 @@ def test_a_joint_that_bends_across_is_as_one_that_has_had_its_points_from_the_be
     """The crack goes through the thickness of the wall; with three rows the joint turns otherwise."""
     turned, errors = {}, {}
     for name, few, points in (("few", 3, 3), ("refined", 3, 9), ("many", 9, 9)):
-        bent(points, subcontacts=few, rows=few, law=law)
-        engine("load").point = Vector3(LENGTH / 2, WIDTH / 2 + 0.025, HEIGHT)
-        for n in range(1, 201):
-            engine("load").force = Vector3(0, 0, -60e3 * n / 200)
-            run(20)
+        bent(points, (0, 0.025), 60e3, 200, subcontacts=few, rows=few, law=law)
         turned[name] = O.bodies[1].state.rot()[0]
-        errors[name] = abs(engine("energy").balance()["error"])
+        errors[name] = abs(balance()["error"])
     assert abs(turned["few"] / turned["many"] - 1) > 0.03
     assert turned["refined"] == pytest.approx(turned["many"], rel=0.005)
     assert errors["refined"] < max(3 * errors["many"], 1e-6)
@@ -362,7 +338,7 @@ def test_a_joint_that_bends_across_is_as_one_that_has_had_its_points_from_the_be
 
 def test_joints_that_have_not_their_stiffness_keep_their_points():
     """With two points along a side a joint is three times too stiff against rotation: more would change that."""
-    bent(5, subcontacts=3, rows=2, cap=False)
+    couplet(5, inPlane=False, rows=2, cap=False)
     run(20)
     ramp(-0.95 * 0.1e6 * AREA)
     assert engine("joints").refinedJoints == 0

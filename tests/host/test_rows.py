@@ -11,9 +11,8 @@ def strip(folder, *words, plane=False, courses=6):
     """A pile of bricks between platens that cannot turn, pressed by 0.2 MPa."""
     blocks = bricks.stack(courses, UNIT)
     words = ["--no-vtk", "--lean", "--out", str(folder), *words]
-    scene = Scene(
-        "strip", blocks, materials.calciumSilicate(), plane=plane, arguments=words
-    )
+    around = dict(plane=plane, arguments=words)
+    scene = Scene("strip", blocks, materials.calciumSilicate(), **around)
     scene.platen("bottom")
     guided = "x" if plane else "xy"
     scene.press(scene.platen("top", rotation="held", guided=guided), 0.2e6)

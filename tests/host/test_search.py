@@ -20,10 +20,10 @@ X = Vector3.UnitX
 
 
 def model(gravity=5.0, scaling=4.0):
-    return SimpleNamespace(
-        description=SimpleNamespace(gravity=gravity),
-        args=SimpleNamespace(density_scaling=scaling),
+    description, args = SimpleNamespace(gravity=gravity), SimpleNamespace(
+        density_scaling=scaling
     )
+    return SimpleNamespace(description=description, args=args)
 
 
 @pytest.mark.parametrize("share", [0.0, 0.3, 1.0])
@@ -176,9 +176,8 @@ def search(
     text = lambda factor: base64.b64encode(repr(factor).encode()).decode()
     load, made = Load(most=1.2 * last), standing()
     made.model.atRest = None
-    made.model.loading.alongNow = (
-        lambda: 1e-3 * here["factor"]
-    )  # [m]: as many mm as the factor
+    along = lambda: 1e-3 * here["factor"]  # [m]: as many mm as the factor
+    made.model.loading.alongNow = along
     factors = [last * n / states for n in range(states + 1)]
     at = growing.Growing(
         fell="it fell" if fell else "", last=last, lastState=text(last),
@@ -209,14 +208,17 @@ def search(
     return at, made, trials, found
 
 
+#: The last load of a growth, how near the search shall come to what is held, and how many states are kept.
+GROWTH = dict(last=some.floats(0.5, 20.0), states=some.integers(1, 60))
+GROWTH["within"] = some.sampled_from([0.002, 0.005, 0.05])
+
+
 @settings(max_examples=150)
 @given(
     capacity=some.floats(0.02, 1.5),
     moves=some.floats(0.5, 1.0),
-    last=some.floats(0.5, 20.0),
-    within=some.sampled_from([0.002, 0.005, 0.05]),
-    states=some.integers(1, 60),
     setsOff=some.floats(0.0, 1.2),
+    **GROWTH,
 )
 def test_a_search_brackets_what_the_structure_holds_from_rest(
     capacity, moves, last, within, states, setsOff
@@ -246,12 +248,7 @@ def test_a_search_brackets_what_the_structure_holds_from_rest(
 
 
 @settings(max_examples=150)
-@given(
-    buckles=some.floats(0.02, 1.3),
-    last=some.floats(0.5, 20.0),
-    within=some.sampled_from([0.002, 0.05]),
-    states=some.integers(1, 60),
-)
+@given(buckles=some.floats(0.02, 1.3), **GROWTH)
 def test_a_search_brackets_the_load_at_which_a_structure_buckles(
     buckles, last, within, states
 ):

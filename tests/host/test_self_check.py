@@ -12,19 +12,17 @@ import pytest
 from conftest import ROOT
 
 HOST = os.path.join(ROOT, "yade_plugin", "host")
-MODULE = os.path.join(
-    *importlib.util.find_spec("masonry").submodule_search_locations, "_masonry.so"
-)
+PACKAGE = importlib.util.find_spec("masonry").submodule_search_locations
+MODULE = os.path.join(*PACKAGE, "_masonry.so")
+FIND = "import sys; sys.path.insert(1, '/usr/lib/x86_64-linux-gnu/yade-double/py')\nimport yade\n"
+
+
+def run(*command):
+    return subprocess.run(command, capture_output=True, text=True)
 
 
 def inFreshYade(code):
-    program = (
-        "import sys; sys.path.insert(1, '/usr/lib/x86_64-linux-gnu/yade-double/py')\nimport yade\n"
-        + code
-    )
-    return subprocess.run(
-        [sys.executable, "-c", program], capture_output=True, text=True
-    )
+    return run(sys.executable, "-c", FIND + code)
 
 
 def source(name):
@@ -125,25 +123,19 @@ def test_a_yade_with_another_table_member_or_size_is_refused_by_name_and_stays_u
     """
     assert len(TABLES) > 20 and len(MEMBERS) > 40 and len(SIZES) > 10
     lists = f"MODULE, TABLES, MEMBERS, SIZES = {MODULE!r}, {TABLES}, {MEMBERS}, {SIZES}"
-    run = inFreshYade(lists + FAULTS)
-    assert "ALL REFUSED" in run.stdout, run.stdout + run.stderr
+    ended = inFreshYade(lists + FAULTS)
+    assert "ALL REFUSED" in ended.stdout, ended.stdout + ended.stderr
 
 
 def test_every_class_that_is_declared_with_virtual_functions_is_compared():
-    declared = set(
-        re.findall(
-            r"class (\w+)[^;{]*{\s*MASONRY_HOST_CLASS",
-            source("Yade.hpp") + source("YadeGl.hpp"),
-        )
-    )
+    headers = source("Yade.hpp") + source("YadeGl.hpp")
+    declared = set(re.findall(r"class (\w+)[^;{]*{\s*MASONRY_HOST_CLASS", headers))
     bases = {"Factorable", "Serializable"}  # which write their functions out
     assert set(TABLES) == (declared | bases) - {"Polyhedra", "InteractionContainer"}
 
 
 def test_the_module_shows_only_what_must_be_one_with_the_host():
-    listing = subprocess.run(
-        ["nm", "-DC", "--defined-only", MODULE], capture_output=True, text=True
-    ).stdout
+    listing = run("nm", "-DC", "--defined-only", MODULE).stdout
     names = [line.split(maxsplit=2)[2] for line in listing.splitlines()]
     allowed = re.compile(
         r"PyInit__masonry$"
@@ -174,36 +166,32 @@ for warning in told:
 @pytest.mark.slow
 def test_a_yade_of_an_unknown_version_is_used_on_the_users_word_only(monkeypatch):
     monkeypatch.delenv("MASONRY_UNKNOWN_YADE", raising=False)
-    run = inFreshYade(UNKNOWN)
-    assert "REFUSED: " in run.stdout, run.stdout + run.stderr
-    assert "YADE version: 2099.1 is not known" in run.stdout
-    assert "MASONRY_UNKNOWN_YADE=1" in run.stdout and "TAKEN" not in run.stdout
+    ended = inFreshYade(UNKNOWN)
+    assert "REFUSED: " in ended.stdout, ended.stdout + ended.stderr
+    assert "YADE version: 2099.1 is not known" in ended.stdout
+    assert "MASONRY_UNKNOWN_YADE=1" in ended.stdout and "TAKEN" not in ended.stdout
     monkeypatch.setenv("MASONRY_UNKNOWN_YADE", "1")
-    run = inFreshYade(UNKNOWN)
-    assert "TAKEN 4800000000.0" in run.stdout, run.stdout + run.stderr
-    assert "WARNED: RuntimeWarning YADE 2099.1 is not known" in run.stdout
+    ended = inFreshYade(UNKNOWN)
+    assert "TAKEN 4800000000.0" in ended.stdout, ended.stdout + ended.stderr
+    assert "WARNED: RuntimeWarning YADE 2099.1 is not known" in ended.stdout
 
 
 @pytest.mark.slow
 def test_a_yade_of_another_precision_is_refused_by_name(tmp_path):
     program = shutil.which("yade-mpfr150")
-    configure = ["cmake", "-S", ROOT, "-B", str(tmp_path), f"-DMASONRY_YADE={program}"]
-    built = subprocess.run(configure, capture_output=True, text=True)
+    built = run("cmake", "-S", ROOT, "-B", str(tmp_path), f"-DMASONRY_YADE={program}")
     assert built.returncode and f"the YADE of {program} does not" in built.stderr
-    check = [program, "-n", "-x", f"{ROOT}/tests/host/checkMasonryJoint.py"]
-    run = subprocess.run(check, capture_output=True, text=True)
-    assert run.returncode and "of 150 digits, does not fit" in run.stderr
+    ended = run(program, "-n", "-x", f"{ROOT}/tests/host/checkMasonryJoint.py")
+    assert ended.returncode and "of 150 digits, does not fit" in ended.stderr
 
 
 @pytest.mark.slow
 def test_the_running_version_is_a_known_one_without_a_warning():
-    run = inFreshYade(UNKNOWN.replace('yade.config.version = "2099.1"', ""))
-    assert "TAKEN" in run.stdout and "WARNED" not in run.stdout, run.stdout
+    ended = inFreshYade(UNKNOWN.replace('yade.config.version = "2099.1"', ""))
+    assert "TAKEN" in ended.stdout and "WARNED" not in ended.stdout, ended.stdout
 
 
-def test_the_fitting_module_leaves_the_users_scene_alone():
-    run = inFreshYade(
-        """
+ALONE = """
 from yade import *
 O.bodies.append(utils.sphere((0, 0, 0), 1))
 engines = O.engines
@@ -211,5 +199,8 @@ import masonry
 assert len(O.bodies) == 1 and O.engines == engines and O.thisScene == 0
 print("ALONE")
 """
-    )
-    assert "ALONE" in run.stdout, run.stdout + run.stderr
+
+
+def test_the_fitting_module_leaves_the_users_scene_alone():
+    ended = inFreshYade(ALONE)
+    assert "ALONE" in ended.stdout, ended.stdout + ended.stderr

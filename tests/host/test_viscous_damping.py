@@ -23,18 +23,12 @@ def test_a_block_on_a_joint_loses_amplitude_by_the_decrement(
 
 @pytest.mark.parametrize("blocked", ["", "yXZ", "XYZ"], ids=lambda b: b or "free")
 def test_a_falling_block_comes_to_gravity_over_mass_damping(scene, blocked):
-    body = addBlock(corners((0, 0, 0), UNIT), MasonryMat(density=1800))
-    O.bodies[body].state.blockedDOFs = blocked
-    O.engines = [
-        ForceResetter(),
-        MasonryEnergy(),
-        MasonryIntegrator(damping=0, massDamping=5, gravity=(0, 0, -G)),
-    ]
+    s = O.bodies[addBlock(box(), unitMaterial())].state
+    s.blockedDOFs = blocked
+    alone(energy=True, damping=0, massDamping=5, gravity=(0, 0, -G))
     O.dt = 1e-3
-    speed = lambda t: -G / 5 * (1 - math.exp(-5 * t))
     run(100)
-    s = O.bodies[body].state
-    assert s.vel[2] == pytest.approx(speed(O.time), rel=1e-3)
+    assert s.vel[2] == pytest.approx(-G / 5 * (1 - math.exp(-5 * O.time)), rel=1e-3)
     run(4000)
     assert s.vel[2] == pytest.approx(-G / 5, rel=1e-8)
     assert abs(balance()["error"]) < 1e-12
@@ -42,18 +36,13 @@ def test_a_falling_block_comes_to_gravity_over_mass_damping(scene, blocked):
 
 @pytest.mark.parametrize("blocked", ["", "xyz", "yXZ"], ids=lambda b: b or "free")
 def test_a_spin_dies_away_with_mass_damping(scene, blocked):
-    body = addBlock(corners((0, 0, 0), UNIT), MasonryMat(density=1800))
-    s = O.bodies[body].state
+    s = O.bodies[addBlock(box(), unitMaterial())].state
     s.blockedDOFs = blocked
     s.angVel = Vector3(0, 3, 0)
     if blocked in ("", "xyz"):
         s.angMom = Vector3(0, 3 * s.inertia[1], 0)
         s.inertia = Vector3(s.inertia[1], s.inertia[1], s.inertia[1])
-    O.engines = [
-        ForceResetter(),
-        MasonryEnergy(),
-        MasonryIntegrator(damping=0, massDamping=5, gravity=(0, 0, 0)),
-    ]
+    alone(energy=True, damping=0, massDamping=5)
     O.dt = 1e-3
     run(400)
     assert s.angVel[1] == pytest.approx(3 * math.exp(-5 * O.time), rel=1e-3)
@@ -63,8 +52,7 @@ def test_a_spin_dies_away_with_mass_damping(scene, blocked):
 def test_driven_bodies_and_prescribed_motions_keep_their_velocity(scene):
     oscillator(blocked="xyXYZ")
     ofKind(MasonryIntegrator).massDamping = 50
-    load = MasonryLoad(body=1, direction=(0, 0, 1), driven=True, velocity=0.001)
-    O.engines = O.engines[:2] + [load] + O.engines[2:]
+    insert(MasonryLoad(body=1, direction=(0, 0, 1), driven=True, velocity=0.001))
     O.dt = 1e-6
     run(200)
     assert O.bodies[1].state.vel[2] == pytest.approx(0.001, rel=1e-12)
@@ -74,7 +62,7 @@ def test_driven_bodies_and_prescribed_motions_keep_their_velocity(scene):
 
 
 def test_nodes_of_deformable_units_lose_momentum_at_the_same_rate(scene):
-    body = addBlock(corners((0, 0, 0), UNIT), MasonryMat(density=1800, young=4.8e9))
+    body = addBlock(box(), unitMaterial())
     zones = MasonryZones(bodies=[body], damping=0)
     engines([MasonryJoint()], damping=0, gravity=(0, 0, 0), zones=zones)
     ofKind(MasonryIntegrator).massDamping = 200
@@ -100,16 +88,19 @@ def test_rayleigh_damping_has_its_ratio_at_both_frequencies_and_less_between(
 
     assert share(low) == pytest.approx(ratio, rel=1e-12)
     assert share(high) == pytest.approx(ratio, rel=1e-12)
-    middle = math.sqrt(
-        low * high
-    )  # where both parts are the same, and their sum is least
+    # where both parts are the same, and their sum is least
+    middle = math.sqrt(low * high)
     assert share(middle) == pytest.approx(2 * ratio * middle / (low + high), rel=1e-12)
+
+
+def loop():
+    return ofKind(MasonryJointLoop)
 
 
 def swing(fraction, ratio):
     """Largest displacement after many steps over that of the first one."""
     omega = oscillator()
-    ofKind(MasonryJointLoop).stiffnessDamping = 2 * ratio / omega
+    loop().stiffnessDamping = 2 * ratio / omega
     O.dt = fraction * criticalTimeStep()[0]
     ofKind(MasonryEnergy).watch = False
     s = O.bodies[1].state
@@ -124,7 +115,7 @@ def swing(fraction, ratio):
 @pytest.mark.parametrize("ratio", [0.05, 0.5, 2])
 def test_the_limit_of_the_time_step_is_sharp_with_stiffness_damping(scene, ratio):
     omega = oscillator()
-    ofKind(MasonryJointLoop).stiffnessDamping = 2 * ratio / omega
+    loop().stiffnessDamping = 2 * ratio / omega
     limit = (math.sqrt(1 + ratio**2) - ratio) * 2 / omega
     assert criticalTimeStep()[0] == pytest.approx(limit, rel=1e-9)
     assert swing(0.99, ratio) < 5
@@ -135,7 +126,7 @@ def test_the_watch_knows_the_limit_with_stiffness_damping(scene):
     omega = oscillator()
     O.dt = 0.9 * criticalTimeStep()[0]
     run(20)
-    ofKind(MasonryJointLoop).stiffnessDamping = 1 / omega
+    loop().stiffnessDamping = 1 / omega
     with pytest.raises(RuntimeError, match="unstable: the time step is"):
         run(20)
 
@@ -144,11 +135,10 @@ def test_the_watch_knows_the_limit_with_stiffness_damping(scene):
 def test_an_open_joint_transmits_nothing_and_a_pressed_dry_one_does_not_pull(
     scene, inPlane
 ):
-    dry = MasonryJoint(
-        tensileStrength=0, cohesion=0, friction=0.6, residualFriction=0.6
-    )
+    bond = dict(tensileStrength=0, cohesion=0)
+    dry = MasonryJoint(**bond, friction=0.6, residualFriction=0.6)
     omega = oscillator(dry, blocked="xyzXYZ", inPlane=inPlane)
-    ofKind(MasonryJointLoop).stiffnessDamping = 2 / omega
+    loop().stiffnessDamping = 2 / omega
     O.dt = 1e-6
     s = O.bodies[1].state
     s.vel = Vector3(0, 0, -5e-3)
@@ -165,14 +155,13 @@ def test_an_open_joint_transmits_nothing_and_a_pressed_dry_one_does_not_pull(
     assert O.forces.f(0, True) == Vector3.Zero
     b = balance()
     assert b["damping"] > 0
-    assert (
-        abs(b["error"]) < 0.05
-    )  # a prescribed velocity that jumps under load, as in test_stability.py
+    # a prescribed velocity that jumps under load, as in test_stability.py
+    assert abs(b["error"]) < 0.05
 
 
 def test_an_intact_bond_is_damped_in_tension_and_a_torn_one_is_not(scene):
     omega = oscillator(MasonryJoint(), blocked="xyzXYZ")
-    ofKind(MasonryJointLoop).stiffnessDamping = 0.01 / omega
+    loop().stiffnessDamping = 0.01 / omega
     O.dt = 1e-6
     s = O.bodies[1].state
     phys = O.interactions[0, 1].phys
@@ -194,27 +183,18 @@ def test_an_intact_bond_is_damped_in_tension_and_a_torn_one_is_not(scene):
 def test_a_damped_run_goes_on_bit_for_bit_after_saving_and_loading(
     scene, tmp_path, through
 ):
-    path = str(tmp_path / ("scene.yade.gz" if through == "file" else "c"))
+    def build():
+        omega = vibrating(steps=0)
+        ofKind(MasonryIntegrator).massDamping = 0.1 * omega
+        O.dt = 0.5 * criticalTimeStep()[0]
+
     ends = []
     for interrupted in (False, True):
-
-        def build():
-            omega = oscillator(blocked="", gravity=(100, 200, -1000))
-            ofKind(MasonryJointLoop).stiffnessDamping = 0.1 / omega
-            ofKind(MasonryIntegrator).massDamping = 0.1 * omega
-            O.dt = 0.5 * criticalTimeStep()[0]
-
         build()
         run(150)
-        if interrupted and through == "file":
-            O.save(path)
-            O.load(path)
-        elif interrupted:
-            saveCheckpoint(path)
-            build()
-            loadCheckpoint(path)
-        run(150)
-        ends.append((balance(), [tuple(b.state.pos) for b in O.bodies]))
+        if interrupted:
+            saveAndLoad(through, str(tmp_path / "c"), build)
+        ends.append(ended(150))
     assert ends[0] == ends[1]
     assert ends[0][0]["damping"] > 0 and abs(ends[0][0]["error"]) < 1e-5
 
@@ -228,12 +208,13 @@ def dampingStresses():
     return numbers[14 : 14 + 10 * len(joints)].reshape(len(joints), 10)[:, 3:6]
 
 
-def vibrating(blocked=""):
-    """A block on a damped joint in the middle of its vibration."""
+def vibrating(blocked="", steps=30):
+    """A block on a damped joint in the middle of its vibration; returns its circular frequency."""
     omega = oscillator(blocked=blocked, gravity=(100, 200, -1000))
-    ofKind(MasonryJointLoop).stiffnessDamping = 0.1 / omega
+    loop().stiffnessDamping = 0.1 / omega
     O.dt = 0.5 * criticalTimeStep()[0]
-    run(30)
+    run(steps)
+    return omega
 
 
 def ended(steps):
@@ -245,7 +226,7 @@ def test_damping_that_is_switched_off_is_gone_after_the_next_step(scene):
     """Half of the work of its last stress is done in that step, and the balance stays closed."""
     vibrating("xyXYZ")
     assert dampingStresses()[:, 0].all()
-    ofKind(MasonryJointLoop).stiffnessDamping = 0
+    loop().stiffnessDamping = 0
     last = balance()["damping"]
     O.step()
     assert not dampingStresses().any()
@@ -265,7 +246,7 @@ def test_a_state_right_after_damping_goes_on_bit_for_bit_in_a_scene_that_ran_on(
     scene, steps
 ):
     vibrating("xyXYZ")
-    ofKind(MasonryJointLoop).stiffnessDamping = 0
+    loop().stiffnessDamping = 0
     saved = saveScene("")
     whole = ended(20)
     loadScene(saved)

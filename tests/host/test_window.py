@@ -61,21 +61,11 @@ os._exit(0)
 def run(mode, folder, command=()):
     script = folder / "scene.py"
     script.write_text(SCENE)
-    end = [
-        "yade",
-        *(["-n"] if mode == "plain" else []),
-        "-x",
-        str(script),
-        mode,
-        str(folder),
-    ]
+    end = ["yade", *["-n"] * (mode == "plain"), "-x", str(script), mode, str(folder)]
     done = subprocess.run([*command, *end], capture_output=True, text=True, timeout=280)
     assert "TAKEN" in done.stdout, done.stdout + done.stderr
-    lines = dict(
-        line.split(" ", 1)
-        for line in done.stdout.splitlines()
-        if line.startswith(("END", "TAKEN"))
-    )
+    ends = [line for line in done.stdout.splitlines() if line[:4] in ("END ", "TAKE")]
+    lines = dict(line.split(" ", 1) for line in ends)
     return lines["END"], [float(x) for x in lines["TAKEN"].split()]
 
 
@@ -83,9 +73,7 @@ def run(mode, folder, command=()):
 def seen(tmp_path_factory):
     """A run with the view and the same run without it."""
     if not shutil.which("xvfb-run"):
-        pytest.skip(
-            "no display: xvfb-run is not installed (apt-get install xvfb xauth)"
-        )
+        pytest.skip("no display: xvfb-run is not installed")
     if "QT5" not in yade.config.features:
         pytest.skip("this YADE has no graphical interface")
     folder = tmp_path_factory.mktemp("window")
@@ -119,9 +107,8 @@ def test_blocks_joints_and_the_legend_are_drawn(seen):
         pixels, drawn = colours(folder, number)
         assert drawn > 0.05, f"picture {number} shows nothing"
     damage, regimes = (colours(folder, n)[0] for n in (0, 1))
-    assert (
-        share(damage, (0.45, 0.0, 0.05)) > 2e-4
-    )  # cracked joints, and the end of the bar
+    # cracked joints, and the end of the bar
+    assert share(damage, (0.45, 0.0, 0.05)) > 2e-4
     assert share(regimes, (0.1, 0.45, 0.8)) > 2e-4  # opening
     assert share(regimes, (0.75, 0.75, 0.75)) > 2e-4  # elastic
     # Without joints, and with the blocks' own colour, there is nothing for a legend to tell.
@@ -137,26 +124,22 @@ def test_a_run_with_the_view_costs_no_more_than_the_drawing(seen):
     assert view - drawing < 1.5 * plain
 
 
+OF_BLOCKS = "'displacement', 'velocity', 'material' or 'own'"
+OF_JOINTS = "'damage', 'opening' or 'regime'"
+
+
 @pytest.mark.parametrize(
-    "cls, good, bad",
+    "cls, good, known",
     [
-        (
-            Gl1_MasonryBlock,
-            "velocity",
-            "colours 'pink' must be 'displacement', 'velocity', 'material' or 'own'",
-        ),
-        (
-            Gl1_MasonryJointPhys,
-            "regime",
-            "colours 'pink' must be 'damage', 'opening' or 'regime'",
-        ),
+        (Gl1_MasonryBlock, "velocity", OF_BLOCKS),
+        (Gl1_MasonryJointPhys, "regime", OF_JOINTS),
     ],
 )
-def test_what_is_drawn_is_chosen_for_all_at_once_and_checked(cls, good, bad):
+def test_what_is_drawn_is_chosen_for_all_at_once_and_checked(cls, good, known):
     before = cls().colours
     cls(colours=good)
     assert cls().colours == good
-    with pytest.raises(ValueError, match=bad):
+    with pytest.raises(ValueError, match=f"colours 'pink' must be {known}"):
         cls().colours = "pink"
     assert cls().colours == good
     cls(colours=before)
@@ -167,7 +150,5 @@ def test_without_a_display_the_window_says_how_to_get_one(tmp_path):
     script.write_text("from masonry import window\nwindow.show()\n")
     done = runProgram(str(script), check=False)
     assert done.returncode == 1
-    assert (
-        "start yade without -n, on a display or under xvfb-run"
-        in done.stdout + done.stderr
-    )
+    said = done.stdout + done.stderr
+    assert "start yade without -n, on a display or under xvfb-run" in said

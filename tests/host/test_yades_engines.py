@@ -10,14 +10,9 @@ from yade import plot, timing, utils
 
 def standing(friction, **settings):
     """A block on a held one, without bond; returns its id and the weight that friction carries [N]."""
-    lower, upper = (
-        addBlock(box((0, 0, z), (0.6, 0.3, 0.3)), MasonryMat(density=2500))
-        for z in (0, 0.3)
-    )
-    hold(lower)
-    joint = MasonryJoint(
-        tensileStrength=0, cohesion=0, friction=friction, residualFriction=friction, cap=False
-    )  # fmt: skip
+    _, upper = pile(size=(0.6, 0.3, 0.3), material=MasonryMat(density=2500))
+    bond = dict(tensileStrength=0, cohesion=0, cap=False)
+    joint = MasonryJoint(friction=friction, residualFriction=friction, **bond)
     engines([joint], damping=0.3, **settings)
     connect()
     return upper, 0.6 * 0.3 * 0.3 * 2500 * G

@@ -2,6 +2,7 @@
 // What tests of all laws have in common: chance, states and energies.
 #pragma once
 #include "law/common/JointState.hpp"
+#include <array>
 #include <cmath>
 #include <random>
 #include <string>
@@ -23,17 +24,19 @@ inline double sum(const Energies& e) { return e.tension + e.shear + e.compressio
 // the last bit; empty if none does.
 template <class State>
 std::string difference(const State& one, const Energies& lostByOne, const State& other, const Energies& lostByOther) {
-    const auto numbersOf = [](const State& s, const Energies& lost) {
-        std::vector<std::pair<std::string, double>> all;
-        State::visitNumbers(s, [&](const char* name, double number, int) { all.emplace_back(name, number); });
-        all.insert(all.end(), {{"normal stress", s.normalStress}, {"regime", double(s.regime)}});
-        all.insert(all.end(), {{"tension", lost.tension}, {"shear", lost.shear}, {"compression", lost.compression}});
-        return all;
+    const auto visit = [](const State& s, const Energies& lost, auto&& see) {
+        State::visitNumbers(s, [&](const char* name, double number, int) { see(name, number); });
+        see("normal stress", s.normalStress), see("regime", double(s.regime));
+        see("tension", lost.tension), see("shear", lost.shear), see("compression", lost.compression);
     };
-    const auto first = numbersOf(one, lostByOne), second = numbersOf(other, lostByOther);
+    std::array<double, 64> numbers;
+    std::size_t n = 0;
     std::string found;
-    for (std::size_t n = 0; n < first.size(); ++n)
-        if (first[n].second != second[n].second) found += first[n].first + " ";
+    visit(one, lostByOne, [&](const char*, double number) { numbers.at(n++) = number; });
+    n = 0;
+    visit(other, lostByOther, [&](const char* name, double number) {
+        if (number != numbers[n++]) found += std::string(name) + " ";
+    });
     return found;
 }
 

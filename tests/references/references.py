@@ -24,12 +24,6 @@ from dataclasses import dataclass
 
 import masonry
 from masonry import (
-    MasonryEnergy,
-    MasonryIntegrator,
-    MasonryJoint,
-    MasonryLoad,
-    MasonryMat,
-    MasonryZones,
     addBlock,
     connect,
     criticalTimeStep,
@@ -38,10 +32,10 @@ from masonry import (
     saveCheckpoint,
 )
 from yade import O, Quaternion, Vector3
+from yade.wrapper import *
 
-FOLDER = os.path.dirname(
-    os.path.abspath(sys.argv[0] if __name__ == "__main__" else __file__)
-)
+SELF = sys.argv[0] if __name__ == "__main__" else __file__
+FOLDER = os.path.dirname(os.path.abspath(SELF))
 REMAKE = "yade -n -x tests/references/references.py --write"
 
 LENGTH, THICKNESS, HEIGHT = 0.220, 0.102, 0.081  # of a brick [m]
@@ -51,6 +45,7 @@ STRAIGHT = Quaternion.Identity
 
 # -- what is read ----------------------------------------------------------------------------------------------------
 
+REGIMES = ("elastic", "opening", "slipping", "crushing")
 peaks = {}  # smallest and largest reaction of every load since the run began [N]
 
 
@@ -111,21 +106,14 @@ def state():
         "torque on the base [N m]": list(O.forces.t(0, True)),
         "error of the balance [-]": [balance.pop("error")],
         # no reference has joints that get more points, or impacts
-        "energy [J]": [
-            v for name, v in balance.items() if name not in ("refining", "impacts")
-        ],
-        "subcontacts in a regime": [
-            float(regimes.count(r))
-            for r in ("elastic", "opening", "slipping", "crushing")
-        ],
+        "energy [J]": [balance[n] for n in balance if n not in ("refining", "impacts")],
+        "subcontacts in a regime": [float(regimes.count(r)) for r in REGIMES],
     }
     numbers.update({name: spread(rows) for name, rows in points.items() if rows})
     for name, rows in motions.items():
         numbers[name] = [x for n in shown for x in rows[n]]
-    behind = [
-        x for rows in (*points.values(), *motions.values()) for r in rows for x in r
-    ]
-    behind += [x for values in numbers.values() for x in values]
+    every = *points.values(), *motions.values(), numbers.values()
+    behind = [x for rows in every for r in rows for x in r]
     # + 0.0 turns -0.0 into 0.0.
     packed = struct.pack(f"{len(behind)}d", *(x + 0.0 for x in behind))
     return numbers, hashlib.sha256(packed).hexdigest()[:16]
@@ -134,12 +122,17 @@ def state():
 # -- scenes ----------------------------------------------------------------------------------------------------------
 
 
-def box(low, high, turn=STRAIGHT):
-    sides = zip(low, high)
-    (x0, x1), (y0, y1), (z0, z1) = sides
-    return [
-        turn * Vector3(x, y, z) for x in (x0, x1) for y in (y0, y1) for z in (z0, z1)
-    ]
+def put(low, high, material, turn=STRAIGHT):
+    """A box between two corners, turned about the origin; without a turn it stays in its plane."""
+    (x0, x1), (y0, y1), (z0, z1) = zip(low, high)
+    corners = [(x, y, z) for x in (x0, x1) for y in (y0, y1) for z in (z0, z1)]
+    points = [turn * Vector3(*corner) for corner in corners]
+    return addBlock(points, material, inPlane=turn == STRAIGHT)
+
+
+def unitAndPlate():
+    unit = MasonryMat(density=1800, young=4.8e9, poisson=0.16)
+    return unit, MasonryMat(density=2400, young=1e16, jointSet="plate")
 
 
 def layout(courses, halfUnits, halves):
@@ -157,6 +150,11 @@ def layout(courses, halfUnits, halves):
     return blocks
 
 
+CRUSHING = dict(peakRatio=20, compressiveFractureEnergy=3000)
+DILATANT = dict(dilatancy=0.1, dilatancyDecay=200, residualFriction=0.3)
+DRY = dict(tensileStrength=0, cohesion=0, friction=0.6, residualFriction=0.6)
+
+
 def wall(
     dt,
     courses=4,
@@ -172,34 +170,21 @@ def wall(
     functors=False,
     cyclic=False,
     pressure=0.12e6,
-    held=True,
 ):
     """A small wall in running bond between plates: bed, head, crack and support joints; the upper plate is driven."""
     inPlane = turn == STRAIGHT
-    unit = MasonryMat(density=1800, young=4.8e9, poisson=0.16)
-    plate = MasonryMat(density=2400, young=1e16, jointSet="plate")
+    unit, plate = unitAndPlate()
     length, height = halfUnits * LENGTH / 2, courses * HEIGHT
-    put = lambda low, high, mat: addBlock(box(low, high, turn), mat, inPlane=inPlane)
-    base = put((0, 0, -0.1), (length, THICKNESS, 0), plate)
-    brickOf = {
-        put(low, high, unit): brick
-        for brick, low, high in layout(courses, halfUnits, halves)
-    }
-    top = put((0, 0, height), (length, THICKNESS, height + 0.1), plate)
-    if held:
-        O.bodies[base].state.blockedDOFs = "xyzXYZ"
+    base = put((0, 0, -0.1), (length, THICKNESS, 0), plate, turn)
+    laid = layout(courses, halfUnits, halves)
+    brickOf = {put(low, high, unit, turn): brick for brick, low, high in laid}
+    top = put((0, 0, height), (length, THICKNESS, height + 0.1), plate, turn)
+    O.bodies[base].state.blockedDOFs = "xyzXYZ"
     up, along = turn * Vector3(0, 0, 1), turn * Vector3(1, 0, 0)
     joints = [
         MasonryJoint(name="support", jointSet="plate", elastic=True),
         MasonryJoint(
-            name="bed",
-            direction=up,
-            compressiveStrength=1.2e6,
-            peakRatio=20,
-            compressiveFractureEnergy=3000,
-            dilatancy=0.1,
-            dilatancyDecay=200,
-            residualFriction=0.3,
+            name="bed", direction=up, compressiveStrength=1.2e6, **CRUSHING, **DILATANT
         ),
         MasonryJoint(
             name="head", direction=along, tensileStrength=0.05e6, cohesion=0.06e6
@@ -236,13 +221,10 @@ def wall(
         functors=functors,
         dampingKind="local" if functors else kind,
     )
-    connect(
-        lambda one, two, geom: (
-            crack
-            if one.id in brickOf and brickOf.get(two.id) == brickOf[one.id]
-            else None
-        )
+    within = (
+        lambda one, two: one.id in brickOf and brickOf.get(two.id) == brickOf[one.id]
     )
+    connect(lambda one, two, geom: crack if within(one, two) else None)
     O.dt = dt
 
 
@@ -270,13 +252,7 @@ def kinds():
         MasonryJoint(name="default"),
         MasonryJoint(name="elastic", elastic=True),
         brittle,
-        MasonryJoint(
-            name="dry",
-            tensileStrength=0,
-            cohesion=0,
-            friction=0.6,
-            residualFriction=0.6,
-        ),
+        MasonryJoint(name="dry", **DRY),
         MasonryJoint(
             name="dilatant", dilatancy=0.2, dilatancyDecay=3000, residualFriction=0.3
         ),
@@ -289,10 +265,9 @@ def kinds():
         MasonryJoint(
             name="crushing",
             compressiveStrength=1e6,
-            peakRatio=20,
-            compressiveFractureEnergy=3000,
             capShear=2,
             capLinear=2e4,
+            **CRUSHING,
         ),
         MasonryJoint(name="without cap", cap=False, residualFriction=0.2),
     ]
@@ -301,13 +276,13 @@ def kinds():
 def couplets(dt, turn=STRAIGHT, damping=0.6, kind="local"):
     """One stack for every kind of joint: two bricks with this joint, and a driven block on them with an elastic one."""
     inPlane = turn == STRAIGHT
-    mat = MasonryMat(density=1800, young=4.8e9, poisson=0.16)
+    mat, _ = unitAndPlate()
     offered, drives = kinds(), []
     for number in range(len(offered)):
         for level, blocked in enumerate(("xyzXYZ", "yXZ" if inPlane else "", "yXYZ")):
             low = (number, 0, level * HEIGHT)
             high = (number + LENGTH, THICKNESS, (level + 1) * HEIGHT)
-            body = addBlock(box(low, high, turn), mat, inPlane=inPlane)
+            body = put(low, high, mat, turn)
             O.bodies[body].state.blockedDOFs = blocked
         if not inPlane:
             O.bodies[body].state.blockedDOFs = "XYZ"
@@ -355,32 +330,18 @@ PATH = [
 def tilted(dt, turn=STRAIGHT, rows=1, deformable=False, about=(0, 1, 0), rate=2.0):
     """A wall without an upper plate on a base that turns until the wall topples."""
     inPlane = turn == STRAIGHT
-    unit = MasonryMat(density=1800, young=4.8e9, poisson=0.16)
-    plate = MasonryMat(density=2400, young=1e16, jointSet="plate")
-    put = lambda low, high, mat: addBlock(box(low, high, turn), mat, inPlane=inPlane)
-    base = put((0, 0, -0.1), (4 * LENGTH / 2, THICKNESS, 0), plate)
-    bricks = [put(low, high, unit) for _, low, high in layout(5, 4, halves=False)]
-    soft = dict(normalStiffness=4e9, shearStiffness=2e9, cap=False)
+    unit, plate = unitAndPlate()
+    base = put((0, 0, -0.1), (4 * LENGTH / 2, THICKNESS, 0), plate, turn)
+    laid = layout(5, 4, halves=False)
+    bricks = [put(low, high, unit, turn) for _, low, high in laid]
+    soft = dict(normalStiffness=4e9, shearStiffness=2e9)
+    support = dict(name="support", jointSet="plate", elastic=True)
     zones = None
     if deformable:
         zones = MasonryZones(bodies=bricks, blocked="y" if inPlane else "")
+    dry = MasonryJoint(name="dry", cap=False, **DRY, **soft)
     engines(
-        [
-            MasonryJoint(
-                name="support",
-                jointSet="plate",
-                elastic=True,
-                **{k: soft[k] for k in ("normalStiffness", "shearStiffness")},
-            ),
-            MasonryJoint(
-                name="dry",
-                tensileStrength=0,
-                cohesion=0,
-                friction=0.6,
-                residualFriction=0.6,
-                **soft,
-            ),
-        ],
+        [MasonryJoint(**support, **soft), dry],
         damping=0.3,
         gravity=turn * Vector3(0, 0, -9.81),
         rows=rows,
@@ -398,10 +359,10 @@ def tilted(dt, turn=STRAIGHT, rows=1, deformable=False, about=(0, 1, 0), rate=2.
 
 def flying(dt, kind="local", damping=0.1):
     """A brick that spins about none of its principal axes, and a pair that spins until its joint breaks."""
-    mat = MasonryMat(density=1800, young=4.8e9, poisson=0.16)
+    mat, _ = unitAndPlate()
     for low in ((0, 0, 0), (0, 0, HEIGHT), (1, 0, 0)):
         high = [a + b for a, b in zip(low, (LENGTH, THICKNESS, HEIGHT))]
-        addBlock(box(low, high, TURN), mat)
+        put(low, high, mat, TURN)
     engines([MasonryJoint()], damping=damping, rows=None)
     engine(MasonryIntegrator).dampingKind = kind
     connect()
@@ -456,91 +417,65 @@ class Run:
     stages: list  # (instant, steps to it, what is changed before them)
     keywords: dict
     through: str = ""  # after its second stage the scene is saved and loaded: by "checkpoint" or "file"
-    like: str = (
-        ""  # name of the run whose stored numbers this one must give; empty: its own
-    )
+    like: str = ""  # the run whose stored numbers this one must give; empty: its own
 
 
 def run(build, stages, through="", like="", **keywords):
     return Run(build, stages, keywords, through, like)
 
 
+def alone(**steps):
+    """Stages of a scene that is left to itself: steps to each instant."""
+    return [(instant, count, None) for instant, count in steps.items()]
+
+
 SPACE = dict(turn=TURN, rows=None)
 RIGID, ZONED = 2.5e-5, 7e-6  # time steps of the walls [s]
-UNLIKE = dict(deformable=True, halves=False, divisions=(2, 1, 1), kind="combined")
+SOFT = dict(dt=ZONED, deformable=True, kind="combined")
+UNLIKE = dict(halves=False, **SOFT)
+LARGE = dict(halfUnits=8, courses=5)
 RUNS = {
-    "rigid": run(wall, PUSH, dt=RIGID, halfUnits=8, courses=5),
+    "rigid": run(wall, PUSH, dt=RIGID, **LARGE),
     "rigid_combined": run(wall, PUSH, dt=RIGID, kind="combined"),
     "rigid_space": run(wall, PUSH, dt=RIGID, **SPACE),
     "rigid_space_combined": run(wall, SHORT, dt=RIGID, kind="combined", **SPACE),
     "rigid_functors": run(wall, SHORT, dt=RIGID, functors=True),
     "rigid_space_functors": run(wall, SHORT, dt=RIGID, functors=True, **SPACE),
-    "rigid_resumed": run(
-        wall, PUSH, "checkpoint", "rigid", dt=RIGID, halfUnits=8, courses=5
-    ),
+    "rigid_resumed": run(wall, PUSH, "checkpoint", "rigid", dt=RIGID, **LARGE),
     "rigid_saved": run(wall, PUSH[:3], "file", dt=RIGID, kind="combined"),
-    "deformable": run(wall, PUSH, dt=ZONED, deformable=True, kind="combined"),
+    "deformable": run(wall, PUSH, **SOFT),
     "deformable_local": run(wall, SHORT, dt=ZONED, deformable=True),
-    "deformable_space": run(
-        wall, PUSH[:3], dt=ZONED, deformable=True, kind="combined", **SPACE
+    "deformable_space": run(wall, PUSH[:3], **SOFT, **SPACE),
+    "deformable_unlike": run(
+        wall, PUSH[:3], rigidBricks=2, divisions=(2, 1, 1), **UNLIKE
     ),
-    "deformable_unlike": run(wall, PUSH[:3], dt=ZONED, rigidBricks=2, **UNLIKE),
-    "deformable_space_unlike": run(
-        wall, SHORT, dt=ZONED, **{**UNLIKE, "divisions": (2, 2, 2)}, **SPACE
-    ),
-    "deformable_functors": run(
-        wall, SHORT, dt=ZONED, deformable=True, kind="combined", functors=True
-    ),
-    "deformable_resumed": run(
-        wall,
-        PUSH,
-        "checkpoint",
-        "deformable",
-        dt=ZONED,
-        deformable=True,
-        kind="combined",
-    ),
-    "deformable_saved": run(
-        wall, PUSH[:3], "file", dt=ZONED, deformable=True, kind="combined"
-    ),
+    "deformable_space_unlike": run(wall, SHORT, divisions=(2, 2, 2), **UNLIKE, **SPACE),
+    "deformable_functors": run(wall, SHORT, functors=True, **SOFT),
+    "deformable_resumed": run(wall, PUSH, "checkpoint", "deformable", **SOFT),
+    "deformable_saved": run(wall, PUSH[:3], "file", **SOFT),
     "couplets": run(couplets, PATH, dt=2.5e-5),
     "couplets_combined": run(couplets, PATH, dt=2.5e-5, turn=TURN, kind="combined"),
     "couplets_undamped": run(couplets, PATH[:3], dt=2.5e-5, damping=0),
-    "flying": run(flying, [("early", 200, None), ("late", 6000, None)], dt=3e-5),
+    "flying": run(flying, alone(early=200, late=6000), dt=3e-5),
     "flying_combined": run(
-        flying, [("early", 200, None), ("late", 6000, None)], dt=3e-5, kind="combined"
+        flying, alone(early=200, late=6000), dt=3e-5, kind="combined"
     ),
-    "collapse": run(
-        tilted,
-        [("early", 400, None), ("tilted", 3000, None), ("fallen", 5000, None)],
-        dt=5e-5,
-    ),
+    "collapse": run(tilted, alone(early=400, tilted=3000, fallen=5000), dt=5e-5),
     "collapse_space": run(
         tilted,
-        [("early", 400, None), ("tilted", 2000, None), ("fallen", 5000, None)],
+        alone(early=400, tilted=2000, fallen=5000),
         dt=5e-5,
         about=(1, 0.3, 0),
         **SPACE,
     ),
     "collapse_deformable": run(
-        tilted,
-        [("early", 1000, None), ("fallen", 12000, None)],
-        dt=1e-5,
-        deformable=True,
-        rate=8.0,
+        tilted, alone(early=1000, fallen=12000), dt=1e-5, deformable=True, rate=8.0
     ),
     "changes": run(wall, CHANGES, dt=RIGID),
-    "cyclic": run(wall, PUSH, dt=RIGID, cyclic=True, halfUnits=8, courses=5),
+    "cyclic": run(wall, PUSH, dt=RIGID, cyclic=True, **LARGE),
     "cyclic_functors": run(wall, SHORT, dt=RIGID, cyclic=True, functors=True),
     "cyclic_resumed": run(
-        wall,
-        PUSH,
-        "checkpoint",
-        "cyclic",
-        dt=RIGID,
-        cyclic=True,
-        halfUnits=8,
-        courses=5,
+        wall, PUSH, "checkpoint", "cyclic", dt=RIGID, cyclic=True, **LARGE
     ),
 }
 
@@ -595,9 +530,10 @@ def write(name, instants):
     ]
     blocks = []
     for instant, (numbers, fingerprint) in instants.items():
-        rows = [f'  "fingerprint": "{fingerprint}"'] + [
-            f"  {json.dumps(quantity)}: " + json.dumps(" ".join(map(brief, values)))
-            for quantity, values in numbers.items()
+        rows = {"fingerprint": fingerprint}
+        rows.update({name: " ".join(map(brief, of)) for name, of in numbers.items()})
+        rows = [
+            f"  {json.dumps(name)}: {json.dumps(text)}" for name, text in rows.items()
         ]
         blocks.append(f"  {json.dumps(instant)}: {{\n" + ",\n".join(rows) + "}")
     with open(pathOf(name), "w") as f:
@@ -608,17 +544,14 @@ def stored(name):
     """The stored instants of a run, in the form in which go() gives them."""
     with open(pathOf(name)) as f:
         instants = json.load(f)["instants"]
-    return {
-        instant: (
-            {
-                quantity: [float.fromhex(v) for v in values.split()]
-                for quantity, values in rows.items()
-                if quantity != "fingerprint"
-            },
-            rows["fingerprint"],
-        )
-        for instant, rows in instants.items()
-    }
+    found = {}
+    for instant, rows in instants.items():
+        fingerprint = rows.pop("fingerprint")
+        numbers = {
+            name: list(map(float.fromhex, of.split())) for name, of in rows.items()
+        }
+        found[instant] = numbers, fingerprint
+    return found
 
 
 def sizes(instants):

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// A subcontact that a law moves along a path of the displacement jump, and joints drawn at random.
+#pragma once
+#include "law/Laws.hpp"
+#include "law/cyclic_softening/CyclicLaw.hpp"
+#include "states.hpp"
+#include <functional>
+#include <type_traits>
+
+namespace masonry {
+
+inline ElasticStiffness own(const JointProperties& p) { return {p.normalStiffness, p.shearStiffness}; }
+
+template <class L> struct PathOf {
+    L law;
+    ElasticStiffness k;
+    typename L::State state{};
+    Energies dissipated{}; // [J/m²]
+    double work = 0;       // [J/m²]
+
+    PathOf(const JointProperties& p, const ElasticStiffness& stiffness) : law(p), k(stiffness) {}
+    explicit PathOf(const JointProperties& p) : PathOf(p, own(p)) {}
+
+    double step(const Jump& jump) { // returns what is dissipated
+        const double normal = state.normalStress;
+        const Shear shear = state.shearStress;
+        const auto lost = law.properties().elastic ? stepWithoutStrength(jump) : law.advance(k, state, jump);
+        dissipated.tension += lost.tension;
+        dissipated.shear += lost.shear;
+        dissipated.compression += lost.compression;
+        work += 0.5 * ((normal + state.normalStress) * jump.opening + (shear.a + state.shearStress.a) * jump.slide.a +
+                       (shear.b + state.shearStress.b) * jump.slide.b);
+        return sum(lost);
+    }
+    Energies stepWithoutStrength(const Jump& jump) { // columns do it without asking the law
+        state.opening += jump.opening;
+        state.normalStress = k.normal * (state.opening + (state.crushing - state.dilation));
+        state.shearStress.a += k.shear * jump.slide.a;
+        state.shearStress.b += k.shear * jump.slide.b;
+        state.regime = Regime::Elastic;
+        return {};
+    }
+    void move(
+        const Jump& to, int steps, const std::function<void()>& look = [] {}) {
+        for (int i = 0; i < steps; ++i) {
+            step({to.opening / steps, {to.slide.a / steps, to.slide.b / steps}});
+            look();
+        }
+    }
+    void press(double sigma, int steps = 10) {
+        move({sigma / k.normal - (state.opening + state.crushing - state.dilation), {}}, steps);
+    }
+    double stored() const { return sum(law.stored(k, state)); }
+    double lost() const { return sum(dissipated); }
+};
+
+struct Dice : Chance {
+    JointProperties properties() {
+        JointProperties p;
+        p.normalStiffness = logarithmic(1e9, 1e13);
+        p.shearStiffness = p.normalStiffness * between(0.1, 1);
+        p.friction = happens(0.1) ? 0 : between(0, 2);
+        p.residualFriction = p.friction * (happens(0.3) ? 1 : between(0, 1));
+        p.cohesion = happens(0.1) ? 0 : logarithmic(1e2, 1e8);
+        if (p.cohesion == 0) p.residualFriction = p.friction;
+        p.residualCohesion = p.cohesion * (happens(0.5) ? 0 : between(0, 1));
+        p.tensileStrength = p.friction > 0 ? std::min(1e9, p.cohesion / p.friction) * between(0, 1) : p.cohesion;
+        p.dilatancy = happens(0.5) ? 0 : p.residualFriction * between(0, 1);
+        p.dilatancyDecay = happens(0.5) ? 0 : logarithmic(1, 1e5);
+        p.modeIFractureEnergy = logarithmic(0.1, 1e3);
+        p.modeIIFractureEnergy = logarithmic(0.1, 1e4);
+        if (happens(0.3)) p.tensionTable = {{1, 0}, {between(1.1, 5), between(0, 0.5)}, {50, between(0.5, 1)}};
+        if (happens(0.3)) p.shearTable = SofteningTable::brittle();
+        p.cap = happens(0.8);
+        p.compressiveStrength = logarithmic(1e5, 1e9);
+        p.elasticLimitRatio = between(0.05, 0.95);
+        p.residualStrengthRatio = happens(0.3) ? 0 : between(0, 0.95);
+        p.peakRatio = logarithmic(1, 100);
+        p.compressiveFractureEnergy =
+            CompressionCurve::smallestFractureEnergy(p.normalStiffness, p.compressiveStrength, p.elasticLimitRatio,
+                                                     p.residualStrengthRatio, p.peakRatio) *
+            logarithmic(1.01, 10);
+        p.capShear = happens(0.2) ? 0 : logarithmic(0.1, 100);
+        p.capNormal = logarithmic(0.1, 10);
+        p.capLinear = happens(0.5) ? 0 : between(-0.3, 0.3) * p.compressiveStrength;
+        return p;
+    }
+    JointProperties cyclic() {
+        for (;;) {
+            JointProperties p;
+            p.law = "cyclic";
+            p.shearStiffnessLoss = happens(0.4) ? 0 : between(0, 0.9);
+            p.compressionStiffnessLoss = happens(0.3) ? 0 : between(0, 0.99);
+            p.bondLossByCrushing = happens(0.3) ? 0 : between(0, 1);
+            if (happens(0.5)) {
+                p.dilatancy = between(0, 0.3);
+                p.dilatancyDecay = happens(0.5) ? 0 : logarithmic(1, 1e4);
+            }
+            if (happens(0.5)) p.residualCohesion = between(0, 0.05e6);
+            if (happens(0.3)) p.friction = 0.6;
+            if (happens(0.25)) {
+                p.initialClosingStiffness = logarithmic(1e9, 3e11);
+                p.closureLimit = logarithmic(1e-6, 1e-3);
+                p.tensileStrength = 0;
+                p.compressionStiffnessLoss = 0;
+            }
+            p.cap = !happens(0.3);
+            if (happens(0.3)) {
+                p.compressiveStrength = 1e6;
+                p.compressiveFractureEnergy = 5000;
+            }
+            if (problemsOf(p).empty()) return p;
+        }
+    }
+    // What a law can do.
+    template <class L> JointProperties of() {
+        if constexpr (std::is_same_v<L, CyclicLaw>) return cyclic();
+        return properties();
+    }
+};
+
+} // namespace masonry
