@@ -11,7 +11,7 @@ LEAN = ["--lean", "--checkpoint-every", "0"]
 WIDTH, DEPTH, HEIGHT = 0.4, 0.3, 1.6  # of a block [m]
 BLOCK = WIDTH, DEPTH, HEIGHT
 WEIGHT = WIDTH * DEPTH * HEIGHT * 2600 * GRAVITY  # [N]
-BASE = "base"  # in a table: the platen below
+BASE = "<base>"  # in a table: the platen below
 
 
 def refused(text):
