@@ -124,10 +124,10 @@ class Writer:
         while re.search("<[^<>]*>", text):
             text = re.sub("<([^<>]*)>", chosen, text)
         if "DIRECTION" in text:
-            way = self.dice.choice(["(1, 0, 0)", "(1, 0, 0)", "(-1, 0, 0)"])
-            more = ", continued=True" * (way in self.pushed and self._often(0.5))
-            self.pushed.append(way)
-            text = text.replace("DIRECTION", f"direction={way}{more}")
+            towards = self.dice.choice(["(1, 0, 0)", "(1, 0, 0)", "(-1, 0, 0)"])
+            more = ", continued=True" * (towards in self.pushed and self._often(0.5))
+            self.pushed.append(towards)
+            text = text.replace("DIRECTION", f"direction={towards}{more}")
         if "AXIS" in text:
             text = text.replace("AXIS", self.dice.choice(self.drives))
         self.lines.append(text)

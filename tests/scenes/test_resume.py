@@ -77,7 +77,7 @@ def here(tmp_path, monkeypatch):
     return tmp_path
 
 
-def goesOn(script, whole):
+def resumed(script, whole):
     """The run in the folder "stopped" goes on, and leaves what the unbroken one left."""
     status, _, said = stopped.carryOut(script, "--resume", "stopped")
     assert status == 0, said
@@ -106,7 +106,7 @@ def test_a_run_stopped_again_and_again_leaves_what_an_unbroken_one_does(
         status, more, said = stopped.carryOut(script, *words, stop=act)
         assert status == 130, said
         words, taken = ("--resume", "stopped"), taken + more
-    goesOn(script, "whole")
+    resumed(script, "whole")
 
 
 @pytest.mark.parametrize(
@@ -134,4 +134,4 @@ def test_a_script_stopped_and_resumed_leaves_what_an_unbroken_one_leaves(here, s
         stop, out = stopped.signalled(how, step), "stopped"
     stopped.carryOut(script, "--out", out, stop=stop)
     if os.path.exists("stopped"):  # else it was over before it was killed
-        goesOn(script, f"whole{trial}")
+        resumed(script, f"whole{trial}")

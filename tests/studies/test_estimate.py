@@ -109,8 +109,8 @@ def test_the_mean_needs_no_line():
 def test_indicators_find_a_quantile_where_the_bridge_is_wrong():
     truth = np.quantile(bent(np.random.default_rng(9), 2_000_000, 2_000_000)[0], 0.05)
     draw = lambda g: bent(g, 120, 1000)
-    ways = ("indicator", "bridge")
-    find = lambda y, x: [estimate.quantile(y, x, 0.05, way) for way in ways]
+    methods = ("indicator", "bridge")
+    find = lambda y, x: [estimate.quantile(y, x, 0.05, method) for method in methods]
     generator = np.random.default_rng(4)
     found = list(zip(*(find(*draw(generator)) for _ in range(50))))
     inside = [np.mean([e.low <= truth <= e.high for e in one]) for one in found]
