@@ -1,16 +1,11 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What tests of scenes in YADE begin with, for ``from hosted import *``: names that nearly all of them use, and small helpers."""
 
-import math
-
-import numpy as np  # noqa: F401
-import pytest  # noqa: F401
-from conftest import ROOT, runProgram  # noqa: F401
+from usual import *
 from yade.wrapper import *  # first: its Scene is not ours
 from masonry import *
 from masonry import addBlock, engine  # noqa: F401
 from masonry._masonry import allowThreads  # noqa: F401
-from masonry.basics import Refused  # noqa: F401
 from masonry.bricks import boxCorners as corners
 from masonry.read.files import readCurve, readRun  # noqa: F401
 from yade import O, Quaternion, Vector3

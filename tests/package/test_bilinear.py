@@ -1,15 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Bilinear curves and drifts of a push: closed forms, what does not depend on units, and curves that have none."""
 
-import math
-import subprocess
-import sys
-
-import numpy as np
-import pytest
-from hypothesis import assume, given
-from hypothesis import strategies as st
-from masonry.basics import Refused
+from usual import *
 from masonry.read import bilinear
 from test_figures import writeRun
 from scipy.integrate import trapezoid
@@ -90,22 +82,22 @@ def test_the_curve_itself_has_the_plateau_and_no_force_beyond_its_end():
 
 # -- whatever the curve -----------------------------------------------------------------------------------------------
 
-shares = st.floats(0.05, 1.0)
+shares = some.floats(0.05, 1.0)
 
 
-@st.composite
+@some.composite
 def pushes(draw):
     """A curve that hardens less and less up to its peak, keeps it for a while, and softens."""
-    slopes = sorted(draw(st.lists(shares, min_size=2, max_size=6)), reverse=True)
-    steps = draw(st.lists(shares, min_size=len(slopes), max_size=len(slopes)))
+    slopes = sorted(draw(some.lists(shares, min_size=2, max_size=6)), reverse=True)
+    steps = draw(some.lists(shares, min_size=len(slopes), max_size=len(slopes)))
     corners, values = [0.0], [0.0]
     for step, slope in zip(steps, slopes):
         corners.append(corners[-1] + step)
         values.append(values[-1] + slope * step)
-    for length, share in ((draw(shares), 1.0), (draw(shares), draw(st.floats(0.0, 0.95)))):  # fmt: skip
+    for length, share in ((draw(shares), 1.0), (draw(shares), draw(some.floats(0.0, 0.95)))):  # fmt: skip
         corners.append(corners[-1] + length)
         values.append(values[-1] * share)
-    return curve(*zip(corners, values), rows=draw(st.integers(20, 200)))
+    return curve(*zip(corners, values), rows=draw(some.integers(20, 200)))
 
 
 def found(moved, force, *words):
@@ -119,7 +111,7 @@ def found(moved, force, *words):
         raise
 
 
-@given(pushes(), st.floats(1e-3, 1e3), st.floats(1e-3, 1e3), st.sampled_from(sorted(bilinear.RULES)))  # fmt: skip
+@given(pushes(), some.floats(1e-3, 1e3), some.floats(1e-3, 1e3), some.sampled_from(sorted(bilinear.RULES)))  # fmt: skip
 def test_other_units_of_displacement_and_force_scale_the_answer(push, long, strong, rule):  # fmt: skip
     moved, force = push
     one = found(moved, force, rule)
@@ -148,7 +140,7 @@ def test_areas_are_equal(push):
     assert work(code, code.mechanism) == pytest.approx(trapezoid(np.interp(fine, moved, force), fine), rel=1e-4)  # fmt: skip
 
 
-@given(pushes(), st.integers(2, 4))
+@given(pushes(), some.integers(2, 4))
 def test_more_rows_of_the_same_curve_change_nothing(push, times):
     moved, force = push
     fine = np.unique(np.concatenate([moved, np.linspace(0, moved[-1], times * len(moved))]))  # fmt: skip

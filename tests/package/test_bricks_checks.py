@@ -1,28 +1,19 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What the checks of a set of blocks find: gaps, overlaps, slivers, loose parts and joints of odd size."""
 
-import math
-import re
-import time
-
-import numpy as np
-import pytest
-from hypothesis import assume, given, settings
-from hypothesis import strategies as some
-
-from masonry.bricks import Arch, Block, Bricks, Dome, Wall, block, stack
+from usual import *
+from dataclasses import replace
+from masonry.bricks import Block, Bricks, Wall, block, stack
 from masonry.bricks.geometry import Solids, hull
 
 few = settings(max_examples=40)
 CUBE = ((0, 0, 0), (1, 1, 1))
+TETRA = ((0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1))
 
 
 def beside(dx, dy=0.0, dz=0.0):
     """Two cubes of 1 m, the second moved by 1 m + dx along x."""
     return block(*CUBE) + block(*CUBE).moved(1 + dx, dy, dz)
-
-
-# -- faces ------------------------------------------------------------------------------------------------------------
 
 
 def test_a_cube_has_six_faces_that_run_counter_clockwise_outside():
@@ -65,27 +56,18 @@ def test_volume_and_centroid_of_any_convex_solid(count, seed):
         (((0, 0, 0), (1, 0, 0), (0, 1, 0), (1, 1, 0)), "lie in one plane: no volume"),
         (((0, 0, 0),) * 4, "all its corners are one point"),
         (
-            ((0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1), (0.1, 0.1, 0.1)),
-            r"corner 4 at \(0.1, 0.1, 0.1\) m is no corner of the convex solid",
+            TETRA + ((0.1, 0.1, 0.1),),
+            r"corner 4 at \(0.1, 0.1, 0.1\) m is no corner of",
         ),
-        (
-            ((0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1), (1, 0, 0)),
-            "corner 4 .* is given twice",
-        ),
+        (TETRA + ((1, 0, 0),), "corner 4 .* is given twice"),
     ],
 )
 def test_a_block_that_is_no_convex_solid_is_reported(corners, said):
     blocks = Bricks([Block(corners, 0, "rubble")]) + block((5, 5, 5), (6, 6, 6))
-    message = blocks.problems()
-    assert (
-        re.search(r"block 0 of brick 0 \(rubble\): .*" + said, message[0])
-        and len(message) == 1
-    )
+    (message,) = blocks.problems()
+    assert re.search(r"block 0 of brick 0 \(rubble\): .*" + said, message)
     with pytest.raises(ValueError, match=said):
         blocks.cut((0, 0, 0.2), (0, 0, 1))
-
-
-# -- pairs ------------------------------------------------------------------------------------------------------------
 
 
 def test_blocks_that_fit_have_one_joint_and_no_problem():
@@ -99,18 +81,14 @@ def test_blocks_that_fit_have_one_joint_and_no_problem():
 
 @few
 @given(some.floats(3e-4, 0.2), some.floats(-400, 400), some.sampled_from("xyz"))
-def test_a_gap_and_an_overlap_are_reported_with_bricks_depth_and_place(
-    depth, turn, axis
-):
+def test_gaps_and_overlaps_are_reported_with_bricks_depth_and_place(depth, turn, axis):
     for sign, word in ((1, "gap of up to"), (-1, "overlap by")):
         pair = beside(sign * depth).turned(turn, axis)
-        message = [p for p in pair.problems() if word in p]
-        assert len(message) == 1 and message[0].startswith(
-            "block 0 of brick 0 and block 1 of brick 1"
-        )
-        size = float(re.search(word + r" (\S+) m", message[0])[1])
+        (message,) = [p for p in pair.problems() if word in p]
+        assert message.startswith("block 0 of brick 0 and block 1 of brick 1")
+        size = float(re.search(word + r" (\S+) m", message)[1])
         assert size == pytest.approx(depth, rel=0.02)
-        place = [float(x) for x in re.search(r"\((.*)\) m$", message[0])[1].split(",")]
+        place = [float(x) for x in re.search(r"\((.*)\) m$", message)[1].split(",")]
         right = block((1, 0.5, 0.5), (1.1, 0.6, 0.6)).turned(turn, axis)[0].corners[0]
         assert math.dist(place, right) < (0.51 * depth + 0.002 if sign > 0 else 1.5)
         assert not pair.joints()
@@ -122,11 +100,9 @@ def test_round_off_is_neither_gap_nor_overlap():
 
 
 def test_a_gap_that_another_block_fills_is_none():
-    three = (
-        block(*CUBE) + block((1, 0, 0), (1.2, 1, 1)) + block((1.2, 0, 0), (2.2, 1, 1))
-    )
+    three = beside(0.2) + block((1, 0, 0), (1.2, 1, 1))
     assert not [p for p in three.problems() if "gap" in p]
-    assert [p for p in (three[:1] + three[2:]).problems() if "gap of up to 0.2 m" in p]
+    assert [p for p in three[:2].problems() if "gap of up to 0.2 m" in p]
 
 
 @few
@@ -142,9 +118,8 @@ def test_blocks_at_any_angle_overlap_as_sampled_points_say(seed):
     two = two.moved(*random.uniform(-1, 1, 3))
     message = any("overlap" in p for p in (one + two).problems())
     low, high = np.array(one.low), np.array(one.high)
-    corners = np.array(
-        two[0].corners
-    )  # a corner and its three neighbours: the axes of a turned box
+    corners = np.array(two[0].corners)
+    # a corner and its three neighbours: the axes of a turned box
     origin, axes = corners[0], corners[[4, 2, 1]] - corners[0]
     inside = random.uniform(size=(20000, 3)) @ axes + origin
     margin = 0.01
@@ -153,46 +128,25 @@ def test_blocks_at_any_angle_overlap_as_sampled_points_say(seed):
     directions = random.normal(size=(3000, 3))
     directions /= np.linalg.norm(directions, axis=1)[:, None]
     a, b = (np.array(x[0].corners) @ directions.T for x in (one, two))
-    if (
-        np.maximum(a.min(axis=0) - b.max(axis=0), b.min(axis=0) - a.max(axis=0)) > 0
-    ).any():
+    gaps = a.min(axis=0) - b.max(axis=0), b.min(axis=0) - a.max(axis=0)
+    if np.max(gaps) > 0:
         assert not message
 
 
 def test_edges_that_cross_are_parted_although_no_face_parts_them():
     """Two wedges, edge above edge at right angles: only the product of the edges is an axis that separates them."""
-    wedge = Bricks(
-        [
-            Block(
-                (
-                    (-1, 0, 0),
-                    (1, 0, 0),
-                    (-1, -1, -1),
-                    (1, -1, -1),
-                    (-1, 1, -1),
-                    (1, 1, -1),
-                ),
-                0,
-            )
-        ]
-    )
+    corners = [(x, y, -abs(y)) for x in (-1, 1) for y in (-1, 0, 1)]
+    wedge = Bricks([Block(tuple(corners), 0)])
     other = wedge.turned(180, "x").turned(90, "z")
-    assert not any("overlap" in p for p in (wedge + other.moved(dz=0.01)).problems())
-    assert any(
-        "overlap by 0.01 m" in p for p in (wedge + other.moved(dz=-0.01)).problems()
-    )
-
-
-# -- sets of blocks ---------------------------------------------------------------------------------------------------
+    found = lambda dz: " ".join((wedge + other.moved(dz=dz)).problems())
+    assert "overlap" not in found(0.01) and "overlap by 0.01 m" in found(-0.01)
 
 
 def test_loose_parts_are_reported_with_their_size():
     both = stack(3, (1, 1, 1)) + stack(2, (1, 1, 1)).moved(dx=5)
     (message,) = both.problems()
-    assert (
-        message
-        == "2 blocks from block 3 of brick 3 on, near (5.500, 0.500, 0.500) m: no joint with the other 3 blocks"
-    )
+    assert message.startswith("2 blocks from block 3 of brick 3 on, near (5.500, 0.500")
+    assert message.endswith("no joint with the other 3 blocks")
 
 
 def test_touching_edges_and_corners_make_no_joint():
@@ -220,29 +174,14 @@ def test_one_wrong_brick_in_a_wall_is_found(direction):
     """A wall has 20 courses of five bricks; brick 52 is taken out, pushed by 3 mm, or made 3 mm longer."""
     wall = Wall(1.1, 1.62, halves=False)
     assert wall.problems() == []
-    if direction == "missing":
-        assert (
-            wall.where(lambda b: b.brick != 52).problems() == []
-        )  # a hole is no fault: it may be meant
+    if direction == "missing":  # a hole is no fault: it may be meant
+        assert wall.where(lambda b: b.brick != 52).problems() == []
         return
     brick = wall.where(lambda b: b.brick == 52)
-    far = lambda p: p[0] > brick.high[0] - 1e-6
-    new = (
-        brick.moved(dx=0.003)
-        if direction == "pushed"
-        else Bricks(
-            [
-                Block(
-                    tuple(
-                        (p[0] + 0.003, *p[1:]) if far(p) else p
-                        for p in brick[0].corners
-                    ),
-                    52,
-                )
-            ]
-        )
-    )
-    message = Bricks([new[0] if b.brick == 52 else b for b in wall]).problems()
+    low = brick.low[0] + 0.003 * (direction == "pushed"), *brick.low[1:]
+    new = block(low, (brick.high[0] + 0.003, *brick.high[1:]))[0]
+    new = replace(new, brick=52, course=brick[0].course)
+    message = Bricks([new if b.brick == 52 else b for b in wall]).problems()
     assert all("block 52 of brick 52" in p for p in message)
     assert any("overlap by 0.003 m" in p for p in message)
     assert any("gap of up to 0.003 m" in p for p in message) == (direction == "pushed")
@@ -254,9 +193,3 @@ def test_ten_thousand_blocks_take_seconds():
         start = time.process_time()
         assert len(made) == 10_000 and made.problems() == []
         assert time.process_time() - start < 5
-
-
-def test_arches_and_domes_have_the_joints_of_their_neighbours_alone():
-    assert len(Arch(0.3, 0.5, 27, radius=2.0).joints()) == 26
-    dome = Dome(3.0, 0.3, 6, 16)
-    assert len(dome.joints()) == 6 * 16 + 5 * 16 + 16 and dome.problems() == []

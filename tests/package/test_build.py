@@ -1,13 +1,10 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What the build makes: objects for one kind of vector units alone, and an installed package without old modules."""
 
+from usual import *
 import glob
-import os
 import pathlib
-import subprocess
 
-import pytest
-from conftest import BUILD, ROOT
 
 FILES = glob.glob(
     os.path.join(BUILD, "CMakeFiles", "masonry_core.dir", "**", "CyclicOn*.cpp.o"),

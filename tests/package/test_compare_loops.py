@@ -1,11 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The comparison of the dry-joint walls' loops says yes to the measured curves themselves, and no to others."""
 
-import os
-import sys
+from usual import *
 
-import pytest
-from conftest import ROOT
 
 sys.path.insert(0, os.path.join(ROOT, "validation", "dry_joint_walls"))
 import compare_loops  # noqa: E402

@@ -1,11 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Curves over each other, and rows for yade.plot."""
 
-import sys
-
-import numpy as np
-import pytest
-from masonry.basics import Refused
+from usual import *
 from masonry.read import comparison, drawing
 from test_figures import axis, writeRun
 
@@ -86,9 +82,6 @@ def test_a_picture_is_written(tmp_path, capsys):
     for name, start in (("p.png", b"\x89PNG"), ("p.pdf", b"%PDF")):
         assert comparison.main([folder, "--out", str(tmp_path / name)]) == 0
         assert (tmp_path / name).read_bytes().startswith(start)
-
-
-# -- yade.plot ---------------------------------------------------------------------------------------------------------
 
 
 @pytest.fixture

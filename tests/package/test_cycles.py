@@ -1,12 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Numbers and figures of the walls in cycles, from curves whose answers are known."""
 
-import os
-import sys
+from usual import *
 
-import numpy as np
-import pytest
-from conftest import ROOT
 
 sys.path.insert(0, os.path.join(ROOT, "validation", "cyclic"))
 import figures  # noqa: E402

@@ -1,12 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The Debian package that ``scripts/package.sh`` makes: what is in it, and that a wall runs with it."""
 
-import os
-import subprocess
-
+from usual import *
 import masonry
-import pytest
-from conftest import ROOT, runProgram
 
 pytestmark = [
     pytest.mark.long,

@@ -1,11 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Random fields: mean, spread and correlation are those that were asked for."""
 
-import math
-from types import SimpleNamespace
-
-import numpy as np
-import pytest
+from usual import *
 from masonry import fields, materials
 from masonry.scene.materials import withResidual
 

@@ -1,22 +1,12 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Figures of any run: what is drawn where, from frames of real joints and from curves made up for it."""
 
-import json
-import math
-import os
-import subprocess
-import sys
-
-import numpy as np
-import pytest
-from conftest import runProgram
-from masonry.basics import Refused
-from masonry import bricks
+from usual import *
 from masonry.read import curve_figure, drawing, elevation, figures, frames
 from masonry.read.files import readRun
-from masonry.read.elevation import BRICK, SHADES, Structure
+from masonry.read.elevation import Structure
 from masonry.read.views import magnificationOf, viewOf
-from matplotlib.collections import LineCollection, PolyCollection
+from matplotlib.collections import LineCollection
 from matplotlib.colors import to_rgba
 
 L, T, H = 0.2, 0.1, 0.08  # [m] of a brick
@@ -77,17 +67,6 @@ def test_what_energies_there_are_is_drawn_since_the_first_row(tmp_path, drawn):
         "viscous": [0, 2, 4, 6, 8],
         "work done": [0, 1, 2, 3, 4],
     }
-
-
-def test_marks_loops_and_the_envelope(tmp_path, drawn):
-    x = np.concatenate([np.linspace(0, 2, 21), np.linspace(2, -2, 41), np.linspace(-2, 0, 21)])  # fmt: skip
-    entry = {"x": axis("u_mm"), "y": [axis("f_kN")], "looped": True, "marks": [{"x": -2, "y": -8, "text": "lowest"}]}  # fmt: skip
-    curve_figure.curve(writeRun(tmp_path, ["u_mm", "f_kN"], np.column_stack([x, x**3]), figure=entry))  # fmt: skip
-    (top,) = drawn["curve.png"].axes
-    assert top.get_ylim()[0] < -8 and top.get_ylim()[1] > 8
-    assert [text.get_text() for text in top.texts] == ["lowest"]
-    envelope = [line for line in top.lines if line.get_label() == "envelope"]
-    assert envelope[0].get_xdata().max() == 2
 
 
 def test_what_cannot_be_drawn_is_refused_in_a_sentence(tmp_path):
@@ -307,23 +286,6 @@ def test_a_facade_has_one_elevation_with_all_parts_in_it():
     ]
 
 
-def test_what_is_nearer_to_the_viewer_is_drawn_later():
-    """A dome is seen from above, and the platen below it lies behind all stones."""
-    dome = bricks.Dome(radius=2.0, thickness=0.25, courses=4, stones=12, oculus=0.4)
-    corners = [np.array(list(map(tuple, block.corners))) for block in dome]
-    platen = np.array(bricks.boxCorners((-2.2, -2.2, -0.2), (2.2, 2.2, 0.0)))
-    blocks = asBlocks([*corners, platen, corners[0]])
-    shades = {len(dome): "held", len(dome) + 1: "watched"}
-    figure = elevation.figureOf(Structure(blocks, None, {"dome": range(len(dome))}, shades), "a dome", 0)  # fmt: skip
-    (axes,) = figure.axes
-    assert "from above" in axes.get_title()
-    drawn, *_ = [c for c in axes.collections if isinstance(c, PolyCollection)]
-    colours = [tuple(colour) for colour in drawn.get_facecolor()]
-    assert len(colours) == len(dome) + 2 and colours[0] == to_rgba(SHADES["held"])
-    assert colours.count(to_rgba(BRICK)) == len(dome)
-    assert [t.get_text() for t in figure.legends[0].get_texts()] == ["held", "watched"]
-
-
 def test_bodies_that_are_not_there_are_refused(scene, tmp_path):
     box((0, 0, 0), (L, T, H))
     pull(scene, tmp_path, box((0, 0, H), (L, T, 2 * H)), (0, 0, 1.0))
@@ -373,17 +335,13 @@ def test_a_script_of_yade_draws_without_harm(scene, tmp_path):
     assert inside == {name: (tmp_path / name).read_bytes() for name in inside}
 
 
-@pytest.mark.parametrize("kind", ["link", "pipe"])
-def test_figures_are_drawn_into_no_folder_with_links_or_pipes(tmp_path, kind):
+def test_figures_are_drawn_into_no_folder_with_links(tmp_path):
     rows = [[0.1 * n, n] for n in range(5)]
     entry = {"x": axis("time_s"), "y": [axis("top_mm")], "y_label": "top"}
     folder = writeRun(tmp_path / "run", ["time_s", "top_mm"], rows, figure=entry)
     picture = tmp_path / "run" / "curve.png"
     (tmp_path / "other").write_text("of the user")
-    if kind == "link":
-        picture.symlink_to("../other")
-    else:
-        os.mkfifo(picture)
+    picture.symlink_to("../other")
     command = [sys.executable, "-m", "masonry.read.figures", folder]
     done = subprocess.run(command, capture_output=True, text=True, timeout=60)
     assert done.returncode == 2 and "curve.png" in done.stderr

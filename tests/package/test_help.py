@@ -1,12 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """help(masonry) leads to every module: it names the rooms, and each room names its modules."""
 
+from usual import *
 import ast
-import os
-import re
 
-import pytest
-from conftest import ROOT
 
 PACKAGE = os.path.join(ROOT, "scripts", "masonry")
 #: Rooms of many modules. Those of bricks, limit and study are named by what users call, not by their modules.

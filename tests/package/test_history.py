@@ -1,26 +1,20 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Displacement histories: what the option may say, what is refused, and where the drive brakes."""
 
+from usual import *
 import hashlib
-import json
-import math
-
-import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 from masonry.run import presets
 from masonry.scene import history, options
 from masonry.scene.history import Target
 
-amplitude = st.floats(history.LEAST, history.MOST)
-pieces = st.lists(st.tuples(amplitude, st.integers(1, 20)), min_size=1, max_size=8)
+amplitude = some.floats(history.LEAST, history.MOST)
+pieces = some.lists(
+    some.tuples(amplitude, some.integers(1, 20)), min_size=1, max_size=8
+)
 
 
 def parse(*words):
     return options.parser("a wall", until=12).parse_args(words)
-
-
-# -- amplitudes -------------------------------------------------------------------------------------------------------
 
 
 def test_an_amplitude_is_a_cycle_to_either_side_and_back():
@@ -50,7 +44,7 @@ def test_any_list_of_amplitudes_is_read_as_it_was_written(wanted):
     assert json.loads(json.dumps(found)) == found
 
 
-@given(st.text("0123456789.,x+-einfa ", max_size=30))
+@given(some.text("0123456789.,x+-einfa ", max_size=30))
 @settings(max_examples=500)
 def test_any_text_is_refused_in_words_or_is_a_history(text):
     try:
@@ -68,23 +62,14 @@ def test_any_text_is_refused_in_words_or_is_a_history(text):
     "text, messages",
     [
         ("", ["must be amplitudes in mm such as 1,2x3,4, or the path of a CSV file"]),
+        ("1,,2", ["'' is no amplitude in mm such as 2 or 2x3"]),
+        ("1,x3,two", ["'x3' is no amplitude", "'two' is no amplitude"]),
         (
-            "1,,x3,2x0,-1,0,two,nan,2x1.5,2001,1x",
-            [
-                "'' is no amplitude in mm such as 2 or 2x3",
-                "'x3' is no amplitude",
-                "'2x0': the number of cycles must be a whole number, at least 1",
-                "'-1': the amplitude must be from 0.02 to 1000 mm",
-                "'0': the amplitude must be",
-                "'two' is no amplitude",
-                "'nan': the amplitude must be",
-                "'2x1.5': the number of cycles",
-                "'2001': the amplitude must be",
-                "'1x': the number of cycles",
-            ],
+            "2x0,2x1.5,1x",
+            ["'2x0': the number of cycles must be a whole number", "'1x'"],
         ),
+        ("-1,nan", ["'-1': the amplitude must be from 0.02 to 1000 mm", "'nan'"]),
         ("1x9000,2x2000", ["11000 cycles are more than 10000"]),
-        ("-1,2", ["'-1': the amplitude must be"]),
         ("loops", ["'loops' is no amplitude in mm such as 2 or 2x3, and no file has"]),
         ("nowhere.csv", ["cannot read nowhere.csv: No such file"]),
     ],
@@ -116,14 +101,9 @@ def test_a_preset_promises_nothing_for_a_history():
     assert preset["promise"] is None and preset["overrides"] == ["history"]
 
 
-# -- files --------------------------------------------------------------------------------------------------------------
-
-
 def test_a_file_gives_its_displacements_and_leaves_other_columns_alone(tmp_path):
     path = tmp_path / "measured.csv"
-    data = (
-        "\ufefftime_s, displacement_mm ,note\r\n0,0,start\r\n1,0.5,\r\n\r\n2,-1e0,x\r\n"
-    )
+    data = "\ufefftime_s, displacement_mm ,note\r\n0,0,a\r\n1,0.5,\r\n\r\n2,-1e0,x\r\n"
     path.write_bytes(data.encode())
     found = parse("--history", str(path)).history
     assert found["points_mm"] == [0, 0.5, -1]
@@ -142,13 +122,13 @@ def test_a_file_gives_its_displacements_and_leaves_other_columns_alone(tmp_path)
         ("", "must name one column displacement_mm, it has nothing"),
         ("a,b\n1,2\n", "must name one column displacement_mm, it has a, b"),
         ("displacement_mm,displacement_mm\n1,2\n", "must name one column"),
-        ("displacement_mm\n", "it has 0 displacements, a history needs two at least"),
-        ("displacement_mm\n1\n", "it has 1 displacements"),
+        (
+            "displacement_mm\n1\n",
+            "it has 1 displacements, a history needs two at least",
+        ),
         ("displacement_mm\n1\n\ntwo\n3\n[mm]\n", "line 4: 'two' is not a number; "),
-        ("displacement_mm\n1\n\ntwo\n3\n[mm]\n", "line 6: '[mm]' is not a number"),
         ("a,displacement_mm\n1,2\n3\n4,5\n", "line 3: '' is not a number"),
         ("displacement_mm\n1\nnan\n", "line 3: nan mm must be from -1000 to 1000 mm"),
-        ("displacement_mm\n1\n-inf\n", "line 3: -inf mm must be"),
         ("displacement_mm\n1\n2e3\n", "line 3: 2e3 mm must be"),
         ("displacement_mm\n0\n0.01\n", "no displacement is 0.02 mm or more"),
         ('displacement_mm\n1\n"2\n', "unexpected end of data"),
@@ -173,23 +153,18 @@ def test_no_more_than_ten_problems_of_a_file_are_reported(tmp_path):
         history.parse(str(path))
 
 
-# -- the way of the drive -----------------------------------------------------------------------------------------------
-
-
 def test_the_drive_brakes_where_it_turns_and_passes_the_rest():
     found = history.targets([1, -1, 0, 2, -2, 0])
     ways, brakes = [1, -1, 1, 1, -1, 1], [1, -1, 2, 2, -2, None]
     points = [1, -1, 0, 2, -2, 0]
     assert found == [Target(*three) for three in zip(points, ways, brakes)]
-    assert history.targets([1, 2, 2, 1.5], True) == [
-        Target(1, 1, 2),
-        Target(2, 1, 2),
-        Target(2, 1, 2),
-        Target(1.5, -1, 1.5),
-    ]
+    ends = [(1, 1, 2), (2, 1, 2), (2, 1, 2), (1.5, -1, 1.5)]
+    assert history.targets([1, 2, 2, 1.5], True) == [Target(*three) for three in ends]
 
 
-@given(st.lists(st.sampled_from([-2.0, -1.0, 0.0, 1.0, 2.0]), min_size=1, max_size=30))
+@given(
+    some.lists(some.sampled_from([-2.0, -1.0, 0.0, 1.0, 2.0]), min_size=1, max_size=30)
+)
 def test_the_drive_brakes_for_the_next_extreme_on_its_way(points):
     found = history.targets(points, stops=True)
     assert [t.displacement for t in found] == points

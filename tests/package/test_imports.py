@@ -1,41 +1,19 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Who may import whom in the Python package and in the scenes, by what their sources say."""
 
+from usual import *
 import ast
-import os
 
-import pytest
-from conftest import ROOT
 
 PACKAGE = os.path.join(ROOT, "scripts", "masonry")
 
 #: The rooms of the package. Each imports only those above it, and itself.
 LAYERS = ["basics", "host", "notebook", "packages", "memory", "background", "folders", "arguments", "bricks", "read", "capacity", "assembly", "run", "limit", "scene", "study"]  # fmt: skip
 #: Rooms and modules that work where YADE is not installed, with all that they import.
-WITHOUT_YADE = [
-    "basics",
-    "host",
-    "notebook",
-    "packages",
-    "memory",
-    "background",
-    "folders",
-    "arguments",
-    "bricks",
-    "read",
-    "capacity",
-    "study",
-    "run.accuracy",
-    "run.batch",
-    "run.presets",
-]
-WITHOUT_YADE += [
-    "run.progress",
-    "run.lock",
-    "run.results",
-    "scene.fields",
-    "scene.history",
-]
+WITHOUT_YADE = LAYERS[: LAYERS.index("assembly")] + ["study"]
+NAMES = "accuracy batch presets progress lock results"
+WITHOUT_YADE += [f"run.{name}" for name in NAMES.split()]
+WITHOUT_YADE += ["scene.fields", "scene.history"]
 PACKAGES = [name for name in LAYERS if os.path.isdir(os.path.join(PACKAGE, name))]
 MODULES = ["__init__"] + sorted(
     os.path.relpath(os.path.join(folder, name), PACKAGE)[:-3].replace(os.sep, ".")

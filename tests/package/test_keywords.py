@@ -1,15 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What a script says of its options holds unless the command line gives them, however they are read."""
 
-import os
-
-import pytest
-from conftest import runProgram
-from hypothesis import given, settings
-from hypothesis import strategies as some
-
+from usual import *
 from masonry import Scene, bricks, materials
-from masonry.basics import Refused
 from masonry.run.presets import PRESETS
 from masonry.scene import options
 
@@ -25,6 +18,9 @@ VALUES = {
     "record": ("one.AT2", "other.AT2"),
     "scale": (2.0, 0.5),
 }
+
+
+forms = pytest.mark.parametrize("form", ["own", "list"])
 
 
 def made(form, words, **usual):
@@ -56,7 +52,7 @@ def test_the_script_holds_and_the_command_line_wins(form, script, line):
     assert set(vars(args)) == set(plain)  # what a checkpoint and run.json hold
 
 
-@pytest.mark.parametrize("form", ["own", "list"])
+@forms
 def test_one_note_says_what_the_command_line_wins_over(form, capsys):
     made(form, ["--rate", "7", "--damping", "0.5", "--until", "2"], rate=100, damping=0.3, joints="brittle")  # fmt: skip
     said = capsys.readouterr().out
@@ -65,7 +61,7 @@ def test_one_note_says_what_the_command_line_wins_over(form, capsys):
     assert not capsys.readouterr().out
 
 
-@pytest.mark.parametrize("form", ["own", "list"])
+@forms
 @pytest.mark.parametrize(
     "words, usual, until, path",
     [
@@ -76,21 +72,19 @@ def test_one_note_says_what_the_command_line_wins_over(form, capsys):
         ([], {"until": 4}, 4, None),
     ],
 )
-def test_until_and_history_take_the_place_of_each_other(
-    form, words, usual, until, path
-):
+def test_until_and_history_exclude_each_other(form, words, usual, until, path):
     args = made(form, words, **usual)
     assert args.until == until and (args.history and args.history["text"]) == path
 
 
-@pytest.mark.parametrize("form", ["own", "list"])
+@forms
 def test_settings_of_the_script_come_before_those_of_the_command_line(form):
     args = made(form, ["--set", "bed.friction=0.4"], set=["bed.friction=0.3", "bed.cohesion=0"])  # fmt: skip
     texts = [("bed", "friction", "0.3"), ("bed", "cohesion", "0"), ("bed", "friction", "0.4")]  # fmt: skip
     assert args.set == texts
 
 
-@pytest.mark.parametrize("form", ["own", "list"])
+@forms
 def test_a_preset_wins_over_the_script_and_says_so(form, capsys):
     args = made(form, ["--preset", "fast", "--damping", "0.7"], rate=50, damping=0.3)
     assert (args.rate, args.damping) == (PRESETS["fast"]["rate"], 0.7)
@@ -102,7 +96,7 @@ def test_a_preset_wins_over_the_script_and_says_so(form, capsys):
     assert args.overrides == []
 
 
-@pytest.mark.parametrize("form", ["own", "list"])
+@forms
 @pytest.mark.parametrize(
     "words, overrides",
     [
@@ -121,7 +115,7 @@ def test_only_what_differs_from_preset_and_script_goes_beside_a_preset(form, wor
     assert args.overrides == overrides
 
 
-@pytest.mark.parametrize("form", ["own", "list"])
+@forms
 def test_keywords_are_checked_with_all_problems_at_once(form):
     wrong = dict(joints="britle", rate=-50, rat=3, lean=1, resume="x", points=2.5, out=[], damping=True, set="bed=1", until=1, history="1")  # fmt: skip
     with pytest.raises(Refused) as refused:

@@ -1,12 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Numbers of loops, on loops of which they are known in closed form, whole and with the noise of a measurement."""
 
-import math
-
-import numpy as np
-import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from usual import *
 from masonry.read import loops
 
 FINE = 20001  # rows of a cycle
@@ -19,13 +14,10 @@ def path(*corners, rows=400):
     return tuple(np.interp(places, range(len(corners)), column) for column in corners.T)
 
 
-# -- closed forms -----------------------------------------------------------------------------------------------------
-
-
 @given(
-    amplitude=st.floats(0.1, 100),
-    stiffness=st.floats(0.1, 300),
-    damping=st.floats(0.01, 0.5),
+    amplitude=some.floats(0.1, 100),
+    stiffness=some.floats(0.1, 300),
+    damping=some.floats(0.01, 0.5),
 )
 @settings(max_examples=30)
 def test_an_ellipse_has_the_damping_that_drew_it(amplitude, stiffness, damping):
@@ -88,10 +80,7 @@ def test_unequal_amplitudes_and_cycles_that_begin_with_the_negative_side():
     assert [(c.smallest_mm, c.largest_mm) for c in found] == [(-1, 2), (-3, 5)]
 
 
-# -- measured curves ----------------------------------------------------------------------------------------------------
-
-
-@given(st.integers(0, 2**32 - 1), st.floats(0, 0.05))
+@given(some.integers(0, 2**32 - 1), some.floats(0, 0.05))
 @settings(max_examples=30)
 def test_noise_below_the_threshold_changes_no_count(seed, noise):
     amplitudes = [1, 1, 3, 3, 6]
@@ -107,8 +96,8 @@ def test_noise_below_the_threshold_changes_no_count(seed, noise):
 
 
 @given(
-    st.lists(st.floats(-10, 10), min_size=1, max_size=60),
-    st.floats(0, 5),
+    some.lists(some.floats(-10, 10), min_size=1, max_size=60),
+    some.floats(0, 5),
 )
 def test_turning_points_alternate_and_nothing_between_them_turns(values, threshold):
     rows = loops.turningPoints(values, threshold)
@@ -125,9 +114,9 @@ def test_turning_points_alternate_and_nothing_between_them_turns(values, thresho
 
 
 @given(
-    st.lists(st.floats(-10, 10), min_size=2, max_size=60),
-    st.floats(0, 5),
-    st.floats(-3, 3),
+    some.lists(some.floats(-10, 10), min_size=2, max_size=60),
+    some.floats(0, 5),
+    some.floats(-3, 3),
 )
 def test_half_cycles_follow_one_another_and_their_work_adds_up(values, least, zero):
     force = [math.sin(3 * v) for v in values]
@@ -170,9 +159,6 @@ def test_a_force_that_lasts_to_the_next_extreme_leaves_no_residual_displacement(
     assert second.residual_positive_mm == pytest.approx(0, abs=1e-9)
 
 
-# -- envelope ---------------------------------------------------------------------------------------------------------
-
-
 def test_the_envelope_is_what_no_earlier_row_has_reached():
     moved, force = path((0, 0), (1, 5), (-1, -5), (2, 7), (-2, -6), (1, 4), rows=100)
     right, left = loops.envelope(moved)
@@ -181,9 +167,6 @@ def test_the_envelope_is_what_no_earlier_row_has_reached():
     assert force[right].max() == 7 and force[left].min() == -6
     again = (right > 100) & (moved[right] <= 1)
     assert not again.any()
-
-
-# -- what is refused ----------------------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize(

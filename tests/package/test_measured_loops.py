@@ -1,12 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The measured loops of the dry-joint walls are read, put in order and thinned as their README says."""
 
-import os
-import sys
+from usual import *
 
-import numpy as np
-import pytest
-from conftest import ROOT
 
 sys.path.insert(0, os.path.join(ROOT, "validation", "dry_joint_walls"))
 import measured  # noqa: E402

@@ -1,12 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Nothing runs that was not asked: files in the present folder, ports of YADE, and what apt-get would remove."""
 
-import os
-import subprocess
-import sys
+from usual import *
 
-import pytest
-from conftest import ROOT, runProgram
 
 #: Modules of Python and of other libraries that the package reads.
 PLANTED = (

@@ -1,15 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Masonry of one's own by formulas: the numbers of its joints, what it refuses and warns of, and one wall that has its modulus."""
 
-import math
-from types import SimpleNamespace
-
-import pytest
-from hypothesis import assume, given, settings
-from hypothesis import strategies as some
-
+from usual import *
 from masonry import AT_REST, Scene, bricks, materials
-from masonry.basics import Refused
 
 SIZE, MORTAR = (0.25, 0.12, 0.065), 0.010
 CLAY = dict(E=4e9, unit_E=9e9, fc=14e6, fv0=0.25e6, friction=0.6, ft=0.2e6, unit=SIZE, joint=MORTAR, density=1800)  # fmt: skip
@@ -193,9 +186,6 @@ def test_bricks_crack_if_their_strength_is_given():
     assert crack.friction == crack.residualFriction == 0.75
 
 
-# -- what is refused, and what is a warning ---------------------------------------------------------------------------
-
-
 @pytest.mark.parametrize(
     "changes, message",
     [
@@ -294,9 +284,6 @@ def test_softening_that_snaps_back_is_a_warning_and_no_scene(
         else:
             assert scene.settle() == AT_REST
             scene.finish()
-
-
-# -- one wall ---------------------------------------------------------------------------------------------------------
 
 
 def test_a_wall_has_the_modulus_of_its_masonry(tmp_path):

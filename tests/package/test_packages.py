@@ -1,14 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What is said and left out where a package that only a part of the project needs is not installed."""
 
-import os
-import re
-import subprocess
-import sys
-
-import pytest
-from conftest import ROOT
-
+from usual import *
 from masonry import packages
 
 #: Modules named in MISSING cannot be imported, as if they were not installed.

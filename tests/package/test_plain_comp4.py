@@ -1,11 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The plain program of COMP-4, written without the plugin, finds what the plugin finds."""
 
-import os
-import sys
+from usual import *
 
-import pytest
-from conftest import ROOT
 
 sys.path.insert(0, os.path.join(ROOT, "validation", "benchmark"))
 import plain  # noqa: E402

@@ -1,12 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The plain model of the dry-joint wall against statics, and against the closed form of its shear stiffness."""
 
-import os
-import subprocess
-import sys
+from usual import *
 
-import pytest
-from conftest import ROOT
 
 sys.path.insert(0, os.path.join(ROOT, "validation", "dry_joint_walls"))
 import plain_wall  # noqa: E402

@@ -1,14 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """validation/remake.py knows what makes every result of validation/, in which order, and which of them are stale."""
 
+from usual import *
 import fnmatch
-import json
-import os
-import subprocess
-import sys
 
-import pytest
-from conftest import ROOT
 
 sys.path.insert(0, os.path.join(ROOT, "validation"))
 import remake  # noqa: E402

@@ -1,9 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Curves as arrays with units, and the table of results."""
 
-import numpy as np
-import pytest
-from masonry.basics import Refused
+from usual import *
 from masonry.read.shown import Curve, RunFolder, resultsOf, unitOf
 
 

@@ -1,12 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What a run imports: its start is short because it loads nothing that it does not need."""
 
-import json
-import os
-import subprocess
+from usual import *
 
-import pytest
-from conftest import ROOT, runProgram
 
 #: What only pictures, limit analysis, studies and files of bricks need: each takes a tenth of a second or more.
 NOT_NEEDED = ["matplotlib", "meshio", "openturns", "pandas", "scipy", "masonry.study", "numpy.testing"]  # fmt: skip

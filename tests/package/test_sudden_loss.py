@@ -1,10 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """A push whose force falls at once is doubted; ordinary softening and waves are not."""
 
-import math
-
-import pytest
-
+from usual import *
 from masonry.read.curves import suddenLoss
 
 

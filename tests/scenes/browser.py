@@ -24,7 +24,7 @@ needed = [
     pytest.mark.long,
     pytest.mark.xdist_group("browser"),
 ]
-BRICK, RED, BLUE = (232, 215, 184), (214, 39, 40), (31, 119, 180)
+BRICK, RED = (232, 215, 184), (214, 39, 40)
 
 
 def near(pixels, colour, within=0.08):
@@ -39,6 +39,22 @@ def seen(chromium, tmp_path, element=None):
     path = str(tmp_path / "seen.png")
     chromium.picture(path)
     return imread(path)[..., :3]
+
+
+def viewed(chromium, path):
+    """The browser with a page in it; ``view`` is the first View of the page."""
+    chromium.problems.clear()
+    chromium.requests.clear()
+    chromium.open(path, height=900)
+    chromium.value("masonryViews[0].then(found => { window.view = found; return 0 })")
+    return chromium
+
+
+def moved(chromium, frame):
+    """Move the slider of the frames."""
+    slider = "document.querySelector('[aria-label=frame]')"
+    chromium.value(f"({slider}.value = {frame}, {slider}.dispatchEvent(new Event('input')), 0)")  # fmt: skip
+    chromium.drawn()
 
 
 class Browser:
@@ -93,7 +109,7 @@ class Browser:
             if not url.startswith(("data:", "blob:")):
                 self.requests.append(url)
 
-    def open(self, path, width=1000, height=700, dark=False, dots=1):
+    def open(self, path, width=1000, height=700):
         """Load a file, and wait until its pictures are drawn."""
         if not self._session:
             target = self.call("Target.createTarget", url="about:blank")["targetId"]
@@ -101,9 +117,7 @@ class Browser:
             self._session = found["sessionId"]
             for domain in ("Page", "Runtime", "Log", "Network"):
                 self.call(domain + ".enable")
-        self.call("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=dots, mobile=False)  # fmt: skip
-        scheme = {"name": "prefers-color-scheme", "value": "dark" if dark else "light"}
-        self.call("Emulation.setEmulatedMedia", features=[scheme])
+        self.call("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=False)  # fmt: skip
         self.call("Page.navigate", url="file://" + os.path.abspath(path))
         until = time.monotonic() + PATIENCE
         while not self.value("document.readyState === 'complete'"):
@@ -129,15 +143,14 @@ class Browser:
         with open(path, "wb") as file:
             file.write(base64.b64decode(data))
 
-    def drag(self, start, end, button="left"):
-        """Move the mouse from one place to another with a button down [pixels]."""
-        buttons = {"left": 1, "right": 2}[button]
-        mouse = lambda kind, x, y, **more: self.call("Input.dispatchMouseEvent", type=kind, x=x, y=y, **more)  # fmt: skip
-        mouse("mousePressed", *start, button=button, buttons=buttons, clickCount=1)
+    def drag(self, start, end):
+        """Move the mouse from one place to another with its left button down [pixels]."""
+        mouse = lambda kind, x, y, **more: self.call("Input.dispatchMouseEvent", type=kind, x=x, y=y, button="left", **more)  # fmt: skip
+        mouse("mousePressed", *start, buttons=1, clickCount=1)
         for share in (0.25, 0.5, 0.75, 1):
             x, y = (a + share * (b - a) for a, b in zip(start, end))
-            mouse("mouseMoved", x, y, button=button, buttons=buttons)
-        mouse("mouseReleased", *end, button=button, clickCount=1)
+            mouse("mouseMoved", x, y, buttons=1)
+        mouse("mouseReleased", *end, clickCount=1)
         self.drawn()
 
     def wheel(self, place, pixels):
@@ -145,26 +158,11 @@ class Browser:
         self.call("Input.dispatchMouseEvent", type="mouseWheel", x=x, y=y, deltaX=0, deltaY=pixels)  # fmt: skip
         self.drawn()
 
-    def touch(self, *moments):
-        """Fingers on the screen: lists of their places, one after the other."""
-        for kind, places in zip(["touchStart"] + ["touchMove"] * len(moments), moments):
-            points = [{"x": x, "y": y, "id": n} for n, (x, y) in enumerate(places)]
-            self.call("Input.dispatchTouchEvent", type=kind, touchPoints=points)
-        self.call("Input.dispatchTouchEvent", type="touchEnd", touchPoints=[])
-        self.drawn()
-
-    def press(self, key, shift=False):
+    def press(self, key):
         """Press a key in what has the focus; ``key`` as JavaScript names it."""
         for kind in ("keyDown", "keyUp"):
-            text = {"text": key} if len(key) == 1 and kind == "keyDown" else {}
-            self.call("Input.dispatchKeyEvent", type=kind, key=key, modifiers=8 * shift, **text)  # fmt: skip
+            self.call("Input.dispatchKeyEvent", type=kind, key=key)
         self.drawn()
-
-    def paper(self, path):
-        """Write what would be printed to a .pdf file."""
-        data = self.call("Page.printToPDF", printBackground=False, landscape=True)
-        with open(path, "wb") as file:
-            file.write(base64.b64decode(data["data"]))
 
 
 @contextlib.contextmanager

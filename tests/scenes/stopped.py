@@ -5,21 +5,10 @@ A run that was stopped and resumed must leave what an unbroken one leaves, byte 
 end, and the numbers of run.json but for times.
 """
 
-import contextlib
+from hosted import *
 import io
-import json
-import math
-import os
-import random
-import shutil
-import signal
-import sys
-
 from kept import records
-from yade import O
-
 from masonry import basics
-from masonry.read.files import readRun
 from masonry.run import checkpoints
 from masonry.run.run import Run
 from masonry.scene import Scene
@@ -29,7 +18,6 @@ from masonry.scene.stages import growing
 BEGIN = """\
 from masonry import AT_REST, Scene, bricks, materials
 """
-TRY = "try:\n    {}\nexcept ValueError as error:\n    print(error)"
 #: Entries of run.json that may differ between an unbroken run and a resumed one.
 TIMES = "date wall_clock_s seconds microseconds_per_step nanoseconds_per_subcontact_step resumed_at_s host directory options stages started".split()
 
@@ -38,7 +26,63 @@ class Stopped(BaseException):
     """The process is killed here, or given up."""
 
 
-# -- scripts -----------------------------------------------------------------------------------------------------------
+TOWARDS = "<(1, 0, 0)|(-1, 0, 0)>"
+LONGEST = "longest=<0.01~0.08>"
+DAMPED = "<|, damping=0.2|, massDamping=5.0|, stiffnessDamping=1e-5>"
+GROWS = "over=0.03, within=0.3"
+FORCE = "(<-100~100>, 0, <-100~100>)"
+POINT = "(<0~1>, 0.05, <0.05~0.2>)"
+TRY = "try:\n    {}\nexcept ValueError as error:\n    print(error)"
+
+
+def bracket(load):
+    rests = f"lambda f: scene.{load}, longest=0.02) == AT_REST"
+    return TRY.format(f"scene.bracket({rests}, 0.01, <0.3~3>, within=0.3)")
+
+
+#: Stages by when they can be said: always, of rigid bricks, of a target that moves, of a platen, of a handle, of a drive.
+#: <a~b> is a random number, <x|y> one of several texts; DIRECTION and AXIS are chosen by :class:`Writer`.
+STAGES = {
+    "always": {
+        "settle": f"scene.settle({LONGEST}<|, damping='combined'|, damping='local'>)",
+        "lean": f"scene.lean(<0.01~0.6>, {TOWARDS}, {LONGEST})",
+        "accelerate": f"scene.accelerate(m := <0.1~1.5>, {TOWARDS}, rate=30 * m, within=0.3)",
+        "tilt": f"scene.tilt(m := <5~50>, {TOWARDS}, rate=30 * m, within=0.3)",
+        "bracket": bracket("lean(f"),
+        "shake": f"scene.shake([0.0, <-3~3>, <-3~3>, <-3~3>, 0.0], every=<0.001~0.003>{DAMPED})",
+        "run": "scene.run(<0.001~0.02><|, damping=0.3|, damping=0.0>)",
+        "stepBack": TRY.format("scene.stepBack()"),
+        "move": "scene.move(base, <x|z>=<-0.05~-0.01>)",
+        "result": 'scene.result("time", scene.results.rows[-1][0] if scene.results.rows else 0.0, "s")',
+        "bound": f"print(scene.bound(towards={TOWARDS})['load'])",
+    },
+    "rigid": {
+        "wind": f"scene.wind(<100~900>, {TOWARDS}, {LONGEST})",
+        "growWind": f"scene.growWind(<300~3000>, {TOWARDS}, {GROWS})",
+        "bracketWind": bracket("wind(1e3 * f, (1, 0, 0)"),
+    },
+    "moves": {
+        "push": "scene.push(top, <0.05~0.4>, DIRECTION)",
+        "cycle": "scene.cycle(top, <[<0.02~0.1>]|[<0.02~0.1>, <0.02~0.1>]>, DIRECTION)",
+        "follow": "scene.follow(top, 'path.csv', DIRECTION)",
+        "load": f"scene.load(top, {FORCE}, {LONGEST})",
+        "growLoad": f"scene.growLoad(top, {FORCE}, {GROWS})",
+        "release": TRY.format("scene.release(top, '<x|z|xz>')"),
+    },
+    "platen": {
+        "press": f"scene.press(top, <5e4~4e5>, {LONGEST})",
+        "growPress": f"scene.growPress(top, <1e5~4e6>, {GROWS})",
+    },
+    "handle": {"hold": "scene.hold(top, '<x|xz|xyzXYZ>')"},
+    "drive": {"drive": "scene.drive(top, AXIS=<0.005~0.05>)"},
+}
+#: Before the first of these a scene settles.
+LATER = (
+    "bound bracket bracketWind growWind hold load press result stepBack wind".split()
+)
+SPECIAL = "prestress=<10~300>|slack=1e-5|compression=True|breaking=<1e-6~1e-4>"
+TIE = f"scene.tie({POINT}, anchor=(<-1~2>, 0.05, <-1~1>), stiffness=1e7, strength=<301~900>, <{SPECIAL}>)"
+SPRING = f"scene.spring({POINT}, stiffness=(1e6, 0, 1e6), rotation=(0, 1e4, 0))"
 
 
 class Writer:
@@ -50,220 +94,89 @@ class Writer:
     def __init__(self, seed):
         self.dice = random.Random(seed)
         self.lines = []
-        self.pushed = []  # how targets were pushed already
+        self.pushed = []  # how the target was pushed already
 
     def write(self):
         """The text of the script."""
-        self._describe()
-        stages = self.dice.choices(self._stages(), k=self.dice.randint(2, 6))
-        describing = [
-            self._bound,
-            self._press,
-            self._load,
-            self._wind,
-            self._bracket,
-            self._result,
-            self._hold,
-            self._stepBack,
-        ]
-        if self.loaded or stages[0] in describing or self.dice.random() < 0.7:
-            stages.insert(0, self._settle)
-        self.lines += [one() for one in stages]
-        self.lines.append("scene.finish()")
-        return BEGIN + "\n".join(self.lines) + "\n"
+        can = self._describe()
+        stages = {n: t for kind in can for n, t in STAGES[kind].items()}
+        names = self.dice.choices([*stages, "push", "drive"], k=self.dice.randint(2, 6))
+        names = [n for n in names if n in stages]
+        settles = self.loaded or not names or names[0] in LATER
+        if settles or self._often(0.7):
+            names.insert(0, "settle")
+        for name in names:
+            self._say(stages[name])
+        return BEGIN + "\n".join([*self.lines, "scene.finish()"]) + "\n"
 
-    def _number(self, low, high):
-        return float(f"{self.dice.uniform(low, high):.3g}")
+    def _often(self, share):
+        return self.dice.random() < share
+
+    def _say(self, text):
+        """Add a line, with everything chosen that it leaves open."""
+
+        def chosen(found):
+            ends = re.fullmatch(r"(-?[\d.e-]+)~(-?[\d.e-]+)", found[1])
+            if ends:
+                return f"{self.dice.uniform(*map(float, ends.groups())):.3g}"
+            return self.dice.choice(found[1].split("|"))
+
+        while re.search("<[^<>]*>", text):
+            text = re.sub("<([^<>]*)>", chosen, text)
+        if "DIRECTION" in text:
+            towards = self.dice.choice(["(1, 0, 0)", "(1, 0, 0)", "(-1, 0, 0)"])
+            more = ", continued=True" * (towards in self.pushed and self._often(0.5))
+            self.pushed.append(towards)
+            text = text.replace("DIRECTION", f"direction={towards}{more}")
+        if "AXIS" in text:
+            text = text.replace("AXIS", self.dice.choice(self.drives))
+        self.lines.append(text)
 
     def _describe(self):
-        dice = self.dice
-        self.deformable = dice.random() < 0.25
-        self.drives = dice.choice([None, None, "x", "xz"])
-        self.platen = dice.random() < 0.7
-        space = not self.deformable and dice.random() < 0.2
-        length, courses = 0.22 * dice.choice([1.5, 2, 2.5]), dice.choice([2, 3])
-        options = dict(
-            rate=dice.choice([100, 400]),
-            blocks="deformable" if self.deformable else "rigid",
-            joints=dice.choice(["softening", "softening", "cyclic", "brittle"]),
-            damping_kind=dice.choice(["local", "combined"]),
-            plane=False if space else None,
+        """The lines before the first stage. Returns the kinds of stages that can follow."""
+        deformable, platen = self._often(0.25), self._often(0.7)
+        self.drives = self.dice.choice([None, None, "x", "xz"])
+        courses, self.loaded = self.dice.choice([2, 3]), False
+        space = not deformable and self._often(0.2)
+        height = f"{0.081 * courses:g}"
+        self._say(f"wall = bricks.Wall(length=<0.33|0.44|0.55>, height={height})")
+        blocks = "'deformable', divisions=1" if deformable else "'rigid'"
+        self._say(
+            "scene = Scene('s', wall, materials.<calciumSilicate()"
+            "|dry(friction=0.6, normalStiffness=2e9, density=1800)>, "
+            f"rate=<100|400>, blocks={blocks}, joints='<softening|softening|cyclic|brittle>', "
+            f"damping_kind='<local|combined>', plane={False if space else None})"
         )
-        if self.deformable:
-            options["divisions"] = 1
-        kind = dice.choice(
-            [
-                "calciumSilicate()",
-                "dry(friction=0.6, normalStiffness=2e9, density=1800)",
-            ]
-        )
-        said = ", ".join(f"{name}={value!r}" for name, value in options.items())
-        self.lines += [
-            f"wall = bricks.Wall(length={length:g}, height={0.081 * courses:g})",
-            f'scene = Scene("s", wall, materials.{kind}, {said})',
-            'base = scene.platen("bottom")',
-        ]
-        self.loaded = False
-        if self.platen:
-            drive = f", drive={self.drives!r}" if self.drives else ""
-            rotation = dice.choice(["held", "free"])
-            self.lines.append(
-                f'top = scene.platen("top", rotation="{rotation}"{drive})'
-            )
-            if self.drives != "xz" and dice.random() < 0.8:
-                self.lines.append(f"scene.press(top, {self._number(5e4, 4e5)})")
-                self.loaded = True
+        self._say('base = scene.platen("bottom")')
+        if platen:
+            drive = f", drive={self.drives!r}" * bool(self.drives)
+            self._say(f'top = scene.platen("top", rotation="<held|free>"{drive})')
+            self._perhaps(0.8 * (self.drives != "xz"), "scene.press(top, <5e4~4e5>)")
         else:
-            word = "watch" if self.deformable else "handle"
-            self.lines.append(f"top = scene.{word}(-1)")
-            if word == "handle" and dice.random() < 0.5:
-                self.lines.append(f"scene.load(top, {self._force()})")
-                self.loaded = True
-        if not self.deformable and dice.random() < 0.3:
-            self.lines.append(f"scene.wind({self._number(100, 900)}, (1, 0, 0))")
+            self._say(f"top = scene.{'watch' if deformable else 'handle'}(-1)")
+            self._perhaps(0.5 * (not deformable), f"scene.load(top, {FORCE})")
+        self._perhaps(0.3 * (not deformable), "scene.wind(<100~900>, (1, 0, 0))")
+        if self._often(0.3):
+            self._say("scene.section(0.081)")
+        if self._often(0.4):
+            for _ in range(self.dice.randint(1, 3)):
+                self._say(TIE)
+            if self._often(0.5):
+                self._say(SPRING)
+        can = {
+            "rigid": not deformable,
+            "moves": platen or not deformable,
+            "platen": platen,
+            "handle": not platen and not deformable,
+            "drive": platen and self.drives,
+        }
+        return ["always", *(kind for kind, so in can.items() if so)]
+
+    def _perhaps(self, share, load):
+        """Say a load that grows in the first stage, with a probability."""
+        if self._often(share):
+            self._say(load)
             self.loaded = True
-        if dice.random() < 0.3:
-            self.lines.append("scene.section(0.081)")
-        if dice.random() < 0.4:
-            self._connect(length, 0.081 * courses)
-
-    def _connect(self, length, height):
-        """Ties that yield and break, and springs."""
-        dice = self.dice
-        for _ in range(dice.randint(1, 3)):
-            point = lambda: f"({self._number(0, length)}, 0.05, {self._number(0.5, 1) * height:.3g})"  # fmt: skip
-            far = f"anchor=({self._number(-1, 2)}, 0.05, {self._number(-1, 1)})"
-            more = dice.choice([f"prestress={self._number(10, 300)}", "slack=1e-5", "compression=True", f"breaking={self._number(1e-6, 1e-4)}"])  # fmt: skip
-            strength = f"strength={self._number(301, 900)}"
-            self.lines.append(f"scene.tie({point()}, {far}, stiffness=1e7, {strength}, {more})")  # fmt: skip
-        if dice.random() < 0.5:
-            self.lines.append(f"scene.spring({point()}, stiffness=(1e6, 0, 1e6), rotation=(0, 1e4, 0))")  # fmt: skip
-
-    def _force(self):
-        return tuple(self._number(-100, 100) * free for free in (1, 0, 1))
-
-    def _stages(self):
-        stages = [self._settle, self._lean, self._accelerate, self._tilt, self._bracket]
-        stages += [self._shake, self._run, self._stepBack, self._move, self._result]
-        stages += [self._bound]
-        stages += [] if self.deformable else [self._wind, self._growWind]
-        if self.platen or not self.deformable:
-            stages += [self._push, self._push, self._cycle, self._follow, self._load]
-            stages += [self._release, self._growLoad]
-        if self.platen:
-            stages += [self._press, self._growPress]
-        else:
-            stages += [] if self.deformable else [self._hold]
-        if self.platen and self.drives:
-            stages += [self._drive, self._drive]
-        return stages
-
-    def _longest(self):
-        return f"longest={self._number(0.01, 0.08)}"
-
-    def _towards(self):
-        return self.dice.choice(["(1, 0, 0)", "(-1, 0, 0)"])
-
-    def _settle(self):
-        damping = self.dice.choice(["", ", damping='combined'", ", damping='local'"])
-        return f"scene.settle({self._longest()}{damping})"
-
-    def _lean(self):
-        return f"scene.lean({self._number(0.01, 0.6)}, {self._towards()}, {self._longest()})"
-
-    def _accelerate(self):
-        most = self._number(0.1, 1.5)
-        return f"scene.accelerate({most}, {self._towards()}, rate={30 * most:.3g}, within=0.3)"
-
-    def _tilt(self):
-        most = self._number(5, 50)
-        return (
-            f"scene.tilt({most}, {self._towards()}, rate={30 * most:.3g}, within=0.3)"
-        )
-
-    def _bracket(self):
-        loads = ["lean(f", "wind(1e3 * f, (1, 0, 0)"][: 2 - self.deformable]
-        load = f"scene.{self.dice.choice(loads)}, longest=0.02)"
-        return TRY.format(
-            f"print(scene.bracket(lambda f: {load} == AT_REST, 0.01, {self._number(0.3, 3)}, within=0.3))"
-        )
-
-    def _stepBack(self):
-        return TRY.format("scene.stepBack()")
-
-    def _result(self):
-        return 'scene.result("time", scene.results.rows[-1][0] if scene.results.rows else 0.0, "s")'
-
-    def _bound(self):
-        return f"print(scene.bound(towards={self._towards()})['load'])"
-
-    def _shake(self):
-        values = [self._number(-3, 3) for _ in range(5)]
-        more = self.dice.choice(
-            ["", ", damping=0.2", ", massDamping=5.0", ", stiffnessDamping=1e-5"]
-        )
-        return f"scene.shake({[0.0, *values, 0.0]}, every={self._number(1e-3, 3e-3)}{more})"
-
-    def _run(self):
-        more = self.dice.choice(["", ", damping=0.3", ", damping=0.0"])
-        return f"scene.run({self._number(1e-3, 2e-2)}{more})"
-
-    def _move(self):
-        return (
-            f"scene.move(base, {self.dice.choice('xz')}={self._number(-0.05, -0.01)})"
-        )
-
-    def _wind(self):
-        return f"scene.wind({self._number(100, 900)}, {self._towards()}, {self._longest()})"
-
-    def _growWind(self):
-        return f"scene.growWind({self._number(300, 3000)}, {self._towards()}, over=0.03, within=0.3)"
-
-    def _pushed(self, kind):
-        direction = self.dice.choice(["(1, 0, 0)", "(1, 0, 0)", "(-1, 0, 0)"])
-        more = (
-            ", continued=True"
-            if direction in self.pushed and self.dice.random() < 0.5
-            else ""
-        )
-        self.pushed.append(direction)
-        return f"direction={direction}{more}"
-
-    def _push(self):
-        much = self._number(0.05, 0.4)
-        return f"scene.push(top, {much}, {self._pushed('push')})"
-
-    def _cycle(self):
-        much = [self._number(0.02, 0.1) for _ in range(self.dice.randint(1, 2))]
-        return f"scene.cycle(top, {much}, {self._pushed('cycle')})"
-
-    def _follow(self):
-        return f"scene.follow(top, 'path.csv', {self._pushed('follow')})"
-
-    def _load(self):
-        return f"scene.load(top, {self._force()}, {self._longest()})"
-
-    def _growLoad(self):
-        return f"scene.growLoad(top, {self._force()}, over=0.03, within=0.3)"
-
-    def _press(self):
-        return f"scene.press(top, {self._number(5e4, 4e5)}, {self._longest()})"
-
-    def _growPress(self):
-        return f"scene.growPress(top, {self._number(1e5, 4e6)}, over=0.03, within=0.3)"
-
-    def _release(self):
-        return TRY.format(f"scene.release(top, '{self.dice.choice(['x', 'z', 'xz'])}')")
-
-    def _hold(self):
-        return f"scene.hold(top, '{self.dice.choice(['x', 'xz', 'xyzXYZ'])}')"
-
-    def _drive(self):
-        axis = self.dice.choice(self.drives)
-        return f"scene.drive(top, {axis}={self._number(0.005, 0.05)})"
-
-
-# -- runs --------------------------------------------------------------------------------------------------------------
 
 
 def carryOut(script, *words, stop=None, most=math.inf):
@@ -337,9 +250,6 @@ def killed(folder, step):
             raise Stopped()
 
     return act
-
-
-# -- what they leave ---------------------------------------------------------------------------------------------------
 
 
 def left(folder):

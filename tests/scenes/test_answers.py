@@ -2,7 +2,6 @@
 """What the stages of a scene answer, in run.json, on the terminal and in the table of a study."""
 
 from hosted import *
-from masonry import AT_REST, COLLAPSED
 from masonry.run import run
 from masonry.scene.stages.answers import answersText
 from masonry.study.gathering import _answerName
@@ -76,45 +75,6 @@ def test_the_line_of_a_bracket_has_the_largest_that_was_held_and_the_smallest_th
     assert line == "lean: factor held 0.35 g (6 stages); factor not held 0.4 g"
     (line,) = answersText(leans(0.2))
     assert line == "lean: factor held 0.2 g; factor not held: not found: none"
-
-
-def test_a_support_that_moves_and_time_that_passes_answer_with_displacements(tmp_path):
-    scene = Scene(
-        "stones",
-        bricks.stack(3, (0.3, 0.3, 0.2)),
-        materials.dry(**STONE),
-        arguments=["--no-vtk", "--out", str(tmp_path)],
-    )
-    base = scene.platen("bottom")
-    scene.watch(2, "stone")
-    scene.settle()
-    scene.move(base, z=-3)
-    scene.run(0.05)
-    scene.finish()
-    found = answers(tmp_path)
-    # first row to last row: all of it but what the first of 500 rows had already made
-    assert found["move displacement_of_base"]["value"] == pytest.approx(3, rel=0.01)
-    end = found["run displacement_of_stone_x_at_the_end"]
-    assert end["unit"] == "mm" and abs(end["value"]) < 0.01
-
-
-def test_a_resumed_run_has_the_answers_of_one_without_a_break(tmp_path):
-    def play(folder, *words):
-        scene = stack(folder, *words)
-        if not words:
-            scene.lean(0.1)
-            scene.finish()
-            return
-        scene.lean(0.1)
-        scene.lean(0.2)
-        scene.finish()
-
-    play(tmp_path)
-    before = readRun(str(tmp_path))["answers"]
-    play(tmp_path, "--resume", str(tmp_path))
-    after = readRun(str(tmp_path))["answers"]
-    assert after[: len(before)] == before
-    assert [a["value"] for a in after if a["name"] == "factor_held"] == [0.1, 0.2]
 
 
 def test_a_resumed_run_of_what_fell_says_so_as_before(tmp_path):

@@ -27,27 +27,17 @@ def test_opening_peaks_at_ft_and_takes_the_mode_I_energy(couplet):
 
 
 @pytest.mark.parametrize("stress", [-0.1, -0.5, -1.0])
-def test_shear_under_constant_stress_peaks_on_the_coulomb_line_and_keeps_friction(
-    couplet, stress
-):
-    curve, run = couplet(
-        "shear",
-        "--normal-stress",
-        str(stress),
-        "--until",
-        "60",
-        "--rate",
-        "50",  # at 100 mm/s the first wave through the bricks adds 1 % to the peak
-    )
+def test_shear_peaks_on_the_coulomb_line_and_keeps_friction(couplet, stress):
+    # at 100 mm/s the first wave through the bricks adds 1 % to the peak
+    words = f"--normal-stress {stress} --until 60 --rate 50"
+    curve, run = couplet("shear", *words.split())
     peak, residual = 0.11 - 0.43 * stress, -0.43 * stress
     assert run["peak_shear_stress_MPa"] == pytest.approx(peak, rel=0.005)
     assert run["end_shear_stress_MPa"] == pytest.approx(residual, rel=0.005)
-    above = 1e3 * trapezoid(
-        np.array(curve["shear_stress_MPa"]) - residual, curve["slide_mm"]
-    )  # J/m²
-    assert above + 1e6 * residual**2 / 2 / 2.17e10 == pytest.approx(
-        160 * peak / 0.11, rel=0.02
-    )
+    shear = np.array(curve["shear_stress_MPa"])
+    above = 1e3 * trapezoid(shear - residual, curve["slide_mm"])  # J/m²
+    above += 1e6 * residual**2 / 2 / 2.17e10
+    assert above == pytest.approx(160 * peak / 0.11, rel=0.02)
     assert np.allclose(np.array(curve["normal_stress_MPa"])[-1000:], stress, rtol=1e-3)
 
 
@@ -56,16 +46,13 @@ def test_closure_peaks_at_fc_and_ends_at_the_residual(couplet):
     assert run["peak_compressive_stress_MPa"] == pytest.approx(7.55, rel=0.002)
     assert run["end_normal_stress_MPa"] == pytest.approx(-1.51, rel=0.02)
     work = trapezoid(curve["normal_force_kN"], curve["opening_mm"])
-    assert curve["dissipated_compression_J"][-1] + curve["elastic_compression_J"][
-        -1
-    ] == pytest.approx(work, rel=0.01)
+    ends = [curve[f"{part}_compression_J"][-1] for part in ("dissipated", "elastic")]
+    assert sum(ends) == pytest.approx(work, rel=0.01)
 
 
 def test_shear_after_closure_stays_inside_the_cap(couplet):
     curve, run = couplet("closure-shear", "--until", "2", "--rate", "20")
-    sigma, tau = np.array(curve["normal_stress_MPa"]), np.array(
-        curve["shear_stress_MPa"]
-    )
+    sigma, tau = (np.array(curve[f"{n}_stress_MPa"]) for n in ("normal", "shear"))
     assert np.all(np.sqrt(sigma**2 + 9 * tau**2) <= 7.55 * 1.001)
     assert tau.max() > 1.5
 

@@ -1,10 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """One joint in cycles, as validation/cyclic/joint.py drives it, against the closed forms of the paper's law."""
 
-import os
-import sys
-
 from hosted import *
+
 
 FOLDER = os.path.join(ROOT, "validation", "cyclic")
 sys.path.insert(0, FOLDER)

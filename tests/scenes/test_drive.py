@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The first period along a push, and what begins with it."""
 
-from types import SimpleNamespace
-
 from hosted import *
 from masonry._masonry import saveScene
 from masonry.assembly.period import firstPeriod

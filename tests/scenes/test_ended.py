@@ -1,15 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """A run ends in order and in time when it is interrupted while it does not step, and when the system sets a limit."""
 
-import os
-import signal
-import subprocess
-import sys
-import threading
-import time
-
-import yade
 from hosted import *
+import threading
+import yade
 from masonry.limit import solver
 from masonry.memory import FULL
 from masonry.run.run import Run
@@ -80,9 +74,7 @@ def test_a_signal_ends_limit_analysis_and_the_run_says_so(
     assert curves[0].read_bytes() == curves[1].read_bytes()
 
 
-def test_a_signal_ends_the_drawing_of_figures(
-    scene, tmp_path, monkeypatch, signalled, capsys
-):
+def test_a_signal_ends_drawing(scene, tmp_path, monkeypatch, signalled, capsys):
     slow, begun = tmp_path / "slow", tmp_path / "begun"
     slow.write_text(f"#!/bin/sh\ntouch {begun}\nexec sleep 60\n")
     slow.chmod(0o755)
@@ -96,9 +88,7 @@ def test_a_signal_ends_the_drawing_of_figures(
     assert readRun(str(out))["ended"] == "done"
 
 
-def test_figures_whose_program_cannot_be_started_are_one_sentence(
-    scene, tmp_path, monkeypatch, capsys
-):
+def test_a_drawing_program_that_is_missing(scene, tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(outcome.sys, "executable", "/nowhere/python3")
     assert carryOut(SMALL, parsed(*SHORT, "--out", str(tmp_path))) == 1
     said = capsys.readouterr()
@@ -107,7 +97,7 @@ def test_figures_whose_program_cannot_be_started_are_one_sentence(
 
 
 @pytest.mark.parametrize("steps", [0, 300])
-def test_too_little_memory_in_a_stage_is_one_sentence(
+def test_too_little_memory_is_one_sentence(
     scene, tmp_path, monkeypatch, undrawn, capsys, steps
 ):
     take = Run._take
@@ -183,10 +173,9 @@ scene.platen("bottom"); scene.settle(); scene.finish()
 def test_a_limit_of_the_size_of_files_is_no_fault_of_the_scene_of_a_study(tmp_path):
     (tmp_path / "study.py").write_text(STUDY)
     (tmp_path / "s.py").write_text(STONES)
-    done = subprocess.run(
-        ["bash", "-c", f"ulimit -f 1; exec {sys.executable} -m masonry.study study.py --out out --prepare"],
-        cwd=tmp_path, capture_output=True, text=True, timeout=60,
-    )  # fmt: skip
+    command = f"ulimit -f 1; exec {sys.executable} -m masonry.study study.py --out out --prepare"
+    words = dict(cwd=tmp_path, capture_output=True, text=True, timeout=60)
+    done = subprocess.run(["bash", "-c", command], **words)
     assert done.returncode == 1
     assert done.stderr.startswith("cannot write ")
     assert "File too large" in done.stderr and "scene" not in done.stderr

@@ -1,15 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Random scenes at the extremes, as validation/stability/extremes.py draws them: other ones every day."""
 
-import os
-import signal
-import sys
-import time
-from types import SimpleNamespace
-
-import pytest
-import stopped
-from conftest import ROOT
+from usual import *
 
 for folder in ("", "statics", "stability"):
     sys.path.insert(0, os.path.join(ROOT, "validation", folder))
@@ -82,29 +74,3 @@ def test_the_oracle_sees_a_fault(found, run, said, message):
         return
     with pytest.raises(extremes.Wrong, match=message):
         extremes.judge(play, said, run)
-
-
-SOFT = """\
-from masonry import Scene, bricks, materials
-stone = materials.dry(friction=0.6, normalStiffness=1e8, density=2600)
-scene = Scene("soft", bricks.stack(3, (1.0, 1.0, 0.5)), stone)
-scene.platen("bottom")
-scene.watch(-1)
-scene.settle(longest=5.0)
-scene.finish()
-"""
-
-
-@pytest.mark.parametrize("step", [3, 40, 230])
-def test_a_settle_of_long_time_steps_is_resumed_within_a_look(
-    scene, tmp_path, monkeypatch, step
-):
-    monkeypatch.chdir(tmp_path)
-    status, steps, said = stopped.carryOut(SOFT, "--out", "whole")
-    assert status == 0 and steps >= 300 and "at rest" in said
-    act = stopped.signalled(signal.SIGTERM, step)
-    assert stopped.carryOut(SOFT, "--out", "stopped", stop=act)[0] == 130
-    status, _, said = stopped.carryOut(SOFT, "--resume", "stopped")
-    assert status == 0, said
-    whole, resumed = stopped.left("whole"), stopped.left("stopped")
-    assert stopped.differences(whole, resumed) == []

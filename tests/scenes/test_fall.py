@@ -1,12 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Scenes whose collapse is followed to the ground: what they say of it, against what stands in YADE, and how they go on."""
 
-import csv
-import signal
-
-import stopped
 from hosted import *
-from masonry import COLLAPSED
 from masonry.basics import GRAVITY
 from masonry.read import files
 from masonry.read.elevation import frameOfCracks
@@ -141,48 +136,6 @@ def test_a_shaken_wall_goes_on_while_its_top_falls(tmp_path):
     times = scene.results.column("time_s")
     assert answer(scene, "time_of_collapse") == pytest.approx(min(fell) - times[1], abs=0.05)  # fmt: skip
     scene.finish()
-
-
-def test_the_same_bits_on_two_threads(tmp_path):
-    found = []
-    for threads in (1, 2):
-        allowThreads(threads)
-        scene = column(tmp_path)
-        scene.settle()
-        scene.lean(0.4, towards=(0, 1, 0))
-        found.append([scene.results.column(n) for n in ("kinetic_J", "ground_force_z_kN", "base_M_x_kNm")])  # fmt: skip
-        scene.finish()
-    allowThreads(1)
-    assert found[0] == found[1]
-
-
-SCRIPT = """\
-from masonry import Scene, bricks, materials
-stones = materials.dry(0.6, 2e8, density=2200)
-wall = bricks.Wall(0.6, 0.9, unit=(0.6, 0.3, 0.3), halves=False)
-scene = Scene("s", wall, stones, plane=False, collapse="follow")
-scene.platen("bottom")
-scene.settle()
-scene.lean(0.5, (0, 1, 0))
-scene.result("reach", [a["value"] for a in scene.answers if a["name"] == "rubble_reach"][0], "m")
-scene.finish()
-"""
-
-
-@pytest.mark.parametrize("share", [0.5, 0.95])
-def test_a_run_that_is_stopped_in_the_fall_and_resumed_leaves_what_an_unbroken_one_leaves(tmp_path, monkeypatch, share):  # fmt: skip
-    monkeypatch.chdir(tmp_path)
-    status, steps, said = stopped.carryOut(SCRIPT, "--out", "whole")
-    assert status == 0 and "collapsed and at rest" in said, said
-    step = round(share * steps)
-    stop = stopped.signalled(signal.SIGTERM, step)
-    stopped.carryOut(SCRIPT, "--out", "broken", stop=stop)
-    assert readRun("broken")["interrupted"]
-    status, _, said = stopped.carryOut(SCRIPT, "--resume", "broken")
-    assert status == 0, said
-    assert stopped.differences(stopped.left("whole"), stopped.left("broken")) == []
-    with open("whole/fallen.csv") as one, open("broken/fallen.csv") as other:
-        assert one.read() == other.read()
 
 
 @pytest.mark.parametrize(

@@ -1,16 +1,10 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Loads that grow and the search for the one that is held; loads in later stages; pushes of any direction."""
 
-import os
-import subprocess
-import sys
-import time
-
 from hosted import *
-from masonry import AT_REST, COLLAPSED, DONE, MOVING
 from masonry._masonry import saveScene
 from masonry.basics import Collapsed
-from masonry.scene.stages import gravity, loading
+from masonry.scene.stages import gravity
 
 sys.path[:0] = [os.path.join(ROOT, "validation", *f) for f in (["held_loads"], [])]
 import held_loads  # noqa: E402
@@ -39,23 +33,20 @@ def test_a_held_load_is_that_of_limit_analysis(scene, name):
     assert met, cells
 
 
-@pytest.mark.parametrize("rate", [0.2, 1.0, 4.0])
+@pytest.mark.parametrize("rate", [0.2, 4.0])
 def test_the_rate_of_the_growth_hardly_counts(scene, tmp_path, rate):
     s, stone = stack(tmp_path)
     s.settle()
     assert s.accelerate(1.5, rate=rate) == COLLAPSED
     s.finish()
-    (held,), (lost,) = (
-        found(tmp_path, f"factor_{end}") for end in ("held", "not_held")
-    )
+    (held,), (lost,) = (found(tmp_path, n) for n in ("factor_held", "factor_not_held"))
     assert held < 0.5 * 1.001 and lost > 0.5 * 0.999  # b/h, when it tips
     assert lost - held <= 0.005 * lost * 1.001
-    times = readCurve(str(tmp_path))["time_s"]
+    run, curve = readRun(str(tmp_path)), readCurve(str(tmp_path))
+    times = curve["time_s"]
     assert all(one < other for one, other in zip(times, times[1:]))  # no row twice
-    run = readRun(str(tmp_path))
     assert run["factor"] == held == s.factor
     assert {mark["y"] for mark in run["figure"]["marks"]} == {held, lost}
-    curve = readCurve(str(tmp_path))
     rows = run["figure"]["rows"]
     # the line is the growth: the load over the displacement of the stone
     assert curve["load_factor"][rows[-1]] > held
@@ -74,70 +65,7 @@ def test_a_structure_that_stands_has_a_load_that_was_held_and_no_other(scene, tm
     assert found(tmp_path, "factor_not_held") == [None, None]
 
 
-def test_a_structure_that_never_rests_has_no_number(scene, tmp_path, capsys):
-    stone = lambda: bricks.stack(1, (0.3, 0.3, 0.2))
-    s, _ = stack(tmp_path, blocks=stone() + stone().moved(0.2, 0, 0.2))
-    assert s.tilt(40, rate=40) == COLLAPSED  # the upper stone falls by itself
-    s.finish()
-    assert found(tmp_path, "factor_held") == [None]
-    assert math.isnan(s.factor) and "factor" not in readRun(str(tmp_path))
-    assert "came to rest under no load that was tried" in capsys.readouterr().out
-
-
-SCRIPT = """
-from masonry import Scene, bricks, materials
-blocks = bricks.stack(3, (0.3, 0.3, 0.2))
-stone = materials.dry(friction=0.7, normalStiffness=1e11, density=2600)
-scene = Scene("stones", blocks, stone)
-scene.platen("bottom")
-top = scene.handle(2, name="stone")
-scene.settle()
-scene.load(top, (100, 0, -500))
-scene.wind(100, (1, 0, 0))
-scene.hold(top, "z")
-scene.run(0.02)
-scene.release(top, "z")
-scene.settle()
-scene.growLoad(top, (4000, 0, 0))
-scene.finish()
-"""
-
-
-def test_a_search_and_loads_of_later_stages_resume_bit_for_bit(tmp_path):
-    script = tmp_path / "stones.py"
-    script.write_text(SCRIPT)
-    env = dict(os.environ, OMP_NUM_THREADS="1")
-    play = lambda *words: subprocess.Popen(
-        ["yade", "-n", "-x", str(script), "--no-vtk", *words], cwd=tmp_path, env=env,
-        stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
-    )  # fmt: skip
-    began = time.monotonic()
-    assert play("--out", "whole").wait() == 0
-    whole = time.monotonic() - began
-    stopped = 0
-    # the machine may be slower or faster by then: more tries than are needed
-    for n, share in enumerate((0.65, 0.85, 0.75, 1.0, 0.55)):
-        if stopped == 2:
-            break
-        run = play("--out", f"r{n}")
-        time.sleep(whole * share)
-        run.terminate()
-        if run.wait() == 130:
-            if not (tmp_path / f"r{n}" / "run.checkpoint").exists():
-                continue  # it was stopped while it started
-            stopped += 1
-            assert play("--resume", f"r{n}").wait() == 0
-        curves = [(tmp_path / d / "curve.csv").read_bytes() for d in ("whole", f"r{n}")]
-        assert curves[0] == curves[1]
-        runs = [readRun(str(tmp_path / d)) for d in ("whole", f"r{n}")]
-        for key in ("answers", "factor", "bounds", "figure", "steps"):
-            assert runs[0][key] == runs[1][key], key
-    assert stopped
-
-
-def test_loads_of_later_stages_replace_those_before_and_can_be_bracketed(
-    scene, tmp_path
-):
+def test_loads_of_later_stages_replace_others_and_can_be_bracketed(scene, tmp_path):
     s, stone = stack(tmp_path)
     s.load(stone, (0, 0, -1000))
     s.settle()
@@ -272,8 +200,6 @@ def test_suction_pulls_with_the_pressure_times_the_face(scene, tmp_path):
         assert s.wind(0, towards) == AT_REST
     assert abs(pulled()) < 1
     s.finish()
-    labels = [loading.windLabel(towards, part) for towards in ((1, 0, 0), (-1, 0, 0), (0, 1, 0)) for part in (None, "a", "b")]  # fmt: skip
-    assert len(set(labels)) == 9 and all(map(str.isidentifier, labels))
 
 
 def test_a_press_of_a_later_stage_has_its_stress_with_the_weight_of_the_platen(scene, tmp_path):  # fmt: skip
@@ -390,30 +316,11 @@ def test_a_result_of_the_script_is_an_answer(scene, tmp_path, capsys):
     s.result("height", 0.6, "m")
     s.result("height", 0.7, "m")
     s.result("nothing", math.nan)
-    for wrong in (("a b", 1), ("x", math.inf), ("x", "one"), ("x", 1, "")):
-        with pytest.raises(ValueError, match="result"):
-            s.result(*wrong)
+
     s.finish()
     assert found(tmp_path, "height") == [0.7]
     assert found(tmp_path, "nothing") == [None]
     assert "script: height 0.7 m\n" in capsys.readouterr().out
-
-
-@pytest.mark.parametrize(
-    "act, message",
-    [
-        (lambda s, t: s.growLoad(t, (0, 0, 0)), "force must not be zero"),
-        (lambda s, t: s.growWind(100, (0, 0, 1)), "must be a horizontal direction"),
-        (lambda s, t: s.press(t, 1e5), "must be a platen of this scene that moves"),
-        (lambda s, t: s.hold("stone"), "target 'stone' must be a target of this scene"),
-        (lambda s, t: s.load(t, (0, 1, 0)), "in the x-z plane"),
-    ],
-)
-def test_wrong_loads_of_later_stages_are_refused(scene, tmp_path, act, message):
-    s, stone = stack(tmp_path)
-    s.settle()
-    with pytest.raises(ValueError, match=message):
-        act(s, stone)
 
 
 @pytest.mark.parametrize("stage", ["growLoad", "load"])

@@ -1,27 +1,20 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Results are the user's: what a run may touch, when, and how it ends when something is odd."""
 
+from hosted import *
 import errno
-import os
-import shutil
-import signal
 import socket
 import threading
-import time
-from types import SimpleNamespace
-
-from hosted import *
-from masonry import readCheckpoint
 from masonry.assembly.loading import Loading
 from masonry.assembly.structure import Structure
 from masonry.assembly.supports import Supports
 from masonry.read import files
 from masonry.run import keeping, lock, run as running
 from masonry.run.results import Results
-from masonry.run.keeping import Checkpoints
 from masonry.run.run import Run
 from masonry.scene.drawing_program import DrawingProgram
-from small import SMALL, Wall, carryOut, parsed
+from small import Wall
+from test_checkpoints import contents, noSpace, run as playWall
 
 SHORT = ["--until", "0.05", "--rate", "40", "--no-vtk"]
 LIGHT = Wall("light", length=0.22, courses=4, precompression=0.0, loadHeight=3.0)
@@ -34,15 +27,10 @@ def undrawn(monkeypatch):
         monkeypatch.setattr(DrawingProgram, name, lambda self, directory: None)
 
 
-def contents(folder):
-    return {n: open(os.path.join(folder, n), "rb").read() for n in os.listdir(folder)}
-
-
-def run(out, *words, wall=SMALL, resume=False):
+def run(out, *words, **settings):
     """Exit status of a run, refused or not."""
-    where = ["--resume" if resume else "--out", str(out)]
     try:
-        return carryOut(wall, parsed(*where, *words))
+        return playWall(out, *words, **settings)
     except SystemExit as end:
         return end.code
 
@@ -54,12 +42,7 @@ def finished(scene, tmp_path):
     return out
 
 
-# -- an earlier run in the folder --------------------------------------------------------------------------------------
-
-
-def test_a_run_that_makes_no_row_leaves_the_results_of_an_earlier_one(
-    finished, monkeypatch, capsys
-):
+def test_a_run_without_rows_leaves_the_results_of_before(finished, monkeypatch, capsys):
     before = contents(finished)
 
     def spoilt(patch):
@@ -112,9 +95,6 @@ def test_files_that_no_run_has_left_are_refused(finished, tmp_path, capsys):
     assert not (tmp_path / "new").exists()
 
 
-# -- two runs in a folder ----------------------------------------------------------------------------------------------
-
-
 @pytest.mark.parametrize("locks", [True, False])
 def test_a_folder_is_for_one_run_at_a_time(finished, monkeypatch, capsys, locks):
     """Also where the file system has no locks, as some network folders: then the text of the file counts."""
@@ -163,12 +143,7 @@ def test_files_of_a_run_that_was_killed_are_replaced(scene, tmp_path):
     assert not (tmp_path / "r" / "run.lock").exists()
 
 
-# -- slow steps --------------------------------------------------------------------------------------------------------
-
-
-def test_a_slow_push_obeys_at_once_and_keeps_to_its_checkpoints(
-    scene, tmp_path, monkeypatch
-):
+def test_a_slow_push_obeys_at_once_and_keeps_checkpoints(scene, tmp_path, monkeypatch):
     monkeypatch.setattr(running, "LOOK_EVERY", 0.1)
     out, ends = tmp_path / "slow", []
 
@@ -186,71 +161,30 @@ def test_a_slow_push_obeys_at_once_and_keeps_to_its_checkpoints(
     assert readCheckpoint(str(out / "run.checkpoint"))["at"]["left"] > 1000
 
 
-def test_a_run_interrupted_between_rows_leaves_the_curve_of_a_whole_one(
-    scene, tmp_path, monkeypatch
-):
-    """The vertical load of this wall keeps its line, so it moves with every row."""
-    wall = Wall(length=0.22, courses=3, loadHeight=0.3, riding=False)
-    words = ["--until", "0.1", "--rate", "40", "--no-vtk"]
-    assert run(tmp_path / "whole", *words, wall=wall) == 0
-    whole = (tmp_path / "whole" / "curve.csv").read_bytes()
-    steps = readRun(str(tmp_path / "whole"))["steps"]
-    out, left = tmp_path / "broken", []
-    keep = Checkpoints.keep
-
-    def interrupt(self):
-        keep(self)
-        run = self._run
-        if run.at.left and run.at.steps >= goal:
-            run.signals.interrupted = True
-            left.append(run.at.left)
-
-    monkeypatch.setattr(running, "LOOK_EVERY", 0.0)
-    monkeypatch.setattr(Checkpoints, "keep", interrupt)
-    for share in (0.3, 0.8, 0.9, 0.95):
-        goal = int(share * steps)
-        again = dict(resume=True) if out.exists() else dict()
-        assert run(out, *([] if again else words), wall=wall, **again) == 130
-    goal = steps + 1
-    assert run(out, wall=wall, resume=True) == 0
-    assert len(left) == 4 and (out / "curve.csv").read_bytes() == whole
-
-
-# -- what is odd -------------------------------------------------------------------------------------------------------
-
-
 def test_what_is_no_checkpoint_is_refused_at_once(finished, capsys):
     kept = finished / "run.checkpoint"
-
-    def refused(message):
+    for make in (os.mkfifo, lambda path: os.symlink("/dev/zero", path), os.mkdir):
+        kept.unlink()
+        make(kept)
         before = set(os.listdir(finished))
         assert run(finished, resume=True) == 2
         said = capsys.readouterr().err
-        assert message in said and len(said.splitlines()) == 1
+        assert "run.checkpoint" in said and len(said.splitlines()) == 1
         assert set(os.listdir(finished)) == before
 
-    kept.unlink()
-    os.mkfifo(kept)
-    refused("no regular file")
-    kept.unlink()
-    kept.symlink_to("/dev/zero")
-    refused("no regular file")
-    kept.unlink()
-    kept.mkdir()
-    refused("")
+
+STACK = """
+from masonry import Scene, bricks, materials
+words = ["--no-vtk", "--out", "r"]
+s = Scene("two", bricks.stack(3, (0.2, 0.1, 0.1)), materials.dry(), arguments=words)
+s.platen("bottom"); s.settle(); s.finish()
+"""
 
 
 def test_odd_names_and_terminals_end_in_order(tmp_path):
     """A folder that is not UTF-8, and a terminal that has no µ and no m³."""
     script = tmp_path / "s.py"
-    script.write_text(
-        "from masonry import Scene, bricks, materials\n"
-        "m = materials.calciumSilicate()\n"
-        "s = Scene('two', bricks.stack(3, (0.2, 0.1, 0.1)), m, arguments=['--no-vtk', '--out', 'r'])\n"
-        "s.platen('bottom')\n"
-        "s.settle()\n"
-        "s.finish()\n"
-    )
+    script.write_text(STACK)
     plain = dict(os.environ, PYTHONIOENCODING="ascii:strict")
     report = runProgram(str(script), cwd=tmp_path, env=plain, text=False)
     assert b"\\xb5s" in report.stdout
@@ -262,9 +196,7 @@ def test_odd_names_and_terminals_end_in_order(tmp_path):
     assert not os.path.exists(odd)
 
 
-def test_a_wall_that_falls_before_its_push_ends_with_status_1(
-    scene, tmp_path, monkeypatch
-):
+def test_a_wall_that_falls_before_its_push_has_status_1(scene, tmp_path, monkeypatch):
     monkeypatch.setattr(Loading, "hasSunk", lambda self, down=None: True)
     assert run(tmp_path / "r", *SHORT) == 1
     assert readRun(str(tmp_path / "r"))["collapsed"]
@@ -281,16 +213,7 @@ def test_a_wall_that_moves_against_its_push_has_collapsed(scene, tmp_path, capsy
     assert len(files.readCurve(str(tmp_path / "r"))["time_s"]) < 1000
 
 
-def test_no_earlier_checkpoint_is_promised_where_there_is_none(
-    scene, tmp_path, monkeypatch, capsys
-):
-    out = tmp_path / "r"
-
-    def refuse(path, extra=None):
-        raise OSError(errno.ENOSPC, "No space left on device")
-
-    with monkeypatch.context() as m:
-        m.setattr(keeping, "saveCheckpoint", refuse)
-        assert run(out, *SHORT) == 0
-    said = capsys.readouterr().err
-    assert said.endswith("No space left on device\n")
+def test_no_earlier_checkpoint_is_promised(scene, tmp_path, monkeypatch, capsys):
+    monkeypatch.setattr(keeping, "saveCheckpoint", lambda *words: noSpace(None))
+    assert run(tmp_path / "r", *SHORT) == 0
+    assert capsys.readouterr().err.endswith("No space left on device\n")

@@ -1,15 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The 3-D page of real runs in a real browser, as its user sees it. What a page holds, tests/package/test_model.py compares."""
 
-import os
-import re
-import subprocess
-
+from usual import *
 import browser
-import numpy as np
-import pytest
-from browser import BLUE, BRICK, RED, near, seen
-from conftest import ROOT, runProgram
+from browser import BRICK, RED, moved, near, seen, viewed
 from masonry.read import page
 from masonry.read.model import BRICK as BRICK_BLOCK
 from masonry.read.model import Model
@@ -30,20 +24,12 @@ def paper(comp4, tmp_path_factory):
 
 @pytest.fixture
 def opened(chromium, paper):
-    """The page in the browser, as it opens; ``view`` is the View in it."""
-    chromium.problems.clear()
-    chromium.requests.clear()
-    chromium.open(paper)
-    chromium.value("masonryViews[0].then(found => { window.view = found; return 0 })")
-    return chromium
+    return viewed(chromium, paper)
 
 
-def chosen(chromium, label, value):
-    """Choose a value in one of the lists of the page, as its user does."""
-    code = f"""(() => {{ const list = [...document.querySelectorAll('label')].find(l => l.textContent.startsWith('{label}')).querySelector('select');
-        list.value = '{value}'; list.dispatchEvent(new Event('change')); return list.value }})()"""
-    assert chromium.value(code) == value
-    chromium.drawn()
+#: Chooses what the joints show, as the user of the page does.
+CHOSEN = """(() => { const list = [...document.querySelectorAll('label')].find(l => l.textContent.startsWith('joints')).querySelector('select');
+    list.value = 'slide'; list.dispatchEvent(new Event('change')); return 0 })()"""
 
 
 def test_the_page_opens_without_a_request_or_an_error_and_is_small(opened, paper):
@@ -51,10 +37,8 @@ def test_the_page_opens_without_a_request_or_an_error_and_is_small(opened, paper
     assert opened.problems == []
     assert os.path.getsize(paper) < MOST
     text = opened.value("document.body.innerText")
-    assert "TUD-COMP-4" in text and "9 of 9" in text
-    assert "stage push" in text and re.search(
-        r"displacement of top.*: 4[.\d]* mm", text
-    )
+    assert "TUD-COMP-4" in text and "9 of 9" in text and "stage push" in text
+    assert re.search(r"displacement of top.*: 4[.\d]* mm", text)
     assert re.search(r"supports: [\d.]+ kN", text)
 
 
@@ -69,18 +53,37 @@ def test_the_browser_lets_the_page_ask_nobody(opened, tmp_path):
 
 def test_the_picture_shows_bricks_and_the_crack_that_grows(opened, tmp_path):
     end = seen(opened, tmp_path)
-    assert near(end, BRICK) > 0.15 * end[..., 0].size
-    assert near(end, RED) > 300 and near(end, BLUE) > 300
-    opened.value("(() => { const s = document.querySelector('[aria-label=frame]'); s.value = 0; s.dispatchEvent(new Event('input')); return 0 })()")  # fmt: skip
+    assert near(end, BRICK) > 0.15 * end[..., 0].size and near(end, RED) > 300
+    moved(opened, 0)
     start = seen(opened, tmp_path)
     assert near(start, RED) < near(end, RED) / 5
-    assert near(start, BRICK) > 0.15 * start[..., 0].size
     assert opened.value("document.body.innerText").count("1 of 9") == 1
-    # play goes through all frames, and stops at the last
-    opened.value("(() => { document.querySelector('[aria-label=\"play the frames\"]').click(); return 0 })()")  # fmt: skip
-    opened.value("new Promise(done => { const look = () => view.timer ? setTimeout(look, 50) : done(0); look() })")  # fmt: skip
-    again = seen(opened, tmp_path)
-    assert np.abs(again - end).mean() < 1e-3
+
+
+def test_legends_have_the_unit_and_the_range_of_what_is_chosen(opened):
+    says = lambda: opened.value("view.legend.innerText").split("\n")
+    assert says() == ["open > 0.05 mm", "slid > 0.05 mm", "closed > 0.5 mm"]
+    opened.value(CHOSEN)
+    top = opened.value("view.head.values.slide.top")
+    marks = [float(line.removeprefix("≥ ")) for line in says()[1:6]]
+    assert says()[0] == "slide [mm]" and says()[6].startswith("from 0.05")
+    assert sorted(marks) == pytest.approx([1e3 * top * n / 4 for n in range(5)])
+
+
+def test_mouse_and_keys_turn_and_zoom(opened):
+    where = lambda: opened.value(
+        "[...view.directions()[2].toArray(), view.camera.zoom]"
+    )
+    first = where()
+    opened.drag((400, 300), (490, 300))
+    assert np.dot(where()[:3], first[:3]) < 0.95
+    opened.wheel((300, 200), -400)
+    assert where()[3] > 1
+    opened.value("(view.canvas.focus(), 0)")
+    opened.press("Home")
+    assert where() == pytest.approx(first, abs=1e-9)
+    opened.press("PageUp")
+    assert opened.value("view.frame") == 7 and opened.problems == []
 
 
 def test_blocks_and_joints_stand_where_the_run_says(opened, comp4):
@@ -106,70 +109,6 @@ def test_blocks_and_joints_stand_where_the_run_says(opened, comp4):
         assert len({*map(tuple, np.rint(255 * shades).astype(int))}) == len(set(joints.kind[k][joints.kind[k] > 0]))  # fmt: skip
 
 
-def test_legends_have_the_units_and_the_range_of_their_values(opened):
-    says = lambda: opened.value("view.legend.innerText")
-    assert says().split("\n") == ["open > 0.05 mm", "slid > 0.05 mm", "closed > 0.5 mm"]
-    for value, title in (("opening", "opening [mm]"), ("slide", "slide [mm]"), ("damage", "damage [–]"), ("closure", "plastic closure [mm]")):  # fmt: skip
-        chosen(opened, "joints", value)
-        lines = says().split("\n")
-        marks = [float(line.removeprefix("≥ ")) for line in lines[1:6]]
-        top = opened.value(f"view.head.values.{value}.top")
-        assert lines[0] == title and lines[6].startswith("from 0.05")
-        assert sorted(marks) == pytest.approx([(1 if value == "damage" else 1e3) * top * n / 4 for n in range(5)])  # fmt: skip
-    chosen(opened, "joints", "none")
-    assert opened.value("view.legend.hidden")
-    chosen(opened, "blocks", "moved")
-    assert "displacement [mm]" in says()
-    assert opened.problems == []
-
-
-def test_mouse_touch_and_keys_turn_move_and_zoom(opened):
-    where = lambda: opened.value("[...view.directions()[2].toArray(), view.camera.zoom, ...view.target.toArray()]")  # fmt: skip
-    first = where()
-    opened.drag((400, 300), (490, 300))
-    second = where()
-    assert np.dot(first[:3], second[:3]) < 0.95 and second[3:] == first[3:]
-    opened.drag((400, 300), (400, 345), button="right")
-    third = where()
-    assert third[:4] == pytest.approx(second[:4]) and third[6] > second[6]
-    opened.wheel((300, 200), -400)
-    zoom = where()[3]
-    assert zoom > 1
-    opened.touch([(300, 300), (400, 300)], [(250, 300), (450, 300)])
-    assert where()[3] > 1.5 * zoom
-
-    opened.value("(view.canvas.focus(), 0)")
-    acts = [
-        ("Home", first),
-        ("ArrowRight", None),
-        ("+", None),
-        ("1", None),
-        ("3", None),
-    ]
-    for key, expected in acts:
-        before = where()
-        opened.press(key)
-        assert where() == pytest.approx(expected, abs=1e-9) if expected else where() != before  # fmt: skip
-    assert where()[2] == pytest.approx(1)  # from above
-    opened.press("ArrowUp", shift=True)
-    opened.press("PageUp")
-    assert opened.value("view.frame") == 7
-    space = "view.canvas.dispatchEvent(new KeyboardEvent('keydown', {key: ' '}))"
-    plays = f"(view.show(0), [1, 2].map(() => ({space}, Boolean(view.timer))))"
-    assert opened.value(plays) == [True, False]
-    assert opened.problems == []
-
-
-def test_the_magnification_moves_what_is_drawn(opened, tmp_path):
-    pictures = []
-    for value in (0, 700):
-        opened.value(f"(() => {{ const s = document.querySelector('[aria-label=\"magnification of displacements\"]'); s.value = {value}; s.dispatchEvent(new Event('input')); return 0 }})()")  # fmt: skip
-        pictures.append(seen(opened, tmp_path)[:550])
-    assert opened.value("view.magnify") == pytest.approx(1000**0.7, abs=1)
-    assert "displacements × 126" in opened.value("view.scale.innerText")
-    assert (np.abs(pictures[0] - pictures[1]).max(axis=2) > 0.2).mean() > 0.1
-
-
 def test_a_click_on_a_block_says_which_it_is_and_how_it_moved(opened, comp4):
     opened.value("(view.look('front'), 0)")
     opened.drawn()
@@ -182,39 +121,6 @@ def test_a_click_on_a_block_says_which_it_is_and_how_it_moved(opened, comp4):
     found = re.search(r"block (\d+) at \(.*\) m has moved by \((.*)\) mm", said)
     assert int(found[1]) == model.bodies[block]
     assert list(map(float, found[2].split(", "))) == pytest.approx(1e3 * moved, rel=6e-3, abs=2e-3)  # fmt: skip
-
-
-def test_print(chromium, paper, tmp_path):
-    chromium.open(paper)
-    path = tmp_path / "print.pdf"
-    chromium.paper(str(path))
-    printed = path.read_bytes()
-    assert len(re.findall(rb"/Type\s*/Page\b", printed)) == 1
-    assert b"/Subtype /Image" in printed
-    # nothing to set is printed, and no dark ground
-    chromium.call("Emulation.setEmulatedMedia", media="print")
-    assert chromium.value("getComputedStyle(document.querySelector('.masonry-controls')).display") == "none"  # fmt: skip
-    assert chromium.value("getComputedStyle(document.querySelector('.masonry-page')).backgroundColor") == "rgb(255, 255, 255)"  # fmt: skip
-    chromium.call("Emulation.setEmulatedMedia", media="")
-
-
-def test_a_narrow_screen_keeps_all_in_it_and_a_sharp_one_has_all_its_dots(chromium, paper):  # fmt: skip
-    chromium.open(paper, width=390, height=780, dots=2)
-    assert chromium.value("document.documentElement.scrollWidth") <= 390
-    size = chromium.value("(() => { const c = document.querySelector('canvas'); return [c.width, c.clientWidth, c.height, c.clientHeight] })()")  # fmt: skip
-    assert size[0] == 2 * size[1] and size[2] == 2 * size[3] and size[3] > 300
-
-
-def test_two_pictures_stand_in_one_page_with_one_library(chromium, comp4, tmp_path):
-    part = page.fragment(comp4, 3)
-    path = tmp_path / "two.html"
-    path.write_text(f'<!DOCTYPE html><html lang="en"><head><meta charset="utf-8"><title>two</title>{page.assets()}</head><body>{part}<p>and</p>{part}</body></html>')  # fmt: skip
-    chromium.problems.clear()
-    chromium.open(str(path), height=1600)
-    assert chromium.value("Promise.all(masonryViews).then(all => all.map(v => v.frame))") == [3, 3]  # fmt: skip
-    pixels = seen(chromium, tmp_path)
-    assert min(near(half, BRICK) for half in np.array_split(pixels, 2)) > 20000
-    assert chromium.problems == []
 
 
 def test_a_notebook_shows_the_picture(chromium, comp4, tmp_path):

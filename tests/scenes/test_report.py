@@ -2,24 +2,15 @@
 """The report that real runs leave: when there is one, and what its reader sees in a real browser. What it says of a run,
 tests/package/test_report_content.py compares."""
 
+from hosted import *
 import base64
-import os
-import re
-import subprocess
-import sys
-
 import browser
-import pytest
-from browser import BRICK, RED, near, seen
+from browser import BRICK, RED, moved, near, seen, viewed
 from masonry.read import report
-from masonry.read.files import readCurve, readRun
 from masonry.scene.drawing_program import DrawingProgram
 from small import SMALL, carryOut, parsed
 
 MOST = 3e6  # [bytes] of the report of COMP-4
-
-
-# -- when there is one ------------------------------------------------------------------------------------------------
 
 
 def test_a_run_leaves_its_report_beside_its_figures(scene, tmp_path):
@@ -70,9 +61,6 @@ def test_a_bound_alone_has_a_report_without_a_curve(scene, tmp_path):
     assert text.count("data:image/png") == 1  # the mechanism
 
 
-# -- what its reader sees ---------------------------------------------------------------------------------------------
-
-
 @pytest.fixture
 def pushed(comp4):
     """The report of the wall COMP-4."""
@@ -81,20 +69,10 @@ def pushed(comp4):
 
 @pytest.fixture
 def opened(chromium, pushed):
-    chromium.problems.clear()
-    chromium.requests.clear()
-    chromium.open(pushed, height=900)
-    chromium.value("masonryViews[0].then(found => { window.view = found; return 0 })")
-    return chromium
+    return viewed(chromium, pushed)
 
 
 RING = "(() => { const r = document.querySelector('.now'); return [Number(r.getAttribute('cx')), Number(r.getAttribute('cy'))] })()"  # fmt: skip
-
-
-def moved(chromium, frame):
-    """Move the slider of the frames."""
-    chromium.value(f"(() => {{ const s = document.querySelector('[aria-label=frame]'); s.value = {frame}; s.dispatchEvent(new Event('input')); return 0 }})()")  # fmt: skip
-    chromium.drawn()
 
 
 class TestInABrowser:
@@ -139,28 +117,11 @@ class TestInABrowser:
         assert opened.value("[...document.querySelectorAll('[role=img]')].every(s => s.getAttribute('aria-label'))")  # fmt: skip
         assert opened.value("document.images.length") == 2  # mechanism and cracks
 
-    def test_light_dark_and_a_narrow_screen(self, chromium, pushed, tmp_path):
-        for dark in (False, True):
-            chromium.open(pushed, dark=dark)
-            corner = seen(chromium, tmp_path)[5, 5]
-            assert corner.max() < 0.2 if dark else corner.min() > 0.95
+    def test_it_fits_on_a_narrow_screen_and_on_paper(self, chromium, pushed):
         chromium.open(pushed, width=390, height=780)
         assert chromium.value("document.documentElement.scrollWidth") <= 390
-
-    def test_paper_is_a4_black_on_white_without_controls(self, opened, tmp_path):
-        path = str(tmp_path / "print.pdf")
-        opened.call("Emulation.setEmulatedMedia", media="print")
-        try:
-            style = lambda what, name: opened.value(f"getComputedStyle(document.querySelector('{what}')).{name}")  # fmt: skip
-            assert style(".masonry-controls", "display") == style("nav", "display") == "none"  # fmt: skip
-            assert style(".masonry-report", "color") == "rgb(0, 0, 0)"
-            assert style(".masonry-report", "backgroundColor") == "rgb(255, 255, 255)"
-        finally:
-            opened.call("Emulation.setEmulatedMedia", media="")
-        data = opened.call("Page.printToPDF", preferCSSPageSize=True)["data"]
-        with open(path, "wb") as file:
-            file.write(base64.b64decode(data))
-        printed = open(path, "rb").read()
+        data = chromium.call("Page.printToPDF", preferCSSPageSize=True)["data"]
+        printed = base64.b64decode(data)
         boxes = set(re.findall(rb"/MediaBox ?\[0 0 ([\d.]+) ([\d.]+)\]", printed))
         assert {(round(float(w)), round(float(h))) for w, h in boxes} == {(595, 842)}
         assert 3 <= len(re.findall(rb"/Type\s*/Page\b", printed)) <= 16

@@ -4,16 +4,69 @@
 ``RESUME_SEED`` and ``RESUME_SCRIPTS`` choose the first script, and how many there are.
 """
 
-import os
-import random
-import signal
-
-import pytest
+from usual import *
 import stopped
 
 SEED = int(os.environ.get("RESUME_SEED", 1000))
 MOST = 20_000  # steps of a script
 SCRIPTS = int(os.environ.get("RESUME_SCRIPTS", 20))
+#: Stages from whose beginning displacements count on; supports and a search of later stages; steps so long that a run is
+#: stopped within a look at rest; a vertical load that keeps its line, so that it moves with every row; a fall to the ground.
+KNOWN = {
+    "stages": """
+scene = Scene("s", bricks.Wall(0.44, 0.324), materials.calciumSilicate())
+base, top = scene.platen("bottom"), scene.platen("top")
+scene.press(top, 0.3e6)
+scene.settle()
+scene.push(top, 0.2)
+scene.move(base, z=-0.1)
+scene.cycle(top, [0.1])
+scene.run(0.02)
+scene.finish()
+""",
+    "search": """
+stone = materials.dry(friction=0.7, normalStiffness=1e11, density=2600)
+scene = Scene("s", bricks.stack(3, (0.3, 0.3, 0.2)), stone)
+scene.platen("bottom")
+top = scene.handle(2, name="stone")
+scene.settle()
+scene.load(top, (100, 0, -500))
+scene.wind(100, (1, 0, 0))
+scene.hold(top, "z")
+scene.run(0.02)
+scene.release(top, "z")
+scene.settle()
+scene.growLoad(top, (4000, 0, 0))
+scene.finish()
+""",
+    "soft": """
+stone = materials.dry(friction=0.6, normalStiffness=1e8, density=2600)
+scene = Scene("s", bricks.stack(3, (1.0, 1.0, 0.5)), stone)
+scene.platen("bottom")
+scene.watch(-1)
+scene.settle(longest=5.0)
+scene.finish()
+""",
+    "line": """
+scene = Scene("s", bricks.Wall(0.22, 0.243), materials.calciumSilicate(), rate=4)
+scene.platen("bottom")
+top = scene.platen("top", rotation="free", upTo=0.3, drive="x")
+scene.press(top, 0.5e6, riding=False)
+scene.settle()
+scene.push(top, 0.1)
+scene.finish()
+""",
+    "fall": """
+wall = bricks.Wall(0.6, 0.9, unit=(0.6, 0.3, 0.3), halves=False)
+stones = materials.dry(0.6, 2e8, density=2200)
+scene = Scene("s", wall, stones, plane=False, collapse="follow")
+scene.platen("bottom")
+scene.settle()
+scene.lean(0.5, (0, 1, 0))
+scene.result("reach", [a["value"] for a in scene.answers if a["name"] == "rubble_reach"][0], "m")
+scene.finish()
+""",
+}
 
 
 @pytest.fixture
@@ -24,6 +77,38 @@ def here(tmp_path, monkeypatch):
     return tmp_path
 
 
+def resumed(script, whole):
+    """The run in the folder "stopped" goes on, and leaves what the unbroken one left."""
+    status, _, said = stopped.carryOut(script, "--resume", "stopped")
+    assert status == 0, said
+    assert stopped.differences(stopped.left(whole), stopped.left("stopped")) == []
+
+
+@pytest.mark.parametrize(
+    "name, shares",
+    [
+        ("stages", (0.4, 0.6, 0.97)),
+        ("search", (0.2, 0.5, 0.8)),
+        ("soft", (0.01, 0.13, 0.75)),
+        ("line", (0.3, 0.8, 0.9, 0.95)),
+        ("fall", (0.5, 0.95)),
+    ],
+)
+def test_a_run_stopped_again_and_again_leaves_what_an_unbroken_one_does(
+    here, name, shares
+):
+    script = stopped.BEGIN + KNOWN[name]
+    status, steps, said = stopped.carryOut(script, "--out", "whole")
+    assert status == 0, said
+    words, taken = ("--out", "stopped"), 0
+    for share in shares:
+        act = stopped.signalled(signal.SIGTERM, max(1, round(share * steps) - taken))
+        status, more, said = stopped.carryOut(script, *words, stop=act)
+        assert status == 130, said
+        words, taken = ("--resume", "stopped"), taken + more
+    resumed(script, "whole")
+
+
 @pytest.mark.parametrize(
     "seed",
     [
@@ -31,9 +116,7 @@ def here(tmp_path, monkeypatch):
         for n in range(SCRIPTS)
     ],
 )
-def test_a_script_that_is_stopped_and_resumed_leaves_what_an_unbroken_run_leaves(
-    here, seed
-):
+def test_a_script_stopped_and_resumed_leaves_what_an_unbroken_one_leaves(here, seed):
     dice = random.Random(f"{seed} stop")
     for trial in range(100):
         script = stopped.Writer(f"{seed} {trial}").write()
@@ -41,9 +124,8 @@ def test_a_script_that_is_stopped_and_resumed_leaves_what_an_unbroken_run_leaves
         status, steps, said = stopped.carryOut(script, "--out", out, most=MOST)
         if status == 0 and steps > 10:
             break
-    how, step = dice.choice(
-        [signal.SIGTERM, signal.SIGINT, signal.SIGKILL]
-    ), dice.randint(1, steps)
+    how = dice.choice([signal.SIGTERM, signal.SIGINT, signal.SIGKILL])
+    step = dice.randint(1, steps)
     print(f"RESUME_SEED={seed}: {how.name} at step {step} of {steps}\n{script}")
     assert status == 0, said
     if how == signal.SIGKILL:
@@ -51,11 +133,5 @@ def test_a_script_that_is_stopped_and_resumed_leaves_what_an_unbroken_run_leaves
     else:
         stop, out = stopped.signalled(how, step), "stopped"
     stopped.carryOut(script, "--out", out, stop=stop)
-    if how == signal.SIGKILL and not os.path.exists("stopped"):
-        return  # it was over before it was killed
-    status, _, said = stopped.carryOut(script, "--resume", "stopped")
-    assert status == 0, said
-    assert (
-        stopped.differences(stopped.left(f"whole{trial}"), stopped.left("stopped"))
-        == []
-    )
+    if os.path.exists("stopped"):  # else it was over before it was killed
+        resumed(script, f"whole{trial}")

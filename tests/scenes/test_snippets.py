@@ -5,13 +5,8 @@ Commands run in the order of the documents, in one folder, as a reader types the
 tenth of their way, and names such as FILE get a meaning. Those of the tutorial are run by test_tutorial.py.
 """
 
-import os
-import re
-import subprocess
-import sys
-import time
-
 from hosted import *
+
 
 sys.path.insert(1, os.path.join(ROOT, "tests", "gates"))
 import tree  # noqa: E402

@@ -1,12 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Stages against Newton's laws: a few cells of validation/statics, other ones in every run of the tests."""
 
-import os
-import random
-import time
-
-import statics
 from hosted import *
+import statics
 
 SEED = int(
     os.environ.get("STATICS_SEED", time.time() // 86400)

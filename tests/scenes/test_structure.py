@@ -1,18 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Scenes of one's own: stages, how they end, closed forms of what they measure, and what they refuse."""
 
-import math
-
-import pytest
-import stopped
-from masonry import Scene, bricks, materials
-from masonry.basics import Refused
-from masonry.scene.ground import readRecord
-from masonry.read.files import readCurve, readRun
+from hosted import *
 from masonry.run.results import Results
-from masonry import AT_REST, COLLAPSED, DONE
 from small import SMALL, carryOut, parsed
-from yade import O
 
 STONE = 2600 * 9.81  # [N/m³]
 
@@ -24,82 +15,7 @@ def made(folder, blocks, masonry=None, words=(), **settings):
     )
 
 
-@pytest.fixture
-def pier(tmp_path):
-    """A small pier between platens at rest, and its platens."""
-    blocks = bricks.Wall(0.66, 0.486)
-    scene = made(tmp_path, blocks, materials.calciumSilicate())
-    base, top = scene.platen("bottom"), scene.platen("top", rotation="held")
-    scene.press(top, 0.3e6)
-    assert scene.settle() == AT_REST
-    return scene, base, top
-
-
-def test_at_rest_the_support_carries_weight_and_pressure(pier):
-    scene, *_ = pier
-    weight = 0.66 * 0.102 * (0.3e6 + 1800 * 9.81 * 0.486)
-    carried = -1e3 * scene.results.column("base_force_z_kN")[-1]
-    assert carried == pytest.approx(weight, rel=5e-3)
-    scene.finish()
-
-
-def test_a_push_and_its_figures(pier, tmp_path):
-    scene, base, top = pier
-    assert scene.push(top, 0.5) == DONE
-    scene.finish()
-    curve, run = readCurve(str(tmp_path)), readRun(str(tmp_path))
-    assert curve["displacement_mm"][-1] == pytest.approx(0.5, abs=0.02)
-    assert curve["top_x_mm"][-1] == pytest.approx(0.5, abs=0.02)
-    both = max(map(min, zip(curve["base_shear_kN"], curve["top_shear_kN"])))
-    assert run["peak_at_both_ends_kN"] == pytest.approx(both)
-    assert run["peak_base_shear_kN"] > 5
-    assert run["ended"] == DONE and not run["collapsed"]
-    assert (tmp_path / "curve.png").exists()
-
-
-def test_cycles_reach_both_sides(pier, tmp_path):
-    scene, _, top = pier
-    scene.cycle(top, [0.2, 0.4])
-    scene.finish()
-    run, moved = readRun(str(tmp_path)), readCurve(str(tmp_path))["displacement_mm"]
-    assert [c["amplitude_mm"] for c in run["cycles"]] == pytest.approx(
-        [0.2, 0.4], abs=0.02
-    )
-    assert (min(moved), max(moved)) == pytest.approx((-0.4, 0.4), abs=0.01)
-
-
-STAGES = """
-from masonry import Scene, bricks, materials
-scene = Scene("s", bricks.Wall(0.44, 0.324), materials.calciumSilicate())
-base, top = scene.platen("bottom"), scene.platen("top")
-scene.press(top, 0.3e6)
-scene.settle()
-scene.push(top, 0.2)
-scene.move(base, z=-0.1)
-scene.cycle(top, [0.1])
-scene.run(0.02)
-scene.finish()
-"""
-
-
-@pytest.mark.parametrize("stage", ["push", "move", "run"])
-def test_a_resumed_scene_equals_one_without_a_break(tmp_path, monkeypatch, stage):
-    """Stopped in a stage, also after a push or a history, from whose beginning displacements count on."""
-    monkeypatch.chdir(tmp_path)
-    steps = [0]
-
-    def stop(run, taken):
-        steps[0] += run.at.stage == stage
-        if steps[0] > 300:
-            run.signals.interrupted = True
-
-    assert stopped.carryOut(STAGES, "--out", "whole")[0] == 0
-    assert stopped.carryOut(STAGES, "--out", "broken", stop=stop)[0] == 130
-    assert stopped.carryOut(STAGES, "--resume", "broken")[0] == 0
-    assert stopped.differences(stopped.left("whole"), stopped.left("broken")) == []
-
-
-def test_stages_that_are_left_out_of_a_resumed_run_have_the_rows_of_their_time(
+def test_stages_left_out_of_a_resumed_run_have_the_rows_of_their_time(
     tmp_path,
 ):
     def play(*words):
@@ -129,9 +45,23 @@ def small(folder, *words, press=1e5, push=0.05):
     return scene, top
 
 
+def test_cycles_reach_both_sides(tmp_path):
+    scene, top = small(tmp_path)
+    first = len(scene.results.rows)
+    scene.cycle(top, [0.1, 0.2])
+    moved = scene.results.column("displacement_mm")[first:]
+    scene.finish()
+    found = [cycle["amplitude_mm"] for cycle in readRun(str(tmp_path))["cycles"]]
+    assert found == pytest.approx([0.1, 0.2], abs=0.02)
+    assert (min(moved), max(moved)) == pytest.approx((-0.2, 0.2), abs=0.01)
+
+
 def test_the_drive_stops_when_its_stage_ends(tmp_path):
     scene, top = small(tmp_path)
     scene.run(0.05)
+    answer = next(a for a in scene.answers if a["name"].endswith("_x_at_the_end"))
+    assert answer["unit"] == "mm"
+    assert answer["value"] == pytest.approx(scene.results.column("top_x_mm")[-1])
     scene.lean(0.02)
     assert scene.results.column("top_x_mm")[-1] == pytest.approx(0.05, abs=0.01)
     scene.finish()
@@ -182,10 +112,49 @@ def test_two_scenes_at_once_are_refused(tmp_path):
     two.finish()
 
 
+def varied(scene):
+    scene.platen("bottom")
+    scene.masonry.vary("bed.cohesion", lambda x, y, z: 0.3)
+    scene.settle()
+
+
+def notGrown(scene):
+    scene.platen("bottom")
+    top = scene.platen("top")
+    scene.press(top, 1e5)
+    scene.push(top, 1)
+
+
 @pytest.mark.parametrize(
     "act, message",
     [
-        (lambda s, t: s.bracket(lambda f: f < 0.1, 0.2, 0.3), "does not carry 0.2"),
+        (lambda s: s.platen("bottom", rotation="free"), "the bottom is fixed"),
+        (
+            lambda s: s.press(s.platen("bottom"), 1e6),
+            "'base' must be a platen .* moves",
+        ),
+        (lambda s: s.hold(99), "where 99: there are 3 bricks"),
+        (lambda s: s.hold((9, 9, 9)), "no brick is near"),
+        (
+            lambda s: (s.hold(0, name="a"), s.hold(1, name="a")),
+            "two targets of the name",
+        ),
+        (lambda s: s.load(s.platen("top"), (0, 9, 0)), "is in the x-z plane"),
+        (lambda s: s.hold(0, axes="y"), "no block moves along y"),
+        (lambda s: s.wind(0, (1, 0, 0)), "pressure 0 Pa must be other than 0"),
+        (notGrown, r"the loads on top grow in settle\(\)"),
+        (varied, r"vary: at \(.*\) m: joint \"bed\": tensile"),
+    ],
+)
+def test_wrong_words_before_the_first_stage_are_refused(tmp_path, act, message):
+    stones = bricks.stack(3, (0.4, 0.3, 0.2))
+    with pytest.raises(ValueError, match=message):
+        act(made(tmp_path, stones, materials.calciumSilicate()))
+
+
+@pytest.mark.parametrize(
+    "act, message",
+    [
         (
             lambda s, t: s.bracket(lambda f: True, 0.2, 0.3),
             "carries 0.3, the upper end",
@@ -193,21 +162,22 @@ def test_two_scenes_at_once_are_refused(tmp_path):
         (lambda s, t: s.bracket(lambda f: True, 0.3, 0.2), "below high 0.2"),
         (lambda s, t: s.push(t, 0.1, direction=(0, 1, 0)), "in the x-z plane"),
         (lambda s, t: s.watch(0), "must come before the first stage"),
+        (lambda s, t: s.growLoad(t, (0, 0, 0)), "force must not be zero"),
+        (lambda s, t: s.growWind(9, (0, 0, 1)), "must be a horizontal direction"),
     ],
 )
 def test_wrong_stages_are_refused(tmp_path, act, message):
-    scene, top = small(tmp_path)
     with pytest.raises(ValueError, match=message):
-        act(scene, top)
+        act(*small(tmp_path))
 
 
-def test_loads_that_have_not_grown_are_refused(tmp_path):
-    scene = made(tmp_path, bricks.stack(3, (0.4, 0.3, 0.2)))
-    scene.platen("bottom")
-    top = scene.platen("top")
-    scene.press(top, 1e5)
-    with pytest.raises(ValueError, match=r"the loads on top grow in settle\(\)"):
-        scene.push(top, 1)
+def test_nothing_held_and_wind_on_deformable_bricks_are_refused(tmp_path):
+    with pytest.raises(SystemExit) as end:
+        made(tmp_path, bricks.stack(2, (0.2, 0.2, 0.2))).settle()
+    assert end.value.code == 2
+    words = ["--blocks", "deformable"]
+    with pytest.raises(Refused, match="wind: it loads rigid bricks"):
+        made(tmp_path, bricks.Wall(0.44, 0.81), None, words).wind(500, (1, 0, 0))
 
 
 def test_a_block_that_is_tilted_beyond_its_diagonal_falls(tmp_path):
@@ -240,53 +210,6 @@ def test_a_property_varies_from_place_to_place(tmp_path):
     for height, cohesion in found.items():
         assert cohesion == pytest.approx(0.11e6 * (1 + height), rel=5.1e-3)
     scene.finish()
-
-
-def test_a_variation_that_cannot_be_is_refused(tmp_path):
-    masonry = materials.calciumSilicate().vary("bed.cohesion", lambda x, y, z: 0.3)
-    scene = made(tmp_path, bricks.Wall(0.44, 0.81), masonry)
-    scene.platen("bottom")
-    with pytest.raises(ValueError, match=r"vary: at \(.*\) m: joint \"bed\": tensile"):
-        scene.settle()
-    with pytest.raises(ValueError, match="vary: no property 'bed.cohesive'"):
-        materials.calciumSilicate().vary("bed.cohesive", lambda x, y, z: 1)
-
-
-def test_nothing_held_is_refused(tmp_path):
-    scene = made(tmp_path, bricks.stack(2, (0.2, 0.2, 0.2)))
-    with pytest.raises(SystemExit) as end:
-        scene.settle()
-    assert end.value.code == 2
-
-
-@pytest.mark.parametrize(
-    "act, message",
-    [
-        (
-            lambda s: s.platen("bottom", rotation="free"),
-            "the one at the bottom is fixed",
-        ),
-        (
-            lambda s: s.press(s.platen("bottom"), 1e6),
-            "platen 'base' must be a platen of this scene that moves",
-        ),
-        (lambda s: s.hold(99), "where 99: there are 2 bricks"),
-        (lambda s: s.hold((9, 9, 9)), "no brick is near"),
-        (
-            lambda s: (s.hold(0, name="a"), s.hold(1, name="a")),
-            "two targets of the name 'a'",
-        ),
-        (
-            lambda s: s.load(s.platen("top"), (0, 9, 0)),
-            "load: the scene is in the x-z plane",
-        ),
-        (lambda s: s.hold(0, axes="y"), "in the x-z plane no block moves along y"),
-    ],
-)
-def test_wrong_words_are_refused(tmp_path, act, message):
-    scene = made(tmp_path, bricks.stack(2, (0.2, 0.2, 0.2)))
-    with pytest.raises(ValueError, match=message):
-        act(scene)
 
 
 # -- supports that go, wind, drift, pushes that go on, records --------------------------------------------------------
@@ -393,49 +316,6 @@ def test_wind_overturns_a_wall_at_the_pressure_of_statics(tmp_path):
         except SystemExit as end:  # what falls in settle() ends with status 1
             assert end.code == 1 and ends == "collapsed"
         assert readRun(str(tmp_path))["energy_balance_error"] < 1e-3
-
-
-def test_wind_that_cannot_be_is_refused(tmp_path):
-    blocks = bricks.Wall(0.44, 0.81, halves=False)
-    scene = made(tmp_path, blocks, materials.dry(), plane=False)
-    with pytest.raises(ValueError, match="pressure 0 Pa must be other than 0"):
-        scene.wind(0, (0, 1, 0))
-    scene = made(tmp_path, blocks, materials.dry(), ["--blocks", "deformable"])
-    with pytest.raises(Refused, match="wind: it loads rigid bricks"):
-        scene.wind(500, (1, 0, 0))
-
-
-@pytest.mark.parametrize("rate", [0.2, 1.0])
-def test_a_growing_acceleration_tells_where_the_structure_left_rest(tmp_path, rate):
-    """A block of 0.25 × 0.5 m leaves rest at b/h = 0.5, whatever the rate, though it falls only later."""
-    block = bricks.stack(1, (0.25, 0.25, 0.5))
-    scene = made(tmp_path, block, materials.dry(friction=5, normalStiffness=1e12))
-    scene.platen("bottom")
-    scene.settle()
-    assert scene.accelerate(0.9, rate=rate) == COLLAPSED
-    assert scene.factor == pytest.approx(0.5, rel=0.01)
-    assert scene.model.scheme.factor() > 0.51  # when it was noticed
-    scene.finish()
-
-
-@pytest.mark.parametrize(
-    "peak, settings, message",
-    [
-        (400, {}, "the peak of the record is 400, .* is it in cm/s²"),
-        (2, dict(scale=0.1), "the peak of the record is 0.2"),
-        (2, dict(unit="mm/s²"), "unit must be one of m/s², g, cm/s², got 'mm/s²'"),
-    ],
-)
-def test_a_record_in_another_unit_is_asked_about(peak, settings, message):
-    with pytest.raises(Refused, match=message):
-        readRecord([0, peak, -peak / 2], 0.01, **settings)
-
-
-def test_a_record_is_read_in_its_unit(tmp_path):
-    assert readRecord([0, 4.0], 0.01)[0] == [0, 4.0]
-    assert readRecord([0, 0.4], 0.01, unit="g")[0] == pytest.approx([0, 3.924])
-    assert readRecord([0, 400], 0.01, unit="cm/s²")[0] == pytest.approx([0, 4])
-    assert readRecord([0, 0.4], 0.01, unit="m/s²")[0] == [0, 0.4]
 
 
 @pytest.mark.parametrize("stage", ["tilt", "accelerate"])

@@ -1,16 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The tutorial: its three notebooks run from top to bottom, and so does every command that they name."""
 
+from usual import *
 import base64
-import json
-import os
-import re
-import shutil
-import subprocess
-import sys
 
-import pytest
-from conftest import ROOT
 
 TUTORIAL = os.path.join(ROOT, "scripts", "docs", "tutorial")
 NOTEBOOKS = ["1_first_joint.ipynb", "2_wall.ipynb", "3_structures.ipynb"]
@@ -43,9 +36,8 @@ def test_a_notebook_runs_from_top_to_bottom(tmp_path, name):
     pytest.importorskip("ipykernel", reason="python3-ipykernel is not installed")
     shutil.copy(os.path.join(TUTORIAL, name), tmp_path)
     command = [sys.executable, "-m", "nbconvert", "--to", "notebook", "--execute", "--inplace", "--ExecutePreprocessor.kernel_name=python3", name]  # fmt: skip
-    run = subprocess.run(
-        command, cwd=tmp_path, capture_output=True, text=True, timeout=300
-    )
+    words = dict(capture_output=True, text=True, timeout=300)
+    run = subprocess.run(command, cwd=tmp_path, **words)
     assert run.returncode == 0, run.stderr[-5000:]
     count = pictures = 0
     for cell in read(tmp_path / name)["cells"]:
@@ -76,14 +68,8 @@ def test_every_command_of_the_tutorial(tmp_path):
     for command in commands:
         if "view.py" in command:  # tests/scenes/test_view.py has ParaView
             continue
-        run = subprocess.run(
-            command,
-            shell=True,
-            cwd=tmp_path,
-            capture_output=True,
-            text=True,
-            timeout=280,
-        )
+        words = dict(shell=True, capture_output=True, text=True, timeout=280)
+        run = subprocess.run(command, cwd=tmp_path, **words)
         assert run.returncode == 0, command + run.stdout + run.stderr
         assert "rror" not in run.stderr, command + run.stderr
     assert (tmp_path / "results" / "both.png").exists()

@@ -1,16 +1,14 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The quick variants of the validation cases hold their limits, and the program says so when one does not."""
 
+from hosted import *
 import glob
 import importlib.util
-import os
-
 import invariance
 import observed
 import stability
 import studies
 import validate
-from hosted import *
 from masonry.scene import options
 from masonry.scene.settings import applySettings
 
@@ -92,7 +90,7 @@ def test_energy_that_joints_make_is_an_error_of_the_balance():
 
 
 @pytest.mark.parametrize("blocks", observed.BLOCKS)
-def test_a_panel_reported_in_other_units_turned_and_renumbered_gives_the_same_curve(
+def test_a_panel_in_other_units_turned_and_renumbered_gives_the_same_curve(
     blocks,
 ):
     telling = dict(

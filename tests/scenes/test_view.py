@@ -1,15 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Runs in ParaView, with the real pvpython where it is installed."""
 
-import json
-import os
-import shutil
-import subprocess
-import sys
-
 from hosted import *
 from masonry.read import viewer
-from masonry.read.frames import readFrame
+from matplotlib.image import imread
 
 MISSING = "" if shutil.which("pvpython") or os.path.exists(os.path.join(viewer.UNPACKED, "usr", "bin", "pvpython")) else "ParaView is not installed"  # fmt: skip
 
@@ -30,18 +24,8 @@ def view(*words):
     return subprocess.run(["/usr/bin/python3", program, *words], capture_output=True, text=True)  # fmt: skip
 
 
-def share(path, low, high):
-    """Share of the pixels of a picture whose colours lie between two [0 to 1]."""
-    from matplotlib.image import imread
-
-    pixels = imread(path)[..., :3]
-    return (((pixels >= low) & (pixels <= high)).all(axis=2)).mean(), pixels.shape
-
-
 def cracked(path):
     """Pixels in the colours of cracks, beside the legend."""
-    from matplotlib.image import imread
-
     pixels = imread(path)
     left = pixels[:, : int(0.8 * pixels.shape[1])]
     return int((left[..., 0] - left[..., 2] > 0.45).sum())
@@ -50,18 +34,14 @@ def cracked(path):
 @needsParaView
 def test_a_picture_shows_bricks_and_the_crack(wall, tmp_path):
     path = str(tmp_path / "wall.png")
-    run = view(wall, "--picture", path, "--size", "600x400")
-    assert run.returncode == 0, run.stderr
-    brick, shape = share(path, (0.6, 0.5, 0.35), (0.98, 0.9, 0.75))
-    assert shape == (400, 600, 3)
-    assert brick > 0.05
-    white, _ = share(path, 0.99, 1.0)
-    assert white > 0.4
-
-    # before the push there is no crack
     early = str(tmp_path / "early.png")
-    assert view(wall, "--picture", early, "--size", "600x400", "--at", "0").returncode == 0  # fmt: skip
-    assert cracked(path) > cracked(early) + 30
+    for words in ((path,), (early, "--at", "0")):
+        run = view(wall, "--size", "600x400", "--picture", *words)
+        assert run.returncode == 0, run.stderr
+    pixels = imread(path)[..., :3]
+    bricks = (pixels >= (0.6, 0.5, 0.35)) & (pixels <= (0.98, 0.9, 0.75))
+    assert pixels.shape == (400, 600, 3) and bricks.all(axis=2).mean() > 0.05
+    assert cracked(path) > cracked(early) + 30  # none before the push
 
 
 @needsParaView
@@ -109,25 +89,12 @@ def test_places_in_a_run(wall):
         place = text.format(moved["displacement_mm"][row])
         assert abs(viewer.frameNear(wall, place) - middle) <= 1
     for text, message in (
-        ("soon", "'soon' must be a number"),
         ("3 kN", "'3 kN' must be in mm or in s"),
         ("900", "never comes to 900 mm; it goes from"),
         ("-1s", "has frames from"),
     ):
         with pytest.raises(Refused, match=message):
             viewer.frameNear(wall, text)
-
-
-def test_the_camera_shows_all_of_the_run(wall):
-    scene = viewer.sceneOf(wall, len(viewer.frameTimes(wall)) - 1, None, 1.5, True)
-    frame = readFrame(wall, "blocks")
-    points = frame["points"] + scene["magnification"] * frame["displacement"]
-    away = np.array(scene["towards"])
-    right = np.cross((0, 0, 1), away)
-    right /= np.linalg.norm(right)
-    seen = (points - scene["middle"]) @ np.transpose([right, np.cross(away, right)])
-    assert np.abs(seen[:, 0]).max() < 1.5 * scene["half_height"]
-    assert np.abs(seen[:, 1]).max() < scene["half_height"]
 
 
 def test_without_paraview_the_packages_are_named(wall, monkeypatch):
@@ -145,7 +112,6 @@ def test_without_paraview_the_packages_are_named(wall, monkeypatch):
         (["RUN", "--picture", "p.jpg"], "p.jpg must end in .png"),
         (["RUN", "--film", "p.mp4"], "p.mp4 must end in .avi or .ogv"),
         (["RUN", "--picture", "p.png", "--at", "x"], "--at: 'x' must be a number"),
-        (["RUN", "--magnify", "-1"], "--magnify: -1 must be at least 0"),
         (["RUN", "--rate", "0"], "--rate: 0 must be from 1 to 100"),
     ],
 )

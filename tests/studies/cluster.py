@@ -3,6 +3,7 @@
 
 import contextlib
 import getpass
+import glob
 import os
 import shutil
 import signal
@@ -73,9 +74,8 @@ def cluster(tasks=1001):
 
     :param tasks: the largest number of a task in an array is one less
     """
-    with tempfile.TemporaryDirectory(
-        prefix="slurm"
-    ) as folder, contextlib.ExitStack() as stack:
+    place = tempfile.TemporaryDirectory(prefix="slurm")
+    with place as folder, contextlib.ExitStack() as stack:
         for name in ("state", "spool"):
             os.mkdir(os.path.join(folder, name))
         key = os.path.join(folder, "munge.key")
@@ -85,56 +85,33 @@ def cluster(tasks=1001):
         path = os.path.join(folder, "slurm.conf")
         host = socket.gethostname().split(".")[0]
         with open(path, "w") as f:
-            f.write(
-                CONFIGURATION.format(
-                    host=host,
-                    user=getpass.getuser(),
-                    folder=folder,
-                    controller=controller,
-                    node=node,
-                    tasks=tasks,
-                )
-            )
+            user = getpass.getuser()
+            f.write(CONFIGURATION.format(**locals()))
         env = {**os.environ, "SLURM_CONF": path, "PATH": os.environ["PATH"] + SBIN}
         log = stack.enter_context(open(os.path.join(folder, "log"), "ab"))
 
         def start(*words):
-            process = subprocess.Popen(
-                words, env=env, stdin=subprocess.DEVNULL, stdout=log, stderr=log
-            )
+            pipes = dict(stdin=subprocess.DEVNULL, stdout=log, stderr=log)
+            process = subprocess.Popen(words, env=env, **pipes)
             stack.callback(_end, process)
 
         def asked(*words):
             done = subprocess.run(words, env=env, capture_output=True, text=True)
             return done.stdout if done.returncode == 0 else ""
 
-        files = {
-            "socket": "munge.socket",
-            "pid-file": "munge.pid",
-            "log-file": "munge.log",
-            "seed-file": "munge.seed",
-        }
-        start(
-            "munged",
-            "--foreground",
-            "--force",
-            f"--key-file={key}",
-            *(f"--{k}={folder}/{v}" for k, v in files.items()),
-        )
+        kinds = "socket pid-file log-file seed-file".split()
+        files = [f"--{k}={folder}/munge.{k.removesuffix('-file')}" for k in kinds]
+        start("munged", "--foreground", "--force", f"--key-file={key}", *files)
         try:
             _until(lambda: os.path.exists(f"{folder}/munge.socket"), 20, "munged")
             start("slurmctld", "-D", "-f", path)
             start("slurmd", "-D", "-f", path, "-N", host)
-            _until(
-                lambda: "idle" in asked("sinfo", "--noheader", "-o", "%t"), 30, "slurmd"
-            )
+            idle = lambda: "idle" in asked("sinfo", "--noheader", "-o", "%t")
+            _until(idle, 30, "slurmd")
         except TimeoutError as error:
-            message = "".join(
-                open(os.path.join(folder, n), errors="replace").read()[-2000:]
-                for n in os.listdir(folder)
-                if n.endswith("log")
-            )
-            raise TimeoutError(f"{error} did not start:\n{message}") from None
+            logs = glob.glob(os.path.join(folder, "*log"))
+            said = [open(path, errors="replace").read()[-2000:] for path in logs]
+            raise TimeoutError(f"{error} did not start:\n{''.join(said)}") from None
         yield env
         asked("scancel", "--user", getpass.getuser())
         with contextlib.suppress(TimeoutError):

@@ -1,15 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Fragility from the levels between which records reach a limit: drawn data, closed forms, and what cannot be found."""
 
-import math
-
-import numpy as np
-import pytest
-from hypothesis import given, reject, settings
-from hypothesis import strategies as some
+from usual import *
+from hypothesis import reject
 from scipy import special
-
-from masonry.basics import Refused
 from masonry.study import fragility
 
 LEVELS = np.geomspace(0.2, 3, 8)

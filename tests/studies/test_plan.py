@@ -1,75 +1,43 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What a study says: its table as YADE reads it, and what is refused before anything runs."""
 
-import os
-import subprocess
-import sys
-
-import pytest
-from conftest import ROOT
-
+from usual import *
 from masonry import fields
 from masonry.run import batch
-from masonry.basics import Refused
 from masonry.study import Study, choice, field, lognormal, normal, uniform
 
-GRID = {
-    "rate": [20, 40.5],
-    "bed.cohesion+bed.tensileStrength": [1],
-    "joints": ["softening"],
-}
 
-
+@pytest.fixture
 def table(tmp_path):
-    study = Study(
-        "any",
-        options={"quick": True, "preset": None},
-        vary={
-            "rate": [20, 40.5],
-            "joints": ["softening"],
-            ("bed.friction", "head.friction"): [0.1, 0.43],
-        },
-        design="grid",
-    )
-    path = tmp_path / "table.txt"
-    path.write_text(study.table())
-    return path
+    """The path of the table of a grid."""
+    friction = ("bed.friction", "head.friction")
+    vary = {"rate": [20, 40.5], "joints": ["softening"], friction: [0.1, 0.43]}
+    options = {"quick": True, "preset": None}
+    study = Study("any", options=options, vary=vary, design="grid")
+    (tmp_path / "table.txt").write_text(study.table())
+    return str(tmp_path / "table.txt")
 
 
-def test_yade_reads_the_table(tmp_path):
+def test_yade_reads_the_table(table):
     from yade import utils
 
-    path = table(tmp_path)
-    rows = utils.TableParamReader(str(path)).paramDict()
-    assert rows == batch.readTable(str(path))
-    assert [row["description"] for row in rows.values()] == [
-        "0001",
-        "0002",
-        "0003",
-        "0004",
-    ]
-    assert utils.readParamsFromTable(f"{path}:4", unknownOk=True) == 6
+    rows = utils.TableParamReader(table).paramDict()
+    assert rows == batch.readTable(table)
+    assert [
+        row["description"] for row in rows.values()
+    ] == "0001 0002 0003 0004".split()
+    assert utils.readParamsFromTable(f"{table}:4", unknownOk=True) == 6
     from yade.params import table as read
 
-    assert (read.rate, read.joints, read.quick, read.preset) == (
-        40.5,
-        "softening",
-        True,
-        None,
-    )
+    assert (read.rate, read.joints) == (40.5, "softening")
+    assert read.quick is True and read.preset is None
     assert getattr(read, "bed.friction+head.friction") == 0.1
 
 
-def test_a_row_is_the_words_of_a_command_line(tmp_path):
-    rows = batch.readTable(str(table(tmp_path)))
-    assert batch.optionWords(rows[5]) == [
-        "--lean",
-        "--quick",
-        "--rate=40.5",
-        "--joints=softening",
-        "--set=bed.friction=0.43",
-        "--set=head.friction=0.43",
-    ]
+def test_a_row_is_the_words_of_a_command_line(table):
+    words = "--lean --quick --rate=40.5 --joints=softening"
+    words += " --set=bed.friction=0.43 --set=head.friction=0.43"
+    assert batch.optionWords(batch.readTable(table)[5]) == words.split()
 
 
 def test_a_table_of_the_users_own(tmp_path):
@@ -105,50 +73,39 @@ def test_a_field_is_read_as_it_is_written():
             fields.read(wrong)
 
 
-WRONG = {
-    "nothing varies": dict(runs=3, vary={}),
-    "runs 0 must be a whole number": dict(runs=0, vary={"rate": [1]}),
-    "runs None must be a whole number": dict(vary={"rate": [1]}),
-    "the grid has 2 points": dict(runs=3, vary={"rate": [1, 2]}, design="grid"),
-    "must be a list of values": dict(vary={"rate": uniform(1, 2)}, design="grid"),
-    "design 'best' must be one of random": dict(
-        runs=1, vary={"rate": [1]}, design="best"
-    ),
-    "seed -1 must be": dict(runs=1, vary={"rate": [1]}, seed=-1),
-    "option 'out' is the study's own": dict(
-        runs=1, vary={"rate": [1]}, options={"out": "x"}
-    ),
-    "rate: given twice": dict(runs=1, vary={"rate": [1]}, options={"rate": 2}),
-    "only a property of joints can be a field": dict(
-        runs=1, vary={"rate": field(cov=0.1)}
-    ),
-    "has a blank or #": dict(runs=1, vary={"joints": ["soft ening"]}),
-    "is no number, list, distribution": dict(runs=1, vary={"rate": {}}),
-    "rate is a choice; .* until does not vary": dict(
-        runs=1, vary={"rate": [1]}, correlation={("rate", "until"): 0.5}
-    ),
-    r"bed.friction varies with others: name it by its key in vary, \('bed.friction', 'bed.residualFriction'\)": dict(
-        runs=1,
-        vary={
-            ("bed.friction", "bed.residualFriction"): uniform(0.4, 0.5),
-            "bed.cohesion": uniform(1, 2),
-        },
-        correlation={("bed.cohesion", "bed.friction"): -0.5},
-    ),
-    "must be an option, with underscores": dict(runs=1, vary={"no-vtk": [True]}),
-}
+ONE = {"rate": [1]}
+BOTH = ("bed.friction", "bed.residualFriction")
+TIED = {BOTH: uniform(1, 2), "bed.cohesion": uniform(1, 2)}
+PAIR = {("bed.cohesion", "bed.friction"): -0.5}
 
 
-@pytest.mark.parametrize("message", WRONG)
-def test_a_wrong_study_is_refused(message):
-    with pytest.raises(Refused, match=f"(?s){message}"):
-        Study("any", **WRONG[message])
+@pytest.mark.parametrize(
+    "wrong, message",
+    [
+        (dict(runs=3, vary={}), "nothing varies"),
+        (dict(vary=ONE), "runs None must be a whole number"),
+        (dict(runs=3, vary={"rate": [1, 2]}, design="grid"), "the grid has 2 points"),
+        (dict(vary={"rate": uniform(1, 2)}, design="grid"), "must be a list of values"),
+        (dict(runs=1, vary=ONE, design="best"), "'best' must be one of random"),
+        (dict(runs=1, vary=ONE, options={"out": "x"}), "'out' is the study's own"),
+        (dict(runs=1, vary=ONE, options={"rate": 2}), "rate: given twice"),
+        (dict(runs=1, vary={"rate": field(cov=0.1)}), "of joints can be a field"),
+        (dict(runs=1, vary={"joints": ["soft ening"]}), "has a blank or #"),
+        (dict(runs=1, vary={"rate": {}}), "is no number, list, distribution"),
+        (dict(runs=1, vary={"no-vtk": [True]}), "must be an option, with underscores"),
+        (dict(runs=1, vary=ONE, correlation={("rate", "x"): 0.5}), "x does not vary"),
+        (dict(runs=1, vary=TIED, correlation=PAIR), "name it by its key"),
+    ],
+)
+def test_a_wrong_study_is_refused(wrong, message):
+    with pytest.raises(Refused, match=message):
+        Study("any", **wrong)
 
 
 @pytest.mark.parametrize(
     "wrong, messages",
     [
-        (dict(runs=0, seed=-1, design="best"), ("design", "seed", "runs")),
+        (dict(runs=0, seed=-1, design="best"), ("design", "seed -1", "runs 0 must be")),
         (dict(options={"out": "x"}, vary={}), ("'out'", "nothing varies", "runs")),
     ],
 )
@@ -162,19 +119,10 @@ def test_all_problems_are_reported_at_once(wrong, messages):
 @pytest.mark.parametrize(
     "make, message",
     [
-        (lambda: lognormal(-1.0, 0.2), "mean -1 must be above 0"),
-        (lambda: normal(1.0, 0.0), "variation 0.0 must be above 0"),
         (lambda: uniform(2, 1), "low 2 must be below high 1"),
         (lambda: normal(1.0, 0.1, low=3, high=2), "low 3 must be below high 2"),
-        (
-            lambda: normal(1.0, 0.1, low=2),
-            r"normal\(mean=1, cov=0.1, low=2\): its ends leave 7.62e-24 of the distribution, they must leave more than 1e-09",
-        ),
+        (lambda: normal(1.0, 0.1, low=2), "low=2.: its ends leave 7.62e-24 of the"),
         (lambda: lognormal(1.0, 0.1, high=-1), "its ends leave 0 of the distribution"),
-        (
-            lambda: lognormal(1.0, 0.1, low=2, high=3),
-            "its ends leave 1.29e-12 of the distribution",
-        ),
         (lambda: normal(-1.0, 0.1, high=-1.7), "its ends leave 1.28e-12 of the"),
         (lambda: choice(), "at least one value"),
         (lambda: choice(1, 1), "has a value twice"),
@@ -187,31 +135,9 @@ def test_wrong_variables_are_refused(make, message):
         make()
 
 
-def test_without_openturns_one_sentence_names_the_package(tmp_path):
-    (tmp_path / "openturns.py").write_text(
-        "raise ModuleNotFoundError('none', name='openturns')"
-    )
-    code = "from masonry.study import *; Study('any', runs=2, vary={'rate': uniform(1, 2)}).rows()"
-    paths = os.pathsep.join([str(tmp_path), *filter(None, sys.path)])
-    done = subprocess.run(
-        [sys.executable, "-c", code],
-        env={**os.environ, "PYTHONPATH": paths},
-        capture_output=True,
-        text=True,
-    )
-    assert done.returncode == 1
-    assert done.stderr.splitlines()[-1].endswith(
-        "apt-get install --no-install-recommends python3-openturns"
-    )
-    # a grid of numbers needs none
-    grid = code.replace(
-        "runs=2, vary={'rate': uniform(1, 2)}", "design='grid', vary={'rate': [1, 2]}"
-    )
-    subprocess.run(
-        [sys.executable, "-c", grid],
-        env={**os.environ, "PYTHONPATH": paths},
-        check=True,
-    )
+def test_a_grid_of_numbers_needs_no_openturns(monkeypatch):
+    monkeypatch.setitem(sys.modules, "openturns", None)
+    assert len(Study("any", design="grid", vary={"rate": [1, 2]}).rows()) == 2
 
 
 def test_scenes_are_found_by_their_name():

@@ -1,11 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Statistics of a study hold what they promise: how often their intervals have the truth, and what they say of few rows."""
 
-import math
-
-import numpy as np
-import pytest
-from masonry.basics import Refused
+from usual import *
 from masonry.study import statistics
 from scipy import stats
 
@@ -30,11 +26,8 @@ def test_intervals_of_a_mean_have_it_as_often_as_they_say():
 def test_intervals_of_a_standard_deviation_have_it_as_often_as_they_say(normal):
     """Also of a distribution that is not normal: the lognormal one of a strength that scatters by 20 %."""
     scale = math.sqrt(math.log(1.04))
-    draw = (
-        lambda g: g.standard_normal(60)
-        if normal
-        else g.lognormal(-(scale**2) / 2, scale, 60)
-    )
+    skewed = lambda g: g.lognormal(-(scale**2) / 2, scale, 60)
+    draw = (lambda g: g.standard_normal(60)) if normal else skewed
     found = covered(statistics.deviation, draw, 1 if normal else 0.2)
     # Bonett's interval is an approximation: it may have the truth somewhat more often, or 1 % less
     assert 0.94 - CHANCE <= found <= 0.975
@@ -65,10 +58,8 @@ def test_the_interval_of_a_median_has_the_ranks_of_the_sign_test(n, low, high):
 
 
 def test_few_rows_tell_no_end_of_a_low_quantile():
-    values = np.arange(
-        1.0, 72
-    )  # 71 rows: with probability 0.95**71 = 2.6 % none of them is below the quantile
-    found = statistics.quantile(values, 0.05)
+    # 71 rows: with probability 0.95**71 = 2.6 % none of them is below the quantile
+    found = statistics.quantile(np.arange(1.0, 72), 0.05)
     assert found.low == -math.inf and math.isfinite(found.high)
     assert statistics.quantile(np.arange(1.0, 73), 0.05).low == 1
 
@@ -79,9 +70,8 @@ def test_shares_are_counted_with_the_most_frequent_first():
     assert found["rocks"].value == 0.8
     # Wilson's interval of 8 of 10, by its formula with z = 1.96
     z = stats.norm.ppf(0.975)
-    centre, half = (0.8 + z * z / 20) / (1 + z * z / 10), z * math.sqrt(
-        0.8 * 0.2 / 10 + z * z / 400
-    ) / (1 + z * z / 10)
+    centre = (0.8 + z * z / 20) / (1 + z * z / 10)
+    half = z * math.sqrt(0.8 * 0.2 / 10 + z * z / 400) / (1 + z * z / 10)
     assert found["rocks"][1:] == pytest.approx((centre - half, centre + half))
 
 
@@ -109,10 +99,8 @@ def test_a_lognormal_distribution_is_found_and_another_one_is_doubted():
     assert found.median == pytest.approx(100, rel=4 * 0.2 / math.sqrt(2000))
     assert found.dispersion == pytest.approx(0.2, rel=4 / math.sqrt(4000))
     assert found.fits > 0.01
-    twoModes = np.concatenate(
-        [generator.normal(100, 2, 100), generator.normal(130, 2, 100)]
-    )
-    assert statistics.lognormal(twoModes).fits < 1e-4
+    modes = [generator.normal(mean, 2, 100) for mean in (100, 130)]
+    assert statistics.lognormal(np.concatenate(modes)).fits < 1e-4
 
 
 @pytest.mark.parametrize(
