@@ -13,10 +13,9 @@ from dataclasses import replace
 from typing import Annotated, Iterable, Sequence
 
 from ..arguments import isA, listOf, number, oneOf, validated, whole
-from .blocks import FARTHEST, Block, Bricks, Gap, Length, Point, Sides
-from .blocks import boxCorners, refuse
+from .blocks import FARTHEST, Block, Bricks, Gap, Length, Point, Sides, refuse
 from .bonds import layout
-from .geometry import FLAT
+from .geometry import FLAT, boxCorners
 from .openings import WHOLE, LaidBrick, Opening, finished, numbered, opened
 
 #: A calcium-silicate unit of the walls in the paper (yade_plugin/law/README.md): length, thickness and height [m].
