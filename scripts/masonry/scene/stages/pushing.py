@@ -142,28 +142,9 @@ def drivePush(scene, name, args, began, continued=False):
     """
     run, model = scene.running, scene.model
     at = run.stage(name, Pushing())
-    first, origin = at.origin is None, at.origin
-    if first:
-        origin = here = list(model.loading.topDisplacement())
-        if continued:
-            origin = run.at.origins[began]
-            at.moved = at.last = at.start = 1e3 * (here[0] - origin[0])
-    if not args.history and not args.until > at.moved:
-        raise Refused(
-            f"--until {args.until:g}: the run is at {at.moved:.2f} mm already"
-        )
-    goals = aim(args, at.start)
+    goals = _entered(scene, name, args, at, began, continued)
     whole, spacing = pathOf(args, at.start), frameSpacing(args)
-    if at.passed >= len(goals):
-        raise Refused(f"--resume: its history has {at.passed} points and more")
-    load = model.loading.loads["push"]
     every = max(1, int(rowSpacing(args) / (args.rate * O.dt)))
-    model.loading.goal = at.passed + 1, goals[at.passed].displacement
-    if first:
-        run.at.origins = {**run.at.origins, began: origin}
-        _beginPush(scene, name, args, at, origin, whole)
-        at.nextFrame = spacing
-    model.loading.origin = at.origin
 
     def detail():
         if not args.history:
@@ -181,14 +162,7 @@ def drivePush(scene, name, args, began, continued=False):
         if free != undamped:
             undamped = free
             model.scheme.damp(0.0, "local") if free else model.scheme.dampByOptions()
-        full = goal.direction * args.rate * 1e-3
-        if load.velocity != full * growth:
-            load.velocity = full * growth
-        # A velocity that grew in stairs would make the pushed block swing in time with them.
-        if start < growth:
-            load.ramp = run.at.left or steps
-            load.acceleration = full * (growth - start) / (steps * O.dt)
-        model.loading.keepLoadLine()
+        _setVelocity(scene, goal.direction * args.rate * 1e-3, start, growth, steps)
         run.advance(steps)
         reading = run.record()
         before = at.moved
@@ -213,20 +187,50 @@ def drivePush(scene, name, args, began, continued=False):
         raise Collapsed(f"at {at.moved:.2f} mm {how}")
 
 
-def _beginPush(scene, name, args, at, origin, path):
-    """Begin a push: its first row and frame, and the first period of the structure along it.
+def _entered(scene, name, args, at, began, continued):
+    """Begin a push, with its first row and frame and the first period of the structure along it, or go on with it.
 
-    :param at: what the push remembers
-    :param path: length of the whole path [mm]
+    Parameters are those of :func:`drivePush`, and what the push remembers. Returns the points of its path.
     """
     run, model = scene.running, scene.model
-    at.origin = model.loading.origin = origin
-    at.now = at.since = O.time
-    at.moved = 1e3 * run.record().along
-    run.frame()
-    at.period = _measuredPeriod(scene, name, args, path)
-    at.places = model.motion.positions() if at.period else []
-    run.at.swings = {**run.at.swings, str(run.entered): [at.period, 0.0, 0.0]}
+    first, origin = at.origin is None, at.origin
+    if first:
+        origin = here = list(model.loading.topDisplacement())
+        if continued:
+            origin = run.at.origins[began]
+            at.moved = at.last = at.start = 1e3 * (here[0] - origin[0])
+    if not args.history and not args.until > at.moved:
+        raise Refused(
+            f"--until {args.until:g}: the run is at {at.moved:.2f} mm already"
+        )
+    goals = aim(args, at.start)
+    if at.passed >= len(goals):
+        raise Refused(f"--resume: its history has {at.passed} points and more")
+    model.loading.goal = at.passed + 1, goals[at.passed].displacement
+    model.loading.origin = at.origin = origin
+    if first:
+        run.at.origins = {**run.at.origins, began: origin}
+        at.now = at.since = O.time
+        at.moved = 1e3 * run.record().along
+        run.frame()
+        at.period = _measuredPeriod(scene, name, args, pathOf(args, at.start))
+        at.places = model.motion.positions() if at.period else []
+        run.at.swings = {**run.at.swings, str(run.entered): [at.period, 0.0, 0.0]}
+        at.nextFrame = frameSpacing(args)
+    return goals
+
+
+def _setVelocity(scene, full, start, growth, steps):
+    """Let the velocity of the drive grow within the next steps, from one share of the full one [m/s] to another."""
+    loading = scene.model.loading
+    load = loading.loads["push"]
+    if load.velocity != full * growth:
+        load.velocity = full * growth
+    # A velocity that grew in stairs would make the pushed block swing in time with them.
+    if start < growth:
+        load.ramp = scene.running.at.left or steps
+        load.acceleration = full * (growth - start) / (steps * O.dt)
+    loading.keepLoadLine()
 
 
 def _lost(model, at, reading, direction, mean, whole):
