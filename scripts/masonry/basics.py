@@ -86,6 +86,18 @@ class Refused(ValueError):
     """Input that cannot be run, with all problems at once. Nothing was changed."""
 
 
+class Held(Refused):
+    """Another run is writing to the folder of the results."""
+
+
+class NotResumed(Refused):
+    """A checkpoint from which this run cannot go on."""
+
+
+class NotAccurate(Refused):
+    """A scene that cannot have ``--accuracy``."""
+
+
 class Interrupted(Exception):
     """The user pressed Ctrl-C, or the system sent SIGTERM."""
 

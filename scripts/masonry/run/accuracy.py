@@ -24,7 +24,7 @@ import sys
 from typing import Any
 
 from .. import background
-from ..basics import Refused, say
+from ..basics import NotAccurate, Refused, say
 from ..folders import check, inside, replaced
 from ..read.files import readRun
 from . import batch
@@ -216,24 +216,22 @@ class Companions:
             env.pop(other, None)
         try:
             with open(folder + ".log", "wb", opener=inside) as log:
-                return background.start(command, log, env)
+                return background.Program(command, log, env)
         except OSError as error:
             raise Refused(f"--accuracy: cannot run {command[0]}: {error.strerror}") from None  # fmt: skip
 
-    def _ended(self, name, status):
-        log = self.folderOf(name) + ".log"
-        if status not in (0, 1) or not self._take(name):
+    def _ended(self, name, program):
+        if program.returncode not in (0, 1) or not self._take(name):
+            kind, reason = program.refusal()
+            if kind == NotAccurate.__name__:
+                raise Refused(reason)
+            self.failed = True
+            log, lines = self.folderOf(name) + ".log", []
             with contextlib.suppress(OSError):
                 with open(log, errors="replace") as file:
                     lines = [line.strip() for line in file if line.strip()]
-                refused = [line for line in lines if "--accuracy: " in line]
-                if refused:
-                    raise Refused("--accuracy: " + refused[-1].partition("--accuracy: ")[2])  # fmt: skip
-                self.failed = True
-                raise Refused(
-                    f"--accuracy: the run {name} did not come to its end: {lines[-1] if lines else f'exit status {status}'}; see {log}"
-                )
-            raise Refused(f"--accuracy: the run {name} ended with status {status}")
+            last = lines[-1] if lines else f"exit status {program.returncode}"
+            raise Refused(f"--accuracy: the run {name} did not come to its end: {last}; see {log}")  # fmt: skip
         found = self.numbers[name]
         fell = ", collapsed" if found["collapsed"] else ""
         say(f"accuracy: {name}: peak {found['peak']:.4g} kN, work {found['work']:.4g} J, {found['seconds']:.0f} s{fell}")  # fmt: skip

@@ -34,7 +34,7 @@ FIELD = "field:"  # begins the name of a column
 #: Name in the environment of a file: the scene is built, and what it knows is written there. There is no run. The line of
 #: the heads then stands for a scene without options.
 PROBE = "MASONRY_PROBE"
-UNWRITTEN = "cannot write "  # begins what is said if that file cannot be written
+UNWRITTEN = os.EX_IOERR  # exit status if that file cannot be written
 
 
 def readTable(path):

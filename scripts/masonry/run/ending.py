@@ -12,6 +12,7 @@ import yade.config
 from .._masonry import commit, version
 from ..assembly import threads
 from ..assembly.columns import meanings
+from ..background import reportRefusal
 from ..basics import Collapsed, Interrupted, Refused, Unwritable, say
 from ..memory import FULL
 from .checkpoints import NAME
@@ -49,6 +50,8 @@ def _end(run, scene, error):
             run.takeUp()
     except Refused as refused:
         error = refused
+    if isinstance(error, Refused):
+        reportRefusal(error)
     if isinstance(error, MemoryError):
         error = Unwritable(FULL)
     if isinstance(error, Interrupted) and scene.only and scene.bounds.entries:

@@ -10,7 +10,7 @@ import re
 import socket
 
 from .. import folders
-from ..basics import Refused
+from ..basics import Held
 from ..read.files import readWhole
 
 #: Files that a run writes, and those that are drawn of it; * is a number.
@@ -53,7 +53,7 @@ class Lock:
 
     :param directory: folder, which must be there
     :param scene: name of the scene that runs
-    :raises Refused: if another run holds the folder; the message names its host and process
+    :raises Held: if another run holds the folder; the message names its host and process
     :raises OSError: if the folder cannot be written
     """
 
@@ -127,7 +127,7 @@ class Lock:
                 {"scene": "?", "host": "?", "process": "?", **record}
             )
         )
-        raise Refused(
+        raise Held(
             f"{who} is writing to {os.path.dirname(self.path)}: wait for its end, or name another folder with --out; "
             f"if it is gone, remove {LOCK} there"
         )

@@ -4,7 +4,7 @@
 from dataclasses import dataclass, field
 
 from .._masonry import loadScene
-from ..basics import Refused, say
+from ..basics import NotResumed, Refused, say
 from .checkpoints import NAME, alike, readState
 
 MOST_NOTES = 1000  # that a run keeps
@@ -80,7 +80,7 @@ class Place:
 
 def otherVersion(why):
     """The refusal of a checkpoint that this version of the plugin does not leave."""
-    return Refused(f"--resume: of another version of the plugin: {why}")
+    return NotResumed(f"--resume: of another version of the plugin: {why}")
 
 
 def restored(example, values):
@@ -131,7 +131,7 @@ class Saved:
         try:
             self._data, saved = readState(directory)
         except (OSError, ValueError) as error:
-            raise Refused(f"--resume: {error}") from None
+            raise NotResumed(f"--resume: {error}") from None
         like = dict(
             scene="", options={}, at={}, rows=[], script=[], seconds=0.0, host={}
         )
@@ -141,7 +141,7 @@ class Saved:
             or not all(alike(row, [0.0] * len(row)) for row in saved["rows"])
             or not all(alike(word, ["", {}]) for word in saved["script"])
         ):
-            raise Refused(
+            raise NotResumed(
                 f"--resume: {directory}/{NAME} was not left by a run in stages"
             )
         vars(self).update({key: saved[key] for key in like})
@@ -164,7 +164,7 @@ class Saved:
         try:
             loadScene(self._data)
         except (ValueError, TypeError) as error:
-            raise Refused(f"--resume: {self.directory}/{NAME} {error}") from None
+            raise NotResumed(f"--resume: {self.directory}/{NAME} {error}") from None
 
     def compareHost(self, now):
         """Say what of the host is not as it was."""

@@ -16,7 +16,7 @@ from types import SimpleNamespace
 from yade import O
 
 
-from ..basics import Collapsed, Interrupted, Refused, Unwritable, listen, say, stopListening  # fmt: skip
+from ..basics import Collapsed, Interrupted, NotResumed, Refused, Unwritable, listen, say, stopListening  # fmt: skip
 from . import batch
 from .keeping import Checkpoints, hostNow
 from .frames import Frames
@@ -91,7 +91,7 @@ class Run:
         if args.resume:
             self.saved = getattr(args, "saved", None) or Saved(args.resume)
             if self.saved.scene != self.name:
-                raise Refused(
+                raise NotResumed(
                     f"--resume: {args.resume} holds a run of {self.saved.scene}, this is {self.name}"
                 )
             self.at = self.saved.place()
@@ -114,7 +114,7 @@ class Run:
         if self.saved:
             width = len(self.results.columns)
             if any(len(row) != width for row in self.saved.rows):
-                raise Refused(f"--resume: its rows are not of {width} columns")
+                raise NotResumed(f"--resume: its rows are not of {width} columns")
             self.saved.load()
             self.state.takeRest(self.at)
             self.at.resumed.append(O.time)
@@ -193,7 +193,7 @@ class Run:
                 if self.frames:
                     self.frames.collect()
             except (OSError, RuntimeError, Unwritable) as error:
-                raise Refused(f"--resume: {error}") from None
+                raise NotResumed(f"--resume: {error}") from None
         self.advanced = True
 
     # -- what stages call -----------------------------------------------------------------------------------------

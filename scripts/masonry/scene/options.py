@@ -10,6 +10,7 @@ from .. import notebook
 from .._masonry import commit, version
 from ..arguments import oneOf, shown
 from ..assembly.engines import LAWS
+from ..background import reportRefusal
 from ..basics import Interrupted, Refused, say
 from ..run import accuracy, batch, options
 from ..run.options import USUAL, reading
@@ -131,7 +132,7 @@ def check(args, masonry, more=(), plane=False, connectors=None):
         try:
             readRecord(batch.beside(args.record), None, args.scale)
         except Refused as refused:
-            problems.append(f"--record: {str(refused).removeprefix('shake: ')}")
+            problems.append(f"--record: {refused}")
     for text in args.field:
         try:
             scatterAll(connectors, *fields.read(text))
@@ -152,6 +153,7 @@ def askAccuracy(name, args):
     except Refused as refused:
         if notebook.isHere():
             raise
+        reportRefusal(refused)
         say(refused, sys.stderr)
         raise SystemExit(2) from None
     except Interrupted:

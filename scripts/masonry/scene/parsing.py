@@ -4,7 +4,8 @@
 import argparse
 import re
 
-from ..basics import Refused, plain
+from ..background import reportRefusal
+from ..basics import NotResumed, Refused, plain
 from ..run import batch
 from ..run.place import Saved
 from ..run.options import asOption, those
@@ -66,9 +67,16 @@ class Parser(argparse.ArgumentParser):
         super()._print_message(plain(message or ""), file)
 
     def error(self, message):
+        refused = Refused("\n".join([*self.problems, message]))
         if self.raises:
-            raise Refused("\n".join([*self.problems, message]))
+            raise refused
+        reportRefusal(refused)
         super().error("\n  ".join([*self.problems, message]))
+
+    def _refuse(self, refused):
+        """End the program, with what is refused."""
+        reportRefusal(refused)
+        self.exit(2, f"{refused}\n")
 
     def refusals(self, words):
         """The options that words give, or None, and why they are refused, a list of sentences."""
@@ -89,7 +97,7 @@ class Parser(argparse.ArgumentParser):
             except batch.Done as done:
                 self.exit(0, f"{done} has the results of this row\n")
             except Refused as refused:
-                self.exit(2, f"{refused}\n")
+                self._refuse(refused)
         found = self._parsed(args, namespace)
         if whole:
             Parser.last = self, found
@@ -129,7 +137,7 @@ class Parser(argparse.ArgumentParser):
         asked = acting - {"help", "out", "resume"}
         wrong += [f"no {asOption(name)}" for name in sorted(asked - known.keys())]
         if wrong:
-            raise Refused(
+            raise NotResumed(
                 f"--resume: {folder} was left by another scene or version: {', '.join(wrong)}"
             )
 
@@ -139,7 +147,7 @@ class Parser(argparse.ArgumentParser):
             known = saved.options
             self._checkKnown(known, folder)
         except Refused as refused:
-            self.exit(2, f"{refused}\n")
+            self._refuse(refused)
         known["set"] = [tuple(setting) for setting in known["set"]]
         known["out"] = folder
         start = Options(self, **{**known, "set": [], "field": []})
@@ -161,6 +169,7 @@ class Parser(argparse.ArgumentParser):
                 f"--history is {old['text']}, and another one must begin with all its points"
             )
         if fixed:
-            self.exit(2, f"--resume: a run goes on as it began: {', '.join(fixed)}\n")
+            why = f"--resume: a run goes on as it began: {', '.join(fixed)}"
+            self._refuse(NotResumed(why))
         given.saved = saved
         return given

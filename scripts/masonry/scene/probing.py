@@ -78,8 +78,8 @@ def probe(scene, stage, traits, arguments):
             json.dump(entries, f)
         os.replace(path + ".new", path)
     except OSError as error:
-        say(f"{batch.UNWRITTEN}{path}: {error.strerror}", sys.stderr)
-        raise SystemExit(1) from None
+        say(f"cannot write {path}: {error.strerror}", sys.stderr)
+        raise SystemExit(batch.UNWRITTEN) from None
     raise SystemExit(0)
 
 

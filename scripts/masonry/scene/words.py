@@ -9,7 +9,7 @@ import math
 from dataclasses import dataclass
 from typing import Any, Callable, Concatenate, ParamSpec, Protocol, TypeVar, overload
 
-from ..basics import Refused
+from ..basics import NotResumed, Refused
 
 P = ParamSpec("P")
 Q = ParamSpec("Q")
@@ -168,7 +168,7 @@ class Script:
             may = self._farther[at] if at == last else set()
             changed = {n for n in {**known, **said} if known.get(n) != said.get(n)}
             if name != other or not changed <= may:
-                raise Refused(
+                raise NotResumed(
                     f"--resume: a run goes on as it began: the script said {spoken(was)}, now it says {spoken(now)}"
                 )
             farther = True

@@ -61,13 +61,13 @@ class Local:
         command = [sys.executable, "-P", "-m", "masonry.study.row", *words]
         env = {name: v for name, v in os.environ.items() if name != batch.VARIABLE}
         with open(self.folder.of(LOG), "ab", opener=inside) as log:
-            return background.start(command, log, env, self.folder.path)
+            return background.Program(command, log, env, self.folder.path)
 
-    def _ended(self, number, status):
+    def _ended(self, number, program):
         """See how far the program of a row has come, which may have gone on with the levels above."""
         rows = self.open.intersection([number, *self.folder.chains.higher(number)])
         self._look(rows)
-        killed = status < 0 or status >= 128
+        killed = not 0 <= program.returncode < 128
         for one in sorted(rows & self.open):
             if self.folder.isHeld(one):
                 continue  # somebody else has begun to run it

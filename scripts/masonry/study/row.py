@@ -10,6 +10,7 @@ The scene is a program, and the folder of a study is data: that study.json names
 names it, unless it is in the folder itself, and it must be the file with which the study began. The first line says what runs.
 """
 
+import contextlib
 import hashlib
 import json
 import os
@@ -21,7 +22,7 @@ import time
 
 from .. import background
 from ..run import batch
-from ..basics import Refused, say
+from ..basics import Held, NotResumed, Refused, say
 from ..folders import inside
 from ..read.files import readRun, readWhole
 from .continuing import rowsOf
@@ -108,7 +109,6 @@ class Job:
         checkpoint = os.path.join(folder.row(number), "run.checkpoint")
         for _ in range(ATTEMPTS):
             resumes = os.path.exists(checkpoint)
-            before = log.seek(0, os.SEEK_END)
             status = self._yade(number, log)
             if self.stopped:
                 return 130
@@ -116,10 +116,10 @@ class Job:
                 return 1
             if status != REFUSED or folder.isEnded(number) or folder.isHeld(number):
                 return status
-            said = self._tail(number, before)
-            if "is writing to" in said:  # it has just ended, or was killed
+            kind, _ = self._child.refusal()
+            if kind == Held.__name__:  # that run has just ended, or was killed
                 time.sleep(0.2)
-            elif resumes and "--resume" in said:
+            elif resumes and kind == NotResumed.__name__:
                 os.replace(checkpoint, checkpoint + ".refused")
             else:
                 return status
@@ -130,27 +130,23 @@ class Job:
         env = {**os.environ, batch.VARIABLE: place, "OMP_NUM_THREADS": "1"}
         command = ["yade", "-n", "--threads=1", "-x", self.script]
         where = os.path.dirname(self.script)
-        self._child = background.start(command, log, env, where)
+        self._child = background.Program(command, log, env, where)
         if self.stopped:
             self._child.send_signal(signal.SIGTERM)
         return self._child.wait()
 
-    def _tail(self, number, begin=0):
-        """The end of the log, of what was written after its first bytes."""
-        try:
-            with open(self.folder.row(number) + ".log", "rb") as f:
-                f.seek(max(begin, os.fstat(f.fileno()).st_size - TAIL))
-                return f.read().decode(errors="replace")
-        except OSError:
-            return ""
-
     def _reason(self, number):
-        """What a row said before it failed."""
-        try:
-            error = readRun(self.folder.row(number)).get("error")
-        except Refused:
-            error = None
-        return error or "; ".join(reason(self._tail(number))[-3:])
+        """Why a row failed: what run.json has, what was refused, or the end of the log."""
+        with contextlib.suppress(Refused):
+            if error := readRun(self.folder.row(number)).get("error"):
+                return error
+        _, refusal = self._child.refusal()
+        lines = [line.strip() for line in refusal.splitlines()]
+        with contextlib.suppress(OSError):
+            with open(self.folder.row(number) + ".log", "rb") as f:
+                f.seek(max(0, os.fstat(f.fileno()).st_size - TAIL))
+                lines = lines or reason(f.read().decode(errors="replace"))
+        return "; ".join(lines[-3:])
 
 
 def _sceneOf(folder, named):

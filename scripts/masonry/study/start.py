@@ -189,7 +189,7 @@ def _probed(script, table, path, line=2):
             return fromJson(f.read())
     except (OSError, ValueError):
         lines = reason(done.stderr)
-        if lines and lines[-1].startswith(batch.UNWRITTEN + path):
+        if done.returncode == batch.UNWRITTEN:
             raise Unwritable(lines[-1]) from None  # it is no fault of the scene
         lines = lines or [f"no masonry.Scene began a stage in {script}"]
         return "\n  ".join(lines[:10])

@@ -10,7 +10,7 @@ from typing import Sequence
 from yade import O
 
 from ...assembly.period import firstPeriod
-from ...basics import Collapsed, Refused, say
+from ...basics import Collapsed, NotResumed, Refused, say
 from ...read import curves
 from ...read.quantities import IMBALANCE
 from ...run.options import USUAL
@@ -205,7 +205,7 @@ def _entered(scene, name, args, at, began, continued):
         )
     goals = aim(args, at.start)
     if at.passed >= len(goals):
-        raise Refused(f"--resume: its history has {at.passed} points and more")
+        raise NotResumed(f"--resume: its history has {at.passed} points and more")
     model.loading.goal = at.passed + 1, goals[at.passed].displacement
     model.loading.origin = at.origin = origin
     if first:

@@ -118,7 +118,10 @@ def shake(
     accelerations, every, scale, unit = byOptions(
         scene, accelerations, every, scale, unit
     )
-    values, every = readRecord(accelerations, every, scale, unit)
+    try:
+        values, every = readRecord(accelerations, every, scale, unit)
+    except Refused as refused:
+        raise Refused(f"shake: {refused}") from None
     doubt = drift(values, every).sentence()
     if doubt:
         say(f"note: shake: the record drifts: {doubt}")
