@@ -239,14 +239,14 @@ def _oddProperties(things):
 def _idleProperties(joints):
     """Sentences on properties that were given and that the law of their joint does not read; of an elastic joint, those that one
     law alone reads."""
-    usual, read = MasonryJoint(), [law["properties"] for law in LAWS.values()]
+    default, read = MasonryJoint(), [law["properties"] for law in LAWS.values()]
     readers = {p["name"]: sum(p["name"] in names for names in read) for p in properties(MasonryJoint)}  # fmt: skip
     for joint in joints:
         own = LAWS[joint.law]["properties"]
         idle = [
             name
             for name, count in readers.items()
-            if getattr(joint, name) != getattr(usual, name)
+            if getattr(joint, name) != getattr(default, name)
             and (count == 1 if joint.elastic else count and name not in own)
         ]
         if idle:

@@ -237,7 +237,7 @@ class Structure:
             "freeMass": self.supports.freeMass,
             "limit": self.scheme.limit,
             "saidUntil": self.connectors.saidUntil,
-            "said": sorted(map(list, self.connectors.said)),
+            "said": sorted(map(list, self.connectors.reported)),
         }
 
     def putState(self, state):
@@ -249,4 +249,4 @@ class Structure:
             targets[name].freedom = freedom
         self.supports.freeMass, self.scheme.limit = state["freeMass"], state["limit"]
         self.connectors.saidUntil = state["saidUntil"]
-        self.connectors.said = set(map(tuple, state["said"]))
+        self.connectors.reported = set(map(tuple, state["said"]))

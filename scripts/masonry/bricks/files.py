@@ -220,11 +220,11 @@ def _readJson(path):
         raise ValueError("no mesh: nothing with both vertex and face")
     surfaces = []
     for n, (name, mesh) in enumerate(found):
-        usual = mesh.get("default_vertex_attributes") or mesh.get("dva") or {}
+        defaults = mesh.get("default_vertex_attributes") or mesh.get("dva") or {}
         keys = {key: k for k, key in enumerate(mesh["vertex"])}
         points = []
         for key, vertex in mesh["vertex"].items():
-            point = [vertex.get(axis, usual.get(axis, 0.0)) for axis in "xyz"]
+            point = [vertex.get(axis, defaults.get(axis, 0.0)) for axis in "xyz"]
             points.append(_point([str(x) for x in point], f"of vertex {key}"))
         faces = []
         for key, face in mesh["face"].items():

@@ -117,7 +117,7 @@ def isCompanion() -> bool:
     return _isCompanion
 
 
-class Companions:
+class AuxiliaryRuns:
     """Runs of a scene beside the run itself, in the folder ``accuracy`` of its results.
 
     :param folder: of the results of the run
@@ -240,7 +240,7 @@ class Companions:
 # -- what is chosen and reported --------------------------------------------------------------------------------------
 
 
-def choose(companions: Companions, percent: float) -> Any:
+def choose(companions: AuxiliaryRuns, percent: float) -> Any:
     """Run companions until a fidelity is good enough, or until there is no better one. Returns the :class:`Fidelity`.
 
     :param percent: the half-width that is wanted [%]
@@ -264,15 +264,17 @@ def choose(companions: Companions, percent: float) -> Any:
     raise AssertionError
 
 
-class Asked:
+class AccuracyResult:
     """What ``--accuracy`` found for a run: its fidelity and the companions beside it.
 
     :param percent: that was asked for [%]
     :param fidelity: :class:`masonry.run.presets.Fidelity`
-    :param companions: :class:`Companions`, which have run
+    :param companions: :class:`AuxiliaryRuns`, which have run
     """
 
-    def __init__(self, percent: float, fidelity: Any, companions: Companions) -> None:
+    def __init__(
+        self, percent: float, fidelity: Any, companions: AuxiliaryRuns
+    ) -> None:
         self.percent, self.fidelity, self.companions = percent, fidelity, companions
 
     def report(self, run: dict[str, Any]) -> dict[str, Any]:
@@ -334,23 +336,25 @@ def lines(entry: dict[str, Any]) -> list[str]:
         f"{q['name']} {q['value']:.4g} ± {q['half_width']:.2g} {q['unit']} ({q['half_width_percent']:.2g} %)"
         for q in entry["quantities"]
     )
-    said = [f"accuracy: {values}, by {entry['fidelity']} and {len(entry['companions'])} runs beside it"]  # fmt: skip
+    sentences = [f"accuracy: {values}, by {entry['fidelity']} and {len(entry['companions'])} runs beside it"]  # fmt: skip
     fell = [one["name"] for one in entry["companions"] if one["collapsed"]]
     if fell:
-        said.append(
+        sentences.append(
             f"accuracy: collapsed: {'; '.join(fell)}; the work of a run that collapses ends there"
         )
     if not entry["reached"]:
-        said.append(
+        sentences.append(
             f"accuracy: {entry['asked_percent']:g} % is not reached by the fidelity that was chosen: the ± is what was found"
             if entry["fidelity"] != FIDELITIES[-1].name
             else f"accuracy: {entry['asked_percent']:g} % is not reached by the finest fidelity there is: the ± is what was found"
         )
-    said.append(f"accuracy: the ± does not cover {entry['not_covered']}")
-    return said
+    sentences.append(f"accuracy: the ± does not cover {entry['not_covered']}")
+    return sentences
 
 
-def ask(name: str, args: Any, script: str | None, words: list[str]) -> Asked | None:
+def ask(
+    name: str, args: Any, script: str | None, words: list[str]
+) -> AccuracyResult | None:
     """Carry out ``--accuracy``: run companions, and give the options the values of the fidelity that was chosen.
 
     :param name: of the scene
@@ -366,8 +370,10 @@ def ask(name: str, args: Any, script: str | None, words: list[str]) -> Asked | N
     given = getattr(args, "given", None) or {}
     chosen = [n for n in CHOSEN if n in given]
     if args.preset or chosen:
-        said = " and ".join(["--preset"] * bool(args.preset) + [*map(asOption, chosen)])
-        raise Refused(f"--accuracy: it chooses block model, mesh, rate, points, damping and time step itself: leave {said} away")  # fmt: skip
+        unwanted = " and ".join(
+            ["--preset"] * bool(args.preset) + [*map(asOption, chosen)]
+        )
+        raise Refused(f"--accuracy: it chooses block model, mesh, rate, points, damping and time step itself: leave {unwanted} away")  # fmt: skip
     if args.history:
         raise Refused("--accuracy: it is about a push in one direction, not about the loops of --history")  # fmt: skip
     folder = args.out or os.path.join("results", name)
@@ -378,23 +384,23 @@ def ask(name: str, args: Any, script: str | None, words: list[str]) -> Asked | N
             f"--accuracy: scene {name} must be a script that takes its options from the command line, since it is run several times"
         )
     program = ["yade", "-n", "-x"] if hasattr(sys, "yade_argv") else [sys.executable]
-    companions = Companions(folder, [*program, script, *words])
+    companions = AuxiliaryRuns(folder, [*program, script, *words])
     with open(script, "rb") as file:
         text = file.read()
-    said = json.dumps([os.path.abspath(script), words, sorted(COMPANIONS)])
-    companions.begin(hashlib.sha256(text + said.encode()).hexdigest())
+    command = json.dumps([os.path.abspath(script), words, sorted(COMPANIONS)])
+    companions.begin(hashlib.sha256(text + command.encode()).hexdigest())
     try:
         fidelity = choose(companions, args.accuracy)
     except Refused:
         companions.clear()
         raise
     vars(args).update({**CHOSEN, **fidelity.options})
-    return Asked(args.accuracy, fidelity, companions)
+    return AccuracyResult(args.accuracy, fidelity, companions)
 
 
 def _resumed(args):
     """As :func:`ask`, of a run that is resumed: its companions are those of its beginning."""
-    companions, fidelity = Companions(args.resume, []), fidelityOf(args)
+    companions, fidelity = AuxiliaryRuns(args.resume, []), fidelityOf(args)
     companions.read()
     number = FIDELITIES.index(fidelity) if fidelity else 0
     due = [name for k in range(number + 1) for name in needed(k)]
@@ -404,4 +410,4 @@ def _resumed(args):
     if any(readRun(companions.folderOf(n))["options"]["until"] != args.until for n in due):  # fmt: skip
         say("note: --accuracy: the run goes on to a longer push than its companions: there will be no ±")  # fmt: skip
         return None
-    return Asked(args.accuracy, fidelity, companions)
+    return AccuracyResult(args.accuracy, fidelity, companions)

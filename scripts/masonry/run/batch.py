@@ -130,9 +130,9 @@ def folder(path, row, line):
     return os.path.join(os.path.dirname(os.path.abspath(path)), ROWS, name)
 
 
-def nameOf(row, usual):
-    """The name of a row, which is that of a folder; ``usual`` if it has no description."""
-    return row.get("description", usual).replace("/", "_").strip("'\"")
+def nameOf(row, default):
+    """The name of a row, which is that of a folder; ``default`` if it has no description."""
+    return row.get("description", default).replace("/", "_").strip("'\"")
 
 
 def ended(directory):

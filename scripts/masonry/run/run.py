@@ -20,7 +20,7 @@ from ..basics import Collapsed, Interrupted, NotResumed, Refused, Unwritable, li
 from . import batch
 from .keeping import Checkpoints, hostNow
 from .frames import Frames
-from .place import Place, Saved, otherVersion, restored
+from .run_state import RunState, Saved, otherVersion, restored
 from .plotting import live
 from .presets import presetNote, presetOf
 from .progress import Progress
@@ -46,7 +46,7 @@ class Run:
     def __init__(self, name, args, script=()):
         self.name, self.args, self.script = name, args, script
         self.status = 0  # exit status of the scene
-        self.at, self.saved = Place(), None
+        self.at, self.saved = RunState(), None
         self.results = self.readings = self.frames = self.preset = None
         self.collapsed = False
         self.signals = Signals()
@@ -151,7 +151,7 @@ class Run:
         self.at.hear(text, self.entered, O.time if self.entered else 0.0)
 
     def note(self, kind, name, opposite=""):
-        """Note what the next stage loads, as of :class:`masonry.run.place.Place`."""
+        """Note what the next stage loads, as of :class:`masonry.run.run_state.RunState`."""
         self.at.loads = {**self.at.loads, str(self.entered + 1): [kind, name, opposite]}
 
     @property

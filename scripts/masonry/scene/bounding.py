@@ -94,10 +94,10 @@ def domain(
     return _inOrder(scene, find, domain, target, normal, direction)
 
 
-def _inOrder(scene, find, command, *said):
+def _inOrder(scene, find, command, *arguments):
     """What a function finds, noted as a command of the script; Ctrl-C ends the run in order."""
     try:
-        with scene.noted(command, *said), scene.running.listening():
+        with scene.noted(command, *arguments), scene.running.listening():
             return find()
     except Interrupted as error:
         return scene.failed(error)

@@ -75,7 +75,7 @@ class Bounds:
     """The bounds of a scene that is built in YADE.
 
     :param model: :class:`masonry.assembly.structure.Structure`
-    :param place: :class:`masonry.run.place.Place`: what was found is kept there, and so in checkpoints
+    :param place: :class:`masonry.run.run_state.RunState`: what was found is kept there, and so in checkpoints
     """
 
     def __init__(self, model, place):

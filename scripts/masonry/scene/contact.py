@@ -67,13 +67,13 @@ class Contact(Settable):
 
         :param bed: the bed joint, a MasonryJoint
         """
-        usual = {
+        defaults = {
             "normalStiffness": bed.normalStiffness,
             "tangentialRatio": min(1.0, bed.shearStiffness / bed.normalStiffness),
             "friction": FRICTION if bed.elastic else bed.residualFriction,
         }
         given = {name: value for name, value in self.values().items() if value is not None}  # fmt: skip
-        return {**usual, **given}
+        return {**defaults, **given}
 
 
 def problems(description: Any, args: Any) -> list[str]:

@@ -184,8 +184,8 @@ class Description:
             raise Refused(
                 f"no column {', '.join(unknown)}; there are {', '.join(heads)}"
             )
-        usual = [c for one in self.sections if one.usual for c in one.columns(self.plane)]  # fmt: skip
-        always = columns.heads(usual + balance + columns.HISTORY)
+        ofBase = [c for one in self.sections if one.isBase for c in one.columns(self.plane)]  # fmt: skip
+        always = columns.heads(ofBase + balance + columns.HISTORY)
         chosen = [found[heads.index(n)] for n in self.choice if n not in always]
         return chosen + [c for c in found if c.head in always]
 

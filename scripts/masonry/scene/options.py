@@ -76,11 +76,11 @@ def parser(description, until, rate=USUAL["rate"], loops=True):
     return p
 
 
-def ofScene(name, arguments, usual):
+def ofScene(name, arguments, sceneOptions):
     """The options of a scene: those of its own parser, or of the common one.
 
     :param arguments: what a parser found; a list of words; or None: those of the command line
-    :param usual: what the script says, which holds unless the command line gives the same option: :mod:`.keywords`
+    :param sceneOptions: what the script says, which holds unless the command line gives the same option: :mod:`.keywords`
     :raises Refused: with all problems
     """
     if arguments is None and (not sys.argv or notebook.isHere()):
@@ -97,9 +97,9 @@ def ofScene(name, arguments, usual):
     if arguments is None or isinstance(arguments, (list, tuple)):
         main = sys.modules.get("__main__")
         own = parser(getattr(main, "__doc__", None), until=None)
-        own.set_defaults(**keywords.checked(own, name, usual))
+        own.set_defaults(**keywords.checked(own, name, sceneOptions))
         arguments = own.parse_args(arguments)
-    keywords.keep(arguments, name, usual)
+    keywords.keep(arguments, name, sceneOptions)
     return arguments
 
 

@@ -59,7 +59,7 @@ class Outcome:
 
     @property
     def loads(self):
-        """What stages loaded, in their order: pairs of the number of the stage and what :class:`Place` keeps of it."""
+        """What stages loaded, in their order: pairs of the number of the stage and what :class:`RunState` keeps of it."""
         loads = self.scene.running.at.loads
         return [(number, loads[str(number)]) for number in sorted(map(int, loads))]
 
@@ -69,13 +69,18 @@ class Outcome:
         pushes = [load[1:] for _, load in self.loads if load[0] == "push"]
         return pushes[-1] if pushes else []
 
-    def _swing(self):
-        """Of the first of the pushes that count, as of :class:`masonry.run.place.Place`: the first period, the weight of the base in
+    def _freeVibration(self):
+        """Of the first of the pushes that count, as of :class:`masonry.run.run_state.RunState`: the first period, the weight of the base in
         the shear force, and when the velocity of the drive had grown."""
-        stages, swings = self.scene.running.at.stages, self.scene.running.at.swings
+        stages, freeVibrations = (
+            self.scene.running.at.stages,
+            self.scene.running.at.freeVibrations,
+        )
         first = self.data.rows[0] if self.data.rows else math.inf
-        numbers = (n for n in sorted(map(int, swings)) if stages[n - 1][3] >= first)
-        return swings[str(number)] if (number := next(numbers, None)) else (0.0, 0.0, 0.0)  # fmt: skip
+        numbers = (
+            n for n in sorted(map(int, freeVibrations)) if stages[n - 1][3] >= first
+        )
+        return freeVibrations[str(number)] if (number := next(numbers, None)) else (0.0, 0.0, 0.0)  # fmt: skip
 
     def space(self):
         """Bytes that a run writes at least, and those that it will probably write."""
@@ -196,7 +201,7 @@ class Outcome:
     def _ofPush(self, data):
         """Entries that the numbers of a push are found from, and what the joints say."""
         model = self.model
-        period, weight, grown = self._swing()
+        period, weight, grown = self._freeVibration()
         target, sways = model.loading.target, abs(model.loading.direction[2]) < 1e-9
         heights = target.recorded[2], model.supports.driftHeight(target)
         recorded, drift = (z - self.description.low[2] for z in heights)
@@ -295,12 +300,14 @@ def _meanings(cls):
     return {p["name"]: p["meaning"] for p in blocks.properties(cls)}
 
 
-def shortened(said):
+def shortened(entry):
     """What a script said, with long lists, as a record of an earthquake, as a text that says how long they are."""
-    if isinstance(said, dict):
-        return {name: shortened(value) for name, value in said.items()}
-    if isinstance(said, (list, tuple)):
-        if len(said) > MOST_NUMBERS and all(isinstance(v, (int, float)) for v in said):
-            return f"{len(said):,} numbers from {min(said):.6g} to {max(said):.6g}"
-        return [shortened(value) for value in said]
-    return said
+    if isinstance(entry, dict):
+        return {name: shortened(value) for name, value in entry.items()}
+    if isinstance(entry, (list, tuple)):
+        if len(entry) > MOST_NUMBERS and all(
+            isinstance(v, (int, float)) for v in entry
+        ):
+            return f"{len(entry):,} numbers from {min(entry):.6g} to {max(entry):.6g}"
+        return [shortened(value) for value in entry]
+    return entry

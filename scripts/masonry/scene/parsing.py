@@ -7,7 +7,7 @@ import re
 from ..background import reportRefusal
 from ..basics import NotResumed, Refused, plain
 from ..run import batch
-from ..run.place import Saved
+from ..run.run_state import Saved
 from ..run.options import asOption, those
 from ..run.presets import PRESETS
 from . import history
@@ -113,8 +113,8 @@ class Parser(argparse.ArgumentParser):
         given = vars(super().parse_args(args, nothing))
         given = {name: value for name, value in given.items() if value is not None}
         defaults = vars(super().parse_args([]))
-        usual = {**defaults, **PRESETS.get(found.preset, {})}
-        vars(found).update(usual, **given)
+        presetOptions = {**defaults, **PRESETS.get(found.preset, {})}
+        vars(found).update(presetOptions, **given)
         if isinstance(found, Options):
             found.given, found.defaults = given, defaults
         if found.history:
@@ -122,7 +122,7 @@ class Parser(argparse.ArgumentParser):
         found.overrides = [
             name
             for name, value in given.items()
-            if name not in those("harmless") and value != usual[name]
+            if name not in those("harmless") and value != presetOptions[name]
         ]
         return found
 

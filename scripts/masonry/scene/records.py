@@ -159,7 +159,7 @@ def recordBase(description: Any) -> None:
     names = itertools.chain([BASE], (f"{BASE}{k}" for k in itertools.count(2)))
     name = next(filter(free, names))
     middle = _middleAt(description, z, None, name)
-    description.sections.append(Section(name, z, None, middle, usual=True))
+    description.sections.append(Section(name, z, None, middle, isBase=True))
 
 
 @describes

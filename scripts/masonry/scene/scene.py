@@ -105,7 +105,7 @@ class Scene:
         collapse goes on until the rubble is at rest, and ``shake`` and ``run`` go on whatever falls. Rigid bricks only. The
         contact has stiffness and residual friction of the bed joint; ``--set contact.friction=0.7`` and the like change it.
         Blocks fall on the ground, a block that the scene adds below everything else
-    :param usual: options of this scene, for example ``rate=50`` [mm/s] or ``dt_fraction=0.4``. They hold unless the command
+    :param sceneOptions: options of this scene, for example ``rate=50`` [mm/s] or ``dt_fraction=0.4``. They hold unless the command
         line, or the list of words, gives the same option; a note says so then
     :raises Refused: if something is wrong, with all problems at once. A script that does not catch it ends with exit
         status 2
@@ -127,7 +127,7 @@ class Scene:
         arguments: Any = None,
         allowGaps: bool = False,
         collapse: Annotated[str, oneOf("end", "follow")] = "end",
-        **usual: Any,
+        **sceneOptions: Any,
     ) -> None:
         #: what it was made with, its name first, for :meth:`resume`
         self._made = (name, bricks, materials, title, plane, gravity, columns, functors), dict(allowGaps=allowGaps, collapse=collapse)  # fmt: skip
@@ -143,9 +143,9 @@ class Scene:
             allowGaps=allowGaps,
             collapse=collapse,
         )
-        arguments = options.ofScene(name, arguments, usual)
+        arguments = options.ofScene(name, arguments, sceneOptions)
         self.name, self.args = name, arguments
-        #: what --accuracy found, :class:`masonry.run.accuracy.Asked`, or None
+        #: what --accuracy found, :class:`masonry.run.accuracy.AccuracyResult`, or None
         self.accuracy = options.askAccuracy(name, arguments)
         if arguments.crack_surfaces == "off":
             self.description.bricks = list(Bricks(self.description.bricks).whole())
@@ -301,10 +301,10 @@ class Scene:
     def _prepare(self):
         """Make the engines that stages had made before the checkpoint of a run that is resumed."""
         names, begun = {stage.__name__ for stage in STAGES}, False
-        for word, said in self.running.scriptBefore:
+        for word, arguments in self.running.scriptBefore:
             begun = begun or word in names
             if begun:
-                prepare(self, word, said)
+                prepare(self, word, arguments)
 
     def probe(self, stage: str, traits: Any, arguments: Any) -> Any:
         """Say what a study must know of the scene, and end; see :func:`masonry.scene.probing.probe`."""
@@ -330,7 +330,7 @@ class Scene:
         if not error and not self.model:
             return False
         if not (error or self.only or any(word in SHAKES for word, _ in self.script.words)):  # fmt: skip
-            given = [o for o, usual in (("record", None), ("scale", 1)) if getattr(self.args, o, usual) != usual]  # fmt: skip
+            given = [o for o, default in (("record", None), ("scale", 1)) if getattr(self.args, o, default) != default]  # fmt: skip
             for option in given:
                 say(f"warning: --{option} was not used: the scene was not shaken")
         with self.running.listening():

@@ -43,7 +43,7 @@ class Section:
     above: dict = field(
         default_factory=dict
     )  # whether every body is above it, by its id, where a collapse is followed
-    usual: bool = False  # whether nobody said it: the base, which every run records
+    isBase: bool = False  # whether nobody said it: the base, which every run records
     _structure: object = None
     _parts: dict = field(default_factory=dict)  # of the blocks, by their bodies
     _read: tuple = (None, None)  # the last reading, and what was found then

@@ -86,8 +86,8 @@ class Local:
     def _show(self):
         done, failed = self.runs - len(self.open), len(self.failed)
         more = f", {failed} failed" if failed else ""
-        said = lambda: f"{done - failed} of {self.runs} rows{more}"
-        self.progress.show("study", done / self.runs, said, None, not self.open)
+        text = lambda: f"{done - failed} of {self.runs} rows{more}"
+        self.progress.show("study", done / self.runs, text, None, not self.open)
 
     def _fail(self, number, why):
         self.failed[number] = why

@@ -266,10 +266,12 @@ def loaded(record: Record) -> Iterator[Any]:
         yield table(("number", "stage", "load", "time steps", "what it found"), lines, "Stages in their order. Source: run.json: stages, answers", "stages")  # fmt: skip
     words = [w for w in run.get("script") or [] if isinstance(w, list) and len(w) == 2]
     if words:
-        said = listed((spoken(*word) for word in words), kind="script")
+        script = listed((spoken(*word) for word in words), kind="script")
         about = note("Stresses are in Pa, forces in N, lengths in m, and displacements of pushes and supports in mm; help(masonry.Scene) describes the words. Source: run.json: script.")  # fmt: skip
         few = len(words) <= MOST_WORDS
-        yield folded("The words of the script, in their order", said, about, opened=few)
+        yield folded(
+            "The words of the script, in their order", script, about, opened=few
+        )
     options = run.get("options")
     if isinstance(options, dict):
         units = run.get("option_units") or {}

@@ -128,16 +128,16 @@ class _Kind:
                 )
             self.values[name] = given
             return
-        usual, source = (
+        typical, source = (
             index * strength,
             f"{1e3 * index:g} mm times the strength, {INDEX_SOURCE}",
         )
-        if usual < MARGIN * least:
+        if typical < MARGIN * least:
             source = (
                 f"{MARGIN:g} times the least that does not snap back between rigid units; {source} would be "
-                f"{usual:.3g} J/m²"
+                f"{typical:.3g} J/m²"
             )
-        self.take(name, max(usual, MARGIN * least, 1e-3), False, source)
+        self.take(name, max(typical, MARGIN * least, 1e-3), False, source)
 
     def made(self):
         """The MasonryJoint. Raises ValueError."""
@@ -275,9 +275,9 @@ def masonry(
         state(joints["crack"], **{**joints["crack"].assumed(), "elastic": why})
     nu = _poisson(values)
     brick = MasonryMat(label="brick", young=unit_E, poisson=nu, density=density)
-    usual = {"poisson": "usual for masonry units"} if poisson is None else {}
+    assumed = {"poisson": "usual for masonry units"} if poisson is None else {}
     course = unit[2] + joint
-    return Masonry(state(brick, **usual), joints, course=course)
+    return Masonry(state(brick, **assumed), joints, course=course)
 
 
 def _strengthProblems(given):

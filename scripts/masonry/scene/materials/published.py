@@ -220,8 +220,8 @@ def graniteUnit() -> MasonryMat:
     unit = MasonryMat(
         label="granite", young=20.2e9, poisson=0.2, density=2600, jointSet="granite"
     )
-    usual = "assumed by graniteUnit(), usual for granite; not in the data"
-    return state(unit, poisson=usual, density=usual)
+    assumption = "assumed by graniteUnit(), usual for granite; not in the data"
+    return state(unit, poisson=assumption, density=assumption)
 
 
 @validated

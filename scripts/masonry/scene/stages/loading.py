@@ -271,15 +271,17 @@ def hold(scene: Any, target: AnyTarget, axes: Freedoms = "xyzXYZ") -> str:
     return atOnce(scene, "hold", act)
 
 
-def prepare(scene, word, said):
+def prepare(scene, word, arguments):
     """Make the engines of a load that the script puts on after the first stage, before a checkpoint is loaded that has them.
 
-    :param word: what the script said; ``said``: its arguments as data
+    :param word: what the script said; ``arguments``: its arguments as data
     """
-    target = scene.targets.get(said.get("target") or said.get("platen"))
+    target = scene.targets.get(arguments.get("target") or arguments.get("platen"))
     if word in ("load", "growLoad") and target:
         scene.model.loading.forceOf(target)
     elif word in ("press", "growPress") and target:
         scene.model.loading.pressOf(target)
     elif word in ("wind", "growWind"):
-        _windOn(scene, said["pressure"], said["towards"], said["part"], word)
+        _windOn(
+            scene, arguments["pressure"], arguments["towards"], arguments["part"], word
+        )

@@ -168,7 +168,7 @@ def drivePush(scene, name, args, began, continued=False):
         before = at.moved
         at.now, at.moved = reading.time, 1e3 * reading.along
         if at.places and not undamped:
-            _noteSwing(run, model, at)
+            _keepFreeVibration(run, model, at)
         shear, travelled = 1e-3 * reading.baseShear, at.travelled(goal.direction)
         mean = at.note(shear, max(at.period, AVERAGED / args.rate))
         how = _lost(model, at, reading, goal.direction, mean, whole)
@@ -215,7 +215,10 @@ def _entered(scene, name, args, at, began, continued):
         run.frame()
         at.period = _measuredPeriod(scene, name, args, pathOf(args, at.start))
         at.places = model.motion.positions() if at.period else []
-        run.at.swings = {**run.at.swings, str(run.entered): [at.period, 0.0, 0.0]}
+        run.at.freeVibrations = {
+            **run.at.freeVibrations,
+            str(run.entered): [at.period, 0.0, 0.0],
+        }
         at.nextFrame = frameSpacing(args)
     return goals
 
@@ -266,12 +269,12 @@ def _measuredPeriod(scene, name, args, path):
     return period
 
 
-def _noteSwing(run, model, at):
+def _keepFreeVibration(run, model, at):
     """Keep the period of a push whose velocity has grown, the weight of the base in its shear force, and the time."""
     moved = model.loading.alongNow() - 1e-3 * at.start
     weight = model.motion.baseWeight(at.places, model.loading.direction, moved)
-    swing = [at.period, weight or 0.0, at.now]
-    run.at.swings = {**run.at.swings, str(run.entered): swing}
+    vibration = [at.period, weight or 0.0, at.now]
+    run.at.freeVibrations = {**run.at.freeVibrations, str(run.entered): vibration}
     at.places = []
 
 
@@ -354,9 +357,9 @@ def tooFast(args, imbalance):
     cure = "--damping-kind combined" if args.damping_kind == "local" else slower
     # The stiffest joints swing with a period of four time steps if the step is 1/√2 of the limit without damping. Combined
     # damping then finds the same signs in every swing, and can brake a steady motion.
-    usual, fours = USUAL["dt_fraction"], 0.7 * math.sqrt(1 + args.damping)
-    if args.dt_fraction > max(fours, usual):
-        cure = f"--dt-fraction {usual:g}"
+    default, fours = USUAL["dt_fraction"], 0.7 * math.sqrt(1 + args.damping)
+    if args.dt_fraction > max(fours, default):
+        cure = f"--dt-fraction {default:g}"
     return (
         f"the push is too fast: {100 * imbalance:.0f} % of the force does not reach the supports, "
         f"more than {100 * IMBALANCE:.0f} % spoil the peak; {cure} would do"

@@ -12,7 +12,7 @@ PARTS = "setup", "steps", "rows", "frames"  # of a run's time
 
 
 @dataclass
-class Place:
+class RunState:
     """How far a run has come, beside the state of the scene."""
 
     #: What the scene is at the beginning of the present stage and at the checkpoint, beside its state in YADE, as
@@ -34,7 +34,7 @@ class Place:
     origins: dict = field(default_factory=dict)  # where pushes began, by their name
     #: Of the pushes, by the numbers of their stages: the first period when it began [s], the weight of the base in its shear
     #: force [-], and the time at which its velocity had grown [s]; 0 where that was not found.
-    swings: dict = field(default_factory=dict)
+    freeVibrations: dict = field(default_factory=dict)
     bounds: dict = field(default_factory=dict)  # what limit analysis found, by the load
     #: Load factors under which the structure came to rest, by the names of their bounds.
     held: dict = field(default_factory=dict)
@@ -96,13 +96,13 @@ def restored(example, values):
     return type(example)(**{**before, **values})
 
 
-#: What lists and dicts of a :class:`Place` hold, as :func:`masonry.run.checkpoints.alike` takes it.
+#: What lists and dicts of a :class:`RunState` hold, as :func:`masonry.run.checkpoints.alike` takes it.
 HOLDS = {
     "stages": ["", 0, 0.0, 0],
     "seconds": 0.0,
     "frames": 0.0,
     "origins": None,
-    "swings": [0.0] * 3,
+    "freeVibrations": [0.0] * 3,
     "bounds": {},
     "held": 0.0,
     "loads": ["", "", ""],
@@ -118,7 +118,7 @@ class Saved:
     """A checkpoint that a run left, read from the disk once.
 
     - ``scene``: name of the scene; ``options``: those of the run; ``script``: what its script said, as data
-    - ``at``: how far the run had come, as of :class:`Place`; ``rows`` of curve.csv
+    - ``at``: how far the run had come, as of :class:`RunState`; ``rows`` of curve.csv
     - ``seconds`` of wall-clock time; ``host``: what it was made with, as of
       :func:`masonry.run.keeping.hostNow`
 
@@ -147,8 +147,8 @@ class Saved:
         vars(self).update({key: saved[key] for key in like})
 
     def place(self):
-        """How far the run had come: a :class:`Place`. Raises Refused."""
-        at = restored(Place(), self.at)
+        """How far the run had come: a :class:`RunState`. Raises Refused."""
+        at = restored(RunState(), self.at)
         values = lambda held: held.values() if isinstance(held, dict) else held
         wrong = [
             name
