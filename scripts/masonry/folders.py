@@ -92,7 +92,7 @@ def replaced(path, mode="w", **settings):
 
     It is ``path + ".new"`` until then, and is removed after an error.
 
-    :param mode: and ``settings``: as of Python's ``open``
+    :param mode: and ``settings``: as in Python's ``open``
     :raises OSError: if it cannot be written, or if ``path`` is a symbolic link or no regular file
     """
     path = os.fspath(path)
@@ -116,7 +116,7 @@ def replaced(path, mode="w", **settings):
 def fromJson(data):
     """The value that a JSON text or its bytes stand for.
 
-    :raises ValueError: if it is none, also if it is nested too deeply or is no text
+    :raises ValueError: if it is not one, also if it is nested too deeply or is no text
     """
     try:
         return json.loads(data)

@@ -34,7 +34,7 @@ YADES_TIME_STEP = 1e-8
 
 @validated
 def touchingPairs(tolerance: Tolerance = 1e-4) -> list[tuple[int, int]]:
-    """Pairs of ids of the blocks that share a face, smaller id first. Parameters as of :func:`connect`."""
+    """Pairs of ids of the blocks that share a face, smaller id first. Parameters as in :func:`connect`."""
     return _masonry.touchingPairs(tolerance)
 
 

@@ -128,7 +128,7 @@ class Loading:
         return load, area
 
     def windOf(self, label, faces):
-        """The engines of a wind on faces, as of :meth:`masonry.bricks.Bricks.freeFaces`; they are made if they are missing."""
+        """The engines of a wind on faces, as in :meth:`masonry.bricks.Bricks.freeFaces`; they are made if they are missing."""
         return [
             self._added(f"{label}_{n}", self.ids[brick], middle, damped=True)
             for n, (brick, _, _, middle) in enumerate(faces)

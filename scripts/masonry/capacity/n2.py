@@ -246,8 +246,8 @@ def iterated(
     """The target displacement by the iterative procedure of EN 1998-1:2004, annex B: the plastic mechanism forms at the target
     displacement itself, which is found again until both agree.
 
-    :param push: of :func:`masonry.read.bilinear.pushover`; other parameters as of :func:`demand`
-    :raises Refused: as of :func:`demand`. Where the procedure leads nowhere, a note says so, and the result is that of its last round
+    :param push: of :func:`masonry.read.bilinear.pushover`; other parameters as in :func:`demand`
+    :raises Refused: as in :func:`demand`. Where the procedure leads nowhere, a note says so, and the result is that of its last round
     """
     found = demand(bilinearOf(push, "en1998"), system, spectrum, limited)
     for _ in range(ROUNDS):

@@ -66,7 +66,7 @@ class Spectrum:
         return float(np.interp(period, self.periods, self.accelerations))
 
     def displacement(self, period: float) -> float:
-        """Se (T/2π)² at a period [mm], EN 1998-1:2004, equation (3.7). Parameters as of :meth:`acceleration`."""
+        """Se (T/2π)² at a period [mm], EN 1998-1:2004, equation (3.7). Parameters as in :meth:`acceleration`."""
         return 1e3 * self.acceleration(period) * (period / (2 * math.pi)) ** 2
 
 

@@ -32,7 +32,7 @@ def write(directory, path, number=None, magnification=1.0, rate=10):
         and it turns by so many times the angle
     :param rate: frames of the animation a second
     :returns: a sentence on what is in the file
-    :raises Refused: as of :class:`masonry.read.model.Model`
+    :raises Refused: as in :class:`masonry.read.model.Model`
     :raises OSError: if the file cannot be written, or if its name is that of a symbolic link
     """
     model = Model(directory, number)

@@ -183,7 +183,7 @@ class Model:
         """The :class:`Sight` in which all is in the picture in the last of the frames that were read, rubble too, but for what
         flew away.
 
-        :param magnification: of displacements; None: as of :func:`masonry.read.views.magnificationOf`
+        :param magnification: of displacements; None: as in :func:`masonry.read.views.magnificationOf`
         """
         joints = readFrame(self.directory, "joints", self.numbers[0])
         points = self.points[self.framed]

@@ -115,7 +115,7 @@ def sceneOf(directory: FilePath, number: int, magnification: float | None, shape
 def inParaView(directories: Sequence[FilePath], at: Any, magnification: float | None, target: str | None = None, film: bool = False, size: Sequence[int] = (1500, 1000), rate: int = 10) -> None:  # fmt: skip
     """Show runs side by side in ParaView's window, or draw them to a picture or a film.
 
-    :param at: the frame, as of :func:`frameNear`
+    :param at: the frame, as in :func:`frameNear`
     :param magnification: of displacements; None: chosen for each run
     :param target: path of a .png file or, of a ``film``, of an .avi or .ogv file, or of a folder, which gets a .png file for
         every frame; None: the window

@@ -35,7 +35,7 @@ FOLDER = "accuracy"  # of the companions, in that of the results
 PLAN = "plan.json"  # there: what was run, while it goes on
 #: Name in the environment of a companion. Its scene looks at no other runs.
 COMPANION = "MASONRY_COMPANION"
-_isCompanion = bool(os.environ.pop(COMPANION, ""))  # what it starts itself is none
+_isCompanion = bool(os.environ.pop(COMPANION, ""))  # what it starts itself is not
 #: Half the width of a 95 % interval over the range of three runs, for the difference from another run: Student's t with two
 #: degrees of freedom, 4.30, times sqrt(1 + 1/3), over 1.69, the mean range of three in standard deviations.
 BY_CHANCE = 2.9

@@ -38,7 +38,7 @@ UNWRITTEN = os.EX_IOERR  # exit status if that file cannot be written
 
 
 def readTable(path):
-    """The rows of a table by the number of their line, from 1: dicts of texts. Raises Refused if it is none."""
+    """The rows of a table by the number of their line, from 1: dicts of texts. Raises Refused if it is not one."""
     text = readText(path)
     lines = [re.sub(r"\s*#.*", "", line).split() for line in text.split("\n")]
     used = [number for number, words in enumerate(lines, 1) if words]

@@ -151,7 +151,7 @@ class Run:
         self.at.hear(text, self.entered, O.time if self.entered else 0.0)
 
     def note(self, kind, name, opposite=""):
-        """Note what the next stage loads, as of :class:`masonry.run.run_state.RunState`."""
+        """Note what the next stage loads, as in :class:`masonry.run.run_state.RunState`."""
         self.at.loads = {**self.at.loads, str(self.entered + 1): [kind, name, opposite]}
 
     @property

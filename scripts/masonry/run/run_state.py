@@ -43,13 +43,13 @@ class RunState:
     loads: dict = field(default_factory=dict)
     #: How stages ended, by their numbers, and the number of the last stage then: a stage may consist of several.
     ended: dict = field(default_factory=dict)
-    fall: str = ""  # what has fallen, as of Run.fall
+    fall: str = ""  # what has fallen, as in Run.fall
     #: What acted beside a load and held the structure when its bound was found, by the load.
     beside: dict = field(default_factory=dict)
     atRest: str = ""  # the last state at rest, as text, for stepBack()
     places: list = field(default_factory=list)  # of masonry.assembly.motion.Motion
     answers: dict = field(default_factory=dict)  # of the stages, by their number
-    notes: list = field(default_factory=list)  # what the run said, as of run.json
+    notes: list = field(default_factory=list)  # what the run said, as in run.json
     supportsMoved: bool = False  # whether a stage has moved supports
     resumed: list = field(default_factory=list)  # times at which it was taken up [s]
 
@@ -118,8 +118,8 @@ class Saved:
     """A checkpoint that a run left, read from the disk once.
 
     - ``scene``: name of the scene; ``options``: those of the run; ``script``: what its script said, as data
-    - ``at``: how far the run had come, as of :class:`RunState`; ``rows`` of curve.csv
-    - ``seconds`` of wall-clock time; ``host``: what it was made with, as of
+    - ``at``: how far the run had come, as in :class:`RunState`; ``rows`` of curve.csv
+    - ``seconds`` of wall-clock time; ``host``: what it was made with, as in
       :func:`masonry.run.keeping.hostNow`
 
     :param directory: folder of the run

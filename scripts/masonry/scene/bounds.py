@@ -119,7 +119,7 @@ class Bounds:
         :param target: a platen with a press, whose vertical force is replaced
         :param normals: with which it presses on what is below, its weight included [kN]
         :param direction: unit vector of the push, horizontal
-        :param lowerUpTo: and ``beside``: as of :meth:`push`
+        :param lowerUpTo: and ``beside``: as in :meth:`push`
         """
         live, pushed = partial(self._pushed, target, direction), (target, direction)
         loads = [
@@ -139,7 +139,7 @@ class Bounds:
 
         :param towards: unit vector
         :param tilts: whether gravity turns, and does not grow; the factor is then the horizontal over the vertical part
-        :param lowerUpTo: and ``beside``: as of :meth:`push`
+        :param lowerUpTo: and ``beside``: as in :meth:`push`
         """
         scaled = GRAVITY / self.model.args.density_scaling
         # of a tilt, the weight is that of the scene at every angle
@@ -156,7 +156,7 @@ class Bounds:
         :param what: name of the load
         :param unit: of its factor
         :param loads: pairs of a MasonryLoad and its force at a factor of 1 [N]
-        :param lowerUpTo: and ``beside``: as of :meth:`push`
+        :param lowerUpTo: and ``beside``: as in :meth:`push`
         """
 
         live = lambda a: limit_loads.sumOf(a, loads)

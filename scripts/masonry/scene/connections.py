@@ -19,7 +19,7 @@ from .words import describes
 
 
 def end(value: Any, first: Any) -> Any:
-    """The kind of an end: a target of the scene, or a brick as of :func:`masonry.scene.targets.brick`."""
+    """The kind of an end: a target of the scene, or a brick as in :func:`masonry.scene.targets.brick`."""
     if isinstance(value, Target):
         description = getattr(first, "description", first)
         if description.targets.get(value.name) is not value:

@@ -13,7 +13,7 @@ from .settings import Property, Settable
 from .targets import Target
 from .words import describes
 
-#: Speed after over before a central impact of two faces, as of MasonryContacts [-].
+#: Speed after over before a central impact of two faces, as in MasonryContacts [-].
 RESTITUTION = 0.5
 FRICTION = 0.6  # of masonry blocks whose joints have none of their own [-]
 THICK = 0.5  # of the ground, over the height of what is built [-]
@@ -113,7 +113,7 @@ def addGround(
 ) -> Target:
     """Add the ground on which blocks fall.
 
-    :param level: as of :func:`ground`; None: just below everything else
+    :param level: as in :func:`ground`; None: just below everything else
     :param name: in curve.csv; None: ground, or another one if a target has that name
     """
     taken = {target.name for target in description.targets.values()}

@@ -21,7 +21,7 @@ class Description:
     """Bricks, materials and everything that a scene says before its first stage.
 
     :param name: of the scene
-    :param bricks: blocks, as of :class:`masonry.scene.scene.Scene`, which checks all parameters
+    :param bricks: blocks, as in :class:`masonry.scene.scene.Scene`, which checks all parameters
     """
 
     def __init__(
@@ -41,9 +41,9 @@ class Description:
         self.bricks = bricks
         self.name, self.title = name, title or name
         self.materials, self.gravity = materials, gravity  # [m/s²], downwards
-        self.functors = functors  # as of masonry.assembly.engines.engines
+        self.functors = functors  # as in masonry.assembly.engines.engines
         self.deformable = deformable  # whether bricks are
-        self.allowGaps = allowGaps  # as of masonry.assembly.connecting.connect
+        self.allowGaps = allowGaps  # as in masonry.assembly.connecting.connect
         #: Contact of blocks that have lost their joints, if a collapse is followed, else None.
         self.contact = Contact() if collapse == "follow" else None
         points = [p for block in self.bricks for p in block.corners]
@@ -192,7 +192,7 @@ class Description:
     # -- where bricks are -----------------------------------------------------------------------------------------
 
     def find(self, where):
-        """Index of a brick, and the point by which it is named, or None. Raises ValueError with a sentence as of a kind of
+        """Index of a brick, and the point by which it is named, or None. Raises ValueError with a sentence like that of a kind of
         :mod:`masonry.arguments`."""
         count, point = len(self.bricks), None
         if isinstance(where, Integral) and not isinstance(where, bool):

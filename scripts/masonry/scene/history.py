@@ -42,7 +42,7 @@ def parse(text):
 
 
 def _number(text):
-    """The number that a text stands for. Python's own 1_000 is none. Raises ValueError."""
+    """The number that a text stands for. Python's own 1_000 is not one. Raises ValueError."""
     if "_" in text:
         raise ValueError(text)
     return float(text)
@@ -190,7 +190,7 @@ def turns(points):
 
 
 def noise(history):
-    """Displacement [mm] up to which an excursion is none: the threshold of :mod:`masonry.read.loops` for the wall's curve."""
+    """Displacement [mm] up to which an excursion does not count: the threshold of :mod:`masonry.read.loops` for the wall's curve."""
     if "file" not in history:
         return AT_ZERO
     return max(AT_ZERO, NOISE * max(map(abs, history["points_mm"])))

@@ -70,7 +70,7 @@ class Outcome:
         return pushes[-1] if pushes else []
 
     def _freeVibration(self):
-        """Of the first of the pushes that count, as of :class:`masonry.run.run_state.RunState`: the first period, the weight of the base in
+        """Of the first of the pushes that count, as in :class:`masonry.run.run_state.RunState`: the first period, the weight of the base in
         the shear force, and when the velocity of the drive had grown."""
         stages, freeVibrations = (
             self.scene.running.at.stages,

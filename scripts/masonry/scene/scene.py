@@ -96,7 +96,7 @@ class Scene:
     :param gravity: [m/s²], downwards
     :param columns: names of the columns of curve.csv, beside the energies and the section at the base; None: all that there
         are
-    :param functors: as of :func:`masonry.assembly.engines.engines`
+    :param functors: as in :func:`masonry.assembly.engines.engines`
     :param arguments: options as :func:`masonry.scene.options.parser` gives them, or a list of words; None: those of the
         command line
     :param allowGaps: whether bricks that nearly share a face stand apart on purpose, and have no joint
@@ -233,7 +233,7 @@ class Scene:
 
     @property
     def answers(self) -> list[dict[str, Any]]:
-        """What the stages were run for, in their order: a list of dicts, as of
+        """What the stages were run for, in their order: a list of dicts, as in
         :class:`masonry.scene.stages.answers.Answer`, with the ``stage`` and its ``number``.
         """
         kept, entered = self.running.at.answers, self.running.entered

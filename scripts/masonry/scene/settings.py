@@ -22,7 +22,7 @@ class Property(NamedTuple):
 
     @property
     def kind(self) -> Callable[..., Any]:
-        """The kind of its values, as of :mod:`masonry.arguments`."""
+        """The kind of its values, as in :mod:`masonry.arguments`."""
         return number(self.unit, self.low, self.high, above=self.above)
 
 
@@ -108,7 +108,7 @@ def scatterAll(
 
     :param connectors: ties, springs and fibre layers by name
     :param names: as ``"wire.strength"``; those of joints are left alone
-    :param factor: as of :meth:`Settable.scatter`
+    :param factor: as in :meth:`Settable.scatter`
     """
     problems = []
     for one in names:
@@ -195,7 +195,7 @@ def applySettings(joints, settings):
 
 
 def _value(text, example):
-    """The value that the text of a setting stands for, of the kind of ``example``. Raises ValueError if it is none."""
+    """The value that the text of a setting stands for, of the kind of ``example``. Raises ValueError if it is not one."""
     if isinstance(example, bool):
         switches = {
             "on": True,

@@ -176,7 +176,7 @@ OF_JOINTS = (
 )  # fmt: skip
 
 
-# -- kinds of arguments, as of masonry.arguments ----------------------------------------------------------------------
+# -- kinds of arguments, as in masonry.arguments ----------------------------------------------------------------------
 
 
 def _descriptionOf(first):

@@ -76,7 +76,7 @@ def rowsOf(folder):
 def checkRows(folder, rows):
     """Refuse rows that have ended with other values than the table gives them, as far as run.json tells.
 
-    :param rows: as of :func:`rowsOf`
+    :param rows: as in :func:`rowsOf`
     """
     problems = []
     for number, row in enumerate(rows, 1):

@@ -166,7 +166,7 @@ def _text(value):
 def gather(folder, table):
     """Write study.csv and times.csv. Returns how many rows have each status.
 
-    :param table: the rows of the table, as of :func:`masonry.study.continuing.rowsOf`
+    :param table: the rows of the table, as in :func:`masonry.study.continuing.rowsOf`
     """
     record, chains = folder.description()["study"], folder.chains
     names, found, times, counts = list(record["vary"]), [], [], {}

@@ -72,7 +72,7 @@ class Record:
     def complete(self, measure):
         """The rows that have this measure: which they are, the inputs by name, and the measure.
 
-        Inputs are those that are numbers; the seed of a random field is none.
+        Inputs are those that are numbers; the seed of a random field is not.
 
         :raises Refused: if no row has it
         """

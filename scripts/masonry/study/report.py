@@ -300,7 +300,7 @@ def main(words=None):
 
 
 def isIncremental(directory):
-    """Whether a folder holds a study with records; a study.csv alone is none."""
+    """Whether a folder holds a study with records; a study.csv alone is not one."""
     try:
         return Folder(directory).chains.plan is not None
     except Refused:

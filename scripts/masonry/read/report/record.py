@@ -252,7 +252,7 @@ class Record:
 
 
 def _finite(text):
-    """A number, NaN for what is none."""
+    """A number, NaN for what is not one."""
     try:
         value = float(text)
     except ValueError:

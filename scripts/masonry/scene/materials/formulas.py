@@ -222,7 +222,7 @@ def masonry(
     :param GfI: mode I fracture energy of bed joints [J/m²]; default 0.029 mm times ft, Lourenço (2008)
     :param GfII: mode II fracture energy of bed joints without normal stress [J/m²]; default 0.093 mm times fv0, Lourenço
         (2008)
-    :param Gc: compressive fracture energy [J/m²]; default as of :func:`compressiveFractureEnergy`
+    :param Gc: compressive fracture energy [J/m²]; default as in :func:`compressiveFractureEnergy`
     :param peak_strain: strain of the masonry at fc [-]; default 2 fc/E, that of a parabola which begins with the modulus
         E, the branch up to the peak of Kaushik, Rai and Jain (2007), J. Mater. Civ. Eng. 19(9)
     :param residual_friction: [-]; default: the friction
@@ -230,8 +230,8 @@ def masonry(
     :param head_share: strengths and energies of tension and shear of head joints over those of bed joints [-]; default 1
     :param unit_ft: direct tensile strength of the bricks [Pa]. Default: bricks do not crack
     :param unit_GfI: mode I fracture energy of the bricks [J/m²]; default 0.029 mm times unit_ft, Lourenço (2008)
-    :param unit_fv0: cohesion of the bricks [Pa]; default 2 unit_ft, as of the crack joints of :func:`calciumSilicate`
-    :param unit_friction: coefficient of friction of cracks in bricks [-]; default 0.75, as of these
+    :param unit_fv0: cohesion of the bricks [Pa]; default 2 unit_ft, as in the crack joints of :func:`calciumSilicate`
+    :param unit_friction: coefficient of friction of cracks in bricks [-]; default 0.75, as in these
     :param unit_GfII: mode II fracture energy of the bricks [J/m²]; default 0.093 mm times unit_fv0, Lourenço (2008)
     :raises Refused: with all problems at once
 

@@ -95,7 +95,7 @@ class Masonry:
         voussoirs and blocks that are not in it are of the unit
     :param choose: function (block1, block2, geom) of your own, of the records of two bricks or None for a platen; it
         returns the name of a joint, or None for the rule above
-    :param brief: whether a scene prints only how many properties are assumed, as of a published set
+    :param brief: whether a scene prints only how many properties are assumed, as for a published set
     """
 
     unit: Annotated[MasonryMat, isA(MasonryMat)]
@@ -145,7 +145,7 @@ class Masonry:
             raise Refused(str(error)) from None
 
     def assumed(self) -> list[dict[str, Any]]:
-        """What was not given: a list of dicts, as of ``assumed`` of :mod:`masonry.run.results`."""
+        """What was not given: a list of dicts, as in ``assumed`` of :mod:`masonry.run.results`."""
         return entriesOf(self)
 
     def missing(self) -> list[str]:

@@ -40,7 +40,7 @@ Course = Annotated[float, number("m", 1e-3, 10)]
 
 @validated
 def dryGranite(level: Level, height: Course) -> Masonry:
-    """Granite blocks with dry joints, for :class:`masonry.scene.scene.Scene`. Parameters as of :func:`dryGraniteJoints`."""
+    """Granite blocks with dry joints, for :class:`masonry.scene.scene.Scene`. Parameters as in :func:`dryGraniteJoints`."""
     return Masonry(graniteUnit(), dryGraniteJoints(level, height), brief=True)
 
 

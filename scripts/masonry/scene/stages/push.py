@@ -88,7 +88,7 @@ def cycle(
 
     :param amplitudes: [mm], a list
     :param repeats: how often each of them
-    :param continued: as of :meth:`push`
+    :param continued: as in :meth:`push`
     """
     text = ",".join(f"{scene.share * a:g}x{repeats}" for a in amplitudes)
     aims = dict(history=text)
@@ -107,7 +107,7 @@ def follow(
 ) -> str:
     """Push a target through the displacements of a CSV file, which has a column ``displacement_mm``.
 
-    :param continued: as of :meth:`push`
+    :param continued: as in :meth:`push`
     """
     aims = dict(history=str(path))
     return _drive(scene, "follow", target, aims, direction, rate, continued)

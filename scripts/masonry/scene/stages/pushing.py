@@ -36,7 +36,7 @@ class Pushing:
     """What a push remembers. Pairs are of the negative and of the positive side, and positive outwards."""
 
     origin: list | None = (
-        None  # as of Structure.topDisplacement() when the push began [m]
+        None  # as in Structure.topDisplacement() when the push began [m]
     )
     now: float = 0.0  # time of the last row [s]
     moved: float = 0.0  # displacement there [mm]
@@ -239,7 +239,7 @@ def _setVelocity(scene, full, start, growth, steps):
 def _lost(model, at, reading, direction, mean, whole):
     """Why a wall has collapsed, or None.
 
-    :param mean: base shear over a time, as of :meth:`Pushing.note` [kN]
+    :param mean: base shear over a time, as in :meth:`Pushing.note` [kN]
     :param whole: length of the whole path [mm]
     """
     if at.hasLost(direction, mean):
