@@ -65,9 +65,7 @@ def connect(
 
 
 def makeJoints(
-    rule: Callable[..., Any] | None,
-    tolerance: float = 1e-4,
-    allowGaps: bool = False,
+    rule: Callable[..., Any] | None, tolerance: float = 1e-4, allowGaps: bool = False
 ) -> list[Any]:
     """:func:`connect` without its time step, for who chooses it by other rules."""
     engines = list(O.engines)

@@ -115,10 +115,7 @@ def engines(
     if functors:
         loop = functorLoop(geometry, physics)
         integrator = NewtonIntegrator(
-            damping=damping,
-            gravity=integrator.gravity,
-            label="integrator",
-            **ROTATION,
+            damping=damping, gravity=integrator.gravity, label="integrator", **ROTATION
         )
     else:
         loop = MasonryJointLoop(

@@ -44,10 +44,7 @@ BEHAVES = 1.5, 6.0
 
 #: The quantities: their name, the entry of run.json, and its unit. The peak is that of supports and loaded point at once: a
 #: pulse that the supports alone feel when a crack tears is no strength, and it grows with the rate.
-QUANTITIES = (
-    ("peak", "peak_at_both_ends_kN", "kN"),
-    ("work", "push_work_J", "J"),
-)
+QUANTITIES = (("peak", "peak_at_both_ends_kN", "kN"), ("work", "push_work_J", "J"))
 #: What an interval does not say, in every report.
 NOT_COVERED = (
     "the crack pattern, the force at the end of the curve, the material's own uncertainty, and how far this model of a wall is "

@@ -9,11 +9,7 @@ from .options import USUAL, asOption
 
 #: Options by preset, the same for all walls. A scene of one's own may take them from here.
 PRESETS: dict[str, dict[str, Any]] = {
-    "fast": {
-        "blocks": "rigid",
-        "divisions": 1,
-        "rate": 100.0,
-    },
+    "fast": {"blocks": "rigid", "divisions": 1, "rate": 100.0},
     "accurate": {
         "blocks": "deformable",
         "divisions": 2,

@@ -258,11 +258,7 @@ class Outcome:
         description = self.description
         try:
             self.scene.bounds.write(
-                directory,
-                description.title,
-                self.model.parts,
-                description.views,
-                draws,
+                directory, description.title, self.model.parts, description.views, draws
             )
         except Missing as missing:
             say(f"mechanism.png is left out: {missing}", sys.stderr)
