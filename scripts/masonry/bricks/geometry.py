@@ -28,9 +28,8 @@ OPPOSITE = -np.cos(np.radians(0.5))
 NEARLY_OPPOSITE = -np.cos(np.radians(6))
 REACH = 0.25
 
-_CHUNK = (
-    40_000  # pairs of blocks that are compared at a time, so that memory stays small
-)
+#: Pairs of blocks that are compared at a time, so that memory stays small.
+_CHUNK = 40_000
 
 
 def hull(corners):

@@ -30,9 +30,8 @@ from . import limit_loads
 #: solutions of the programme.
 SMALL = 500
 EVERY = math.inf  # the same limit where the user asks for that collapse: none
-JOINTS = (
-    3000  # largest number of joints of a run that is bounded unasked: within seconds
-)
+#: Largest number of joints of a run that is bounded unasked: within seconds.
+JOINTS = 3000
 #: Time that limit analysis may take for a load, if nobody asked for it, if somebody did, and if it is done beside a run that
 #: still takes steps [s]. A run that has come to its end, or to a checkpoint, waits until the first of them is over.
 UNASKED, ASKED, BESIDE = 10.0, 600.0, 120.0
@@ -82,9 +81,8 @@ class Bounds:
         self.model, self.place = model, place
         #: what was found last, in this process: limit.Bound and its entry
         self.last = None
-        self._task = (
-            None  # beside the run: finds a bound, then the files of its mechanism
-        )
+        # beside the run: finds a bound, then the files of its mechanism
+        self._task = None
         self._looksFor = ""  # name of the load whose bound it has not found yet
         self._since = 0.0  # since when it looks [s]
         self.endless = set()  # names of loads under which nothing gives way

@@ -167,9 +167,8 @@ def spring(
 #: Places of two bundles of fibres along the edge of a joint, which have the force and the moment of a layer whose strain is
 #: linear along it: those of Gauss.
 BUNDLES = 0.5 - 0.5 / 3**0.5, 0.5 + 0.5 / 3**0.5
-NEAR = (
-    1e-6  # of the largest extent of the structure: corners so near to a face lie on it
-)
+#: Of the largest extent of the structure: corners so near to a face lie on it.
+NEAR = 1e-6
 
 
 @describes

@@ -153,9 +153,8 @@ class Scene:
         self.script = Script()
         self.calls = []  # every word that was said
         self.staging = False  # whether a stage is being carried out
-        self.bracketing = (
-            False  # whether bracket() looks for a load, so that no collapse is followed
-        )
+        # whether bracket() looks for a load, so that no collapse is followed
+        self.bracketing = False
         self.running = Run(name, arguments, self.script.words)
         # when it is built
         self.model: Any = None

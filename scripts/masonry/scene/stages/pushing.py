@@ -35,9 +35,8 @@ DAMPED = 0.1  # of what loops lose: a larger share of damping is a warning, beca
 class Pushing:
     """What a push remembers. Pairs are of the negative and of the positive side, and positive outwards."""
 
-    origin: list | None = (
-        None  # as in Structure.topDisplacement() when the push began [m]
-    )
+    # as in Structure.topDisplacement() when the push began [m]
+    origin: list | None = None
     now: float = 0.0  # time of the last row [s]
     moved: float = 0.0  # displacement there [mm]
     passed: int = 0  # points of the history that lie behind
