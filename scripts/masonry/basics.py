@@ -79,6 +79,12 @@ def withoutCollector() -> Iterator[None]:
             gc.enable()
 
 
+def firstOf(problems, most=10):
+    """The first sentences of a list, and how many more there are."""
+    more = [f"and {len(problems) - most} more"] if len(problems) > most else []
+    return [*problems[:most], *more]
+
+
 # How a run can end before its time. Each of these ends it in order, and what was computed is kept.
 
 

@@ -11,6 +11,7 @@ from numbers import Integral
 from typing import Annotated, Any, Callable, Iterable, Iterator
 
 from ..arguments import Direction, Numbers, isA, items, isNumber, number, oneOf, shown, text, validated, vector, whole  # fmt: skip
+from ..basics import firstOf
 from . import checks
 from .geometry import COINCIDENT, Solids, cutCorners, joinedCorners
 
@@ -437,8 +438,7 @@ def summary(
 # -- what the generators share ----------------------------------------------------------------------------------------
 
 
-def refuse(what: str, problems: list[str], most: int = 10) -> None:
+def refuse(what: str, problems: list[str]) -> None:
     """Raise ValueError with the first problems of a list, if there are any."""
     if problems:
-        more = [f"and {len(problems) - most} more"] if len(problems) > most else []
-        raise ValueError(f"{what}: " + "; ".join([*problems[:most], *more]))
+        raise ValueError(f"{what}: " + "; ".join(firstOf(problems)))

@@ -14,28 +14,12 @@ from ..basics import Held
 from ..read.files import readWhole
 
 #: Files that a run writes, and those that are drawn of it; * is a number.
-FILES = [
-    "curve.csv",
-    "curve.png",
-    "cracks.png",
-    "run.json",
-    "report.html",
-    "run.checkpoint",
-    "view.html",
-    "capacity.json",
-    "capacity.png",
-    "domain.json",
-    "domain.png",
-    "blocks.pvd",
-    "joints.pvd",
-    "connectors.pvd",
-    "mechanism.png",
-    "mechanism_blocks.vtu",
-    "mechanism_joints.vtu",
-    "blocks_*.vtu",
-    "joints_*.vtp",
-    "connectors_*.vtp",
-]
+FILES = (
+    "curve.csv curve.png cracks.png run.json report.html run.checkpoint "
+    "view.html capacity.json capacity.png domain.json domain.png blocks.pvd "
+    "joints.pvd connectors.pvd mechanism.png mechanism_blocks.vtu "
+    "mechanism_joints.vtu blocks_*.vtu joints_*.vtp connectors_*.vtp"
+).split()
 #: Those of them that show how far a run has come: they go when it goes on.
 DRAWN = {"curve.png", "cracks.png", "report.html"}
 OURS = re.compile(

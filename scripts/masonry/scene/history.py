@@ -14,12 +14,13 @@ import io
 import os
 from collections import namedtuple
 
+from ..basics import firstOf
+
 LEAST, MOST = 0.02, 1000.0  # [mm] bounds of an amplitude; a row of curve.csv is 0.01 mm
 AT_ZERO = 0.015  # [mm] within which a wall is at zero: more than a history misses, less than any amplitude
 NOISE = 0.01  # of the largest displacement of a file: smaller excursions may be noise of the measurement
 CYCLES = 10000  # that a list of amplitudes may have
 COLUMN = "displacement_mm"  # of a file
-MOST_PROBLEMS = 10  # problems that are named one by one
 
 #: A point of a history: its displacement [mm]; the direction to it, 1 or -1; and the displacement at which the drive turns or
 #: stops next, for which it brakes, or None if it does not [mm].
@@ -50,12 +51,7 @@ def _number(text):
 
 def _refuse(problems):
     if problems:
-        more = (
-            [f"and {len(problems) - MOST_PROBLEMS} more"]
-            if len(problems) > MOST_PROBLEMS
-            else []
-        )
-        raise ValueError("; ".join([*problems[:MOST_PROBLEMS], *more]))
+        raise ValueError("; ".join(firstOf(problems)))
 
 
 def _readList(text):

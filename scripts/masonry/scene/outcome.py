@@ -9,6 +9,7 @@ import sys
 from yade import O
 from yade.wrapper import MasonryVtkRecorder
 
+from ..arguments import isNumber
 from ..assembly import blocks
 from ..assembly.blocks import units
 from ..assembly.engines import LAWS
@@ -72,15 +73,12 @@ class Outcome:
     def _freeVibration(self):
         """Of the first of the pushes that count, as in :class:`masonry.run.run_state.RunState`: the first period, the weight of the base in
         the shear force, and when the velocity of the drive had grown."""
-        stages, freeVibrations = (
-            self.scene.running.at.stages,
-            self.scene.running.at.freeVibrations,
-        )
+        at = self.scene.running.at
         first = self.data.rows[0] if self.data.rows else math.inf
-        numbers = (
-            n for n in sorted(map(int, freeVibrations)) if stages[n - 1][3] >= first
-        )
-        return freeVibrations[str(number)] if (number := next(numbers, None)) else (0.0, 0.0, 0.0)  # fmt: skip
+        for number in sorted(map(int, at.freeVibrations)):
+            if at.stages[number - 1][3] >= first:
+                return at.freeVibrations[str(number)]
+        return 0.0, 0.0, 0.0
 
     def space(self):
         """Bytes that a run writes at least, and those that it will probably write."""
@@ -301,9 +299,7 @@ def shortened(entry):
     if isinstance(entry, dict):
         return {name: shortened(value) for name, value in entry.items()}
     if isinstance(entry, (list, tuple)):
-        if len(entry) > MOST_NUMBERS and all(
-            isinstance(v, (int, float)) for v in entry
-        ):
+        if len(entry) > MOST_NUMBERS and all(map(isNumber, entry)):
             return f"{len(entry):,} numbers from {min(entry):.6g} to {max(entry):.6g}"
         return [shortened(value) for value in entry]
     return entry

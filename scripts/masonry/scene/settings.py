@@ -197,17 +197,11 @@ def applySettings(joints, settings):
 def _value(text, example):
     """The value that the text of a setting stands for, of the kind of ``example``. Raises ValueError if it is not one."""
     if isinstance(example, bool):
-        switches = {
-            "on": True,
-            "true": True,
-            "1": True,
-            "off": False,
-            "false": False,
-            "0": False,
-        }
-        if text.lower() not in switches:
-            raise ValueError(text)
-        return switches[text.lower()]
+        if text.lower() in ("on", "true", "1"):
+            return True
+        if text.lower() in ("off", "false", "0"):
+            return False
+        raise ValueError(text)
     if isinstance(example, list):
         rows = [tuple(float(v) for v in row.split(":")) for row in text.split(",")]
         if any(len(row) != 2 for row in rows):

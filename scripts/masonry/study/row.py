@@ -95,11 +95,7 @@ class Job:
             return
         one = chains.plan["records"][chains.record(number)]
         path = self.folder.of(FOLDER, one["name"] + ".txt")
-        try:
-            found = hashlib.sha256(readWhole(path)).hexdigest()
-        except OSError as error:
-            raise Refused(f"cannot read {path}: {error.strerror}") from None
-        if found != one["sha256"]:
+        if _fingerprint(path) != one["sha256"]:
             raise Refused(f"{path} is not the record with which the study began; remove it, and begin the study again")  # fmt: skip
 
     def _attempts(self, number, log):
@@ -158,15 +154,19 @@ def _sceneOf(folder, named):
             f"{folder.of(STUDY)} names the scene {path}, which is outside the folder of the study: a scene is a program, so "
             "name it yourself, with --scene FILE before the folder"
         )
-    try:
-        found = hashlib.sha256(readWhole(path)).hexdigest()
-    except OSError as error:
-        raise Refused(f"cannot read the scene {path}: {error.strerror}") from None
-    if found != record.get("scene_sha256"):
+    if _fingerprint(path, "the scene ") != record.get("scene_sha256"):
         raise Refused(
             f"the scene {path} is another file than the one with which the study in {folder.path} began"
         )
     return path
+
+
+def _fingerprint(path, what=""):
+    """The hash of a file. Raises Refused."""
+    try:
+        return hashlib.sha256(readWhole(path)).hexdigest()
+    except OSError as error:
+        raise Refused(f"cannot read {what}{path}: {error.strerror}") from None
 
 
 def requeue(job):

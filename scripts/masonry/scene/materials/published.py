@@ -130,29 +130,14 @@ def calciumSilicateUnit() -> MasonryMat:
 DECIDED = "assumed by calciumSilicateJoints(); the paper gives no value"
 
 #: What the paper does not say of bed and head joints, and what it does not say of the crack joints of a brick.
-CALCIUM_SILICATE_ASSUMED = [
-    "residualCohesion",
-    "residualFriction",
-    "dilatancy",
-    "residualStrengthRatio",
-    "modeIFractureEnergy",
-    "modeIIFractureEnergy",
-    "capNormal",
-    "capShear",
-    "capLinear",
-]
-CRACK_ASSUMED = [
-    "normalStiffness",
-    "shearStiffness",
-    "tensileStrength",
-    "modeIFractureEnergy",
-    "cohesion",
-    "residualCohesion",
-    "modeIIFractureEnergy",
-    "friction",
-    "residualFriction",
-    "dilatancy",
-]
+CALCIUM_SILICATE_ASSUMED = (
+    "residualCohesion residualFriction dilatancy residualStrengthRatio "
+    "modeIFractureEnergy modeIIFractureEnergy capNormal capShear capLinear"
+).split()
+CRACK_ASSUMED = (
+    "normalStiffness shearStiffness tensileStrength modeIFractureEnergy cohesion "
+    "residualCohesion modeIIFractureEnergy friction residualFriction dilatancy"
+).split()
 
 
 @validated
