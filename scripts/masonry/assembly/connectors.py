@@ -83,9 +83,8 @@ class Connectors:
         since, self.saidUntil = min(self.saidUntil, O.iter), O.iter
         for kind, made in self.engines.items():
             for one, what in kind.events(self.description.connectorsOf(kind), made, since):  # fmt: skip
-                subject = (
-                    one.overlay or one.name
-                )  # fibres are named by their layer, once
+                # fibres are named by their layer, once
+                subject = one.overlay or one.name
                 if (what, subject) not in self.reported:
                     self.reported.add((what, subject))
                     yield f"{subject} {what}: between {one.ends[0].words} and {one.ends[1].words}"  # fmt: skip

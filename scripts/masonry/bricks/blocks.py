@@ -82,9 +82,8 @@ class Block:
                 f"corners must be at least 4 points, got {shown(self.corners)}"
             )
         for n, corner in enumerate(corners):
-            if len(corner) != 3 or not all(
-                type(x) is float or isNumber(x) for x in corner
-            ):
+            fine = all(type(x) is float or isNumber(x) for x in corner)
+            if len(corner) != 3 or not fine:
                 problems.append(
                     f"corner {n} must be three numbers [m], got {shown(corner)}"
                 )
@@ -293,9 +292,8 @@ class Bricks:
             raise ValueError(
                 f"within: low corner {low} m must lie below high corner {high} m"
             )
-        return self.where(
-            lambda b: all(p <= x <= q for p, x, q in zip(low, b.middle, high))
-        )
+        inside = lambda b: all(p <= x <= q for p, x, q in zip(low, b.middle, high))
+        return self.where(inside)
 
     def top(self) -> Bricks:
         """The blocks with a face in the highest horizontal plane."""

@@ -415,9 +415,8 @@ def _corners(points, faces, numbers, members, solid, problems):
     if len(planes) < 4:
         problems.append(f"{solid}: only {len(planes)} planes, so no volume")
         return None
-    return tuple(
-        tuple(map(float, points[n])) for n in used if len(set(meeting[n])) >= 3
-    )
+    corners = (points[n] for n in used if len(set(meeting[n])) >= 3)
+    return tuple(tuple(map(float, corner)) for corner in corners)
 
 
 def _same(plane, normal, middle, width):

@@ -367,10 +367,8 @@ def ask(
     given = getattr(args, "given", None) or {}
     chosen = [n for n in CHOSEN if n in given]
     if args.preset or chosen:
-        unwanted = " and ".join(
-            ["--preset"] * bool(args.preset) + [*map(asOption, chosen)]
-        )
-        raise Refused(f"--accuracy: it chooses block model, mesh, rate, points, damping and time step itself: leave {unwanted} away")  # fmt: skip
+        unwanted = ["--preset"] * bool(args.preset) + [*map(asOption, chosen)]
+        raise Refused(f"--accuracy: it chooses block model, mesh, rate, points, damping and time step itself: leave {' and '.join(unwanted)} away")  # fmt: skip
     if args.history:
         raise Refused("--accuracy: it is about a push in one direction, not about the loops of --history")  # fmt: skip
     folder = args.out or os.path.join("results", name)

@@ -54,9 +54,7 @@ def readTable(path):
             )
         row = {h: before.get(h, w) if w == "=" else w for h, w in zip(heads, words)}
         rows[number] = before = row
-    odd = [
-        name for row in rows.values() if (name := nameOf(row, "row")).strip(".") == ""
-    ]
+    odd = [name for row in rows.values() if not (name := nameOf(row, "row")).strip(".")]
     if odd:
         raise Refused(f"{path}: description {odd[0]!r} cannot name a folder")
     names = collections.Counter(folder(path, row, line) for line, row in rows.items())

@@ -230,10 +230,9 @@ def _describe(run, scene):
         entries["refined_joints"] = scene.model.refinedJoints()
     if at.steps:
         perStep = at.seconds["steps"] / at.steps
+        ofOne = 1e9 * perStep / scene.model.subcontacts
         entries["microseconds_per_step"] = 1e6 * perStep
-        entries["nanoseconds_per_subcontact_step"] = (
-            1e9 * perStep / scene.model.subcontacts
-        )
+        entries["nanoseconds_per_subcontact_step"] = ofOne
     entries["notes"] = at.notes
     entries["warnings"] = list(_warnings(run, scene))
 

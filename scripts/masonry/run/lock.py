@@ -177,6 +177,5 @@ def recorded(directory):
         record = _object(readWhole(os.path.join(directory, "run.json")))
     except OSError:
         return {}
-    return (
-        record if isinstance(record.get("columns"), dict) and "scene" in record else {}
-    )
+    ours = isinstance(record.get("columns"), dict) and "scene" in record
+    return record if ours else {}

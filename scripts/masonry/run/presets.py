@@ -264,12 +264,9 @@ def presetNote(preset):
     if preset["overrides"]:
         reason = ", ".join(map(asOption, preset["overrides"])) + " beside it"
         return f"preset {name} without its promise: {reason}"
-    others = PROMISES[name].get("elsewhere")
-    measured = (
-        f"unlike the {others['walls']} walls on which it was measured: "
-        if others
-        else ""
-    )
-    return (
-        f"preset {name} without its promise: {measured}{'; '.join(preset['outside'])}"
-    )
+    others, reason = PROMISES[name].get("elsewhere"), "; ".join(preset["outside"])
+    if others:
+        reason = (
+            f"unlike the {others['walls']} walls on which it was measured: {reason}"
+        )
+    return f"preset {name} without its promise: {reason}"

@@ -16,7 +16,15 @@ from types import SimpleNamespace
 from yade import O
 
 
-from ..basics import Collapsed, Interrupted, NotResumed, Refused, Unwritable, listen, say, stopListening  # fmt: skip
+from ..basics import (
+    Collapsed,
+    Interrupted,
+    NotResumed,
+    Unwritable,
+    listen,
+    say,
+    stopListening,
+)
 from . import batch
 from .keeping import Checkpoints, hostNow
 from .frames import Frames
@@ -187,9 +195,8 @@ class Run:
             elif not self.state.restored:
                 self.state.put(at.now)
             try:
-                self.results.takeUp(
-                    [*self.results.rows], len(at.frames), self.saved.seconds
-                )
+                rows = [*self.results.rows]
+                self.results.takeUp(rows, len(at.frames), self.saved.seconds)
                 if self.frames:
                     self.frames.collect()
             except (OSError, RuntimeError, Unwritable) as error:

@@ -4,7 +4,7 @@
 from dataclasses import dataclass, field
 
 from .._masonry import loadScene
-from ..basics import NotResumed, Refused, say
+from ..basics import NotResumed, say
 from .checkpoints import NAME, alike, readState
 
 MOST_NOTES = 1000  # that a run keeps
@@ -132,9 +132,8 @@ class Saved:
             self._data, saved = readState(directory)
         except (OSError, ValueError) as error:
             raise NotResumed(f"--resume: {error}") from None
-        like = dict(
-            scene="", options={}, at={}, rows=[], script=[], seconds=0.0, host={}
-        )
+        like = dict(scene="", options={}, at={}, rows=[], script=[], seconds=0.0)
+        like["host"] = {}
         if (
             not isinstance(saved, dict)
             or not all(alike(saved.get(key), value) for key, value in like.items())

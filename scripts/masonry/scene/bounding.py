@@ -84,9 +84,8 @@ def domain(
             )
         before = saidBefore(scene, "domain", target=target.name, normal=list(normal))
         along = vector(direction, "domain: direction").normalized()
-        known = [
-            scene.bounds.entries.get(nameInDomain(target, along, one)) for one in normal
-        ]
+        names = [nameInDomain(target, along, one) for one in normal]
+        known = [*map(scene.bounds.entries.get, names)]
         if before and all(known):
             return known
         return findBy(scene, "domain", target, normal, along, lowerUpTo=SMALL)

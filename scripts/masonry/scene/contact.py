@@ -4,12 +4,12 @@
 from __future__ import annotations
 
 import itertools
-from typing import Any, Callable
+from typing import Any
 
 from ..arguments import Name, validated
 from .supports import Coordinate
 from ..basics import Refused
-from .settings import Property, Settable
+from .settings import Factor, Property, Settable
 from .targets import Target
 from .words import describes
 
@@ -57,9 +57,7 @@ class Contact(Settable):
         vars(made).update(vars(self))
         return made
 
-    def scatter(
-        self, name: str, factor: Callable[[float, float, float], float]
-    ) -> None:
+    def scatter(self, name: str, factor: Factor) -> None:
         raise ValueError(f"contact: {name} is the same all over; --set contact.{name}=... changes it")  # fmt: skip
 
     def of(self, bed: Any) -> dict[str, float]:

@@ -224,9 +224,7 @@ class Description:
     def size(self, index):
         """Longest side of the box around a brick [m]."""
         corners = self.bricks[index].corners
-        return max(
-            max(p[i] for p in corners) - min(p[i] for p in corners) for i in range(3)
-        )
+        return max(max(values) - min(values) for values in zip(*corners))
 
     def _nearest(self, point):
         """Index of the brick that is nearest to a point, by :meth:`_distance`."""

@@ -109,9 +109,8 @@ def keep(args, name, options):
     for option, value in options.items():
         if isinstance(value, list):  # what the command line adds comes last
             now[option] = [*value, *given.get(option, [])]
-    beaten = {
-        o: o for o in options if given.get(o, options[o]) != options[o]
-    }  # by which
+    # by which
+    beaten = {o: o for o, value in options.items() if given.get(o, value) != value}
     ends = {"until": "history", "history": "until"}  # of which there is one
     for option, other in ends.items():
         if given.get(option) is not None:

@@ -146,10 +146,12 @@ class Outcome:
         )
         if self.description.views:
             entries["views"] = self.description.views
-        wall = wallOf(self.description, model.loading) if self.pushed else None
-        if wall:
-            entries["wall"] = wall
-        return entries
+        return {**entries, **self._wall()}
+
+    def _wall(self):
+        """The entry ``wall``, if a whole wall in running bond is pushed."""
+        wall = self.pushed and wallOf(self.description, self.model.loading)
+        return {"wall": wall} if wall else {}
 
     def _columnsOf(self, records, *units):
         """The columns of curve.csv that some records have, of these units."""
@@ -247,8 +249,7 @@ class Outcome:
     def figure(self):
         """The entries of run.json by which curve.png is drawn."""
         found = dict(title=self.description.title, figure=figureOf(self))
-        wall = wallOf(self.description, self.model.loading) if self.pushed else None
-        return {**found, "wall": wall} if wall else found
+        return {**found, **self._wall()}
 
     def write(self, directory, draws=True):
         """Write what the scene has beside rows and frames: the mechanism of limit analysis, with its picture if it is to be

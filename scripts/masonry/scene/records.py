@@ -121,9 +121,7 @@ def section(
 
 def _middleAt(description, z, part, name):
     """The middle of the box around the bricks that reach a height [m]. Raises ValueError if there is none."""
-    points = [
-        block.corners for block in description.bricks if part in (None, block.part)
-    ]
+    points = [b.corners for b in description.bricks if part in (None, b.part)]
     near = 1e-6 * (1 + abs(z))
     cut = [
         corner

@@ -9,6 +9,10 @@ from ..arguments import nearest, number
 from ..basics import Refused
 
 
+#: A function of x, y and z [m] that gives a factor [-].
+Factor = Callable[[float, float, float], float]
+
+
 class Property(NamedTuple):
     """A property of what is no joint: its unit and its bounds.
 
@@ -69,9 +73,7 @@ class Settable:
         if problems:
             raise ValueError("\n".join(problems))
 
-    def scatter(
-        self, name: str, factor: Callable[[float, float, float], float]
-    ) -> None:
+    def scatter(self, name: str, factor: Factor) -> None:
         """Multiply a property by the value of a field where this is. Raises ValueError.
 
         :param factor: function of x, y and z [m] that gives a factor [-]
@@ -102,7 +104,7 @@ def copiedAll(connectors: dict[str, Any]) -> dict[str, Any]:
 def scatterAll(
     connectors: dict[str, Any],
     names: list[str],
-    factor: Callable[[float, float, float], float],
+    factor: Factor,
 ) -> None:
     """Let properties of ties, springs and fibre layers vary by a field. Raises ValueError with all problems.
 

@@ -9,7 +9,7 @@ import math
 from dataclasses import dataclass
 from typing import Any, Callable, Concatenate, ParamSpec, Protocol, TypeVar, overload
 
-from ..basics import NotResumed, Refused
+from ..basics import NotResumed
 
 P = ParamSpec("P")
 Q = ParamSpec("Q")

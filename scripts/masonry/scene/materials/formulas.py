@@ -114,9 +114,8 @@ class _Kind:
 
     def energy(self, name, strength, stiffness, lumped, given, index):
         """Take a fracture energy. One that is assumed is large enough; of one that is given and too small a warning."""
-        what = "unit_" * (self.name == "crack") + (
-            "GfI" if "II" not in name else "GfII"
-        )
+        what = "GfII" if "II" in name else "GfI"
+        what = f"unit_{what}" if self.name == "crack" else what
         least = leastEnergy(strength, stiffness, lumped)
         if given is not None:
             if given <= least:
@@ -128,10 +127,8 @@ class _Kind:
                 )
             self.values[name] = given
             return
-        typical, source = (
-            index * strength,
-            f"{1e3 * index:g} mm times the strength, {INDEX_SOURCE}",
-        )
+        typical = index * strength
+        source = f"{1e3 * index:g} mm times the strength, {INDEX_SOURCE}"
         if typical < MARGIN * least:
             source = (
                 f"{MARGIN:g} times the least that does not snap back between rigid units; {source} would be "
@@ -449,11 +446,10 @@ def _problems(given):
         found.append(f"unit {given['unit']} m must be at most 5 m: is it in m?")
     elif given["joint"] >= min(length, height):
         found.append(f"joint {given['joint']:g} m must be below length and height of the unit {given['unit']} m")  # fmt: skip
-    pairs = [("E", "unit_E"), ("head_E", "unit_E")]
-    for one, other in pairs:
-        if n(one) is not None and n(other) is not None and not n(one) < n(other):
+    for one in ("E", "head_E"):
+        if n(one) is not None and n("unit_E") is not None and not n(one) < n("unit_E"):
             found.append(
-                f"{one} {n(one):g} Pa must be below {other} {n(other):g} Pa: bricks and joints are in series"
+                f"{one} {n(one):g} Pa must be below unit_E {n('unit_E'):g} Pa: bricks and joints are in series"
             )
     if n("G") and n("unit_E"):
         most = n("unit_E") / (2 * (1 + n("poisson", 0.2)))
@@ -461,10 +457,8 @@ def _problems(given):
             found.append(
                 f"G {n('G'):g} Pa must be below that of the bricks, unit_E/(2 (1 + nu)) = {most:g} Pa"
             )
-    for one, other in (
-        ("residual_friction", "friction"),
-        ("dilatancy", "residual_friction"),
-    ):
+    pairs = [("residual_friction", "friction"), ("dilatancy", "residual_friction")]
+    for one, other in pairs:
         most = n(other, n("friction"))
         if n(one) is not None and most is not None and n(one) > most:
             found.append(f"{one} {n(one):g} must be at most {other} {most:g}")

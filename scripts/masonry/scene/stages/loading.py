@@ -282,6 +282,4 @@ def prepare(scene, word, arguments):
     elif word in ("press", "growPress") and target:
         scene.model.loading.pressOf(target)
     elif word in ("wind", "growWind"):
-        _windOn(
-            scene, arguments["pressure"], arguments["towards"], arguments["part"], word
-        )
+        _windOn(scene, *(arguments[n] for n in ("pressure", "towards", "part")), word)

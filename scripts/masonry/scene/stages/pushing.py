@@ -95,9 +95,8 @@ class Pushing:
             goal = goals[self.passed]
             brakes = goal.brake is not None
             near = brakes and abs(goal.brake - goal.displacement) <= ARRIVED
-            if goal.direction * (goal.displacement - self.moved) > (
-                ARRIVED if near else 0
-            ):
+            missing = goal.direction * (goal.displacement - self.moved)
+            if missing > (ARRIVED if near else 0):
                 return True, turned
             if self.passed + 1 == len(goals):
                 return False, turned
@@ -148,9 +147,8 @@ def drivePush(scene, name, args, began, continued=False):
     def detail():
         if not args.history:
             return f"{at.moved:6.2f} of {args.until:g} mm  {shear:7.2f} kN"
-        return (
-            f"{travelled:.1f} of {whole:g} mm, at {at.moved:6.2f} mm  {shear:7.2f} kN"
-        )
+        path = f"{travelled:.1f} of {whole:g} mm"
+        return f"{path}, at {at.moved:6.2f} mm  {shear:7.2f} kN"
 
     moves, undamped = True, None
     while moves:

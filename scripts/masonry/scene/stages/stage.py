@@ -11,7 +11,7 @@ from typing import Any, Callable, Concatenate, ParamSpec
 from yade import O
 
 from ... import notebook
-from ...basics import Collapsed, NotAccurate, Refused, say
+from ...basics import Collapsed, NotAccurate, say
 from ...run import batch
 from ...run.accuracy import STAGES
 from ..resuming import enter
