@@ -121,7 +121,6 @@ class Structure:
         O.bodies[target.body].state.blockedDOFs = target.freedom
 
     def _deformableUnits(self):
-        """The engine of the bricks that deform."""
         args, description = self.args, self.description
         rigid = [t.body for t in description.targets.values() if t.freedom]
         for body in (*rigid, *(self.ids[index] for index in self.rigid)):
@@ -144,7 +143,6 @@ class Structure:
         )
 
     def _addEngines(self):
-        """Engines, when all blocks are there."""
         args, description = self.args, self.description
         points = [int(n) for n in args.points.split(",")] if args.points else []
         engines(

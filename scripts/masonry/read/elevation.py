@@ -201,7 +201,6 @@ class Elevation:
             axes.scatter(x, y, s=wide * min(1, bold / 1.8) ** 2, color="black", marker="X", lw=0, label="crushed", zorder=5)  # fmt: skip
 
     def _tie(self, tie, magnification):
-        """Both ends of a tie."""
         s, ends = self.structure, []
         for body, end in zip(tie["bodies"], np.array(tie["ends_m"])):
             moved = np.zeros(3)

@@ -53,8 +53,6 @@ def write(directory, path, number=None, magnification=1.0, rate=10):
 
 
 class _File:
-    """What goes into a file."""
-
     def __init__(self, title):
         self._parts, self._size = [], 0
         self._root = {"name": plain(title), "rotation": UP, "children": []}

@@ -104,7 +104,6 @@ class Model:
         return times
 
     def _build(self, first):
-        """The blocks as they were built, from a frame."""
         triangles, cells, rigid = readSurfaces(self.directory, self.numbers[0])
         self.points = first["points"]
         self.bodies, block = np.unique(first["body"], return_inverse=True)
@@ -133,7 +132,6 @@ class Model:
         self.free = np.flatnonzero(~self.rigid[self.owner])
 
     def _move(self):
-        """The blocks and joints in all frames."""
         reference = self.run.get("reference_body")
         held = self.bodies[self.owner] == reference
         if reference is not None and not held.any():

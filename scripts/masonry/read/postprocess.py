@@ -31,7 +31,6 @@ NO_REPORT = 3
 
 
 def _load() -> None:
-    """Load what drawing needs."""
     with contextlib.suppress(ImportError):  # it is said when something is drawn
         import matplotlib.backends.backend_agg  # noqa: F401
         import matplotlib.style  # noqa: F401

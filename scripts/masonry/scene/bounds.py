@@ -236,7 +236,6 @@ class Bounds:
         return {**entry, "note": note}, [*lines, f"note: {note}"], endless, None
 
     def _note(self, what, found, lines, endless, bound):
-        """Keep what :meth:`_found` returned."""
         self.entries[what].update(found)
         for line in lines:
             # no notes: the entry has them, and when they are found depends on the machine

@@ -227,7 +227,6 @@ class Description:
         return max(max(values) - min(values) for values in zip(*corners))
 
     def _nearest(self, point):
-        """Index of the brick that is nearest to a point, by :meth:`_distance`."""
         if self._boxes is None or self._boxes[0] is not self.bricks:
             corners = [np.asarray(block.corners, float) for block in self.bricks]
             of = lambda f: np.array([f(c, axis=0) for c in corners])

@@ -291,7 +291,6 @@ class Outcome:
 
 
 def _meanings(cls):
-    """What the properties of a class of the plugin mean, by their names."""
     return {p["name"]: p["meaning"] for p in blocks.properties(cls)}
 
 

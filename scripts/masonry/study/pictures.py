@@ -135,7 +135,6 @@ def sobol(path, found, label):
 
 
 def _bars(axis, rows, intervals, cap=2.5, **settings):
-    """Horizontal bars with their intervals."""
     lengths = [[i.value - i.low, i.high - i.value] for i in intervals]
     axis.barh(
         rows,

@@ -205,7 +205,6 @@ def reached(demands, limit):
 
 
 def _cell(value):
-    """A demand in a table."""
     return "-" if math.isnan(value) else "infinite" if math.isinf(value) else f"{value:.4g}"  # fmt: skip
 
 

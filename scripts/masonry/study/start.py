@@ -88,7 +88,6 @@ def _putRecords(folder, study):
 
 
 def _compare(folder, known, now):
-    """Refuse another study than the one that a folder holds."""
     was, given = known["study"], now["study"]
     other = [
         f"{n} is {json.dumps(was.get(n))}, not {json.dumps(given.get(n))}"

@@ -152,7 +152,6 @@ def _states(record):
 
 
 def _drifts(record):
-    """Columns of drifts that the script recorded: their extremes."""
     meanings = record.run.get("columns") or {}
     rows = []
     for name in record.run.get("recorded_drifts") or []:

@@ -198,14 +198,12 @@ def _joints(run):
 
 
 def _lawOf(joint):
-    """What a kind of joint can do, in words."""
     if joint.get("elastic"):
         return "elastic: no strength is reached"
     return f"{joint.get('law', 'not known')}{'' if joint.get('cap', True) else ', cannot crush'}"
 
 
 def _cell(joint, name, factor, isAssumed):
-    """A property of a kind of joint."""
     isIgnored = (
         joint.get("elastic") and name not in STIFFNESSES
         or name in OF_CAP and not joint.get("cap", True)

@@ -64,7 +64,6 @@ def trust(record: Record) -> Iterator[Any]:
 
 
 def _said(run):
-    """What the run said while it went on."""
     notes = run.get("notes")
     lines = [one for one in notes if isinstance(one, dict)] if isinstance(notes, list) else []  # fmt: skip
     if lines:

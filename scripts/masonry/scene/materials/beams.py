@@ -116,7 +116,6 @@ def _newKind(masonry, word, pieces):
 
 
 def _take(masonry, name, unit, glue, bearing):
-    """Take the material and the joints of a beam or a floor."""
     masonry.units[name], masonry.joints[name] = unit, glue
     masonry.stiff = masonry.stiff | {name}
     if bearing is not None:

@@ -137,7 +137,6 @@ class _Kind:
         self.take(name, max(typical, MARGIN * least, 1e-3), False, source)
 
     def made(self):
-        """The MasonryJoint. Raises ValueError."""
         joint = MasonryJoint(name=self.name, **self.values)
         return state(joint, **joint.assumed(), **self.sources)
 
@@ -317,7 +316,6 @@ def _spacings(v):
 
 
 def _mortarJoints(v):
-    """Bed and head joints, from the arguments of :func:`masonry`."""
     bed, head = _Kind("bed", {}), _Kind("head", {})
     _stiffnesses(v, bed, head)
     _bond(v, bed, head)
@@ -407,7 +405,6 @@ def _crushing(v, bed, head):
 
 
 def _crackJoint(v):
-    """The joint between the halves of a brick."""
     halves = 0.5 * _spacings(v)[1] / v.unit_E  # what is lumped into it [m/Pa]
     shearing = 2 * (1 + _poisson(v))
     crack = _Kind("crack", {"elastic": True})
@@ -435,7 +432,6 @@ def _crackJoint(v):
 
 
 def _problems(given):
-    """Sentences on what does not go together."""
     found = []
     if ("ft" in given) == ("bond_wrench" in given):
         found.append(

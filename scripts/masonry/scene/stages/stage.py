@@ -222,7 +222,6 @@ def _follow(scene, name):
 
 
 def _noteEnd(running, before, ended):
-    """Note how the stage ended that follows these."""
     running.at.ended = {**running.at.ended, str(before + 1): [ended, running.entered]}
 
 
