@@ -96,20 +96,20 @@ def replaced(path, mode="w", **settings):
     :raises OSError: if it cannot be written, or if ``path`` is a symbolic link or no regular file
     """
     path = os.fspath(path)
-    beside = path + ".new"
+    temporary = path + ".new"
     if os.path.lexists(path) and not stat.S_ISREG(os.lstat(path).st_mode):
         raise OSError(
             errno.EINVAL, "it is a symbolic link or no regular file", path
         ) from None
-    with open(beside, mode, opener=inside, **settings) as file:
+    with open(temporary, mode, opener=inside, **settings) as file:
         try:
             yield file
             file.flush()
             os.fsync(file.fileno())
-            os.replace(beside, path)
+            os.replace(temporary, path)
         except BaseException:
             with contextlib.suppress(OSError):
-                os.remove(beside)
+                os.remove(temporary)
             raise
 
 

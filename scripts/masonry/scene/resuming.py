@@ -139,10 +139,10 @@ def resume(scene: Any) -> str:
             f"resume: scene {scene.name} has no run that was interrupted and left a checkpoint"
         )
     folder, calls, given = scene.results.directory, scene.calls, scene.args
-    (name, *made), beside = scene._made
+    (name, *made), settings = scene._made
     arguments = given.parser.parse_args(["--resume", folder])
     vars(scene).clear()
-    scene.__init__(name, *made, arguments, **beside)  # type: ignore[misc]
+    scene.__init__(name, *made, arguments, **settings)  # type: ignore[misc]
     ended = None
     for call in calls:
         with contextlib.suppress(*[ValueError] * call.refused):

@@ -35,7 +35,7 @@ ATTEMPTS = 20
 TAIL = 4000  # bytes at the end of a log in which the reason of a failure stands
 
 
-class Job:
+class RowRunner:
     """Runs rows, and stops in order when it is asked to.
 
     :param path: folder of the study
@@ -169,10 +169,10 @@ def _fingerprint(path, what=""):
         raise Refused(f"cannot read {what}{path}: {error.strerror}") from None
 
 
-def requeue(job):
+def requeue(runner):
     """Ask Slurm to run this task again, if it is one that ran out of time."""
     task = os.environ.get("SLURM_JOB_ID")
-    if job.stopped == signal.SIGUSR1 and task:
+    if runner.stopped == signal.SIGUSR1 and task:
         subprocess.run(["scontrol", "requeue", task])
 
 
@@ -196,22 +196,22 @@ def _rows(words):
         raise Refused(
             "name the scene, the folder of a study and the numbers of its rows: --scene FILE DIR NUMBER..."
         )
-    job = Job(words[0], scene)
-    runs = job.folder.description()["study"]["runs"]
+    runner = RowRunner(words[0], scene)
+    runs = runner.folder.description()["study"]["runs"]
     beyond = [w for w in words[1:] if not 1 <= int(w) <= runs]
     if beyond:
         raise Refused(f"no row {', '.join(beyond)}: {words[0]} has {runs}")
-    say(f"note: this runs {job.script}")
-    worst, higher = 0, job.folder.chains.higher
+    say(f"note: this runs {runner.script}")
+    worst, higher = 0, runner.folder.chains.higher
     numbers = [n for word in words[1:] for n in (int(word), *higher(int(word)))]
     for number in dict.fromkeys(numbers):
-        status = job.run(number)
+        status = runner.run(number)
         if status:
-            why = job.folder.lastJob(number).get("told") or f"exit status {status}"
+            why = runner.folder.lastJob(number).get("told") or f"exit status {status}"
             say(f"row {batch.named(number)}: {why}", sys.stderr)
         worst = max(worst, status if status >= 0 else 128 - status)
-        if job.stopped:
-            requeue(job)
+        if runner.stopped:
+            requeue(runner)
             return 130
     return worst
 
