@@ -366,12 +366,10 @@ def _tilted(find, first):
     return bound
 
 
-def findBy(scene, kind, *load, lowerUpTo, background=False):
+def findBy(scene, kind, *load, **how):
     """Find a bound, which Ctrl-C and SIGTERM end at once: a method of :class:`masonry.scene.bounds.Bounds`."""
     with scene.running.breakable():
-        return getattr(scene.bounds, kind)(
-            *load, lowerUpTo=lowerUpTo, background=background
-        )
+        return getattr(scene.bounds, kind)(*load, **how)
 
 
 def takeFound(scene, wait):

@@ -212,10 +212,8 @@ def _entered(scene, name, args, at, began, continued):
         run.frame()
         at.period = _measuredPeriod(scene, name, args, pathOf(args, at.start))
         at.places = model.motion.positions() if at.period else []
-        run.at.freeVibrations = {
-            **run.at.freeVibrations,
-            str(run.entered): [at.period, 0.0, 0.0],
-        }
+        vibration = [at.period, 0.0, 0.0]
+        run.at.freeVibrations = {**run.at.freeVibrations, str(run.entered): vibration}
         at.nextFrame = frameSpacing(args)
     return goals
 
