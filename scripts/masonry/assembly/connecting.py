@@ -7,16 +7,9 @@ from __future__ import annotations
 from typing import Annotated, Any, Callable
 
 from yade import O, utils
-from yade.wrapper import (
-    InteractionLoop,
-    MasonryIntegrator,
-    MasonryJoint,
-    MasonryJointGeom,
-    MasonryJointLoop,
-    MasonryLoad,
-    MasonryZones,
-    NewtonIntegrator,
-)
+from yade.wrapper import InteractionLoop, MasonryIntegrator, MasonryJoint
+from yade.wrapper import MasonryJointGeom, MasonryJointLoop, MasonryLoad, MasonryZones
+from yade.wrapper import NewtonIntegrator
 
 from .. import _masonry
 from .._masonry import connected, dropFaces, gather, neighbours, timeStepLimit

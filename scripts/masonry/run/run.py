@@ -16,15 +16,8 @@ from types import SimpleNamespace
 from yade import O
 
 
-from ..basics import (
-    Collapsed,
-    Interrupted,
-    NotResumed,
-    Unwritable,
-    listen,
-    say,
-    stopListening,
-)
+from ..basics import Collapsed, Interrupted, NotResumed, Unwritable, listen, say
+from ..basics import stopListening
 from . import batch
 from .keeping import Checkpoints, hostNow
 from .frames import Frames

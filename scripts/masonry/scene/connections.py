@@ -86,12 +86,8 @@ def tie(
     """
     if (other is None) == (anchor is None):
         raise Refused("tie: give either other or anchor")
-    far = (
-        End(tuple(vector(anchor, "tie: anchor [m]")))
-        if other is None
-        else _endOf(description, other)
-    )
-    ends = _endOf(description, one), far
+    at = None if anchor is None else tuple(vector(anchor, "tie: anchor [m]"))
+    ends = _endOf(description, one), End(at) if at else _endOf(description, other)
     _inPlane(description, ends)
     if _samePlace(*ends):
         raise Refused(f"tie: its ends, {ends[0].words} and {ends[1].words}, are on one brick")  # fmt: skip
@@ -248,10 +244,6 @@ def _samePlace(one, other):
 
 
 def _checkName(description, name, word):
-    known = {one.name for one in (*description.connectors, *description.overlays)}  # fmt: skip
-    if (
-        name in known
-        or name in description.targets
-        or name in description.materials.joints
-    ):
+    taken = {one.name for one in (*description.connectors, *description.overlays)}
+    if name in {*taken, *description.targets, *description.materials.joints}:
         raise Refused(f"{word}: there is a {name!r} already; give one of them another name")  # fmt: skip

@@ -38,19 +38,8 @@ from ..run.ending import end
 from ..run.presets import BOUND
 from ..run.results import Results
 from ..run.run import Run
-from . import (
-    bounding,
-    connections,
-    contact,
-    facts,
-    loads,
-    options,
-    probing,
-    records,
-    showing,
-    stages,
-    supports,
-)
+from . import bounding, connections, contact, facts, loads, options, probing, records
+from . import showing, stages, supports
 from .bounds import Bounds, takeFound
 from .description import Description
 from .materials import Masonry, linesOf, loadingBlock
