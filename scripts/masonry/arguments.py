@@ -400,9 +400,8 @@ def validated(act: F) -> F:
         return cast(F, act)
     signature = inspect.signature(act)
     called = act.__qualname__.removesuffix(".__init__").rpartition(".")[2]
-    kinds = functools.cache(
-        lambda: kindsOf(act)
-    )  # its hints name classes that are made later
+    # its hints name classes that are made later
+    kinds = functools.cache(lambda: kindsOf(act))
 
     def checked(args, settings):
         return _checked(called, signature, kinds(), args, settings)

@@ -62,9 +62,8 @@ def makeJoints(
 ) -> list[Any]:
     """:func:`connect` without its time step, for who chooses it by other rules."""
     engines = list(O.engines)
-    loop = next(
-        (e for e in engines if isinstance(e, (MasonryJointLoop, InteractionLoop))), None
-    )
+    loops = [e for e in engines if isinstance(e, (MasonryJointLoop, InteractionLoop))]
+    loop = loops[0] if loops else None
     if loop is None:
         raise ValueError(
             "connect() needs the joints' engine in O.engines: call masonry.engines() first"
@@ -108,13 +107,11 @@ def makeJoints(
 def _pairs(tolerance, allowGaps):
     """Pairs of blocks to join, and the thinnest and the largest block."""
     pairs, misfits, sizes = neighbours(tolerance, keepFaces=True)
-    known = next(
-        (i for i in O.interactions.all() if isinstance(i.geom, MasonryJointGeom)), None
-    )
-    if known:
-        raise ValueError(
-            f"bodies {known.id1} and {known.id2} have a joint: connect() is called once, when all blocks are there"
-        )
+    for one in O.interactions.all():
+        if isinstance(one.geom, MasonryJointGeom):
+            raise ValueError(
+                f"bodies {one.id1} and {one.id2} have a joint: connect() is called once, when all blocks are there"
+            )
     problems = []
     for one, two, gap, bound in misfits:
         if gap < 0:
@@ -153,9 +150,8 @@ def _connect(pairs, physics, rule):
                     problems.append(str(error))
                 continue
             made.append(interaction)
-            if (
-                len(made) == due
-            ):  # what joints leave when they move into columns is free for the next ones
+            # what joints leave when they move into columns is free for the next ones
+            if len(made) == due:
                 gather()
                 due += 256 + due // 16
             if rule:

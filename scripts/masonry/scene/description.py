@@ -48,13 +48,10 @@ class Description:
         self.contact = Contact() if collapse == "follow" else None
         points = [p for block in self.bricks for p in block.corners]
         #: corners of the box around all bricks [m]
-        self.low, self.high = (
-            [f(p[i] for p in points) for i in range(3)] for f in (min, max)
-        )
+        self.low, self.high = ([*map(f, zip(*points))] for f in (min, max))
         self.plane = self._inPlane() if plane is None else plane
-        self.choice = (
-            None if choice is None else list(choice)
-        )  # heads of columns, None: all
+        # heads of columns, None: all
+        self.choice = None if choice is None else list(choice)
         self.targets = {}  # by name
         self.joints = []  # whose means are recorded
         self.drifts = []

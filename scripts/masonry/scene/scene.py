@@ -119,19 +119,9 @@ class Scene:
         **sceneOptions: Any,
     ) -> None:
         #: what it was made with, its name first, for :meth:`resume`
-        self._made = (name, bricks, materials, title, plane, gravity, columns, functors), dict(allowGaps=allowGaps, collapse=collapse)  # fmt: skip
-        self.description = Description(
-            name,
-            bricks,
-            materials,
-            title,
-            plane,
-            gravity,
-            columns,
-            functors,
-            allowGaps=allowGaps,
-            collapse=collapse,
-        )
+        made = name, bricks, materials, title, plane, gravity, columns, functors
+        self._made = made, dict(allowGaps=allowGaps, collapse=collapse)
+        self.description = Description(*made, allowGaps=allowGaps, collapse=collapse)
         arguments = options.ofScene(name, arguments, sceneOptions)
         self.name, self.args = name, arguments
         #: what --accuracy found, :class:`masonry.run.accuracy.AccuracyResult`, or None
