@@ -19,7 +19,6 @@ import select
 import signal
 import subprocess
 import sys
-import tempfile
 import time
 import traceback
 from typing import Any, Callable, Iterable, Iterator
@@ -166,7 +165,7 @@ class Program(subprocess.Popen[bytes]):
     def __init__(
         self, command: list[str], log: Any, env: dict[str, str], cwd: str | None = None
     ) -> None:
-        self._refusal = tempfile.TemporaryFile()
+        self._refusal = open(os.memfd_create("refusal"), "rb")
         number = self._refusal.fileno()
         super().__init__(
             command,
@@ -190,7 +189,8 @@ class Program(subprocess.Popen[bytes]):
 def reportRefusal(refused: Refused) -> None:
     """Let the process that has started this one as a :class:`Program` know what is refused."""
     if _refusal >= 0:
-        os.pwrite(_refusal, f"{type(refused).__name__}\n{refused}".encode(), 0)
+        with contextlib.suppress(OSError):  # a limit on the size of files
+            os.pwrite(_refusal, f"{type(refused).__name__}\n{refused}".encode(), 0)
 
 
 def carryOut(
