@@ -60,8 +60,8 @@ class Target:
                 on = f"what loads, drives or holds {name}"
                 yield forceAlong(i, axis, on, force)
         for axis in self.drives:
-            force = lambda r, a=axis: -1e-3 * r.structure.loading.driveForce(self, a)
-            yield forceAlong("xyz".index(axis), axis, f"the drive of {name}", force)
+            own = lambda r, a=axis: -1e-3 * r.structure.loading.driveForce(self, a)
+            yield forceAlong("xyz".index(axis), axis, f"the drive of {name}", own)
         if not self.fixed:
             what = f"rotation of {name}" + (" about y" if plane else ", its angle")
             turned = lambda r: 1e3 * r.moved(self)[1]
