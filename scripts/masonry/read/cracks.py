@@ -351,7 +351,7 @@ def failureMode(
     return "partial cracking" if cracked else "other" if lost else "none"
 
 
-def mirrored(joints: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+def mirrored(joints: dict[str, Any]) -> dict[str, Any]:
     """The joints of :func:`layOut` of a wall that is seen from behind: what fell to the right falls to the left."""
     return {
         name: mirrored(values) if name == "beds" else values[:, ::-1]
