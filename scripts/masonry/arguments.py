@@ -63,7 +63,7 @@ def nearest(name, names):
 
 
 def isNumber(value):
-    """Whether a value is a real number. True and False are none."""
+    """Whether a value is a real number. True and False are not."""
     return isinstance(value, Real) and not isinstance(value, bool)
 
 
@@ -146,7 +146,7 @@ def text(value, first=None):
 
 
 def label(value, first=None):
-    """The kind of a text as of :func:`text`, or of an empty one."""
+    """The kind of a text as in :func:`text`, or of an empty one."""
     return value if isinstance(value, str) and not value else text(value)
 
 
@@ -259,14 +259,14 @@ def axes(letters, none=False):
 
 
 def isListed(value):
-    """Whether a value is a list, a tuple, an array or the like. Texts and dicts are none."""
+    """Whether a value is a list, a tuple, an array or the like. Texts and dicts are not."""
     if isinstance(value, (str, bytes, bytearray, dict, type)):
         return False
     return hasattr(value, "__len__") and hasattr(value, "__getitem__")
 
 
 def items(value):
-    """The values of a list, a tuple, an array or the like, or None if it is none."""
+    """The values of a list, a tuple, an array or the like, or None if it is not one."""
     if not isListed(value):
         return None
     try:
@@ -400,9 +400,8 @@ def validated(act: F) -> F:
         return cast(F, act)
     signature = inspect.signature(act)
     called = act.__qualname__.removesuffix(".__init__").rpartition(".")[2]
-    kinds = functools.cache(
-        lambda: kindsOf(act)
-    )  # its hints name classes that are made later
+    # its hints name classes that are made later
+    kinds = functools.cache(lambda: kindsOf(act))
 
     def checked(args, settings):
         return _checked(called, signature, kinds(), args, settings)

@@ -23,11 +23,14 @@ import time
 import traceback
 from typing import Any, Callable, Iterable, Iterator
 
-from .basics import Interrupted
+from .basics import Interrupted, Refused
 
 LONGEST = 60.0  # [s] that is waited for at once
 LOOK_EVERY = 0.05  # [s] between looks at programs
 PARENT_ENDS = 1  # PR_SET_PDEATHSIG of prctl
+#: Name in the environment of a :class:`Program`: number of the open file that takes why it refuses its input.
+REFUSAL = "MASONRY_REFUSAL"
+_refusal = int(os.environ.pop(REFUSAL, -1))  # programs that it starts have their own
 
 
 class Failed(Exception):
@@ -150,39 +153,57 @@ def _endWithParent(number):
         ctypes.CDLL(None).prctl(PARENT_ENDS, number, 0, 0, 0)
 
 
-def start(
-    command: list[str], log: Any, env: dict[str, str], cwd: str | None = None
-) -> subprocess.Popen[bytes]:
-    """Start a program, which is asked to stop (SIGTERM) when this process ends, also if that is killed.
+class Program(subprocess.Popen[bytes]):
+    """A program, which is asked to stop (SIGTERM) when this process ends, also if that is killed.
 
     It is in a session of its own: Ctrl-C is for this process, which ends it in order.
 
     :param log: file that takes what it says
     :raises OSError: if it cannot be started
     """
-    return subprocess.Popen(
-        command,
-        env=env,
-        cwd=cwd,
-        stdin=subprocess.DEVNULL,
-        stdout=log,
-        stderr=log,
-        start_new_session=True,
-        preexec_fn=lambda: _endWithParent(signal.SIGTERM),
-    )
+
+    def __init__(
+        self, command: list[str], log: Any, env: dict[str, str], cwd: str | None = None
+    ) -> None:
+        self._refusal = open(os.memfd_create("refusal"), "rb")
+        number = self._refusal.fileno()
+        super().__init__(
+            command,
+            env={**env, REFUSAL: str(number)},
+            cwd=cwd,
+            stdin=subprocess.DEVNULL,
+            stdout=log,
+            stderr=log,
+            start_new_session=True,
+            preexec_fn=lambda: _endWithParent(signal.SIGTERM),
+            pass_fds=[number],
+        )
+
+    def refusal(self) -> tuple[str, str]:
+        """The class and the text of what the program has refused; two empty texts if it has refused nothing."""
+        self._refusal.seek(0)
+        kind, _, reason = self._refusal.read().decode().partition("\n")
+        return kind, reason
+
+
+def reportRefusal(refused: Refused) -> None:
+    """Let the process that has started this one as a :class:`Program` know what is refused."""
+    if _refusal >= 0:
+        with contextlib.suppress(OSError):  # a limit on the size of files
+            os.pwrite(_refusal, f"{type(refused).__name__}\n{refused}".encode(), 0)
 
 
 def carryOut(
     names: Iterable[Any],
-    begin: Callable[[Any], subprocess.Popen[bytes]],
-    ended: Callable[[Any, int], None],
+    begin: Callable[[Any], Program],
+    ended: Callable[[Any, Program], None],
     most: int,
     look: Callable[[], None] = lambda: None,
 ) -> None:
     """Run programs, so many at a time. An error that a function raises stops all of them.
 
     :param begin: function that starts the program of a name
-    :param ended: function of the name and the exit status of a program that is over
+    :param ended: function of the name and the program, which is over
     :param most: programs at a time
     :param look: function that is called about twenty times a second
     :raises Interrupted: after Ctrl-C and SIGTERM. All programs have ended then
@@ -202,7 +223,7 @@ def carryOut(
             for name, process in list(running.items()):
                 if process.poll() is not None:
                     del running[name]
-                    ended(name, process.returncode)
+                    ended(name, process)
             look()
         if stopped:
             raise Interrupted()

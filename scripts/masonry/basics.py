@@ -79,11 +79,29 @@ def withoutCollector() -> Iterator[None]:
             gc.enable()
 
 
+def firstOf(problems, most=10):
+    """The first sentences of a list, and how many more there are."""
+    more = [f"and {len(problems) - most} more"] if len(problems) > most else []
+    return [*problems[:most], *more]
+
+
 # How a run can end before its time. Each of these ends it in order, and what was computed is kept.
 
 
 class Refused(ValueError):
     """Input that cannot be run, with all problems at once. Nothing was changed."""
+
+
+class Held(Refused):
+    """Another run is writing to the folder of the results."""
+
+
+class NotResumed(Refused):
+    """A checkpoint from which this run cannot go on."""
+
+
+class NotAccurate(Refused):
+    """A scene that cannot have ``--accuracy``."""
 
 
 class Interrupted(Exception):

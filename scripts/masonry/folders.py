@@ -92,31 +92,31 @@ def replaced(path, mode="w", **settings):
 
     It is ``path + ".new"`` until then, and is removed after an error.
 
-    :param mode: and ``settings``: as of Python's ``open``
+    :param mode: and ``settings``: as in Python's ``open``
     :raises OSError: if it cannot be written, or if ``path`` is a symbolic link or no regular file
     """
     path = os.fspath(path)
-    beside = path + ".new"
+    temporary = path + ".new"
     if os.path.lexists(path) and not stat.S_ISREG(os.lstat(path).st_mode):
         raise OSError(
             errno.EINVAL, "it is a symbolic link or no regular file", path
         ) from None
-    with open(beside, mode, opener=inside, **settings) as file:
+    with open(temporary, mode, opener=inside, **settings) as file:
         try:
             yield file
             file.flush()
             os.fsync(file.fileno())
-            os.replace(beside, path)
+            os.replace(temporary, path)
         except BaseException:
             with contextlib.suppress(OSError):
-                os.remove(beside)
+                os.remove(temporary)
             raise
 
 
 def fromJson(data):
     """The value that a JSON text or its bytes stand for.
 
-    :raises ValueError: if it is none, also if it is nested too deeply or is no text
+    :raises ValueError: if it is not one, also if it is nested too deeply or is no text
     """
     try:
         return json.loads(data)

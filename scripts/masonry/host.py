@@ -56,7 +56,7 @@ class Finder:
         return None
 
     def _byOthers(self):
-        """YADE as the other finders see it, by sys.path; a folder of this name that is none is passed over."""
+        """YADE as the other finders see it, by sys.path; a folder of this name that is not YADE is passed over."""
         for finder in sys.meta_path:
             find = getattr(finder, "find_spec", None)
             found = find(YADE, None) if find and finder is not self else None

@@ -11,6 +11,7 @@ from yade.wrapper import MasonryBlock, MasonryMat
 
 from ..arguments import Numbers, isA, listOf, shown, validated
 from ..arguments import vector as coordinates
+from ..basics import firstOf
 
 #: The colour of a block in YADE's 3-D view: red, green and blue [-].
 PALE = (0.75, 0.7, 0.65)
@@ -32,13 +33,10 @@ def units(cls) -> dict[str, str]:
     return {p["name"]: p["unit"] for p in properties(cls) if p["unit"]}
 
 
-def refuse(problems: list[str], hint: str | None = None, most: int = 10) -> None:
+def refuse(problems: list[str], *hints: str) -> None:
     """Raise ValueError with the first problems of a list, if there are any, and what helps against them."""
     if problems:
-        more = [f"and {len(problems) - most} more"] if len(problems) > most else []
-        raise ValueError(
-            "\n".join([*problems[:most], *more, *([hint] if hint else [])])
-        )
+        raise ValueError("\n".join([*firstOf(problems), *hints]))
 
 
 def vector(value: Any, what: str) -> Any:

@@ -69,22 +69,18 @@ class Reading:
         held += structure.connectors.onGround()
         self.along = self.up = self.topShear = self.rotation = 0.0
         self.sunk = -0.0
-        if structure.loading.followed:
-            moved, self.rotation = self.moved(structure.loading.followed)
-            origin = structure.loading.origin
-            self.along, self.up = (
-                moved.dot(structure.loading.direction) - origin[0],
-                moved[2] - origin[1],
-            )
-        if structure.loading.target:
-            self.sunk = -self.moved(structure.loading.target)[0][2]
-            self.topShear = structure.loading.loads["push"].reaction
-        beside = structure.loading.besideThePush()
-        self.baseShear = held.dot(structure.loading.direction) - beside.dot(
-            structure.loading.direction
-        )
+        loading = structure.loading
+        if loading.followed:
+            moved, self.rotation = self.moved(loading.followed)
+            self.along = moved.dot(loading.direction) - loading.origin[0]
+            self.up = moved[2] - loading.origin[1]
+        if loading.target:
+            self.sunk = -self.moved(loading.target)[0][2]
+            self.topShear = loading.loads["push"].reaction
+        along, beside = loading.direction, loading.besideThePush()
+        self.baseShear = held.dot(along) - beside.dot(along)
         self.energy = structure.energy.balance()
-        self.goal = structure.loading.goal
+        self.goal = loading.goal
 
     def moved(self, target):
         """Displacement of a target's recorded point since the scene was built [m], and its rotation [rad]."""

@@ -7,16 +7,9 @@ from __future__ import annotations
 from typing import Annotated, Any, Callable
 
 from yade import O, utils
-from yade.wrapper import (
-    InteractionLoop,
-    MasonryIntegrator,
-    MasonryJoint,
-    MasonryJointGeom,
-    MasonryJointLoop,
-    MasonryLoad,
-    MasonryZones,
-    NewtonIntegrator,
-)
+from yade.wrapper import InteractionLoop, MasonryIntegrator, MasonryJoint
+from yade.wrapper import MasonryJointGeom, MasonryJointLoop, MasonryLoad, MasonryZones
+from yade.wrapper import NewtonIntegrator
 
 from .. import _masonry
 from .._masonry import connected, dropFaces, gather, neighbours, timeStepLimit
@@ -34,7 +27,7 @@ YADES_TIME_STEP = 1e-8
 
 @validated
 def touchingPairs(tolerance: Tolerance = 1e-4) -> list[tuple[int, int]]:
-    """Pairs of ids of the blocks that share a face, smaller id first. Parameters as of :func:`connect`."""
+    """Pairs of ids of the blocks that share a face, smaller id first. Parameters as in :func:`connect`."""
     return _masonry.touchingPairs(tolerance)
 
 
@@ -65,15 +58,12 @@ def connect(
 
 
 def makeJoints(
-    rule: Callable[..., Any] | None,
-    tolerance: float = 1e-4,
-    allowGaps: bool = False,
+    rule: Callable[..., Any] | None, tolerance: float = 1e-4, allowGaps: bool = False
 ) -> list[Any]:
     """:func:`connect` without its time step, for who chooses it by other rules."""
     engines = list(O.engines)
-    loop = next(
-        (e for e in engines if isinstance(e, (MasonryJointLoop, InteractionLoop))), None
-    )
+    loops = [e for e in engines if isinstance(e, (MasonryJointLoop, InteractionLoop))]
+    loop = loops[0] if loops else None
     if loop is None:
         raise ValueError(
             "connect() needs the joints' engine in O.engines: call masonry.engines() first"
@@ -117,13 +107,11 @@ def makeJoints(
 def _pairs(tolerance, allowGaps):
     """Pairs of blocks to join, and the thinnest and the largest block."""
     pairs, misfits, sizes = neighbours(tolerance, keepFaces=True)
-    known = next(
-        (i for i in O.interactions.all() if isinstance(i.geom, MasonryJointGeom)), None
-    )
-    if known:
-        raise ValueError(
-            f"bodies {known.id1} and {known.id2} have a joint: connect() is called once, when all blocks are there"
-        )
+    for one in O.interactions.all():
+        if isinstance(one.geom, MasonryJointGeom):
+            raise ValueError(
+                f"bodies {one.id1} and {one.id2} have a joint: connect() is called once, when all blocks are there"
+            )
     problems = []
     for one, two, gap, bound in misfits:
         if gap < 0:
@@ -162,9 +150,8 @@ def _connect(pairs, physics, rule):
                     problems.append(str(error))
                 continue
             made.append(interaction)
-            if (
-                len(made) == due
-            ):  # what joints leave when they move into columns is free for the next ones
+            # what joints leave when they move into columns is free for the next ones
+            if len(made) == due:
                 gather()
                 due += 256 + due // 16
             if rule:
@@ -239,14 +226,14 @@ def _oddProperties(things):
 def _idleProperties(joints):
     """Sentences on properties that were given and that the law of their joint does not read; of an elastic joint, those that one
     law alone reads."""
-    usual, read = MasonryJoint(), [law["properties"] for law in LAWS.values()]
+    default, read = MasonryJoint(), [law["properties"] for law in LAWS.values()]
     readers = {p["name"]: sum(p["name"] in names for names in read) for p in properties(MasonryJoint)}  # fmt: skip
     for joint in joints:
         own = LAWS[joint.law]["properties"]
         idle = [
             name
             for name, count in readers.items()
-            if getattr(joint, name) != getattr(usual, name)
+            if getattr(joint, name) != getattr(default, name)
             and (count == 1 if joint.elastic else count and name not in own)
         ]
         if idle:

@@ -16,7 +16,7 @@ class Connectors:
     def __init__(self, structure):
         self.description, self.ids = structure.description, structure.ids
         self.axes = structure.axes
-        self.said = set()  # sentences on ties, of which each is news once
+        self.reported = set()  # sentences on ties, of which each is news once
         self.saidUntil = 0  # step from which ties that yield or break are news
         self.engines = {}
         for kind in dict.fromkeys(map(type, self.description.connectors)):
@@ -72,9 +72,8 @@ class Connectors:
         since, self.saidUntil = min(self.saidUntil, O.iter), O.iter
         for kind, made in self.engines.items():
             for one, what in kind.events(self.description.connectorsOf(kind), made, since):  # fmt: skip
-                subject = (
-                    one.overlay or one.name
-                )  # fibres are named by their layer, once
-                if (what, subject) not in self.said:
-                    self.said.add((what, subject))
+                # fibres are named by their layer, once
+                subject = one.overlay or one.name
+                if (what, subject) not in self.reported:
+                    self.reported.add((what, subject))
                     yield f"{subject} {what}: between {one.ends[0].words} and {one.ends[1].words}"  # fmt: skip

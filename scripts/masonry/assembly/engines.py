@@ -6,22 +6,11 @@ from __future__ import annotations
 from typing import Annotated, Any, Sequence
 
 from yade import O, wrapper
-from yade.wrapper import (
-    ForceResetter,
-    Ig2_MasonryBlock_MasonryBlock_MasonryJointGeom,
-    InteractionLoop,
-    MasonryContacts,
-    Ip2_MasonryMat_MasonryMat_MasonryJointPhys,
-    MasonryEnergy,
-    MasonryIntegrator,
-    MasonryJoint,
-    MasonryJointLoop,
-    MasonryLoad,
-    MasonrySprings,
-    MasonryTies,
-    MasonryZones,
-    NewtonIntegrator,
-)
+from yade.wrapper import ForceResetter, Ig2_MasonryBlock_MasonryBlock_MasonryJointGeom
+from yade.wrapper import InteractionLoop, MasonryContacts
+from yade.wrapper import Ip2_MasonryMat_MasonryMat_MasonryJointPhys, MasonryEnergy
+from yade.wrapper import MasonryIntegrator, MasonryJoint, MasonryJointLoop, MasonryLoad
+from yade.wrapper import MasonrySprings, MasonryTies, MasonryZones, NewtonIntegrator
 
 from ..arguments import Numbers, isA, listOf, number, oneOf, shown, validated, vector, whole  # fmt: skip
 
@@ -115,10 +104,7 @@ def engines(
     if functors:
         loop = functorLoop(geometry, physics)
         integrator = NewtonIntegrator(
-            damping=damping,
-            gravity=integrator.gravity,
-            label="integrator",
-            **ROTATION,
+            damping=damping, gravity=integrator.gravity, label="integrator", **ROTATION
         )
     else:
         loop = MasonryJointLoop(

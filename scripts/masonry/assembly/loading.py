@@ -36,9 +36,8 @@ class Loading:
         self.pushing = self.grown = False
         self.loadFactor = 0.0
         self.goal = 0, 0.0
-        self._grown = (
-            {}
-        )  # forces of presses, dead loads and wind that have grown, by label [N]
+        # forces of presses, dead loads and wind that have grown, by label [N]
+        self._grown = {}
         self._lines = {}  # points of the presses, as they were built [m]
 
     def _made(self):
@@ -60,9 +59,8 @@ class Loading:
             for axis in target.drives:
                 direction = Vector3(*(float(axis == a) for a in "xyz"))
                 label = f"{target.name}_drive_{axis}"
-                loads.append(
-                    MasonryLoad(label=label, direction=direction, driven=True, **on)
-                )
+                on = dict(on, direction=direction, driven=True)
+                loads.append(MasonryLoad(label=label, **on))
             if not target.drives:
                 loads.append(MasonryLoad(label=f"{target.name}_drive", **on))
         for n, (brick, _, point) in enumerate(self.description.winds):
@@ -128,7 +126,7 @@ class Loading:
         return load, area
 
     def windOf(self, label, faces):
-        """The engines of a wind on faces, as of :meth:`masonry.bricks.Bricks.freeFaces`; they are made if they are missing."""
+        """The engines of a wind on faces, as in :meth:`masonry.bricks.Bricks.freeFaces`; they are made if they are missing."""
         return [
             self._added(f"{label}_{n}", self.ids[brick], middle, damped=True)
             for n, (brick, _, _, middle) in enumerate(faces)
@@ -141,9 +139,8 @@ class Loading:
             before = list(O.engines)
             at = next(n for n, one in enumerate(before) if one.label == "energy")
             engines = [*before[:at], load, *before[at:]]
-            if (
-                self.structure.atRest is not None
-            ):  # the state at rest gets the engine, too
+            # the state at rest gets the engine, too
+            if self.structure.atRest is not None:
                 now = saveScene("null")
                 loadScene(self.structure.atRest)
                 O.engines = engines

@@ -52,7 +52,7 @@ class Motion:
         return [value for state in self._states for value in state.pos]
 
     def baseWeight(self, before, direction, moved):
-        """The weight of the base in the shear force of a push, as of :func:`masonry.read.curves.quasiStatic` [-].
+        """The weight of the base in the shear force of a push, as in :func:`masonry.read.curves.quasiStatic` [-].
 
         :param before: :meth:`positions` when the push began
         :param direction: of the push, a unit vector

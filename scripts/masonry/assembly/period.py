@@ -117,9 +117,8 @@ def buckles(structure, direction):
 def _momenta(structure, direction, acceleration, every):
     """The momentum of a structure along a direction [N·s] after each ``every`` steps under an acceleration [m/s²]."""
     structure.scheme.damp(0.0, "local")
-    force = lambda: (structure.supports.applied() + structure.supports.carried()).dot(
-        direction
-    )
+    supports = structure.supports
+    force = lambda: (supports.applied() + supports.carried()).dot(direction)
     rest, now = force(), structure.scheme.now
     structure.scheme.setGravity(now + acceleration)
     O.step()

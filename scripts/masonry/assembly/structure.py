@@ -44,9 +44,8 @@ class Structure:
         # Heavier blocks that are attracted less weigh the same; waves are slower and the time step is longer.
         for unit in {id(u): u for u in (self.unit, *self.units.values())}.values():
             unit.density *= args.density_scaling
-        self.gravity = (
-            description.gravity / args.density_scaling
-        )  # as it is built [m/s²]
+        # as it is built [m/s²]
+        self.gravity = description.gravity / args.density_scaling
         self.axes = (0, 2) if description.plane else (0, 1, 2)
         self.ids, self.parts, self.bricks = [], {}, {}
         self.zones = self.contacts = None
@@ -122,11 +121,8 @@ class Structure:
         O.bodies[target.body].state.blockedDOFs = target.freedom
 
     def _deformableUnits(self):
-        """The engine of the bricks that deform."""
         args, description = self.args, self.description
-        rigid = [
-            target.body for target in description.targets.values() if target.freedom
-        ]
+        rigid = [t.body for t in description.targets.values() if t.freedom]
         for body in (*rigid, *(self.ids[index] for index in self.rigid)):
             self.bricks.pop(body, None)
         held = [n for n in description.connectedBricks() if description.bricks[n].kind not in self._stiff]  # fmt: skip
@@ -147,7 +143,6 @@ class Structure:
         )
 
     def _addEngines(self):
-        """Engines, when all blocks are there."""
         args, description = self.args, self.description
         points = [int(n) for n in args.points.split(",")] if args.points else []
         engines(
@@ -215,9 +210,8 @@ class Structure:
         for target in self.supports.held:  # one that was released moves on
             state = O.bodies[target.body].state
             axes = zip("xyz", state.vel)
-            state.vel = Vector3(
-                *(0.0 if a in state.blockedDOFs else v for a, v in axes)
-            )
+            blocked = state.blockedDOFs
+            state.vel = Vector3(*(0.0 if a in blocked else v for a, v in axes))
         for label, load in self.loading.loads.items():
             if "_drive" in label:
                 load.velocity = load.ramp = 0
@@ -237,7 +231,7 @@ class Structure:
             "freeMass": self.supports.freeMass,
             "limit": self.scheme.limit,
             "saidUntil": self.connectors.saidUntil,
-            "said": sorted(map(list, self.connectors.said)),
+            "said": sorted(map(list, self.connectors.reported)),
         }
 
     def putState(self, state):
@@ -249,4 +243,4 @@ class Structure:
             targets[name].freedom = freedom
         self.supports.freeMass, self.scheme.limit = state["freeMass"], state["limit"]
         self.connectors.saidUntil = state["saidUntil"]
-        self.connectors.said = set(map(tuple, state["said"]))
+        self.connectors.reported = set(map(tuple, state["said"]))

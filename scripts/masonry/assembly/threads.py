@@ -78,9 +78,8 @@ def remark():
     most = max(each, key=lambda r: r["steps"])
     if most["threads"] == _allowed or most["steps"] < 0.5 * taken:
         return None
-    others = [
-        f"{r['microseconds_per_step']:.0f} µs on {r['threads']}" for r in each if r is not most
-    ]  # fmt: skip
+    others = (one for one in each if one is not most)
+    others = [f"{r['microseconds_per_step']:.0f} µs on {r['threads']}" for r in others]
     return (
         f"{_allowed} threads were allowed, and {100 * most['steps'] / taken:.0f} % of the steps used {most['threads']}, "
         f"which was quicker: a step took {most['microseconds_per_step']:.0f} µs"

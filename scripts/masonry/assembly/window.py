@@ -16,12 +16,8 @@ import time
 from typing import Any
 
 from yade import O, Vector3
-from yade.wrapper import (
-    Gl1_MasonryBlock,
-    Gl1_MasonryJointPhys,
-    GlExtra_MasonryLegend,
-    PyRunner,
-)
+from yade.wrapper import Gl1_MasonryBlock, Gl1_MasonryJointPhys, GlExtra_MasonryLegend
+from yade.wrapper import PyRunner
 
 from ..arguments import FilePath
 
@@ -62,14 +58,9 @@ def show(
     renderer.bgColor = (1, 1, 1)
     renderer.extraDrawers = [GlExtra_MasonryLegend()]
     if not any(e.label == _LABEL for e in O.engines):
-        O.engines = [
-            *O.engines,
-            PyRunner(
-                command="import masonry; masonry.assembly.window.refresh()",
-                realPeriod=0.1,
-                label=_LABEL,
-            ),
-        ]
+        command = "import masonry; masonry.assembly.window.refresh()"
+        runner = PyRunner(command=command, realPeriod=0.1, label=_LABEL)
+        O.engines = [*O.engines, runner]
     _look(view, scale)
     refresh()
     return view

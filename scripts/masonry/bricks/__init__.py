@@ -29,9 +29,10 @@ from ..packages import promised
 promised("scipy")  # it is imported for convex solids that are no boxes
 
 from .beams import Beam, Floor
-from .blocks import Block, Bricks, boxCorners, summary
+from .blocks import Block, Bricks, summary
 from .checks import Joint
 from .files import fromFile
+from .geometry import boxCorners
 from .openings import Lintel, Opening
 from .vaults import Arch, BarrelVault, Dome
 from .walls import Corner, Room, Tee, Wall, block, stack

@@ -7,7 +7,8 @@ from __future__ import annotations
 from typing import Annotated
 
 from ..arguments import Numbers, number, oneOf, validated, vector, whole
-from .blocks import Block, Bricks, boxCorners
+from .blocks import Block, Bricks
+from .geometry import boxCorners
 
 Place = Annotated[Numbers, vector("m", 1e6)]
 Length = Annotated[float, number("m", 0, 1e6, above=True)]

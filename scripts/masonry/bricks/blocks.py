@@ -10,11 +10,10 @@ from dataclasses import dataclass, replace
 from numbers import Integral
 from typing import Annotated, Any, Callable, Iterable, Iterator
 
-import numpy as np
-
 from ..arguments import Direction, Numbers, isA, items, isNumber, number, oneOf, shown, text, validated, vector, whole  # fmt: skip
+from ..basics import firstOf
 from . import checks
-from .geometry import COINCIDENT, Solids, cutCorners, measures
+from .geometry import COINCIDENT, Solids, cutCorners, joinedCorners
 
 #: No corner of masonry is farther from the origin [m].
 FARTHEST = 1e6
@@ -50,10 +49,6 @@ def corner(value: Any, first: Any = None) -> tuple[float, ...]:
 
 Sides = Annotated[Numbers, sides]
 
-LOOKING = math.cos(math.radians(45))  # of the angle between a face and where it looks
-ALONG = 1 - 1e-6  # of the angle between normals of one face of a convex block
-
-
 #: Kinds of blocks that every masonry has: they are of its unit unless it says otherwise.
 KINDS = "brick", "lintel", "voussoir", "block"
 
@@ -87,9 +82,8 @@ class Block:
                 f"corners must be at least 4 points, got {shown(self.corners)}"
             )
         for n, corner in enumerate(corners):
-            if len(corner) != 3 or not all(
-                type(x) is float or isNumber(x) for x in corner
-            ):
+            fine = all(type(x) is float or isNumber(x) for x in corner)
+            if len(corner) != 3 or not fine:
                 problems.append(
                     f"corner {n} must be three numbers [m], got {shown(corner)}"
                 )
@@ -298,9 +292,8 @@ class Bricks:
             raise ValueError(
                 f"within: low corner {low} m must lie below high corner {high} m"
             )
-        return self.where(
-            lambda b: all(p <= x <= q for p, x, q in zip(low, b.middle, high))
-        )
+        inside = lambda b: all(p <= x <= q for p, x, q in zip(low, b.middle, high))
+        return self.where(inside)
 
     def top(self) -> Bricks:
         """The blocks with a face in the highest horizontal plane."""
@@ -331,8 +324,7 @@ class Bricks:
         """
         length = math.hypot(*normal)
         normal = tuple(n / length for n in normal)
-        solids = self._solids
-        refuse("cut", self._degenerate(solids))
+        solids = self._convex("cut")
         blocks, beyond = [], []
         for n, block in enumerate(self._blocks):
             faces = solids.groups[solids.groupOf[n]].faces
@@ -353,11 +345,11 @@ class Bricks:
                     blocks[k] = replace(block, brick=number)
         return Bricks(blocks)
 
-    def _degenerate(self, solids):
-        return [
-            f"block {n} of brick {self._blocks[n].brick}: {what}"
-            for n, what in sorted(solids.problems.items())
-        ]
+    def _convex(self, purpose):
+        """The solids of the blocks. Refuses a purpose for which some of them are not convex."""
+        problems = sorted(self._solids.problems.items())
+        refuse(purpose, [f"block {n} of brick {self._blocks[n].brick}: {what}" for n, what in problems])  # fmt: skip
+        return self._solids
 
     def whole(self) -> Bricks:
         """The blocks with the pieces of every brick joined, where the first of them stands.
@@ -369,7 +361,7 @@ class Bricks:
             pieces.setdefault(block.brick, []).append(block)
         for number, blocks in pieces.items():
             if len(blocks) > 1:
-                corners = self._joined(blocks)
+                corners = joinedCorners([b.corners for b in blocks])
                 if corners is None:
                     problems.append(
                         f"the {len(blocks)} pieces of brick {number} make up no convex solid"
@@ -379,23 +371,6 @@ class Bricks:
             joined += blocks
         refuse("whole", problems)
         return Bricks(joined)
-
-    @staticmethod
-    def _joined(blocks):
-        """Corners of the solid that some blocks make up, or None."""
-        volume = math.fsum(Solids([b.corners for b in blocks]).volumes())
-        both = Bricks(blocks)
-        box = boxCorners(both.low, both.high)
-        size = math.prod(b - a for a, b in zip(both.low, both.high))
-        if abs(size - volume) < COINCIDENT * size:
-            return box
-        from scipy.spatial import ConvexHull  # a run of a wall of boxes needs none
-
-        points = list(dict.fromkeys(c for b in blocks for c in b.corners))
-        hull = ConvexHull(points)
-        if abs(hull.volume - volume) < COINCIDENT * volume:
-            return tuple(points[n] for n in sorted(hull.vertices))
-        return None
 
     # -- checking -------------------------------------------------------------------------------------------------
 
@@ -415,31 +390,7 @@ class Bricks:
         :param direction: three numbers, of any length
         :returns: list of (number of the block, outward normal, free area [m²], centroid of the free part [m])
         """
-        sight = np.array(direction, float)
-        sight /= np.linalg.norm(sight)
-        solids = self._solids
-        refuse("freeFaces", self._degenerate(solids))
-        covered = {}
-        for joint in self.joints():
-            for block, sign in ((joint.first, 1), (joint.second, -1)):
-                outward = sign * np.array(joint.normal)
-                covered.setdefault(block, []).append((outward, joint))
-        found = []
-        for n in range(len(self._blocks)):
-            group, row = solids.groups[solids.groupOf[n]], solids.rowOf[n]
-            for face, normal in enumerate(group.normals[row]):
-                if normal @ sight < LOOKING - COINCIDENT:
-                    continue
-                corners = [tuple(c) for c in solids.face(n, face)]
-                area, _, middle = measures(corners, normal)
-                free, moment = area, area * np.array(middle)
-                for outward, joint in covered.get(n, ()):
-                    if outward @ normal > ALONG:
-                        free -= joint.area
-                        moment -= joint.area * np.array(joint.middle)
-                if free > COINCIDENT * area:
-                    found.append((n, tuple(normal), float(free), tuple(moment / free)))
-        return found
+        return checks.freeFaces(self._convex("freeFaces"), self.joints(), direction)
 
     @functools.cached_property
     def _pairs(self):
@@ -485,21 +436,7 @@ def summary(
 # -- what the generators share ----------------------------------------------------------------------------------------
 
 
-def boxCorners(low: Numbers, high: Numbers) -> tuple[tuple[float, float, float], ...]:
-    """The eight corners of an axis-parallel box, x slowest and z fastest."""
-    for corner, what in ((low, "low"), (high, "high")):
-        if len(items(corner) or ()) != 3:
-            raise ValueError(f"boxCorners: {what} [m] must be three numbers, got {shown(corner)}")  # fmt: skip
-    return tuple(
-        (x, y, z)
-        for x in (low[0], high[0])
-        for y in (low[1], high[1])
-        for z in (low[2], high[2])
-    )
-
-
-def refuse(what: str, problems: list[str], most: int = 10) -> None:
+def refuse(what: str, problems: list[str]) -> None:
     """Raise ValueError with the first problems of a list, if there are any."""
     if problems:
-        more = [f"and {len(problems) - most} more"] if len(problems) > most else []
-        raise ValueError(f"{what}: " + "; ".join([*problems[:most], *more]))
+        raise ValueError(f"{what}: " + "; ".join(firstOf(problems)))

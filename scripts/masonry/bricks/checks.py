@@ -16,6 +16,9 @@ SLIVER = 0.25
 #: A joint is of odd size if its width, area through longest extent, is below this share of the thinner block. Assumed.
 NARROW = 0.1
 
+LOOKING = np.cos(np.radians(45))  # of the angle between a face and where it looks
+ALONG = 1 - 1e-6  # of the angle between normals of one face of a convex block
+
 #: Joint of two blocks: their numbers in the collection, the unit normal from the first to the second, the polygon
 #: (counter-clockwise about the normal) [m], its area [m²] and its centroid [m].
 Joint = namedtuple("Joint", "first second normal polygon area middle")
@@ -109,6 +112,32 @@ def _shared(solids, one, two):
 def _reaches(solids, n, place):
     """Whether the bounding box of a solid contains a point."""
     return bool(np.all(solids.low[n] <= place) and np.all(place <= solids.high[n]))
+
+
+def freeFaces(solids, joints, direction):
+    """Faces that look in a direction, see :meth:`masonry.bricks.Bricks.freeFaces`."""
+    sight = np.array(direction, float)
+    sight /= np.linalg.norm(sight)
+    covered = {}
+    for joint in joints:
+        for block, sign in ((joint.first, 1), (joint.second, -1)):
+            outward = sign * np.array(joint.normal)
+            covered.setdefault(block, []).append((outward, joint))
+    faces = []
+    for n in range(solids.count):
+        group, row = solids.groups[solids.groupOf[n]], solids.rowOf[n]
+        for face, normal in enumerate(group.normals[row]):
+            if normal @ sight < LOOKING - COINCIDENT:
+                continue
+            area, _, middle = measures([tuple(c) for c in solids.face(n, face)], normal)
+            free, moment = area, area * np.array(middle)
+            for outward, joint in covered.get(n, ()):
+                if outward @ normal > ALONG:
+                    free -= joint.area
+                    moment -= joint.area * np.array(joint.middle)
+            if free > COINCIDENT * area:
+                faces.append((n, tuple(normal), float(free), tuple(moment / free)))
+    return faces
 
 
 def components(count, joints):

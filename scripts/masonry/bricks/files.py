@@ -220,11 +220,11 @@ def _readJson(path):
         raise ValueError("no mesh: nothing with both vertex and face")
     surfaces = []
     for n, (name, mesh) in enumerate(found):
-        usual = mesh.get("default_vertex_attributes") or mesh.get("dva") or {}
+        defaults = mesh.get("default_vertex_attributes") or mesh.get("dva") or {}
         keys = {key: k for k, key in enumerate(mesh["vertex"])}
         points = []
         for key, vertex in mesh["vertex"].items():
-            point = [vertex.get(axis, usual.get(axis, 0.0)) for axis in "xyz"]
+            point = [vertex.get(axis, defaults.get(axis, 0.0)) for axis in "xyz"]
             points.append(_point([str(x) for x in point], f"of vertex {key}"))
         faces = []
         for key, face in mesh["face"].items():
@@ -415,9 +415,8 @@ def _corners(points, faces, numbers, members, solid, problems):
     if len(planes) < 4:
         problems.append(f"{solid}: only {len(planes)} planes, so no volume")
         return None
-    return tuple(
-        tuple(map(float, points[n])) for n in used if len(set(meeting[n])) >= 3
-    )
+    corners = (points[n] for n in used if len(set(meeting[n])) >= 3)
+    return tuple(tuple(map(float, corner)) for corner in corners)
 
 
 def _same(plane, normal, middle, width):

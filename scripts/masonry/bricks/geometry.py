@@ -4,9 +4,15 @@
 Solids whose corners stand in the same order have the same faces, so the faces are looked for once for all of them.
 """
 
+from __future__ import annotations
+
+import itertools
+import math
 from math import dist
 
 import numpy as np
+
+from ..arguments import Numbers, items, shown
 
 #: Largest gap or overlap of two faces that still share a joint, as a share of the diagonal of the smaller block. It is
 #: the plugin's own bound (coincidentFaces in yade_plugin/blocks/FaceContact.hpp).
@@ -22,9 +28,8 @@ OPPOSITE = -np.cos(np.radians(0.5))
 NEARLY_OPPOSITE = -np.cos(np.radians(6))
 REACH = 0.25
 
-_CHUNK = (
-    40_000  # pairs of blocks that are compared at a time, so that memory stays small
-)
+#: Pairs of blocks that are compared at a time, so that memory stays small.
+_CHUNK = 40_000
 
 
 def hull(corners):
@@ -389,3 +394,27 @@ def cutCorners(corners, faces, point, normal, width):
     above = [c for c, s in zip(corners, sides) if s >= 0] + new
     below = [c for c, s in zip(corners, sides) if s <= 0] + new
     return tuple(above), tuple(below)
+
+
+def joinedCorners(pieces):
+    """Corners of the convex solid that some pieces make up, each given by its corners; None if they make up none."""
+    volume = math.fsum(Solids(pieces).volumes())
+    points = list(dict.fromkeys(corner for piece in pieces for corner in piece))
+    low, high = (tuple(map(end, zip(*points))) for end in (min, max))
+    size = math.prod(b - a for a, b in zip(low, high))
+    if abs(size - volume) < COINCIDENT * size:
+        return boxCorners(low, high)
+    from scipy.spatial import ConvexHull  # as in hull()
+
+    found = ConvexHull(points)
+    if abs(found.volume - volume) < COINCIDENT * volume:
+        return tuple(points[n] for n in sorted(found.vertices))
+    return None
+
+
+def boxCorners(low: Numbers, high: Numbers) -> tuple[tuple[float, float, float], ...]:
+    """The eight corners of an axis-parallel box, x slowest and z fastest."""
+    for corner, what in ((low, "low"), (high, "high")):
+        if len(items(corner) or ()) != 3:
+            raise ValueError(f"boxCorners: {what} [m] must be three numbers, got {shown(corner)}")  # fmt: skip
+    return tuple(itertools.product(*zip(low, high)))

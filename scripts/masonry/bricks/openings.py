@@ -8,8 +8,9 @@ from typing import Annotated
 
 from ..arguments import isA, validated
 from ..basics import withoutCollector
-from .blocks import Block, Bricks, Gap, Length, boxCorners, refuse
+from .blocks import Block, Bricks, Gap, Length, refuse
 from .checks import components, where
+from .geometry import boxCorners
 
 #: Lengths are whole units if they are by this share of a quarter unit.
 WHOLE = 1e-6

@@ -229,7 +229,6 @@ def _ring(radius, thickness, stones, angle):
 
 
 def _quad(points, n):
-    """Section (x, z) of a voussoir."""
     return [*points[n], *points[n + 1]]
 
 

@@ -13,10 +13,9 @@ from dataclasses import replace
 from typing import Annotated, Iterable, Sequence
 
 from ..arguments import isA, listOf, number, oneOf, validated, whole
-from .blocks import FARTHEST, Block, Bricks, Gap, Length, Point, Sides
-from .blocks import boxCorners, refuse
+from .blocks import FARTHEST, Block, Bricks, Gap, Length, Point, Sides, refuse
 from .bonds import layout
-from .geometry import FLAT
+from .geometry import FLAT, boxCorners
 from .openings import WHOLE, LaidBrick, Opening, finished, numbered, opened
 
 #: A calcium-silicate unit of the walls in the paper (yade_plugin/law/README.md): length, thickness and height [m].
@@ -272,9 +271,8 @@ def stack(
     """
     wide, deep, high = size
     boxes = (((0.0, 0.0, n * high), (wide, deep, (n + 1) * high)) for n in range(count))
-    return Bricks(
-        Block(boxCorners(*box), n, part, n, "block") for n, box in enumerate(boxes)
-    )
+    corners = enumerate(boxCorners(*box) for box in boxes)
+    return Bricks(Block(own, n, part, n, "block") for n, own in corners)
 
 
 @validated
@@ -372,9 +370,8 @@ def _levels(height, courses, unit, problems):
     nearest = round(count)
     if nearest < 1 or abs(count - nearest) > WHOLE * nearest:
         below, above = max(math.floor(count), 1), max(math.ceil(count), 1)
-        nearest = " or ".join(
-            f"{n * unit[2]:.6g} m ({n})" for n in sorted({below, above})
-        )
+        counts = sorted({below, above})
+        nearest = " or ".join(f"{n * unit[2]:.6g} m ({n})" for n in counts)
         problems.append(
             f"height {height:g} m is {count:.6g} courses of {unit[2]:g} m; it must be whole courses; nearest: {nearest}"
         )

@@ -107,7 +107,6 @@ def spectrumOf(args: argparse.Namespace) -> Spectrum | None:
 
 
 def _show(folder, found, out):
-    """Print what capacity.json has."""
     say(f"{folder}: {found['title'] or found['scene'] or ''}")
     say("\n".join(lines([Number(**one) for one in found["numbers"]], found["notes"])))
     if "verdict" in found:
@@ -120,7 +119,6 @@ def _show(folder, found, out):
 
 
 def _showDomain(folder, found: Domain, out):
-    """Print a domain."""
     say(f"{'normal kN':>12}{'at most kN':>14}{'without dilatancy kN':>24}  exact")
     for one in found.bounds:
         other = "-" if one.withoutDilatancy is None else f"{one.withoutDilatancy:.4g}"

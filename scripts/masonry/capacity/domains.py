@@ -76,9 +76,7 @@ class Domain:
 
     def entries(self) -> dict[str, Any]:
         """The domain as an entry of a JSON file, with units in the names."""
-        named = lambda one: {
-            ENTRIES.get(n, n): value for n, value in asdict(one).items()
-        }
+        named = lambda one: {ENTRIES.get(n, n): v for n, v in asdict(one).items()}
         return {
             "bounds": [*map(named, self.bounds)],
             "runs": [*map(named, self.runs)],
@@ -160,9 +158,7 @@ def domain(
         unlike = _unlike(run, readRun(one))
         if unlike:
             notes.append(f"{points[-1].name}: its {' and its '.join(unlike)} are not those of the domain: is it the same pier?")  # fmt: skip
-    return Domain(
-        bounds=sorted(bounds, key=lambda one: one.normal), runs=points, notes=notes
-    )
+    return Domain(sorted(bounds, key=lambda one: one.normal), points, notes)
 
 
 #: Entries of run.json in which a run and a domain of the same pier agree, and what they are.

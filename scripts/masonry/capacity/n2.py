@@ -199,15 +199,6 @@ def demand(
     holds: bool | None = curve.ultimateDisplacement >= moved
     if not holds and not curve.reached:
         holds = None
-    if curve.ultimateDisplacement < 1.5 * moved and not curve.reached:
-        notes.append(
-            f"EN 1998-1:2004, 4.3.3.4.2.3(1), wants a capacity curve up to 1.5 times the target displacement, {1.5 * moved:.4g} mm; this one "
-            f"ends at {curve.ultimateDisplacement:.4g} mm"
-        )
-    if ratio <= 1:
-        notes.append("the structure stays below its yield force")
-    if curve.rule != "en1998":
-        notes.append("the bilinear curve is not that of annex B.3, but of the convention for masonry walls")  # fmt: skip
     return Demand(
         curve=curve,
         system=system,
@@ -223,8 +214,21 @@ def demand(
         branch=branch,
         scale=scale,
         holds=holds,
-        notes=tuple(notes),
+        notes=(*notes, *_remarks(curve, moved, ratio)),
     )
+
+
+def _remarks(curve, target, ratio):
+    """Sentences on a capacity curve, the target displacement of its structure [mm] and the ratio qu."""
+    if curve.ultimateDisplacement < 1.5 * target and not curve.reached:
+        yield (
+            f"EN 1998-1:2004, 4.3.3.4.2.3(1), wants a capacity curve up to 1.5 times the target displacement, {1.5 * target:.4g} mm; this one "
+            f"ends at {curve.ultimateDisplacement:.4g} mm"
+        )
+    if ratio <= 1:
+        yield "the structure stays below its yield force"
+    if curve.rule != "en1998":
+        yield "the bilinear curve is not that of annex B.3, but of the convention for masonry walls"
 
 
 def _scale(ductility, corner, limited):
@@ -242,8 +246,8 @@ def iterated(
     """The target displacement by the iterative procedure of EN 1998-1:2004, annex B: the plastic mechanism forms at the target
     displacement itself, which is found again until both agree.
 
-    :param push: of :func:`masonry.read.bilinear.pushover`; other parameters as of :func:`demand`
-    :raises Refused: as of :func:`demand`. Where the procedure leads nowhere, a note says so, and the result is that of its last round
+    :param push: of :func:`masonry.read.bilinear.pushover`; other parameters as in :func:`demand`
+    :raises Refused: as in :func:`demand`. Where the procedure leads nowhere, a note says so, and the result is that of its last round
     """
     found = demand(bilinearOf(push, "en1998"), system, spectrum, limited)
     for _ in range(ROUNDS):

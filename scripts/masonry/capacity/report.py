@@ -47,12 +47,12 @@ def assess(
     :param spectrum: of :func:`masonry.capacity.elastic` or :func:`masonry.capacity.readSpectrum`; None: no demand
     :param system: of :func:`masonry.capacity.equivalent` or :func:`masonry.capacity.ofMasses`; None: that which the script of the run
         gives, :func:`masonry.capacity.ofRun`
-    :param rule: of the bilinear curve, and ``mechanism``: as of :func:`masonry.read.bilinear.bilinear`
-    :param limited: as of :func:`masonry.capacity.demand`
+    :param rule: of the bilinear curve, and ``mechanism``: as in :func:`masonry.read.bilinear.bilinear`
+    :param limited: as in :func:`masonry.capacity.demand`
     :param iterate: whether the plastic mechanism forms at the target displacement, :func:`masonry.capacity.iterated`
-    :param height: as of :func:`masonry.read.bilinear.drifts`
+    :param height: as in :func:`masonry.read.bilinear.drifts`
     :param out: folder of both files; None: ``directory``
-    :returns: dict with ``scene``, ``title``, ``rule``, ``numbers`` (a list of dicts as of :class:`masonry.read.bilinear.Number`), ``notes``,
+    :returns: dict with ``scene``, ``title``, ``rule``, ``numbers`` (a list of dicts as in :class:`masonry.read.bilinear.Number`), ``notes``,
         and with a spectrum ``spectrum``, ``holds``, ``verdict`` and ``assumed``
     :raises Refused: if the run has no whole push, or if something is missing for the demand; nothing is written then
     """
@@ -97,9 +97,9 @@ def assessDomain(
 ) -> Domain:
     """Write domain.json and domain.png: the N-V domain of a scene, with runs as points. Returns the domain.
 
-    :param directory: folder of results, and ``runs``: as of :func:`masonry.capacity.domain`
+    :param directory: folder of results, and ``runs``: as in :func:`masonry.capacity.domain`
     :param out: folder of both files; None: ``directory``
-    :raises Refused: as of :func:`masonry.capacity.domain`; nothing is written then
+    :raises Refused: as in :func:`masonry.capacity.domain`; nothing is written then
     """
     found = domain(directory, runs)
     folder = out or directory

@@ -12,7 +12,7 @@ import numpy as np
 
 from ..arguments import FilePath, Numbers, number, oneOf, validated, whole
 from ..basics import ACCELERATION_UNITS, GRAVITY, Refused
-from ..read.files import readWhole
+from ..read.files import readText
 
 #: Units of accelerations in m/s², those with a raised 2 also as a keyboard writes them.
 UNITS = {**ACCELERATION_UNITS, "m/s2": ACCELERATION_UNITS["m/s²"], "cm/s2": ACCELERATION_UNITS["cm/s²"]}  # fmt: skip
@@ -66,7 +66,7 @@ class Spectrum:
         return float(np.interp(period, self.periods, self.accelerations))
 
     def displacement(self, period: float) -> float:
-        """Se (T/2π)² at a period [mm], EN 1998-1:2004, equation (3.7). Parameters as of :meth:`acceleration`."""
+        """Se (T/2π)² at a period [mm], EN 1998-1:2004, equation (3.7). Parameters as in :meth:`acceleration`."""
         return 1e3 * self.acceleration(period) * (period / (2 * math.pi)) ** 2
 
 
@@ -154,14 +154,9 @@ def readSpectrum(
     :raises Refused: if the file cannot be read, is no such table, or if the corner is missing
     """
     factor = UNITS[unit]
-    try:
-        text = readWhole(path).decode("utf-8-sig")
-    except OSError as error:
-        raise Refused(f"cannot read {path}: {error.strerror}") from None
-    except UnicodeDecodeError:
-        raise Refused(f"cannot read {path}: it is no text") from None
     rows: list[list[float]] = []
     names = False
+    text = readText(path).removeprefix("\ufeff")  # which some editors write
     for count, line in enumerate(text.splitlines(), 1):
         cells = re.split(r"[,;\s]+", line.strip().strip(",;"))
         if not cells[0] or cells[0].startswith("#"):

@@ -127,7 +127,7 @@ class Assembly:
 
     def smallest(self, live: np.ndarray, dead: np.ndarray) -> Bound:
         """The smallest factor with which a load keeps the structure at rest, for example the least reaction of a support
-        that settles. Its mechanism is that in which the structure follows the support. Parameters as of :meth:`largest`.
+        that settles. Its mechanism is that in which the structure follows the support. Parameters as in :meth:`largest`.
         """
         return self._bound(live, dead, -1)
 
@@ -173,7 +173,7 @@ class Assembly:
     ) -> Bound:
         """The bound of associated flow alone, with the facets of friction turned.
 
-        :param fixed: as of :meth:`_solve`
+        :param fixed: as in :meth:`_solve`
         :param turns: how often the facets are turned at most
         """
         return self._turned(lambda turn: self._solve(live, dead, 1, turn, fixed), turns)

@@ -298,7 +298,7 @@ class Bound:
         :param path: of the picture
         :param title: above it
         :param parts: dict of name -> ids of bodies, a panel each; None: all in one
-        :param views: directions of sight by part, as of run.json
+        :param views: directions of sight by part, as in run.json
         """
         with drawing.style():
             blocks, joints = self.frames()

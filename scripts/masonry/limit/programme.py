@@ -65,7 +65,7 @@ class Programme:
             self._equal.append((rows[kept], which[kept], sign * six[kept]))
 
     def joints(self, turn, fixed):
-        """All joints, props, ties and springs. Parameters as of :meth:`Assembly._solve`."""
+        """All joints, props, ties and springs. Parameters as in :meth:`Assembly._solve`."""
         a = self.assembly
         self._rigid()
         props = [([(b, a.force(b, *prop)[b])], -np.inf, np.inf) for b, *prop in a.props]

@@ -94,6 +94,6 @@ def _solved(whole, equations, limits, seconds):
     if status == STOPPED:
         raise Late
     if status:
-        said = {1: "it has no solution", 2: "it has no end"}
-        raise Unsolved(said.get(status, f"Clp ended with status {status}"))
+        reasons = {1: "it has no solution", 2: "it has no end"}
+        raise Unsolved(reasons.get(status, f"Clp ended with status {status}"))
     return values("Clp_primalColumnSolution"), values("Clp_dualRowSolution")[:equations]

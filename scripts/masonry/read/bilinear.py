@@ -394,7 +394,7 @@ def ofRun(
     """The bilinear curve of the push of a run. A fall of the force that is over within the first period of the structure does
     not count.
 
-    :param directory: folder of results, or what :func:`pushover` read of it; other parameters as of :func:`bilinear`
+    :param directory: folder of results, or what :func:`pushover` read of it; other parameters as in :func:`bilinear`
     :raises Refused: if the run has no whole push, or its curve has no bilinear one; the message names the folder
     """
     push = directory if isinstance(directory, Pushover) else pushover(directory)
@@ -425,7 +425,7 @@ def drifts(
     :param directory: folder of results, or what :func:`pushover` read of it
     :param height: of the point whose displacement is recorded above the base [m], for drifts of that point; None: those of the
         masonry, of which run.json has the height
-    :param fall: as of :func:`bilinear`
+    :param fall: as in :func:`bilinear`
     :returns: four numbers; one that the run does not have has the value None and a note that says why
     :raises Refused: if the run has no whole push, or if there is no height
     """

@@ -126,7 +126,7 @@ def compare(
     """Draw curves over each other. Measured ones are black and behind, runs are in colours. Returns the path.
 
     :param directories: folders of runs
-    :param measured: texts ``FILE:X:Y``, as of :func:`readMeasured`
+    :param measured: texts ``FILE:X:Y``, as in :func:`readMeasured`
     :param x: column of curve.csv; None: as curve.png has it
     :param y: as ``x``
     :param labels: names for the legend, of all runs and then of all measured curves; what is missing is named after its

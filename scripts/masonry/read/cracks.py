@@ -177,7 +177,7 @@ def narrowestBand(
 def diagonal(
     bed: dict[str, np.ndarray], upright: dict[str, np.ndarray]
 ) -> dict[str, Any]:
-    """Numbers of the diagonal crack; ``bed`` and ``upright`` as of :func:`layOut`.
+    """Numbers of the diagonal crack; ``bed`` and ``upright`` as in :func:`layOut`.
 
     - diagonal_energy_share [-]: of the energy lost in shear by inner joints, what joints near the corner-to-corner
       diagonal lost: within three courses of it; inner are all but those of the two lowest and two highest courses
@@ -267,7 +267,7 @@ def sliding(bed: dict[str, np.ndarray]) -> dict[str, Any]:
 def patternNumbers(
     bed: dict[str, np.ndarray], upright: dict[str, np.ndarray]
 ) -> dict[str, Any]:
-    """Numbers of the crack pattern of a wall; ``bed`` and ``upright`` as of :func:`layOut`."""
+    """Numbers of the crack pattern of a wall; ``bed`` and ``upright`` as in :func:`layOut`."""
     found = {**diagonal(bed, upright), **flexure(bed), **crushing(bed), **sliding(bed)}
     return {name: np.asarray(value).item() for name, value in found.items()}
 
@@ -289,7 +289,7 @@ MEASURED = {
 
 def pattern(frame: dict[str, Any], wall: dict[str, Any], looped: bool = False) -> dict[str, Any]:  # fmt: skip
     """Numbers of the crack pattern of a wall, seen from the side from which it is pushed to the right; ``frame``, of which the
-    arrays NEEDED are enough, and ``wall`` as of :func:`layOut`.
+    arrays NEEDED are enough, and ``wall`` as in :func:`layOut`.
 
     :param looped: whether the wall was pushed back, too: then the numbers of the diagonal and of crushing are there once more, of
         the wall that is seen from behind, with ``_mirrored`` at the end of the name
@@ -331,7 +331,7 @@ def failureMode(
 
     :param numbers: of :func:`patternNumbers`
     :param wall: the entry ``wall`` of run.json
-    :param grows: as of :func:`masonry.read.curves.stillGrows`; of a wall that follows a history False
+    :param grows: as in :func:`masonry.read.curves.stillGrows`; of a wall that follows a history False
     :param lost: whether the force of the push has fallen after its peak
     """
     if grows:
@@ -351,7 +351,7 @@ def failureMode(
     return "partial cracking" if cracked else "other" if lost else "none"
 
 
-def mirrored(joints: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+def mirrored(joints: dict[str, Any]) -> dict[str, Any]:
     """The joints of :func:`layOut` of a wall that is seen from behind: what fell to the right falls to the left."""
     return {
         name: mirrored(values) if name == "beds" else values[:, ::-1]

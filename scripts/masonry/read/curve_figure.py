@@ -123,7 +123,7 @@ def panelOf(spec: dict[str, Any], data: dict[str, Any], ideal: Any = None) -> An
 
 
 def energiesOf(x: Any, label: str, stack: dict[str, Any], work: Any) -> Any:
-    """A figure of the energies alone, over x; ``stack`` and ``work`` are as of :func:`energies`."""
+    """A figure of the energies alone, over x; ``stack`` and ``work`` are as in :func:`energies`."""
     figure = drawing.empty(7, 3.4)
     _energies(figure.subplots(), x, label, stack, work)
     figure.tight_layout()

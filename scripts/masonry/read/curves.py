@@ -60,7 +60,7 @@ def stiffness(displacement: Numbers, force: Numbers, ramp: int = 0) -> float:
     first row that has a third of the largest force and 1.1 times that displacement.
 
     :param force: that of :func:`quasiStatic`. What it is in the first row does not count if it is more than a hundredth of
-        the peak, as of a drive that held a weight before
+        the peak, as for a drive that held a weight before
     :param ramp: number of the row at which the velocity of the drive has grown
     """
     if not force:
@@ -140,7 +140,7 @@ def stillGrows(displacement: Numbers, force: Numbers) -> bool:
 def initialStiffness(displacement: Numbers, force: Numbers) -> float:
     """Slope [force/displacement] of the line fitted between 5 % and 25 % of the peak, on the way to it.
 
-    A push that begins under a force of more than a hundredth of the peak, as of a drive that held a weight before, counts
+    A push that begins under a force of more than a hundredth of the peak, as for a drive that held a weight before, counts
     from that force.
     """
     moved, forces = np.asarray(displacement, float), np.asarray(force, float)
@@ -189,7 +189,7 @@ def cycleNumbers(
     ``dissipated_J``, what the joints dissipated; and ``damped_J``, what damping took.
 
     :param column: function of the name of a column of curve.csv that gives its values
-    :param threshold: as of :mod:`masonry.read.loops` [mm]
+    :param threshold: as in :mod:`masonry.read.loops` [mm]
     """
     moved, base = column("displacement_mm"), column("base_shear_kN")
     if not moved:

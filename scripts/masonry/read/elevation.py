@@ -45,7 +45,7 @@ class Structure:
     - ``parts``: name -> ids of bodies, the façades first of all; all blocks are one part if it is empty
     - ``shades``: key of :data:`SHADES` by the id of a body; others are bricks
     - ``names``: texts that stand on bodies, by their ids
-    - ``sights``: directions of sight by part; ``hidden``: ids of bodies that are not drawn, as of the ground
+    - ``sights``: directions of sight by part; ``hidden``: ids of bodies that are not drawn, such as that of the ground
     - ``still``: displacement that is taken off all others [m]
     - ``ties``: entries of run.json
     """
@@ -201,7 +201,6 @@ class Elevation:
             axes.scatter(x, y, s=wide * min(1, bold / 1.8) ** 2, color="black", marker="X", lw=0, label="crushed", zorder=5)  # fmt: skip
 
     def _tie(self, tie, magnification):
-        """Both ends of a tie."""
         s, ends = self.structure, []
         for body, end in zip(tie["bodies"], np.array(tie["ends_m"])):
             moved = np.zeros(3)
@@ -234,7 +233,7 @@ def figureOf(structure: Structure, title: str, magnification: float | None = Non
     magnified, over the undeformed one, with its cracks.
 
     :param title: above it; ``{}`` in it is the magnification
-    :param magnification: of displacements; 0: the structure as it is built; None: as of :func:`magnificationOf`
+    :param magnification: of displacements; 0: the structure as it is built; None: as in :func:`magnificationOf`
     """
     elevations = elevationsOf(structure)
     if magnification is None:
@@ -331,7 +330,7 @@ def cracksOf(run: dict[str, Any], blocks: dict[str, Any], joints: dict[str, Any]
 def cracks(directory: FilePath, number: int | None = None) -> None:
     """Draw cracks.png of a frame that a run has left.
 
-    :param number: of the frame, from 0; negative numbers count from the end; None: as of :func:`frameOfCracks`
+    :param number: of the frame, from 0; negative numbers count from the end; None: as in :func:`frameOfCracks`
     """
     run = readRun(directory)
     number = frameOfCracks(run, directory) if number is None else number

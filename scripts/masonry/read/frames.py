@@ -86,7 +86,7 @@ def readSurfaces(
 
     :returns: the corners of triangles, an array (n, 3) of point numbers; the cell of each of them; and whether cells are
         rigid blocks, else they are zones of deformable units, all of whose sides are given, also those inside the unit
-    :raises Refused: as of :func:`readFrame`
+    :raises Refused: as in :func:`readFrame`
     """
     return _read(_pathOf(directory, "blocks", number), _surfaces)
 

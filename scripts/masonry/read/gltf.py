@@ -32,7 +32,7 @@ def write(directory, path, number=None, magnification=1.0, rate=10):
         and it turns by so many times the angle
     :param rate: frames of the animation a second
     :returns: a sentence on what is in the file
-    :raises Refused: as of :class:`masonry.read.model.Model`
+    :raises Refused: as in :class:`masonry.read.model.Model`
     :raises OSError: if the file cannot be written, or if its name is that of a symbolic link
     """
     model = Model(directory, number)
@@ -53,8 +53,6 @@ def write(directory, path, number=None, magnification=1.0, rate=10):
 
 
 class _File:
-    """What goes into a file."""
-
     def __init__(self, title):
         self._parts, self._size = [], 0
         self._root = {"name": plain(title), "rotation": UP, "children": []}

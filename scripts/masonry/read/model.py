@@ -104,7 +104,6 @@ class Model:
         return times
 
     def _build(self, first):
-        """The blocks as they were built, from a frame."""
         triangles, cells, rigid = readSurfaces(self.directory, self.numbers[0])
         self.points = first["points"]
         self.bodies, block = np.unique(first["body"], return_inverse=True)
@@ -133,7 +132,6 @@ class Model:
         self.free = np.flatnonzero(~self.rigid[self.owner])
 
     def _move(self):
-        """The blocks and joints in all frames."""
         reference = self.run.get("reference_body")
         held = self.bodies[self.owner] == reference
         if reference is not None and not held.any():
@@ -183,7 +181,7 @@ class Model:
         """The :class:`Sight` in which all is in the picture in the last of the frames that were read, rubble too, but for what
         flew away.
 
-        :param magnification: of displacements; None: as of :func:`masonry.read.views.magnificationOf`
+        :param magnification: of displacements; None: as in :func:`masonry.read.views.magnificationOf`
         """
         joints = readFrame(self.directory, "joints", self.numbers[0])
         points = self.points[self.framed]

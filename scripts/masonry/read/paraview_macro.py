@@ -4,7 +4,7 @@ window or in pvpython without one, with the environment variable MASONRY_VIEW, t
 
 - ``runs``: of each its ``folder``, ``title``, ``magnification`` of displacements, ``ground``: ids of the bodies of the ground,
   ``platens``: those of all other bodies that are no masonry, ``widest_mm``: opening at the end of the colours, ``crack`` [m] and
-  ``damaged`` [-] as of masonry.read.cracks, and the camera: ``middle``, ``towards`` the viewer and ``half_height`` [m]
+  ``damaged`` [-] as in masonry.read.cracks, and the camera: ``middle``, ``towards`` the viewer and ``half_height`` [m]
 - ``time``: of the frame that is shown [s]; ``size`` [pixels]; ``rate``: frames of a film a second
 - ``picture``, ``film``: paths of the files to write, or null
 """

@@ -130,7 +130,6 @@ STATES = (
 
 
 def _ofStates():
-    """The displacement and the drift of every state."""
     for state in STATES:
         moved = lambda d, state=state: d.at(d[MOVED], d.place(state.find))
         drift = lambda d, state=state: d.drift(d.place(state.find))

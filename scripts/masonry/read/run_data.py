@@ -25,7 +25,7 @@ class RunData:
 
     :param run: entries of run.json, those that are no numbers of this list at least
     :param column: function of the name of a column of curve.csv that gives its values, or None if there is no such column
-    :param joints: frame of the joints at the end, as of :mod:`masonry.read.cracks`; None: crack patterns are not measured
+    :param joints: frame of the joints at the end, as in :mod:`masonry.read.cracks`; None: crack patterns are not measured
     :param height: of the recorded point above the base [m], in place of what run.json says
     """
 

@@ -144,7 +144,7 @@ def curveOf(columns, run, directory):
 
 
 def cracksOf(run, blocks, joints, when, directory):
-    """The picture of cracks.png as HTML; parameters as of :func:`masonry.read.elevation.cracksOf`."""
+    """The picture of cracks.png as HTML; parameters as in :func:`masonry.read.elevation.cracksOf`."""
     return _drawn(lambda: elevation.cracksOf(run, blocks, joints, when, directory))
 
 

@@ -115,7 +115,7 @@ def sceneOf(directory: FilePath, number: int, magnification: float | None, shape
 def inParaView(directories: Sequence[FilePath], at: Any, magnification: float | None, target: str | None = None, film: bool = False, size: Sequence[int] = (1500, 1000), rate: int = 10) -> None:  # fmt: skip
     """Show runs side by side in ParaView's window, or draw them to a picture or a film.
 
-    :param at: the frame, as of :func:`frameNear`
+    :param at: the frame, as in :func:`frameNear`
     :param magnification: of displacements; None: chosen for each run
     :param target: path of a .png file or, of a ``film``, of an .avi or .ogv file, or of a folder, which gets a .png file for
         every frame; None: the window
@@ -147,14 +147,14 @@ def inParaView(directories: Sequence[FilePath], at: Any, magnification: float | 
     words = ["xvfb-run", "-a", "-s", DISPLAY, path, macro] if target else [path, "--script=" + macro]  # fmt: skip
     modules = os.path.join(unpacked, "lib", "python3", "dist-packages")
     with tempfile.TemporaryDirectory() as folder:
-        said = os.path.join(folder, "view.json")
-        with open(said, "w") as file:
+        viewFile = os.path.join(folder, "view.json")
+        with open(viewFile, "w") as file:
             json.dump(job, file)
         # PYTHONPATH and PYTHONHOME are of another Python
         elsewhere = {k: v for k, v in os.environ.items() if k not in ("PYTHONPATH", "PYTHONHOME")}  # fmt: skip
         if os.path.isdir(modules):
             elsewhere["PYTHONPATH"] = modules
-        done = subprocess.run(words, text=True, capture_output=bool(target), env={**elsewhere, "MASONRY_VIEW": said})  # fmt: skip
+        done = subprocess.run(words, text=True, capture_output=bool(target), env={**elsewhere, "MASONRY_VIEW": viewFile})  # fmt: skip
     if target and (done.returncode or not os.path.exists(os.path.dirname(target) if film else target)):  # fmt: skip
         lines = (done.stderr + done.stdout).strip().splitlines()
         raise Refused("ParaView ended with an error:\n" + "\n".join(lines[-15:]))

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """A run: its progress, checkpoints, folder of results, presets, and rows of a table in YADE's batch format.
 
-- :mod:`masonry.run.run`: a run in stages; :mod:`masonry.run.place`: how far it has come;
+- :mod:`masonry.run.run`: a run in stages; :mod:`masonry.run.run_state`: how far it has come;
   :mod:`masonry.run.ending`: how it ends
 - :mod:`masonry.run.results`: the files that a run leaves, and the keys of run.json; :mod:`masonry.run.lock`: whose folder it is
 - :mod:`masonry.run.checkpoints`: the state of a scene on disk; :mod:`masonry.run.keeping`: when a run leaves one

@@ -24,7 +24,7 @@ import sys
 from typing import Any
 
 from .. import background
-from ..basics import Refused, say
+from ..basics import NotAccurate, Refused, say
 from ..folders import check, inside, replaced
 from ..read.files import readRun
 from . import batch
@@ -35,7 +35,7 @@ FOLDER = "accuracy"  # of the companions, in that of the results
 PLAN = "plan.json"  # there: what was run, while it goes on
 #: Name in the environment of a companion. Its scene looks at no other runs.
 COMPANION = "MASONRY_COMPANION"
-_isCompanion = bool(os.environ.pop(COMPANION, ""))  # what it starts itself is none
+_isCompanion = bool(os.environ.pop(COMPANION, ""))  # what it starts itself is not
 #: Half the width of a 95 % interval over the range of three runs, for the difference from another run: Student's t with two
 #: degrees of freedom, 4.30, times sqrt(1 + 1/3), over 1.69, the mean range of three in standard deviations.
 BY_CHANCE = 2.9
@@ -44,10 +44,7 @@ BEHAVES = 1.5, 6.0
 
 #: The quantities: their name, the entry of run.json, and its unit. The peak is that of supports and loaded point at once: a
 #: pulse that the supports alone feel when a crack tears is no strength, and it grows with the rate.
-QUANTITIES = (
-    ("peak", "peak_at_both_ends_kN", "kN"),
-    ("work", "push_work_J", "J"),
-)
+QUANTITIES = (("peak", "peak_at_both_ends_kN", "kN"), ("work", "push_work_J", "J"))
 #: What an interval does not say, in every report.
 NOT_COVERED = (
     "the crack pattern, the force at the end of the curve, the material's own uncertainty, and how far this model of a wall is "
@@ -117,7 +114,7 @@ def isCompanion() -> bool:
     return _isCompanion
 
 
-class Companions:
+class AuxiliaryRuns:
     """Runs of a scene beside the run itself, in the folder ``accuracy`` of its results.
 
     :param folder: of the results of the run
@@ -216,24 +213,22 @@ class Companions:
             env.pop(other, None)
         try:
             with open(folder + ".log", "wb", opener=inside) as log:
-                return background.start(command, log, env)
+                return background.Program(command, log, env)
         except OSError as error:
             raise Refused(f"--accuracy: cannot run {command[0]}: {error.strerror}") from None  # fmt: skip
 
-    def _ended(self, name, status):
-        log = self.folderOf(name) + ".log"
-        if status not in (0, 1) or not self._take(name):
+    def _ended(self, name, program):
+        if program.returncode not in (0, 1) or not self._take(name):
+            kind, reason = program.refusal()
+            if kind == NotAccurate.__name__:
+                raise Refused(reason)
+            self.failed = True
+            log, lines = self.folderOf(name) + ".log", []
             with contextlib.suppress(OSError):
                 with open(log, errors="replace") as file:
                     lines = [line.strip() for line in file if line.strip()]
-                refused = [line for line in lines if "--accuracy: " in line]
-                if refused:
-                    raise Refused("--accuracy: " + refused[-1].partition("--accuracy: ")[2])  # fmt: skip
-                self.failed = True
-                raise Refused(
-                    f"--accuracy: the run {name} did not come to its end: {lines[-1] if lines else f'exit status {status}'}; see {log}"
-                )
-            raise Refused(f"--accuracy: the run {name} ended with status {status}")
+            last = lines[-1] if lines else f"exit status {program.returncode}"
+            raise Refused(f"--accuracy: the run {name} did not come to its end: {last}; see {log}")  # fmt: skip
         found = self.numbers[name]
         fell = ", collapsed" if found["collapsed"] else ""
         say(f"accuracy: {name}: peak {found['peak']:.4g} kN, work {found['work']:.4g} J, {found['seconds']:.0f} s{fell}")  # fmt: skip
@@ -242,7 +237,7 @@ class Companions:
 # -- what is chosen and reported --------------------------------------------------------------------------------------
 
 
-def choose(companions: Companions, percent: float) -> Any:
+def choose(companions: AuxiliaryRuns, percent: float) -> Any:
     """Run companions until a fidelity is good enough, or until there is no better one. Returns the :class:`Fidelity`.
 
     :param percent: the half-width that is wanted [%]
@@ -266,15 +261,17 @@ def choose(companions: Companions, percent: float) -> Any:
     raise AssertionError
 
 
-class Asked:
+class AccuracyResult:
     """What ``--accuracy`` found for a run: its fidelity and the companions beside it.
 
     :param percent: that was asked for [%]
     :param fidelity: :class:`masonry.run.presets.Fidelity`
-    :param companions: :class:`Companions`, which have run
+    :param companions: :class:`AuxiliaryRuns`, which have run
     """
 
-    def __init__(self, percent: float, fidelity: Any, companions: Companions) -> None:
+    def __init__(
+        self, percent: float, fidelity: Any, companions: AuxiliaryRuns
+    ) -> None:
         self.percent, self.fidelity, self.companions = percent, fidelity, companions
 
     def report(self, run: dict[str, Any]) -> dict[str, Any]:
@@ -336,23 +333,25 @@ def lines(entry: dict[str, Any]) -> list[str]:
         f"{q['name']} {q['value']:.4g} ± {q['half_width']:.2g} {q['unit']} ({q['half_width_percent']:.2g} %)"
         for q in entry["quantities"]
     )
-    said = [f"accuracy: {values}, by {entry['fidelity']} and {len(entry['companions'])} runs beside it"]  # fmt: skip
+    sentences = [f"accuracy: {values}, by {entry['fidelity']} and {len(entry['companions'])} runs beside it"]  # fmt: skip
     fell = [one["name"] for one in entry["companions"] if one["collapsed"]]
     if fell:
-        said.append(
+        sentences.append(
             f"accuracy: collapsed: {'; '.join(fell)}; the work of a run that collapses ends there"
         )
     if not entry["reached"]:
-        said.append(
+        sentences.append(
             f"accuracy: {entry['asked_percent']:g} % is not reached by the fidelity that was chosen: the ± is what was found"
             if entry["fidelity"] != FIDELITIES[-1].name
             else f"accuracy: {entry['asked_percent']:g} % is not reached by the finest fidelity there is: the ± is what was found"
         )
-    said.append(f"accuracy: the ± does not cover {entry['not_covered']}")
-    return said
+    sentences.append(f"accuracy: the ± does not cover {entry['not_covered']}")
+    return sentences
 
 
-def ask(name: str, args: Any, script: str | None, words: list[str]) -> Asked | None:
+def ask(
+    name: str, args: Any, script: str | None, words: list[str]
+) -> AccuracyResult | None:
     """Carry out ``--accuracy``: run companions, and give the options the values of the fidelity that was chosen.
 
     :param name: of the scene
@@ -368,8 +367,8 @@ def ask(name: str, args: Any, script: str | None, words: list[str]) -> Asked | N
     given = getattr(args, "given", None) or {}
     chosen = [n for n in CHOSEN if n in given]
     if args.preset or chosen:
-        said = " and ".join(["--preset"] * bool(args.preset) + [*map(asOption, chosen)])
-        raise Refused(f"--accuracy: it chooses block model, mesh, rate, points, damping and time step itself: leave {said} away")  # fmt: skip
+        unwanted = ["--preset"] * bool(args.preset) + [*map(asOption, chosen)]
+        raise Refused(f"--accuracy: it chooses block model, mesh, rate, points, damping and time step itself: leave {' and '.join(unwanted)} away")  # fmt: skip
     if args.history:
         raise Refused("--accuracy: it is about a push in one direction, not about the loops of --history")  # fmt: skip
     folder = args.out or os.path.join("results", name)
@@ -380,23 +379,23 @@ def ask(name: str, args: Any, script: str | None, words: list[str]) -> Asked | N
             f"--accuracy: scene {name} must be a script that takes its options from the command line, since it is run several times"
         )
     program = ["yade", "-n", "-x"] if hasattr(sys, "yade_argv") else [sys.executable]
-    companions = Companions(folder, [*program, script, *words])
+    companions = AuxiliaryRuns(folder, [*program, script, *words])
     with open(script, "rb") as file:
         text = file.read()
-    said = json.dumps([os.path.abspath(script), words, sorted(COMPANIONS)])
-    companions.begin(hashlib.sha256(text + said.encode()).hexdigest())
+    command = json.dumps([os.path.abspath(script), words, sorted(COMPANIONS)])
+    companions.begin(hashlib.sha256(text + command.encode()).hexdigest())
     try:
         fidelity = choose(companions, args.accuracy)
     except Refused:
         companions.clear()
         raise
     vars(args).update({**CHOSEN, **fidelity.options})
-    return Asked(args.accuracy, fidelity, companions)
+    return AccuracyResult(args.accuracy, fidelity, companions)
 
 
 def _resumed(args):
     """As :func:`ask`, of a run that is resumed: its companions are those of its beginning."""
-    companions, fidelity = Companions(args.resume, []), fidelityOf(args)
+    companions, fidelity = AuxiliaryRuns(args.resume, []), fidelityOf(args)
     companions.read()
     number = FIDELITIES.index(fidelity) if fidelity else 0
     due = [name for k in range(number + 1) for name in needed(k)]
@@ -406,4 +405,4 @@ def _resumed(args):
     if any(readRun(companions.folderOf(n))["options"]["until"] != args.until for n in due):  # fmt: skip
         say("note: --accuracy: the run goes on to a longer push than its companions: there will be no ±")  # fmt: skip
         return None
-    return Asked(args.accuracy, fidelity, companions)
+    return AccuracyResult(args.accuracy, fidelity, companions)

@@ -34,11 +34,11 @@ FIELD = "field:"  # begins the name of a column
 #: Name in the environment of a file: the scene is built, and what it knows is written there. There is no run. The line of
 #: the heads then stands for a scene without options.
 PROBE = "MASONRY_PROBE"
-UNWRITTEN = "cannot write "  # begins what is said if that file cannot be written
+UNWRITTEN = os.EX_IOERR  # exit status if that file cannot be written
 
 
 def readTable(path):
-    """The rows of a table by the number of their line, from 1: dicts of texts. Raises Refused if it is none."""
+    """The rows of a table by the number of their line, from 1: dicts of texts. Raises Refused if it is not one."""
     text = readText(path)
     lines = [re.sub(r"\s*#.*", "", line).split() for line in text.split("\n")]
     used = [number for number, words in enumerate(lines, 1) if words]
@@ -54,9 +54,7 @@ def readTable(path):
             )
         row = {h: before.get(h, w) if w == "=" else w for h, w in zip(heads, words)}
         rows[number] = before = row
-    odd = [
-        name for row in rows.values() if (name := nameOf(row, "row")).strip(".") == ""
-    ]
+    odd = [name for row in rows.values() if not (name := nameOf(row, "row")).strip(".")]
     if odd:
         raise Refused(f"{path}: description {odd[0]!r} cannot name a folder")
     names = collections.Counter(folder(path, row, line) for line, row in rows.items())
@@ -130,9 +128,9 @@ def folder(path, row, line):
     return os.path.join(os.path.dirname(os.path.abspath(path)), ROWS, name)
 
 
-def nameOf(row, usual):
-    """The name of a row, which is that of a folder; ``usual`` if it has no description."""
-    return row.get("description", usual).replace("/", "_").strip("'\"")
+def nameOf(row, default):
+    """The name of a row, which is that of a folder; ``default`` if it has no description."""
+    return row.get("description", default).replace("/", "_").strip("'\"")
 
 
 def ended(directory):

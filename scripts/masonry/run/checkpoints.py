@@ -2,7 +2,7 @@
 """Checkpoints: the state of a scene on disk, from which a run goes on as if it had never stopped.
 
 :func:`saveCheckpoint` and :func:`loadCheckpoint` serve any scene. A run in stages leaves its checkpoints by them;
-:mod:`masonry.run.place` is what such a checkpoint tells of the run.
+:mod:`masonry.run.run_state` is what such a checkpoint tells of the run.
 """
 
 from __future__ import annotations
@@ -98,9 +98,8 @@ def alike(value: Any, example: Any) -> bool:
     counterpart, and an empty one stands for any list; None stands for None and for a list of finite numbers.
     """
     if example is None:
-        return value is None or (
-            isinstance(value, list) and alike(value, [0.0] * len(value))
-        )
+        listed = isinstance(value, list)
+        return value is None or listed and alike(value, [0.0] * len(value))
     if isinstance(example, (list, tuple)):
         return isinstance(value, list) and (
             not example

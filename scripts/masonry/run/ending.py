@@ -12,6 +12,7 @@ import yade.config
 from .._masonry import commit, version
 from ..assembly import threads
 from ..assembly.columns import meanings
+from ..background import reportRefusal
 from ..basics import Collapsed, Interrupted, Refused, Unwritable, say
 from ..memory import FULL
 from .checkpoints import NAME
@@ -49,6 +50,8 @@ def _end(run, scene, error):
             run.takeUp()
     except Refused as refused:
         error = refused
+    if isinstance(error, Refused):
+        reportRefusal(error)
     if isinstance(error, MemoryError):
         error = Unwritable(FULL)
     if isinstance(error, Interrupted) and scene.only and scene.bounds.entries:
@@ -227,10 +230,9 @@ def _describe(run, scene):
         entries["refined_joints"] = scene.model.refinedJoints()
     if at.steps:
         perStep = at.seconds["steps"] / at.steps
+        ofOne = 1e9 * perStep / scene.model.subcontacts
         entries["microseconds_per_step"] = 1e6 * perStep
-        entries["nanoseconds_per_subcontact_step"] = (
-            1e9 * perStep / scene.model.subcontacts
-        )
+        entries["nanoseconds_per_subcontact_step"] = ofOne
     entries["notes"] = at.notes
     entries["warnings"] = list(_warnings(run, scene))
 

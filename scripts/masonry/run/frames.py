@@ -17,7 +17,7 @@ class Frames:
     """Writes frames: beside the run if the last one was slow.
 
     :param directory: folder of the run
-    :param at: :class:`masonry.run.place.Place`, whose ``frames`` are the times of the frames that are whole or being written
+    :param at: :class:`masonry.run.run_state.RunState`, whose ``frames`` are the times of the frames that are whole or being written
     """
 
     def __init__(self, directory, at):

@@ -40,18 +40,10 @@ class Checkpoints:
     def keep(self):
         """Note what a checkpoint of this moment keeps, beside the scene."""
         run, at = self._run, self._run.at
-        self.safe = {
-            "begun": at.begun,
-            "before": at.before,
-            "number": at.number,
-            "stage": at.stage,
-            "memory": vars(run.memory).copy(),
-            "steps": at.steps,
-            "left": at.left,
-            "rows": run.readings.count,
-            "frameCount": len(at.frames),
-            "stages": at.stages,
-        }
+        names = "begun", "before", "number", "stage", "steps", "left", "stages"
+        self.safe = {name: getattr(at, name) for name in names}
+        self.safe.update(memory=vars(run.memory).copy(), frameCount=len(at.frames))
+        self.safe["rows"] = run.readings.count
 
     def mark(self):
         """As :meth:`keep`, after a stage has put the scene into another state."""

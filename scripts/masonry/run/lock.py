@@ -10,32 +10,16 @@ import re
 import socket
 
 from .. import folders
-from ..basics import Refused
+from ..basics import Held
 from ..read.files import readWhole
 
 #: Files that a run writes, and those that are drawn of it; * is a number.
-FILES = [
-    "curve.csv",
-    "curve.png",
-    "cracks.png",
-    "run.json",
-    "report.html",
-    "run.checkpoint",
-    "view.html",
-    "capacity.json",
-    "capacity.png",
-    "domain.json",
-    "domain.png",
-    "blocks.pvd",
-    "joints.pvd",
-    "connectors.pvd",
-    "mechanism.png",
-    "mechanism_blocks.vtu",
-    "mechanism_joints.vtu",
-    "blocks_*.vtu",
-    "joints_*.vtp",
-    "connectors_*.vtp",
-]
+FILES = (
+    "curve.csv curve.png cracks.png run.json report.html run.checkpoint "
+    "view.html capacity.json capacity.png domain.json domain.png blocks.pvd "
+    "joints.pvd connectors.pvd mechanism.png mechanism_blocks.vtu "
+    "mechanism_joints.vtu blocks_*.vtu joints_*.vtp connectors_*.vtp"
+).split()
 #: Those of them that show how far a run has come: they go when it goes on.
 DRAWN = {"curve.png", "cracks.png", "report.html"}
 OURS = re.compile(
@@ -53,7 +37,7 @@ class Lock:
 
     :param directory: folder, which must be there
     :param scene: name of the scene that runs
-    :raises Refused: if another run holds the folder; the message names its host and process
+    :raises Held: if another run holds the folder; the message names its host and process
     :raises OSError: if the folder cannot be written
     """
 
@@ -127,7 +111,7 @@ class Lock:
                 {"scene": "?", "host": "?", "process": "?", **record}
             )
         )
-        raise Refused(
+        raise Held(
             f"{who} is writing to {os.path.dirname(self.path)}: wait for its end, or name another folder with --out; "
             f"if it is gone, remove {LOCK} there"
         )
@@ -193,6 +177,5 @@ def recorded(directory):
         record = _object(readWhole(os.path.join(directory, "run.json")))
     except OSError:
         return {}
-    return (
-        record if isinstance(record.get("columns"), dict) and "scene" in record else {}
-    )
+    ours = isinstance(record.get("columns"), dict) and "scene" in record
+    return record if ours else {}

@@ -19,7 +19,7 @@ class Option:
 
     :param name: as Python has it: ``dt_fraction`` is ``--dt-fraction``
     :param meaning: what ``--help`` says
-    :param kind: of its values, as of :mod:`masonry.arguments`
+    :param kind: of its values, as in :mod:`masonry.arguments`
     :param default: None: the scene says it, or there is none
     :param value: what stands for its value in ``--help``
     :param several: whether it can be given several times
@@ -47,9 +47,9 @@ class Option:
         """Its unit, or an empty text."""
         return getattr(self.kind, "unit", "")
 
-    def read(self, said: str) -> Any:
+    def read(self, text: str) -> Any:
         """The value that a text of the command line stands for. Raises argparse.ArgumentTypeError."""
-        return reading(self.kind)(said)
+        return reading(self.kind)(text)
 
     def addTo(self, parser: Any, read: Any = None) -> None:
         """Add it to a parser of argparse, or to a group of one.
@@ -71,10 +71,10 @@ class Option:
 def reading(kind: Kind) -> Any:
     """The function by which argparse reads values of a kind."""
 
-    def read(said):
-        value = said
+    def read(text):
+        value = text
         with contextlib.suppress(ValueError):
-            value = getattr(kind, "of", str)(said)
+            value = getattr(kind, "of", str)(text)
         try:
             return kind(value)
         except ValueError as error:

@@ -9,11 +9,7 @@ from .options import USUAL, asOption
 
 #: Options by preset, the same for all walls. A scene of one's own may take them from here.
 PRESETS: dict[str, dict[str, Any]] = {
-    "fast": {
-        "blocks": "rigid",
-        "divisions": 1,
-        "rate": 100.0,
-    },
+    "fast": {"blocks": "rigid", "divisions": 1, "rate": 100.0},
     "accurate": {
         "blocks": "deformable",
         "divisions": 2,
@@ -268,12 +264,9 @@ def presetNote(preset):
     if preset["overrides"]:
         reason = ", ".join(map(asOption, preset["overrides"])) + " beside it"
         return f"preset {name} without its promise: {reason}"
-    others = PROMISES[name].get("elsewhere")
-    measured = (
-        f"unlike the {others['walls']} walls on which it was measured: "
-        if others
-        else ""
-    )
-    return (
-        f"preset {name} without its promise: {measured}{'; '.join(preset['outside'])}"
-    )
+    others, reason = PROMISES[name].get("elsewhere"), "; ".join(preset["outside"])
+    if others:
+        reason = (
+            f"unlike the {others['walls']} walls on which it was measured: {reason}"
+        )
+    return f"preset {name} without its promise: {reason}"

@@ -16,11 +16,12 @@ from types import SimpleNamespace
 from yade import O
 
 
-from ..basics import Collapsed, Interrupted, Refused, Unwritable, listen, say, stopListening  # fmt: skip
+from ..basics import Collapsed, Interrupted, NotResumed, Unwritable, listen, say
+from ..basics import stopListening
 from . import batch
 from .keeping import Checkpoints, hostNow
 from .frames import Frames
-from .place import Place, Saved, otherVersion, restored
+from .run_state import RunState, Saved, otherVersion, restored
 from .plotting import live
 from .presets import presetNote, presetOf
 from .progress import Progress
@@ -46,7 +47,7 @@ class Run:
     def __init__(self, name, args, script=()):
         self.name, self.args, self.script = name, args, script
         self.status = 0  # exit status of the scene
-        self.at, self.saved = Place(), None
+        self.at, self.saved = RunState(), None
         self.results = self.readings = self.frames = self.preset = None
         self.collapsed = False
         self.signals = Signals()
@@ -91,7 +92,7 @@ class Run:
         if args.resume:
             self.saved = getattr(args, "saved", None) or Saved(args.resume)
             if self.saved.scene != self.name:
-                raise Refused(
+                raise NotResumed(
                     f"--resume: {args.resume} holds a run of {self.saved.scene}, this is {self.name}"
                 )
             self.at = self.saved.place()
@@ -114,7 +115,7 @@ class Run:
         if self.saved:
             width = len(self.results.columns)
             if any(len(row) != width for row in self.saved.rows):
-                raise Refused(f"--resume: its rows are not of {width} columns")
+                raise NotResumed(f"--resume: its rows are not of {width} columns")
             self.saved.load()
             self.state.takeRest(self.at)
             self.at.resumed.append(O.time)
@@ -151,7 +152,7 @@ class Run:
         self.at.hear(text, self.entered, O.time if self.entered else 0.0)
 
     def note(self, kind, name, opposite=""):
-        """Note what the next stage loads, as of :class:`masonry.run.place.Place`."""
+        """Note what the next stage loads, as in :class:`masonry.run.run_state.RunState`."""
         self.at.loads = {**self.at.loads, str(self.entered + 1): [kind, name, opposite]}
 
     @property
@@ -187,13 +188,12 @@ class Run:
             elif not self.state.restored:
                 self.state.put(at.now)
             try:
-                self.results.takeUp(
-                    [*self.results.rows], len(at.frames), self.saved.seconds
-                )
+                rows = [*self.results.rows]
+                self.results.takeUp(rows, len(at.frames), self.saved.seconds)
                 if self.frames:
                     self.frames.collect()
             except (OSError, RuntimeError, Unwritable) as error:
-                raise Refused(f"--resume: {error}") from None
+                raise NotResumed(f"--resume: {error}") from None
         self.advanced = True
 
     # -- what stages call -----------------------------------------------------------------------------------------

@@ -29,7 +29,7 @@ def describe(entries, pushes=()):
 
 
 def linesOfPush(entries, pushes):
-    """Horizontal lines of curve.png, for a push. Parameters as of :func:`describe`."""
+    """Horizontal lines of curve.png, for a push. Parameters as in :func:`describe`."""
     found = describe(entries, pushes)
     for key in ("bound_base_shear_kN", "negative_bound_base_shear_kN"):
         if key in found:

@@ -26,7 +26,7 @@ def bound(
     Stages that push or lean find their bound by themselves, if there are at most 3000 joints; this is for other
     loads, and for larger structures.
 
-    :param target: what is pushed, as of :meth:`push`, along ``direction``; its factor is the force of the push [kN]
+    :param target: what is pushed, as in :meth:`push`, along ``direction``; its factor is the force of the push [kN]
     :param towards: horizontal direction of an acceleration, whose factor is in g; give this or ``target``
     :returns: the entry of run.json: a dict with ``factor``, ``exact`` and the others that :mod:`masonry.run.results`
         lists
@@ -65,7 +65,7 @@ def domain(
     :param target: a platen that is pushed, with a :meth:`press` that says where the normal force acts
     :param normal: forces with which the platen presses on what is below, its weight included: a list [kN]
     :param direction: of the push, horizontal
-    :returns: the entries of run.json: a list of dicts as of :meth:`bound`, with ``pressed_kN``, the force that was given, and
+    :returns: the entries of run.json: a list of dicts as in :meth:`bound`, with ``pressed_kN``, the force that was given, and
         ``normal_kN``, the force at the supports, with the weight of what is above them
     :raises ValueError: if the platen is not pressed, or is held along z
     """
@@ -84,9 +84,8 @@ def domain(
             )
         before = saidBefore(scene, "domain", target=target.name, normal=list(normal))
         along = vector(direction, "domain: direction").normalized()
-        known = [
-            scene.bounds.entries.get(nameInDomain(target, along, one)) for one in normal
-        ]
+        names = [nameInDomain(target, along, one) for one in normal]
+        known = [*map(scene.bounds.entries.get, names)]
         if before and all(known):
             return known
         return findBy(scene, "domain", target, normal, along, lowerUpTo=SMALL)
@@ -94,10 +93,10 @@ def domain(
     return _inOrder(scene, find, domain, target, normal, direction)
 
 
-def _inOrder(scene, find, command, *said):
+def _inOrder(scene, find, command, *arguments):
     """What a function finds, noted as a command of the script; Ctrl-C ends the run in order."""
     try:
-        with scene.noted(command, *said), scene.running.listening():
+        with scene.noted(command, *arguments), scene.running.listening():
             return find()
     except Interrupted as error:
         return scene.failed(error)

@@ -30,12 +30,11 @@ from . import limit_loads
 #: solutions of the programme.
 SMALL = 500
 EVERY = math.inf  # the same limit where the user asks for that collapse: none
-JOINTS = (
-    3000  # largest number of joints of a run that is bounded unasked: within seconds
-)
+#: Largest number of joints of a run that is bounded unasked: within seconds.
+JOINTS = 3000
 #: Time that limit analysis may take for a load, if nobody asked for it, if somebody did, and if it is done beside a run that
 #: still takes steps [s]. A run that has come to its end, or to a checkpoint, waits until the first of them is over.
-UNASKED, ASKED, BESIDE = 10.0, 600.0, 120.0
+UNASKED, ASKED, IN_BACKGROUND = 10.0, 600.0, 120.0
 #: Of the search for a tilt at which both parts of gravity are those of the tilt: its rounds at most, the difference of two
 #: tilts at which it ends, and the largest tilt [rad].
 TILTS, SAME_TILT, STEEPEST = 20, 1e-6, math.radians(89.9)
@@ -75,16 +74,15 @@ class Bounds:
     """The bounds of a scene that is built in YADE.
 
     :param model: :class:`masonry.assembly.structure.Structure`
-    :param place: :class:`masonry.run.place.Place`: what was found is kept there, and so in checkpoints
+    :param place: :class:`masonry.run.run_state.RunState`: what was found is kept there, and so in checkpoints
     """
 
     def __init__(self, model, place):
         self.model, self.place = model, place
         #: what was found last, in this process: limit.Bound and its entry
         self.last = None
-        self._task = (
-            None  # beside the run: finds a bound, then the files of its mechanism
-        )
+        # beside the run: finds a bound, then the files of its mechanism
+        self._task = None
         self._looksFor = ""  # name of the load whose bound it has not found yet
         self._since = 0.0  # since when it looks [s]
         self.endless = set()  # names of loads under which nothing gives way
@@ -94,32 +92,32 @@ class Bounds:
         """What was found, by the load: entries of run.json. A checkpoint keeps them."""
         return self.place.bounds
 
-    def push(self, target, direction, both=False, lowerUpTo=0, beside=False):
+    def push(self, target, direction, both=False, lowerUpTo=0, background=False):
         """Find the bound of a push [kN], without what acts beside it. Returns its entry of run.json, the last one if there are two.
 
         :param target: what is pushed
         :param direction: unit vector of the push
         :param both: whether it goes there and back
         :param lowerUpTo: up to so many joints a collapse without dilatancy is looked for, too, if the bound is not exact
-        :param beside: whether it is found beside the run, and the entry gets its numbers by :meth:`take`
+        :param background: whether it is found beside the run, and the entry gets its numbers by :meth:`take`
         """
         for sign in (1, -1) if both else (1,):
             along = sign * direction
             live = partial(self._pushed, target, along)
             load = Load(nameOfPush(target, along), "kN", live, pushed=(target, direction))  # fmt: skip
-            entry = self._find(load, lowerUpTo, beside)
+            entry = self._find(load, lowerUpTo, background)
         return entry
 
     def _pushed(self, target, direction, assembly):
         return limit_loads.push(self.model, assembly, target, direction)
 
-    def domain(self, target, normals, direction, lowerUpTo=0, beside=False):
+    def domain(self, target, normals, direction, lowerUpTo=0, background=False):
         """Find the bounds of a push under several normal forces. Returns their entries of run.json.
 
         :param target: a platen with a press, whose vertical force is replaced
         :param normals: with which it presses on what is below, its weight included [kN]
         :param direction: unit vector of the push, horizontal
-        :param lowerUpTo: and ``beside``: as of :meth:`push`
+        :param lowerUpTo: and ``background``: as in :meth:`push`
         """
         live, pushed = partial(self._pushed, target, direction), (target, direction)
         loads = [
@@ -132,14 +130,14 @@ class Bounds:
             )
             for normal in normals
         ]
-        return [self._find(load, lowerUpTo, beside) for load in loads]
+        return [self._find(load, lowerUpTo, background) for load in loads]
 
-    def lean(self, towards, tilts=False, lowerUpTo=0, beside=False):
+    def lean(self, towards, tilts=False, lowerUpTo=0, background=False):
         """Find the bound of a horizontal acceleration [g]. Returns its entry of run.json.
 
         :param towards: unit vector
         :param tilts: whether gravity turns, and does not grow; the factor is then the horizontal over the vertical part
-        :param lowerUpTo: and ``beside``: as of :meth:`push`
+        :param lowerUpTo: and ``background``: as in :meth:`push`
         """
         scaled = GRAVITY / self.model.args.density_scaling
         # of a tilt, the weight is that of the scene at every angle
@@ -148,21 +146,21 @@ class Bounds:
         down = (0, 0, -self.model.gravity)  # it replaces another acceleration
         name, unit = nameOfLean(towards, tilts), "" if tilts else "g"
         load = Load(name, unit, live, tilts, gravity=down)
-        return self._find(load, lowerUpTo, beside)
+        return self._find(load, lowerUpTo, background)
 
-    def forces(self, what, unit, loads, lowerUpTo=0, beside=False):
+    def forces(self, what, unit, loads, lowerUpTo=0, background=False):
         """Find the bound of forces that grow together. Returns its entry of run.json.
 
         :param what: name of the load
         :param unit: of its factor
         :param loads: pairs of a MasonryLoad and its force at a factor of 1 [N]
-        :param lowerUpTo: and ``beside``: as of :meth:`push`
+        :param lowerUpTo: and ``background``: as in :meth:`push`
         """
 
         live = lambda a: limit_loads.sumOf(a, loads)
-        return self._find(Load(what, unit, live), lowerUpTo, beside)
+        return self._find(Load(what, unit, live), lowerUpTo, background)
 
-    def _find(self, load, lowerUpTo, beside):
+    def _find(self, load, lowerUpTo, background):
         self.take(True)
         what, model = load.name, self.model
         known = self.entries.get(what)
@@ -190,9 +188,9 @@ class Bounds:
                 f"note: {entry['note']}; scene.bound() and --preset bound take their time"
             )
             return entry
-        seconds = ASKED if lowerUpTo else BESIDE if beside else UNASKED
+        seconds = ASKED if lowerUpTo else IN_BACKGROUND if background else UNASKED
         work = lambda: self._found(load, lowerUpTo, seconds)
-        if beside:
+        if background:
             self.drop()  # of two mechanisms the last one is kept
             self._task = Task(lambda: self._withFiles(what, work), parts=2)
             self._looksFor, self._since = what, time.monotonic()
@@ -238,7 +236,6 @@ class Bounds:
         return {**entry, "note": note}, [*lines, f"note: {note}"], endless, None
 
     def _note(self, what, found, lines, endless, bound):
-        """Keep what :meth:`_found` returned."""
         self.entries[what].update(found)
         for line in lines:
             # no notes: the entry has them, and when they are found depends on the machine
@@ -369,10 +366,10 @@ def _tilted(find, first):
     return bound
 
 
-def findBy(scene, kind, *load, lowerUpTo, beside=False):
+def findBy(scene, kind, *load, **how):
     """Find a bound, which Ctrl-C and SIGTERM end at once: a method of :class:`masonry.scene.bounds.Bounds`."""
     with scene.running.breakable():
-        return getattr(scene.bounds, kind)(*load, lowerUpTo=lowerUpTo, beside=beside)
+        return getattr(scene.bounds, kind)(*load, **how)
 
 
 def takeFound(scene, wait):
@@ -392,7 +389,7 @@ def findBound(scene, kind, *load):
     if scene.args.lean and not scene.only or resumed and not missing:
         return  # in a stage that goes on it was found when that began
     upTo = SMALL if scene.only else 0
-    findBy(scene, kind, *load, lowerUpTo=upTo, beside=not scene.only)
+    findBy(scene, kind, *load, lowerUpTo=upTo, background=not scene.only)
 
 
 def nameInDomain(target, direction, normal):

@@ -19,7 +19,7 @@ from .words import describes
 
 
 def end(value: Any, first: Any) -> Any:
-    """The kind of an end: a target of the scene, or a brick as of :func:`masonry.scene.targets.brick`."""
+    """The kind of an end: a target of the scene, or a brick as in :func:`masonry.scene.targets.brick`."""
     if isinstance(value, Target):
         description = getattr(first, "description", first)
         if description.targets.get(value.name) is not value:
@@ -86,12 +86,8 @@ def tie(
     """
     if (other is None) == (anchor is None):
         raise Refused("tie: give either other or anchor")
-    far = (
-        End(tuple(vector(anchor, "tie: anchor [m]")))
-        if other is None
-        else _endOf(description, other)
-    )
-    ends = _endOf(description, one), far
+    at = None if anchor is None else tuple(vector(anchor, "tie: anchor [m]"))
+    ends = _endOf(description, one), End(at) if at else _endOf(description, other)
     _inPlane(description, ends)
     if _samePlace(*ends):
         raise Refused(f"tie: its ends, {ends[0].words} and {ends[1].words}, are on one brick")  # fmt: skip
@@ -167,9 +163,8 @@ def spring(
 #: Places of two bundles of fibres along the edge of a joint, which have the force and the moment of a layer whose strain is
 #: linear along it: those of Gauss.
 BUNDLES = 0.5 - 0.5 / 3**0.5, 0.5 + 0.5 / 3**0.5
-NEAR = (
-    1e-6  # of the largest extent of the structure: corners so near to a face lie on it
-)
+#: Of the largest extent of the structure: corners so near to a face lie on it.
+NEAR = 1e-6
 
 
 @describes
@@ -249,10 +244,6 @@ def _samePlace(one, other):
 
 
 def _checkName(description, name, word):
-    known = {one.name for one in (*description.connectors, *description.overlays)}  # fmt: skip
-    if (
-        name in known
-        or name in description.targets
-        or name in description.materials.joints
-    ):
+    taken = {one.name for one in (*description.connectors, *description.overlays)}
+    if name in {*taken, *description.targets, *description.materials.joints}:
         raise Refused(f"{word}: there is a {name!r} already; give one of them another name")  # fmt: skip

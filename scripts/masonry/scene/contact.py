@@ -4,16 +4,16 @@
 from __future__ import annotations
 
 import itertools
-from typing import Any, Callable
+from typing import Any
 
 from ..arguments import Name, validated
 from .supports import Coordinate
 from ..basics import Refused
-from .settings import Property, Settable
+from .settings import Factor, Property, Settable
 from .targets import Target
 from .words import describes
 
-#: Speed after over before a central impact of two faces, as of MasonryContacts [-].
+#: Speed after over before a central impact of two faces, as in MasonryContacts [-].
 RESTITUTION = 0.5
 FRICTION = 0.6  # of masonry blocks whose joints have none of their own [-]
 THICK = 0.5  # of the ground, over the height of what is built [-]
@@ -57,9 +57,7 @@ class Contact(Settable):
         vars(made).update(vars(self))
         return made
 
-    def scatter(
-        self, name: str, factor: Callable[[float, float, float], float]
-    ) -> None:
+    def scatter(self, name: str, factor: Factor) -> None:
         raise ValueError(f"contact: {name} is the same all over; --set contact.{name}=... changes it")  # fmt: skip
 
     def of(self, bed: Any) -> dict[str, float]:
@@ -67,13 +65,13 @@ class Contact(Settable):
 
         :param bed: the bed joint, a MasonryJoint
         """
-        usual = {
+        defaults = {
             "normalStiffness": bed.normalStiffness,
             "tangentialRatio": min(1.0, bed.shearStiffness / bed.normalStiffness),
             "friction": FRICTION if bed.elastic else bed.residualFriction,
         }
         given = {name: value for name, value in self.values().items() if value is not None}  # fmt: skip
-        return {**usual, **given}
+        return {**defaults, **given}
 
 
 def problems(description: Any, args: Any) -> list[str]:
@@ -113,7 +111,7 @@ def addGround(
 ) -> Target:
     """Add the ground on which blocks fall.
 
-    :param level: as of :func:`ground`; None: just below everything else
+    :param level: as in :func:`ground`; None: just below everything else
     :param name: in curve.csv; None: ground, or another one if a target has that name
     """
     taken = {target.name for target in description.targets.values()}

@@ -21,7 +21,7 @@ class Description:
     """Bricks, materials and everything that a scene says before its first stage.
 
     :param name: of the scene
-    :param bricks: blocks, as of :class:`masonry.scene.scene.Scene`, which checks all parameters
+    :param bricks: blocks, as in :class:`masonry.scene.scene.Scene`, which checks all parameters
     """
 
     def __init__(
@@ -41,20 +41,17 @@ class Description:
         self.bricks = bricks
         self.name, self.title = name, title or name
         self.materials, self.gravity = materials, gravity  # [m/s²], downwards
-        self.functors = functors  # as of masonry.assembly.engines.engines
+        self.functors = functors  # as in masonry.assembly.engines.engines
         self.deformable = deformable  # whether bricks are
-        self.allowGaps = allowGaps  # as of masonry.assembly.connecting.connect
+        self.allowGaps = allowGaps  # as in masonry.assembly.connecting.connect
         #: Contact of blocks that have lost their joints, if a collapse is followed, else None.
         self.contact = Contact() if collapse == "follow" else None
         points = [p for block in self.bricks for p in block.corners]
         #: corners of the box around all bricks [m]
-        self.low, self.high = (
-            [f(p[i] for p in points) for i in range(3)] for f in (min, max)
-        )
+        self.low, self.high = ([*map(f, zip(*points))] for f in (min, max))
         self.plane = self._inPlane() if plane is None else plane
-        self.choice = (
-            None if choice is None else list(choice)
-        )  # heads of columns, None: all
+        # heads of columns, None: all
+        self.choice = None if choice is None else list(choice)
         self.targets = {}  # by name
         self.joints = []  # whose means are recorded
         self.drifts = []
@@ -184,15 +181,15 @@ class Description:
             raise Refused(
                 f"no column {', '.join(unknown)}; there are {', '.join(heads)}"
             )
-        usual = [c for one in self.sections if one.usual for c in one.columns(self.plane)]  # fmt: skip
-        always = columns.heads(usual + balance + columns.HISTORY)
+        ofBase = [c for one in self.sections if one.isBase for c in one.columns(self.plane)]  # fmt: skip
+        always = columns.heads(ofBase + balance + columns.HISTORY)
         chosen = [found[heads.index(n)] for n in self.choice if n not in always]
         return chosen + [c for c in found if c.head in always]
 
     # -- where bricks are -----------------------------------------------------------------------------------------
 
     def find(self, where):
-        """Index of a brick, and the point by which it is named, or None. Raises ValueError with a sentence as of a kind of
+        """Index of a brick, and the point by which it is named, or None. Raises ValueError with a sentence like that of a kind of
         :mod:`masonry.arguments`."""
         count, point = len(self.bricks), None
         if isinstance(where, Integral) and not isinstance(where, bool):
@@ -224,12 +221,9 @@ class Description:
     def size(self, index):
         """Longest side of the box around a brick [m]."""
         corners = self.bricks[index].corners
-        return max(
-            max(p[i] for p in corners) - min(p[i] for p in corners) for i in range(3)
-        )
+        return max(max(values) - min(values) for values in zip(*corners))
 
     def _nearest(self, point):
-        """Index of the brick that is nearest to a point, by :meth:`_distance`."""
         if self._boxes is None or self._boxes[0] is not self.bricks:
             corners = [np.asarray(block.corners, float) for block in self.bricks]
             of = lambda f: np.array([f(c, axis=0) for c in corners])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The program beside a run that draws its figures and writes its report: :mod:`masonry.read.crew`."""
+"""The program beside a run that draws its figures and writes its report: :mod:`masonry.read.postprocess`."""
 
 import contextlib
 import os
@@ -7,7 +7,7 @@ import subprocess
 import sys
 
 from ..basics import Unwritable
-from ..read import crew
+from ..read import postprocess
 
 
 class DrawingProgram:
@@ -28,7 +28,7 @@ class DrawingProgram:
             raise Unwritable(f"the figures are not drawn: {error.strerror}") from None
         finally:
             status, self._begun = self.end(), False
-        if status == crew.NO_REPORT:
+        if status == postprocess.NO_REPORT:
             raise Unwritable("the report is not written")
         if status:
             raise Unwritable("the figures are not drawn")
@@ -39,7 +39,7 @@ class DrawingProgram:
         """
         if not self._begun:
             self.start()
-            self._program.stdin.write(os.fsencode(directory) + crew.END)
+            self._program.stdin.write(os.fsencode(directory) + postprocess.END)
             self._program.stdin.flush()
             self._begun = True
 
@@ -48,7 +48,7 @@ class DrawingProgram:
         then waits. Raises OSError if there is no process."""
         if not self._program:
             # -P: nothing of the present folder is run; in a session of its own, since Ctrl-C is for the run
-            command = [sys.executable, "-P", "-m", "masonry.read.crew"]
+            command = [sys.executable, "-P", "-m", "masonry.read.postprocess"]
             self._program = subprocess.Popen(
                 command, stdin=subprocess.PIPE, start_new_session=True
             )

@@ -50,14 +50,14 @@ def properties(description, masonry):
     for block in description.bricks:
         low, high = boxes.get(block.brick, (block.low, block.high))
         boxes[block.brick] = tuple(map(min, low, block.low)), tuple(map(max, high, block.high))  # fmt: skip
-    usual = lambda axis: statistics.median(high[axis] - low[axis] for low, high in boxes.values())  # fmt: skip
+    medianSize = lambda axis: statistics.median(high[axis] - low[axis] for low, high in boxes.values())  # fmt: skip
     pressed = [t.pressed for t in description.targets.values() if t.pressed]
     bed = masonry.joints["bed"]
     of = lambda name: getattr(bed, name, 0.0)
     return {
         "length over height": length / height,
-        "courses": height / usual(2),
-        "bricks in the length": length / usual(0),
+        "courses": height / medianSize(2),
+        "bricks in the length": length / medianSize(0),
         "pressure at the top [MPa]": 1e-6 * sum(pressed),
         "tensile strength of bed joints [MPa]": 1e-6 * of("tensileStrength"),
         "cohesion of bed joints [MPa]": 1e-6 * of("cohesion"),
@@ -86,7 +86,7 @@ def held(description):
     if description.winds:
         force = [sum(w[1][i] for w in description.winds) for i in range(3)]
         yield "wind", "({:.4g}, {:.4g}, {:.4g}) N in all".format(*force)
-    recorded = [thing.name for thing in (*description.joints, *description.drifts, *[one for one in description.sections if not one.usual])]  # fmt: skip
+    recorded = [thing.name for thing in (*description.joints, *description.drifts, *[one for one in description.sections if not one.isBase])]  # fmt: skip
     if recorded:
         yield "recorded, too", ", ".join(recorded)
 

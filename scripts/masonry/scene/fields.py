@@ -100,7 +100,7 @@ def read(text: str) -> tuple[list[str], Callable[[float, float, float], float]]:
     """The names of the properties and the function of a field that is written as the option ``--field`` takes it.
 
     :param text: for example ``bed.cohesion+bed.tensileStrength=lognormal(cov=0.3,length=0.5,seed=1)``
-    :raises ValueError: if it is none
+    :raises ValueError: if it is not one
     """
     names, kind, cov, length, seed = parts(text)
     return names, KINDS[kind](cov, length, seed)

@@ -33,7 +33,7 @@ def figureOf(outcome):
 def _ofPush(outcome):
     target, data = outcome.model.loading.target, outcome.data
     height = f"{target.recorded[2] - outcome.description.low[2]:.3g} m above the base"
-    marks = []
+    marks, bounds = [], outcome.scene.bounds
     if data.rows:
         moved = data["displacement_mm"]
         sides = (1, -1) if outcome.pushed.history else (1,)
@@ -51,9 +51,7 @@ def _ofPush(outcome):
         "y_label": "force along the push [kN]",
         "looped": bool(outcome.pushed.history),
         "marks": marks,
-        "bounds": list(
-            bound_texts.linesOfPush(outcome.scene.bounds.entries, outcome.pushes)
-        ),
+        "bounds": [*bound_texts.linesOfPush(bounds.entries, outcome.pushes)],
         **_rowsOf(outcome, data.rows),
     }
 

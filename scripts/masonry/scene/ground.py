@@ -62,51 +62,46 @@ def readRecord(
     :raises Refused: with what is wrong
     """
     if unit not in (None, *UNITS):
-        raise Refused(f"shake: unit must be one of {', '.join(UNITS)}, got {unit!r}")
+        raise Refused(f"unit must be one of {', '.join(UNITS)}, got {unit!r}")
     if isinstance(accelerations, (str, os.PathLike)):
         named = accelerations
-        try:
-            found = accelerograms.read(named)
-        except Refused as refused:
-            raise Refused(f"shake: {refused}") from None
+        found = accelerograms.read(named)
         if found.every is not None:
             if every is not None and abs(every - found.every) > UNEVEN * found.every:
                 raise Refused(
-                    f"shake: {named}: its samples are {found.every:g} s apart, not {every:g} s"
+                    f"{named}: its samples are {found.every:g} s apart, not {every:g} s"
                 )
             every = found.every
         if found.unit is not None:
             if unit is not None and unit != found.unit:
-                raise Refused(f"shake: {named}: it is in {found.unit}, not in {unit}")
+                raise Refused(f"{named}: it is in {found.unit}, not in {unit}")
             unit = found.unit
         accelerations = found.values
     values: list[float] = [float(a) for a in accelerations]
     if len(values) < 2 or not all(map(math.isfinite, values)):
-        raise Refused("shake: a record needs two finite accelerations at least")
+        raise Refused("a record needs two finite accelerations at least")
     if not (isinstance(every, (int, float)) and 0 < every < math.inf):
-        raise Refused(
-            f"shake: every {every!r} s, the time between samples, must be above 0"
-        )
+        raise Refused(f"every {every!r} s, the time between samples, must be above 0")
     if every > COARSEST:
         raise Refused(
-            f"shake: every {every:g} s, the time between samples, must be at most {COARSEST:g} s: is it in s, not ms?"
+            f"every {every:g} s, the time between samples, must be at most {COARSEST:g} s: is it in s, not ms?"
         )
     missing = [n for n, v in enumerate(values) if v in MISSING]
     if missing:
         raise Refused(
-            f"shake: {len(missing)} samples stand for missing values, the first is number {missing[0]}, {values[missing[0]]:g}"
+            f"{len(missing)} samples stand for missing values, the first is number {missing[0]}, {values[missing[0]]:g}"
         )
     peak = abs(scale) * max(abs(v) for v in values)
     if unit is None and peak > 0 and not LOWEST_PEAK <= peak <= HIGHEST_PEAK:
         other = "g" if peak < LOWEST_PEAK else "cm/s²"
         raise Refused(
-            f"shake: the peak of the record is {peak:g}, which is {peak / 9.81:.2g} g if it is in m/s²: is it in {other}? "
+            f"the peak of the record is {peak:g}, which is {peak / 9.81:.2g} g if it is in m/s²: is it in {other}? "
             f"Say unit='{other}', or unit='m/s²' if it is"
         )
     strongest = UNITS[unit or "m/s²"] * peak
     if strongest > LARGEST_PEAK:
         raise Refused(
-            f"shake: the peak of the record, {strongest / 9.81:.3g} g in {unit or 'm/s²'}, must be at most {LARGEST_PEAK / 9.81:.2g} g: "
+            f"the peak of the record, {strongest / 9.81:.3g} g in {unit or 'm/s²'}, must be at most {LARGEST_PEAK / 9.81:.2g} g: "
             "is it in another unit?"
         )
     return [UNITS[unit or "m/s²"] * v for v in values], every

@@ -14,12 +14,13 @@ import io
 import os
 from collections import namedtuple
 
+from ..basics import firstOf
+
 LEAST, MOST = 0.02, 1000.0  # [mm] bounds of an amplitude; a row of curve.csv is 0.01 mm
 AT_ZERO = 0.015  # [mm] within which a wall is at zero: more than a history misses, less than any amplitude
 NOISE = 0.01  # of the largest displacement of a file: smaller excursions may be noise of the measurement
 CYCLES = 10000  # that a list of amplitudes may have
 COLUMN = "displacement_mm"  # of a file
-MOST_PROBLEMS = 10  # problems that are named one by one
 
 #: A point of a history: its displacement [mm]; the direction to it, 1 or -1; and the displacement at which the drive turns or
 #: stops next, for which it brakes, or None if it does not [mm].
@@ -42,7 +43,7 @@ def parse(text):
 
 
 def _number(text):
-    """The number that a text stands for. Python's own 1_000 is none. Raises ValueError."""
+    """The number that a text stands for. Python's own 1_000 is not one. Raises ValueError."""
     if "_" in text:
         raise ValueError(text)
     return float(text)
@@ -50,12 +51,7 @@ def _number(text):
 
 def _refuse(problems):
     if problems:
-        more = (
-            [f"and {len(problems) - MOST_PROBLEMS} more"]
-            if len(problems) > MOST_PROBLEMS
-            else []
-        )
-        raise ValueError("; ".join([*problems[:MOST_PROBLEMS], *more]))
+        raise ValueError("; ".join(firstOf(problems)))
 
 
 def _readList(text):
@@ -190,7 +186,7 @@ def turns(points):
 
 
 def noise(history):
-    """Displacement [mm] up to which an excursion is none: the threshold of :mod:`masonry.read.loops` for the wall's curve."""
+    """Displacement [mm] up to which an excursion does not count: the threshold of :mod:`masonry.read.loops` for the wall's curve."""
     if "file" not in history:
         return AT_ZERO
     return max(AT_ZERO, NOISE * max(map(abs, history["points_mm"])))

@@ -16,28 +16,19 @@ OF_THE_RUN = {"help", *OPTIONS} - those("ofScript")
 
 
 #: Names that a scene takes beside its options.
-BESIDE = (
-    "title",
-    "plane",
-    "gravity",
-    "columns",
-    "functors",
-    "arguments",
-    "allowGaps",
-    "collapse",
-)
+BESIDE = "title plane gravity columns functors arguments allowGaps collapse".split()
 
 
-def checked(parser, name, usual):
+def checked(parser, name, options):
     """The values of keywords, of the kind that the command line would give. Raises Refused with all problems.
 
     :param parser: :class:`masonry.scene.parsing.Parser` whose options they are
     :param name: of the scene
-    :param usual: dict of option -> value
+    :param options: dict of option -> value
     """
     actions = {a.dest: a for a in parser._actions if a.dest not in OF_THE_RUN}
     found, problems = {}, []
-    for option, value in usual.items():
+    for option, value in options.items():
         if option not in actions:
             close = difflib.get_close_matches(option, [*actions, *BESIDE], 1)
             hint = (
@@ -53,7 +44,7 @@ def checked(parser, name, usual):
             found[option] = _value(actions[option], value)
         except (argparse.ArgumentTypeError, ValueError) as error:
             problems.append(f"{option}: {error}")
-    if usual.get("until") is not None and usual.get("history") is not None:
+    if options.get("until") is not None and options.get("history") is not None:
         problems.append("until and history: give one of them")
     if problems:
         raise Refused("\n".join(f"scene {name}: {one}" for one in problems))
@@ -88,7 +79,7 @@ def _typed(action, value):
     return action.type(value) if action.type else value
 
 
-def keep(args, name, usual):
+def keep(args, name, options):
     """Let options have the values that a script gives as keywords, but for those that the command line gives.
 
     A line on the terminal names the others. A preset wins over what the script says of the options that it chooses, and says so. Options of a
@@ -96,36 +87,37 @@ def keep(args, name, usual):
 
     :param args: :class:`masonry.scene.parsing.Options`, which are changed
     :param name: of the scene
-    :param usual: dict of option -> value
+    :param options: dict of option -> value
     :raises Refused: with all problems
     """
     if not isinstance(args, Options):
-        if usual:
+        if options:
             raise Refused(
-                f"scene {name}: arguments that go with {', '.join(usual)} must be those of "
+                f"scene {name}: arguments that go with {', '.join(options)} must be those of "
                 "masonry.scene.options.parser(...).parse_args(), or a list of words"
             )
         return
     vars(args).update(args.replaced)  # by another scene with the same options
     args.replaced, given = {}, args.given
-    usual = checked(args.parser, name, usual)
-    if given is None or not usual:
+    options = checked(args.parser, name, options)
+    if given is None or not options:
         return
-    chosen = given.get("preset", usual.get("preset", args.preset))
+    chosen = given.get("preset", options.get("preset", args.preset))
     preset = PRESETS.get(chosen, {})
-    first = {**usual, **preset}
+    first = {**options, **preset}
     now = {option: given.get(option, value) for option, value in first.items()}
-    for option, value in usual.items():
+    for option, value in options.items():
         if isinstance(value, list):  # what the command line adds comes last
             now[option] = [*value, *given.get(option, [])]
-    beaten = {o: o for o in usual if given.get(o, usual[o]) != usual[o]}  # by which
+    # by which
+    beaten = {o: o for o, value in options.items() if given.get(o, value) != value}
     ends = {"until": "history", "history": "until"}  # of which there is one
     for option, other in ends.items():
         if given.get(option) is not None:
             now.update({option: given[option], other: None})
-            if usual.get(other) is not None:
+            if options.get(other) is not None:
                 beaten[other] = option
-        elif usual.get(option) is not None and other not in given:
+        elif options.get(option) is not None and other not in given:
             now[other] = None
     expected = {**args.defaults, **first}
     now["overrides"] = [
@@ -135,16 +127,19 @@ def keep(args, name, usual):
     ]
     args.replaced = {option: getattr(args, option) for option in now}
     vars(args).update(now)
-    beaten = {o: by for o, by in beaten.items() if not isinstance(usual[o], list)}
+    beaten = {o: by for o, by in beaten.items() if not isinstance(options[o], list)}
     if beaten:
         words = dict.fromkeys(beaten.values())
         ofLine = ", ".join(f"{asOption(o)} {_said(given[o])}" for o in words)
-        ofScene = ", ".join(f"{o} {_said(usual[o])}" for o in beaten)
+        ofScene = ", ".join(f"{o} {_said(options[o])}" for o in beaten)
         say(f"note: the command line wins: {ofLine}; the scene has {ofScene}")
     for option in preset:
-        if option not in given and usual.get(option, preset[option]) != preset[option]:
+        if (
+            option not in given
+            and options.get(option, preset[option]) != preset[option]
+        ):
             say(
-                f"note: --preset {chosen}: {option} is {preset[option]}, the scene has {usual[option]}"
+                f"note: --preset {chosen}: {option} is {preset[option]}, the scene has {options[option]}"
             )
 
 

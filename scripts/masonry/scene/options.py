@@ -10,6 +10,7 @@ from .. import notebook
 from .._masonry import commit, version
 from ..arguments import oneOf, shown
 from ..assembly.engines import LAWS
+from ..background import reportRefusal
 from ..basics import Interrupted, Refused, say
 from ..run import accuracy, batch, options
 from ..run.options import USUAL, reading
@@ -75,11 +76,11 @@ def parser(description, until, rate=USUAL["rate"], loops=True):
     return p
 
 
-def ofScene(name, arguments, usual):
+def ofScene(name, arguments, sceneOptions):
     """The options of a scene: those of its own parser, or of the common one.
 
     :param arguments: what a parser found; a list of words; or None: those of the command line
-    :param usual: what the script says, which holds unless the command line gives the same option: :mod:`.keywords`
+    :param sceneOptions: what the script says, which holds unless the command line gives the same option: :mod:`.keywords`
     :raises Refused: with all problems
     """
     if arguments is None and (not sys.argv or notebook.isHere()):
@@ -96,9 +97,9 @@ def ofScene(name, arguments, usual):
     if arguments is None or isinstance(arguments, (list, tuple)):
         main = sys.modules.get("__main__")
         own = parser(getattr(main, "__doc__", None), until=None)
-        own.set_defaults(**keywords.checked(own, name, usual))
+        own.set_defaults(**keywords.checked(own, name, sceneOptions))
         arguments = own.parse_args(arguments)
-    keywords.keep(arguments, name, usual)
+    keywords.keep(arguments, name, sceneOptions)
     return arguments
 
 
@@ -131,7 +132,7 @@ def check(args, masonry, more=(), plane=False, connectors=None):
         try:
             readRecord(batch.beside(args.record), None, args.scale)
         except Refused as refused:
-            problems.append(f"--record: {str(refused).removeprefix('shake: ')}")
+            problems.append(f"--record: {refused}")
     for text in args.field:
         try:
             scatterAll(connectors, *fields.read(text))
@@ -152,6 +153,7 @@ def askAccuracy(name, args):
     except Refused as refused:
         if notebook.isHere():
             raise
+        reportRefusal(refused)
         say(refused, sys.stderr)
         raise SystemExit(2) from None
     except Interrupted:

@@ -9,6 +9,7 @@ import sys
 from yade import O
 from yade.wrapper import MasonryVtkRecorder
 
+from ..arguments import isNumber
 from ..assembly import blocks
 from ..assembly.blocks import units
 from ..assembly.engines import LAWS
@@ -59,7 +60,7 @@ class Outcome:
 
     @property
     def loads(self):
-        """What stages loaded, in their order: pairs of the number of the stage and what :class:`Place` keeps of it."""
+        """What stages loaded, in their order: pairs of the number of the stage and what :class:`RunState` keeps of it."""
         loads = self.scene.running.at.loads
         return [(number, loads[str(number)]) for number in sorted(map(int, loads))]
 
@@ -69,13 +70,15 @@ class Outcome:
         pushes = [load[1:] for _, load in self.loads if load[0] == "push"]
         return pushes[-1] if pushes else []
 
-    def _swing(self):
-        """Of the first of the pushes that count, as of :class:`masonry.run.place.Place`: the first period, the weight of the base in
+    def _freeVibration(self):
+        """Of the first of the pushes that count, as in :class:`masonry.run.run_state.RunState`: the first period, the weight of the base in
         the shear force, and when the velocity of the drive had grown."""
-        stages, swings = self.scene.running.at.stages, self.scene.running.at.swings
+        at = self.scene.running.at
         first = self.data.rows[0] if self.data.rows else math.inf
-        numbers = (n for n in sorted(map(int, swings)) if stages[n - 1][3] >= first)
-        return swings[str(number)] if (number := next(numbers, None)) else (0.0, 0.0, 0.0)  # fmt: skip
+        for number in sorted(map(int, at.freeVibrations)):
+            if at.stages[number - 1][3] >= first:
+                return at.freeVibrations[str(number)]
+        return 0.0, 0.0, 0.0
 
     def space(self):
         """Bytes that a run writes at least, and those that it will probably write."""
@@ -143,10 +146,12 @@ class Outcome:
         )
         if self.description.views:
             entries["views"] = self.description.views
-        wall = wallOf(self.description, model.loading) if self.pushed else None
-        if wall:
-            entries["wall"] = wall
-        return entries
+        return {**entries, **self._wall()}
+
+    def _wall(self):
+        """The entry ``wall``, if a whole wall in running bond is pushed."""
+        wall = self.pushed and wallOf(self.description, self.model.loading)
+        return {"wall": wall} if wall else {}
 
     def _columnsOf(self, records, *units):
         """The columns of curve.csv that some records have, of these units."""
@@ -196,7 +201,7 @@ class Outcome:
     def _ofPush(self, data):
         """Entries that the numbers of a push are found from, and what the joints say."""
         model = self.model
-        period, weight, grown = self._swing()
+        period, weight, grown = self._freeVibration()
         target, sways = model.loading.target, abs(model.loading.direction[2]) < 1e-9
         heights = target.recorded[2], model.supports.driftHeight(target)
         recorded, drift = (z - self.description.low[2] for z in heights)
@@ -244,8 +249,7 @@ class Outcome:
     def figure(self):
         """The entries of run.json by which curve.png is drawn."""
         found = dict(title=self.description.title, figure=figureOf(self))
-        wall = wallOf(self.description, self.model.loading) if self.pushed else None
-        return {**found, "wall": wall} if wall else found
+        return {**found, **self._wall()}
 
     def write(self, directory, draws=True):
         """Write what the scene has beside rows and frames: the mechanism of limit analysis, with its picture if it is to be
@@ -253,11 +257,7 @@ class Outcome:
         description = self.description
         try:
             self.scene.bounds.write(
-                directory,
-                description.title,
-                self.model.parts,
-                description.views,
-                draws,
+                directory, description.title, self.model.parts, description.views, draws
             )
         except Missing as missing:
             say(f"mechanism.png is left out: {missing}", sys.stderr)
@@ -291,16 +291,15 @@ class Outcome:
 
 
 def _meanings(cls):
-    """What the properties of a class of the plugin mean, by their names."""
     return {p["name"]: p["meaning"] for p in blocks.properties(cls)}
 
 
-def shortened(said):
+def shortened(entry):
     """What a script said, with long lists, as a record of an earthquake, as a text that says how long they are."""
-    if isinstance(said, dict):
-        return {name: shortened(value) for name, value in said.items()}
-    if isinstance(said, (list, tuple)):
-        if len(said) > MOST_NUMBERS and all(isinstance(v, (int, float)) for v in said):
-            return f"{len(said):,} numbers from {min(said):.6g} to {max(said):.6g}"
-        return [shortened(value) for value in said]
-    return said
+    if isinstance(entry, dict):
+        return {name: shortened(value) for name, value in entry.items()}
+    if isinstance(entry, (list, tuple)):
+        if len(entry) > MOST_NUMBERS and all(map(isNumber, entry)):
+            return f"{len(entry):,} numbers from {min(entry):.6g} to {max(entry):.6g}"
+        return [shortened(value) for value in entry]
+    return entry

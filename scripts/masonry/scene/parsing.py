@@ -4,9 +4,10 @@
 import argparse
 import re
 
-from ..basics import Refused, plain
+from ..background import reportRefusal
+from ..basics import NotResumed, Refused, plain
 from ..run import batch
-from ..run.place import Saved
+from ..run.run_state import Saved
 from ..run.options import asOption, those
 from ..run.presets import PRESETS
 from . import history
@@ -66,9 +67,16 @@ class Parser(argparse.ArgumentParser):
         super()._print_message(plain(message or ""), file)
 
     def error(self, message):
+        refused = Refused("\n".join([*self.problems, message]))
         if self.raises:
-            raise Refused("\n".join([*self.problems, message]))
+            raise refused
+        reportRefusal(refused)
         super().error("\n  ".join([*self.problems, message]))
+
+    def _refuse(self, refused):
+        """End the program, with what is refused."""
+        reportRefusal(refused)
+        self.exit(2, f"{refused}\n")
 
     def refusals(self, words):
         """The options that words give, or None, and why they are refused, a list of sentences."""
@@ -89,7 +97,7 @@ class Parser(argparse.ArgumentParser):
             except batch.Done as done:
                 self.exit(0, f"{done} has the results of this row\n")
             except Refused as refused:
-                self.exit(2, f"{refused}\n")
+                self._refuse(refused)
         found = self._parsed(args, namespace)
         if whole:
             Parser.last = self, found
@@ -105,8 +113,8 @@ class Parser(argparse.ArgumentParser):
         given = vars(super().parse_args(args, nothing))
         given = {name: value for name, value in given.items() if value is not None}
         defaults = vars(super().parse_args([]))
-        usual = {**defaults, **PRESETS.get(found.preset, {})}
-        vars(found).update(usual, **given)
+        presetOptions = {**defaults, **PRESETS.get(found.preset, {})}
+        vars(found).update(presetOptions, **given)
         if isinstance(found, Options):
             found.given, found.defaults = given, defaults
         if found.history:
@@ -114,7 +122,7 @@ class Parser(argparse.ArgumentParser):
         found.overrides = [
             name
             for name, value in given.items()
-            if name not in those("harmless") and value != usual[name]
+            if name not in those("harmless") and value != presetOptions[name]
         ]
         return found
 
@@ -129,7 +137,7 @@ class Parser(argparse.ArgumentParser):
         asked = acting - {"help", "out", "resume"}
         wrong += [f"no {asOption(name)}" for name in sorted(asked - known.keys())]
         if wrong:
-            raise Refused(
+            raise NotResumed(
                 f"--resume: {folder} was left by another scene or version: {', '.join(wrong)}"
             )
 
@@ -139,7 +147,7 @@ class Parser(argparse.ArgumentParser):
             known = saved.options
             self._checkKnown(known, folder)
         except Refused as refused:
-            self.exit(2, f"{refused}\n")
+            self._refuse(refused)
         known["set"] = [tuple(setting) for setting in known["set"]]
         known["out"] = folder
         start = Options(self, **{**known, "set": [], "field": []})
@@ -161,6 +169,7 @@ class Parser(argparse.ArgumentParser):
                 f"--history is {old['text']}, and another one must begin with all its points"
             )
         if fixed:
-            self.exit(2, f"--resume: a run goes on as it began: {', '.join(fixed)}\n")
+            why = f"--resume: a run goes on as it began: {', '.join(fixed)}"
+            self._refuse(NotResumed(why))
         given.saved = saved
         return given

@@ -11,7 +11,7 @@ from yade.wrapper import MasonryJoint
 
 from ..run import batch
 from . import fields
-from ..basics import Refused, say
+from ..basics import Refused, firstOf, say
 from .materials import withResidual
 from .options import check
 from .parsing import Parser
@@ -78,8 +78,8 @@ def probe(scene, stage, traits, arguments):
             json.dump(entries, f)
         os.replace(path + ".new", path)
     except OSError as error:
-        say(f"{batch.UNWRITTEN}{path}: {error.strerror}", sys.stderr)
-        raise SystemExit(1) from None
+        say(f"cannot write {path}: {error.strerror}", sys.stderr)
+        raise SystemExit(batch.UNWRITTEN) from None
     raise SystemExit(0)
 
 
@@ -121,15 +121,13 @@ def _rows(scene, parser):
         row = {n: v for n, v in row.items() if "." in n or n in known | {"description"}}
         for sentence in _refused(scene, parser, batch.optionWords(row)):
             alike = re.sub(r"\d[\d.e+-]*", "#", sentence)  # but for its numbers
-            problems.setdefault(alike, []).append(
-                (row.get("description", line), sentence)
-            )
+            name = row.get("description", line)
+            problems.setdefault(alike, []).append((name, sentence))
     sentences = [
         f"row {found[0][0]}{f' and {len(found) - 1} more' if found[1:] else ''}: {found[0][1]}"
         for found in problems.values()
     ]
-    more = len(sentences) - MOST
-    return sentences[:MOST] + ([f"and {more} more"] if more > 0 else [])
+    return firstOf(sentences, MOST)
 
 
 def _refused(scene, parser, words):

@@ -121,9 +121,7 @@ def section(
 
 def _middleAt(description, z, part, name):
     """The middle of the box around the bricks that reach a height [m]. Raises ValueError if there is none."""
-    points = [
-        block.corners for block in description.bricks if part in (None, block.part)
-    ]
+    points = [b.corners for b in description.bricks if part in (None, b.part)]
     near = 1e-6 * (1 + abs(z))
     cut = [
         corner
@@ -159,7 +157,7 @@ def recordBase(description: Any) -> None:
     names = itertools.chain([BASE], (f"{BASE}{k}" for k in itertools.count(2)))
     name = next(filter(free, names))
     middle = _middleAt(description, z, None, name)
-    description.sections.append(Section(name, z, None, middle, usual=True))
+    description.sections.append(Section(name, z, None, middle, isBase=True))
 
 
 @describes

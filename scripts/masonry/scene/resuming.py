@@ -13,7 +13,7 @@ from types import SimpleNamespace
 from typing import Any
 
 from ..run.checkpoints import alike
-from ..run.place import otherVersion
+from ..run.run_state import otherVersion
 from .words import PUSHES, asData
 
 
@@ -59,7 +59,7 @@ class State:
         self.restored = False  # whether the scene has the state of a checkpoint again
 
     def kept(self):
-        """Entries of :class:`masonry.run.place.Place`."""
+        """Entries of :class:`masonry.run.run_state.RunState`."""
         atRest = self._scene.model.atRest
         if atRest is not self._rest[0]:
             self._rest = atRest, base64.b64encode(atRest).decode()
@@ -77,7 +77,7 @@ class State:
     def takeRest(self, at):
         """Take the last state at rest from a checkpoint.
 
-        :param at: :class:`masonry.run.place.Place`
+        :param at: :class:`masonry.run.run_state.RunState`
         """
         model = self._scene.model
         if at.atRest:
@@ -115,9 +115,9 @@ def _optionsDiffer(scene):
     return any(was.get(name) != now[name] for name in ("until", "history"))
 
 
-def saidBefore(scene, word, **said):
+def saidBefore(scene, word, **arguments):
     """Note a command that is no stage. Returns whether the script of a run that is resumed said it before the checkpoint."""
-    scene.script.add(word, said)
+    scene.script.add(word, arguments)
     if not scene.running.takesUp:
         return False
     scene.script.compare(scene.running.scriptBefore)
@@ -139,10 +139,10 @@ def resume(scene: Any) -> str:
             f"resume: scene {scene.name} has no run that was interrupted and left a checkpoint"
         )
     folder, calls, given = scene.results.directory, scene.calls, scene.args
-    (name, *made), beside = scene._made
+    (name, *made), settings = scene._made
     arguments = given.parser.parse_args(["--resume", folder])
     vars(scene).clear()
-    scene.__init__(name, *made, arguments, **beside)  # type: ignore[misc]
+    scene.__init__(name, *made, arguments, **settings)  # type: ignore[misc]
     ended = None
     for call in calls:
         with contextlib.suppress(*[ValueError] * call.refused):

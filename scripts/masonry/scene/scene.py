@@ -38,19 +38,8 @@ from ..run.ending import end
 from ..run.presets import BOUND
 from ..run.results import Results
 from ..run.run import Run
-from . import (
-    bounding,
-    connections,
-    contact,
-    facts,
-    loads,
-    options,
-    probing,
-    records,
-    showing,
-    stages,
-    supports,
-)
+from . import bounding, connections, contact, facts, loads, options, probing, records
+from . import showing, stages, supports
 from .bounds import Bounds, takeFound
 from .description import Description
 from .materials import Masonry, linesOf, loadingBlock
@@ -96,7 +85,7 @@ class Scene:
     :param gravity: [m/s²], downwards
     :param columns: names of the columns of curve.csv, beside the energies and the section at the base; None: all that there
         are
-    :param functors: as of :func:`masonry.assembly.engines.engines`
+    :param functors: as in :func:`masonry.assembly.engines.engines`
     :param arguments: options as :func:`masonry.scene.options.parser` gives them, or a list of words; None: those of the
         command line
     :param allowGaps: whether bricks that nearly share a face stand apart on purpose, and have no joint
@@ -105,7 +94,7 @@ class Scene:
         collapse goes on until the rubble is at rest, and ``shake`` and ``run`` go on whatever falls. Rigid bricks only. The
         contact has stiffness and residual friction of the bed joint; ``--set contact.friction=0.7`` and the like change it.
         Blocks fall on the ground, a block that the scene adds below everything else
-    :param usual: options of this scene, for example ``rate=50`` [mm/s] or ``dt_fraction=0.4``. They hold unless the command
+    :param sceneOptions: options of this scene, for example ``rate=50`` [mm/s] or ``dt_fraction=0.4``. They hold unless the command
         line, or the list of words, gives the same option; a note says so then
     :raises Refused: if something is wrong, with all problems at once. A script that does not catch it ends with exit
         status 2
@@ -127,25 +116,15 @@ class Scene:
         arguments: Any = None,
         allowGaps: bool = False,
         collapse: Annotated[str, oneOf("end", "follow")] = "end",
-        **usual: Any,
+        **sceneOptions: Any,
     ) -> None:
         #: what it was made with, its name first, for :meth:`resume`
-        self._made = (name, bricks, materials, title, plane, gravity, columns, functors), dict(allowGaps=allowGaps, collapse=collapse)  # fmt: skip
-        self.description = Description(
-            name,
-            bricks,
-            materials,
-            title,
-            plane,
-            gravity,
-            columns,
-            functors,
-            allowGaps=allowGaps,
-            collapse=collapse,
-        )
-        arguments = options.ofScene(name, arguments, usual)
+        made = name, bricks, materials, title, plane, gravity, columns, functors
+        self._made = made, dict(allowGaps=allowGaps, collapse=collapse)
+        self.description = Description(*made, allowGaps=allowGaps, collapse=collapse)
+        arguments = options.ofScene(name, arguments, sceneOptions)
         self.name, self.args = name, arguments
-        #: what --accuracy found, :class:`masonry.run.accuracy.Asked`, or None
+        #: what --accuracy found, :class:`masonry.run.accuracy.AccuracyResult`, or None
         self.accuracy = options.askAccuracy(name, arguments)
         if arguments.crack_surfaces == "off":
             self.description.bricks = list(Bricks(self.description.bricks).whole())
@@ -153,9 +132,8 @@ class Scene:
         self.script = Script()
         self.calls = []  # every word that was said
         self.staging = False  # whether a stage is being carried out
-        self.bracketing = (
-            False  # whether bracket() looks for a load, so that no collapse is followed
-        )
+        # whether bracket() looks for a load, so that no collapse is followed
+        self.bracketing = False
         self.running = Run(name, arguments, self.script.words)
         # when it is built
         self.model: Any = None
@@ -233,7 +211,7 @@ class Scene:
 
     @property
     def answers(self) -> list[dict[str, Any]]:
-        """What the stages were run for, in their order: a list of dicts, as of
+        """What the stages were run for, in their order: a list of dicts, as in
         :class:`masonry.scene.stages.answers.Answer`, with the ``stage`` and its ``number``.
         """
         kept, entered = self.running.at.answers, self.running.entered
@@ -301,10 +279,10 @@ class Scene:
     def _prepare(self):
         """Make the engines that stages had made before the checkpoint of a run that is resumed."""
         names, begun = {stage.__name__ for stage in STAGES}, False
-        for word, said in self.running.scriptBefore:
+        for word, arguments in self.running.scriptBefore:
             begun = begun or word in names
             if begun:
-                prepare(self, word, said)
+                prepare(self, word, arguments)
 
     def probe(self, stage: str, traits: Any, arguments: Any) -> Any:
         """Say what a study must know of the scene, and end; see :func:`masonry.scene.probing.probe`."""
@@ -330,7 +308,7 @@ class Scene:
         if not error and not self.model:
             return False
         if not (error or self.only or any(word in SHAKES for word, _ in self.script.words)):  # fmt: skip
-            given = [o for o, usual in (("record", None), ("scale", 1)) if getattr(self.args, o, usual) != usual]  # fmt: skip
+            given = [o for o, default in (("record", None), ("scale", 1)) if getattr(self.args, o, default) != default]  # fmt: skip
             for option in given:
                 say(f"warning: --{option} was not used: the scene was not shaken")
         with self.running.listening():

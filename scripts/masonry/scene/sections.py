@@ -31,19 +31,15 @@ class Section:
     z: float  # [m]
     part: str
     middle: tuple
-    interactions: list = field(
-        default_factory=list
-    )  # YADE's, of its joints, when the scene is built
-    signs: list = field(
-        default_factory=list
-    )  # of each: 1 if its first body is the lower one, else -1
-    connections: list = field(
-        default_factory=list
-    )  # ties and springs that cross it, each with its upper end
-    above: dict = field(
-        default_factory=dict
-    )  # whether every body is above it, by its id, where a collapse is followed
-    usual: bool = False  # whether nobody said it: the base, which every run records
+    # YADE's, of its joints, when the scene is built
+    interactions: list = field(default_factory=list)
+    # of each: 1 if its first body is the lower one, else -1
+    signs: list = field(default_factory=list)
+    # ties and springs that cross it, each with its upper end
+    connections: list = field(default_factory=list)
+    # whether every body is above it, by its id, where a collapse is followed
+    above: dict = field(default_factory=dict)
+    isBase: bool = False  # whether nobody said it: the base, which every run records
     _structure: object = None
     _parts: dict = field(default_factory=dict)  # of the blocks, by their bodies
     _read: tuple = (None, None)  # the last reading, and what was found then

@@ -9,6 +9,10 @@ from ..arguments import nearest, number
 from ..basics import Refused
 
 
+#: A function of x, y and z [m] that gives a factor [-].
+Factor = Callable[[float, float, float], float]
+
+
 class Property(NamedTuple):
     """A property of what is no joint: its unit and its bounds.
 
@@ -22,7 +26,7 @@ class Property(NamedTuple):
 
     @property
     def kind(self) -> Callable[..., Any]:
-        """The kind of its values, as of :mod:`masonry.arguments`."""
+        """The kind of its values, as in :mod:`masonry.arguments`."""
         return number(self.unit, self.low, self.high, above=self.above)
 
 
@@ -69,9 +73,7 @@ class Settable:
         if problems:
             raise ValueError("\n".join(problems))
 
-    def scatter(
-        self, name: str, factor: Callable[[float, float, float], float]
-    ) -> None:
+    def scatter(self, name: str, factor: Factor) -> None:
         """Multiply a property by the value of a field where this is. Raises ValueError.
 
         :param factor: function of x, y and z [m] that gives a factor [-]
@@ -102,13 +104,13 @@ def copiedAll(connectors: dict[str, Any]) -> dict[str, Any]:
 def scatterAll(
     connectors: dict[str, Any],
     names: list[str],
-    factor: Callable[[float, float, float], float],
+    factor: Factor,
 ) -> None:
     """Let properties of ties, springs and fibre layers vary by a field. Raises ValueError with all problems.
 
     :param connectors: ties, springs and fibre layers by name
     :param names: as ``"wire.strength"``; those of joints are left alone
-    :param factor: as of :meth:`Settable.scatter`
+    :param factor: as in :meth:`Settable.scatter`
     """
     problems = []
     for one in names:
@@ -195,19 +197,13 @@ def applySettings(joints, settings):
 
 
 def _value(text, example):
-    """The value that the text of a setting stands for, of the kind of ``example``. Raises ValueError if it is none."""
+    """The value that the text of a setting stands for, of the kind of ``example``. Raises ValueError if it is not one."""
     if isinstance(example, bool):
-        switches = {
-            "on": True,
-            "true": True,
-            "1": True,
-            "off": False,
-            "false": False,
-            "0": False,
-        }
-        if text.lower() not in switches:
-            raise ValueError(text)
-        return switches[text.lower()]
+        if text.lower() in ("on", "true", "1"):
+            return True
+        if text.lower() in ("off", "false", "0"):
+            return False
+        raise ValueError(text)
     if isinstance(example, list):
         rows = [tuple(float(v) for v in row.split(":")) for row in text.split(",")]
         if any(len(row) != 2 for row in rows):

@@ -190,14 +190,14 @@ def hold(
 @describes
 @validated
 def watch(description: Any, where: BrickAt, name: Name | None = None) -> Target:
-    """Record the motion of a brick. Parameters as of :meth:`hold`; a point is the one that is recorded."""
+    """Record the motion of a brick. Parameters as in :meth:`hold`; a point is the one that is recorded."""
     return _brick(description, where, name, fixed=False, loaded=False)
 
 
 @describes
 @validated
 def handle(description: Any, where: BrickAt, name: Name | None = None) -> Target:
-    """A brick that loads act on, at its centre or at the point that is given. Parameters as of :meth:`hold`."""
+    """A brick that loads act on, at its centre or at the point that is given. Parameters as in :meth:`hold`."""
     return _brick(description, where, name, fixed=False)
 
 

@@ -40,47 +40,32 @@ class Target:
 
         :param plane: whether the scene moves in the x-z plane only
         """
-        for i, axis in enumerate("xyz"):
-            if plane and axis == "y":
-                continue
-            yield Column(
-                f"{self.name}_{axis}",
-                "mm",
-                f"displacement of {self.name} along {axis}",
-                lambda r, i=i: 1e3 * r.moved(self)[0][i],
-            )
+        name, axes = self.name, [*enumerate("xyz")]
+        if plane:
+            del axes[1]
+
+        def forceAlong(i, axis, on, force):
+            what = f"force of the structure on {on} along {axis}"
+            return Column(f"{name}_force_{axis}", "kN", what, lambda r: force(r)[i])
+
+        for i, axis in axes:
+            what = f"displacement of {name} along {axis}"
+            moved = lambda r, i=i: 1e3 * r.moved(self)[0][i]
+            yield Column(f"{name}_{axis}", "mm", what, moved)
             if self.fixed or axis in (self.freedom or ""):
-                yield Column(
-                    f"{self.name}_force_{axis}",
-                    "kN",
-                    f"force of the structure on {self.name} along {axis}",
-                    lambda r, i=i: 1e-3 * r.forces[self.name][i],
-                )
+                yield forceAlong(i, axis, name, lambda r: 1e-3 * r.forces[name])
         if self.brick is not None and self.loaded and not self.fixed:
-            for i, axis in enumerate("xyz"):
-                if not (plane and axis == "y"):
-                    yield Column(
-                        f"{self.name}_force_{axis}",
-                        "kN",
-                        f"force of the structure on what loads, drives or holds {self.name} along {axis}",
-                        lambda r, i=i: -1e-3 * r.structure.supports.forceFrom(self)[i],
-                    )
-        for i, axis in [("xyz".index(axis), axis) for axis in self.drives]:
-            yield Column(
-                f"{self.name}_force_{axis}",
-                "kN",
-                f"force of the structure on the drive of {self.name} along {axis}",
-                lambda r, i=i, axis=axis: -1e-3
-                * r.structure.loading.driveForce(self, axis)[i],
-            )
+            force = lambda r: -1e-3 * r.structure.supports.forceFrom(self)
+            for i, axis in axes:
+                on = f"what loads, drives or holds {name}"
+                yield forceAlong(i, axis, on, force)
+        for axis in self.drives:
+            own = lambda r, a=axis: -1e-3 * r.structure.loading.driveForce(self, a)
+            yield forceAlong("xyz".index(axis), axis, f"the drive of {name}", own)
         if not self.fixed:
-            about = " about y" if plane else ", its angle"
-            yield Column(
-                f"{self.name}_rotation",
-                "mrad",
-                f"rotation of {self.name}{about}",
-                lambda r: 1e3 * r.moved(self)[1],
-            )
+            what = f"rotation of {name}" + (" about y" if plane else ", its angle")
+            turned = lambda r: 1e3 * r.moved(self)[1]
+            yield Column(f"{name}_rotation", "mrad", what, turned)
 
 
 @dataclass
@@ -176,7 +161,7 @@ OF_JOINTS = (
 )  # fmt: skip
 
 
-# -- kinds of arguments, as of masonry.arguments ----------------------------------------------------------------------
+# -- kinds of arguments, as in masonry.arguments ----------------------------------------------------------------------
 
 
 def _descriptionOf(first):

@@ -5,13 +5,13 @@ from __future__ import annotations
 
 import copy
 from dataclasses import dataclass, replace
-from typing import Any, Callable, Iterator
+from typing import Any, Iterator
 
 from yade import Vector3
 from yade.wrapper import MasonrySprings, MasonryTies
 
 from ..assembly.columns import Column
-from .settings import Property, Settable
+from .settings import Factor, Property, Settable
 from .targets import Target
 
 MOST = 1e15  # of stiffness [N/m], [N m] and force [N]: more has no structure
@@ -352,9 +352,7 @@ class Overlay(Settable):
                     setattr(one, name, getattr(one, name) * share)
             setattr(self, name, value)
 
-    def scatter(
-        self, name: str, factor: Callable[[float, float, float], float]
-    ) -> None:
+    def scatter(self, name: str, factor: Factor) -> None:
         """Every bundle has the value of the field at its own place; the layer keeps the mean."""
         if getattr(self, name) is None:
             raise ValueError(f"{self.name}: {name} was not given, so nothing can vary about it")  # fmt: skip
@@ -371,11 +369,9 @@ class Overlay(Settable):
         engine = self.ties[0].engine
         if not len(engine.forces):
             return 0, 0
-        yielded, broken = list(engine.yieldedAt), list(engine.brokenAt)
         numbers = [one.number for one in self.ties]
-        return sum(yielded[n] >= 0 for n in numbers), sum(
-            broken[n] >= 0 for n in numbers
-        )
+        count = lambda steps: sum(steps[n] >= 0 for n in numbers)
+        return count(list(engine.yieldedAt)), count(list(engine.brokenAt))
 
     def entry(self) -> dict[str, Any]:
         """What run.json says of it."""

@@ -9,7 +9,7 @@ import math
 from dataclasses import dataclass
 from typing import Any, Callable, Concatenate, ParamSpec, Protocol, TypeVar, overload
 
-from ..basics import Refused
+from ..basics import NotResumed
 
 P = ParamSpec("P")
 Q = ParamSpec("Q")
@@ -139,12 +139,12 @@ class Script:
 
     def note(self, act, first, args, settings, farther=()):
         """Note a word. ``farther`` names those of its arguments that say how far a stage goes."""
-        said = asData(argumentsOf(act, first, args, settings))
-        self.add(act.__name__, said, farther)
+        arguments = asData(argumentsOf(act, first, args, settings))
+        self.add(act.__name__, arguments, farther)
 
-    def add(self, word, said, farther=()):
+    def add(self, word, arguments, farther=()):
         """Add a word and its arguments as data."""
-        self.words.append([word, said])
+        self.words.append([word, arguments])
         self._farther.append(set(farther))
 
     def isFirst(self, words):
@@ -164,11 +164,11 @@ class Script:
         for at, (was, now) in enumerate(zip(before, self.words)):
             if was == now:
                 continue
-            (name, known), (other, said) = was, now
+            (name, old), (other, new) = was, now
             may = self._farther[at] if at == last else set()
-            changed = {n for n in {**known, **said} if known.get(n) != said.get(n)}
+            changed = {n for n in {**old, **new} if old.get(n) != new.get(n)}
             if name != other or not changed <= may:
-                raise Refused(
+                raise NotResumed(
                     f"--resume: a run goes on as it began: the script said {spoken(was)}, now it says {spoken(now)}"
                 )
             farther = True

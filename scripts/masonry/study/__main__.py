@@ -75,8 +75,8 @@ def tell(folder):
     table = rowsOf(folder)
     checkRows(folder, table)
     counts = gather(folder, table)
-    said = ", ".join(f"{n} {status}" for status, n in sorted(counts.items()))
-    say(f"{said}; see {folder.of(CSV)}")
+    summary = ", ".join(f"{n} {status}" for status, n in sorted(counts.items()))
+    say(f"{summary}; see {folder.of(CSV)}")
     return 0 if set(counts) <= {"ended", "above collapse"} else 1
 
 

@@ -9,7 +9,7 @@ and begins again. What a row has found cannot be compared with anything: whoever
 
 from itertools import zip_longest
 
-from ..basics import Refused
+from ..basics import Refused, firstOf
 from ..read.files import readText
 from ..run import batch, presets
 from .gathering import TABLE
@@ -76,7 +76,7 @@ def rowsOf(folder):
 def checkRows(folder, rows):
     """Refuse rows that have ended with other values than the table gives them, as far as run.json tells.
 
-    :param rows: as of :func:`rowsOf`
+    :param rows: as in :func:`rowsOf`
     """
     problems = []
     for number, row in enumerate(rows, 1):
@@ -87,10 +87,9 @@ def checkRows(folder, rows):
                 for was, now in _otherOptions(row, run.get("options"))
             ]
     if problems:
-        more = len(problems) - SHOWN
         raise Refused(
             f"{folder.of(batch.ROWS)}: remove the folders of these rows, and they are run again:\n  "
-            + "\n  ".join(problems[:SHOWN] + [f"and {more} more"] * (more > 0))
+            + "\n  ".join(firstOf(problems, SHOWN))
         )
 
 

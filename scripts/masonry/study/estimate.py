@@ -273,7 +273,6 @@ def sentence(
 
 
 def _time(seconds):
-    """A time in words [s]."""
     for length, unit in ((3600, "h"), (60, "min")):
         if seconds >= 2 * length:
             return f"{seconds / length:.3g} {unit}"

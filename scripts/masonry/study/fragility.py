@@ -120,7 +120,6 @@ def fit(low: Numbers, high: Numbers, confidence: float = CONFIDENCE) -> Fit:
 
 
 def _check(low, high):
-    """Refuse records that cannot give a fragility."""
     n = len(low)
     if n < FEWEST:
         raise Refused(f"a fragility needs {FEWEST} records or more, there are {n}")

@@ -143,15 +143,13 @@ def written(path, text):
 
 #: How lines begin that are no reason of a failure.
 _CHATTER = ("Yade: ", "Running script", "XMLRPC", "TCP python", "Welcome to", "Using python", "note: ")  # fmt: skip
+_USAGE = re.compile(r"^usage: .*?: error: ", re.DOTALL | re.MULTILINE)  # of argparse
 _ERROR = re.compile(r"[\w.]*(Error|Exception|Exit|Interrupt)\b")
 
 
 def reason(log):
     """What a scene said at last before it failed, of the text of its log: sentences, or an empty list."""
-    lines = [
-        line.strip()
-        for line in log.partition("error: ")[2 if " error: " in log else 0].splitlines()
-    ]
+    lines = [line.strip() for line in _USAGE.split(log, 1)[-1].splitlines()]
     lines = [line for line in lines if line and not line.startswith(_CHATTER)]
     if "Traceback (most recent call last):" in log:
         lines = [line for line in lines if _ERROR.match(line)][-1:] or lines[-1:]
@@ -168,7 +166,7 @@ def _text(value):
 def gather(folder, table):
     """Write study.csv and times.csv. Returns how many rows have each status.
 
-    :param table: the rows of the table, as of :func:`masonry.study.continuing.rowsOf`
+    :param table: the rows of the table, as in :func:`masonry.study.continuing.rowsOf`
     """
     record, chains = folder.description()["study"], folder.chains
     names, found, times, counts = list(record["vary"]), [], [], {}

@@ -198,12 +198,9 @@ class Incremental:
         return found
 
     def _motion(self, path, before):
-        try:
-            # what a file says itself needs no unit, and what it says counts
-            unit = None if accelerograms.read(path).unit else self.unit
-            values, every = readRecord(path, None, 1.0, unit)
-        except Refused as refused:
-            raise Refused(str(refused).removeprefix("shake: ")) from None
+        # what a file says itself needs no unit, and what it says counts
+        unit = None if accelerograms.read(path).unit else self.unit
+        values, every = readRecord(path, None, 1.0, unit)
         stem = os.path.splitext(os.path.basename(path))[0]
         stem = re.sub(r"[^A-Za-z0-9_-]+", "_", stem)[:60] or "record"
         name, count, names = stem, 1, {motion.name.lower() for motion in before}

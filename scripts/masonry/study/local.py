@@ -61,13 +61,13 @@ class Local:
         command = [sys.executable, "-P", "-m", "masonry.study.row", *words]
         env = {name: v for name, v in os.environ.items() if name != batch.VARIABLE}
         with open(self.folder.of(LOG), "ab", opener=inside) as log:
-            return background.start(command, log, env, self.folder.path)
+            return background.Program(command, log, env, self.folder.path)
 
-    def _ended(self, number, status):
+    def _ended(self, number, program):
         """See how far the program of a row has come, which may have gone on with the levels above."""
         rows = self.open.intersection([number, *self.folder.chains.higher(number)])
         self._look(rows)
-        killed = status < 0 or status >= 128
+        killed = not 0 <= program.returncode < 128
         for one in sorted(rows & self.open):
             if self.folder.isHeld(one):
                 continue  # somebody else has begun to run it
@@ -86,8 +86,8 @@ class Local:
     def _show(self):
         done, failed = self.runs - len(self.open), len(self.failed)
         more = f", {failed} failed" if failed else ""
-        said = lambda: f"{done - failed} of {self.runs} rows{more}"
-        self.progress.show("study", done / self.runs, said, None, not self.open)
+        text = lambda: f"{done - failed} of {self.runs} rows{more}"
+        self.progress.show("study", done / self.runs, text, None, not self.open)
 
     def _fail(self, number, why):
         self.failed[number] = why

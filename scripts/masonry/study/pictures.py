@@ -16,12 +16,8 @@ from . import statistics
 DPI = 200
 BAND = 0.05, 0.95  # quantiles between which a fan is shaded
 POINTS = 400  # along the axis of a fan, and of a fragility curve
-SMALL = {
-    "font.size": 8,
-    "axes.titlesize": 9,
-    "legend.fontsize": 7.5,
-    "axes.axisbelow": True,
-}
+SMALL = {"font.size": 8, "axes.titlesize": 9, "legend.fontsize": 7.5}
+SMALL["axes.axisbelow"] = True
 POINT, LINE, BARS = COLOURS[0], COLOURS[1], COLOURS[0]
 SHARES = [BARS, *COLOURS[2:], "#F0E442"]  # colours of the parts of bars
 BAND_STYLE = dict(color=POINT, alpha=0.2, lw=0)
@@ -45,11 +41,7 @@ def scatter(path, inputs, output, label):
     """
     from matplotlib.ticker import EngFormatter
 
-    columns = {
-        name: np.asarray(values, float)
-        for name, values in inputs.items()
-        if np.ptp(values) > 0
-    }
+    columns = {n: np.asarray(v, float) for n, v in inputs.items() if np.ptp(v) > 0}
     if not columns:
         raise Refused(f"no number varies in this study beside {label}")
     columns[label] = np.asarray(output, float)
@@ -70,9 +62,8 @@ def scatter(path, inputs, output, label):
                     axis.set_yticks([])
                 else:
                     colour = LINE if i == k - 1 else POINT
-                    axis.scatter(
-                        x, y, s=dot, color=colour, lw=0, alpha=0.7, rasterized=True
-                    )
+                    style = dict(color=colour, lw=0, alpha=0.7, rasterized=True)
+                    axis.scatter(x, y, s=dot, **style)
                     rank = stats.spearmanr(x, y).statistic
                     axis.set_title(f"{rank:+.2f}", fontsize=7, pad=2)
                 axis.tick_params(labelsize=6)
@@ -144,7 +135,6 @@ def sobol(path, found, label):
 
 
 def _bars(axis, rows, intervals, cap=2.5, **settings):
-    """Horizontal bars with their intervals."""
     lengths = [[i.value - i.low, i.high - i.value] for i in intervals]
     axis.barh(
         rows,
@@ -312,9 +302,8 @@ def fan(path, curves, xLabel, yLabel):
     curves = [_increasing(*curve) for curve in curves]
     end = np.median([x[-1] for x, _ in curves])
     grid = np.linspace(min(x[0] for x, _ in curves), end, POINTS)
-    values = np.array(
-        [np.interp(grid, x, y, left=np.nan, right=np.nan) for x, y in curves]
-    )
+    outside = dict(left=np.nan, right=np.nan)
+    values = np.array([np.interp(grid, x, y, **outside) for x, y in curves])
     low, median, high = np.nanquantile(values, (BAND[0], 0.5, BAND[1]), axis=0)
     with _picture(path, 6.0, 4.0) as figure:
         axis = figure.subplots()
@@ -334,9 +323,7 @@ def fan(path, curves, xLabel, yLabel):
 def _increasing(x, y):
     """A curve without the rows that go back, thinned to no more than twice POINTS rows."""
     x, y = np.asarray(x, float), np.asarray(y, float)
-    rows = np.flatnonzero(
-        x > np.concatenate([[-np.inf], np.maximum.accumulate(x)[:-1]])
-    )
+    rows = np.flatnonzero(x > np.append(-np.inf, np.maximum.accumulate(x)[:-1]))
     rows = rows[:: max(1, len(rows) // (2 * POINTS))]
     return x[rows], y[rows]
 

@@ -37,7 +37,7 @@ class Study:
         the lists, or ``"ida"``, incremental dynamic analysis: the scene is shaken by records that grow in strength until it
         falls. What varies beside that is drawn once for every record
     :param correlation: dict of pairs of names -> rank correlation of two distributions [-]
-    :param records: of an ``"ida"``: files as of :mod:`masonry.scene.accelerograms`, with paths from the study's file on, or
+    :param records: of an ``"ida"``: files as in :mod:`masonry.scene.accelerograms`, with paths from the study's file on, or
         patterns of files such as ``"records/*.AT2"``
     :param levels: of an ``"ida"``: growing values of the measure of intensity [g] to which all records are scaled
     :param scales: in place of levels: growing factors on the records as they are [-]

@@ -53,13 +53,13 @@ class Record:
     def __len__(self):
         return len(self.cells["run"])
 
-    def measure(self, usual):
+    def measure(self, default):
         """The measure that is reported if none is named: the usual one, or else the first answer of a stage or script."""
-        if usual in self.cells:
-            return usual
+        if default in self.cells:
+            return default
         own = [m for m in self.measures if m not in IN_EVERY_RUN]
         found = [m for m in own if np.isfinite(self.numbers(m)).any()]
-        return found[0] if found else usual
+        return found[0] if found else default
 
     def numbers(self, name):
         """A column as numbers, NaN where a cell has none. Raises Refused if there is no such column."""
@@ -72,7 +72,7 @@ class Record:
     def complete(self, measure):
         """The rows that have this measure: which they are, the inputs by name, and the measure.
 
-        Inputs are those that are numbers; the seed of a random field is none.
+        Inputs are those that are numbers; the seed of a random field is not.
 
         :raises Refused: if no row has it
         """

@@ -205,7 +205,6 @@ def reached(demands, limit):
 
 
 def _cell(value):
-    """A demand in a table."""
     return "-" if math.isnan(value) else "infinite" if math.isinf(value) else f"{value:.4g}"  # fmt: skip
 
 
@@ -300,7 +299,7 @@ def main(words=None):
 
 
 def isIncremental(directory):
-    """Whether a folder holds a study with records; a study.csv alone is none."""
+    """Whether a folder holds a study with records; a study.csv alone is not one."""
     try:
         return Folder(directory).chains.plan is not None
     except Refused:

@@ -10,6 +10,7 @@ The scene is a program, and the folder of a study is data: that study.json names
 names it, unless it is in the folder itself, and it must be the file with which the study began. The first line says what runs.
 """
 
+import contextlib
 import hashlib
 import json
 import os
@@ -21,7 +22,7 @@ import time
 
 from .. import background
 from ..run import batch
-from ..basics import Refused, say
+from ..basics import Held, NotResumed, Refused, say
 from ..folders import inside
 from ..read.files import readRun, readWhole
 from .continuing import rowsOf
@@ -29,13 +30,12 @@ from .gathering import STUDY, TABLE, Folder, reason
 from .incremental import FOLDER
 
 REFUSED = 2  # exit status of a scene that refuses its input
-ATTEMPTS = (
-    20  # of a row at most, while its folder is still held or its checkpoint is refused
-)
+#: Of a row at most, while its folder is still held or its checkpoint is refused.
+ATTEMPTS = 20
 TAIL = 4000  # bytes at the end of a log in which the reason of a failure stands
 
 
-class Job:
+class RowRunner:
     """Runs rows, and stops in order when it is asked to.
 
     :param path: folder of the study
@@ -95,11 +95,7 @@ class Job:
             return
         one = chains.plan["records"][chains.record(number)]
         path = self.folder.of(FOLDER, one["name"] + ".txt")
-        try:
-            found = hashlib.sha256(readWhole(path)).hexdigest()
-        except OSError as error:
-            raise Refused(f"cannot read {path}: {error.strerror}") from None
-        if found != one["sha256"]:
+        if _fingerprint(path) != one["sha256"]:
             raise Refused(f"{path} is not the record with which the study began; remove it, and begin the study again")  # fmt: skip
 
     def _attempts(self, number, log):
@@ -108,7 +104,6 @@ class Job:
         checkpoint = os.path.join(folder.row(number), "run.checkpoint")
         for _ in range(ATTEMPTS):
             resumes = os.path.exists(checkpoint)
-            before = log.seek(0, os.SEEK_END)
             status = self._yade(number, log)
             if self.stopped:
                 return 130
@@ -116,10 +111,10 @@ class Job:
                 return 1
             if status != REFUSED or folder.isEnded(number) or folder.isHeld(number):
                 return status
-            said = self._tail(number, before)
-            if "is writing to" in said:  # it has just ended, or was killed
+            kind, _ = self._child.refusal()
+            if kind == Held.__name__:  # that run has just ended, or was killed
                 time.sleep(0.2)
-            elif resumes and "--resume" in said:
+            elif resumes and kind == NotResumed.__name__:
                 os.replace(checkpoint, checkpoint + ".refused")
             else:
                 return status
@@ -130,27 +125,23 @@ class Job:
         env = {**os.environ, batch.VARIABLE: place, "OMP_NUM_THREADS": "1"}
         command = ["yade", "-n", "--threads=1", "-x", self.script]
         where = os.path.dirname(self.script)
-        self._child = background.start(command, log, env, where)
+        self._child = background.Program(command, log, env, where)
         if self.stopped:
             self._child.send_signal(signal.SIGTERM)
         return self._child.wait()
 
-    def _tail(self, number, begin=0):
-        """The end of the log, of what was written after its first bytes."""
-        try:
-            with open(self.folder.row(number) + ".log", "rb") as f:
-                f.seek(max(begin, os.fstat(f.fileno()).st_size - TAIL))
-                return f.read().decode(errors="replace")
-        except OSError:
-            return ""
-
     def _reason(self, number):
-        """What a row said before it failed."""
-        try:
-            error = readRun(self.folder.row(number)).get("error")
-        except Refused:
-            error = None
-        return error or "; ".join(reason(self._tail(number))[-3:])
+        """Why a row failed: what run.json has, what was refused, or the end of the log."""
+        with contextlib.suppress(Refused):
+            if error := readRun(self.folder.row(number)).get("error"):
+                return error
+        _, refusal = self._child.refusal()
+        lines = [line.strip() for line in refusal.splitlines()]
+        with contextlib.suppress(OSError):
+            with open(self.folder.row(number) + ".log", "rb") as f:
+                f.seek(max(0, os.fstat(f.fileno()).st_size - TAIL))
+                lines = lines or reason(f.read().decode(errors="replace"))
+        return "; ".join(lines[-3:])
 
 
 def _sceneOf(folder, named):
@@ -163,21 +154,25 @@ def _sceneOf(folder, named):
             f"{folder.of(STUDY)} names the scene {path}, which is outside the folder of the study: a scene is a program, so "
             "name it yourself, with --scene FILE before the folder"
         )
-    try:
-        found = hashlib.sha256(readWhole(path)).hexdigest()
-    except OSError as error:
-        raise Refused(f"cannot read the scene {path}: {error.strerror}") from None
-    if found != record.get("scene_sha256"):
+    if _fingerprint(path, "the scene ") != record.get("scene_sha256"):
         raise Refused(
             f"the scene {path} is another file than the one with which the study in {folder.path} began"
         )
     return path
 
 
-def requeue(job):
+def _fingerprint(path, what=""):
+    """The hash of a file. Raises Refused."""
+    try:
+        return hashlib.sha256(readWhole(path)).hexdigest()
+    except OSError as error:
+        raise Refused(f"cannot read {what}{path}: {error.strerror}") from None
+
+
+def requeue(runner):
     """Ask Slurm to run this task again, if it is one that ran out of time."""
     task = os.environ.get("SLURM_JOB_ID")
-    if job.stopped == signal.SIGUSR1 and task:
+    if runner.stopped == signal.SIGUSR1 and task:
         subprocess.run(["scontrol", "requeue", task])
 
 
@@ -201,22 +196,22 @@ def _rows(words):
         raise Refused(
             "name the scene, the folder of a study and the numbers of its rows: --scene FILE DIR NUMBER..."
         )
-    job = Job(words[0], scene)
-    runs = job.folder.description()["study"]["runs"]
+    runner = RowRunner(words[0], scene)
+    runs = runner.folder.description()["study"]["runs"]
     beyond = [w for w in words[1:] if not 1 <= int(w) <= runs]
     if beyond:
         raise Refused(f"no row {', '.join(beyond)}: {words[0]} has {runs}")
-    say(f"note: this runs {job.script}")
-    worst, higher = 0, job.folder.chains.higher
+    say(f"note: this runs {runner.script}")
+    worst, higher = 0, runner.folder.chains.higher
     numbers = [n for word in words[1:] for n in (int(word), *higher(int(word)))]
     for number in dict.fromkeys(numbers):
-        status = job.run(number)
+        status = runner.run(number)
         if status:
-            why = job.folder.lastJob(number).get("told") or f"exit status {status}"
+            why = runner.folder.lastJob(number).get("told") or f"exit status {status}"
             say(f"row {batch.named(number)}: {why}", sys.stderr)
         worst = max(worst, status if status >= 0 else 128 - status)
-        if job.stopped:
-            requeue(job)
+        if runner.stopped:
+            requeue(runner)
             return 130
     return worst
 

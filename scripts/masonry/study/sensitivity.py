@@ -82,7 +82,7 @@ def sobol(inputs, output, seed=1, confidence=CONFIDENCE):
     coefficients. The intervals are those of RESAMPLES samples of the rows, drawn with replacement and ranked again,
     with the same polynomials; they do not tell what these leave out, which ``explained`` does.
 
-    :param inputs: as of :func:`effects`, drawn independently of each other
+    :param inputs: as in :func:`effects`, drawn independently of each other
     :param output: of every row
     :param seed: of the samples
     :raises Refused: if there are fewer than ten rows a property, or a number is not finite, or properties are dependent

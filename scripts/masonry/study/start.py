@@ -88,7 +88,6 @@ def _putRecords(folder, study):
 
 
 def _compare(folder, known, now):
-    """Refuse another study than the one that a folder holds."""
     was, given = known["study"], now["study"]
     other = [
         f"{n} is {json.dumps(was.get(n))}, not {json.dumps(given.get(n))}"
@@ -189,7 +188,7 @@ def _probed(script, table, path, line=2):
             return fromJson(f.read())
     except (OSError, ValueError):
         lines = reason(done.stderr)
-        if lines and lines[-1].startswith(batch.UNWRITTEN + path):
+        if done.returncode == batch.UNWRITTEN:
             raise Unwritable(lines[-1]) from None  # it is no fault of the scene
         lines = lines or [f"no masonry.Scene began a stage in {script}"]
         return "\n  ".join(lines[:10])

@@ -60,7 +60,7 @@ def fragment(directory: FilePath, number: FrameNumber | None = None, magnificati
 
 @validated
 def page(directory: FilePath, number: FrameNumber | None = None, magnification: Factor | None = None) -> str:  # fmt: skip
-    """A whole page with the picture of a run; parameters and errors as of :func:`fragment` and :func:`assets`."""
+    """A whole page with the picture of a run; parameters and errors as in :func:`fragment` and :func:`assets`."""
     library, licence = three()
     head, numbers = dataOf(directory, number, magnification)
     return rendered("page/page.html", head=head, numbers=numbers, library=library, licence=licence)  # fmt: skip

@@ -7,14 +7,12 @@
   const READERS = { u1: Uint8Array, u2: Uint16Array, i2: Int16Array, u4: Uint32Array, f4: Float32Array };
 
   /** The arrays of the page by name: {values, row, step}, as data.py wrote them; a row is what one frame has. */
-  async function unpack(text, known) {
+  async function unpack(text, arrays) {
     const packed = Uint8Array.from(atob(text.trim()), (letter) => letter.charCodeAt(0));
     const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream("deflate"));
     const bytes = await new Response(stream).arrayBuffer();
-    const found = {};
-    for (const [name, { kind, at, count, row, step }] of Object.entries(known))
-      found[name] = { values: new READERS[kind](bytes, at, count), row, step };
-    return found;
+    return Object.fromEntries(Object.entries(arrays).map(([name, { kind, at, count, row, step }]) =>
+      [name, { values: new READERS[kind](bytes, at, count), row, step }]));
   }
 
   // -- colours ---------------------------------------------------------------------------------------------------------
@@ -48,6 +46,11 @@
     return text.includes("e") ? String(Number(text)) : text.replace(/(\.\d*?)0+$/, "$1").replace(/\.$/, "");
   }
 
+  /** The geometry of points that have a colour each. */
+  function coloured(points, colours) {
+    return new THREE.BufferGeometry().setAttribute("position", points).setAttribute("color", colours);
+  }
+
   function make(tag, settings = {}, ...inner) {
     const element = document.createElement(tag);
     for (const [name, value] of Object.entries(settings)) {
@@ -62,14 +65,14 @@
     "Drag to turn, drag with the right button or with two fingers to move, wheel or pinch to zoom. In the picture: arrows turn, " +
     "Shift and arrows move, + and − zoom, Page Up and Page Down change the frame, space plays, Home shows all, 1 to 4 are the " +
     "views. A click on a block says which it is and how it moved.";
-  const BESIDE = 60; // how far the middle of the structure is beside that of a wide picture, for the legend [pixels]
+  const LEAST_ZOOM = 0.2, MOST_ZOOM = 200;
+  const ASIDE = 60; // how far the middle of the structure is beside that of a wide picture, for the legend [pixels]
 
   // -- the picture -----------------------------------------------------------------------------------------------------
 
   class View {
     constructor(element, head, data) {
       Object.assign(this, { element, head, data, frame: head.first, magnify: head.magnification, joints: "crack", blocks: "plain" });
-      this.draw = this.draw.bind(this);
       this.stage = make("div", { class: "masonry-stage" });
       this.canvas = make("canvas", { tabindex: "0", role: "img", "aria-label": head.title + ". " + KEYS });
       const over = (name) => make("div", { class: "masonry-over " + name });
@@ -81,13 +84,11 @@
       this.camera = new THREE.OrthographicCamera(-1, 1, 1, -1, 0, 1);
       this.camera.up.set(0, 0, 1);
       this.orbit = new THREE.OrbitControls(this.camera, this.canvas);
-      this.orbit.enableKeys = false; // keys do more here
-      this.orbit.screenSpacePanning = true; // a wall follows the mouse up and down, too
-      [this.orbit.minZoom, this.orbit.maxZoom] = [0.2, 200];
+      // keys do more here, and a wall follows the mouse up and down, too
+      Object.assign(this.orbit, { enableKeys: false, screenSpacePanning: true, minZoom: LEAST_ZOOM, maxZoom: MOST_ZOOM });
       this.orbit.addEventListener("change", () => this.ask());
       this.build();
-      this.panel = this.controls();
-      element.replaceChildren(this.stage, this.panel);
+      element.replaceChildren(this.stage, this.controls());
       this.listen();
       this.look(head.flat ? "start" : "iso");
       this.show(this.frame);
@@ -99,27 +100,20 @@
       this.scene = new THREE.Scene();
       const sun = new THREE.DirectionalLight("#ffffff", 0.42);
       sun.position.set(0.25, 0.55, 0.8);
-      this.camera.add(sun);
-      sun.target = new THREE.Object3D();
-      this.camera.add(sun.target);
+      this.camera.add(sun, sun.target);
       this.scene.add(this.camera, new THREE.AmbientLight("#ffffff", 0.66));
       const add = (thing, order) => Object.assign(thing, { frustumCulled: false, renderOrder: order });
       // blocks and their edges share points; blocks are drawn a little behind, so that lines on them are seen
-      const count = values("points").length;
-      this.places = new THREE.BufferAttribute(new Float32Array(count), 3);
-      this.shades = new THREE.BufferAttribute(new Float32Array(count), 3);
-      const body = new THREE.BufferGeometry();
-      body.setAttribute("position", this.places);
-      body.setAttribute("color", this.shades);
+      [this.places, this.shades] = [0, 1].map(() => new THREE.BufferAttribute(new Float32Array(values("points").length), 3));
+      const body = coloured(this.places, this.shades);
       body.setIndex(new THREE.BufferAttribute(values("triangles"), 1));
       body.boundingSphere = new THREE.Sphere(new THREE.Vector3(), Infinity); // for clicks: blocks move
       this.bodies = add(new THREE.Mesh(body, new THREE.MeshPhongMaterial({
         vertexColors: THREE.VertexColors, flatShading: true, shininess: 0, side: THREE.DoubleSide,
         polygonOffset: true, polygonOffsetFactor: 2.5, polygonOffsetUnits: 4,
       })), 0);
-      const edges = new THREE.BufferAttribute(values("edges"), 1), lines = new THREE.BufferGeometry(), was = new THREE.BufferGeometry();
-      lines.setAttribute("position", this.places);
-      was.setAttribute("position", new THREE.BufferAttribute(values("points"), 3));
+      const edges = new THREE.BufferAttribute(values("edges"), 1), built = new THREE.BufferAttribute(values("points"), 3);
+      const [lines, was] = [this.places, built].map((points) => new THREE.BufferGeometry().setAttribute("position", points));
       [lines, was].forEach((geometry) => geometry.setIndex(edges));
       this.edges = add(new THREE.LineSegments(lines, new THREE.LineBasicMaterial({ color: EDGE, transparent: true })), 1);
       this.was = add(new THREE.LineSegments(was, new THREE.LineBasicMaterial({ color: WAS, transparent: true, opacity: 0.45, depthWrite: false })), 2);
@@ -131,17 +125,15 @@
       this.scene.add(this.bodies, this.edges, this.was, this.faces, this.rims, this.ties);
       // where the corners of each point of a joint begin
       const owner = values("jointOwner");
-      this.starts = [];
-      owner.forEach((point, n) => { if (n === 0 || point !== owner[n - 1]) this.starts.push(n); });
-      this.starts.push(owner.length);
+      this.starts = [...owner.keys()].filter((n) => owner[n] !== owner[n - 1]).concat(owner.length);
     }
 
     controls() {
       const { head } = this;
       const range = (label, most, on) => make("input", { type: "range", min: 0, max: most, step: 1, "aria-label": label, oninput: on });
       const choice = (names, on) => {
-        const found = make("select", { onchange: () => on(found.value) }, ...names.map((n) => make("option", { value: n }, NAMES[n])));
-        return found;
+        const menu = make("select", { onchange: () => on(menu.value) }, ...names.map((n) => make("option", { value: n }, NAMES[n])));
+        return menu;
       };
       const button = (text, on, label = text) => make("button", { type: "button", title: label, "aria-label": label, onclick: on }, text);
       this.slider = range("frame", head.frames.length - 1, () => { this.stop(); this.show(Number(this.slider.value)); });
@@ -149,12 +141,11 @@
       this.playing = button("▶", () => this.play(), "play the frames");
       // the slider of the magnification goes by powers of ten, up to `most`
       const most = Math.max(1000, 10 * head.magnification);
-      const magnifier = range("magnification of displacements", 1000, () => set(most ** (magnifier.value / 1000)));
+      const magnifier = range("magnification of displacements", 1000, () => { set(most ** (magnifier.value / 1000)); this.show(this.frame); });
       const text = make("output");
       const set = (value) => {
         this.magnify = value < 10 ? Math.round(value * 10) / 10 : Math.round(value);
         text.textContent = "× " + this.magnify;
-        if (this.target) this.show(this.frame);
       };
       magnifier.value = (1000 * Math.log(Math.max(head.magnification, 1))) / Math.log(most);
       set(head.magnification);
@@ -217,8 +208,7 @@
       const plain = LOOKS.map((hex) => new THREE.Color(hex));
       for (let n = 0; n < owner.length; ++n) {
         const far = Math.hypot(...this.moved.subarray(3 * n, 3 * n + 3));
-        const shade = this.blocks === "moved" ? colourOf(RAMPS.moved, far / this.head.ramp) : plain[data.looks.values[owner[n]]];
-        shade.toArray(this.shades.array, 3 * n);
+        (this.blocks === "moved" ? colourOf(RAMPS.moved, far / this.head.ramp) : plain[data.looks.values[owner[n]]]).toArray(this.shades.array, 3 * n);
       }
       this.places.needsUpdate = this.shades.needsUpdate = true;
     }
@@ -253,9 +243,7 @@
       }
       this.shown = rims.length / 6; // sides of faces that are seen
       this.faces.geometry.dispose();
-      this.faces.geometry = new THREE.BufferGeometry();
-      this.faces.geometry.setAttribute("position", new THREE.Float32BufferAttribute(faces, 3));
-      this.faces.geometry.setAttribute("color", new THREE.Float32BufferAttribute(shades, 3));
+      this.faces.geometry = coloured(new THREE.Float32BufferAttribute(faces, 3), new THREE.Float32BufferAttribute(shades, 3));
       this.draft(this.rims, rims, rimShades);
     }
 
@@ -302,15 +290,11 @@
       if (this.frame >= last) this.show(0);
       this.playing.textContent = "❚❚";
       const pause = Math.min(Math.max(6000 / (last + 1), 50), 400);
-      this.timer = setInterval(() => {
-        if (this.frame >= last) this.stop();
-        else this.show(this.frame + 1);
-      }, pause);
+      this.timer = setInterval(() => (this.frame >= last ? this.stop() : this.show(this.frame + 1)), pause);
     }
 
     stop() {
-      clearInterval(this.timer);
-      this.timer = undefined;
+      this.timer = clearInterval(this.timer); // undefined
       this.playing.textContent = "▶";
     }
 
@@ -350,9 +334,8 @@
       }[name];
       const around = Math.atan2(towards[1], towards[0]) + turn;
       this.target = this.orbit.target.set(...[0, 1, 2].map((k) => (low[k] + high[k]) / 2));
+      this.deep = 20 * Math.max(...[0, 1, 2].map((k) => high[k] - low[k])) + this.magnify * this.head.farthest;
       this.camera.position.set(Math.cos(around) * Math.cos(rise), Math.sin(around) * Math.cos(rise), Math.sin(rise));
-      this.size = Math.max(...[0, 1, 2].map((k) => high[k] - low[k]));
-      this.deep = 20 * this.size + this.magnify * this.head.farthest;
       this.camera.position.multiplyScalar(this.deep).add(this.target);
       this.camera.zoom = 1;
       this.fitted = undefined;
@@ -366,9 +349,8 @@
     }
 
     turn(right, up) {
-      const arm = this.camera.position.clone().sub(this.target), [across] = this.directions();
-      arm.applyAxisAngle(across, -up).applyAxisAngle(this.camera.up, -right);
-      this.camera.position.copy(this.target).add(arm);
+      const [across] = this.directions();
+      this.camera.position.sub(this.target).applyAxisAngle(across, -up).applyAxisAngle(this.camera.up, -right).add(this.target);
       this.orbit.update();
     }
 
@@ -376,22 +358,20 @@
     move(right, up) {
       const [x, y] = this.directions();
       const arm = x.multiplyScalar(-right * this.metres).addScaledVector(y, -up * this.metres);
-      this.target.add(arm);
-      this.camera.position.add(arm);
+      for (const point of [this.target, this.camera.position]) point.add(arm);
       this.orbit.update();
     }
 
     zoom(factor) {
-      this.camera.zoom = Math.min(Math.max(this.camera.zoom * factor, 0.2), 200);
+      this.camera.zoom = Math.min(Math.max(this.camera.zoom * factor, LEAST_ZOOM), MOST_ZOOM);
       this.ask();
     }
 
     listen() {
-      const { canvas } = this;
-      let pressed;
-      canvas.addEventListener("mousedown", (event) => { pressed = [event.clientX, event.clientY]; });
+      const { canvas } = this, pressed = { clientX: 0, clientY: 0 };
+      canvas.addEventListener("mousedown", ({ clientX, clientY }) => Object.assign(pressed, { clientX, clientY }));
       canvas.addEventListener("click", (event) => {
-        if (pressed && Math.hypot(event.clientX - pressed[0], event.clientY - pressed[1]) < 4) this.pick(event);
+        if (Math.hypot(event.clientX - pressed.clientX, event.clientY - pressed.clientY) < 4) this.pick(event);
       });
       canvas.addEventListener("keydown", (event) => {
         const step = event.shiftKey ? (x, y) => this.move(40 * x, 40 * y) : (x, y) => this.turn(0.1 * x, 0.1 * y);
@@ -407,7 +387,7 @@
         act();
       });
       new ResizeObserver(() => { this.fitted = undefined; this.ask(); }).observe(this.stage);
-      addEventListener("beforeprint", this.draw);
+      addEventListener("beforeprint", () => this.draw());
       canvas.addEventListener("webglcontextlost", (event) => event.preventDefault());
       canvas.addEventListener("webglcontextrestored", () => this.ask());
     }
@@ -422,29 +402,25 @@
     }
 
     about(block) {
-      const { owner, bodies, centres } = this.data, sum = [0, 0, 0];
-      let count = 0;
-      owner.values.forEach((own, n) => {
-        if (own !== block) return;
-        ++count;
-        for (let k = 0; k < 3; ++k) sum[k] += this.moved[3 * n + k];
-      });
+      const { owner, bodies, centres } = this.data;
+      const corners = [...owner.values.keys()].filter((n) => owner.values[n] === block);
+      const mean = [0, 1, 2].map((k) => corners.reduce((sum, n) => sum + this.moved[3 * n + k], 0) / corners.length);
       const text = (values) => values.map(digits).join(", ");
-      return `block ${bodies.values[block]} at (${text([...centres.values.subarray(3 * block, 3 * block + 3)])}) m has moved by (${text(sum.map((v) => (1e3 * v) / count))}) mm`;
+      return `block ${bodies.values[block]} at (${text([...centres.values.subarray(3 * block, 3 * block + 3)])}) m has moved by (${text(mean.map((v) => 1e3 * v))}) mm`;
     }
 
     // -- drawing
 
     /** Draws soon, once, however often it is asked. */
     ask() {
-      if (!this.asked) this.asked = requestAnimationFrame(this.draw);
+      if (!this.asked) this.asked = requestAnimationFrame(() => this.draw());
     }
 
     draw() {
       this.asked = undefined;
       const wide = this.stage.clientWidth, high = this.stage.clientHeight;
       if (!wide || !high || !this.target) return;
-      const { camera, head } = this, dots = Math.min(devicePixelRatio || 1, 3), narrow = wide < 560;
+      const { camera, head } = this, dots = Math.min(devicePixelRatio || 1, 3), narrow = wide < 560, aside = narrow ? 0 : ASIDE;
       this.element.classList.toggle("narrow", narrow); // the legend stands below then, not beside
       this.renderer.setPixelRatio(dots);
       const drawn = this.renderer.getSize(new THREE.Vector2());
@@ -456,7 +432,6 @@
         const [x, y] = this.directions();
         this.fitted = Math.max((1.18 * extent(y)) / high, (1.12 * extent(x)) / (narrow ? wide : wide - 150), 1e-9);
       }
-      const aside = narrow ? 0 : BESIDE;
       const [left, right, top] = [aside - wide / 2, aside + wide / 2, high / 2].map((pixels) => pixels * this.fitted);
       Object.assign(camera, { left, right, top, bottom: -top, near: 0, far: 2 * this.deep });
       camera.updateProjectionMatrix();
@@ -504,13 +479,13 @@
 
   /** Makes the picture of an element of the class masonry-view. Returns a promise of the View, or of null without one. */
   async function start(element) {
-    const note = element.querySelector(".masonry-note");
-    note.textContent = lacking() || "The picture is being drawn.";
-    if (lacking()) return null;
-    const [head, numbers] = [...element.querySelectorAll("script")].map((script) => script.textContent);
+    const reason = lacking();
+    element.querySelector(".masonry-note").textContent = reason || "The picture is being drawn.";
+    if (reason) return null;
+    const [text, numbers] = [...element.querySelectorAll("script")].map((script) => script.textContent);
     try {
-      const known = JSON.parse(head);
-      return new View(element, known, await unpack(numbers, known.arrays));
+      const head = JSON.parse(text);
+      return new View(element, head, await unpack(numbers, head.arrays));
     } catch (error) {
       element.replaceChildren(make("p", { class: "masonry-note" }, `The picture cannot be drawn: ${error.message}`));
       return null;

@@ -180,9 +180,9 @@ class Record:
 
     def date(self) -> tuple[str, str]:
         """When the run ended, and where that is from."""
-        said = self.run.get("date")
-        if isinstance(said, str):
-            return said.replace("T", " ").replace("Z", " UTC"), "run.json: date"
+        date = self.run.get("date")
+        if isinstance(date, str):
+            return date.replace("T", " ").replace("Z", " UTC"), "run.json: date"
         try:
             seconds = os.stat(os.path.join(self.directory, "run.json")).st_mtime
         except OSError:
@@ -252,7 +252,7 @@ class Record:
 
 
 def _finite(text):
-    """A number, NaN for what is none."""
+    """A number, NaN for what is not one."""
     try:
         value = float(text)
     except ValueError:

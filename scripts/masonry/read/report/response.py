@@ -85,9 +85,9 @@ def _ideal(record):
     heads = ("quantity", *(bilinear.RULES[rule] for rule in ideals), "what it is")
     caption = "Bilinear idealisation of the force that both ends carry at once. Source: curve.csv: displacement_mm, base_shear_kN, top_shear_kN"
     yield table(heads, lines, caption, "ideal")
-    said = dict.fromkeys(n for one in ideals.values() if not isinstance(one, str) for n in one.notes)  # fmt: skip
-    said.update((f"{bilinear.RULES[rule]}: none, because {one}", None) for rule, one in ideals.items() if isinstance(one, str))  # fmt: skip
-    for text in said:
+    notes = dict.fromkeys(n for one in ideals.values() if not isinstance(one, str) for n in one.notes)  # fmt: skip
+    notes.update((f"{bilinear.RULES[rule]}: none, because {one}", None) for rule, one in ideals.items() if isinstance(one, str))  # fmt: skip
+    for text in notes:
         yield note(f"{text[:1].upper()}{text[1:]}.")
 
 
@@ -152,7 +152,6 @@ def _states(record):
 
 
 def _drifts(record):
-    """Columns of drifts that the script recorded: their extremes."""
     meanings = record.run.get("columns") or {}
     rows = []
     for name in record.run.get("recorded_drifts") or []:

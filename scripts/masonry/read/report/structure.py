@@ -198,14 +198,12 @@ def _joints(run):
 
 
 def _lawOf(joint):
-    """What a kind of joint can do, in words."""
     if joint.get("elastic"):
         return "elastic: no strength is reached"
     return f"{joint.get('law', 'not known')}{'' if joint.get('cap', True) else ', cannot crush'}"
 
 
 def _cell(joint, name, factor, isAssumed):
-    """A property of a kind of joint."""
     isIgnored = (
         joint.get("elastic") and name not in STIFFNESSES
         or name in OF_CAP and not joint.get("cap", True)
@@ -266,10 +264,12 @@ def loaded(record: Record) -> Iterator[Any]:
         yield table(("number", "stage", "load", "time steps", "what it found"), lines, "Stages in their order. Source: run.json: stages, answers", "stages")  # fmt: skip
     words = [w for w in run.get("script") or [] if isinstance(w, list) and len(w) == 2]
     if words:
-        said = listed((spoken(*word) for word in words), kind="script")
+        script = listed((spoken(*word) for word in words), kind="script")
         about = note("Stresses are in Pa, forces in N, lengths in m, and displacements of pushes and supports in mm; help(masonry.Scene) describes the words. Source: run.json: script.")  # fmt: skip
         few = len(words) <= MOST_WORDS
-        yield folded("The words of the script, in their order", said, about, opened=few)
+        yield folded(
+            "The words of the script, in their order", script, about, opened=few
+        )
     options = run.get("options")
     if isinstance(options, dict):
         units = run.get("option_units") or {}

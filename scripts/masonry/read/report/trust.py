@@ -31,9 +31,9 @@ def trust(record: Record) -> Iterator[Any]:
     """How far to trust it: errors that the run knows of itself, promises, warnings, and what is not known."""
     run = record.run
     warnings = run.get("warnings")
-    said = [str(w) for w in warnings or []] + record.problems
-    if said:
-        yield listed(said, "Warnings", "warning")
+    sentences = [str(w) for w in warnings or []] + record.problems
+    if sentences:
+        yield listed(sentences, "Warnings", "warning")
     elif warnings is None:
         yield missing("run.json of this older version does not list the warnings of the run.")  # fmt: skip
     else:
@@ -64,7 +64,6 @@ def trust(record: Record) -> Iterator[Any]:
 
 
 def _said(run):
-    """What the run said while it went on."""
     notes = run.get("notes")
     lines = [one for one in notes if isinstance(one, dict)] if isinstance(notes, list) else []  # fmt: skip
     if lines:

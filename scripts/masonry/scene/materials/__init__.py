@@ -16,17 +16,9 @@ from yade.wrapper import MasonryJoint, MasonryMat
 from .assumptions import linesOf
 from .formulas import compressiveFractureEnergy, leastEnergy, masonry
 from .kinds import Masonry, withResidual
-from .published import (
-    DRY_GRANITE_MASONRY,
-    calciumSilicate,
-    calciumSilicateJoints,
-    calciumSilicateUnit,
-    dry,
-    dryGranite,
-    dryGraniteJoints,
-    graniteUnit,
-    loadingBlock,
-)
+from .published import DRY_GRANITE_MASONRY, calciumSilicate, calciumSilicateJoints
+from .published import calciumSilicateUnit, dry, dryGranite, dryGraniteJoints
+from .published import graniteUnit, loadingBlock
 
 __all__ = [
     "DRY_GRANITE_MASONRY",

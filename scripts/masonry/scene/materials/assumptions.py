@@ -35,18 +35,11 @@ AS_BED = "as of the bed joint"
 SUPPORT = "no joint 'support' was given: joints to platens take the bed joint, with its strength and friction"
 
 #: Properties that have no effect without the cap.
-OF_CAP = {
-    "compressiveStrength",
-    "elasticLimitRatio",
-    "residualStrengthRatio",
-    "peakRatio",
-    "compressiveFractureEnergy",
-    "capNormal",
-    "capShear",
-    "capLinear",
-    "compressionStiffnessLoss",
-    "bondLossByCrushing",
-}
+OF_CAP = set(
+    "compressiveStrength elasticLimitRatio residualStrengthRatio peakRatio "
+    "compressiveFractureEnergy capNormal capShear capLinear compressionStiffnessLoss "
+    "bondLossByCrushing".split()
+)
 
 #: Properties that have no effect while another one is zero.
 OF_STRENGTH = {

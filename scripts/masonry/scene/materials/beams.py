@@ -81,7 +81,7 @@ def withFloor(
         force V acts along the other one
     :param mass: with what lies on it [kg/m²]
     :param across: stiffness E t across the strips [N/m]; None: ten times ``shear``, which is assumed
-    :param bearing: as of :meth:`withBeam`; the default, a friction of 0.5, is of joists that lie on masonry
+    :param bearing: as in :meth:`withBeam`; the default, a friction of 0.5, is of joists that lie on masonry
     """
     name, pitch = _newKind(masonry, "withFloor", floor)
     low, high = floor[0].low, floor[0].high
@@ -116,7 +116,6 @@ def _newKind(masonry, word, pieces):
 
 
 def _take(masonry, name, unit, glue, bearing):
-    """Take the material and the joints of a beam or a floor."""
     masonry.units[name], masonry.joints[name] = unit, glue
     masonry.stiff = masonry.stiff | {name}
     if bearing is not None:

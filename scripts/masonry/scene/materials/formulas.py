@@ -114,9 +114,8 @@ class _Kind:
 
     def energy(self, name, strength, stiffness, lumped, given, index):
         """Take a fracture energy. One that is assumed is large enough; of one that is given and too small a warning."""
-        what = "unit_" * (self.name == "crack") + (
-            "GfI" if "II" not in name else "GfII"
-        )
+        what = "GfII" if "II" in name else "GfI"
+        what = f"unit_{what}" if self.name == "crack" else what
         least = leastEnergy(strength, stiffness, lumped)
         if given is not None:
             if given <= least:
@@ -128,19 +127,16 @@ class _Kind:
                 )
             self.values[name] = given
             return
-        usual, source = (
-            index * strength,
-            f"{1e3 * index:g} mm times the strength, {INDEX_SOURCE}",
-        )
-        if usual < MARGIN * least:
+        typical = index * strength
+        source = f"{1e3 * index:g} mm times the strength, {INDEX_SOURCE}"
+        if typical < MARGIN * least:
             source = (
                 f"{MARGIN:g} times the least that does not snap back between rigid units; {source} would be "
-                f"{usual:.3g} J/m²"
+                f"{typical:.3g} J/m²"
             )
-        self.take(name, max(usual, MARGIN * least, 1e-3), False, source)
+        self.take(name, max(typical, MARGIN * least, 1e-3), False, source)
 
     def made(self):
-        """The MasonryJoint. Raises ValueError."""
         joint = MasonryJoint(name=self.name, **self.values)
         return state(joint, **joint.assumed(), **self.sources)
 
@@ -222,7 +218,7 @@ def masonry(
     :param GfI: mode I fracture energy of bed joints [J/m²]; default 0.029 mm times ft, Lourenço (2008)
     :param GfII: mode II fracture energy of bed joints without normal stress [J/m²]; default 0.093 mm times fv0, Lourenço
         (2008)
-    :param Gc: compressive fracture energy [J/m²]; default as of :func:`compressiveFractureEnergy`
+    :param Gc: compressive fracture energy [J/m²]; default as in :func:`compressiveFractureEnergy`
     :param peak_strain: strain of the masonry at fc [-]; default 2 fc/E, that of a parabola which begins with the modulus
         E, the branch up to the peak of Kaushik, Rai and Jain (2007), J. Mater. Civ. Eng. 19(9)
     :param residual_friction: [-]; default: the friction
@@ -230,8 +226,8 @@ def masonry(
     :param head_share: strengths and energies of tension and shear of head joints over those of bed joints [-]; default 1
     :param unit_ft: direct tensile strength of the bricks [Pa]. Default: bricks do not crack
     :param unit_GfI: mode I fracture energy of the bricks [J/m²]; default 0.029 mm times unit_ft, Lourenço (2008)
-    :param unit_fv0: cohesion of the bricks [Pa]; default 2 unit_ft, as of the crack joints of :func:`calciumSilicate`
-    :param unit_friction: coefficient of friction of cracks in bricks [-]; default 0.75, as of these
+    :param unit_fv0: cohesion of the bricks [Pa]; default 2 unit_ft, as in the crack joints of :func:`calciumSilicate`
+    :param unit_friction: coefficient of friction of cracks in bricks [-]; default 0.75, as in these
     :param unit_GfII: mode II fracture energy of the bricks [J/m²]; default 0.093 mm times unit_fv0, Lourenço (2008)
     :raises Refused: with all problems at once
 
@@ -275,9 +271,9 @@ def masonry(
         state(joints["crack"], **{**joints["crack"].assumed(), "elastic": why})
     nu = _poisson(values)
     brick = MasonryMat(label="brick", young=unit_E, poisson=nu, density=density)
-    usual = {"poisson": "usual for masonry units"} if poisson is None else {}
+    assumed = {"poisson": "usual for masonry units"} if poisson is None else {}
     course = unit[2] + joint
-    return Masonry(state(brick, **usual), joints, course=course)
+    return Masonry(state(brick, **assumed), joints, course=course)
 
 
 def _strengthProblems(given):
@@ -320,7 +316,6 @@ def _spacings(v):
 
 
 def _mortarJoints(v):
-    """Bed and head joints, from the arguments of :func:`masonry`."""
     bed, head = _Kind("bed", {}), _Kind("head", {})
     _stiffnesses(v, bed, head)
     _bond(v, bed, head)
@@ -410,7 +405,6 @@ def _crushing(v, bed, head):
 
 
 def _crackJoint(v):
-    """The joint between the halves of a brick."""
     halves = 0.5 * _spacings(v)[1] / v.unit_E  # what is lumped into it [m/Pa]
     shearing = 2 * (1 + _poisson(v))
     crack = _Kind("crack", {"elastic": True})
@@ -438,7 +432,6 @@ def _crackJoint(v):
 
 
 def _problems(given):
-    """Sentences on what does not go together."""
     found = []
     if ("ft" in given) == ("bond_wrench" in given):
         found.append(
@@ -449,11 +442,10 @@ def _problems(given):
         found.append(f"unit {given['unit']} m must be at most 5 m: is it in m?")
     elif given["joint"] >= min(length, height):
         found.append(f"joint {given['joint']:g} m must be below length and height of the unit {given['unit']} m")  # fmt: skip
-    pairs = [("E", "unit_E"), ("head_E", "unit_E")]
-    for one, other in pairs:
-        if n(one) is not None and n(other) is not None and not n(one) < n(other):
+    for one in ("E", "head_E"):
+        if n(one) is not None and n("unit_E") is not None and not n(one) < n("unit_E"):
             found.append(
-                f"{one} {n(one):g} Pa must be below {other} {n(other):g} Pa: bricks and joints are in series"
+                f"{one} {n(one):g} Pa must be below unit_E {n('unit_E'):g} Pa: bricks and joints are in series"
             )
     if n("G") and n("unit_E"):
         most = n("unit_E") / (2 * (1 + n("poisson", 0.2)))
@@ -461,10 +453,8 @@ def _problems(given):
             found.append(
                 f"G {n('G'):g} Pa must be below that of the bricks, unit_E/(2 (1 + nu)) = {most:g} Pa"
             )
-    for one, other in (
-        ("residual_friction", "friction"),
-        ("dilatancy", "residual_friction"),
-    ):
+    pairs = [("residual_friction", "friction"), ("dilatancy", "residual_friction")]
+    for one, other in pairs:
         most = n(other, n("friction"))
         if n(one) is not None and most is not None and n(one) > most:
             found.append(f"{one} {n(one):g} must be at most {other} {most:g}")

@@ -5,22 +5,14 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Annotated, Any, Callable, Iterable
 
 from yade.wrapper import MasonryJoint, MasonryMat
 
 from .. import fields
-from ...arguments import (
-    Names,
-    byName as dictOf,
-    isA,
-    isNumber,
-    nearest,
-    number,
-    shown,
-    validated,
-)
+from ...arguments import Names, byName as dictOf, isA, isNumber, nearest, number, shown
+from ...arguments import validated
 from ...assembly.engines import LAWS
 from ...basics import Refused
 from ..settings import applySettings
@@ -50,11 +42,8 @@ def withResidual(
     :param joints: dict of MasonryJoint by name
     """
     one = [n.partition(".")[0] for n in names if n.endswith(".friction")]
-    one = [
-        n
-        for n in one
-        if n in joints and joints[n].friction == joints[n].residualFriction
-    ]
+    alike = lambda n: n in joints and joints[n].friction == joints[n].residualFriction
+    one = [n for n in one if alike(n)]
     return [*dict.fromkeys([*names, *(n + ".residualFriction" for n in one)])]
 
 
@@ -95,7 +84,7 @@ class Masonry:
         voussoirs and blocks that are not in it are of the unit
     :param choose: function (block1, block2, geom) of your own, of the records of two bricks or None for a platen; it
         returns the name of a joint, or None for the rule above
-    :param brief: whether a scene prints only how many properties are assumed, as of a published set
+    :param brief: whether a scene prints only how many properties are assumed, as for a published set
     """
 
     unit: Annotated[MasonryMat, isA(MasonryMat)]
@@ -145,7 +134,7 @@ class Masonry:
             raise Refused(str(error)) from None
 
     def assumed(self) -> list[dict[str, Any]]:
-        """What was not given: a list of dicts, as of ``assumed`` of :mod:`masonry.run.results`."""
+        """What was not given: a list of dicts, as in ``assumed`` of :mod:`masonry.run.results`."""
         return entriesOf(self)
 
     def missing(self) -> list[str]:
@@ -209,24 +198,13 @@ class Masonry:
         """
         copies = {name: copied(joint) for name, joint in self.joints.items()}
         if args.joints == "brittle":
-            copies = {
-                name: joint if joint.elastic else joint.brittleCoulomb()
-                for name, joint in copies.items()
-            }
+            copies = {name: _brittle(joint) for name, joint in copies.items()}
         elif args.joints != next(iter(LAWS)):
             for joint in copies.values():
                 joint.law = args.joints
         units = {kind: copied(mat) for kind, mat in self.units.items()}
-        own = Masonry(
-            copied(self.unit),
-            copies,
-            units,
-            self.choose,
-            [*self.varied],
-            self.brief,
-            self.course,
-            self.stiff,
-        )
+        made = dict(unit=copied(self.unit), joints=copies, units=units)
+        own = replace(self, **made, varied=[*self.varied])
         own._follow()
         for text in args.field:
             names, function = fields.read(text)
@@ -326,8 +304,8 @@ class Masonry:
 
 def byName(joints: Iterable[MasonryJoint], brittle: bool) -> dict[str, MasonryJoint]:
     """Joints as a dict by name. If ``brittle``, those that are not elastic become brittle Coulomb slip joints."""
-    if brittle:
-        joints = [
-            joint if joint.elastic else joint.brittleCoulomb() for joint in joints
-        ]
-    return {joint.name: joint for joint in joints}
+    return {j.name: _brittle(j) if brittle else j for j in joints}
+
+
+def _brittle(joint):
+    return joint if joint.elastic else joint.brittleCoulomb()

@@ -40,7 +40,7 @@ Course = Annotated[float, number("m", 1e-3, 10)]
 
 @validated
 def dryGranite(level: Level, height: Course) -> Masonry:
-    """Granite blocks with dry joints, for :class:`masonry.scene.scene.Scene`. Parameters as of :func:`dryGraniteJoints`."""
+    """Granite blocks with dry joints, for :class:`masonry.scene.scene.Scene`. Parameters as in :func:`dryGraniteJoints`."""
     return Masonry(graniteUnit(), dryGraniteJoints(level, height), brief=True)
 
 
@@ -130,29 +130,14 @@ def calciumSilicateUnit() -> MasonryMat:
 DECIDED = "assumed by calciumSilicateJoints(); the paper gives no value"
 
 #: What the paper does not say of bed and head joints, and what it does not say of the crack joints of a brick.
-CALCIUM_SILICATE_ASSUMED = [
-    "residualCohesion",
-    "residualFriction",
-    "dilatancy",
-    "residualStrengthRatio",
-    "modeIFractureEnergy",
-    "modeIIFractureEnergy",
-    "capNormal",
-    "capShear",
-    "capLinear",
-]
-CRACK_ASSUMED = [
-    "normalStiffness",
-    "shearStiffness",
-    "tensileStrength",
-    "modeIFractureEnergy",
-    "cohesion",
-    "residualCohesion",
-    "modeIIFractureEnergy",
-    "friction",
-    "residualFriction",
-    "dilatancy",
-]
+CALCIUM_SILICATE_ASSUMED = (
+    "residualCohesion residualFriction dilatancy residualStrengthRatio "
+    "modeIFractureEnergy modeIIFractureEnergy capNormal capShear capLinear"
+).split()
+CRACK_ASSUMED = (
+    "normalStiffness shearStiffness tensileStrength modeIFractureEnergy cohesion "
+    "residualCohesion modeIIFractureEnergy friction residualFriction dilatancy"
+).split()
 
 
 @validated
@@ -220,8 +205,8 @@ def graniteUnit() -> MasonryMat:
     unit = MasonryMat(
         label="granite", young=20.2e9, poisson=0.2, density=2600, jointSet="granite"
     )
-    usual = "assumed by graniteUnit(), usual for granite; not in the data"
-    return state(unit, poisson=usual, density=usual)
+    assumption = "assumed by graniteUnit(), usual for granite; not in the data"
+    return state(unit, poisson=assumption, density=assumption)
 
 
 @validated

@@ -28,23 +28,7 @@ from .answers import AT_REST, COLLAPSED, DONE, MOVING
 from .supports import move, release
 
 #: All stages. Each is a method of :class:`masonry.scene.scene.Scene`.
-STAGES = (
-    settle,
-    push,
-    cycle,
-    follow,
-    drive,
-    pressJoint,
-    release,
-    move,
-    tilt,
-    accelerate,
-    lean,
-    shake,
-    run,
-    growLoad,
-    growWind,
-    growPress,
-)
+STAGES = [settle, push, cycle, follow, drive, pressJoint, release, move, tilt]
+STAGES += [accelerate, lean, shake, run, growLoad, growWind, growPress]
 #: Stages whose names are those of words that describe: they are meant after the first stage.
 LATER = (load, wind, press, hold)

@@ -61,9 +61,7 @@ def drive(
     :param x: displacement along x [mm], and likewise ``y`` and ``z``: one of them. It may be a function without
         arguments that gives it when the stage begins
     """
-    given = {
-        axis: value for axis, value in zip("xyz", (x, y, z)) if callable(value) or value
-    }
+    given = {a: v for a, v in zip("xyz", (x, y, z)) if callable(v) or v}
     if len(given) != 1 or [*given][0] not in target.drives:
         raise ValueError(
             f"drive: give one displacement other than 0, along an axis that has a drive; {_drivesOf(target)}"

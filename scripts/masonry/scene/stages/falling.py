@@ -19,9 +19,8 @@ LOOK = 0.05  # time between two looks and rows, over √(side/g) of the largest 
 FRAME = 4  # looks from one frame to the next
 CALM = 0.1  # speed of the fastest block of rubble at rest, over that of one that falls [-]: see Motion.fastest()
 LOOKS = 40  # so many looks one after the other find the rubble at rest before it is said to be
-LONGEST = (
-    20.0  # after which it is given up, over √(2h/g) of the height of what is built [-]
-)
+#: After which it is given up, over √(2h/g) of the height of what is built [-].
+LONGEST = 20.0
 TABLE = "fallen.csv"
 
 

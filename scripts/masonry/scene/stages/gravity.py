@@ -85,8 +85,8 @@ def accelerate(
     :param most: [g]
     :param towards: horizontal direction of the force on the blocks
     :param rate: [g/s]
-    :param within: as of :meth:`tilt`
-    :returns: as of :meth:`tilt`
+    :param within: as in :meth:`tilt`
+    :returns: as in :meth:`tilt`
     """
     towards = sideways(scene, towards, "accelerate")
     duration = most / rate

@@ -68,9 +68,8 @@ class Growing(Timed):
     #: 1 when the largest load that was held was seen to buckle; from then on every trial is looked at so.
     buckled: int = 0
     trials: Sequence[Any] = ()
-    held: list | None = (
-        None  # factor and displacement [mm] of the largest load that was held
-    )
+    # factor and displacement [mm] of the largest load that was held
+    held: list | None = None
     #: Of the smallest that was not, 1 if that trial began at rest, else 0, and how it ended: a number of WHY.
     lost: list | None = None
     #: Trials above a load that was not held when it grew, but is held from rest.

@@ -82,8 +82,8 @@ def growLoad(
 
     :param force: at the end, three numbers [N]
     :param over: time in which it grows to that [s]
-    :param within: as of :meth:`tilt`
-    :returns: as of :meth:`tilt`; the unit of ``scene.factor`` is kN
+    :param within: as in :meth:`tilt`
+    :returns: as in :meth:`tilt`; the unit of ``scene.factor`` is kN
     """
     made, towards = _forceOn(scene, target, force, "growLoad")
     return _grow(scene, "growLoad", made, towards, over, within)
@@ -127,7 +127,7 @@ def wind(
     Before the first stage :meth:`wind` describes a wind that grows in :meth:`settle`, and to which this one is added. Another
     :meth:`wind` of the same direction and part after the first stage replaces it.
 
-    :param pressure: [Pa]; 0 takes the wind away; ``towards`` and ``part``: as before the first stage; ``longest``: as of
+    :param pressure: [Pa]; 0 takes the wind away; ``towards`` and ``part``: as before the first stage; ``longest``: as in
         :meth:`load`
     :returns: ``AT_REST``, ``MOVING`` or ``COLLAPSED``
     """
@@ -147,10 +147,10 @@ def growWind(
 ) -> str:
     """Let a wind grow evenly until the structure falls or the pressure is reached; then search for the one that is held.
 
-    :param pressure: at the end [Pa]; ``towards`` and ``part``: as of :meth:`wind`
+    :param pressure: at the end [Pa]; ``towards`` and ``part``: as in :meth:`wind`
     :param over: time in which it grows to that [s]
-    :param within: as of :meth:`tilt`
-    :returns: as of :meth:`tilt`; the unit of ``scene.factor`` is kPa
+    :param within: as in :meth:`tilt`
+    :returns: as in :meth:`tilt`; the unit of ``scene.factor`` is kPa
     """
     made, towards = _windOn(scene, pressure, towards, part, "growWind")
     return _grow(scene, "growWind", made, towards, over, within)
@@ -182,7 +182,7 @@ def press(
     Before the first stage :meth:`press` describes a press that grows in :meth:`settle`. After it the stress replaces that.
 
     :param stress: mean vertical stress that the bricks feel [Pa]; the weight of the platen is part of it
-    :param longest: as of :meth:`load`
+    :param longest: as in :meth:`load`
     :returns: ``AT_REST``, ``MOVING`` or ``COLLAPSED``
     """
     made = _pressOn(scene, platen, stress, "press")
@@ -204,8 +204,8 @@ def growPress(
 
     :param stress: what is added at the end [Pa]
     :param over: time in which it grows to that [s]
-    :param within: as of :meth:`tilt`
-    :returns: as of :meth:`tilt`; the unit of ``scene.factor`` is MPa
+    :param within: as in :meth:`tilt`
+    :returns: as in :meth:`tilt`; the unit of ``scene.factor`` is MPa
     """
     made = _pressOn(scene, platen, stress, "growPress")
     return _grow(scene, "growPress", made, -Vector3.UnitZ, over, within)
@@ -271,15 +271,15 @@ def hold(scene: Any, target: AnyTarget, axes: Freedoms = "xyzXYZ") -> str:
     return atOnce(scene, "hold", act)
 
 
-def prepare(scene, word, said):
+def prepare(scene, word, arguments):
     """Make the engines of a load that the script puts on after the first stage, before a checkpoint is loaded that has them.
 
-    :param word: what the script said; ``said``: its arguments as data
+    :param word: what the script said; ``arguments``: its arguments as data
     """
-    target = scene.targets.get(said.get("target") or said.get("platen"))
+    target = scene.targets.get(arguments.get("target") or arguments.get("platen"))
     if word in ("load", "growLoad") and target:
         scene.model.loading.forceOf(target)
     elif word in ("press", "growPress") and target:
         scene.model.loading.pressOf(target)
     elif word in ("wind", "growWind"):
-        _windOn(scene, said["pressure"], said["towards"], said["part"], word)
+        _windOn(scene, *(arguments[n] for n in ("pressure", "towards", "part")), word)

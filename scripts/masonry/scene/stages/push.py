@@ -8,7 +8,7 @@ from typing import Annotated, Any
 
 from ...arguments import Direction, FilePath, Numbers, listOf, number, validated, whole
 from ...assembly.blocks import vector
-from ...basics import Refused, say
+from ...basics import NotAccurate, Refused, say
 from ...read import curves
 from ...read.run_data import BASE, MOVED, TOP, RunData
 from .. import history
@@ -88,7 +88,7 @@ def cycle(
 
     :param amplitudes: [mm], a list
     :param repeats: how often each of them
-    :param continued: as of :meth:`push`
+    :param continued: as in :meth:`push`
     """
     text = ",".join(f"{scene.share * a:g}x{repeats}" for a in amplitudes)
     aims = dict(history=text)
@@ -107,7 +107,7 @@ def follow(
 ) -> str:
     """Push a target through the displacements of a CSV file, which has a column ``displacement_mm``.
 
-    :param continued: as of :meth:`push`
+    :param continued: as in :meth:`push`
     """
     aims = dict(history=str(path))
     return _drive(scene, "follow", target, aims, direction, rate, continued)
@@ -116,7 +116,7 @@ def follow(
 def _drive(scene, name, target, aims, direction, rate, continued):
     args = _argumentsOf(scene, name, aims)
     if rate is not None and args.accuracy:
-        raise Refused(
+        raise NotAccurate(
             f"--accuracy: it chooses the rate, and {name}() has one of its own: rate={rate:g} mm/s"
         )
     args.rate = args.rate if rate is None else rate

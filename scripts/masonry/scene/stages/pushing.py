@@ -10,7 +10,7 @@ from typing import Sequence
 from yade import O
 
 from ...assembly.period import firstPeriod
-from ...basics import Collapsed, Refused, say
+from ...basics import Collapsed, NotResumed, Refused, say
 from ...read import curves
 from ...read.quantities import IMBALANCE
 from ...run.options import USUAL
@@ -35,9 +35,8 @@ DAMPED = 0.1  # of what loops lose: a larger share of damping is a warning, beca
 class Pushing:
     """What a push remembers. Pairs are of the negative and of the positive side, and positive outwards."""
 
-    origin: list | None = (
-        None  # as of Structure.topDisplacement() when the push began [m]
-    )
+    # as in Structure.topDisplacement() when the push began [m]
+    origin: list | None = None
     now: float = 0.0  # time of the last row [s]
     moved: float = 0.0  # displacement there [mm]
     passed: int = 0  # points of the history that lie behind
@@ -96,9 +95,8 @@ class Pushing:
             goal = goals[self.passed]
             brakes = goal.brake is not None
             near = brakes and abs(goal.brake - goal.displacement) <= ARRIVED
-            if goal.direction * (goal.displacement - self.moved) > (
-                ARRIVED if near else 0
-            ):
+            missing = goal.direction * (goal.displacement - self.moved)
+            if missing > (ARRIVED if near else 0):
                 return True, turned
             if self.passed + 1 == len(goals):
                 return False, turned
@@ -142,35 +140,15 @@ def drivePush(scene, name, args, began, continued=False):
     """
     run, model = scene.running, scene.model
     at = run.stage(name, Pushing())
-    first, origin = at.origin is None, at.origin
-    if first:
-        origin = here = list(model.loading.topDisplacement())
-        if continued:
-            origin = run.at.origins[began]
-            at.moved = at.last = at.start = 1e3 * (here[0] - origin[0])
-    if not args.history and not args.until > at.moved:
-        raise Refused(
-            f"--until {args.until:g}: the run is at {at.moved:.2f} mm already"
-        )
-    goals = aim(args, at.start)
+    goals = _entered(scene, name, args, at, began, continued)
     whole, spacing = pathOf(args, at.start), frameSpacing(args)
-    if at.passed >= len(goals):
-        raise Refused(f"--resume: its history has {at.passed} points and more")
-    load = model.loading.loads["push"]
     every = max(1, int(rowSpacing(args) / (args.rate * O.dt)))
-    model.loading.goal = at.passed + 1, goals[at.passed].displacement
-    if first:
-        run.at.origins = {**run.at.origins, began: origin}
-        _beginPush(scene, name, args, at, origin, whole)
-        at.nextFrame = spacing
-    model.loading.origin = at.origin
 
     def detail():
         if not args.history:
             return f"{at.moved:6.2f} of {args.until:g} mm  {shear:7.2f} kN"
-        return (
-            f"{travelled:.1f} of {whole:g} mm, at {at.moved:6.2f} mm  {shear:7.2f} kN"
-        )
+        path = f"{travelled:.1f} of {whole:g} mm"
+        return f"{path}, at {at.moved:6.2f} mm  {shear:7.2f} kN"
 
     moves, undamped = True, None
     while moves:
@@ -181,20 +159,13 @@ def drivePush(scene, name, args, began, continued=False):
         if free != undamped:
             undamped = free
             model.scheme.damp(0.0, "local") if free else model.scheme.dampByOptions()
-        full = goal.direction * args.rate * 1e-3
-        if load.velocity != full * growth:
-            load.velocity = full * growth
-        # A velocity that grew in stairs would make the pushed block swing in time with them.
-        if start < growth:
-            load.ramp = run.at.left or steps
-            load.acceleration = full * (growth - start) / (steps * O.dt)
-        model.loading.keepLoadLine()
+        _setVelocity(scene, goal.direction * args.rate * 1e-3, start, growth, steps)
         run.advance(steps)
         reading = run.record()
         before = at.moved
         at.now, at.moved = reading.time, 1e3 * reading.along
         if at.places and not undamped:
-            _noteSwing(run, model, at)
+            _keepFreeVibration(run, model, at)
         shear, travelled = 1e-3 * reading.baseShear, at.travelled(goal.direction)
         mean = at.note(shear, max(at.period, AVERAGED / args.rate))
         how = _lost(model, at, reading, goal.direction, mean, whole)
@@ -213,26 +184,57 @@ def drivePush(scene, name, args, began, continued=False):
         raise Collapsed(f"at {at.moved:.2f} mm {how}")
 
 
-def _beginPush(scene, name, args, at, origin, path):
-    """Begin a push: its first row and frame, and the first period of the structure along it.
+def _entered(scene, name, args, at, began, continued):
+    """Begin a push, with its first row and frame and the first period of the structure along it, or go on with it.
 
-    :param at: what the push remembers
-    :param path: length of the whole path [mm]
+    Parameters are those of :func:`drivePush`, and what the push remembers. Returns the points of its path.
     """
     run, model = scene.running, scene.model
-    at.origin = model.loading.origin = origin
-    at.now = at.since = O.time
-    at.moved = 1e3 * run.record().along
-    run.frame()
-    at.period = _measuredPeriod(scene, name, args, path)
-    at.places = model.motion.positions() if at.period else []
-    run.at.swings = {**run.at.swings, str(run.entered): [at.period, 0.0, 0.0]}
+    first, origin = at.origin is None, at.origin
+    if first:
+        origin = here = list(model.loading.topDisplacement())
+        if continued:
+            origin = run.at.origins[began]
+            at.moved = at.last = at.start = 1e3 * (here[0] - origin[0])
+    if not args.history and not args.until > at.moved:
+        raise Refused(
+            f"--until {args.until:g}: the run is at {at.moved:.2f} mm already"
+        )
+    goals = aim(args, at.start)
+    if at.passed >= len(goals):
+        raise NotResumed(f"--resume: its history has {at.passed} points and more")
+    model.loading.goal = at.passed + 1, goals[at.passed].displacement
+    model.loading.origin = at.origin = origin
+    if first:
+        run.at.origins = {**run.at.origins, began: origin}
+        at.now = at.since = O.time
+        at.moved = 1e3 * run.record().along
+        run.frame()
+        at.period = _measuredPeriod(scene, name, args, pathOf(args, at.start))
+        at.places = model.motion.positions() if at.period else []
+        vibration = [at.period, 0.0, 0.0]
+        run.at.freeVibrations = {**run.at.freeVibrations, str(run.entered): vibration}
+        at.nextFrame = frameSpacing(args)
+    return goals
+
+
+def _setVelocity(scene, full, start, growth, steps):
+    """Let the velocity of the drive grow within the next steps, from one share of the full one [m/s] to another."""
+    loading = scene.model.loading
+    load = loading.loads["push"]
+    if load.velocity != full * growth:
+        load.velocity = full * growth
+    # A velocity that grew in stairs would make the pushed block swing in time with them.
+    if start < growth:
+        load.ramp = scene.running.at.left or steps
+        load.acceleration = full * (growth - start) / (steps * O.dt)
+    loading.keepLoadLine()
 
 
 def _lost(model, at, reading, direction, mean, whole):
     """Why a wall has collapsed, or None.
 
-    :param mean: base shear over a time, as of :meth:`Pushing.note` [kN]
+    :param mean: base shear over a time, as in :meth:`Pushing.note` [kN]
     :param whole: length of the whole path [mm]
     """
     if at.hasLost(direction, mean):
@@ -262,12 +264,12 @@ def _measuredPeriod(scene, name, args, path):
     return period
 
 
-def _noteSwing(run, model, at):
+def _keepFreeVibration(run, model, at):
     """Keep the period of a push whose velocity has grown, the weight of the base in its shear force, and the time."""
     moved = model.loading.alongNow() - 1e-3 * at.start
     weight = model.motion.baseWeight(at.places, model.loading.direction, moved)
-    swing = [at.period, weight or 0.0, at.now]
-    run.at.swings = {**run.at.swings, str(run.entered): swing}
+    vibration = [at.period, weight or 0.0, at.now]
+    run.at.freeVibrations = {**run.at.freeVibrations, str(run.entered): vibration}
     at.places = []
 
 
@@ -350,9 +352,9 @@ def tooFast(args, imbalance):
     cure = "--damping-kind combined" if args.damping_kind == "local" else slower
     # The stiffest joints swing with a period of four time steps if the step is 1/√2 of the limit without damping. Combined
     # damping then finds the same signs in every swing, and can brake a steady motion.
-    usual, fours = USUAL["dt_fraction"], 0.7 * math.sqrt(1 + args.damping)
-    if args.dt_fraction > max(fours, usual):
-        cure = f"--dt-fraction {usual:g}"
+    default, fours = USUAL["dt_fraction"], 0.7 * math.sqrt(1 + args.damping)
+    if args.dt_fraction > max(fours, default):
+        cure = f"--dt-fraction {default:g}"
     return (
         f"the push is too fast: {100 * imbalance:.0f} % of the force does not reach the supports, "
         f"more than {100 * IMBALANCE:.0f} % spoil the peak; {cure} would do"

@@ -179,14 +179,14 @@ def _stepBack(scene):
     before, at = running.scriptBefore, len(scene.script.words)
     if running.takesUp and at < len(before):  # it had none yet
         known = before[at][1].get("known", known)
-    said = saidBefore(scene, "stepBack", known=known)
+    isEarlier = saidBefore(scene, "stepBack", known=known)
     if not known:
         raise ValueError(
             "stepBack: the scene has not been at rest in this run of the script"
         )
     running.collapsed, scene.ended = False, AT_REST
     scene.results.run.pop("collapse", None)
-    if said:
+    if isEarlier:
         return
     loadScene(model.atRest)
     running.checkpoints.mark()

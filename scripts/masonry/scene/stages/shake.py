@@ -115,10 +115,12 @@ def shake(
     :param massDamping: viscous, of the motion relative to the ground [1/s]
     :param stiffnessDamping: viscous, of the joints [s]; it shortens the time step
     """
-    accelerations, every, scale, unit = byOptions(
-        scene, accelerations, every, scale, unit
-    )
-    values, every = readRecord(accelerations, every, scale, unit)
+    given = byOptions(scene, accelerations, every, scale, unit)
+    scale = given[2]
+    try:
+        values, every = readRecord(*given)
+    except Refused as refused:
+        raise Refused(f"shake: {refused}") from None
     doubt = drift(values, every).sentence()
     if doubt:
         say(f"note: shake: the record drifts: {doubt}")

@@ -11,7 +11,7 @@ from typing import Any, Callable, Concatenate, ParamSpec
 from yade import O
 
 from ... import notebook
-from ...basics import Collapsed, Refused, say
+from ...basics import Collapsed, NotAccurate, say
 from ...run import batch
 from ...run.accuracy import STAGES
 from ..resuming import enter
@@ -103,7 +103,7 @@ def _check(scene, act, traits, args, settings):
     """What the user says to a stage, as its kinds return it. Raises Refused."""
     (_, *args), settings = act.checked((scene, *args), settings)
     if scene.args.accuracy and act.__name__ not in STAGES:
-        raise Refused(
+        raise NotAccurate(
             f"--accuracy: it is about peak and work of a push, and this scene has the stage {act.__name__}; scenes with it "
             f"have the stages {', '.join(STAGES)} alone"
         )
@@ -222,7 +222,6 @@ def _follow(scene, name):
 
 
 def _noteEnd(running, before, ended):
-    """Note how the stage ended that follows these."""
     running.at.ended = {**running.at.ended, str(before + 1): [ended, running.entered]}
 
 

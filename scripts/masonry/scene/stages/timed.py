@@ -52,9 +52,8 @@ def timed(scene, at, duration, before, after=None, each=None):
         if at.done < goal:
             continue
         running.record()
-        running.show(
-            at.done / length, lambda: f"{at.done * O.dt:.3f} of {duration:.3f} s"
-        )
+        text = lambda: f"{at.done * O.dt:.3f} of {duration:.3f} s"
+        running.show(at.done / length, text)
         if at.done >= at.nextFrame:
             running.frame()
             at.nextFrame += perFrame

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The program beside a run that draws its figures and writes its report when the run is over.
 
-    python3 -P -m masonry.read.crew
+    python3 -P -m masonry.read.postprocess
 
 A run starts it early: it loads what it needs while the run goes on. Then it reads the folder from the standard input, up to a zero
 byte, when the files of the run are there. It draws curve.png and cracks.png in a copy of the process, and reads the frames for
@@ -31,7 +31,6 @@ NO_REPORT = 3
 
 
 def _load() -> None:
-    """Load what drawing needs."""
     with contextlib.suppress(ImportError):  # it is said when something is drawn
         import matplotlib.backends.backend_agg  # noqa: F401
         import matplotlib.style  # noqa: F401

@@ -4,7 +4,7 @@
 from dataclasses import dataclass, field
 
 from .._masonry import loadScene
-from ..basics import Refused, say
+from ..basics import NotResumed, say
 from .checkpoints import NAME, alike, readState
 
 MOST_NOTES = 1000  # that a run keeps
@@ -12,7 +12,7 @@ PARTS = "setup", "steps", "rows", "frames"  # of a run's time
 
 
 @dataclass
-class Place:
+class RunState:
     """How far a run has come, beside the state of the scene."""
 
     #: What the scene is at the beginning of the present stage and at the checkpoint, beside its state in YADE, as
@@ -34,7 +34,7 @@ class Place:
     origins: dict = field(default_factory=dict)  # where pushes began, by their name
     #: Of the pushes, by the numbers of their stages: the first period when it began [s], the weight of the base in its shear
     #: force [-], and the time at which its velocity had grown [s]; 0 where that was not found.
-    swings: dict = field(default_factory=dict)
+    freeVibrations: dict = field(default_factory=dict)
     bounds: dict = field(default_factory=dict)  # what limit analysis found, by the load
     #: Load factors under which the structure came to rest, by the names of their bounds.
     held: dict = field(default_factory=dict)
@@ -43,13 +43,13 @@ class Place:
     loads: dict = field(default_factory=dict)
     #: How stages ended, by their numbers, and the number of the last stage then: a stage may consist of several.
     ended: dict = field(default_factory=dict)
-    fall: str = ""  # what has fallen, as of Run.fall
+    fall: str = ""  # what has fallen, as in Run.fall
     #: What acted beside a load and held the structure when its bound was found, by the load.
     beside: dict = field(default_factory=dict)
     atRest: str = ""  # the last state at rest, as text, for stepBack()
     places: list = field(default_factory=list)  # of masonry.assembly.motion.Motion
     answers: dict = field(default_factory=dict)  # of the stages, by their number
-    notes: list = field(default_factory=list)  # what the run said, as of run.json
+    notes: list = field(default_factory=list)  # what the run said, as in run.json
     supportsMoved: bool = False  # whether a stage has moved supports
     resumed: list = field(default_factory=list)  # times at which it was taken up [s]
 
@@ -80,7 +80,7 @@ class Place:
 
 def otherVersion(why):
     """The refusal of a checkpoint that this version of the plugin does not leave."""
-    return Refused(f"--resume: of another version of the plugin: {why}")
+    return NotResumed(f"--resume: of another version of the plugin: {why}")
 
 
 def restored(example, values):
@@ -96,13 +96,13 @@ def restored(example, values):
     return type(example)(**{**before, **values})
 
 
-#: What lists and dicts of a :class:`Place` hold, as :func:`masonry.run.checkpoints.alike` takes it.
+#: What lists and dicts of a :class:`RunState` hold, as :func:`masonry.run.checkpoints.alike` takes it.
 HOLDS = {
     "stages": ["", 0, 0.0, 0],
     "seconds": 0.0,
     "frames": 0.0,
     "origins": None,
-    "swings": [0.0] * 3,
+    "freeVibrations": [0.0] * 3,
     "bounds": {},
     "held": 0.0,
     "loads": ["", "", ""],
@@ -118,8 +118,8 @@ class Saved:
     """A checkpoint that a run left, read from the disk once.
 
     - ``scene``: name of the scene; ``options``: those of the run; ``script``: what its script said, as data
-    - ``at``: how far the run had come, as of :class:`Place`; ``rows`` of curve.csv
-    - ``seconds`` of wall-clock time; ``host``: what it was made with, as of
+    - ``at``: how far the run had come, as in :class:`RunState`; ``rows`` of curve.csv
+    - ``seconds`` of wall-clock time; ``host``: what it was made with, as in
       :func:`masonry.run.keeping.hostNow`
 
     :param directory: folder of the run
@@ -131,24 +131,23 @@ class Saved:
         try:
             self._data, saved = readState(directory)
         except (OSError, ValueError) as error:
-            raise Refused(f"--resume: {error}") from None
-        like = dict(
-            scene="", options={}, at={}, rows=[], script=[], seconds=0.0, host={}
-        )
+            raise NotResumed(f"--resume: {error}") from None
+        like = dict(scene="", options={}, at={}, rows=[], script=[], seconds=0.0)
+        like["host"] = {}
         if (
             not isinstance(saved, dict)
             or not all(alike(saved.get(key), value) for key, value in like.items())
             or not all(alike(row, [0.0] * len(row)) for row in saved["rows"])
             or not all(alike(word, ["", {}]) for word in saved["script"])
         ):
-            raise Refused(
+            raise NotResumed(
                 f"--resume: {directory}/{NAME} was not left by a run in stages"
             )
         vars(self).update({key: saved[key] for key in like})
 
     def place(self):
-        """How far the run had come: a :class:`Place`. Raises Refused."""
-        at = restored(Place(), self.at)
+        """How far the run had come: a :class:`RunState`. Raises Refused."""
+        at = restored(RunState(), self.at)
         values = lambda held: held.values() if isinstance(held, dict) else held
         wrong = [
             name
@@ -164,7 +163,7 @@ class Saved:
         try:
             loadScene(self._data)
         except (ValueError, TypeError) as error:
-            raise Refused(f"--resume: {self.directory}/{NAME} {error}") from None
+            raise NotResumed(f"--resume: {self.directory}/{NAME} {error}") from None
 
     def compareHost(self, now):
         """Say what of the host is not as it was."""
