@@ -347,7 +347,7 @@ CASES = {
          ["rigid units are not divided", "friction -1 must be at least 0", "no joint 'x'"]),
         (joined, lambda: script("wall_dry", "--crack-surfaces", "on", "--set", "bed.cohesion=-1"),
          ["--crack-surfaces on: the bricks are in pieces, and these materials have no joint", "cohesion -1 Pa must be at least 0"]),
-        (joined, lambda: script("wall_dry", "--level", "120"), ["argument --level: invalid choice: ", "120", "(choose from 100, 175, 250)"]),
+        (joined, lambda: script("wall_dry", "--level", "120"), ["argument --level: invalid choice: ", "120", "(choose from "]),
         (joined, lambda: script("couplet", "--normal-stress", "0.5"), "argument --normal-stress: 0.5 MPa must be"),
         (joined, lambda: script("couplet", "--closure", "0"), "argument --closure: 0.0 mm must be"),
         (joined, lambda: script("couplet", "--normal-stress", "-8"), "pressJoint: -8 MPa crushes the bed joint, whose compressive strength is 7.55 MPa"),

@@ -13,11 +13,11 @@ from __future__ import annotations
 import glob
 import os
 import sys
-from typing import Any, Iterator
+from typing import Annotated, Any, Iterator
 
 import numpy as np
 
-from ..arguments import FilePath, validated
+from ..arguments import FilePath, label, validated
 from ..basics import Refused, say
 from . import cracks, loops, quantities
 from .files import filesOf, onFolder, readCurve, readRun
@@ -44,7 +44,7 @@ def wallNumbers(directory: FilePath) -> dict[str, Any]:
 
 
 @validated
-def jointNumbers(directory: FilePath, name: str) -> dict[str, Any]:
+def jointNumbers(directory: FilePath, name: Annotated[str, label]) -> dict[str, Any]:
     """Areas under the curves of a joint whose means are recorded: its fracture energies, if it was torn, sheared or crushed.
 
     :param name: of the joint, which stands before the names of its columns and of these numbers; it may be empty
