@@ -13,6 +13,7 @@ import operator
 import os
 import random
 import re
+import shutil
 import signal
 import sys
 from decimal import Decimal
@@ -22,9 +23,10 @@ import masonry
 from hosted import *
 from hypothesis import given, settings
 from hypothesis import strategies as some
-from masonry import arguments, fields
+from masonry import arguments, capacity, fields
 from masonry.scene import options
-from masonry.study import variables
+from masonry.read import frames, measure, report
+from masonry.study import Study, variables
 
 sys.path.insert(1, os.path.join(ROOT, "scripts", "docs"))
 import kinds
@@ -206,6 +208,24 @@ def sceneOptions():
     return {n: value for n, value in found.items() if n not in aside}
 
 
+#: The curve of a push [mm, kN], and what capacity makes of it.
+CURVE = dict(displacement=[0.0, 1.0, 2.0, 4.0, 6.0], force=[0.0, 8.0, 10.0, 9.0, 7.0])
+BILINEAR, SYSTEM = capacity.bilinear(**CURVE), capacity.equivalent(3e4, 1.0)
+RULE = dict(rule="masonry", secant=0.7, fall=0.8, mechanism=None)
+SPECTRUM = capacity.elastic(0.1, "g", 1, "B")
+DEMAND = dict(system=SYSTEM, spectrum=SPECTRUM, limited=False)
+MASSES = [dict(name="equivalent_mass", value=3e4, unit="kg"), dict(name="participation_factor", value=1.0, unit="-")]  # fmt: skip
+STUDY = dict(
+    scene="wall_comp4", options={"rate": 50}, runs=3, seed=0, vary={"bed.friction": [0.5, 0.6]}, design="random", correlation=None,
+    records=None, levels=None, scales=None, measure=None, unit=None,
+)  # fmt: skip
+
+
+def iterated(push=None, **settings):
+    """The target displacement of a push; by default that of the folder of the examples."""
+    return capacity.iterated(push or capacity.pushover("run"), **settings)
+
+
 #: Functions and classes by their names: what stands before, what is called, and its arguments.
 CALLS = {
     "Scene": (nothing, Scene, dict(name="odd", bricks=WALL, materials=materials.calciumSilicate(), title=None, plane=None, gravity=9.81, columns=None, functors=False, arguments=SCENE_OPTIONS, allowGaps=False, **sceneOptions())),
@@ -253,6 +273,26 @@ CALLS = {
     "Bricks.within": (nothing, WALL.within, dict(low=(0, 0, 0), high=(1, 1, 1))),
     "Bricks.cut": (nothing, WALL.cut, dict(point=(0.1, 0, 0), normal=LEVEL, own=False)),
     "Bricks.freeFaces": (nothing, WALL.freeFaces, dict(direction=(0, 1, 0))),
+    "capacity.assess": (nothing, capacity.assess, dict(directory="run", rule="masonry", mechanism=None, limited=False, iterate=False, height=1.0, out=None, spectrum=SPECTRUM, system=SYSTEM)),
+    "capacity.assessDomain": (nothing, capacity.assessDomain, dict(directory="run", runs=(), out=None)),
+    "capacity.bilinear": (nothing, capacity.bilinear, dict(**CURVE, **RULE, pulse=0.0)),
+    "capacity.bilinearOf": (nothing, capacity.bilinearOf, dict(directory="run", **RULE)),
+    "capacity.demand": (nothing, capacity.demand, dict(curve=BILINEAR, **DEMAND)),
+    "capacity.domain": (nothing, capacity.domain, dict(directory="run", runs=())),
+    "capacity.drifts": (nothing, capacity.drifts, dict(directory="run", height=1.0, fall=0.8)),
+    "capacity.elastic": (nothing, capacity.elastic, dict(ag=0.1, unit="g", type=1, ground="B", importance=1.0, damping=5.0, parameters=None)),
+    "capacity.equivalent": (nothing, capacity.equivalent, dict(mass=3e4, gamma=1.0)),
+    "capacity.iterated": (nothing, iterated, dict(push=None, **DEMAND)),
+    "capacity.ofMasses": (nothing, capacity.ofMasses, dict(masses=[1e3, 2e3], shape=[0.5, 1.0])),
+    "capacity.ofRun": (nothing, capacity.ofRun, dict(run=dict(answers=MASSES), directory="run")),
+    "capacity.pushover": (nothing, capacity.pushover, dict(directory="run")),
+    "capacity.readSpectrum": (nothing, capacity.readSpectrum, dict(path="spectrum.csv", unit="g", corner=0.5)),
+    "capacity.runPoint": (nothing, capacity.runPoint, dict(directory="run")),
+    "measure.measure": (nothing, measure.measure, dict(directory="run")),
+    "report.read": (nothing, report.read, dict(directory="run")),
+    "frames.frameTimes": (nothing, frames.frameTimes, dict(directory="run")),
+    "frames.readFrame": (nothing, frames.readFrame, dict(directory="run", kind="blocks", number=-1)),
+    "study.Study": (nothing, Study, STUDY),
     "rayleigh": (nothing, masonry.rayleigh, dict(ratio=0.05, low=1.0, high=10.0)),
     "addBlock": (nothing, addBlock, dict(vertices=CUBE, material=MasonryMat(density=1800), inPlane=False, color=(0.7, 0.7, 0.7))),
     "engines": (pile, engines, dict(joints=[MasonryJoint()], damping=0.8, gravity=(0, 0, -9.81), subcontacts=None, rows=None, inPlane=False, loads=(), zones=None, functors=False, dampingKind=None)),
@@ -268,12 +308,32 @@ CALLS = {
 CUBE_FILE = "".join("v {} {} {}\n".format(*c) for c in CUBE) + "f 1 2 4 3\nf 5 7 8 6\nf 1 5 6 2\nf 3 4 8 7\nf 1 3 7 5\nf 2 6 8 4\n"  # fmt: skip
 
 
+@pytest.fixture(scope="module")
+def pushed(tmp_path_factory):
+    """The folder of a short push."""
+    out = tmp_path_factory.mktemp("pushed") / "run"
+    O.reset()
+    blocks = bricks.stack(3, (0.4, 0.3, 0.2))
+    words = ["--out", str(out), "--vtk-every", "1"]
+    made = Scene("pile", blocks, materials.calciumSilicate(), arguments=words, rate=50)
+    made.platen("bottom")
+    top = made.platen("top", rotation="free")
+    made.press(top, 1e5)
+    made.domain(top, [20])
+    made.settle()
+    made.push(top, 2.0)
+    made.finish()
+    return out
+
+
 @pytest.fixture
-def folder(tmp_path, monkeypatch):
+def folder(tmp_path, monkeypatch, pushed):
     """A folder with the files of the examples."""
     monkeypatch.chdir(tmp_path)
     (tmp_path / "path.csv").write_text("displacement_mm\n0.05\n-0.05\n0\n")
     (tmp_path / "cube.obj").write_text(CUBE_FILE)
+    (tmp_path / "spectrum.csv").write_text("0 0.1\n0.1 0.3\n0.5 0.3\n4 0.04\n")
+    shutil.copytree(pushed, tmp_path / "run")
     O.reset()
     joined()
     masonry.saveCheckpoint("kept", 1)
@@ -336,7 +396,13 @@ def said(name, change):
 #: Sentences of Python and of its libraries, which name nothing that a script has said.
 NOT_OURS = "truth value|could not be broadcast|codec can't|JSON compliant|unpack|invalid literal|NoneType"
 #: By what else a message may name an argument: a property in words, points as corners, or what a lintel lies on.
-OTHERWISE = {"addBlock": "corner", "bricks.Lintel": "openings"}
+OTHERWISE = {
+    "addBlock": "corner",
+    "bricks.Lintel": "openings",
+    "readFrame": "no file",
+    "readSpectrum": "cannot read",
+    "assess": "mass",
+}
 
 
 def isNamed(name, argument, message):
@@ -396,12 +462,14 @@ def test_every_word_of_a_scene_has_an_example_and_kinds_of_all_its_arguments():
 def test_every_function_that_scripts_call_has_an_example():
     ours = {n: getattr(masonry, n) for n in dir(masonry) if not n.startswith("_")}
     names = {n for n, t in ours.items() if inspect.isfunction(t) and takesArguments(t)}
-    for module, wanted in ((materials, materials.__all__), (bricks, bricks.__all__)):
+    for module in (materials, bricks, capacity):
         short = module.__name__.rpartition(".")[2]
-        names |= {f"{short}.{n}" for n in wanted if callable(getattr(module, n)) and takesArguments(getattr(module, n))}  # fmt: skip
+        members = {n: getattr(module, n) for n in module.__all__}
+        names |= {f"{short}.{n}" for n, t in members.items() if callable(t) and takesArguments(t)}  # fmt: skip
     names |= {f"Bricks.{n}" for n, t in inspect.getmembers(bricks.Bricks, inspect.isfunction) if n[0] != "_" and takesArguments(t)}  # fmt: skip
     # a result, and classes
-    names -= {"bricks.Joint", "materials.MasonryJoint", "materials.MasonryMat"}
+    results = ["Bilinear", "BoundPoint", "Demand", "Domain", "Equivalent", "Number", "Pushover", "RunPoint", "Spectrum"]  # fmt: skip
+    names -= {"bricks.Joint", "materials.MasonryJoint", "materials.MasonryMat", *(f"capacity.{n}" for n in results)}  # fmt: skip
     assert names <= set(CALLS), names - set(CALLS)
 
 

@@ -70,7 +70,10 @@ def ofMasses(
     return Equivalent(mass, mass / squares, f"masses of {listed(masses)} kg with the shape {listed(shape)}, equations (B.2) and (B.3)")  # fmt: skip
 
 
-def ofRun(run: dict[str, Any], directory: str = "run.json") -> Equivalent:
+@validated
+def ofRun(
+    run: Annotated[dict[str, Any], isA(dict)], directory: str = "run.json"
+) -> Equivalent:
     """The equivalent system that a run has: its script says it by
     ``scene.result("equivalent_mass", 30e3, "kg")`` and ``scene.result("participation_factor", 1.0)``.
 
@@ -240,8 +243,12 @@ def _scale(ductility, corner, limited):
     return max(ratio, ductility / MOST) if limited else ratio
 
 
+@validated
 def iterated(
-    push: Pushover, system: Equivalent, spectrum: Spectrum, limited: bool = False
+    push: Annotated[Pushover, isA(Pushover)],
+    system: Annotated[Equivalent, isA(Equivalent)],
+    spectrum: Annotated[Spectrum, isA(Spectrum)],
+    limited: bool = False,
 ) -> Demand:
     """The target displacement by the iterative procedure of EN 1998-1:2004, annex B: the plastic mechanism forms at the target
     displacement itself, which is found again until both agree.

@@ -10,7 +10,7 @@ import sys
 from typing import Annotated, Any, Sequence
 
 from .. import folders
-from ..arguments import FilePath, isA, listOf, number, oneOf, path, validated
+from ..arguments import FilePath, isA, listOf, number, path, validated
 from ..basics import Refused, say
 from ..packages import Missing
 from ..read import bilinear
@@ -33,8 +33,8 @@ def assess(
     directory: FilePath,
     spectrum: Annotated[Spectrum, isA(Spectrum)] | None = None,
     system: Annotated[n2.Equivalent, isA(n2.Equivalent)] | None = None,
-    rule: Annotated[str, oneOf(*bilinear.RULES)] = "en1998",
-    mechanism: Annotated[float, number("mm", 0, above=True)] | None = None,
+    rule: bilinear.Rule = "en1998",
+    mechanism: bilinear.Mechanism | None = None,
     limited: bool = False,
     iterate: bool = False,
     height: Annotated[float, number("m", 0, above=True)] | None = None,

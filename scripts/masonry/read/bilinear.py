@@ -57,6 +57,10 @@ CONVENTION = "a convention for masonry walls"
 ANNEX_B = "EN 1998-1:2004, annex B.3, equation (B.6)"
 #: The rules, and where each comes from.
 RULES = {"masonry": CONVENTION, "en1998": ANNEX_B}
+#: A rule, a share of the peak, and the displacement at which the plastic mechanism forms.
+Rule = Annotated[str, oneOf(*RULES)]
+Share = Annotated[float, number("-", 0, 1, above=True, below=True)]
+Mechanism = Annotated[float, number("mm", 0, above=True)]
 
 
 @dataclass(frozen=True)
@@ -200,10 +204,10 @@ def _checkPeak(moved, force, stiffness):
 def bilinear(
     displacement: Series,
     force: Series,
-    rule: Annotated[str, oneOf(*RULES)] = "masonry",
-    secant: Annotated[float, number("-", 0, 1, above=True, below=True)] = SECANT,
-    fall: Annotated[float, number("-", 0, 1, above=True, below=True)] = FALL,
-    mechanism: Annotated[float, number("mm", 0, above=True)] | None = None,
+    rule: Rule = "masonry",
+    secant: Share = SECANT,
+    fall: Share = FALL,
+    mechanism: Mechanism | None = None,
     pulse: Annotated[float, number("mm", 0)] = 0.0,
 ) -> Bilinear:
     """The bilinear curve of a push, by one of the rules that the module describes.
@@ -386,10 +390,10 @@ PushOf = Annotated[Union[str, "os.PathLike[str]", Pushover], _pushOf]
 @validated
 def ofRun(
     directory: PushOf,
-    rule: str = "masonry",
-    secant: float = SECANT,
-    fall: float = FALL,
-    mechanism: float | None = None,
+    rule: Rule = "masonry",
+    secant: Share = SECANT,
+    fall: Share = FALL,
+    mechanism: Mechanism | None = None,
 ) -> Bilinear:
     """The bilinear curve of the push of a run. A fall of the force that is over within the first period of the structure does
     not count.
@@ -417,7 +421,7 @@ def ofRun(
 def drifts(
     directory: PushOf,
     height: Annotated[float, number("m", 0, above=True)] | None = None,
-    fall: float = FALL,
+    fall: Share = FALL,
 ) -> list[Number]:
     """Drifts of the push of a run [mrad] at the first crack, at the peak, where the force has fallen to a share of the peak, and at
     the collapse: displacement of the masonry over its height.

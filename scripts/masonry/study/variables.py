@@ -8,6 +8,7 @@ import itertools
 from dataclasses import asdict, dataclass
 from typing import Annotated, Any, Sequence
 
+from ..arguments import FARTHEST, SHORTEST
 from ..arguments import isA, isNumber, listOf, number, shown, validated, text
 from ..scene import fields
 from ..basics import Refused
@@ -82,8 +83,8 @@ def _aboutMean(kind, mean, cov, low, high):
     ends = {n: v for n, v in (("low", low), ("high", high)) if v is not None}
     if not cov >= LEAST_COV:
         raise Refused(f"{kind}: coefficient of variation {cov} must be above 0, and at least {LEAST_COV:g}")  # fmt: skip
-    if mean == 0 or (kind == "lognormal" and mean < 0):
-        raise Refused(f"{kind}: mean {mean:g} must be above 0")
+    if not SHORTEST <= (mean if kind == "lognormal" else abs(mean)) <= FARTHEST:
+        raise Refused(f"{kind}: mean {mean:g} must be above 0, from {SHORTEST:g} to {FARTHEST:g}")  # fmt: skip
     if low is not None and high is not None and not low < high:
         raise Refused(f"{kind}: low {low:g} must be below high {high:g}")
     made = Distribution(kind, tuple({**parameters, **ends}.items()))
