@@ -9,6 +9,7 @@ sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 
 import kinds
 import masonry
+from docutils import nodes
 from masonry.scene.stages import LATER
 
 #: How what a word is after the first stage begins in its docstring.
@@ -97,5 +98,11 @@ def typesFromChecks(app, what, name, thing, options, lines):
     lines[:] = found
 
 
+def literally(name, raw, text, line, inliner, options=None, content=()):
+    """The role of YADE's documentation in which the default of an attribute stands."""
+    return [nodes.literal(raw, text)], []
+
+
 def setup(app):
+    app.add_role("ydefault", literally)
     app.connect("autodoc-process-docstring", typesFromChecks)
