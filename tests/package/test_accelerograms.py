@@ -139,6 +139,8 @@ GOOD = [0.1, 0.2, -0.1, 0.3, 0.1, -0.2]
         (esm(GOOD) + "1 2\n", r"line 71: 2 numbers, there must be one a line"),
         ("0 1\n0.01 2\n0.02 nan\n", r"line 3: 'nan' is not a finite number"),
         ("0 1\n0.01 2\n0.03 3\n", r"line 2: its times are not evenly apart: 0.01 s is 0.01 s after the one before, and the mean is 0.015 s"),
+        # half a per cent, five times what is allowed
+        ("0 1\n0.01 2\n0.0201 3\n", r"line 2: its times are not evenly apart: 0.01 s is 0.01 s after the one before, and the mean is 0.01005 s"),
         ("0 1\n0.01 2\n0.02 1\n0.01 3\n", r"line 2|line 4: its times are not evenly apart: 0.01 s must be after 0.02 s"),
         ("0 1\n0.01 2 3\n", r"line 2: 3 numbers, and the lines must have one or two"),
         ("0 1\n0.01\n", r"line 2: 1 numbers, and the lines must have one or two"),
@@ -202,6 +204,9 @@ def test_integrals_are_those_of_closed_forms():
     assert found.peakDisplacement == pytest.approx(1.0)
     assert found.rise == pytest.approx(1.0, rel=1e-3)
     assert found.lean == pytest.approx(2.0)
+    # an acceleration that grows evenly, a = j t: d = j t³/6, exact however few samples there are
+    found = drift([0.0, 2.0, 4.0], EVERY)
+    assert found.peakDisplacement == pytest.approx(4.0 * (2 * EVERY) ** 2 / 6)
     # a triangle of accelerations up and down: the largest velocity a t/2, at its end
     half = [0.04 * n for n in range(51)]
     found = drift(half + half[-2::-1], EVERY)

@@ -134,6 +134,8 @@ def test_two_storeys_have_their_equivalent_mass_and_factor():
     assert found.mass == pytest.approx(20e3) and found.gamma == pytest.approx(4 / 3)
     one = capacity.ofMasses([30e3], [1])
     assert (one.mass, one.gamma) == (30e3, 1)
+    # a storey above the recorded point: 20 + 2 × 10 = 40 t over 20 + 4 × 10 t
+    assert capacity.ofMasses([20e3, 10e3], [1, 2]).gamma == pytest.approx(2 / 3)
 
 
 @pytest.mark.parametrize(
@@ -267,6 +269,23 @@ def test_what_does_not_hold_says_so_and_a_short_curve_is_not_known():
     longer = capacity.bilinear(*curve((0, 0), (1, 100), (50, 100)), "en1998")
     found = capacity.demand(longer, system, spectrum)
     assert found.holds is True and not any("4.3.3.4.2.3" in note for note in found.notes)  # fmt: skip
+
+
+@pytest.mark.parametrize("gamma", [2 / 3, 1.0, 1.5])
+def test_the_curve_of_the_structure_is_compared_with_its_own_displacement(gamma):
+    """dt = Γ dt*, also with Γ below 1: the structure holds where du reaches dt, and 4.3.3.4.2.3(1) of EN 1998-1 wants a curve up to
+    1.5 dt. T* = 2π √(250/10000) s does not depend on Γ, so dt* is that of the test above TC."""
+    system = capacity.equivalent(250e3, gamma)
+    spectrum = capacity.elastic(0.2, "g", type=1, ground="A")
+    moved = gamma * 1e3 * 2.5 * 1.962 * 0.4 / (2 * math.pi) * math.sqrt(0.025)
+    for share in (0.97, 1.03):
+        found = capacity.demand(bilinearOf(10, 100, share * moved), system, spectrum)
+        assert found.targetDisplacement == pytest.approx(moved)
+        assert found.holds == (share > 1)
+    for share in (1.47, 1.53):
+        short = capacity.bilinear(*curve((0, 0), (10, 100), (share * moved, 100)), "en1998")  # fmt: skip
+        notes = capacity.demand(short, system, spectrum).notes
+        assert any("4.3.3.4.2.3(1)" in note for note in notes) == (share < 1.5)
 
 
 def test_the_iteration_ends_where_the_mechanism_forms_at_the_target(tmp_path):
