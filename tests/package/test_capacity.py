@@ -274,7 +274,8 @@ def test_what_does_not_hold_says_so_and_a_short_curve_is_not_known():
 @pytest.mark.parametrize("gamma", [2 / 3, 1.0, 1.5])
 def test_the_curve_of_the_structure_is_compared_with_its_own_displacement(gamma):
     """dt = Γ dt*, also with Γ below 1: the structure holds where du reaches dt, and 4.3.3.4.2.3(1) of EN 1998-1 wants a curve up to
-    1.5 dt. T* = 2π √(250/10000) s does not depend on Γ, so dt* is that of the test above TC."""
+    1.5 dt. T* = 2π √(250/10000) s does not depend on Γ, so dt* is that of the test above TC.
+    """
     system = capacity.equivalent(250e3, gamma)
     spectrum = capacity.elastic(0.2, "g", type=1, ground="A")
     moved = gamma * 1e3 * 2.5 * 1.962 * 0.4 / (2 * math.pi) * math.sqrt(0.025)
@@ -470,7 +471,10 @@ def test_a_domain_has_its_bounds_in_order_and_runs_as_points(tmp_path):
     heads = ["time_s", "displacement_mm", "base_shear_kN", "top_shear_kN", "base_force_z_kN"]  # fmt: skip
     down = np.where(np.arange(len(moved)) == at, -60.0, -55.0)
     rows = np.column_stack([moved, moved, force, force, down])
-    point = writeRun(tmp_path / "run", heads, rows, stages=[PUSH], held=["base"])  # fmt: skip
+    before = [[0, 0, 0, 0, -50.0]] * 3  # under another load, which is none of the push
+    other = {"stage": "lean", "first_row": 0, "load": ["lean", "x", "g"]}
+    stages = [other, {**PUSH, "first_row": len(before)}]
+    point = writeRun(tmp_path / "run", heads, [*before, *rows], stages=stages, held=["base"])  # fmt: skip
     found = capacity.assessDomain(folder, [point])
     assert [one.normal for one in found.bounds] == [25, 55, 105]
     assert found.shear(40) == pytest.approx((5.4 + 11.8) / 2)
