@@ -153,6 +153,9 @@ def test_a_trial_ends_when_the_structure_moves_faster_and_faster(scene):
     slower = lambda steps: 4 * growing.SURE if steps < 900 else 2 * growing.SURE
     held, at, _, _ = trial(lambda n: False, speeds=slower)
     assert growing.WHY[at.ended].startswith("it was still moving")
+    # blocks that the load itself moves, in the eight looks in which it is put on, have not fallen
+    swing = lambda steps: growing.SURE * 2 ** (steps / EVERY) if steps < 8 * EVERY else 0  # fmt: skip
+    assert trial(lambda n: n > 8, speeds=swing)[0]
 
 
 # -- the search -------------------------------------------------------------------------------------------------------

@@ -6,6 +6,7 @@ from masonry.basics import GRAVITY
 from masonry.read import files
 from masonry.read.elevation import frameOfCracks
 from masonry.read.frames import readFrame
+from masonry.scene.stages import falling
 
 DENSITY = 2200
 SIDE = 0.3  # [m] of a cubic half stone
@@ -85,6 +86,8 @@ def test_the_table_has_a_row_for_every_fallen_block(fallen):
     with open(scene.results.path("fallen.csv")) as file:
         rows = list(csv.DictReader(file))
     assert [int(row["block"]) for row in rows] == list(range(6))
+    first = min(float(row["fallen_at_s"]) for row in rows)
+    assert answer(scene, "first_fall") == pytest.approx(first, rel=1e-8)
     # those that lay below turn over once, about any axis; how far the upper ones roll on depends on how they strike the ground
     fronts = [(turn * Vector3.UnitY)[2] for turn in scene.turns[:4]]
     assert fronts == pytest.approx([-1] * 4, abs=1e-3)
@@ -135,6 +138,10 @@ def test_a_shaken_wall_goes_on_while_its_top_falls(tmp_path):
     assert min(fell) < answer(scene, "noticed_at")
     times = scene.results.column("time_s")
     assert answer(scene, "time_of_collapse") == pytest.approx(min(fell) - times[1], abs=0.05)  # fmt: skip
+    # the shake is not damped, and what stands when the fall is noticed has the damping of the options from then on
+    damped, noticed = scene.results.column("damping_J"), answer(scene, "noticed_at")
+    shaken = max(d for d, t in zip(damped, times) if t <= noticed)
+    assert shaken == pytest.approx(damped[1], rel=1e-6) and damped[-1] > 2 * shaken
     scene.finish()
 
 
@@ -195,14 +202,36 @@ def test_the_ground_where_the_scene_has_it(tmp_path):
     scene = column(tmp_path)
     scene.ground(level=-1.0)
     scene.settle()
-    scene.lean(0.4, towards=(0, 1, 0))
-    lowest = min(O.bodies[b].state.pos[2] for b in scene.model.ids)
-    assert lowest == pytest.approx(-1 + SIDE / 2, abs=0.01)
+    scene.lean(0.55, towards=(-1, 0, 0))  # 0.5 overturns it, 0.6 lets it slide
+    corners = [c for n in scene.model.fallen() for c in falling.cornersNow(scene.model, n)]  # fmt: skip
+    assert min(c[2] for c in corners) == pytest.approx(-1, abs=0.01)
+    # on the low side, too, and along x, to the farthest corner
+    reach = -min(c[0] for c in corners)
+    assert answer(scene, "rubble_reach") == pytest.approx(reach, rel=1e-3) and reach > SIDE  # fmt: skip
     scene.finish()
     with pytest.raises(Refused, match="ground: level 1 m must be at most -0.2 m"):
         column(tmp_path).ground(1.0)
     with pytest.raises(Refused, match="only a scene with collapse='follow'"):
         column(tmp_path, collapse="end").ground(-1.0)
+
+
+def test_a_tilt_stays_when_the_block_that_it_overturned_lies(tmp_path):
+    """It turns over at 14°, where the tangent is 0.25, and lies on the slope, since friction is 0.6: the force on the ground has
+    that share along y to the last, and all of the weight. After an acceleration, which ends, it would press straight down.
+    """
+    made, stone = bricks.stack(1, (SIDE, SIDE, 4 * SIDE)), materials.dry(0.6, 2e9, density=DENSITY)  # fmt: skip
+    scene = Scene("slope", made, stone, plane=False, collapse="follow", arguments=[*LEAN, "--out", str(tmp_path)])  # fmt: skip
+    scene.platen("bottom")
+    scene.settle()
+    assert scene.tilt(20, towards=(0, 1, 0), rate=5, within=0.3) == COLLAPSED
+    assert scene.ended == "collapsed and at rest"
+    y, z = (1e3 * sum(scene.results.column(f"{name}_force_{axis}_kN")[-1] for name in ("base", "ground")) for axis in "yz")  # fmt: skip
+    slope = scene.results.column("load_factor")[-1]
+    assert slope > 0.25 and y == pytest.approx(-slope * z, rel=0.01)
+    assert math.hypot(y, z) == pytest.approx(
+        4 * SIDE**3 * DENSITY * GRAVITY, rel=0.01
+    )
+    scene.finish()
 
 
 def test_without_follow_the_run_ends_where_it_fell(tmp_path):
