@@ -229,12 +229,41 @@ def test_fibres_cross_the_joints_of_one_face_only(tmp_path):
     level = sum(abs(joint.normal[2]) > 0.9 for joint in joints)
     upright = scene.overlay((0, -1, 0), stiffness=1e7, strength=1e4, gauge=0.1, fibres="vertical", name="other")  # fmt: skip
     assert len(upright.ties) == 2 * level
+    # a level crack crosses the layer over all of the wall's length, with the strength and the stiffness of that
+    crack = [one for one in upright.ties if abs(one.place()[2] - 0.081) < 1e-9]
+    assert sum(one.strength for one in crack) == pytest.approx(1e4 * 0.66)
+    assert sum(one.stiffness for one in crack) == pytest.approx(1e7 * 0.66 / 0.1)
     front = max(c[1] for block in made for c in block.corners)
     assert {round(end.point[1] - front, 12) for t in both.ties for end in t.ends} == {0}
     with refused("no joint ends at a face"):
         scene.overlay((0, 0, 1), stiffness=1e7, strength=1e4, gauge=0.1, fibres="vertical")  # fmt: skip
     scene.settle()
     scene.finish()
+
+
+def test_a_layer_on_a_part_leaves_the_others_bare(tmp_path):
+    left, right = (bricks.stack(3, (0.2, 0.1, 0.1)).moved(dx).named(name) for dx, name in ((0, "left"), (0.2, "right")))  # fmt: skip
+    scene = Scene("parts", left + right, materials.dry(0.6), plane=False, arguments=[*LEAN, "--out", str(tmp_path)])  # fmt: skip
+    layer = lambda part: scene.overlay((0, -1, 0), stiffness=1e7, strength=1e4, gauge=0.1, part=part)  # fmt: skip
+    # two bed joints of the part, and none of the joints between both parts
+    assert {one.brick for tie in layer("right").ties for one in tie.ends} == {3, 4, 5}
+    assert len(layer("left").ties) == 4 and len(layer(None).ties) > 8
+
+
+def test_a_spring_between_two_blocks_turns_nothing_as_a_whole(tmp_path):
+    """Its force and the opposite one have one line, at a point that is the middle of neither block: the moment at the base is that of
+    the load alone."""
+    twins = bricks.stack(1, BLOCK) + bricks.stack(1, BLOCK).moved(2 * WIDTH)
+    stone = materials.dry(5.0, normalStiffness=1e11)
+    scene = Scene("twins", twins, stone, arguments=[*LEAN, "--out", str(tmp_path)])
+    scene.platen("bottom")
+    scene.load(scene.handle(at(1.5)), (400, 0, 0))
+    spring = scene.spring(at(1.3), 1, stiffness=(1e8, 0, 0))
+    assert scene.settle() == "at rest"
+    scene.finish()
+    # its force would have an arm of 0.5 m between that point and the middle of the other block
+    assert spring.force[0] < -100
+    assert readCurve(tmp_path)["base_M_y_kNm"][-1] == pytest.approx(1.5 * 0.4, rel=0.01)
 
 
 def test_ends_that_a_script_moves_are_where_it_moved_them(tmp_path):

@@ -221,6 +221,14 @@ def test_a_loop_that_unloads_is_no_collapse_and_a_lost_side_is_one():
     assert row(-6.1, -11, -1) and not row(-6.1, -13, -1)
 
 
+@pytest.mark.parametrize("whole, most", [(5.0, 1.0), (50.0, 5.0)])
+def test_a_wall_may_move_against_its_push_by_a_tenth_of_the_path_or_a_millimetre(whole, most):  # fmt: skip
+    """A tenth of a short path would be a vibration, so it is a millimetre at least."""
+    for back, retreats in ((0.98 * most, False), (1.02 * most, True)):
+        assert pushing.Pushing(moved=-back).retreats(1, whole) == retreats
+        assert pushing.Pushing(moved=back).retreats(-1, whole) == retreats
+
+
 def test_a_wall_that_loses_its_force_in_a_loop_ends_the_run(scene, tmp_path):
     """Without friction and with brittle bond the small wall slides on a bed joint as soon as the bond is gone."""
     bare = ["residualCohesion=0", "friction=0", "residualFriction=0", "tensileStrength=1e4"]  # fmt: skip
