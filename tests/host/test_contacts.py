@@ -224,6 +224,26 @@ def test_faces_that_meet_have_the_given_restitution(scene, restitution):
     assert abs(balance()["error"]) < 1e-3
 
 
+@pytest.mark.parametrize("lift", [1e-3, 1.0], ids=["near", "far"])
+def test_what_friction_has_stored_is_lost_when_the_blocks_part(scene, lift):
+    """A brick lies 10 µm deep and is shifted by 1 µm, below the limit of friction: k A s²/2 is stored. It is lost at once when the
+    brick is lifted, be it so little that both remain a pair of neighbours, or so far that they are none.
+    """
+    depth, slip = 1e-5, 1e-6
+    ground()
+    s = O.bodies[box(UNIT, (0, 0, UNIT[2] / 2 - depth))].state
+    contacts = prepare(1e-9, gravity=(0, 0, 0))
+    O.step()
+    s.pos += Vector3(slip, 0, 0)
+    O.step()
+    stored = 0.5 * contacts.tangentialRatio * STIFF * UNIT[0] * UNIT[1] * slip**2
+    assert balance()["friction_contacts"] == pytest.approx(0, abs=1e-3 * stored)
+    s.pos += Vector3(0, 0, lift)
+    O.step()
+    assert contacts.touching() == 0
+    assert balance()["friction_contacts"] == pytest.approx(stored, rel=1e-3)
+
+
 @pytest.mark.slow
 def test_a_block_rocks_in_the_time_of_a_pivot(scene):
     """A slender block that is let go falls back to its base in the time that the motion about its edge takes."""

@@ -16,19 +16,21 @@ def joint(**other):
     return MasonryJoint(**{**bond, **rubs, **stiff, **other})
 
 
-def standing(count=1, push=1.2, step=0.5, joint=joint, **around):
+def standing(count=1, push=1.2, step=0.5, joint=joint, beside=(), **around):
     """Blocks on top of each other, on the ground, under a horizontal gravity that is `push` times the one that tips them."""
     O.reset()
     mat = unitMaterial(young=1e12)
     addBlock(corners((-3, -1, -0.4), (3, 1, 0)), mat)
     for i in range(count):
         addBlock(corners((0, 0, i * H / count), (B, B, (i + 1) * H / count)), mat)
+    for x in beside:
+        addBlock(corners((x, 0, 0), (x + B, B, H)), mat)
     hold(0)
     gravity = push * G * B / H, 0, -G
     engines([joint()], gravity=gravity, **{"damping": 0, **around})
     like = dict(normalStiffness=STIFF, tangentialRatio=0.5, friction=0.7)
     contacts = insert(MasonryContacts(takesJoints=True, **like))
-    connect()
+    connect(allowGaps=bool(beside))
     O.dt = step * criticalTimeStep()[0]
     return contacts
 
@@ -107,6 +109,37 @@ def test_a_joint_slides_out_of_its_place_along_either_side(scene, axis):
     assert s.pos[axis] - s.refPos[axis] == pytest.approx(0.02 * B, rel=0.2)
 
 
+def neighbours(gap):
+    """Two blocks on the ground, side by side along x, without gravity; they wake when they have come by half the skin, 1 mm."""
+    contacts = standing(push=0, beside=[B + gap])
+    contacts.skin, engine("integrator").gravity, O.dt = 2e-3, (0, 0, 0), 1e-9
+    run(10)
+    assert contacts.touching() == 0 and len(O.interactions) == 2
+    return contacts, O.bodies[1].state
+
+
+def test_blocks_that_lie_in_each_other_when_one_wakes_just_touch(scene):
+    """0.2 mm, which the stress of joints around may press them together, would be 500 kN all at once. What comes then counts."""
+    contacts, s = neighbours(1e-3)
+    s.pos += Vector3(1.2e-3, 0, 0)
+    run(10)
+    assert contacts.forceOf(1, 2).norm() < 1e-3 * STIFF * B * H * 2e-4
+    s.pos += Vector3(1e-5, 0, 0)
+    run(10)
+    assert contacts.forceOf(1, 2)[0] == pytest.approx(STIFF * B * H * 1e-5, rel=0.01)  # fmt: skip
+
+
+def test_a_block_that_turns_in_its_place_wakes(scene):
+    """By 0.002 its edges move by a millimetre, by 0.01 they go through the gap of 0.5 mm: 1.25 mm along x. Its joint stays, since
+    that is handed over at 1°."""
+    contacts, s = neighbours(5e-4)
+    for turn in (0.002, 0.008):
+        s.ori = Quaternion(Vector3(0, 0, 1), turn) * s.ori
+        run(10)
+    assert contacts.handed == 0 and contacts.touching() == 1
+    assert contacts.forceOf(1, 2)[0] > 0
+
+
 def test_the_largest_energy_of_a_fallen_block_has_its_spin(scene):
     contacts = standing()
     s, most = O.bodies[1].state, 0
@@ -133,7 +166,10 @@ def test_a_stack_that_falls_has_the_same_bits_with_threads_and_from_a_checkpoint
     for threads in (1, 2):
         contacts = standing(3)
         allowThreads(threads)
-        until(0.8)
+        run()
+        while contacts.handed == 0:
+            run(10)
+        # the step after that counts what changed by it
         saveCheckpoint(str(tmp_path / "now"))
         until(1.3)
         assert contacts.handed >= 2
