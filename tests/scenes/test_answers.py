@@ -2,6 +2,7 @@
 """What the stages of a scene answer, in run.json, on the terminal and in the table of a study."""
 
 from hosted import *
+from masonry.read.report.structure import sought
 from masonry.run import run
 from masonry.scene.stages.answers import answersText
 from masonry.study.gathering import _answerName
@@ -75,6 +76,19 @@ def test_the_line_of_a_bracket_has_the_largest_that_was_held_and_the_smallest_th
     assert line == "lean: factor held 0.35 g (6 stages); factor not held 0.4 g"
     (line,) = answersText(leans(0.2))
     assert line == "lean: factor held 0.2 g; factor not held: not found: none"
+
+
+def test_loads_on_several_blocks_have_a_line_each():
+    value = lambda number, held, lost: [dict(stage="load", number=number, name=name, unit="kN", value=v, uncertainty=None, how="none") for name, v in (("factor_held", held), ("factor_not_held", lost))]  # fmt: skip
+    answers = [*value(2, 16, None), *value(3, None, 1.4), *value(4, 12, None)]
+    stages = [{"load": None}] + [{"load": ["lean", f"load on {name} along y", ""]} for name in ("foot", "top", "foot")]  # fmt: skip
+    assert list(answersText(answers, stages)) == [
+        "load on foot along y: factor held 16 kN (2 stages); factor not held: not found: none",
+        "load on top along y: factor held: not found: none; factor not held 1.4 kN",
+    ]
+    # the report names no largest load, since these are different ones
+    assert sought({"answers": answers, "stages": stages}) == []
+    assert len(sought({"answers": answers[:2] + answers[4:], "stages": stages})) == 1
 
 
 def test_a_resumed_run_of_what_fell_says_so_as_before(tmp_path):

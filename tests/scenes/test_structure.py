@@ -349,3 +349,22 @@ def test_columns_are_read_as_often_in_a_run_of_many_rows(tmp_path, monkeypatch):
         monkeypatch.undo()
         counts.append(len(asked))
     assert counts[1] <= counts[0] + 5
+
+
+def test_a_platen_below_edges_alone_is_refused(tmp_path):
+    dome = bricks.Dome(3.0, 0.25, courses=4, stones=8, angle=90, oculus=0.4)
+    words = ["--lean", "--out", str(tmp_path)]
+    scene = Scene("edges", dome, materials.dry(), arguments=words)
+    with pytest.raises(ValueError, match="no horizontal side of a brick lies at the bottom"):  # fmt: skip
+        scene.platen("bottom")
+
+
+@pytest.mark.parametrize("plane", [True, False], ids=["plane", "space"])
+def test_what_moves_in_its_plane_is_seen_there_also_if_it_is_deep(tmp_path, plane):
+    words = ["--lean", "--out", str(tmp_path)]
+    tower = bricks.stack(2, (0.3, 1.0, 0.5))
+    scene = Scene("deep", tower, materials.dry(), plane=plane, arguments=words)
+    scene.platen("bottom")
+    scene.begin()
+    assert scene.description.views == ({"stack": [0, 1, 0]} if plane else {})
+    scene.finish()

@@ -146,6 +146,7 @@ def _curves(axes, spec, data, x, ideal=None):
     for n, axis in enumerate(spec["y"]):
         wide = (0.7, 0.4) if looped else (1.2, 0.6)
         look = dict(color=LINES[n % len(LINES)], lw=wide[n > 0], zorder=1 if n else 2)
+        look["marker"] = "o" if len(x) == 1 else None  # one row is no line
         axes.plot(x, data[axis["column"]], **look, label=axis["label"])
     if ideal:
         axes.plot(*ideal, color="tab:blue", lw=1.6, ls=(0, (5, 3)), label="bilinear")

@@ -271,7 +271,7 @@ class Outcome:
         for joint in self.description.joints:
             found = quantities.ofJoint(self.results.column, joint.prefixed, brief=True)
             yield from (f"{key:32} {value:.4f}" for key, value in found.items())
-        yield from answersText(run["answers"])
+        yield from answersText(run["answers"], run.get("stages") or ())
         if "accuracy" in run:
             yield from accuracy.lines(run["accuracy"])
         yield f"{name}: {quantities.headline(run, end=True) or run['ended']}"

@@ -160,6 +160,17 @@ def recordBase(description: Any) -> None:
     description.sections.append(Section(name, z, None, middle, isBase=True))
 
 
+def viewAlongY(description: Any) -> None:
+    """See parts that move in the x-z plane and are deeper than long from the front, unless the scene says from where."""
+    if not description.plane:
+        return
+    for name in {block.part for block in description.bricks} - set(description.views):
+        corners = [p for b in description.bricks if b.part == name for p in b.corners]
+        long, deep = (max(p[i] for p in corners) - min(p[i] for p in corners) for i in (0, 1))  # fmt: skip
+        if deep > long:
+            description.views[name] = [0.0, 1.0, 0.0]
+
+
 @describes
 @validated
 def view(description: Any, direction: Direction, part: Part | None = None) -> None:

@@ -261,6 +261,7 @@ class Scene:
         for line in linesOf(self.assumed, self.masonry.brief):
             say(line)
         records.recordBase(description)
+        records.viewAlongY(description)
         self.columns = description.columns(model, bool(args.history))
         self.model = model
         self.running.open(self.columns, facts.properties(description, self.masonry))

@@ -65,7 +65,8 @@ def platen(
         them: it is free until it is pushed
     :param springs: of the one at the bottom, a soil or a rig that gives way: a dict from axes, xyz along and XYZ about, to
         stiffness [N/m], [N m/rad], at the middle of its outer side, for example ``{"x": 37e6}``; along and about the others it
-        is fixed. None: it is fixed along and about all
+        is fixed, and where it is fixed along x or y it turns about its own middle. Its weight counts if it can move along
+        z. None: it is fixed along and about all
     """
     bottom = where == "bottom"
     level = description.low[2] if bottom else description.high[2]
@@ -134,21 +135,24 @@ def _problems(description, bottom, rotation, guided, drive, springs):
 
 def _sideAt(description, level, where, part):
     """The opposite corners (x, y) of what the bricks of a part have at a level [m]. Raises ValueError."""
-    touching = [
-        p
+    near = 1e-6 * (1 + abs(level))
+    blocks = [
+        [p for p in block.corners if abs(p[2] - level) < near]
         for block in description.bricks
-        for p in block.corners
-        if part in (None, block.part) and abs(p[2] - level) < 1e-6 * (1 + abs(level))
+        if part in (None, block.part)
     ]
+    touching = [p for corners in blocks for p in corners]
     if not touching:
         raise ValueError(
             f"platen: part {part!r} does not reach the {where}, z = {level:g} m"
         )
     low = [min(p[i] for p in touching) for i in range(2)]
     high = [max(p[i] for p in touching) for i in range(2)]
-    if any(a == b for a, b in zip(low, high)):
+    # bricks that stand on an edge share no face with a platen
+    if any(a == b for a, b in zip(low, high)) or max(map(len, blocks)) < 3:
         raise ValueError(
-            f"platen: no horizontal side of a brick lies at the {where}, z = {level:g} m"
+            f"platen: no horizontal side of a brick lies at the {where}, z = {level:g} m, "
+            "so hold bricks, or blocks with an inclined side on which these stand"
         )
     return low, high
 

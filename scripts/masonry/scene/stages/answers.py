@@ -40,9 +40,9 @@ class Answer:
     uncertainty: float | None = None
 
 
-def answerText(answer):
-    """An entry of ``answers`` of run.json as a line to read."""
-    head = f"{answer['stage']}: {answer['name'].replace('_', ' ')}"
+def answerText(answer, what=None):
+    """An entry of ``answers`` of run.json as a line to read; ``what``: what it is of, in place of its stage."""
+    head = f"{what or answer['stage']}: {answer['name'].replace('_', ' ')}"
     if answer["value"] is None:
         return f"{head}: not found: {answer['how']}"
     unit = "" if answer["unit"] == "-" else " " + answer["unit"]
@@ -51,10 +51,19 @@ def answerText(answer):
     return f"{head} {answer['value']:.4g}{about}{unit}"
 
 
-def answersText(answers):
+def loadsOf(stages):
+    """The name of its load, by the number of a stage that has one: a dict, from the entries ``stages`` of run.json."""
+    named = ((n, one.get("load")) for n, one in enumerate(stages, 1))
+    return {number: load[1] for number, load in named if load}
+
+
+def answersText(answers, stages=()):
     """Entries of ``answers`` of run.json as lines to read. Stages of one kind that look for the load that is held and follow
-    each other, as the trials of a bracket, have one line.
+    each other, as the trials of a bracket, have one line. If they put on several loads, each load has a line.
+
+    :param stages: entries of ``stages`` of run.json, which say what the loads are
     """
+    loads = loadsOf(stages)
     searches = lambda one: one["name"] in ("factor_held", "factor_not_held")
     trial = (
         lambda one: one["stage"] in ("lean", "load", "wind", "press") or one["number"]
@@ -69,12 +78,21 @@ def answersText(answers):
         if kind is None:
             yield from map(answerText, group)
             continue
-        held = _furthest(group, "factor_held", max)
-        lost = _furthest(group, "factor_not_held", min)
-        found = [answerText(one) for one in (held, lost) if one]
-        count = len({one["number"] for one in group})
-        stages = f" ({count} stages)" if count > 1 else ""
-        yield "; ".join([found[0] + stages] + [t.partition(": ")[2] for t in found[1:]])
+        parts = {}
+        for one in group:
+            parts.setdefault(loads.get(one["number"]), []).append(one)
+        for load, ones in parts.items():
+            yield _searchText(ones, load if len(parts) > 1 else None)
+
+
+def _searchText(answers, what):
+    """The line of stages that looked for one load."""
+    held = _furthest(answers, "factor_held", max)
+    lost = _furthest(answers, "factor_not_held", min)
+    found = [answerText(one, what) for one in (held, lost) if one]
+    count = len({one["number"] for one in answers})
+    stages = f" ({count} stages)" if count > 1 else ""
+    return "; ".join([found[0] + stages] + [t.partition(": ")[2] for t in found[1:]])
 
 
 def _furthest(answers, name, choose):

@@ -160,6 +160,17 @@ def shake(
 def run(scene: Any, seconds: Duration, damping: Damping = 0.0) -> str:
     """Let time pass, as it is: nothing brakes but what joints and contacts lose.
 
+    A block hits a wall, as a car does, if a script gives it a velocity after ``settle()``, and says so to the energy balance::
+
+        from yade import O
+        scene = Scene("car", wall + road + car, stones, collapse="follow", allowGaps=True)  # the car is apart from the wall
+        ...
+        O.bodies[target.body].state.vel = (5, 0, 0)  # [m/s]; target: watch() or handle() of the car
+        scene.model.energy.given()
+        scene.run(3)
+
+    The script would do this again in a run that ``--resume`` continues later, so start such a run anew.
+
     :param seconds: time in the scene [s]
     :param damping: numerical damping constant of the options' kind [-]
     """
