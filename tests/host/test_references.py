@@ -10,7 +10,7 @@ the size of a quantity:
   be in one regime or the other.
 
 The numbers were made with Eigen 3.4. Another version adds products in another order, also in YADE, which turns the corners
-of these scenes; so there the first instant of each run counts, and the later ones are not compared.
+of scenes that lie askew in space. So with another version the first instant of each run counts, and none of such scenes.
 """
 
 import os
@@ -57,8 +57,9 @@ def eigen():
 @pytest.mark.parametrize("name", references.RUNS)
 def test_a_run_gives_the_stored_numbers(scene, name):
     apart = references.differences(name, references.go(name))
-    first = references.RUNS[name].stages[0][0]
+    wanted = references.RUNS[name]
     if eigen() != EIGEN:
+        first = None if "turn" in wanted.keywords else wanted.stages[0][0]
         apart = [one for one in apart if one[0] == first]
     for instant, quantity, size in apart:
         print(f"{instant}: {quantity}: relative difference {size:.2g}")
@@ -69,7 +70,7 @@ def test_a_run_gives_the_stored_numbers(scene, name):
     ]
     assert not wrong, f"{name} differs from what is stored:\n" + "\n".join(wrong)
     if eigen() != EIGEN:
-        pytest.skip("later instants of a reference made with Eigen 3.4")
+        pytest.skip("later instants, and scenes askew, of references made with Eigen 3.4")  # fmt: skip
 
 
 def test_every_run_has_its_tolerance_and_its_file():

@@ -28,6 +28,16 @@
 #include <vtkXMLPolyDataWriter.h>
 #include <vtkXMLUnstructuredGridWriter.h>
 
+// What is used of VTK's class: its own header needs those of TBB, which Debian's VTK does not bring.
+namespace vtk::detail::smp {
+class vtkSMPToolsAPI {
+public:
+    static vtkSMPToolsAPI& GetInstance();
+    const char* GetBackend();
+    bool SetBackend(const char* name);
+};
+} // namespace vtk::detail::smp
+
 template class masonry::Adapter<masonry::MasonryVtkRecorder, yade::GlobalEngine>;
 BOOST_CLASS_EXPORT_IMPLEMENT(masonry::MasonryVtkRecorder)
 
@@ -169,7 +179,12 @@ template <class Writer, class Data> void write(const std::string& path, Data* da
     writer->SetInputData(data);
     const int shown = vtkObject::GetGlobalWarningDisplay();
     vtkObject::GlobalWarningDisplayOff();
+    // The process that writes may be a copy of another, which has none of VTK's threads and would wait for them.
+    auto& threads = vtk::detail::smp::vtkSMPToolsAPI::GetInstance();
+    const std::string before = threads.GetBackend();
+    threads.SetBackend("Sequential");
     const bool written = writer->Write() && !writer->GetErrorCode();
+    threads.SetBackend(before.c_str());
     vtkObject::SetGlobalWarningDisplay(shown);
     if (!written) failed(path, errno);
 }

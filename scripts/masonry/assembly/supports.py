@@ -7,6 +7,9 @@ from yade import O, Vector3
 
 from ..basics import GRAVITY
 
+HORIZONTAL = (
+    1e-3  # of all loads: horizontal ones above it must be carried on their own at rest
+)
 FILLED = 1e-9  # of a platen's side: what may be free of bricks if it is said to be full
 
 
@@ -137,7 +140,8 @@ class Supports:
         return carried - self.structure.connectors.onGround()
 
     def unrest(self):
-        """What of the loads is missing at the supports, and kinetic over elastic energy [-]."""
+        """What of the loads is missing at the supports, of all or of the horizontal ones where that is more, and kinetic over
+        elastic energy [-]."""
         energy = self.structure.energy.balance()
         elastic = sum(
             energy.get(f"elastic_{m}", 0.0)
@@ -154,7 +158,11 @@ class Supports:
         )
         if size < 1e-6 * loads:  # loads that balance each other
             size = loads
-        missing = (applied + carried).norm() / (size or 1.0)
+        rest = applied + carried
+        missing = rest.norm() / (size or 1.0)
+        across, flat = Vector3(applied[0], applied[1], 0).norm(), Vector3(rest[0], rest[1], 0).norm()  # fmt: skip
+        if across > HORIZONTAL * size:  # else it is round-off of what is vertical
+            missing = max(missing, flat / across)
         moving = abs(energy["kinetic"])
         # without loads there is next to no energy, and motion is compared with the weight over a picometre
         least = 1e-12 * GRAVITY * self.freeMass

@@ -76,10 +76,9 @@ def settle(
 ) -> str:
     """Let gravity, presses and dead loads act until the structure is at rest.
 
-    At rest the supports carry what is above them but for half a per cent, and hardly anything moves. That is half a per cent
-    of all loads together, so a structure that leans slowly on soft springs under a small horizontal load may have some
-    per cent of its way before it: settle it again, until nothing changes. Presses and dead loads grow when it is called
-    first; they stay when it is called again, for example after :meth:`release`. What then falls slowly needs ``longest``.
+    At rest the supports carry all loads but for half a per cent, and the horizontal ones alone but for half a per cent, and
+    hardly anything moves. Presses and dead loads grow when it is called first; they stay when it is called again, for
+    example after :meth:`release`. What then falls slowly needs ``longest``.
 
     :param longest: time in the scene after which it is given up [s]; None: 0.4 s, and longer for tall structures and for
         soft springs under platens
