@@ -453,7 +453,7 @@ def test_what_cannot_be_taken_up_is_refused(broken, capsys):
     says("was not left by a run in stages")
     os.remove(kept)
     assert refused(broken) == 2
-    says("No such file or directory")
+    says("has no run.checkpoint, which a run leaves unless")
 
 
 def test_another_build_or_number_of_threads_is_reported(broken, capsys):

@@ -130,6 +130,10 @@ class Saved:
         self.directory = directory
         try:
             self._data, saved = readState(directory)
+        except FileNotFoundError:
+            raise NotResumed(
+                f"--resume: {directory} has no {NAME}, which a run leaves unless it is --lean and has come to its end"
+            ) from None
         except (OSError, ValueError) as error:
             raise NotResumed(f"--resume: {error}") from None
         like = dict(scene="", options={}, at={}, rows=[], script=[], seconds=0.0)
