@@ -338,7 +338,7 @@ CASES = {
          ["--until: 'x' must be a number", "--rate: 0.0 mm/s must", "--blocks: invalid choice", "unrecognized arguments: --nonsense"]),
         (joined, lambda: script("wall_comp4", "--rate", "-5", "--until"), ["--rate: -5.0 mm/s must be at least 0.001", "--until: expected one argument"]),
         (joined, lambda: script("wall_comp4", "--resume", ""), "argument --resume: must not be empty"),
-        (joined, lambda: script("wall_comp4", "--resume", "nowhere"), "--resume: [Errno 2] No such file or directory: 'nowhere/run.checkpoint'"),
+        (joined, lambda: script("wall_comp4", "--resume", "nowhere"), "--resume: nowhere has no run.checkpoint, which a run leaves unless"),
         (joined, lambda: script("wall_comp4", "--set", "bed"), "'bed' must read JOINT.PROPERTY=VALUE"),
         (joined, lambda: script("wall_comp4", "--set", "bed.cohesion=nan"), 'joint "bed": cohesion nan Pa must be a finite number'),
         (joined, lambda: script("wall_comp4", "--set", "bed.shearTable=1:0,2:0.5:3"), "must be rows as ratio:damage,ratio:damage,..."),

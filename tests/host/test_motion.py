@@ -137,6 +137,22 @@ def test_a_load_that_is_dead_does_no_work(scene):
     assert load.work == work
 
 
+@pytest.mark.parametrize("plane", [True, False], ids=["plane", "space"])
+def test_a_motion_that_a_script_changes_at_every_step_does_its_work(scene, plane):
+    """The work of a step is done with the velocity of that step, also if the next one has another."""
+    stack(count=2, damping=0.1)
+    base, dice = O.bodies[0].state, random.Random(3)
+    if not plane:
+        O.bodies[1].state.blockedDOFs = ""
+    run(1)
+    for _ in range(300):
+        base.vel = Vector3(dice.uniform(-1, 1), 0, dice.uniform(-1, 1)) * 1e-3
+        base.angVel = Vector3(0, dice.uniform(-1, 1) * 1e-2, 0)
+        run(1)
+    assert abs(balance()["external"]) > 1e-4
+    assert abs(balance()["error"]) < 1e-6
+
+
 # -- joints that are nearly alike ------------------------------------------------------------------------------------
 
 #: The property of which the last of seventy couplets has one per cent more. Its joint is in another batch than the

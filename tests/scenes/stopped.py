@@ -31,7 +31,7 @@ LONGEST = "longest=<0.01~0.08>"
 DAMPED = "<|, damping=0.2|, massDamping=5.0|, stiffnessDamping=1e-5>"
 GROWS = "over=0.03, within=0.3"
 FORCE = "(<-100~100>, 0, <-100~100>)"
-POINT = "(<0~1>, 0.05, <0.05~0.2>)"
+POINT = "(<0~0.35>, 0.05, <0.05~0.15>)"
 TRY = "try:\n    {}\nexcept ValueError as error:\n    print(error)"
 
 
@@ -82,6 +82,7 @@ LATER = (
 )
 SPECIAL = "prestress=<10~300>|slack=1e-5|compression=True|breaking=<1e-6~1e-4>"
 TIE = f"scene.tie({POINT}, anchor=(<-1~2>, 0.05, <-1~1>), stiffness=1e7, strength=<301~900>, <{SPECIAL}>)"
+LAYER = "scene.overlay((0, <-1|1>, 0), stiffness=1e7, strength=<300~9000>, gauge=0.1<|, strain=0.01>)"
 SPRING = f"scene.spring({POINT}, stiffness=(1e6, 0, 1e6), rotation=(0, 1e4, 0))"
 
 
@@ -136,14 +137,25 @@ class Writer:
         """The lines before the first stage. Returns the kinds of stages that can follow."""
         deformable, platen = self._often(0.25), self._often(0.7)
         self.drives = self.dice.choice([None, None, "x", "xz"])
+        layer = not deformable and self._often(0.2)
         courses, self.loaded = self.dice.choice([2, 3]), False
-        space = not deformable and self._often(0.2)
-        height = f"{0.081 * courses:g}"
-        self._say(f"wall = bricks.Wall(length=<0.33|0.44|0.55>, height={height})")
+        space = layer or (not deformable and self._often(0.2))
+        length, height = self.dice.choice([0.33, 0.44, 0.55]), round(0.081 * courses, 3)
+        dry = self._often(0.5)
+        stones = "materials.calciumSilicate()"
+        if dry:
+            stones = "materials.dry(friction=0.6, normalStiffness=2e9, density=1800)"
+        wall = f"length={length}, height={height}, halves={not dry}"
+        self._say(f"wall = bricks.Wall({wall})")
+        beam = not deformable and self._often(0.2)
+        if beam:
+            pieces = f"{length}, 0.1, 0.06, pieces={self.dice.choice([2, 4])}"
+            self._say(f"beam = bricks.Beam((0, 0, {height}), {pieces})")
+            stones += ".withBeam(beam, young=1e10, density=500)"
+        falls = ", collapse='follow'" * (not deformable and self._often(0.25))
         blocks = "'deformable', divisions=1" if deformable else "'rigid'"
         self._say(
-            "scene = Scene('s', wall, materials.<calciumSilicate()"
-            "|dry(friction=0.6, normalStiffness=2e9, density=1800)>, "
+            f"scene = Scene('s', wall{' + beam' * beam}, {stones}{falls}, "
             f"rate=<100|400>, blocks={blocks}, joints='<softening|softening|cyclic|brittle>', "
             f"damping_kind='<local|combined>', plane={False if space else None})"
         )
@@ -163,6 +175,8 @@ class Writer:
                 self._say(TIE)
             if self._often(0.5):
                 self._say(SPRING)
+        if layer:
+            self._say(LAYER)
         can = {
             "rigid": not deformable,
             "moves": platen or not deformable,

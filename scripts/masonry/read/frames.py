@@ -136,21 +136,36 @@ def _surfaces(root):
     zones = np.flatnonzero(~rigid)
     triangles = [corners[first[zones, None, None] + sides].reshape(-1, 3)]
     owners = [np.repeat(zones, len(sides))]
-    # of a polyhedron: how many faces it has, then of each how many corners, and these
-    stops = cells.get("faceoffsets", np.zeros(0, int))
-    start = 0
-    for cell in np.flatnonzero(rigid):
-        faces = cells["faces"][start : stops[cell]]
-        start = stops[cell]
-        found = faces[1:].reshape(-1, 4)
-        if len(found) != faces[0] or (found[:, 0] != 3).any():
-            raise ValueError(f"faces of cell {cell} are no triangles")
-        triangles.append(found[:, 1:])
-        owners.append(np.full(len(found), cell))
+    laid = _newFaces if "face_offsets" in cells else _oldFaces
+    for found, owning in laid(cells, np.flatnonzero(rigid)):
+        triangles.append(found)
+        owners.append(owning)
     triangles = np.concatenate(triangles).astype(int)
     if triangles.min() < 0 or triangles.max() >= int(piece.get("NumberOfPoints")):
         raise ValueError("its faces have points that are not there")
     return triangles, np.concatenate(owners), rigid
+
+
+def _oldFaces(cells, polyhedra):
+    """Triangles of each polyhedron, and the cell of each of them, as VTK wrote them before 9.4: how many faces the polyhedron
+    has, then of each how many corners, and these."""
+    start = 0
+    for cell in polyhedra:
+        faces = cells["faces"][start : cells["faceoffsets"][cell]]
+        start = cells["faceoffsets"][cell]
+        found = faces[1:].reshape(-1, 4)
+        if len(found) != faces[0] or (found[:, 0] != 3).any():
+            raise ValueError(f"faces of cell {cell} are no triangles")
+        yield found[:, 1:], np.full(len(found), cell)
+
+
+def _newFaces(cells, _):
+    """The same of all polyhedra at once, as later versions write them: corners by face, and faces by cell."""
+    if (np.diff(cells["face_offsets"], prepend=0) != 3).any():
+        raise ValueError("faces of its cells are no triangles")
+    faces = cells["face_connectivity"].reshape(-1, 3)[cells["polyhedron_to_faces"]]
+    ends = cells["polyhedron_offsets"]
+    yield faces, np.repeat(np.arange(len(ends)), np.diff(ends, prepend=0))
 
 
 def _opened(root):

@@ -95,7 +95,8 @@ def either(
     command.__doc__ = (
         f"{describes.__doc__}\n\n    After the first stage: {stage.__doc__}"
     )
-    return command
+    said: Any = command
+    return said
 
 
 def argumentsOf(act, first, args, settings):

@@ -31,7 +31,7 @@ def points(design, count, dimension, seed):
     if not dimension:
         return [[] for _ in range(count)]
     ot = openturns()
-    cube = ot.ComposedDistribution([ot.Uniform(0, 1)] * dimension)
+    cube = ot.IndependentCopula(dimension)
     inside = lambda u: min(max(u, EDGE), 1 - EDGE)
     with _seeded(ot, seed):
         if design == "random":

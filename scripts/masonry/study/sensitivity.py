@@ -133,7 +133,7 @@ def _polynomials(u, y):
     ot = needed("openturns")
 
     k = u.shape[1]
-    uniform = ot.ComposedDistribution([ot.Uniform(0, 1)] * k)
+    uniform = ot.IndependentCopula(k)
     count = ot.HyperbolicAnisotropicEnumerateFunction(k, HYPERBOLIC)
     basis = ot.OrthogonalProductPolynomialFactory([ot.LegendreFactory()] * k, count)
     # no more candidates than half of the rows, else chance chooses

@@ -37,11 +37,13 @@ public:
         if (!samePlace(body)) take(body);
     }
     void detectChange(int body) {
-        if (!samePlace(body) || !sameMotion(body)) take(body);
+        if (hasChanged(body)) take(body);
     }
     void detectAnyChange(int body) {
-        if (!samePlace(body) || !sameMotion(body) || !sameFrame(body)) take(body);
+        if (hasChanged(body) || !sameFrame(body)) take(body);
     }
+    // What detectChange() compares.
+    bool hasChanged(int body) const { return !samePlace(body) || !sameMotion(body); }
     // Asks the processor for the body's State, so that it is in the cache when it is needed.
     void prefetch(int body) const;
     // Writes place and motion of a body into the host's State, for the axes whose bits are set.

@@ -75,6 +75,17 @@ void Integrator::advance(yade::Scene& scene, BodyColumns& bodies, const std::vec
     }
 }
 
+// What a body does to the forces and the weight along its blocked axes, with the motion that the columns hold [W].
+double Integrator::prescribedPower(const BodyColumns& bodies, int b, const Vector3r& force,
+                                   const Vector3r& torque) const {
+    double power = 0;
+    for (int d = 0; d < 3; ++d) {
+        if (bodies.isBlocked(b, d)) power += bodies.velocity[d][b] * (force[d] + bodies.mass[b] * gravity[d]);
+        if (bodies.isBlocked(b, 3 + d)) power += bodies.velocity[3 + d][b] * torque[d];
+    }
+    return power;
+}
+
 Integrator::Sums Integrator::advancePiece(const yade::Scene& scene, BodyColumns& bodies, const Vector3r* forces,
                                           const Vector3r* torques, int first, int beyond) {
     constexpr int ahead = 8;
@@ -85,6 +96,8 @@ Integrator::Sums Integrator::advancePiece(const yade::Scene& scene, BodyColumns&
     RigidMotion motion;
     unsigned axes = 0;
     int spinning = 0;
+    double earlier =
+        0; // work with present velocities less that with those of the last step, where a script changed them [J]
     std::uint32_t blocked[RigidMotion::most]; // State.blockedDOFs of a body that RigidMotion moves, else all six
     for (int i = 0; i < count; ++i) {
         const int b = first + i;
@@ -92,7 +105,12 @@ Integrator::Sums Integrator::advancePiece(const yade::Scene& scene, BodyColumns&
         motion.alpha[i] = motion.viscous[i] = 0;
         if (i + ahead < count && bodies.has(b + ahead)) bodies.prefetch(b + ahead);
         if (!bodies.has(b) || bodies.isUnit[b]) continue;
-        thoroughly ? bodies.detectAnyChange(b) : bodies.detectChange(b);
+        if (bodies.hasChanged(b)) {
+            const double before = prescribedPower(bodies, b, forces[b], torques[b]);
+            bodies.take(b);
+            earlier += 0.5 * scene.dt * (prescribedPower(bodies, b, forces[b], torques[b]) - before);
+        } else if (thoroughly)
+            bodies.detectAnyChange(b);
         if (bodies.spins(b))
             ++spinning;
         else {
@@ -134,6 +152,7 @@ Integrator::Sums Integrator::advancePiece(const yade::Scene& scene, BodyColumns&
         sum.add(turnFreely(scene.dt, bodies, forces[b], torques[b],
                            b)); // last, because RigidMotion has written to its columns
     }
+    sum.external += earlier;
     return all;
 }
 
