@@ -24,7 +24,7 @@ chmod 755 "$folder"
 
 clean() {
     for root in "$folder"/*/; do
-        umount "$root/proc" 2>/dev/null || true
+        umount "$root/proc" "$root/sys" 2>/dev/null || true
         [[ -z ${KEEP:-} ]] || continue
         grep -qs " ${root%/}/" /proc/mounts || rm -rf --one-file-system "$root"
     done
@@ -56,6 +56,7 @@ for release in "$@"; do
     # a mirror that is kept as it was one day offers lists whose date is over
     echo 'Acquire::Check-Valid-Until "false";' >"$root/etc/apt/apt.conf.d/99-old-mirror"
     mount -t proc proc "$root/proc"
+    mount -t sysfs -o ro sysfs "$root/sys" # where OpenTURNS looks for cores
     mkdir "$root/root/masonry"
     git ls-files -z --cached --others --exclude-standard | tar -c --null --files-from=- | tar -x -C "$root/root/masonry"
     inside bash scripts/run.sh wall_comp4

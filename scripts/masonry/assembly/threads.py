@@ -1,15 +1,16 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """How many threads steps use.
 
-``yade -j2`` lets steps use two threads. They are used where that is quicker: the plugin measures, while a run goes on, how
-long steps take on one thread and on more, and takes the quicker number. A small scene has too little to share out, and
-on a machine whose cores are all busy threads would wait for each other. The numbers of a run do not depend on how
-many threads took its steps, to the last bit.
+Steps may use as many threads as there are cores, four at most, or as many as ``yade -j2`` or ``OMP_NUM_THREADS`` says. They
+are used where that is quicker: the plugin measures, while a run goes on, how long steps take on one thread and on more, and
+takes the quicker number. A small scene has too little to share out, and on a machine whose cores are all busy threads
+would wait for each other. The numbers of a run do not depend on how many threads took its steps, to the last bit.
 """
 
 import contextlib
 import ctypes
 import os
+import re
 
 from .._masonry import allowThreads
 from .._masonry import threads as records
@@ -17,27 +18,49 @@ from .._masonry import threads as records
 #: With ``MASONRY_THREADS=always`` in the environment every step uses all threads, for tests and benchmarks.
 ALWAYS = os.environ.get("MASONRY_THREADS") == "always"
 
-_allowed = 1
+MOST = 4  # threads that steps use unless the user says another number
+
+_allowed = _ofYade = 1
+_asked = False
+
+
+def _isAsked():
+    """Whether the user says how many threads: to ``yade``, which then sets the variable, and else sets it to 1, or in the
+    environment with which the process began."""
+    with open("/proc/self/cmdline") as words, open("/proc/self/environ") as names:
+        options = r"\0(-\w*j|--thr|--cor)"
+        return bool(
+            re.search(options, words.read().partition("\0-x\0")[0])
+            or re.search(r"(^|\0)OMP_NUM_THREADS=", names.read())
+        )
 
 
 def limit():
-    """Give steps as many threads as the environment says, and YADE one if it says nothing. ``import masonry`` does this.
+    """Give steps as many threads as the user says, or as there are cores, and YADE's own engines one if the user says
+    nothing. ``import masonry`` does this.
 
-    The program ``yade`` sets ``OMP_NUM_THREADS``, 1 by default. After ``import yade`` in plain Python it is not set, and
-    OpenMP takes all cores, whose threads wait by spinning: on a busy machine a step then takes hundreds of times as long.
+    After ``import yade`` in plain Python OpenMP takes all cores, whose threads wait by spinning: on a busy machine a step
+    then takes hundreds of times as long.
     """
-    global _allowed
+    global _allowed, _ofYade, _asked
     with contextlib.suppress(AttributeError):  # a YADE without OpenMP
         openmp = ctypes.CDLL(None)
         if "OMP_NUM_THREADS" not in os.environ:
             openmp.omp_set_num_threads(1)
-        _allowed = openmp.omp_get_max_threads()
+        _ofYade = openmp.omp_get_max_threads()
+    _asked = _isAsked()
+    _allowed = _ofYade if _asked else min(MOST, len(os.sched_getaffinity(0)))
     allowThreads(_allowed, ALWAYS)
 
 
 def allowed():
-    """The largest number of threads that steps may use: that of ``yade -j``, or of ``OMP_NUM_THREADS``."""
+    """The largest number of threads that steps may use."""
     return _allowed
+
+
+def ofYade():
+    """The number of threads of YADE's own engines, of which their sums of forces depend in the last digits."""
+    return _ofYade
 
 
 def beginScene(host):
@@ -49,7 +72,7 @@ def beginScene(host):
     :param host: whether they may. If not, they use one thread from now on
     """
     with contextlib.suppress(AttributeError):
-        ctypes.CDLL(None).omp_set_num_threads(_allowed if host else 1)
+        ctypes.CDLL(None).omp_set_num_threads(_ofYade if host else 1)
     allowThreads(_allowed, ALWAYS)
 
 
@@ -70,10 +93,10 @@ def used():
 
 
 def remark():
-    """A sentence if more threads were allowed than most steps used, else None."""
+    """A sentence if the user allows more threads than most steps used, else None."""
     each = [r for r in used() if r["steps"]]
     taken = sum(r["steps"] for r in each)
-    if _allowed == 1 or not taken:
+    if not _asked or _allowed == 1 or not taken:
         return None
     most = max(each, key=lambda r: r["steps"])
     if most["threads"] == _allowed or most["steps"] < 0.5 * taken:

@@ -22,7 +22,7 @@ def hostNow():
         "build": commit,
         "masonry": version,
         "YADE": yade.config.version,
-        "threads": threads.allowed(),
+        "threads": threads.ofYade(),
     }
 
 

@@ -160,7 +160,7 @@ def _text(value):
     """A number or text of study.csv: numbers with all their digits."""
     if value is None:
         return ""
-    return repr(value) if isinstance(value, float) else str(value)
+    return repr(float(value)) if isinstance(value, float) else str(value)
 
 
 def gather(folder, table):

@@ -11,21 +11,26 @@ using yade::State;
 void BodyColumns::read(const yade::Scene& scene) {
     const auto& all = scene.bodies->body;
     const int count = int(all.size());
+    const auto before = states_;
     resize(count);
+    earlier_.resize(count);
+    taken_.resize(count);
     for (auto& column : referencePosition)
         column.assign(count, 0);
     for (auto& column : fromReference)
         column.assign(count, 0);
-    seen_.assign(count, Seen{});
+    seen_.resize(count);
     isUnit.assign(count, false);
     bodies_.assign(count, nullptr);
     states_.assign(count, nullptr);
     for (int b = 0; b < count; ++b) {
-        seen_[b].blocked = 63; // as long as there is no body with this id
-        if (!all[b]) continue;
         bodies_[b] = all[b].get();
-        states_[b] = all[b]->state;
-        if (states_[b]) take(b);
+        if (all[b]) states_[b] = all[b]->state;
+        if (states_[b])
+            take(b);
+        else
+            seen_[b].blocked = 63;
+        if (b >= int(before.size()) || before[b] != states_[b]) forgetEarlier(b);
     }
 }
 
@@ -53,6 +58,12 @@ bool BodyColumns::sameFrame(int b) const {
 void BodyColumns::take(int b) {
     const auto& s = *states_[b];
     auto& seen = seen_[b];
+    if (!taken_[b]) {
+        taken_[b] = true;
+        earlier_[b].blocked = seen.blocked;
+        for (int d = 0; d < 6; ++d)
+            earlier_[b].velocity[d] = velocity[d][b];
+    }
     seen.blocked = s.blockedDOFs;
     seen.damped = s.isDamped;
     seen.axes = ~s.blockedDOFs & 63;

@@ -37,13 +37,18 @@ public:
         if (!samePlace(body)) take(body);
     }
     void detectChange(int body) {
-        if (hasChanged(body)) take(body);
+        if (!samePlace(body) || !sameMotion(body)) take(body);
     }
     void detectAnyChange(int body) {
-        if (hasChanged(body) || !sameFrame(body)) take(body);
+        if (!samePlace(body) || !sameMotion(body) || !sameFrame(body)) take(body);
     }
-    // What detectChange() compares.
-    bool hasChanged(int body) const { return !samePlace(body) || !sameMotion(body); }
+    // The motion along blocked axes with which a body made its last step, if it has been taken since, else null.
+    struct Prescribed {
+        unsigned blocked; // as blockedAxes()
+        double velocity[6];
+    };
+    const Prescribed* earlier(int body) const { return taken_[body] ? &earlier_[body] : nullptr; }
+    void forgetEarlier(int body) { taken_[body] = false; }
     // Asks the processor for the body's State, so that it is in the cache when it is needed.
     void prefetch(int body) const;
     // Writes place and motion of a body into the host's State, for the axes whose bits are set.
@@ -69,6 +74,8 @@ private:
     bool sameFrame(int body) const; // compares inertia and reference place
 
     std::vector<Seen> seen_;
+    std::vector<Prescribed> earlier_;
+    std::vector<unsigned char> taken_; // whether earlier_ holds something
     std::vector<const yade::Body*> bodies_;
     std::vector<boost::shared_ptr<yade::State>> states_;
 };

@@ -75,13 +75,14 @@ void Integrator::advance(yade::Scene& scene, BodyColumns& bodies, const std::vec
     }
 }
 
-// What a body does to the forces and the weight along its blocked axes, with the motion that the columns hold [W].
-double Integrator::prescribedPower(const BodyColumns& bodies, int b, const Vector3r& force,
-                                   const Vector3r& torque) const {
+// What forces and weight do to a body along its blocked axes, with its present motion less that of its last step [W].
+double Integrator::gainedPower(const BodyColumns& bodies, int b, const Vector3r& force, const Vector3r& torque) const {
+    const auto& before = *bodies.earlier(b);
+    const Vector3r on[] = {force + bodies.mass[b] * gravity, torque};
     double power = 0;
-    for (int d = 0; d < 3; ++d) {
-        if (bodies.isBlocked(b, d)) power += bodies.velocity[d][b] * (force[d] + bodies.mass[b] * gravity[d]);
-        if (bodies.isBlocked(b, 3 + d)) power += bodies.velocity[3 + d][b] * torque[d];
+    for (int d = 0; d < 6; ++d) {
+        const double now = bodies.isBlocked(b, d) ? bodies.velocity[d][b] : 0;
+        power += on[d / 3][d % 3] * (now - (before.blocked >> d & 1 ? before.velocity[d] : 0));
     }
     return power;
 }
@@ -105,12 +106,11 @@ Integrator::Sums Integrator::advancePiece(const yade::Scene& scene, BodyColumns&
         motion.alpha[i] = motion.viscous[i] = 0;
         if (i + ahead < count && bodies.has(b + ahead)) bodies.prefetch(b + ahead);
         if (!bodies.has(b) || bodies.isUnit[b]) continue;
-        if (bodies.hasChanged(b)) {
-            const double before = prescribedPower(bodies, b, forces[b], torques[b]);
-            bodies.take(b);
-            earlier += 0.5 * scene.dt * (prescribedPower(bodies, b, forces[b], torques[b]) - before);
-        } else if (thoroughly)
-            bodies.detectAnyChange(b);
+        thoroughly ? bodies.detectAnyChange(b) : bodies.detectChange(b);
+        if (bodies.earlier(b)) {
+            earlier += 0.5 * scene.dt * gainedPower(bodies, b, forces[b], torques[b]);
+            bodies.forgetEarlier(b);
+        }
         if (bodies.spins(b))
             ++spinning;
         else {

@@ -39,7 +39,7 @@ private:
     // Makes a step of bodies `first` up to, but without, `beyond`.
     Sums advancePiece(const yade::Scene&, BodyColumns&, const Vector3r* forces, const Vector3r* torques, int first,
                       int beyond);
-    double prescribedPower(const BodyColumns&, int body, const Vector3r& force, const Vector3r& torque) const;
+    double gainedPower(const BodyColumns&, int body, const Vector3r& force, const Vector3r& torque) const;
     void findWeights(const BodyColumns&, int first, int count, Sums&) const;
     // Makes a step of a body none of whose rotations is blocked.
     EnergyLedger turnFreely(double dt, BodyColumns&, const Vector3r& force, const Vector3r& torque, int body);

@@ -252,6 +252,12 @@ std::string loadScene(const py::object& bytes) {
         transfer(present(), here, true);
         throw;
     }
+    auto& store = SceneStore::present();
+    store.update();
+    for (int b = 0; b < store.bodies.size(); ++b) {
+        if (store.bodies.has(b)) store.bodies.take(b);
+        store.bodies.forgetEarlier(b);
+    }
     return saved.texts["extra"];
 }
 
