@@ -27,11 +27,11 @@ _asked = False
 def _isAsked():
     """Whether the user says how many threads: to ``yade``, which then sets the variable, and else sets it to 1, or in the
     environment with which the process began."""
-    with open("/proc/self/cmdline") as words, open("/proc/self/environ") as names:
-        options = r"\0(-\w*j|--thr|--cor)"
+    with open("/proc/self/cmdline", "rb") as words, open("/proc/self/environ", "rb") as names:  # fmt: skip
+        ofYade = words.read().partition(b"\0-x\0")[0]
         return bool(
-            re.search(options, words.read().partition("\0-x\0")[0])
-            or re.search(r"(^|\0)OMP_NUM_THREADS=", names.read())
+            re.search(rb"\0(-\w*j|--thr|--cor)", ofYade)
+            or re.search(rb"(^|\0)OMP_NUM_THREADS=", names.read())
         )
 
 
