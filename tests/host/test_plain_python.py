@@ -83,6 +83,13 @@ def test_threads_are_those_that_are_asked_for(tmp_path):
     code = "from masonry import Scene; from yade import O; print(O.numThreads)"
     assert done(code, env=environment(OMP_NUM_THREADS="2")) == "2\n"
     assert done(code) == "1\n"
+    script = tmp_path / "threads.py"
+    script.write_text("from masonry.assembly import threads; print('steps', threads.allowed())")  # fmt: skip
+    usual = min(4, len(os.sched_getaffinity(0)))
+    for words, count in (([], usual), (["-j1"], 1), (["--threads", "3"], 3)):
+        command = ["yade", *words, "-n", "-x", str(script), "-j7"]
+        run = subprocess.run(command, env=environment(), capture_output=True, text=True)
+        assert f"steps {count}\n" in run.stdout
 
 
 def test_a_process_without_HOME_starts_yade():

@@ -35,3 +35,14 @@ def test_a_tower_that_its_soil_does_not_hold_upright_is_not_at_rest(scene, tmp_p
     scene = tower(tmp_path, 0.9 * OVERTURNING)
     assert scene.settle() == MOVING
     assert "buckles" in capsys.readouterr().out
+
+
+def test_small_horizontal_loads_must_be_carried_on_their_own(scene, tmp_path):
+    scene = tower(tmp_path, 3 * OVERTURNING)
+    scene.begin()
+    supports = scene.model.supports
+    for across, missing in ((0.5, 0.5e-3), (2.0, 1.0)):  # of a load of 1 kN
+        supports.applied = lambda: Vector3(across, 0, -1000)
+        supports.carried = lambda: Vector3(0, 0, 1000)
+        assert supports.unrest()[0] == pytest.approx(missing, rel=1e-3)
+    scene.finish()
