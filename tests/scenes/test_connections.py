@@ -2,6 +2,7 @@
 """Ties and springs: what they carry against statics, what a run says of them, and what is refused."""
 
 from hosted import *
+from masonry.scene import resuming
 from masonry.basics import GRAVITY
 from masonry.read import files
 from masonry.read.frames import readFrame
@@ -88,6 +89,27 @@ def test_a_tie_breaks_at_its_strain(tmp_path, capsys):
     assert run["ties"][0]["state"] == "broken" and tie.force == 0
     assert abs(rows["balance_error"]).max() < 0.01
     assert "tie0 breaks" in capsys.readouterr().out
+
+
+def test_a_checkpoint_may_know_more_ties_that_yielded_than_have_yielded_so_far(
+    tmp_path,
+):
+    """A run that is resumed gets the state in which its stage began, and then that of the checkpoint."""
+    words = ["--lean", "--out", str(tmp_path)]
+    scene = Scene("tie", bricks.stack(2, (0.3, 0.3, 0.2)), materials.dry(), arguments=words)  # fmt: skip
+    scene.platen("bottom")
+    scene.tie((0.15, 0.15, 0.3), anchor=(1, 0.15, 0.3), stiffness=1e6, strength=100)
+    scene.begin()
+    said = scene.model.connectors.reported
+    states = []
+    for event in ("yields", "breaks"):
+        said.add((event, "tie0"))
+        states.append(resuming.stateOf(scene))
+    said.clear()
+    for state in states:
+        resuming.putState(scene, state)
+        assert resuming.stateOf(scene) == state
+    scene.finish()
 
 
 def test_prestress_grows_in_settle_and_its_work_is_counted(tmp_path):
