@@ -92,6 +92,12 @@ class Refused(ValueError):
     """Input that cannot be run, with all problems at once. Nothing was changed."""
 
 
+def refuse(problems, begin="", between="\n"):
+    """Raise :class:`Refused` with all problems, if there are any."""
+    if problems:
+        raise Refused(begin + between.join(problems))
+
+
 class Held(Refused):
     """Another run is writing to the folder of the results."""
 

@@ -12,7 +12,7 @@ import json
 import os
 import stat
 
-from .basics import Refused
+from .basics import Unwritable, refuse
 
 MOST = 5  # names that are listed
 
@@ -33,8 +33,7 @@ def check(*folders):
                 f"{folder} holds {', '.join(names[:MOST])}{more}: nothing is written where a name can lead elsewhere; "
                 "remove these, or name another folder"
             )
-    if problems:
-        raise Refused("\n".join(problems))
+    refuse(problems)
 
 
 def _entries(folder):
@@ -111,6 +110,18 @@ def replaced(path, mode="w", **settings):
             with contextlib.suppress(OSError):
                 os.remove(temporary)
             raise
+
+
+@contextlib.contextmanager
+def writing(what):
+    """Let an OSError in a block that writes be :class:`masonry.basics.Unwritable`.
+
+    :param what: is written: the path of a file, or ``to FOLDER``
+    """
+    try:
+        yield
+    except OSError as error:
+        raise Unwritable(f"cannot write {what}: {error.strerror}") from None
 
 
 def fromJson(data):

@@ -31,7 +31,7 @@ def sentence(module):
     ("jinja2", "from masonry.read import pages; pages.rendered('page/page.html')"),
     ("matplotlib", "from masonry.read import drawing; drawing.empty(1, 1)"),
     ("meshio", "open('a.ply', 'w').write('ply'); from masonry import bricks; bricks.fromFile('a.ply')"),
-    ("openturns", "from masonry.study import variables; variables.openturns()"),
+    ("openturns", "from masonry.study import lognormal; lognormal(1, 0.1).law()"),
     ("scipy", "from masonry import bricks"),
 ])  # fmt: skip
 def test_a_missing_module_is_one_sentence_with_the_command_that_installs_it(tmp_path, module, use):  # fmt: skip

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from ..arguments import Numbers
-from ..basics import Refused
+from ..basics import Refused, refuse
 from . import slipping
 from .bound import Bound
 from .programme import FACETS, Programme, solve
@@ -139,9 +139,8 @@ class Assembly:
         ]
         if not problems and not np.abs(live[~self.held]).max(initial=0) > 0:
             problems.append("limit analysis: the live load acts on no free block")
-        if problems:
-            raise Refused("\n".join(problems))
-        bound = self._turned(lambda turn: self._solve(live, dead, sense, turn))
+        refuse(problems)
+        bound = self.associated(live, dead, sense=sense)
         bound.factor *= sense
         if sense > 0 and bound.rigid and self.bonded:
             other = slipping.loosened(self, live, dead)
@@ -169,26 +168,27 @@ class Assembly:
         return slipping.withoutDilatancy(self, live, dead, most, within)
 
     def associated(
-        self, live: np.ndarray, dead: np.ndarray, fixed: Any = None, turns: int = TURNS
+        self,
+        live: np.ndarray,
+        dead: np.ndarray,
+        fixed: Any = None,
+        turns: int = TURNS,
+        sense: int = 1,
     ) -> Bound:
-        """The bound of associated flow alone, with the facets of friction turned.
+        """The bound of associated flow alone, with facets of friction that turn to where forces point.
 
-        :param fixed: as in :meth:`_solve`
+        :param fixed: and ``sense``: as in :meth:`_solve`
         :param turns: how often the facets are turned at most
         """
-        return self._turned(lambda turn: self._solve(live, dead, 1, turn, fixed), turns)
-
-    def _turned(self, solve, turns=TURNS):
-        """Solve with facets of friction that turn to where forces point."""
         turn = np.zeros(len(self.contacts.at))
-        best = solve(turn)
+        best = self._solve(live, dead, sense, turn, fixed)
         if self.plane:
             return best
         best.facetError = 1 / math.cos(math.pi / FACETS) - 1  # before any turn
         for _ in range(turns):
             turn = best.directions - math.pi / FACETS
             try:
-                again = solve(turn)
+                again = self._solve(live, dead, sense, turn, fixed)
             except Refused:  # time is over
                 break
             change = abs(again.value - best.value) / max(abs(best.value), 1e-12)

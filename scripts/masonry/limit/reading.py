@@ -138,8 +138,9 @@ class _Placement:
         states = [b.state for b in blocks]
         self.was = np.array(_rows([s.refPos for s in states]))
         self.now = np.array(_rows([s.pos for s in states]))
-        turns = [_matrix(s.ori * s.refOri.conjugate()) for s in states]
-        self.turns = np.array(turns, float)
+        self.turns = np.array(
+            [(s.ori * s.refOri.conjugate()).toRotationMatrix() for s in states]
+        )
         sizes = np.array([max(v.norm() for v in b.shape.v) for b in blocks])
         angles = np.linalg.norm(self.turns - np.eye(3), axis=(1, 2))
         moved = np.linalg.norm(self.now - self.was, axis=1) + sizes * angles
@@ -149,7 +150,7 @@ class _Placement:
 
     def placed(self, block, point):
         """Where a point of a block is, given in the reference state; of None, the ground, the point itself."""
-        point = np.array([point[0], point[1], point[2]])
+        point = np.array(point)
         if block is None:
             return point
         return self.turns[block] @ (point - self.was[block]) + self.now[block]
@@ -168,12 +169,6 @@ class _Placement:
         return 0.5 * (ways[0] + ways[1])
 
 
-def _matrix(turn):
-    """The rotation matrix (3, 3) of a quaternion of YADE."""
-    matrix = turn.toRotationMatrix()
-    return np.array([[matrix[i, k] for k in range(3)] for i in range(3)])
-
-
 def _strengths(p):
     """Tensile strength, cohesion, friction, compressive strength, and whether a joint never gives way."""
     cohesion, friction = max(p.cohesion, p.residualCohesion), max(p.friction, p.residualFriction)  # fmt: skip
@@ -190,4 +185,4 @@ def _corners(body, stood):
     """Corners of a block as it stands now, or as it stood when the joints were made (k, 3) [m]."""
     state = body.state
     turn, at = (state.refOri, state.refPos) if stood else (state.ori, state.pos)
-    return np.array(_rows(body.shape.v)) @ _matrix(turn).T + np.array(at)
+    return np.array(body.shape.v) @ np.array(turn.toRotationMatrix()).T + np.array(at)

@@ -35,7 +35,8 @@ FOLDER = "accuracy"  # of the companions, in that of the results
 PLAN = "plan.json"  # there: what was run, while it goes on
 #: Name in the environment of a companion. Its scene looks at no other runs.
 COMPANION = "MASONRY_COMPANION"
-_isCompanion = bool(os.environ.pop(COMPANION, ""))  # what it starts itself is not
+#: Whether this process is a companion of another run; what it starts itself is not.
+_isCompanion = bool(os.environ.pop(COMPANION, ""))
 #: Half the width of a 95 % interval over the range of three runs, for the difference from another run: Student's t with two
 #: degrees of freedom, 4.30, times sqrt(1 + 1/3), over 1.69, the mean range of three in standard deviations.
 BY_CHANCE = 2.9
@@ -107,11 +108,6 @@ def needed(number: int) -> list[str]:
 
 
 # -- companions -------------------------------------------------------------------------------------------------------
-
-
-def isCompanion() -> bool:
-    """Whether this process is a companion of another run."""
-    return _isCompanion
 
 
 class AuxiliaryRuns:
@@ -246,9 +242,7 @@ def choose(companions: AuxiliaryRuns, percent: float) -> Any:
         companions.run(needed(number))
         widths = []
         for quantity, _, _ in QUANTITIES:
-            values: dict[str, float] = {}
-            for name, found in companions.numbers.items():
-                values[name] = found[quantity]
+            values = {name: n[quantity] for name, n in companions.numbers.items()}
             scale = max(abs(value) for value in values.values())
             widths.append(100 * halfWidth(number, quantity, values, scale)[0])
         enough = max(widths) <= percent
@@ -340,10 +334,10 @@ def lines(entry: dict[str, Any]) -> list[str]:
             f"accuracy: collapsed: {'; '.join(fell)}; the work of a run that collapses ends there"
         )
     if not entry["reached"]:
+        finest = entry["fidelity"] == FIDELITIES[-1].name
+        which = "finest fidelity there is" if finest else "fidelity that was chosen"
         sentences.append(
-            f"accuracy: {entry['asked_percent']:g} % is not reached by the fidelity that was chosen: the ± is what was found"
-            if entry["fidelity"] != FIDELITIES[-1].name
-            else f"accuracy: {entry['asked_percent']:g} % is not reached by the finest fidelity there is: the ± is what was found"
+            f"accuracy: {entry['asked_percent']:g} % is not reached by the {which}: the ± is what was found"
         )
     sentences.append(f"accuracy: the ± does not cover {entry['not_covered']}")
     return sentences
@@ -362,7 +356,7 @@ def ask(
     :raises Refused: if it means nothing here
     :raises Interrupted: after Ctrl-C and SIGTERM
     """
-    if not args.accuracy or isCompanion() or batch.PROBE in os.environ:
+    if not args.accuracy or _isCompanion or batch.PROBE in os.environ:
         return None
     given = getattr(args, "given", None) or {}
     chosen = [n for n in CHOSEN if n in given]

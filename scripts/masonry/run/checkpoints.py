@@ -56,7 +56,7 @@ def loadCheckpoint(path: FilePath) -> Any:
     :raises ValueError: if the file is damaged, or of another scene or version; the scene stays as it is
     :raises OSError: if it cannot be read
     """
-    data, extra = _read(path)  # first, so that a wrong one changes nothing
+    data, extra = readState(path)  # first, so that a wrong one changes nothing
     with _says(path):
         loadScene(data)
     return extra
@@ -65,16 +65,11 @@ def loadCheckpoint(path: FilePath) -> Any:
 @validated
 def readCheckpoint(path: FilePath) -> Any:
     """The ``extra`` of a checkpoint alone, of a file that is whole. Raises what :func:`loadCheckpoint` raises."""
-    return _read(path)[1]
+    return readState(path)[1]
 
 
-def readState(directory: FilePath) -> tuple[bytes, Any]:
-    """The checkpoint of a run: its bytes, as ``loadScene`` takes them, and its ``extra``. Raises as
-    :func:`readCheckpoint`."""
-    return _read(os.path.join(directory, NAME))
-
-
-def _read(path):
+def readState(path: FilePath) -> tuple[bytes, Any]:
+    """The bytes of a checkpoint, as ``loadScene`` takes them, and its ``extra``. Raises as :func:`readCheckpoint`."""
     with _says(path):
         data = readWhole(path)
         return data, fromJson(savedText(data))

@@ -61,7 +61,11 @@ def _end(run, scene, error):
     if error and not isinstance(error, Collapsed) and run.results.earlier:
         return _keepEarlier(run, error)
     stopped = []
-    error = _flushed(run, error, stopped)
+    try:
+        with _noting(stopped):
+            run.flush()
+    except FloatingPointError as broken:
+        error = error or broken
     if isinstance(error, Interrupted):
         say("\ninterrupted: what was computed is kept")
     elif isinstance(error, Unwritable):
@@ -80,20 +84,14 @@ def _end(run, scene, error):
         run.results.run["error"] = str(stopped[0])
     over = run.args.lean and not stopped and not run.interrupted
     kept = False
-    try:
+    with _noting(stopped):
         kept = not over and run.checkpoints.write()
         run.kept = kept and run.interrupted
-    except Unwritable as unwritable:
-        stopped.append(unwritable)
-    try:
+    with _noting(stopped):
         _finish(run, scene)
         if over:
             with contextlib.suppress(OSError):
                 os.remove(run.results.path(NAME))
-    except Unwritable as unwritable:
-        stopped.append(unwritable)
-    except MemoryError:
-        stopped.append(FULL)
     for text in dict.fromkeys(map(str, stopped)):
         say(f"{text}; what was written before is kept", sys.stderr)
     if kept and (stopped or run.interrupted):
@@ -103,17 +101,15 @@ def _end(run, scene, error):
     return True
 
 
-def _flushed(run, error, stopped):
-    """Write the rows that wait. Returns the error, or what is wrong with a row; what stops the run is added to a list."""
+@contextlib.contextmanager
+def _noting(stopped):
+    """Let a file that cannot be written, or a memory that is full, end a block, and add it to a list."""
     try:
-        run.flush()
+        yield
     except Unwritable as unwritable:
         stopped.append(unwritable)
     except MemoryError:
         stopped.append(FULL)
-    except FloatingPointError as broken:
-        return error or broken
-    return error
 
 
 def _beforeSteps(run, error):
@@ -152,43 +148,24 @@ def _finish(run, scene):
         finally:
             _describe(run, scene)
             run.results.close()
-        if _draws(run):
+        if not (run.args.lean or run.interrupted):
             with contextlib.suppress(OSError):  # it is said when they are waited for
                 scene.outcome.drawing.begin(run.results.directory)
     finally:
-        _writeMechanism(run, scene)
+        if run.interrupted:
+            scene.outcome.write(run.results.directory, draws=False)
+        else:
+            _unlessInterrupted(run, scene.outcome.write, "the mechanism is not drawn")
     _report(run, scene)
 
 
-def _draws(run):
-    """Whether a run leaves figures and a report: one that is interrupted shall end at once."""
-    return not (run.args.lean or run.interrupted)
-
-
-def _draw(run, scene):
-    """Draw the figures and write the report; a run that is interrupted shall end at once, and leaves them out."""
-    directory = run.results.directory
+def _unlessInterrupted(run, draw, lacking):
+    """Draw what a run that is interrupted leaves out, since it shall end at once; then a sentence says what is lacking."""
     try:
         with run.breakable():
-            scene.outcome.drawing.draw(directory)
+            draw(run.results.directory)
     except Interrupted:
-        say(
-            f"interrupted: the figures are not drawn; /usr/bin/python3 -m masonry.read.figures {directory} draws them, and "
-            f"/usr/bin/python3 -m masonry.read.report {directory} writes the report"
-        )
-
-
-def _writeMechanism(run, scene):
-    """Write the mechanism of limit analysis, in a run that is interrupted without its picture."""
-    directory = run.results.directory
-    if run.interrupted:
-        scene.outcome.write(directory, draws=False)
-        return
-    try:
-        with run.breakable():
-            scene.outcome.write(directory)
-    except Interrupted:
-        say("interrupted: the mechanism is not drawn")
+        say(f"interrupted: {lacking}")
 
 
 def _describe(run, scene):
@@ -211,8 +188,6 @@ def _describe(run, scene):
         steps_by_threads=threads.used(),
         host=socket.gethostname(),
         **scene.outcome.describe(),
-    )
-    entries.update(
         collapsed=run.collapsed,
         interrupted=run.interrupted,
         resumed_at_s=at.resumed,
@@ -223,8 +198,8 @@ def _describe(run, scene):
     )
     if run.results.rows:
         energy = scene.model.energy
-        entries["energy_balance_error"] = energy.largestError
-        entries["energy_made"] = energy.largestMade
+        entries.update(energy_balance_error=energy.largestError)
+        entries.update(energy_made=energy.largestMade)
         scene.outcome.summarise()
     if run.args.blocks == "rigid" and not scene.description.functors:
         entries["refined_joints"] = scene.model.refinedJoints()
@@ -233,8 +208,7 @@ def _describe(run, scene):
         ofOne = 1e9 * perStep / scene.model.subcontacts
         entries["microseconds_per_step"] = 1e6 * perStep
         entries["nanoseconds_per_subcontact_step"] = ofOne
-    entries["notes"] = at.notes
-    entries["warnings"] = list(_warnings(run, scene))
+    entries.update(notes=at.notes, warnings=list(_warnings(run, scene)))
 
 
 def _options(run):
@@ -263,9 +237,13 @@ def _warnings(run, scene):
 
 
 def _report(run, scene):
-    entries = run.results.run
+    entries, directory = run.results.run, run.results.directory
     if not run.args.lean and (run.results.rows or not run.interrupted):
-        _draw(run, scene)
+        lacking = (
+            f"the figures are not drawn; /usr/bin/python3 -m masonry.read.figures {directory} draws them, and "
+            f"/usr/bin/python3 -m masonry.read.report {directory} writes the report"
+        )
+        _unlessInterrupted(run, scene.outcome.drawing.draw, lacking)
     for sentence in entries["warnings"]:
         say(f"warning: {sentence}")
     if run.results.rows:
@@ -273,7 +251,7 @@ def _report(run, scene):
             say(line)
         say(
             f"{entries['steps']} steps of {entries.get('microseconds_per_step', 0):.0f} µs, {entries['wall_clock_s']:.1f} s in all; "
-            f"see {run.results.directory}"
+            f"see {directory}"
         )
     if remark := threads.remark():
         say(remark)

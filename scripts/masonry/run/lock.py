@@ -92,25 +92,16 @@ class Lock:
     def _trust(self, text):
         """Refuse a folder by the text of its lock alone, if the run that wrote it may be alive."""
         record = _object(text)
-        if record.get("host") == socket.gethostname():
-            try:
-                os.kill(record.get("process"), 0)
-            except PermissionError:
-                pass  # it is alive, and another user's
-            except (OSError, TypeError, OverflowError):
-                return
-        if record:
+        if record and not _isGone(record):
             self._refuse(text)
 
     def _refuse(self, text):
-        record = _object(text)
-        who = (
-            "another run"
-            if not record
-            else "a run of {scene} on host {host}, process {process},".format_map(
-                {"scene": "?", "host": "?", "process": "?", **record}
+        record, who = _object(text), "another run"
+        if record:
+            known = {"scene": "?", "host": "?", "process": "?", **record}
+            who = "a run of {scene} on host {host}, process {process},".format_map(
+                known
             )
-        )
         raise Held(
             f"{who} is writing to {os.path.dirname(self.path)}: wait for its end, or name another folder with --out; "
             f"if it is gone, remove {LOCK} there"
@@ -147,10 +138,7 @@ def held(directory):
     except OSError:
         return False
     with file:
-        record = _object(file.read())
-        if record.get("host") == socket.gethostname() and not os.path.exists(
-            f"/proc/{record.get('process')}"
-        ):
+        if _isGone(_object(file.read())):
             return False  # a lock that is tried for a moment would be in the way of a run that begins
         file.seek(0)
         try:
@@ -160,6 +148,12 @@ def held(directory):
         except OSError:
             return bool(_object(file.read()))
         return False
+
+
+def _isGone(record):
+    """Whether the process that a lock names was one of this host, and is over."""
+    process = f"/proc/{record.get('process')}"
+    return record.get("host") == socket.gethostname() and not os.path.exists(process)
 
 
 def _object(data):

@@ -47,14 +47,10 @@ class Option:
         """Its unit, or an empty text."""
         return getattr(self.kind, "unit", "")
 
-    def read(self, text: str) -> Any:
-        """The value that a text of the command line stands for. Raises argparse.ArgumentTypeError."""
-        return reading(self.kind)(text)
-
     def addTo(self, parser: Any, read: Any = None) -> None:
         """Add it to a parser of argparse, or to a group of one.
 
-        :param read: function of a text in place of :meth:`read`
+        :param read: function of a text in place of :func:`reading`
         """
         settings: dict[str, Any] = {"help": self.meaning, "default": self.default}
         if self.kind is flag:
@@ -62,14 +58,14 @@ class Option:
         elif hasattr(self.kind, "choices"):
             settings.update(choices=[*self.kind.choices])
         else:
-            settings.update(metavar=self.value, type=read or self.read)
+            settings.update(metavar=self.value, type=read or reading(self.kind))
         if self.several:
             settings.update(action="append", default=[])
         parser.add_argument(asOption(self.name), **settings)
 
 
 def reading(kind: Kind) -> Any:
-    """The function by which argparse reads values of a kind."""
+    """The function by which argparse reads values of a kind from texts. It raises argparse.ArgumentTypeError."""
 
     def read(text):
         value = text
@@ -178,13 +174,7 @@ _ROWS = (
         "S",
     ),
     Option("rate", "loading rate [mm/s]", rate, 20.0, "MM_PER_S", chosen=True),
-    Option(
-        "blocks",
-        "block model",
-        oneOf("rigid", "deformable"),
-        default="rigid",
-        chosen=True,
-    ),
+    Option("blocks", "block model", oneOf("rigid", "deformable"), "rigid", chosen=True),
     Option(
         "divisions",
         "cells of a deformable half brick along its length, and as many along its height, one through its thickness; "

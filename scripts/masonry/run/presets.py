@@ -190,10 +190,8 @@ CHOSEN = USUAL
 
 def fidelityOf(args):
     """The :class:`Fidelity` that options are those of, or None."""
-    for fidelity in FIDELITIES:
-        if all(getattr(args, n) == v for n, v in {**CHOSEN, **fidelity.options}.items()):  # fmt: skip
-            return fidelity
-    return None
+    chosen = {name: getattr(args, name) for name in CHOSEN}
+    return next((f for f in FIDELITIES if {**CHOSEN, **f.options} == chosen), None)
 
 
 def outsideOf(properties):

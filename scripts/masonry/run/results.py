@@ -119,7 +119,7 @@ import shutil
 import time
 
 from .. import folders
-from ..basics import Refused, Unwritable, say
+from ..basics import Refused, say
 from ..read import quantities
 from ..read.files import readWhole
 from .lock import DRAWN, FILES, OURS, Lock, recorded
@@ -145,6 +145,7 @@ class Results:
         except OSError as error:  # the present folder was removed
             raise Refused(f"--out: no folder {directory}: {error.strerror}") from None
         self.columns, self.rows, self.run = list(columns), [], {}
+        self._head = ",".join(self.columns) + "\r\n"
         self._line = ",".join(["%.9g"] * len(self.columns)) + "\r\n"
         self._file = None  # curve.csv
         self.started = time.perf_counter()
@@ -199,19 +200,15 @@ class Results:
         if self.begun:
             return
         self._lock.ours = True
-        try:
+        with folders.writing(f"to {self.directory}"):
             # files of an earlier run would be taken for those of this one; run.json says whose they are, and goes last
             for name in sorted(self.earlier, key="run.json".__eq__):
                 with contextlib.suppress(FileNotFoundError):
                     os.remove(self.path(name))
             self.earlier = []
             self._file = self._curve()
-            self._write(self._head())
+            self._write(self._head)
             os.fsync(self._file.fileno())
-        except OSError as error:
-            raise Unwritable(
-                f"cannot write to {self.directory}: {error.strerror}"
-            ) from None
 
     def release(self):
         """Let other runs have the folder; one that was made for nothing goes."""
@@ -229,9 +226,6 @@ class Results:
         path = self.path("curve.csv")
         return open(path, "ab", buffering=0, opener=folders.inside)
 
-    def _head(self):
-        return ",".join(self.columns) + "\r\n"
-
     def takeUp(self, rows, frames, seconds):
         """Go on after these rows, so many ParaView frames and seconds of wall-clock time. What came later is removed."""
         # what is wrong with the rows or the file comes before anything is changed
@@ -244,7 +238,7 @@ class Results:
         self._lock.ours = True
         self._file = curve
         self._file.truncate(0)
-        self._write(self._head())
+        self._write(self._head)
         self.rows.clear()
         self.append(rows)
         self.started -= seconds
@@ -263,12 +257,8 @@ class Results:
         while fine < len(rows) and all(map(math.isfinite, rows[fine])):
             fine += 1
         self.rows += rows[:fine]
-        try:
+        with folders.writing(self.path("curve.csv")):
             self._write("".join(self._line % tuple(row) for row in rows[:fine]))
-        except OSError as error:
-            raise Unwritable(
-                f"cannot write {self.path('curve.csv')}: {error.strerror}"
-            ) from None
         if fine < len(rows):
             numbers = zip(self.columns, rows[fine])
             broken = [name for name, number in numbers if not math.isfinite(number)]
@@ -315,9 +305,6 @@ class Results:
         self.run.update(wall_clock_s=round(self.seconds(), 3), files=FILES)
         self._file.close()
         path = self.path("run.json")
-        try:
-            with folders.replaced(path) as f:
-                json.dump(self.run, f, indent=2)
-                f.write("\n")
-        except OSError as error:
-            raise Unwritable(f"cannot write {path}: {error.strerror}") from None
+        with folders.writing(path), folders.replaced(path) as f:
+            json.dump(self.run, f, indent=2)
+            f.write("\n")

@@ -136,11 +136,6 @@ class Run:
         return self.signals.interrupted
 
     @property
-    def resumes(self):
-        """Whether the run goes on from a checkpoint."""
-        return self.saved is not None
-
-    @property
     def scriptBefore(self):
         """What the script said up to the checkpoint of a run that is resumed, as data."""
         return self.saved.script if self.saved else []
@@ -158,7 +153,7 @@ class Run:
     @property
     def takesUp(self):
         """Whether the run is resumed, and has taken no steps since."""
-        return self.resumes and not self.advanced
+        return self.saved is not None and not self.advanced
 
     def continueFrom(self, number, redoes):
         """In a run that is resumed and has taken no steps yet, let rows and frames be those of the beginning of a stage; of the
@@ -233,7 +228,7 @@ class Run:
         :param one: function that makes one step, of its number in this call, from 0; None: YADE makes it
         """
         at = self.at
-        if self.advanced or not self.saved:
+        if not self.takesUp:
             self.advanced, at.left = True, steps
         elif self.redoes:
             # the scene of a checkpoint is that after some of the steps or all

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """How far a run has come, and what a checkpoint on disk tells of it."""
 
-from dataclasses import dataclass, field
+import os
+from dataclasses import dataclass, field, fields
 
 from .._masonry import loadScene
 from ..basics import NotResumed, say
@@ -9,6 +10,11 @@ from .checkpoints import NAME, alike, readState
 
 MOST_NOTES = 1000  # that a run keeps
 PARTS = "setup", "steps", "rows", "frames"  # of a run's time
+
+
+def _holding(kind, example):
+    """A field that is a list or a dict, whose values are like an example: see :func:`masonry.run.checkpoints.alike`."""
+    return field(default_factory=kind, metadata={"example": example})
 
 
 @dataclass
@@ -28,30 +34,30 @@ class RunState:
     rows: int = 0  # of curve.csv when the memory was as it is here
     frameCount: int = 0  # ParaView frames then
     #: Of every stage so far: its name, and the steps, their seconds of wall-clock time and the rows before it.
-    stages: list = field(default_factory=list)
-    seconds: dict = field(default_factory=lambda: dict.fromkeys(PARTS, 0.0))
-    frames: list = field(default_factory=list)  # times of the ParaView frames [s]
-    origins: dict = field(default_factory=dict)  # where pushes began, by their name
+    stages: list = _holding(list, ["", 0, 0.0, 0])
+    seconds: dict = _holding(lambda: dict.fromkeys(PARTS, 0.0), 0.0)
+    frames: list = _holding(list, 0.0)  # times of the ParaView frames [s]
+    origins: dict = _holding(dict, None)  # where pushes began, by their name
     #: Of the pushes, by the numbers of their stages: the first period when it began [s], the weight of the base in its shear
     #: force [-], and the time at which its velocity had grown [s]; 0 where that was not found.
-    freeVibrations: dict = field(default_factory=dict)
-    bounds: dict = field(default_factory=dict)  # what limit analysis found, by the load
+    freeVibrations: dict = _holding(dict, [0.0] * 3)
+    bounds: dict = _holding(dict, {})  # what limit analysis found, by the load
     #: Load factors under which the structure came to rest, by the names of their bounds.
-    held: dict = field(default_factory=dict)
+    held: dict = _holding(dict, 0.0)
     #: What stages pushed or put on, by their numbers: the kind, "push", "lean" or "growth", the name of the load
     #: and that of the opposite one.
-    loads: dict = field(default_factory=dict)
+    loads: dict = _holding(dict, ["", "", ""])
     #: How stages ended, by their numbers, and the number of the last stage then: a stage may consist of several.
-    ended: dict = field(default_factory=dict)
+    ended: dict = _holding(dict, ["", 0])
     fall: str = ""  # what has fallen, as in Run.fall
     #: What acted beside a load and held the structure when its bound was found, by the load.
     beside: dict = field(default_factory=dict)
     atRest: str = ""  # the last state at rest, as text, for stepBack()
-    places: list = field(default_factory=list)  # of masonry.assembly.motion.Motion
-    answers: dict = field(default_factory=dict)  # of the stages, by their number
-    notes: list = field(default_factory=list)  # what the run said, as in run.json
+    places: list = _holding(list, 0.0)  # of masonry.assembly.motion.Motion
+    answers: dict = _holding(dict, [])  # of the stages, by their number
+    notes: list = _holding(list, {})  # what the run said, as in run.json
     supportsMoved: bool = False  # whether a stage has moved supports
-    resumed: list = field(default_factory=list)  # times at which it was taken up [s]
+    resumed: list = _holding(list, 0.0)  # times at which it was taken up [s]
 
     def hear(self, text, number, time_s):
         """Keep what the run said in the stage of a number, unless it has said it before."""
@@ -63,19 +69,13 @@ class RunState:
 
     def listed(self):
         """The entry ``stages`` of run.json."""
-        ends = [*self.stages[1:], ["", self.steps, self.seconds["steps"], 0]]
-        return [
-            {
-                "stage": name,
-                "steps": after[1] - steps,
-                "seconds": after[2] - seconds,
-                "first_row": row,
-                "load": self.loads.get(str(number)),
-            }
-            for number, ((name, steps, seconds, row), after) in enumerate(
-                zip(self.stages, ends), start=1
-            )
-        ]
+        listed, end = [], ["", self.steps, self.seconds["steps"], 0]
+        for number, (name, steps, seconds, row) in enumerate(self.stages, start=1):
+            _, stepsAfter, secondsAfter, _ = [*self.stages, end][number]
+            entry = dict(stage=name, steps=stepsAfter - steps)
+            entry.update(seconds=secondsAfter - seconds, first_row=row)
+            listed.append({**entry, "load": self.loads.get(str(number))})
+        return listed
 
 
 def otherVersion(why):
@@ -96,24 +96,6 @@ def restored(example, values):
     return type(example)(**{**before, **values})
 
 
-#: What lists and dicts of a :class:`RunState` hold, as :func:`masonry.run.checkpoints.alike` takes it.
-HOLDS = {
-    "stages": ["", 0, 0.0, 0],
-    "seconds": 0.0,
-    "frames": 0.0,
-    "origins": None,
-    "freeVibrations": [0.0] * 3,
-    "bounds": {},
-    "held": 0.0,
-    "loads": ["", "", ""],
-    "ended": ["", 0],
-    "places": 0.0,
-    "answers": [],
-    "notes": {},
-    "resumed": 0.0,
-}
-
-
 class Saved:
     """A checkpoint that a run left, read from the disk once.
 
@@ -129,15 +111,15 @@ class Saved:
     def __init__(self, directory):
         self.directory = directory
         try:
-            self._data, saved = readState(directory)
+            self._data, saved = readState(os.path.join(directory, NAME))
         except FileNotFoundError:
             raise NotResumed(
                 f"--resume: {directory} has no {NAME}, which a run leaves unless it is --lean and has come to its end"
             ) from None
         except (OSError, ValueError) as error:
             raise NotResumed(f"--resume: {error}") from None
-        like = dict(scene="", options={}, at={}, rows=[], script=[], seconds=0.0)
-        like["host"] = {}
+        like = dict(scene="", options={}, at={}, rows=[], script=[], host={})
+        like["seconds"] = 0.0
         if (
             not isinstance(saved, dict)
             or not all(alike(saved.get(key), value) for key, value in like.items())
@@ -154,9 +136,10 @@ class Saved:
         at = restored(RunState(), self.at)
         values = lambda held: held.values() if isinstance(held, dict) else held
         wrong = [
-            name
-            for name, example in HOLDS.items()
-            if not all(alike(one, example) for one in values(getattr(at, name)))
+            one.name
+            for one in fields(at)
+            for example in one.metadata.values()
+            if not all(alike(v, example) for v in values(getattr(at, one.name)))
         ]
         if wrong:
             raise otherVersion(f"its {', '.join(wrong)}")

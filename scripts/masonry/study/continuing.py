@@ -50,15 +50,11 @@ def rowsOf(folder):
     needed |= {"record", "scale"} if study.get("ida") else set()
     fields = [name for name in study["vary"] if name.startswith(batch.FIELD)]
     known = needed | {name[len(batch.FIELD) :] for name in fields}
-    heads = set(rows[0]) if rows else set()
-    foreign = [
-        name
-        for name in [*(rows[0] if rows else ()), *needed]
-        if name not in known
-        or not (batch.isColumn(name) or name in ("description", "lean"))
-    ]
+    known = {n for n in known if n in ("description", "lean") or batch.isColumn(n)}
+    heads = [*rows[0]] if rows else []
+    foreign = [name for name in [*heads, *needed] if name not in known]
     problems = [f"column {name} is not of the study" for name in foreign]
-    problems += [f"column {name} is missing" for name in needed - heads]
+    problems += [f"column {name} is missing" for name in needed.difference(heads)]
     if len(rows) != study["runs"]:
         problems.append(f"it has {len(rows)} rows, and the study {study['runs']}")
     problems += [

@@ -82,20 +82,15 @@ class Demands:
 
         :param limit: of the demand; None: the structure falls
         """
-        low, high = [], []
+        low, high, most = [], [], math.inf if limit is None else limit
         for (intensities, demands), stood in zip(self.rows, self.stood):
-            below, first, known = 0.0, math.inf, False
-            for intensity, demand in zip(intensities, demands):
-                stands = intensity in stood if limit is None else demand < limit
-                reached = demand == math.inf or limit is not None and demand >= limit
-                known = known or stands or reached
-                if reached:
-                    first = intensity
-                    break
-                if stands:
-                    below = intensity
-            if known:
-                low.append(below)
+            found = [*zip(intensities, demands)]
+            reached = [i for i, demand in found if demand >= most]
+            first = min(reached, default=math.inf)
+            below = stood if limit is None else [i for i, d in found if d < limit]
+            below = [i for i in below if i < first]
+            if below or reached:
+                low.append(max(below, default=0.0))
                 high.append(first)
         return np.array(low), np.array(high)
 
@@ -125,18 +120,10 @@ def _usual(record):
 
 def _between(intensities, demands, at):
     """The demand of a record at an intensity; the module says how."""
-    x, y = 0.0, 0.0
-    for intensity, demand in zip(intensities, demands):
-        if intensity == at:
-            return demand
-        if intensity > at:
-            if math.isnan(demand) or math.isinf(demand):
-                return demand
-            return y + (demand - y) * (at - x) / (intensity - x)
-        if math.isinf(demand):
-            return demand
-        x, y = intensity, demand
-    return math.nan
+    above = next((d for i, d in zip(intensities, demands) if i >= at), demands[-1])
+    if math.isinf(above):
+        return above
+    return np.interp(at, [0.0, *intensities], [0.0, *demands], right=math.nan)
 
 
 def _quantile(values, share):

@@ -9,7 +9,8 @@ import contextlib
 import itertools
 
 from ..basics import Refused
-from .variables import Distribution, openturns
+from ..packages import needed
+from .variables import Distribution
 
 EDGE = 1e-12  # probabilities closer to 0 or 1 are moved here, where all quantiles are finite
 DESIGNS = ("random", "latin", "sobol", "grid", "ida")
@@ -30,7 +31,7 @@ def points(design, count, dimension, seed):
     """Points of the unit cube: a list of lists, the same for the same seed."""
     if not dimension:
         return [[] for _ in range(count)]
-    ot = openturns()
+    ot = needed("openturns")
     cube = ot.IndependentCopula(dimension)
     inside = lambda u: min(max(u, EDGE), 1 - EDGE)
     with _seeded(ot, seed):
@@ -54,7 +55,7 @@ def root(names, correlation):
     """
     if not correlation:
         return None
-    ot = openturns()
+    ot = needed("openturns")
     matrix = ot.CorrelationMatrix(len(names))
     for (one, two), value in correlation.items():
         matrix[names.index(one), names.index(two)] = value
@@ -77,12 +78,12 @@ def values(design, count, seed, vary, correlation):
     names = [n for n, v in vary.items() if isinstance(v, Distribution)]
     chosen = [n for n in vary if n not in names]
     cube = points(design, count, len(vary), seed)
-    found = {}
     numbers = [point[: len(names)] for point in cube]
     factor = root(names, correlation)
     if factor is not None:
-        normals = openturns().Normal()
+        normals = needed("openturns").Normal()
         numbers = [_tied(point, factor, normals) for point in numbers]
+    found = {}
     for i, name in enumerate(names):
         law = vary[name].law()
         found[name] = [float(law.computeQuantile(point[i])[0]) for point in numbers]

@@ -33,7 +33,7 @@ from collections import namedtuple
 import numpy as np
 from scipy import special, stats
 
-from ..basics import Refused
+from ..basics import Refused, refuse
 from .statistics import CONFIDENCE
 
 #: Fewest shared rows. With fewer, the slope, the residuals and their scatter are not known well enough for an interval.
@@ -74,7 +74,7 @@ def mean(expensive, cheap, confidence=CONFIDENCE):
     :raises Refused: if there are fewer than SHARED shared rows, or a number is not finite
     """
     y, x = _rows(expensive, cheap)
-    found = _controlled(y, x[:, None])
+    found = _controlled(y, x)
     half = _halfWidth(found, confidence)
     ends = found.value - half, found.value + half
     return _estimate("mean", found, ends, found.expensive + found.cheap)
@@ -101,7 +101,7 @@ def deviation(expensive, cheap, confidence=CONFIDENCE):
     shared = 4 * b**2 * ofX**2 * ofResiduals * n / bridge.squares
     shared += (residuals**2).var(ddof=1)
     many = (b**2 * (x - x.mean()) ** 2).var(ddof=1)
-    found = _Found(value, shared, many, n, m, n - 2)
+    found = _Found(value, shared, many, n, m)
     relative = _halfWidth(found, confidence) / value**2
     ends = (value * math.exp(sign * relative / 2) for sign in (-1, 1))
     return _estimate("standard deviation", found, ends, shared + many)
@@ -124,8 +124,7 @@ def quantile(expensive, cheap, share, method="bridge", confidence=CONFIDENCE):
         problems.append(f"a quantile of {share:g}: it must be between 0 and 1")
     if method not in ("bridge", "indicator"):
         problems.append(f"method '{method}' must be 'bridge' or 'indicator'")
-    if problems:
-        raise Refused("\n".join(problems))
+    refuse(problems)
     return _quantile(_Bridge(*_rows(expensive, cheap)), share, method, confidence)
 
 
@@ -167,13 +166,10 @@ def doubts(expensive, cheap):
     if 1 - abs(np.corrcoef(x, y)[0, 1]) < ROUNDING:
         return notes  # what remains is rounding
     moved = (x - x.mean()) / x.std()
-    design = np.column_stack([np.ones_like(x), moved, moved**2])
-    slopes, *_ = np.linalg.lstsq(design, y, rcond=None)
-    residuals = y - design @ slopes
-    free = len(y) - 3
-    scatter = residuals @ residuals / free * np.linalg.inv(design.T @ design)[2, 2]
+    (bend, *_), covariance = np.polyfit(moved, y, 2, cov=True)
+    scatter = covariance[0, 0]
     if scatter > 0:
-        p = 2 * stats.t.sf(abs(slopes[2]) / math.sqrt(scatter), free)
+        p = 2 * stats.t.sf(abs(bend) / math.sqrt(scatter), len(y) - 3)
         if p < DOUBT:
             notes.append(
                 f"the expensive numbers bend over the cheap ones (p = {p:.2g}): quantiles by the bridge are biased"
@@ -215,8 +211,7 @@ def allocate(pilot, prices, variance=None, budget=None):
     for what, value in (("variance", variance), ("budget", budget)):
         if value is not None and not (math.isfinite(value) and value > 0):
             problems.append(f"the {what} is {value:g}: it must be above 0")
-    if problems:
-        raise Refused("\n".join(problems))
+    refuse(problems)
     c, d = prices
     least = SHARED * (c + d)
     if budget is not None and budget < least:
@@ -281,8 +276,8 @@ def _time(seconds):
 
 # -- mathematics ------------------------------------------------------------------------------------------------------
 
-#: A number, and A and B of its variance. ``freedom`` are the degrees of freedom of A; B has one less than cheap rows.
-_Found = namedtuple("_Found", "value expensive cheap shared rows freedom")
+#: A number, A and B of its variance, and N and M. A has N - 2 degrees of freedom, and B one less than cheap rows.
+_Found = namedtuple("_Found", "value expensive cheap shared rows")
 
 
 def _rows(expensive, cheap):
@@ -307,31 +302,26 @@ def _rows(expensive, cheap):
             problems.append(
                 f"the {what} numbers of all shared rows are {values[0]:g}: there is nothing to learn from them"
             )
-    if problems:
-        raise Refused("\n".join(problems))
+    refuse(problems)
     return y, x
 
 
 def _controlled(g, z):
-    """The mean of g with control variates z: a :class:`_Found`.
+    """The mean of g with the control variate z: a :class:`_Found`.
 
     :param g: of the N shared rows
-    :param z: of all M rows, a column a variate
+    :param z: of all M rows
     """
     n, m = len(g), len(z)
-    near, middle = z[:n], z[:n].mean(axis=0)
-    design = near - middle
-    inverse = np.linalg.pinv(design.T @ design)
-    slopes = inverse @ design.T @ (g - g.mean())
-    away = z.mean(axis=0) - middle
-    residuals = g - g.mean() - design @ slopes
-    leverage = 1 / n + np.einsum("ij,jk,ik->i", design, inverse, design)
+    near, away = z[:n] - z[:n].mean(), z.mean() - z[:n].mean()
+    squares = near @ near or math.inf  # what is the same in all rows has no slope
+    slope = near @ (g - g.mean()) / squares
     # each residual is smaller than the error that it shows, by its leverage
-    squares = (residuals / np.maximum(1 - leverage, 1 / n)) ** 2
-    weights = 1 / n + design @ inverse @ away
-    expensive, cheap = float(weights**2 @ squares), float((z @ slopes).var(ddof=1))
-    value, freedom = float(g.mean() + away @ slopes), n - 1 - z.shape[1]
-    return _Found(value, expensive * n, cheap, n, m, freedom)
+    leverage = 1 / n + near**2 / squares
+    errors = (g - g.mean() - slope * near) / np.maximum(1 - leverage, 1 / n)
+    weights = 1 / n + near * away / squares
+    expensive, cheap = weights**2 @ errors**2 * n, (slope * z).var(ddof=1)
+    return _Found(float(g.mean() + away * slope), float(expensive), float(cheap), n, m)
 
 
 def _halfWidth(found, confidence):
@@ -340,7 +330,9 @@ def _halfWidth(found, confidence):
     variance = a + b
     if variance <= 0:
         return 0.0
-    freedom = variance**2 / (a**2 / found.freedom + b**2 / max(found.rows - 1, 1))
+    freedom = variance**2 / (
+        a**2 / (found.shared - 2) + b**2 / max(found.rows - 1, 1)
+    )
     return special.stdtrit(freedom, (1 + confidence) / 2) * math.sqrt(variance)
 
 
@@ -384,13 +376,13 @@ class _Bridge:
             ofResidual += bySlope * n * self.near * self.residuals / self.squares
         ofLine = self._below(self.sortedResiduals, q - self.line)
         expensive, cheap = ofResidual.var() * n / (n - 2), ofLine.var(ddof=1)
-        return _Found(value, expensive, cheap, n, m, n - 2)
+        return _Found(value, expensive, cheap, n, m)
 
     def controlled(self, q):
         """The probability that y is not above q, by the indicator: a :class:`_Found`."""
         indicator = (self.y <= q).astype(float)
         ofLine = self._below(self.sortedResiduals, q - self.line)
-        return _controlled(indicator, ofLine[:, None])
+        return _controlled(indicator, ofLine)
 
 
 def _quantileAt(bridge, method, share):

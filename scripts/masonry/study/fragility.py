@@ -103,7 +103,9 @@ def fit(low: Numbers, high: Numbers, confidence: float = CONFIDENCE) -> Fit:
             "no fragility: the records reach the limit at their lowest level or not at all, so the dispersion has no bound; "
             "add lower and higher levels"
         )
-    edge = _edge(likelihood, 1 / spread, mean / spread, _drop(n, confidence))
+    t = stats.t.ppf((1 + confidence) / 2, n - 1)
+    drop = n * math.log1p(t * t / (n - 1))  # the module says why
+    edge = _edge(likelihood, 1 / spread, mean / spread, drop)
     a, b = edge
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         open = a <= NOTHING / spread
@@ -135,12 +137,6 @@ def _check(low, high):
             f"no fragility: all records may reach the limit at one intensity, {' to '.join(places)}, so the dispersion cannot be "
             "found; add levels about it, or records"
         )
-
-
-def _drop(n, confidence):
-    """How far below its maximum 2 ln L may be: the module says why."""
-    t = stats.t.ppf((1 + confidence) / 2, n - 1)
-    return n * math.log1p(t * t / (n - 1))
 
 
 def _logOfDifference(low, high):

@@ -13,7 +13,7 @@ import re
 
 from ..run import batch
 from .. import folders
-from ..basics import Refused, Unwritable
+from ..basics import Refused
 from ..read.files import filesOf, readWhole
 from ..read.quantities import measures
 from ..run.lock import held
@@ -101,10 +101,9 @@ class Folder:
         """``ended``, ``above collapse``, ``running``, ``failed`` or ``missing``."""
         if self.isAboveCollapse(number):
             return "above collapse"
-        if self.chains.plan and self.isEnded(number):
-            return "ended" if shaken(batch.ended(self.row(number))) else "failed"
-        if self.isEnded(number):
-            return "ended"
+        run = batch.ended(self.row(number))
+        if run is not None:
+            return "failed" if self.chains.plan and not shaken(run) else "ended"
         if self.isHeld(number):
             return "running"
         status = self.lastJob(number).get("status", 0)
@@ -134,11 +133,8 @@ def _isJob(record):
 
 def written(path, text):
     """Write a file, whole or not at all. Raises Unwritable."""
-    try:
-        with folders.replaced(path, newline="") as f:
-            f.write(text)
-    except OSError as error:
-        raise Unwritable(f"cannot write {path}: {error.strerror}") from None
+    with folders.writing(path), folders.replaced(path, newline="") as f:
+        f.write(text)
 
 
 #: How lines begin that are no reason of a failure.
@@ -154,13 +150,6 @@ def reason(log):
     if "Traceback (most recent call last):" in log:
         lines = [line for line in lines if _ERROR.match(line)][-1:] or lines[-1:]
     return lines
-
-
-def _text(value):
-    """A number or text of study.csv: numbers with all their digits."""
-    if value is None:
-        return ""
-    return repr(float(value)) if isinstance(value, float) else str(value)
 
 
 def gather(folder, table):
@@ -179,7 +168,7 @@ def gather(folder, table):
         strength = []
         if chains.plan:
             one = chains.plan["records"][chains.record(number)]["name"]
-            strength = [one, row["scale"], _text(chains.intensity(number))]
+            strength = [one, row["scale"], chains.intensity(number)]
         with filesOf(folder.row(number)):
             numbers = measures(run)
             answers = {_answerName(a): a["value"] for a in run.get("answers", [])}
@@ -189,9 +178,9 @@ def gather(folder, table):
         why = job.get("told", "") if status == "failed" else ""
         why = UNSHAKEN if status == "failed" and run else why
         host, cost = job.get("host", run.get("host", "")), run.get("wall_clock_s")
-        times.append([batch.named(number), status, host, _text(cost), _text(job.get("seconds")), run.get("commit", ""), why])  # fmt: skip
+        times.append([batch.named(number), status, host, cost, job.get("seconds"), run.get("commit"), why])  # fmt: skip
     heads = list(dict.fromkeys(name for _, numbers in found for name in numbers))
-    lines = [[*begin, *(_text(m.get(n)) for n in heads)] for begin, m in found]
+    lines = [[*begin, *map(numbers.get, heads)] for begin, numbers in found]
     heads = ["run", *names, *strengths, "status", *heads]
     written(folder.of(CSV), _csv(heads, lines))
     head = "run status host run_seconds job_seconds commit told".split()
@@ -211,10 +200,11 @@ def _varied(name, text):
     value = batch.value(text)
     if name.startswith(batch.FIELD):
         return re.search(r"seed=(\d+)", value)[1]
-    return _text(value)
+    return value
 
 
 def _csv(head, lines):
+    """Lines as text, in which numbers have all their digits."""
     out = io.StringIO()
     csv.writer(out, lineterminator="\n").writerows([head, *lines])
     return out.getvalue()

@@ -17,8 +17,9 @@ import re
 from dataclasses import dataclass
 from typing import Any, Iterable, Sequence
 
+from .. import arguments
 from ..arguments import FilePath, isNumber, listOf, number, shown, validated
-from ..basics import GRAVITY, Refused
+from ..basics import GRAVITY, Refused, refuse
 from ..scene import accelerograms
 from ..scene.ground import UNITS, readRecord
 from ..scene.spectrum import DAMPING, LONGEST, Period, Ratio, SHORTEST
@@ -92,18 +93,6 @@ class Motion:
         """As the folder of the study has it; every digit of the samples is in it."""
         return accelerograms.written(self.values, self.every, self.name)
 
-    @property
-    def seconds(self) -> float:
-        """How long it is [s]."""
-        return (len(self.values) - 1) * self.every
-
-    def describe(self) -> dict[str, Any]:
-        return {
-            "name": self.name,
-            "sha256": hashlib.sha256(self.text.encode()).hexdigest(),
-            "intensity": self.intensity,
-        }
-
 
 class Incremental:
     """The records of a study, and how strong they are.
@@ -111,15 +100,7 @@ class Incremental:
     Parameters are those of :class:`masonry.study.plan.Study`; problems are appended to a list.
     """
 
-    def __init__(
-        self,
-        records: Any,
-        levels: Any,
-        scales: Any,
-        measure: Any,
-        unit: Any,
-        problems: list[str],
-    ) -> None:
+    def __init__(self, records, levels, scales, measure, unit, problems):
         self.files = self._files(records, problems)
         self.levels, self.scales = levels, scales
         self.measure = Measure() if measure in (None, "PGA") else measure
@@ -153,11 +134,11 @@ class Incremental:
         if not isinstance(records, (list, tuple)) or not records:
             problems.append("records: must be a list of files")
             return []
-        odd = [r for r in records if not isinstance(r, (str, os.PathLike)) or not os.fspath(r)]  # fmt: skip
-        if odd:
-            problems.append(f"records: {shown(odd[0])} must be the name of a file")
+        try:
+            return [arguments.path(record) for record in records]
+        except ValueError as error:
+            problems.append(f"records: {error}")
             return []
-        return [os.fspath(r) for r in records]
 
     @property
     def steps(self) -> int:
@@ -179,8 +160,7 @@ class Incremental:
                     problems.append(str(refused))
             if len(motions) > MOST_RECORDS:
                 problems.append(f"records: {len(motions)}, there must be at most {MOST_RECORDS}")  # fmt: skip
-            if problems:
-                raise Refused("study: " + "\n  ".join(problems))
+            refuse(problems, "study: ", "\n  ")
             self._motions = motions
         return self._motions
 
@@ -222,8 +202,12 @@ class Incremental:
 
     def describe(self) -> dict[str, Any]:
         """As study.json has it. The records must have been read."""
+        digest = lambda text: hashlib.sha256(text.encode()).hexdigest()
         return {
-            "records": [motion.describe() for motion in self._motions or []],
+            "records": [
+                {"name": m.name, "sha256": digest(m.text), "intensity": m.intensity}
+                for m in self._motions
+            ],
             "measure": self.measure.name,
             "levels": self.levels,
             "scales": self.scales,
@@ -232,9 +216,8 @@ class Incremental:
     def doubts(self) -> list[str]:
         """Sentences on records that drift."""
         found = []
-        for motion in self._motions or []:
-            doubt = accelerograms.drift(motion.values, motion.every).sentence()
-            if doubt:
+        for motion in self._motions:
+            if doubt := accelerograms.drift(motion.values, motion.every).sentence():
                 found.append(f"note: the record {motion.name} drifts: {doubt}")
         return found
 
@@ -246,12 +229,8 @@ class Chains:
     """
 
     def __init__(self, study: dict[str, Any]) -> None:
-        plan = study.get("ida")
-        self.plan = plan
-        self.runs = study["runs"]
-        self.each = 1
-        if plan:
-            self.each = len(plan["levels"] or plan["scales"])
+        self.plan, self.runs = study.get("ida"), study["runs"]
+        self.each = len(self.plan["levels"] or self.plan["scales"]) if self.plan else 1
 
     def record(self, number: int) -> int:
         """The number of the record of a row, from 0."""
@@ -267,10 +246,8 @@ class Chains:
 
     def lowest(self, numbers: Iterable[int]) -> set[int]:
         """The lowest of some rows, of every record."""
-        found: dict[int, int] = {}
-        for number in sorted(numbers):
-            found.setdefault(self.record(number), number)
-        return set(found.values())
+        lowest = {self.record(n): n for n in sorted(numbers, reverse=True)}
+        return set(lowest.values())
 
     def intensity(self, number: int) -> float:
         """The measure of a row [g]."""
@@ -301,9 +278,6 @@ def shaken(run: dict[str, Any]) -> bool:
     return isinstance(stages, list) and any(isinstance(s, dict) and s.get("stage") == "shake" for s in stages)  # fmt: skip
 
 
-def fell(run: dict[str, Any] | None) -> bool:
-    """Whether a structure fell when it was shaken, or after it.
-
-    :param run: run.json of a row that has ended, or None
-    """
-    return bool(run and run.get("collapsed") and shaken(run))
+def fell(run: dict[str, Any]) -> bool:
+    """Whether a structure fell when it was shaken, or after it."""
+    return bool(run.get("collapsed") and shaken(run))

@@ -36,7 +36,7 @@ class Local:
         self._tries = collections.Counter()
 
     def run(self):
-        """Run them. Returns why rows failed, by their numbers. Raises Interrupted after Ctrl-C and SIGTERM."""
+        """Run them. Raises Interrupted after Ctrl-C and SIGTERM."""
         try:
             while self.open:
                 # the program of a row goes on with the higher levels of its record
@@ -48,7 +48,6 @@ class Local:
                 background.carryOut(mine, self._begin, self._ended, self.jobs, self._show)  # fmt: skip
         except KeyboardInterrupt:
             raise Interrupted() from None
-        return self.failed
 
     def _begin(self, number):
         """Start the program of a row. Raises Unwritable if the disk is nearly full."""

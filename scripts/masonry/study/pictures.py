@@ -163,7 +163,7 @@ def histogram(path, values, label, modes=None):
         axis = figure.subplots()
         axis.hist(
             [values[words == word] for word in named],
-            bins=np.linspace(*_ends(values), _bins(values) + 1),
+            bins=np.histogram_bin_edges(values, _bins(values)),
             density=True,
             stacked=True,
             color=[SHARES[n % len(SHARES)] for n in range(len(named))],
@@ -331,12 +331,6 @@ def _increasing(x, y):
 def _bins(values):
     """How many bins a histogram has: by the rule of Freedman and Diaconis, between 5 and 40."""
     return int(np.clip(len(np.histogram_bin_edges(values, "fd")) - 1, 5, 40))
-
-
-def _ends(values):
-    """Where the bins of a histogram begin and end; values that are all the same stand in the middle."""
-    low, high = values.min(), values.max()
-    return (low, high) if high > low else (low - 0.5, high + 0.5)
 
 
 def _shown(name):

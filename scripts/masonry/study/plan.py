@@ -14,7 +14,7 @@ import numpy as np
 
 from ..arguments import FilePath, isA, oneOf, validated, whole
 from ..run import batch
-from ..basics import Refused
+from ..basics import Refused, refuse
 from . import designs, incremental
 from .variables import Choice, Distribution, Field, choice
 
@@ -76,9 +76,7 @@ class Study:
         self.ida = None
         own = dict(records=records, levels=levels, scales=scales, measure=measure, unit=unit)  # fmt: skip
         if design == "ida":
-            self.ida = incremental.Incremental(
-                records, levels, scales, measure, unit, problems
-            )
+            self.ida = incremental.Incremental(**own, problems=problems)
             for name in {"record", "scale"} & {*self.options, *self.vary}:
                 problems.append(f"{name}: it is what an incremental analysis varies")
         else:
@@ -88,8 +86,7 @@ class Study:
                 problems.append("vary: nothing varies")
         self._count(problems)
         self._correlate(dict(correlation or {}), problems)
-        if problems:
-            raise Refused("study: " + "\n  ".join(problems))
+        refuse(problems, "study: ", "\n  ")
 
     def _take(self, key, what, problems):
         names = (key,) if isinstance(key, str) else key
@@ -187,7 +184,6 @@ class Study:
 
         The records of an incremental analysis must have been read: :meth:`read`.
         """
-        plan = {"ida": self.ida.describe()} if self.ida else {}
         return {
             "scene": self.scene,
             "options": self.options,
@@ -196,7 +192,7 @@ class Study:
             "design": self.design,
             "vary": {name: what.describe() for name, what in self.vary.items()},
             "correlation": [[*pair, v] for pair, v in self.correlation.items()],
-            **plan,
+            **({"ida": self.ida.describe()} if self.ida else {}),
         }
 
     def read(self, near: FilePath) -> None:
@@ -245,11 +241,10 @@ class Study:
     def table(self) -> str:
         """The table of the rows, as text: see :mod:`masonry.run.batch`."""
         rows = self.rows()
-        heads = ["description", *rows[0]]
-        lines = [" ".join(heads)]
+        lines = [["description", *rows[0]]]
         for number, row in enumerate(rows, 1):
-            lines.append(" ".join([batch.named(number), *map(repr, row.values())]))
-        return "\n".join(lines) + "\n"
+            lines.append([batch.named(number), *map(repr, row.values())])
+        return "".join(" ".join(words) + "\n" for words in lines)
 
     def script(self, near: FilePath) -> tuple[str, str]:
         """Path of the scene's file, and the fingerprint of its contents. Raises Refused.

@@ -7,7 +7,7 @@ import os
 import numpy as np
 
 from ..run import batch, presets
-from ..basics import Refused
+from ..basics import Refused, refuse
 from ..read.files import readCurve, readText
 from .gathering import CSV, TIMES, Folder
 
@@ -132,8 +132,7 @@ def paired(expensive, cheap, measure, other=None):
             for study, own in keys.items()
             if len(set(own)) < len(own)
         ]
-    if problems:
-        raise Refused("\n".join(problems))
+    refuse(problems)
     y, x = expensive.numbers(measure), cheap.numbers(other or measure)
     place = {key: row for row, key in enumerate(keys[cheap]) if np.isfinite(x[row])}
     shared = [n for n, key in enumerate(keys[expensive]) if key in place and np.isfinite(y[n])]  # fmt: skip

@@ -169,13 +169,6 @@ def _fingerprint(path, what=""):
         raise Refused(f"cannot read {what}{path}: {error.strerror}") from None
 
 
-def requeue(runner):
-    """Ask Slurm to run this task again, if it is one that ran out of time."""
-    task = os.environ.get("SLURM_JOB_ID")
-    if runner.stopped == signal.SIGUSR1 and task:
-        subprocess.run(["scontrol", "requeue", task])
-
-
 def main(words):
     try:
         return _rows(words)
@@ -211,7 +204,9 @@ def _rows(words):
             say(f"row {batch.named(number)}: {why}", sys.stderr)
         worst = max(worst, status if status >= 0 else 128 - status)
         if runner.stopped:
-            requeue(runner)
+            task = os.environ.get("SLURM_JOB_ID")
+            if runner.stopped == signal.SIGUSR1 and task:  # it ran out of time
+                subprocess.run(["scontrol", "requeue", task])
             return 130
     return worst
 

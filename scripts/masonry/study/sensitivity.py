@@ -11,7 +11,7 @@ from collections import namedtuple
 import numpy as np
 from scipy import special, stats
 
-from ..basics import Refused
+from ..basics import Refused, refuse
 from ..packages import needed
 from .statistics import CONFIDENCE, Interval
 
@@ -104,8 +104,7 @@ def sobol(inputs, output, seed=1, confidence=CONFIDENCE):
             )
     if np.ptp(y) == 0:
         problems.append("Sobol indices: all results are the same")
-    if problems:
-        raise Refused("\n".join(problems))
+    refuse(problems)
     ranks = lambda rows: (stats.rankdata(x[rows], axis=0) - 0.5) / n
     u = ranks(np.arange(n))
     y = (y - y.mean()) / y.std()
@@ -194,6 +193,5 @@ def _numbers(inputs, output):
         problems.append("a result is not finite")
     if not kept and not problems:
         problems.append("no property varies")
-    if problems:
-        raise Refused("\n".join(problems))
+    refuse(problems)
     return kept, np.column_stack(list(kept.values())), y

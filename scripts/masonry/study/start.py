@@ -8,7 +8,7 @@ import subprocess
 import tempfile
 
 from ..run import batch
-from ..basics import Refused, Unwritable, say
+from ..basics import Refused, Unwritable, refuse, say
 from ..folders import fromJson
 from ..read.files import readWhole
 from .continuing import checkRows, compareTable, rowsOf
@@ -53,8 +53,7 @@ def begin(study, path, near):
         _checkEmpty(folder, study)
         problems, needed = _look(study, script, table)
         problems += _checkSpace(folder, study.runs * needed)
-        if problems:
-            raise Refused("study: " + "\n  ".join(problems))
+        refuse(problems, "study: ", "\n  ")
         try:
             os.makedirs(folder.of(batch.ROWS), exist_ok=True)
         except OSError as error:

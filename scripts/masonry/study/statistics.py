@@ -11,7 +11,7 @@ from collections import Counter, namedtuple
 import numpy as np
 from scipy import stats
 
-from ..basics import Refused
+from ..basics import Refused, refuse
 
 CONFIDENCE = 0.95  # of all intervals, unless another is asked for
 
@@ -158,6 +158,5 @@ def _numbers(values, least, what):
         problems.append(
             f"{what}: rows {', '.join(str(i + 1) for i in strange[:10])} have no finite number"
         )
-    if problems:
-        raise Refused("\n".join(problems))
+    refuse(problems)
     return values

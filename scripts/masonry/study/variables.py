@@ -20,11 +20,6 @@ LEAST_COV = 1e-6  # coefficient of variation below which nothing varies [-]
 NEVER = 1e-9
 
 
-def openturns() -> Any:
-    """The module. Raises :class:`masonry.packages.Missing` where it is missing."""
-    return needed("openturns")
-
-
 Finite = Annotated[float, number()]
 
 
@@ -41,7 +36,7 @@ class Distribution:
 
     def law(self) -> Any:
         """The distribution of OpenTURNS."""
-        ot, p = openturns(), dict(self.parameters)
+        ot, p = needed("openturns"), dict(self.parameters)
         if self.kind == "uniform":
             return ot.Uniform(p["low"], p["high"])
         mean, deviation = p["mean"], p["mean"] * p["cov"]
@@ -72,7 +67,7 @@ class Distribution:
 
 def _interval(low, high):
     """The numbers between two ends, as OpenTURNS has them; None is no end."""
-    ot = openturns()
+    ot = needed("openturns")
     most = ot.SpecFunc.MaxScalar  # it compares the numbers of open ends, too
     ends = [-most if low is None else low], [most if high is None else high]
     return ot.Interval(*ends, [low is not None], [high is not None])
