@@ -198,8 +198,8 @@ def _describe(run, scene):
     )
     if run.results.rows:
         energy = scene.model.energy
-        entries.update(energy_balance_error=energy.largestError)
-        entries.update(energy_made=energy.largestMade)
+        entries["energy_balance_error"] = energy.largestError
+        entries["energy_made"] = energy.largestMade
         scene.outcome.summarise()
     if run.args.blocks == "rigid" and not scene.description.functors:
         entries["refined_joints"] = scene.model.refinedJoints()

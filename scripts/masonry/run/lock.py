@@ -99,9 +99,7 @@ class Lock:
         record, who = _object(text), "another run"
         if record:
             known = {"scene": "?", "host": "?", "process": "?", **record}
-            who = "a run of {scene} on host {host}, process {process},".format_map(
-                known
-            )
+            who = "a run of {scene} on host {host}, process {process},".format(**known)
         raise Held(
             f"{who} is writing to {os.path.dirname(self.path)}: wait for its end, or name another folder with --out; "
             f"if it is gone, remove {LOCK} there"

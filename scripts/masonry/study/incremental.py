@@ -100,7 +100,15 @@ class Incremental:
     Parameters are those of :class:`masonry.study.plan.Study`; problems are appended to a list.
     """
 
-    def __init__(self, records, levels, scales, measure, unit, problems):
+    def __init__(
+        self,
+        records: Any,
+        levels: Any,
+        scales: Any,
+        measure: Any,
+        unit: Any,
+        problems: list[str],
+    ) -> None:
         self.files = self._files(records, problems)
         self.levels, self.scales = levels, scales
         self.measure = Measure() if measure in (None, "PGA") else measure
