@@ -28,7 +28,7 @@ from typing import cast, get_args, get_origin, get_type_hints
 
 import numpy as np
 
-from .basics import Refused
+from .basics import Refused, refuse
 
 #: What a user gives, as type hints name it: some numbers, some axes.
 Numbers = Union[Sequence[float], np.ndarray[Any, Any]]
@@ -445,6 +445,5 @@ def _checked(word, signature, kinds, args, settings):
                     bound.arguments[one] = kinds[one](value, first)
             except ValueError as error:
                 problems.append(f"{word}: {one} {error}")
-    if problems:
-        raise Refused("\n".join(problems))
+    refuse(problems)
     return bound.args, bound.kwargs

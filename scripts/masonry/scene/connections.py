@@ -10,7 +10,7 @@ import numpy as np
 from ..arguments import Direction, Name, Numbers, number, oneOf, validated
 from ..arguments import vector as numbers
 from ..assembly.blocks import vector
-from ..basics import Refused
+from ..basics import Refused, refuse
 from ..bricks import Block, Bricks
 from .supports import Point
 from .targets import Part, Target, brick
@@ -96,8 +96,7 @@ def tie(
     if not made.length > 0:
         raise Refused(f"tie: its ends are both at {ends[0].point} m")
     problems = made.problems()
-    if problems:
-        raise Refused("\n".join(f"tie: {one}" for one in problems))
+    refuse([f"tie: {one}" for one in problems])
     _checkName(description, made.name, "tie")
     description.connectors.append(made)
     return made
@@ -152,8 +151,7 @@ def spring(
         problems.append("spring: the scene is in the x-z plane: stiffness along x and z, and rotation about y, are what it can have; Scene(..., plane=False) is in space")  # fmt: skip
     if _samePlace(first, second):
         problems.append(f"spring: its ends, {first.words} and {second.words}, are on one brick")  # fmt: skip
-    if problems:
-        raise Refused("\n".join(problems))
+    refuse(problems)
     _checkName(description, name, "spring")
     made = Spring(name, (first, second), tuple(stiffness), tuple(rotation))
     description.connectors.append(made)

@@ -6,7 +6,7 @@ import difflib
 import os
 
 from ..arguments import flag, isNumber, oneOf, plain, shown
-from ..basics import Refused, say
+from ..basics import Refused, refuse, say
 from ..run.options import OPTIONS, asOption, those
 from ..run.presets import PRESETS
 from .parsing import Options
@@ -46,8 +46,7 @@ def checked(parser, name, options):
             problems.append(f"{option}: {error}")
     if options.get("until") is not None and options.get("history") is not None:
         problems.append("until and history: give one of them")
-    if problems:
-        raise Refused("\n".join(f"scene {name}: {one}" for one in problems))
+    refuse([f"scene {name}: {one}" for one in problems])
     return found
 
 

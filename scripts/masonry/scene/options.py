@@ -11,7 +11,7 @@ from .._masonry import commit, version
 from ..arguments import oneOf, shown
 from ..assembly.engines import LAWS
 from ..background import reportRefusal
-from ..basics import Interrupted, Refused, say
+from ..basics import Interrupted, Refused, refuse, say
 from ..run import accuracy, batch, options
 from ..run.options import USUAL, reading
 from ..run.presets import BOUND, PRESETS
@@ -139,8 +139,7 @@ def check(args, masonry, more=(), plane=False, connectors=None):
         except ValueError as error:
             problems.append(f"--field {text}: {error}")
     problems += masonry.missing()
-    if problems:
-        raise Refused("\n".join(problems))
+    refuse(problems)
 
 
 def askAccuracy(name, args):

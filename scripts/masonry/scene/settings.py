@@ -6,7 +6,7 @@ from __future__ import annotations
 from typing import Any, Callable, NamedTuple
 
 from ..arguments import nearest, number
-from ..basics import Refused
+from ..basics import refuse
 
 
 #: A function of x, y and z [m] that gives a factor [-].
@@ -192,8 +192,7 @@ def applySettings(joints, settings):
         except ValueError as error:
             of = "--set " if isinstance(joint, Settable) else ""
             problems += [of + line for line in str(error).splitlines()]
-    if problems:
-        raise Refused("\n".join(problems))
+    refuse(problems)
 
 
 def _value(text, example):

@@ -8,7 +8,7 @@ from typing import Annotated, Any
 from ..arguments import Axes, Freedoms, Name, Numbers, axes, byName, number, oneOf, shown, validated  # fmt: skip
 from ..arguments import vector as numbers
 from ..assembly.blocks import vector
-from ..basics import Refused
+from ..basics import refuse
 from .targets import BrickAt, Part, Target
 from .ties import MOST, End, Spring
 from .words import describes
@@ -77,8 +77,7 @@ def platen(
         problems.append(
             f"platen: upTo {upTo} m must be {side} the bricks, which end at {level:g} m"
         )
-    if problems:
-        raise Refused("\n".join(problems))
+    refuse(problems)
     low, high = _sideAt(description, level, where, part)
     outer = level - height if bottom else level + height
     outer = outer if upTo is None else upTo

@@ -9,7 +9,7 @@ and begins again. What a row has found cannot be compared with anything: whoever
 
 from itertools import zip_longest
 
-from ..basics import Refused, firstOf
+from ..basics import Refused, firstOf, refuse
 from ..read.files import readText
 from ..run import batch, presets
 from .gathering import TABLE
@@ -62,10 +62,7 @@ def rowsOf(folder):
         for number, row in enumerate(rows, 1)
         if row.get("description", "") != batch.named(number)
     ]
-    if problems:
-        raise Refused(
-            f"{path} is not the table of its study:\n  " + "\n  ".join(problems[:SHOWN])
-        )
+    refuse(problems[:SHOWN], f"{path} is not the table of its study:\n  ", "\n  ")
     return rows
 
 

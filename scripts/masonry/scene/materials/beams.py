@@ -9,7 +9,7 @@ from typing import Annotated, Any
 from yade.wrapper import MasonryJoint, MasonryMat
 
 from ...arguments import number, shown, validated
-from ...basics import Refused
+from ...basics import refuse
 from ...bricks import Bricks
 from ..settings import Property, Settable
 from .assumptions import state
@@ -110,8 +110,7 @@ def _newKind(masonry, word, pieces):
         problems.append(f"{word}: this masonry has {name!r} already; give the beam or floor another name")  # fmt: skip
     if len(pieces) < 2:
         problems.append(f"{word}: {name} is one piece, which is rigid: bricks.Beam(..., pieces=8) bends")  # fmt: skip
-    if problems:
-        raise Refused("\n".join(problems))
+    refuse(problems)
     return name, math.dist(pieces[0].middle, pieces[1].middle)
 
 

@@ -10,7 +10,7 @@ from typing import Annotated
 from yade.wrapper import MasonryJoint, MasonryMat
 
 from ...arguments import number, validated
-from ...basics import Refused, say
+from ...basics import refuse, say
 from ...bricks.blocks import Sides
 from .assumptions import state
 from .kinds import Masonry
@@ -251,8 +251,7 @@ def masonry(
         values.fc, values.ofStrength = _compressiveStrength(values)
         given["fc"] = values.fc
     problems += _problems(given)
-    if problems:
-        raise Refused("\n".join(f"materials.masonry: {one}" for one in problems))
+    refuse([f"materials.masonry: {one}" for one in problems])
     joints = {}
     for kind in (*_mortarJoints(values), _crackJoint(values)):
         try:
@@ -264,8 +263,7 @@ def masonry(
                 or one
                 for one in str(error).splitlines()
             ]
-    if problems:
-        raise Refused("\n".join(f"materials.masonry: {one}" for one in problems))
+    refuse([f"materials.masonry: {one}" for one in problems])
     if unit_ft is None:
         why = "unit_ft was not given: bricks do not crack"
         state(joints["crack"], **{**joints["crack"].assumed(), "elastic": why})
