@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What tests of scenes in YADE begin with, for ``from hosted import *``: names that nearly all of them use, and small helpers."""
 
+import errno
+
 from usual import *
 from yade.wrapper import *  # first: its Scene is not ours
 from masonry import *
@@ -10,9 +12,17 @@ from masonry.bricks import boxCorners as corners
 from masonry.read.files import readCurve, readRun  # noqa: F401
 from yade import O, Quaternion, Vector3
 
+
+@pytest.fixture(autouse=True)
+def emptyScene(scene):
+    """Every test of a file that begins with hosted.py has an empty scene."""
+
+
 G = 9.81  # [m/s²]
 #: The brick of the calcium-silicate walls, with its mortar [m].
 UNIT = (0.22, 0.102, 0.081)
+#: Both ways to run the joints.
+FUNCTORS = pytest.mark.parametrize("functors", [False, True], ids=["loop", "functors"])
 #: Turns a scene out of its plane.
 IN_SPACE = Quaternion(Vector3(1, 2, 0.5).normalized(), 0.7)
 
@@ -20,6 +30,14 @@ IN_SPACE = Quaternion(Vector3(1, 2, 0.5).normalized(), 0.7)
 def unitMaterial(**other):
     """The material of calcium-silicate bricks."""
     return MasonryMat(**{**dict(density=1800, young=4.8e9, poisson=0.16), **other})
+
+
+def dry(friction=0.7, **other):
+    """A joint without bond that cannot crush, if nothing else is said."""
+    bond = dict(tensileStrength=0, cohesion=0, residualCohesion=0, cap=False)
+    rubs = dict(friction=friction, residualFriction=friction)
+    stiff = dict(normalStiffness=1e10, shearStiffness=5e9)
+    return MasonryJoint(**{"name": "dry", **bond, **rubs, **stiff, **other})
 
 
 def box(low=(0, 0, 0), size=UNIT, turn=Quaternion.Identity):
@@ -101,3 +119,15 @@ def ofKind(kind):
 
 def balance():
     return ofKind(MasonryEnergy).balance()
+
+
+def bits():
+    """All numbers of the bodies and of the balance, as bytes."""
+    motion = lambda s: (*s.pos, *s.ori, *s.vel, *s.angVel)
+    values = [value for b in O.bodies for value in motion(b.state)]
+    return np.array([*values, *balance().values()]).tobytes()
+
+
+def noSpace(file):
+    """What fails as on a full disk."""
+    raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))

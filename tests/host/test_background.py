@@ -1,11 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Work that a copy of the process does beside a run."""
 
-import os
-import signal
-import time
-
-import pytest
+from usual import *
 from masonry import background
 from masonry.background import Failed, Task
 from masonry.basics import Unwritable

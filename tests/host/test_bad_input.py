@@ -4,13 +4,9 @@
 A case is what the scene is, what is done to it, and what the message must say.
 """
 
-import contextlib
 import io
-import json
-import os
 import resource
 import runpy
-import sys
 
 from hosted import *
 from hosted import bricks as parts, unitMaterial as mat
@@ -407,7 +403,7 @@ def snapshot():
     ],
 )
 def test_bad_input_is_refused_and_nothing_is_lost(
-    scene, given, act, message, tmp_path, monkeypatch
+    given, act, message, tmp_path, monkeypatch
 ):
     monkeypatch.chdir(tmp_path)
     given()
@@ -485,9 +481,7 @@ HINTS = [
 
 
 @pytest.mark.parametrize("act, hints", HINTS)
-def test_what_may_be_a_slip_is_reported(
-    scene, act, hints, tmp_path, monkeypatch, capsys
-):
+def test_what_may_be_a_slip_is_reported(act, hints, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     try:
         act()
@@ -499,12 +493,12 @@ def test_what_may_be_a_slip_is_reported(
         assert any(hint in line for line in warnings), said
 
 
-def test_gaps_that_are_meant_are_left(scene):
+def test_gaps_that_are_meant_are_left():
     laid((0, 0, 0), (0, 0, 0.081), (0.222, 0, 0))
     assert len(connect(allowGaps=True)) == 1
 
 
-def test_a_tolerance_of_the_users_makes_the_joint(scene):
+def test_a_tolerance_of_the_users_makes_the_joint():
     laid((0, 0, 0), (0, 0, 0.082))
     assert len(connect(tolerance=0.005)) == 1
 

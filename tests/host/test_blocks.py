@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Blocks of our own beside YADE's Polyhedra: the same numbers, the same runs, saved and loaded."""
 
-import random
-
 import yade.wrapper
 from hosted import *
 
@@ -123,7 +121,7 @@ def test_points_without_volume_are_refused():
             MasonryBlock.around(points)
 
 
-def test_a_body_with_a_block_without_corners_is_refused(scene):
+def test_a_body_with_a_block_without_corners_is_refused():
     pile()
     O.bodies[1].shape = MasonryBlock()
     engines([MasonryJoint()])
@@ -171,7 +169,7 @@ def state():
 
 @polyhedra
 @pytest.mark.parametrize("how", [{}, {"functors": True}, {"zones": True}])
-def test_runs_of_both_kinds_of_body_are_equal_to_the_bit(scene, how):
+def test_runs_of_both_kinds_of_body_are_equal_to_the_bit(how):
     own = stack([addBlock] * 3, **how)
     assert any(d != 0 for joint in own[2] for point in joint[3] for d in point)
     assert stack([addPolyhedra] * 3, **how) == own
@@ -179,7 +177,7 @@ def test_runs_of_both_kinds_of_body_are_equal_to_the_bit(scene, how):
 
 
 @polyhedra
-def test_a_joint_may_lie_between_both_kinds_of_body(scene):
+def test_a_joint_may_lie_between_both_kinds_of_body():
     """YADE swaps the bodies of a joint whose functor names the other kind first, which turns signs and rounding."""
     own = stack([addBlock] * 3, steps=50)
     mixed = stack([addPolyhedra, addBlock, addPolyhedra], steps=50)
@@ -190,7 +188,7 @@ def test_a_joint_may_lie_between_both_kinds_of_body(scene):
 
 
 @polyhedra
-def test_a_scene_with_the_functor_for_polyhedra_goes_on_working(scene):
+def test_a_scene_with_the_functor_for_polyhedra_goes_on_working():
     """Engines as users wrote them when there was no MasonryBlock."""
     material = MasonryMat(density=1800)
     for course in range(2):
@@ -216,7 +214,7 @@ def test_a_scene_with_the_functor_for_polyhedra_goes_on_working(scene):
 
 
 @pytest.mark.parametrize("extension", [".xml", ".yade.gz"])
-def test_a_saved_block_is_the_same_block(scene, tmp_path, extension):
+def test_a_saved_block_is_the_same_block(tmp_path, extension):
     stack([addBlock] * 3)
     path = str(tmp_path / ("run" + extension))
     looks = lambda s: (list(s.v), s.triangles, s.volume, s.inertia, s.color)

@@ -4,12 +4,10 @@
 import copy
 import glob
 import importlib.util
-import os
 
-import pytest
 import yade.config
 import yade.wrapper
-from conftest import ROOT
+from usual import *
 
 PATH = os.path.join(ROOT, "scripts", "check_host.py")
 spec = importlib.util.spec_from_file_location("check_host", PATH)

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """A scene's state on disk and back: to the last bit, whole or not at all, and never into another scene."""
 
-import errno
-import os
 import struct
 
 from hosted import *
@@ -214,10 +212,6 @@ def test_a_disk_that_is_full_leaves_the_old_checkpoint(saved, monkeypatch):
     assert open(path, "rb").read() == data and not os.path.lexists(path + ".new")
     saveCheckpoint(path)
     assert readCheckpoint(path) is None
-
-
-def noSpace(file):
-    raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
 
 @pytest.mark.parametrize("end", ["", ".new"])

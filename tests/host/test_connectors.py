@@ -30,7 +30,7 @@ def pair(connectors):
 
 
 @pytest.mark.parametrize("case", BARS)
-def test_the_force_of_a_bar(scene, case):
+def test_the_force_of_a_bar(case):
     strength, breaking, compression, rest, longer, force = BARS[case]
     middles = [Vector3(x + UNIT[0] / 2, UNIT[1] / 2, UNIT[2] / 2) for x in (0, 1)]
     ties = MasonryTies(bodies1=[0], bodies2=[1], points1=middles[:1], points2=middles[1:], stiffness=[STIFF], strength=[strength], breaking=[breaking], compression=[compression], rest=[rest])  # fmt: skip
@@ -42,7 +42,7 @@ def test_the_force_of_a_bar(scene, case):
         assert O.forces.f(body, True)[0] == pytest.approx(sign * force, rel=1e-9, abs=1e-6)  # fmt: skip
 
 
-def test_springs_between_two_bricks_turn_both(scene):
+def test_springs_between_two_bricks_turn_both():
     """At the middle between both, the second turned by 1 mrad about y: its point moves up, and the spring turns it back."""
     kz, rotational, turn = 2e6, 3e5, 1e-3
     point = Vector3(0.5 + UNIT[0] / 2, UNIT[1] / 2, UNIT[2] / 2)

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What comes out of a run: its cracks, the first and the widest, its collapse, and the rows of a figure."""
 
-from types import SimpleNamespace
-
 from hosted import *
 from masonry.read import cracks, curves, quantities
 from masonry.read.run_data import RunData
@@ -27,7 +25,7 @@ def pile(folder, masonry, push, direction=(1, 0, 0), press=1e5, rate=20, foot=0)
 
 
 def test_the_first_crack_is_the_first_row_with_a_loss_and_its_drift_is_over_the_height(
-    tmp_path, scene
+    tmp_path,
 ):
     run, curve, joints = pile(tmp_path, materials.calciumSilicate(), 1.0)
     tension, shear = (curve[f"dissipated_{m}_J"] for m in ("tension", "shear"))
@@ -49,7 +47,7 @@ def test_the_first_crack_is_the_first_row_with_a_loss_and_its_drift_is_over_the_
     assert run["largest_crack_at_m"][0] == pytest.approx(0)
 
 
-def test_the_drift_is_over_the_height_above_the_foot_wherever_that_is(tmp_path, scene):
+def test_the_drift_is_over_the_height_above_the_foot_wherever_that_is(tmp_path):
     runs = []
     for foot in (0, 3):
         O.reset()
@@ -61,7 +59,7 @@ def test_the_drift_is_over_the_height_above_the_foot_wherever_that_is(tmp_path, 
     assert drifts[1] == pytest.approx(drifts[0], rel=0.05)  # a row or two
 
 
-def test_a_push_that_cracks_nothing_has_no_first_crack(tmp_path, scene):
+def test_a_push_that_cracks_nothing_has_no_first_crack(tmp_path):
     masonry = materials.calciumSilicate()
     run, _, _ = pile(tmp_path, masonry, 0.01, press=1e6)
     for entry in ("displacement_at_first_crack_mm", "drift_at_first_crack_mrad"):
@@ -70,7 +68,7 @@ def test_a_push_that_cracks_nothing_has_no_first_crack(tmp_path, scene):
     assert run["largest_crack_at_m"] is run["largest_crack_bodies"] is None
 
 
-def test_a_push_upwards_has_no_drift(tmp_path, scene):
+def test_a_push_upwards_has_no_drift(tmp_path):
     up = dict(direction=(0, 0, 1), press=1e3)
     run, _, _ = pile(tmp_path, materials.calciumSilicate(), 0.5, **up)
     assert run["displacement_at_first_crack_mm"] > 0
@@ -78,7 +76,7 @@ def test_a_push_upwards_has_no_drift(tmp_path, scene):
     assert run["largest_crack_mm"] == pytest.approx(0.5, abs=0.05)
 
 
-def test_a_push_that_ends_in_a_collapse_says_where(tmp_path, scene):
+def test_a_push_that_ends_in_a_collapse_says_where(tmp_path):
     masonry = materials.dry(normalStiffness=1e11)
     run, curve, _ = pile(tmp_path, masonry, 500, press=1e3, rate=500)
     assert run["collapsed"]

@@ -30,14 +30,14 @@ def sway(load, steps=3000, turns=4):
         O.run(steps, True)
 
 
-def test_cycles_take_energy_and_the_balance_closes(scene):
+def test_cycles_take_energy_and_the_balance_closes():
     load = stack(MasonryJoint(name="bed", **CYCLIC))
     sway(load)
     assert balance()["dissipated_shear"] > 0
     assert abs(balance()["error"]) < 1e-6
 
 
-def test_a_scene_that_was_saved_goes_on(scene, tmp_path):
+def test_a_scene_that_was_saved_goes_on(tmp_path):
     load = stack(MasonryJoint(name="bed", **CYCLIC))
     sway(load, 1000, 3)
     file = str(tmp_path / "scene.yade.gz")
@@ -49,7 +49,7 @@ def test_a_scene_that_was_saved_goes_on(scene, tmp_path):
     assert all(i.phys.joint.law == "cyclic" for i in O.interactions.all())
 
 
-def test_an_elastic_joint_may_stand_beside_cyclic_ones_under_the_functors(scene):
+def test_an_elastic_joint_may_stand_beside_cyclic_ones_under_the_functors():
     joints = [
         MasonryJoint(name="bed", direction=(0, 0, 1), **CYCLIC),
         MasonryJoint(name="other", elastic=True),
@@ -59,14 +59,14 @@ def test_an_elastic_joint_may_stand_beside_cyclic_ones_under_the_functors(scene)
     assert any(np.any(part) for joint in states() for part in joint)
 
 
-def test_a_functor_of_another_law_is_reported(scene):
+def test_a_functor_of_another_law_is_reported():
     stack(MasonryJoint(name="bed"), functors=True)
     next(iter(O.interactions.all())).phys.joint.law = "cyclic"
     with pytest.raises(Exception, match="follows another law.*CyclicSoftening"):
         O.run(5, True)
 
 
-def test_a_joint_can_change_its_law_between_steps(scene):
+def test_a_joint_can_change_its_law_between_steps():
     load = stack(MasonryJoint(name="bed"))
     sway(load, 500, 2)
     damage = lambda: np.array([i.phys.damage for i in O.interactions])

@@ -25,7 +25,7 @@ def bar(length, cells, damping, section=0.05, poisson=0.0):
 
 
 @pytest.mark.slow
-def test_a_bar_s_wave_speed_converges_to_theory_at_second_order(scene):
+def test_a_bar_s_wave_speed_converges_to_theory_at_second_order():
     pairs = [frequency(cells) for cells in (8, 16)]
     errors = [abs(measured / theory - 1) for theory, measured in pairs]
     assert errors[1] < 0.01
@@ -33,7 +33,7 @@ def test_a_bar_s_wave_speed_converges_to_theory_at_second_order(scene):
 
 
 @pytest.mark.slow
-def test_a_cantilever_s_deflection_converges_to_theory(scene):
+def test_a_cantilever_s_deflection_converges_to_theory():
     # Zones of constant strain are too stiff in bending. The relative error falls with the square of their size.
     pairs = [deflection(cells) for cells in (1, 2)]
     coarse, fine = (theory / measured - 1 for theory, measured in pairs)
@@ -42,7 +42,7 @@ def test_a_cantilever_s_deflection_converges_to_theory(scene):
 
 
 @pytest.mark.slow
-def test_energy_without_damping_is_kept_over_a_hundred_thousand_steps(scene):
+def test_energy_without_damping_is_kept_over_a_hundred_thousand_steps():
     zones, unit = bar(0.2, 2, damping=0, poisson=NU)
     for number in range(*zones.nodesOf(unit)):
         z = zones.referencePoint(unit, number)[2]
@@ -59,7 +59,7 @@ def kept(*parts):
     return sum(value for name, value in balance().items() if name.startswith(parts))
 
 
-def test_a_deformable_unit_falls_freely(scene):
+def test_a_deformable_unit_falls_freely():
     unit = addBlock(box(), unitMaterial())
     zones = MasonryZones(bodies=[unit], damping=0)
     engines([MasonryJoint()], zones=zones)
@@ -111,16 +111,16 @@ def reaction(load, steps=20000):
     return load.reaction
 
 
-@pytest.mark.parametrize("functors", [False, True], ids=["loop", "functors"])
+@FUNCTORS
 @pytest.mark.parametrize("seed", range(3))
 def test_bricks_that_move_together_do_not_strain_their_joint_whatever_their_meshes(
-    scene, seed, functors
+    seed, functors
 ):
     assert together(seed, functors) < 1e-9
 
 
 @pytest.mark.slow
-def test_two_deformable_bricks_pulled_apart_carry_ft_and_take_the_mode_I_energy(scene):
+def test_two_deformable_bricks_pulled_apart_carry_ft_and_take_the_mode_I_energy():
     load = couplet(True, MasonryJoint(name="bed"))
     assert pull(load, 8e-6, 0.02).max() == pytest.approx(0.1e6, rel=0.005)
     load = couplet(True, MasonryJoint(name="bed"))
@@ -131,7 +131,7 @@ def test_two_deformable_bricks_pulled_apart_carry_ft_and_take_the_mode_I_energy(
 
 
 @pytest.mark.slow
-def test_rigid_and_stiff_deformable_bricks_agree(scene):
+def test_rigid_and_stiff_deformable_bricks_agree():
     reactions = []
     for deformable in (False, True):
         load = couplet(deformable, MasonryJoint(name="bed"), young=E * 100)
@@ -140,7 +140,7 @@ def test_rigid_and_stiff_deformable_bricks_agree(scene):
     assert reactions[1] == pytest.approx(reactions[0], rel=0.01)
 
 
-def test_bricks_that_slide_on_each_other_keep_momentum_and_energy(scene):
+def test_bricks_that_slide_on_each_other_keep_momentum_and_energy():
     units = pile()
     O.bodies[0].state.blockedDOFs = ""
     zones = MasonryZones(bodies=units, divisions=[2, 1, 1], damping=0)
@@ -175,7 +175,7 @@ def test_bricks_that_slide_on_each_other_keep_momentum_and_energy(scene):
 
 
 @pytest.mark.slow
-def test_the_stiffness_of_a_pair_is_that_of_bricks_and_joint_in_series(scene):
+def test_the_stiffness_of_a_pair_is_that_of_bricks_and_joint_in_series():
     elastic = MasonryJoint(name="bed", elastic=True)
     load = couplet(True, elastic, divisions=(2, 1, 2))
     pull(load, -2e-6, 0.02)
@@ -186,7 +186,7 @@ def test_the_stiffness_of_a_pair_is_that_of_bricks_and_joint_in_series(scene):
 
 
 @pytest.mark.slow
-def test_local_damping_drags_a_moving_unit_and_combined_does_not(scene):
+def test_local_damping_drags_a_moving_unit_and_combined_does_not():
     """The force of the drive minus that in the joint: what damping adds while two bricks are pressed steadily."""
     drag = {}
     for kind in ("local", "combined"):
@@ -199,9 +199,7 @@ def test_local_damping_drags_a_moving_unit_and_combined_does_not(scene):
 
 
 @pytest.mark.parametrize("extension", [".xml", ".yade.gz"])
-def test_a_deformable_run_saved_in_the_middle_goes_on_the_same(
-    scene, tmp_path, extension
-):
+def test_a_deformable_run_saved_in_the_middle_goes_on_the_same(tmp_path, extension):
     load = couplet(True, MasonryJoint(name="bed"))
     pull(load, 4e-6, 0.005)
     path = str(tmp_path / ("run" + extension))

@@ -8,13 +8,6 @@ WIDTH, THICK, COURSE, FRICTION, DENSITY = 0.6, 0.3, 0.2, 0.4, 2600.0
 NORMALS = [5.0, 20.0, 80.0]  # [kN]
 
 
-@pytest.fixture(autouse=True)
-def empty():
-    O.reset()
-    yield
-    O.reset()
-
-
 def pier(out, *words, stones=6, rotation="free", material=None, press=0.2e6, **platen):
     """A pier of stones on each other with a platen above, which a script pushes."""
     blocks = bricks.stack(stones, (WIDTH, THICK, COURSE))

@@ -20,7 +20,7 @@ def stack(direction, joint=None, damping=0.5, free=(1, 2), blocked="", **around)
 
 
 @WAYS
-def test_gravity_that_is_raised_step_by_step_does_half_the_work(scene, direction):
+def test_gravity_that_is_raised_step_by_step_does_half_the_work(direction):
     """A spring under a load that grows from zero stores half of load times way; the load does no more."""
     half, counted = gravityWork(direction)
     assert counted == pytest.approx(half, rel=2e-3)
@@ -28,7 +28,7 @@ def test_gravity_that_is_raised_step_by_step_does_half_the_work(scene, direction
 
 
 @WAYS
-def test_the_balance_closes_while_gravity_turns(scene, direction):
+def test_the_balance_closes_while_gravity_turns(direction):
     stack(direction, damping=0.2, gravity=(0, 0, -G))
     turned, steps = 0.6, 3000
     for n in range(steps):
@@ -44,7 +44,7 @@ def test_the_balance_closes_while_gravity_turns(scene, direction):
 
 
 @pytest.mark.parametrize("direction", ["rigid", "functors"])
-def test_blocks_moved_before_the_first_step_fall_from_where_they_are(scene, direction):
+def test_blocks_moved_before_the_first_step_fall_from_where_they_are(direction):
     """connect() refuses blocks that were moved before it, so the joints are those of the reference."""
     dry = MasonryJoint(tensileStrength=0, cohesion=0, friction=0, residualFriction=0)
     stack(direction, dry, damping=0, gravity=(0, 0, -G))
@@ -62,7 +62,7 @@ def test_blocks_moved_before_the_first_step_fall_from_where_they_are(scene, dire
 
 
 @pytest.mark.parametrize("direction", ["rigid", "functors"])
-def test_held_blocks_that_go_down_do_the_work_of_their_weight(scene, direction):
+def test_held_blocks_that_go_down_do_the_work_of_their_weight(direction):
     """Whatever holds them takes that work, so that the balance closes."""
     stack(direction, gravity=(0, 0, -G), blocked="xyzXYZ")
     O.dt, bodies = 1e-5, [O.bodies[k].state for k in range(3)]
@@ -83,7 +83,7 @@ def test_held_blocks_that_go_down_do_the_work_of_their_weight(scene, direction):
     assert balance()["gravity"] == pytest.approx(whole * stayed, rel=1e-9)
 
 
-def test_deformable_units_know_one_gravity(scene):
+def test_deformable_units_know_one_gravity():
     stack("deformable", gravity=(0, 0, -G))
     zones = ofKind(MasonryZones)
     zones.gravity = (0, 0, -1)  # before the run the integrator's is taken over
@@ -101,7 +101,7 @@ def test_deformable_units_know_one_gravity(scene):
 
 @WAYS
 @pytest.mark.parametrize("through", ["checkpoint", "file"])
-def test_the_work_goes_on_after_saving_and_loading(scene, direction, through, tmp_path):
+def test_the_work_goes_on_after_saving_and_loading(direction, through, tmp_path):
     ends = []
     for interrupted in (False, True):
         stack(direction)
@@ -121,9 +121,7 @@ def test_the_work_goes_on_after_saving_and_loading(scene, direction, through, tm
 
 
 @WAYS
-def test_a_load_on_a_block_that_vibrates_does_force_times_displacement(
-    scene, direction
-):
+def test_a_load_on_a_block_that_vibrates_does_force_times_displacement(direction):
     load = MasonryLoad(body=2, force=(0, 0, -500), point=(0.11, 0.051, 3 * UNIT[2]))
     # loads act on rigid bodies, so that one unit alone is deformable
     stack(direction, damping=0, free=[1], share=0.2, loads=[load])

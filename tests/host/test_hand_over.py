@@ -1,22 +1,13 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Joints that are handed over to contact: blocks that tip over or slide off go on, land and come to rest."""
 
-import hashlib
-
 from hosted import *
 
 B, H = 0.25, 1.0  # of what stands on the ground [m]
 STIFF = 1e10  # [Pa/m]
 
 
-def joint(**other):
-    bond = dict(name="dry", tensileStrength=0, cohesion=0, cap=False)
-    rubs = dict(friction=0.7, residualFriction=0.7)
-    stiff = dict(normalStiffness=STIFF, shearStiffness=0.5 * STIFF)
-    return MasonryJoint(**{**bond, **rubs, **stiff, **other})
-
-
-def standing(count=1, push=1.2, step=0.5, joint=joint, beside=(), **around):
+def standing(count=1, push=1.2, step=0.5, joint=dry, beside=(), **around):
     """Blocks on top of each other, on the ground, under a horizontal gravity that is `push` times the one that tips them."""
     O.reset()
     mat = unitMaterial(young=1e12)
@@ -35,12 +26,7 @@ def standing(count=1, push=1.2, step=0.5, joint=joint, beside=(), **around):
     return contacts
 
 
-def bits():
-    states = [[*b.state.pos, *b.state.ori, *b.state.vel, *b.state.angVel] for b in O.bodies]  # fmt: skip
-    return hashlib.sha256(np.array([*states[0], *states[-1], *balance().values()]).tobytes()).hexdigest()  # fmt: skip
-
-
-def test_a_block_tips_over_lands_on_its_side_and_rests(scene):
+def test_a_block_tips_over_lands_on_its_side_and_rests():
     contacts = standing()
     until(0.6)
     assert contacts.handed == 1 and contacts.touching() == 1
@@ -58,7 +44,7 @@ def test_a_block_tips_over_lands_on_its_side_and_rests(scene):
     assert abs(balance()["error"]) < 0.02  # of the impact of two faces
 
 
-def test_the_force_of_a_joint_goes_on_when_it_is_handed_over(scene):
+def test_the_force_of_a_joint_goes_on_when_it_is_handed_over():
     """Force on the ground in the last step of the joint and in the first of the contact, of a block that does not swing."""
     contacts = standing(damping=0.3)
     while contacts.handed == 0:
@@ -74,20 +60,20 @@ def test_the_force_of_a_joint_goes_on_when_it_is_handed_over(scene):
     assert now["handing"] > 0
 
 
-def test_a_joint_that_is_not_due_is_not_handed_over(scene):
+def test_a_joint_that_is_not_due_is_not_handed_over():
     """A block that stands, and one whose bond holds."""
     contacts = standing(push=0.5)
     until(0.2)
     assert contacts.handed == 0 and contacts.touching() == 0
-    bonded = lambda: joint(tensileStrength=1e6, cohesion=2e6, modeIFractureEnergy=100, modeIIFractureEnergy=1000)  # fmt: skip
+    bonded = lambda: dry(tensileStrength=1e6, cohesion=2e6, modeIFractureEnergy=100, modeIIFractureEnergy=1000)  # fmt: skip
     contacts = standing(joint=bonded)
     until(0.2)
     assert contacts.handed == 0
 
 
-def test_a_joint_that_turns_while_its_bond_holds_is_not_handed_over(scene):
+def test_a_joint_that_turns_while_its_bond_holds_is_not_handed_over():
     """A bond so tough that at 60° none of it is gone."""
-    tough = lambda: joint(tensileStrength=1e3, cohesion=2e3, modeIFractureEnergy=1e6, modeIIFractureEnergy=1e6)  # fmt: skip
+    tough = lambda: dry(tensileStrength=1e3, cohesion=2e3, modeIFractureEnergy=1e6, modeIIFractureEnergy=1e6)  # fmt: skip
     contacts = standing(joint=tough)
     with pytest.raises(RuntimeError, match="^collapsed: block 1 has turned by"):
         until(3)
@@ -95,9 +81,9 @@ def test_a_joint_that_turns_while_its_bond_holds_is_not_handed_over(scene):
 
 
 @pytest.mark.parametrize("axis", [0, 1], ids="xy")
-def test_a_joint_slides_out_of_its_place_along_either_side(scene, axis):
+def test_a_joint_slides_out_of_its_place_along_either_side(axis):
     """Handed over at 2 % of its length: without that the run would end where the block has left the joint."""
-    slippery = lambda: joint(friction=0.05, residualFriction=0.05)
+    slippery = lambda: dry(0.05)
     contacts = standing(push=0, joint=slippery, step=0.9)
     gravity = [0, 0, -G]
     gravity[axis] = 0.15 * G
@@ -118,7 +104,7 @@ def neighbours(gap):
     return contacts, O.bodies[1].state
 
 
-def test_blocks_that_lie_in_each_other_when_one_wakes_just_touch(scene):
+def test_blocks_that_lie_in_each_other_when_one_wakes_just_touch():
     """0.2 mm, which the stress of joints around may press them together, would be 500 kN all at once. What comes then counts."""
     contacts, s = neighbours(1e-3)
     s.pos += Vector3(1.2e-3, 0, 0)
@@ -129,7 +115,7 @@ def test_blocks_that_lie_in_each_other_when_one_wakes_just_touch(scene):
     assert contacts.forceOf(1, 2)[0] == pytest.approx(STIFF * B * H * 1e-5, rel=0.01)  # fmt: skip
 
 
-def test_a_block_that_turns_in_its_place_wakes(scene):
+def test_a_block_that_turns_in_its_place_wakes():
     """By 0.002 its edges move by a millimetre, by 0.01 they go through the gap of 0.5 mm: 1.25 mm along x. Its joint stays, since
     that is handed over at 1°."""
     contacts, s = neighbours(5e-4)
@@ -140,7 +126,7 @@ def test_a_block_that_turns_in_its_place_wakes(scene):
     assert contacts.forceOf(1, 2)[0] > 0
 
 
-def test_the_largest_energy_of_a_fallen_block_has_its_spin(scene):
+def test_the_largest_energy_of_a_fallen_block_has_its_spin():
     contacts = standing()
     s, most = O.bodies[1].state, 0
     while O.time < 0.55:
@@ -152,7 +138,7 @@ def test_the_largest_energy_of_a_fallen_block_has_its_spin(scene):
     assert contacts.fallen()[1]["most"] == pytest.approx(most, rel=0.02)
 
 
-def test_a_joint_of_a_block_without_contacts_is_not_handed_over(scene):
+def test_a_joint_of_a_block_without_contacts_is_not_handed_over():
     """Nothing would take its place, so the run ends where the joint does."""
     contacts = standing()
     contacts.bodies = [0]
@@ -161,7 +147,7 @@ def test_a_joint_of_a_block_without_contacts_is_not_handed_over(scene):
     assert contacts.handed == 0
 
 
-def test_a_stack_that_falls_has_the_same_bits_with_threads_and_from_a_checkpoint(scene, tmp_path):  # fmt: skip
+def test_a_stack_that_falls_has_the_same_bits_with_threads_and_from_a_checkpoint(tmp_path):  # fmt: skip
     found = []
     for threads in (1, 2):
         contacts = standing(3)
@@ -183,6 +169,6 @@ def test_a_stack_that_falls_has_the_same_bits_with_threads_and_from_a_checkpoint
     assert bits() == found[0]
 
 
-def test_hand_over_with_functors_is_refused(scene):
+def test_hand_over_with_functors_is_refused():
     with pytest.raises(ValueError, match="takesJoints needs MasonryJointLoop"):
         standing(functors=True)

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Impacts of joints that close: what a block that rocks keeps, and that they take energy and never give any."""
 
-import random
-
 from hosted import *
 from motion_cases import restitution
 from structures import box, dry, fix, mat
@@ -42,11 +40,6 @@ def untilImpact():
         O.step()
 
 
-def bits():
-    values = [v for b in O.bodies for v in (*b.state.pos, *b.state.vel, *b.state.angVel)]  # fmt: skip
-    return np.array([*values, *balance().values()]).tobytes()
-
-
 CASES = {
     "plane": dict(inPlane=True),
     "space": {},
@@ -57,7 +50,7 @@ CASES = {
 
 
 @pytest.mark.parametrize("size", [(0.25, 0.5), (0.25, 1.0), (0.25, 2.0)], ids=str)
-def test_a_block_that_rocks_keeps_what_that_of_housner_keeps(scene, size):
+def test_a_block_that_rocks_keeps_what_that_of_housner_keeps(size):
     for points, least, most in ((3, -0.005, 0.015), (8, -0.005, 0.07)):
         rigid, kept = restitution(size, restitution=0, points=points)
         assert least < kept - rigid < most, points
@@ -65,7 +58,7 @@ def test_a_block_that_rocks_keeps_what_that_of_housner_keeps(scene, size):
     assert now["impacts"] > 0 and abs(now["error"]) < 1e-4
 
 
-def test_less_is_lost_with_more_restitution(scene):
+def test_less_is_lost_with_more_restitution():
     kept = [restitution((B, H), restitution=e, points=3)[1] for e in (0, 0.5, 0.9, 1)]
     assert kept == sorted(kept) and kept[-1] > 0.98
     assert balance()["impacts"] == 0
@@ -73,7 +66,7 @@ def test_less_is_lost_with_more_restitution(scene):
 
 @pytest.mark.parametrize("case", CASES)
 @pytest.mark.parametrize("step", [pytest.param(0.1, marks=pytest.mark.slow), 0.4, 0.8])
-def test_impacts_never_give_energy(scene, case, step):
+def test_impacts_never_give_energy(case, step):
     for seed in range(3):
         # blocks that turn far have an error of the balance without impacts, too
         stack(step=step, **{**CASES[case], "restitution": 1.0})
@@ -92,7 +85,7 @@ def test_impacts_never_give_energy(scene, case, step):
 
 
 @pytest.mark.parametrize("case", CASES)
-def test_threads_and_a_checkpoint_change_no_bit(scene, case, tmp_path):
+def test_threads_and_a_checkpoint_change_no_bit(case, tmp_path):
     found = []
     for threads in (1, 2):
         allowThreads(threads)
@@ -110,7 +103,7 @@ def test_threads_and_a_checkpoint_change_no_bit(scene, case, tmp_path):
     assert bits() == found[0]
 
 
-def test_what_is_pressed_or_bonded_has_no_impacts(scene):
+def test_what_is_pressed_or_bonded_has_no_impacts():
     bonds = dict(tensileStrength=5e6, cohesion=1e7, modeIFractureEnergy=1e4, modeIIFractureEnergy=1e5)  # fmt: skip
     for joint, speed in ((dry(1e9), 0.002), (MasonryJoint(cap=False, **bonds), 0.3)):
         O.reset()
@@ -129,7 +122,7 @@ def test_what_is_pressed_or_bonded_has_no_impacts(scene):
         assert now["external"] > 0  # the motion that was given
 
 
-def test_without_impacts_nothing_is_taken_and_the_last_half_is_counted(scene):
+def test_without_impacts_nothing_is_taken_and_the_last_half_is_counted():
     stack()
     shake(0.3)
     untilImpact()

@@ -25,7 +25,7 @@ def stresses(made):
     return [[tuple(s) for s in i.phys.stress] for i in made]
 
 
-def test_equal_values_in_many_objects_are_one_group(scene):
+def test_equal_values_in_many_objects_are_one_group():
     shared = MasonryJoint()
     made = couplets(500, lambda: shared)
     assert loop().groups == 1
@@ -43,7 +43,7 @@ OTHERS["tensionTable"] = [(1, 0), (40, 1)]
 
 
 @pytest.mark.parametrize("name", OTHERS)
-def test_other_values_are_another_group(scene, name):
+def test_other_values_are_another_group(name):
     couplets(40, MasonryJoint)
     assert loop().groups == 1
     joints = [MasonryJoint(**{name: OTHERS[name]} if n == 7 else {}) for n in range(40)]
@@ -53,7 +53,7 @@ def test_other_values_are_another_group(scene, name):
     assert [n for n, values in enumerate(known) if values != known[0]] == [7]
 
 
-def test_a_later_change_of_one_object_acts_on_its_own_joints_alone(scene):
+def test_a_later_change_of_one_object_acts_on_its_own_joints_alone():
     made = couplets(40, MasonryJoint)
     O.run(2, True)
     made[7].phys.joint.tensileStrength = 0.02e6
@@ -69,7 +69,7 @@ def test_a_later_change_of_one_object_acts_on_its_own_joints_alone(scene):
     assert max(d[0] for d in made[7].phys.damage) >= damage[7]
 
 
-def test_every_joint_keeps_its_own_object_through_a_file(scene, tmp_path):
+def test_every_joint_keeps_its_own_object_through_a_file(tmp_path):
     made = couplets(5, MasonryJoint)
     O.run(2, True)
     path = str(tmp_path / "scene.yade.gz")

@@ -140,7 +140,6 @@ def test_a_body_moves_as_with_the_hosts_integrator(blocked, damping):
 @pytest.mark.parametrize("kind", ["local", "combined"])
 @pytest.mark.parametrize("blocked", ["", "yXZ"], ids=lambda b: b or "free")
 def test_damping_takes_energy_in_every_step_whatever_the_force(blocked, kind):
-    O.reset()
     body = addBlock(box(), unitMaterial())
     O.bodies[body].state.blockedDOFs = blocked
     integrator = alone(damping=0.8, dampingKind=kind)
@@ -164,7 +163,6 @@ def test_damping_calms_everything_up_to_the_undamped_limit_of_the_time_step(
     blocks, kind
 ):
     """A chain of bricks on elastic joints, thrown at random, comes to rest."""
-    O.reset()
     bricks, zones = pile(6, inPlane=True), None
     if blocks == "deformable":
         zones = MasonryZones(bodies=bricks[1:], blocked="y", dampingKind=kind)

@@ -2,10 +2,7 @@
 """Who may know whom, by what the sources include. These tests need no YADE: they only read the sources."""
 
 import glob
-import os
-import re
-
-import pytest
+from usual import *
 
 PLUGIN = os.path.join(os.path.dirname(__file__), "..", "..", "yade_plugin")
 STANDARD = {"Eigen"}

@@ -17,7 +17,7 @@ ALPHA, DT = 0.3, 1e-4
 
 @pytest.mark.parametrize("kind", HISTORY)
 @pytest.mark.parametrize("blocked", ["", "XYZ", "yXZ"], ids=lambda b: b or "free")
-def test_damping_takes_its_share_of_a_blocks_force(scene, blocked, kind):
+def test_damping_takes_its_share_of_a_blocks_force(blocked, kind):
     s = O.bodies[addBlock(box(), unitMaterial())].state
     s.blockedDOFs = blocked
     s.vel = Vector3(5, 0, 5)
@@ -33,7 +33,7 @@ def test_damping_takes_its_share_of_a_blocks_force(scene, blocked, kind):
 
 @pytest.mark.parametrize("kind", HISTORY)
 @pytest.mark.parametrize("blocked", ["", "xyz", "yXZ"], ids=lambda b: b or "free")
-def test_damping_takes_its_share_of_a_blocks_torque(scene, blocked, kind):
+def test_damping_takes_its_share_of_a_blocks_torque(blocked, kind):
     s = O.bodies[addBlock(box(), unitMaterial())].state
     s.blockedDOFs = blocked
     inertia = Vector3(s.inertia)
@@ -53,7 +53,7 @@ def test_damping_takes_its_share_of_a_blocks_torque(scene, blocked, kind):
 
 
 @pytest.mark.parametrize("kind", HISTORY)
-def test_damping_takes_its_share_of_the_weight_of_nodes(scene, kind):
+def test_damping_takes_its_share_of_the_weight_of_nodes(kind):
     unit = addBlock(box(), unitMaterial())
     zones = MasonryZones(bodies=[unit], damping=ALPHA, dampingKind=kind)
     engines([MasonryJoint()], zones=zones)
@@ -77,7 +77,7 @@ def stack(count=4, **around):
     join(MasonryJoint(elastic=True), 0.8, inPlane=True, **around)
 
 
-def test_a_run_finds_by_itself_that_a_lighter_block_makes_its_time_step_too_long(scene):
+def test_a_run_finds_by_itself_that_a_lighter_block_makes_its_time_step_too_long():
     stack(damping=0)
     O.dt = 0.97 * criticalTimeStep()[0]
     run(20)
@@ -94,7 +94,7 @@ def test_a_run_finds_by_itself_that_a_lighter_block_makes_its_time_step_too_long
 @pytest.mark.parametrize("blocked", ["", "XYZ", "yXZ"], ids=lambda b: b or "free")
 @pytest.mark.parametrize("sign", [(0, 0, 1), (0, 0, -2), (1, 0, 0), (1, 0, 3)])
 def test_a_drive_meets_its_velocity_in_every_step_whatever_the_weight_and_way(
-    scene, sign, blocked
+    sign, blocked
 ):
     stack(count=2, damping=0.5)
     s = O.bodies[1].state
@@ -111,7 +111,7 @@ def test_a_drive_meets_its_velocity_in_every_step_whatever_the_weight_and_way(
         assert moving.dot(direction.normalized()) == pytest.approx(0.003, rel=1e-5)
 
 
-def test_a_drive_at_rest_carries_the_weight_and_what_pushes(scene):
+def test_a_drive_at_rest_carries_the_weight_and_what_pushes():
     stack(count=2)
     O.bodies[1].state.blockedDOFs = "XYZ"
     held = dict(direction=(0, 0, 1), driven=True, velocity=0, force=(0, 0, -50))
@@ -124,7 +124,7 @@ def test_a_drive_at_rest_carries_the_weight_and_what_pushes(scene):
         assert O.forces.f(1, True)[2] == pytest.approx(-weight, abs=1e-7)
 
 
-def test_a_load_that_is_dead_does_no_work(scene):
+def test_a_load_that_is_dead_does_no_work():
     stack(count=2, damping=0.1)
     where = O.bodies[1].state.pos
     load = insert(MasonryLoad(body=1, point=where, force=(100, 0, -500)))
@@ -191,7 +191,7 @@ def couplets(other, functors, turn):
 )
 @pytest.mark.parametrize("other", UNLIKE)
 def test_one_couplet_of_seventy_that_is_one_per_cent_other_keeps_its_own_numbers(
-    scene, other, turn
+    other, turn
 ):
     ends = []
     for functors in (True, False):
@@ -216,10 +216,8 @@ def test_one_couplet_of_seventy_that_is_one_per_cent_other_keeps_its_own_numbers
 # -- joints that go, and units that differ ---------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("functors", [False, True], ids=["loop", "functors"])
-def test_a_block_whose_joint_is_erased_in_the_middle_of_a_run_falls_freely(
-    scene, functors
-):
+@FUNCTORS
+def test_a_block_whose_joint_is_erased_in_the_middle_of_a_run_falls_freely(functors):
     stack(count=3, damping=0, functors=functors)
     run(50)
     O.interactions.erase(1, 2)
@@ -231,7 +229,7 @@ def test_a_block_whose_joint_is_erased_in_the_middle_of_a_run_falls_freely(
     assert fall == pytest.approx(-9.81 * 100 * O.dt, rel=1e-9)
 
 
-def test_deformable_units_of_one_shape_and_two_materials_have_their_own_numbers(scene):
+def test_deformable_units_of_one_shape_and_two_materials_have_their_own_numbers():
     dense = unitMaterial(density=2400, young=9.6e9)
     units = [addBlock(box((k, 0, 0)), unitMaterial() if k else dense) for k in (0, 1)]
     zones = MasonryZones(bodies=units)
@@ -262,7 +260,7 @@ def throw(s):
     [lambda s: setattr(s, "pos", s.pos + Vector3(0, 1e-6, 0)), tilt, twist, throw],
     ids=["shifted", "tilted", "twisted", "thrown"],
 )
-def test_a_block_taken_out_of_the_plane_in_a_planar_run_is_followed(scene, move):
+def test_a_block_taken_out_of_the_plane_in_a_planar_run_is_followed(move):
     ends = []
     for functors in (True, False):
         O.reset()
@@ -281,7 +279,7 @@ def test_a_block_taken_out_of_the_plane_in_a_planar_run_is_followed(scene, move)
     assert np.abs(ends[1][0]).max() > 5e-7  # [m]
 
 
-def test_a_rotation_that_is_freed_in_a_planar_run_is_followed(scene):
+def test_a_rotation_that_is_freed_in_a_planar_run_is_followed():
     stack(damping=0)
     run(50)
     s = O.bodies[3].state

@@ -2,17 +2,8 @@
 """A scene in a notebook: what it shows, how it is interrupted, and how it goes on. Needs the packages of Jupyter."""
 
 import base64
-import contextlib
-import csv
-import json
 import queue
-import re
-import subprocess
-import sys
-import time
-
-import numpy as np
-import pytest
+from usual import *
 
 pytestmark = pytest.mark.slow
 jupyter = pytest.importorskip(
@@ -191,7 +182,7 @@ def test_words_of_the_kernel_stay_and_scenes_follow_each_other(kernel, tmp_path)
     assert wrong[0]["ename"] == "Refused"
 
 
-def test_pandas_that_is_not_there_is_named(tmp_path):
+def test_pandas_that_is_not_there_is_named():
     code = """
 import sys
 sys.modules["pandas"] = None

@@ -5,24 +5,14 @@ A word is found by looking at the package; one without an example here is a fail
 a seed that the message of a failure has; ODD_SEED=number draws others.
 """
 
-import contextlib
 import inspect
 import io
-import math
 import operator
-import os
-import random
-import re
-import shutil
-import signal
-import sys
 from decimal import Decimal
 from fractions import Fraction
 
 import masonry
 from hosted import *
-from hypothesis import given, settings
-from hypothesis import strategies as some
 from masonry import arguments, capacity, fields
 from masonry.scene import options
 from masonry.read import frames, measure, report
@@ -334,11 +324,9 @@ def folder(tmp_path, monkeypatch, pushed):
     (tmp_path / "cube.obj").write_text(CUBE_FILE)
     (tmp_path / "spectrum.csv").write_text("0 0.1\n0.1 0.3\n0.5 0.3\n4 0.04\n")
     shutil.copytree(pushed, tmp_path / "run")
-    O.reset()
     joined()
     masonry.saveCheckpoint("kept", 1)
-    yield tmp_path
-    O.reset()
+    return tmp_path
 
 
 # -- what comes of a word ---------------------------------------------------------------------------------------------

@@ -2,7 +2,6 @@
 """What a script can do to a scene that runs: it takes effect, or an error says why not. Nothing ends the process."""
 
 import gc
-import os
 
 from hosted import *
 
@@ -41,7 +40,7 @@ def refused(message, act=steps):
 # -- no crash ----------------------------------------------------------------------------------------------------------
 
 
-def test_bodies_that_are_gone_are_reported(scene):
+def test_bodies_that_are_gone_are_reported():
     stack()
     steps()
     O.bodies.clear()
@@ -53,14 +52,14 @@ def test_bodies_that_are_gone_are_reported(scene):
     refused("body 1 has no State", lambda: steps(10))  # looked at in every tenth
 
 
-def test_a_lone_deformable_block_that_is_erased_is_reported(scene):
+def test_a_lone_deformable_block_that_is_erased_is_reported():
     stack(2, zones=[2], lone=True)
     steps()
     O.bodies.erase(2)
     refused("body 2 does not exist")
 
 
-def test_units_without_their_engine_are_reported(scene):
+def test_units_without_their_engine_are_reported():
     stack(zones=[1])
     steps()
     for change in (lambda: setattr(zones, "dead", True), lambda: setattr(O, "engines", others)):  # fmt: skip
@@ -73,7 +72,7 @@ def test_units_without_their_engine_are_reported(scene):
         steps()
 
 
-def test_a_load_whose_body_is_changed_within_the_step_is_reported(scene):
+def test_a_load_whose_body_is_changed_within_the_step_is_reported():
     stack()
     again = PyRunner(command="O.engines[2].body = 99", iterPeriod=1, initRun=True)
     O.engines = [*O.engines[:3], again, *O.engines[3:]]
@@ -85,7 +84,7 @@ def test_a_joint_of_no_scene_has_no_points():
 
 
 @pytest.mark.parametrize("which", ["loop", "load", "all"])
-def test_an_engine_in_a_parallel_engine_is_reported(scene, which, capfd):
+def test_an_engine_in_a_parallel_engine_is_reported(which, capfd):
     """Threads of the host cannot pass an error on: an engine that follows does, and the error stream has it anyway."""
     stack()
     reset, loop, load, *others = O.engines
@@ -116,7 +115,7 @@ def replaceState(body):
     return new
 
 
-def test_a_state_that_replaces_another_counts_within_ten_steps(scene):
+def test_a_state_that_replaces_another_counts_within_ten_steps():
     joints = stack(lone=True)
     steps(3)
     state = replaceState(2)
@@ -131,8 +130,8 @@ def test_a_state_that_replaces_another_counts_within_ten_steps(scene):
     assert (lone.pos - before)[0] == pytest.approx(1e-3 * O.dt, rel=1e-6)
 
 
-@pytest.mark.parametrize("functors", [False, True])
-def test_what_joints_were_made_with_cannot_be_changed(scene, functors):
+@FUNCTORS
+def test_what_joints_were_made_with_cannot_be_changed(functors):
     joints = stack(zones=() if functors else (1,), functors=functors)
     joint, mat = joints[0].phys.joint, O.bodies[1].mat
     geometry = O.engines[1].geomDispatcher.functors[0] if functors else O.engines[1].geometry  # fmt: skip
@@ -152,7 +151,7 @@ def test_what_joints_were_made_with_cannot_be_changed(scene, functors):
     joint.normalStiffness, mat.young, geometry.subcontacts = 1e7, 1e6, 7
 
 
-def test_values_can_be_mended_after_a_connect_that_was_refused(scene):
+def test_values_can_be_mended_after_a_connect_that_was_refused():
     joint = MasonryJoint(name="k", elastic=True)
     O.materials.append(MasonryMat(young=5e9, poisson=0.2, density=1800))
     for level in range(2):
@@ -163,7 +162,7 @@ def test_values_can_be_mended_after_a_connect_that_was_refused(scene):
     assert len(connect()) == 1
 
 
-def test_what_cannot_be_followed_is_reported(scene):
+def test_what_cannot_be_followed_is_reported():
     stack(4)
     O.bodies.clump([2, 3])
     refused("body 2 belongs to clump 4, which would not move as one")
@@ -176,7 +175,7 @@ def test_what_cannot_be_followed_is_reported(scene):
     refused("body 3 was added after connect")
 
 
-def test_zones_of_another_scene_leave_the_blocks_of_the_present_one_alone(scene):
+def test_zones_of_another_scene_leave_the_blocks_of_the_present_one_alone():
     stack(zones=[1])
     zones = O.engines[-1]
     steps()
@@ -194,7 +193,7 @@ def test_zones_of_another_scene_leave_the_blocks_of_the_present_one_alone(scene)
         O.switchScene()
 
 
-def test_a_python_class_of_joints_is_a_joint(scene):
+def test_a_python_class_of_joints_is_a_joint():
     class Mortar(MasonryJoint):
         pass
 
@@ -209,7 +208,7 @@ def test_a_python_class_of_joints_is_a_joint(scene):
 # -- files -------------------------------------------------------------------------------------------------------------
 
 
-def test_frames_that_somebody_removed_are_not_listed(scene, tmp_path):
+def test_frames_that_somebody_removed_are_not_listed(tmp_path):
     stack()
     recorder = MasonryVtkRecorder(directory=str(tmp_path))
     for _ in range(3):

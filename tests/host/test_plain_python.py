@@ -2,18 +2,9 @@
 """Scenes in plain Python: YADE is found and started, and the run is that of the program yade."""
 
 import importlib.util
-import json
-import os
-import re
-import shutil
-import signal
-import subprocess
-import sys
-import time
 
-import pytest
 import yade
-from conftest import ROOT
+from usual import *
 
 HOST = os.path.dirname(os.path.dirname(os.path.abspath(yade.__file__)))
 INSTALLED = os.path.dirname(importlib.util.find_spec("masonry").origin)
@@ -79,7 +70,7 @@ other.join()
 
 
 @pytest.mark.slow
-def test_threads_are_those_that_are_asked_for(tmp_path):
+def test_threads_are_those_that_are_asked_for():
     code = "from masonry import Scene; from yade import O; print(O.numThreads)"
     assert done(code, env=environment(OMP_NUM_THREADS="2")) == "2\n"
     assert done(code) == "1\n"

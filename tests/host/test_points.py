@@ -19,24 +19,24 @@ from wall_cases import prismTips, tips
 
 
 @pytest.mark.parametrize("about", [(0, 1, 0), (1, 0, 0)], ids=["along", "across"])
-@pytest.mark.parametrize("functors", [False, True], ids=["loop", "functors"])
+@FUNCTORS
 @pytest.mark.parametrize(
     "points, factor", [(None, 1), (2, 3), (3, 1), (4, 1), (7, 1), (16, 1)]
 )
 def test_the_rotational_stiffness_is_that_of_the_whole_joint_from_three_points_on(
-    scene, points, factor, functors, about
+    points, factor, functors, about
 ):
     true, measured = jointMoment(about, points, functors)
     assert measured == pytest.approx(factor * true, rel=1e-6)
 
 
-@pytest.mark.parametrize("functors", [False, True], ids=["loop", "functors"])
+@FUNCTORS
 @pytest.mark.parametrize("divisions", [(1, 1, 1), (2, 1, 1), (3, 2, 2)])
 @pytest.mark.parametrize(
     "blocked, about", [("y", (0, 1, 0)), ("", (0, 1, 0)), ("", (1, 0, 0))]
 )
 def test_the_rotational_stiffness_on_a_deformable_unit_is_true_on_any_mesh(
-    scene, blocked, about, divisions, functors
+    blocked, about, divisions, functors
 ):
     true, measured = jointMoment(
         about, functors=functors, divisions=divisions, blocked=blocked
@@ -77,7 +77,7 @@ def pointsOf(held, size=(0.22, 0.102, 0.081), where=(0, 0, 1), zones=None, **kw)
     ],
 )
 def test_a_joint_has_three_rows_unless_its_blocks_turn_about_one_axis_in_it(
-    scene, held, where, points, along
+    held, where, points, along
 ):
     geom = pointsOf(held, where=where)
     assert len(geom.centres) == points
@@ -88,7 +88,7 @@ def test_a_joint_has_three_rows_unless_its_blocks_turn_about_one_axis_in_it(
         assert all(c[middle] == pytest.approx(size[middle] / 2) for c in geom.centres)
 
 
-def test_what_is_asked_for_goes_before_what_the_freedom_says(scene):
+def test_what_is_asked_for_goes_before_what_the_freedom_says():
     assert len(pointsOf("yXZ", rows=2, subcontacts=5).centres) == 10
     assert len(pointsOf("", rows=1, subcontacts=4).centres) == 4
     assert len(pointsOf("", subcontacts=4).centres) == 12
@@ -106,7 +106,7 @@ def test_what_is_asked_for_goes_before_what_the_freedom_says(scene):
     "blocks, mortar", [(1, False), (4, False), (4, True)], ids=["block", "dry", "stack"]
 )
 def test_a_block_and_a_stack_tip_at_width_over_height(
-    scene, blocks, mortar, axis, inPlane, share
+    blocks, mortar, axis, inPlane, share
 ):
     if inPlane and axis == 1:
         pytest.skip("held against tipping along y")
@@ -114,7 +114,7 @@ def test_a_block_and_a_stack_tip_at_width_over_height(
 
 
 @pytest.mark.parametrize("share", [0.99, 1.01])
-def test_a_wall_of_bricks_tips_out_of_its_plane_at_thickness_over_height(scene, share):
+def test_a_wall_of_bricks_tips_out_of_its_plane_at_thickness_over_height(share):
     thickness, courses, brick = 0.1, 4, (0.2, 0.1, 0.1)
     fix(box((0, 0, -0.2), (0.4, thickness, 0.2), mat()))
     for course in range(courses):
@@ -129,7 +129,7 @@ def test_a_wall_of_bricks_tips_out_of_its_plane_at_thickness_over_height(scene, 
 
 
 @pytest.mark.parametrize("share", [0.98, 1.02])
-def test_a_prism_on_a_triangle_tips_about_its_edge(scene, share):
+def test_a_prism_on_a_triangle_tips_about_its_edge(share):
     # The joint's points are at the corners, so the edge is exact.
     assert prismTips(share) == (share > 1)
 
@@ -140,7 +140,7 @@ def test_a_prism_on_a_triangle_tips_about_its_edge(scene, share):
 @pytest.mark.parametrize("share", [0.99, 1.01])
 @pytest.mark.parametrize("voussoirs, least", [(7, 0.09570), (16, 0.10708)])
 def test_a_semicircular_arch_needs_the_thickness_of_limit_analysis(
-    scene, voussoirs, least, share
+    voussoirs, least, share
 ):
     # The least thickness over mean radius by a linear programme of rigid blocks (static theorem).
     arch(semicircle(voussoirs, share * least))
@@ -148,7 +148,7 @@ def test_a_semicircular_arch_needs_the_thickness_of_limit_analysis(
 
 
 @pytest.mark.parametrize("share", [0.99, 1.01])
-def test_an_arch_bears_the_horizontal_acceleration_of_limit_analysis(scene, share):
+def test_an_arch_bears_the_horizontal_acceleration_of_limit_analysis(share):
     # 0.3736 g by the same programme; Oppenheim (1992) gives 0.37 g for this arch.
     arch(oppenheim(), friction=0.7)
     assert falls(Vector3(share * 0.3736 * G, 0, 0), beyond=0.003) == (share > 1)

@@ -4,10 +4,6 @@
 Most of it runs in a YADE of its own, so that a crash is a failed test and not the end of pytest.
 """
 
-import os
-import subprocess
-import sys
-
 from hosted import *
 from masonry import classes
 from yade import wrapper
@@ -349,7 +345,7 @@ assert O.iter == 3000
 
 @pytest.mark.parametrize("steps", [0, 1, 150], ids=lambda n: f"after {n} steps")
 @pytest.mark.parametrize("deformable", [False, True], ids=["rigid", "deformable"])
-def test_a_block_added_after_connect_is_named(scene, deformable, steps):
+def test_a_block_added_after_connect_is_named(deformable, steps):
     pile(3)
     join(zones=MasonryZones(bodies=[1, 2]) if deformable else None)
     run(steps)

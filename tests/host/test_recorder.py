@@ -44,8 +44,7 @@ def frame(request, tmp_path):
     run(400)
     recorder = MasonryVtkRecorder(directory=str(tmp_path))
     recorder()
-    yield interactions, tmp_path, recorder
-    O.reset()
+    return interactions, tmp_path, recorder
 
 
 def test_joints_without_a_file_are_those_of_the_file(frame):
@@ -185,7 +184,7 @@ def test_the_points_of_blocks_move_as_bodies_and_nodes_do(frame):
 @pytest.mark.parametrize(
     "turn", [Quaternion.Identity, IN_SPACE], ids=["straight", "turned"]
 )
-def test_stresses_of_zones_are_those_of_a_brick_that_is_pressed(scene, tmp_path, turn):
+def test_stresses_of_zones_are_those_of_a_brick_that_is_pressed(tmp_path, turn):
     """A deformable brick between plates under pressure p carries -p along it and nothing else, in the global axes."""
     plate, mat = unitMaterial(young=1e16, jointSet="plate"), unitMaterial(poisson=0.0)
     put = lambda z, height, m: addBlock(box((0, 0, z), (0.22, 0.1, height), turn), m)

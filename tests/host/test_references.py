@@ -13,11 +13,7 @@ The numbers were made with Eigen 3.4. Another version adds products in another o
 of scenes that lie askew in space. So with another version the first instant of each run counts, and none of such scenes.
 """
 
-import os
-import re
-import subprocess
-
-import pytest
+from usual import *
 import references
 
 FOLDER = references.FOLDER
@@ -82,7 +78,7 @@ def test_every_run_has_its_tolerance_and_its_file():
 
 
 @pytest.mark.slow
-def test_two_threads_give_the_same_numbers(tmp_path):
+def test_two_threads_give_the_same_numbers():
     """Bit for bit those of one thread, but for YADE's own loop, which sums forces in the order of its threads."""
     program = os.path.join(FOLDER, "references.py")
     message = []

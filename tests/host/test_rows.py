@@ -35,7 +35,7 @@ def apart(values):
 
 
 @pytest.mark.parametrize("words, count", [((), 3), (("--points", "5"), 3), (("--points", "5,5"), 5)])  # fmt: skip
-def test_joints_in_space_begin_with_points_along_both_sides(tmp_path, scene, words, count):  # fmt: skip
+def test_joints_in_space_begin_with_points_along_both_sides(tmp_path, words, count):
     points = bedPoints(strip(tmp_path, *words))
     assert len(points) == count**2
     for axis in (0, 1):
@@ -44,14 +44,12 @@ def test_joints_in_space_begin_with_points_along_both_sides(tmp_path, scene, wor
         assert places == pytest.approx(expected, abs=1e-8)
 
 
-def test_a_scene_in_the_plane_has_one_row(tmp_path, scene):
+def test_a_scene_in_the_plane_has_one_row(tmp_path):
     points = bedPoints(strip(tmp_path, "--points", "5,5", plane=True))
     assert len(points) == 5 and len(apart(p[1] for p in points)) == 1
 
 
-def test_a_strip_that_bends_cracks_at_a_force_that_settles_with_more_points(
-    tmp_path, scene
-):
+def test_a_strip_that_bends_cracks_at_a_force_that_settles_with_more_points(tmp_path):
     """With three rows the middle of a joint, with two thirds of its area, cracks at once, and a quarter too late."""
     peaks = {}
     for points in (None, "3", "5", "9,9"):
@@ -77,7 +75,7 @@ def test_a_strip_that_bends_cracks_at_a_force_that_settles_with_more_points(
     ],
 )  # fmt: skip
 def test_points_that_would_do_nothing_or_harm_are_refused(
-    tmp_path, scene, capsys, words, plane, message
+    tmp_path, capsys, words, plane, message
 ):
     with pytest.raises(SystemExit) as refused:
         refusing = strip(tmp_path, *words, plane=plane)
@@ -88,7 +86,7 @@ def test_points_that_would_do_nothing_or_harm_are_refused(
 
 @pytest.mark.parametrize("divisions", ["1", "2"])
 def test_deformable_units_have_points_at_faces_and_thirds_of_the_thickness(
-    tmp_path, scene, divisions
+    tmp_path, divisions
 ):
     words = "--blocks", "deformable", "--divisions", divisions
     points = bedPoints(strip(tmp_path, *words))

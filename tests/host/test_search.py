@@ -2,11 +2,8 @@
 """What acts in a stage whose load grows, and the search for the load that is held, on structures that are known."""
 
 import base64
-from types import SimpleNamespace
 
 from hosted import *
-from hypothesis import given, settings
-from hypothesis import strategies as some
 from masonry.assembly.motion import REST
 from masonry.basics import GRAVITY, Collapsed
 from masonry.scene.stages import growing
@@ -94,7 +91,7 @@ def standing(scaling=1.0, height=0.6):
     return SimpleNamespace(args=args, description=box, running=running, model=made, share=1)  # fmt: skip
 
 
-def test_a_growth_takes_longer_with_scaled_masses_and_has_the_load_of_the_middle(scene):
+def test_a_growth_takes_longer_with_scaled_masses_and_has_the_load_of_the_middle():
     """Times go with the root of the masses, so that the growth is as slow beside the waves in the blocks."""
     O.dt = 1e-3
     load = Load(most=3.0)
@@ -126,7 +123,7 @@ def trial(looks, source=0.2, goal=0.5, scaling=1.0, speeds=None):
 
 @pytest.mark.parametrize("source, goal", [(0.2, 0.5), (0.5, 0.2), (0.3, 0.3)])
 def test_a_trial_leads_smoothly_to_its_load_and_looks_for_rest_under_it_alone(
-    scene, source, goal
+    source, goal
 ):
     held, at, values, made = trial(lambda n: True, source, goal)
     assert held and made.model.loading.loadFactor == pytest.approx(goal)
@@ -139,13 +136,13 @@ def test_a_trial_leads_smoothly_to_its_load_and_looks_for_rest_under_it_alone(
 
 
 @pytest.mark.parametrize("scaling", [1.0, 4.0])
-def test_a_trial_without_looks_at_rest_in_a_row_is_given_up_in_its_time(scene, scaling):
+def test_a_trial_without_looks_at_rest_in_a_row_is_given_up_in_its_time(scaling):
     held, at, _, _ = trial(lambda n: n % LOOKS, scaling=scaling)
     assert not held and growing.WHY[at.ended].startswith("it was still moving")
     assert at.taken * O.dt == pytest.approx(growing.TRIAL * math.sqrt(scaling), rel=EVERY * O.dt / growing.TRIAL)  # fmt: skip
 
 
-def test_a_trial_ends_when_the_structure_moves_faster_and_faster(scene):
+def test_a_trial_ends_when_the_structure_moves_faster_and_faster():
     faster = lambda steps: 2 * growing.SURE * steps / 3000  # SURE after 15 looks
     held, at, _, _ = trial(lambda n: False, speeds=faster)
     assert not held and growing.WHY[at.ended].startswith("it moved faster")
@@ -175,7 +172,7 @@ def search(
     """A search on a structure that holds loads below its capacity from rest, and below another one from a state in which it
     moves, and that buckles from a third load on. Returns its memory, the scene and the trials: factor, whether it began at rest,
     the state it began with, and whether it was held."""
-    written, here, trials = [], {"state": None}, []
+    here, trials = {"state": None}, []
     text = lambda factor: base64.b64encode(repr(factor).encode()).decode()
     load, made = Load(most=1.2 * last), standing()
     made.model.atRest = None

@@ -31,7 +31,7 @@ def column(scene, head):
 
 @pytest.mark.parametrize("blocks", ["rigid", "deformable"])
 @pytest.mark.parametrize("plane", [True, False], ids=["plane", "space"])
-def test_at_rest_a_section_carries_what_is_above_it(tmp_path, scene, plane, blocks):
+def test_at_rest_a_section_carries_what_is_above_it(tmp_path, plane, blocks):
     wall = made(tmp_path, bricks.Wall(0.66, 0.486), "--blocks", blocks, plane=plane)
     wall.platen("bottom")
     wall.press(wall.platen("top", rotation="held"), 0.3e6)
@@ -59,7 +59,7 @@ def test_at_rest_a_section_carries_what_is_above_it(tmp_path, scene, plane, bloc
     "plane, axis", [(True, 0), (False, 0), (False, 1)], ids=["plane", "x", "y"]
 )
 def test_a_push_is_the_shear_force_below_and_its_lever_arm_the_moment(
-    tmp_path, scene, plane, axis, blocks
+    tmp_path, plane, axis, blocks
 ):
     """The platen can turn, so what acts on it are the push and the pressure, at places that are known."""
     words = "--blocks", blocks, "--rate", "2.5"
@@ -98,7 +98,7 @@ def test_a_push_is_the_shear_force_below_and_its_lever_arm_the_moment(
 @pytest.mark.parametrize("blocks", ["rigid", "deformable"])
 @pytest.mark.parametrize("plane", [True, False], ids=["plane", "space"])
 def test_the_section_at_the_foot_has_the_force_and_moment_that_the_base_feels(
-    tmp_path, scene, plane, blocks
+    tmp_path, plane, blocks
 ):
     """Also of a wall that has cracked and moved far, in the middle of a push, but for the motion of a step."""
     wall = made(tmp_path, bricks.Wall(0.44, 0.648), "--blocks", blocks, plane=plane)
@@ -128,7 +128,7 @@ def test_the_section_at_the_foot_has_the_force_and_moment_that_the_base_feels(
 
 
 def test_tractions_of_a_frame_add_up_to_the_section_and_say_on_which_block_they_act(
-    tmp_path, scene
+    tmp_path,
 ):
     wall = made(tmp_path, bricks.Wall(0.44, 0.324), plane=False)
     wall.platen("bottom")
@@ -150,7 +150,7 @@ def test_tractions_of_a_frame_add_up_to_the_section_and_say_on_which_block_they_
     wall.finish()
 
 
-def test_damping_of_joints_is_a_part_of_what_they_transmit(tmp_path, scene):
+def test_damping_of_joints_is_a_part_of_what_they_transmit(tmp_path):
     wall = made(tmp_path, bricks.Wall(0.44, 0.648))
     base = wall.platen("bottom")
     top = wall.platen("top", rotation="free")
@@ -167,7 +167,7 @@ def test_damping_of_joints_is_a_part_of_what_they_transmit(tmp_path, scene):
 
 @pytest.mark.parametrize("damping", [0, 1e-5], ids=["elastic", "damped"])
 @pytest.mark.parametrize("negative", [False, True], ids=["", "negative"])
-def test_a_joint_transmits_what_both_of_its_blocks_feel(scene, damping, negative):
+def test_a_joint_transmits_what_both_of_its_blocks_feel(damping, negative):
     """Far from the reference state and by a large jump; a quaternion and its negative are the same rotation."""
     joint = MasonryJoint(elastic=True, normalStiffness=1e9, shearStiffness=5e8)
     oscillator(joint, blocked="xyzXYZ")
@@ -192,7 +192,7 @@ def test_a_joint_transmits_what_both_of_its_blocks_feel(scene, damping, negative
 
 
 def test_the_parts_of_a_corner_add_up_and_a_joint_is_of_the_part_of_its_upper_brick(
-    tmp_path, scene
+    tmp_path,
 ):
     blocks = bricks.Corner(1.1, 0.88, 0.486, halves=False)
     corner = made(tmp_path, blocks, masonry=materials.dry(normalStiffness=5e10))
@@ -226,7 +226,7 @@ def test_the_parts_of_a_corner_add_up_and_a_joint_is_of_the_part_of_its_upper_br
         (lambda s: (s.section(0.1, name="a"), s.section(0.2, name="a"), s.begin()), "two columns have the name a_M_y_kNm"),
     ],
 )  # fmt: skip
-def test_sections_that_cannot_be_are_refused(tmp_path, scene, act, message):
+def test_sections_that_cannot_be_are_refused(tmp_path, act, message):
     wall = made(tmp_path, bricks.Wall(0.44, 0.324))
     wall.platen("bottom")
     wall.handle(-1)
@@ -237,7 +237,7 @@ def test_sections_that_cannot_be_are_refused(tmp_path, scene, act, message):
     wall.finished = True
 
 
-def test_a_block_that_leans_has_its_moment_at_the_base(tmp_path, scene):
+def test_a_block_that_leans_has_its_moment_at_the_base(tmp_path):
     """Under a W its base carries V = a W and M = a W h / 2, and no normal force but its weight; ``run.json`` says what they are."""
     block = made(tmp_path, bricks.stack(1, (0.4, 0.3, 0.6)), masonry=materials.dry(0.9, normalStiffness=1e11), plane=False)  # fmt: skip
     block.platen("bottom")
@@ -263,7 +263,7 @@ def test_a_block_that_leans_has_its_moment_at_the_base(tmp_path, scene):
         (lambda s: s.hold(0, name="foot"), "foot_force_z_kN", "base_N_kN"),
     ],
 )  # fmt: skip
-def test_the_base_is_recorded_once(tmp_path, scene, act, present, missing):
+def test_the_base_is_recorded_once(tmp_path, act, present, missing):
     stack = made(tmp_path, bricks.stack(3, (0.4, 0.3, 0.2)), masonry=materials.dry(0.6))
     act(stack)
     stack.begin()

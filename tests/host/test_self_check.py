@@ -2,14 +2,7 @@
 """The self-check of the plugin: what it refuses, what it leaves alone, and what the module shows to others."""
 
 import importlib.util
-import os
-import re
-import shutil
-import subprocess
-import sys
-
-import pytest
-from conftest import ROOT
+from usual import *
 
 HOST = os.path.join(ROOT, "yade_plugin", "host")
 PACKAGE = importlib.util.find_spec("masonry").submodule_search_locations

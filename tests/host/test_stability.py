@@ -36,9 +36,9 @@ def panel(
 
 
 @pytest.mark.parametrize("how", ["step", "run", "background"])
-@pytest.mark.parametrize("functors", [False, True], ids=["loop", "functors"])
+@FUNCTORS
 @pytest.mark.parametrize("blocks", ["rigid", "deformable"])
-def test_a_time_step_above_its_limit_is_refused_and_named(scene, blocks, functors, how):
+def test_a_time_step_above_its_limit_is_refused_and_named(blocks, functors, how):
     panel(blocks, functors)
     O.run(20, True)
     there = O.iter
@@ -58,9 +58,9 @@ def test_a_time_step_above_its_limit_is_refused_and_named(scene, blocks, functor
     assert O.iter == there + 100
 
 
-@pytest.mark.parametrize("functors", [False, True], ids=["loop", "functors"])
+@FUNCTORS
 @pytest.mark.parametrize("blocks", ["rigid", "deformable"])
-def test_the_limit_follows_joints_and_damping(scene, blocks, functors):
+def test_the_limit_follows_joints_and_damping(blocks, functors):
     """A run finds it by itself, without a question for the limit."""
     panel(blocks, functors, damping=0, young=1e12)
     for zones in [e for e in O.engines if isinstance(e, MasonryZones)]:
@@ -85,7 +85,7 @@ def test_the_limit_follows_joints_and_damping(scene, blocks, functors):
 
 
 @pytest.mark.parametrize("blocks", ["rigid", "deformable"])
-def test_motion_out_of_nothing_is_seen_within_a_hundred_steps(scene, blocks):
+def test_motion_out_of_nothing_is_seen_within_a_hundred_steps(blocks):
     """A brick whose mass a script divides by 1000 in the middle of a run. No engine is informed of that."""
     rigid = max(panel(blocks, damping=0, rigidLast=True))
     O.run(20, True)
@@ -96,7 +96,7 @@ def test_motion_out_of_nothing_is_seen_within_a_hundred_steps(scene, blocks):
     assert O.iter - start < 100
 
 
-def test_velocities_given_by_hand_are_no_motion_out_of_nothing_once_reported(scene):
+def test_velocities_given_by_hand_are_no_motion_out_of_nothing_once_reported():
     laid = panel(damping=0, gravity=(0, 0, 0))
     for throw in range(3):
         for body in (body for body in laid if laid[body].course > 0):
@@ -112,7 +112,7 @@ def test_velocities_given_by_hand_are_no_motion_out_of_nothing_once_reported(sce
         assert abs(energy().balance()["error"]) < 1e-3
 
 
-def test_numbers_that_are_not_finite_stop_the_run_and_are_named(scene):
+def test_numbers_that_are_not_finite_stop_the_run_and_are_named():
     panel()
     O.run(20, True)
     O.bodies[9].state.vel = Vector3(math.nan, 0, 0)
@@ -121,7 +121,7 @@ def test_numbers_that_are_not_finite_stop_the_run_and_are_named(scene):
         run(20)
 
 
-def test_a_user_who_knows_better_can_go_on(scene):
+def test_a_user_who_knows_better_can_go_on():
     panel(damping=0)
     energy().watch = False
     O.dt = 1.01 * criticalTimeStep()[0]
@@ -158,12 +158,9 @@ def perArea(**expected):
         assert value / AREA == there, name
 
 
-FUNCTORS = pytest.mark.parametrize("functors", [False, True], ids=["loop", "functors"])
-
-
 @FUNCTORS
 def test_an_elastic_joint_stores_half_the_stiffness_times_the_square_of_its_jump(
-    scene, functors
+    functors,
 ):
     phys = pair(MasonryJoint(elastic=True), functors)
     kn, ks = phys.normalStiffness, phys.shearStiffness
@@ -177,7 +174,7 @@ def test_an_elastic_joint_stores_half_the_stiffness_times_the_square_of_its_jump
 
 
 @FUNCTORS
-def test_a_joint_torn_open_dissipates_its_fracture_energy(scene, functors):
+def test_a_joint_torn_open_dissipates_its_fracture_energy(functors):
     pair(MasonryJoint(), functors)
     move(4e-3, (0, 0, 1), 20000)
     # the bricks in series give back what they stored (law/README.md, rigid units)
@@ -187,7 +184,7 @@ def test_a_joint_torn_open_dissipates_its_fracture_energy(scene, functors):
 @FUNCTORS
 @pytest.mark.parametrize("pressure", [0.0, 0.5e6])
 def test_a_joint_that_slides_dissipates_its_fracture_energy_and_friction(
-    scene, functors, pressure
+    functors, pressure
 ):
     joint = MasonryJoint()
     phys = pair(joint, functors)
@@ -210,9 +207,7 @@ def test_a_joint_that_slides_dissipates_its_fracture_energy_and_friction(
 
 
 @FUNCTORS
-def test_a_joint_crushed_to_its_peak_dissipates_what_lies_under_its_curve(
-    scene, functors
-):
+def test_a_joint_crushed_to_its_peak_dissipates_what_lies_under_its_curve(functors):
     joint = MasonryJoint()
     phys = pair(joint, functors)
     fcp, fel = joint.compressiveStrength, 0.3 * joint.compressiveStrength
@@ -228,7 +223,7 @@ def test_a_joint_crushed_to_its_peak_dissipates_what_lies_under_its_curve(
 
 
 @FUNCTORS
-def test_a_brick_that_swings_freely_keeps_the_energy_it_was_given(scene, functors):
+def test_a_brick_that_swings_freely_keeps_the_energy_it_was_given(functors):
     pair(MasonryJoint(elastic=True), functors)
     s = O.bodies[1].state
     s.blockedDOFs = "XYZ"

@@ -1,12 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """YADE's own 3-D view of a scene, under a virtual display: what is drawn, and what it costs."""
 
-import shutil
-import subprocess
-
-import numpy as np
-import pytest
-from conftest import runProgram
+from usual import *
 import yade.config
 from masonry import Gl1_MasonryBlock, Gl1_MasonryJointPhys
 

@@ -2,7 +2,6 @@
 """YADE's own engines beside ours, and the check in YADE's form."""
 
 import builtins
-import os
 
 from hosted import *
 from yade import plot, timing, utils
@@ -18,7 +17,7 @@ def standing(friction, **settings):
     return upper, 0.6 * 0.3 * 0.3 * 2500 * G
 
 
-def test_connect_chooses_the_time_step_that_a_script_has_not(scene):
+def test_connect_chooses_the_time_step_that_a_script_has_not():
     """Of the 1e-8 s that YADE begins with, a wall would need days; one that the script has chosen stays."""
     standing(0.5)
     assert O.dt == pytest.approx(0.5 * criticalTimeStep()[0], rel=0.02)
@@ -28,7 +27,7 @@ def test_connect_chooses_the_time_step_that_a_script_has_not(scene):
     assert O.dt == 2e-5
 
 
-def test_forces_motions_and_records_of_yades_engines_hold_beside_ours(scene, tmp_path, capfd):  # fmt: skip
+def test_forces_motions_and_records_of_yades_engines_hold_beside_ours(tmp_path, capfd):
     """A force of YADE's that grows to 0.6 of the weight moves a block where friction is 0.5: it slides from there on. Its
     work, and that of a motion of YADE's, are in the energy balance."""
     block, weight = standing(0.5)
@@ -58,7 +57,7 @@ def test_forces_motions_and_records_of_yades_engines_hold_beside_ours(scene, tmp
 
 
 @pytest.mark.parametrize("functors, place", [(False, 2), (True, 1), (True, 2)])
-def test_work_that_is_not_counted_is_said_and_ends_no_run(scene, capfd, functors, place):  # fmt: skip
+def test_work_that_is_not_counted_is_said_and_ends_no_run(capfd, functors, place):
     """Behind the loop of the joints, and with functors, forces of YADE's engines are not apart from those of joints."""
     block, weight = standing(0.5, functors=functors)
     ours = list(O.engines)
@@ -69,7 +68,7 @@ def test_work_that_is_not_counted_is_said_and_ends_no_run(scene, capfd, functors
 
 
 @pytest.mark.slow
-def test_tables_tags_plots_and_timing_are_those_of_yade(scene, tmp_path, monkeypatch):
+def test_tables_tags_plots_and_timing_are_those_of_yade(tmp_path, monkeypatch):
     """A value of a table of yade-batch reaches the scene and O.tags; a PyRunner fills yade.plot; and
     yade.timing knows each engine of ours."""
     table = tmp_path / "table"

@@ -332,10 +332,8 @@ def test_an_error_names_how_to_set_several(name, value, together):
 
 
 def test_what_yade_has_loaded_counts_as_given():
-    O.reset()
     addBlock(bricks.boxCorners((0, 0, 0), (1, 1, 1)), MasonryMat(density=1800))
     assert "young" in O.bodies[0].mat.assumed()
     O.saveTmp()
     O.loadTmp()
     assert O.bodies[0].mat.assumed() == {} and copied(O.bodies[0].mat).assumed() == {}
-    O.reset()

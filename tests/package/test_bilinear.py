@@ -334,7 +334,7 @@ def test_drifts_are_displacements_over_the_height(tmp_path):
     assert bilinear.drifts(other, 2.0)[1].value == pytest.approx(1)
 
 
-def test_numbers_have_unit_meaning_and_source(tmp_path):
+def test_numbers_have_unit_meaning_and_source():
     found = bilinear.bilinear(*WHOLE)
     for one in found.numbers():
         assert one.name.endswith(one.unit.replace("/", "_per_")) or one.unit == "-"

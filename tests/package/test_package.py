@@ -145,7 +145,7 @@ def test_any_text_for_a_table_is_refused_in_words_or_makes_a_joint(text):
         assert ratios[0] == 1 and ratios == sorted(set(ratios))
 
 
-def test_every_option_is_explained_with_its_default(capsys):
+def test_every_option_is_explained_with_its_default():
     parser = options.parser("a wall", until=12)
     for action in parser._actions:
         assert action.help

@@ -1,9 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """A small wall for the tests, and how it is tested in this process."""
 
-import os
 import runpy
-import sys
 from dataclasses import dataclass
 from typing import Callable
 

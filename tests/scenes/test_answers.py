@@ -28,7 +28,7 @@ def answers(folder):
     return {f"{a['stage']} {a['name']}": a for a in readRun(str(folder))["answers"]}
 
 
-def test_a_push_answers_with_its_peak_and_where_it_was(scene, tmp_path, capsys):
+def test_a_push_answers_with_its_peak_and_where_it_was(tmp_path, capsys):
     assert carryOut(SMALL, parsed("--no-vtk", "--until", "0.4", "--out", str(tmp_path))) == 0  # fmt: skip
     run, found = readRun(str(tmp_path)), answers(tmp_path)
     peak = found["push peak"]
@@ -43,7 +43,7 @@ def test_a_push_answers_with_its_peak_and_where_it_was(scene, tmp_path, capsys):
     assert _answerName(peak) == "push_2_peak_kN"
 
 
-def test_a_cycle_answers_with_the_peaks_of_both_directions(scene, tmp_path):
+def test_a_cycle_answers_with_the_peaks_of_both_directions(tmp_path):
     args = parsed("--no-vtk", "--history", "0.2", "--out", str(tmp_path))
     assert carryOut(SMALL, args) == 0
     run, found = readRun(str(tmp_path)), answers(tmp_path)

@@ -2,7 +2,6 @@
 """Runs that are killed, interrupted or stopped by a full disk, and resumed. Their curve must be that of a whole run."""
 
 from hosted import *
-import errno
 from pathlib import Path
 from masonry.run import frames
 from masonry.run.results import Results
@@ -119,7 +118,7 @@ CANTILEVER = Wall(loadHeight=0.6, riding=False)  # under rollers
     ids=["rigid", "deformable", "cantilever"],
 )
 def test_a_wall_interrupted_in_every_stage_leaves_the_curve_of_a_whole_run(
-    scene, tmp_path, at, wall, blocks, path, every
+    tmp_path, at, wall, blocks, path, every
 ):
     words = [*path, "--blocks", blocks]
     assert run(tmp_path / "whole", *words, wall=wall) == 0
@@ -141,7 +140,7 @@ def test_a_wall_interrupted_in_every_stage_leaves_the_curve_of_a_whole_run(
 @pytest.mark.parametrize("blocks", ["rigid", "deformable"])
 @pytest.mark.parametrize("path", ["shear", "closure-shear"])
 def test_a_couplet_interrupted_in_every_move_leaves_the_curve_of_a_whole_run(
-    scene, tmp_path, at, blocks, path
+    tmp_path, at, blocks, path
 ):
     def run(*words):
         return runScript("couplet", *words)
@@ -162,7 +161,7 @@ def test_a_couplet_interrupted_in_every_move_leaves_the_curve_of_a_whole_run(
     assert files(tmp_path / "broken") == files(tmp_path / "whole")
 
 
-def test_a_finished_run_can_be_pushed_on(scene, tmp_path):
+def test_a_finished_run_can_be_pushed_on(tmp_path):
     assert run(tmp_path / "whole", *PUSH) == 0
     assert run(tmp_path / "parts", *PUSH, "--until", "0.15") == 0
     assert run(tmp_path / "parts", "--until", "0.3", resume=True) == 0
@@ -170,7 +169,7 @@ def test_a_finished_run_can_be_pushed_on(scene, tmp_path):
     assert readRun(tmp_path / "parts")["options"]["rate"] == 40
 
 
-def test_frames_can_begin_and_end_with_a_resumed_run(scene, tmp_path):
+def test_frames_can_begin_and_end_with_a_resumed_run(tmp_path):
     assert run(tmp_path / "whole", *PUSH) == 0
     assert run(tmp_path / "parts", *PUSH, "--no-vtk", "--until", "0.15") == 0
     text = str(tmp_path / "parts")
@@ -183,9 +182,7 @@ def test_frames_can_begin_and_end_with_a_resumed_run(scene, tmp_path):
 
 
 @pytest.mark.parametrize("rows", [0, 29])
-def test_a_run_that_fails_is_taken_up_where_it_failed(
-    scene, tmp_path, monkeypatch, rows
-):
+def test_a_run_that_fails_is_taken_up_where_it_failed(tmp_path, monkeypatch, rows):
     assert run(tmp_path / "whole", *PUSH) == 0
     read, count = Structure.read, [rows + 1]
 
@@ -203,11 +200,7 @@ def test_a_run_that_fails_is_taken_up_where_it_failed(
     assert files(tmp_path / "failed") == files(tmp_path / "whole")
 
 
-def noSpace(file):
-    raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
-
-
-def test_a_run_goes_on_after_a_full_disk(scene, tmp_path, at, capsys, monkeypatch):
+def test_a_run_goes_on_after_a_full_disk(tmp_path, at, capsys, monkeypatch):
     assert run(tmp_path / "whole", *PUSH) == 0
     kept = str(tmp_path / "full" / "run.checkpoint")
     seen = {}
@@ -232,7 +225,7 @@ def test_a_run_goes_on_after_a_full_disk(scene, tmp_path, at, capsys, monkeypatc
 
 @pytest.mark.parametrize("lost", ["curve.csv", "joints_0001.vtp", "run.json.new"])
 def test_a_run_whose_results_cannot_be_written_goes_on_when_there_is_room(
-    scene, tmp_path, at, capsys, monkeypatch, lost
+    tmp_path, at, capsys, monkeypatch, lost
 ):
     monkeypatch.setattr(frames, "SLOW_FRAME", math.inf)  # none is written beside
     assert run(tmp_path / "whole", *PUSH) == 0
@@ -268,7 +261,7 @@ def test_a_run_whose_results_cannot_be_written_goes_on_when_there_is_room(
 
 
 def test_a_frame_that_is_lost_beside_a_run_is_said_and_is_in_no_list(
-    scene, tmp_path, at, capsys, monkeypatch
+    tmp_path, at, capsys, monkeypatch
 ):
     out = tmp_path / "full"
     monkeypatch.setattr(frames, "SLOW_FRAME", -1)  # all are written beside the run
@@ -286,7 +279,7 @@ def test_a_frame_that_is_lost_beside_a_run_is_said_and_is_in_no_list(
 # -- rows that wait ----------------------------------------------------------------------------------------------------
 
 
-def test_a_row_waits_for_a_fifth_of_a_second_at_most(scene, tmp_path, at):
+def test_a_row_waits_for_a_fifth_of_a_second_at_most(tmp_path, at):
     """While steps are slow, every row is written at once; while they are fast, several rows are written together."""
     seen = []
 
@@ -307,7 +300,7 @@ def test_a_row_waits_for_a_fifth_of_a_second_at_most(scene, tmp_path, at):
 
 
 @pytest.mark.parametrize("end", ["checkpoint", "interrupt", "error"])
-def test_rows_that_wait_are_kept(scene, tmp_path, at, end):
+def test_rows_that_wait_are_kept(tmp_path, at, end):
     def act(run):
         waiting = len(run.readings.waiting)
         assert waiting > 1
@@ -340,7 +333,7 @@ def test_rows_that_wait_are_kept(scene, tmp_path, at, end):
 
 
 @pytest.fixture
-def broken(scene, tmp_path, at):
+def broken(tmp_path, at):
     out = tmp_path / "broken"
     at(50, interrupt)
     assert run(out, *PUSH, "--set", "bed.cohesion=2e5") == 130
@@ -393,7 +386,7 @@ def test_links_or_pipes_are_not_taken_up(broken, tmp_path, capsys, name, kind, m
     assert set(os.listdir(broken)) == names and other.read_text() == "of the user"
 
 
-def test_a_script_whose_last_word_was_refused_goes_on_when_mended(tmp_path, scene):
+def test_a_script_whose_last_word_was_refused_goes_on_when_mended(tmp_path):
     text = """
 from masonry import Scene, bricks, materials
 scene = Scene("s", bricks.Wall(0.44, 0.162), materials.calciumSilicate(), arguments=["--no-vtk", {!r}, {!r}])

@@ -16,14 +16,14 @@ REPORTED = {"restitution-elastic": (0.98764, 1e-3)}
 
 
 @pytest.mark.parametrize("case", [c for c in QUICK if c.aim], ids=lambda c: c.name)
-def test_a_closed_form_is_met_or_missed_as_the_readme_says(scene, case):
+def test_a_closed_form_is_met_or_missed_as_the_readme_says(case):
     result = case.run(quick=True)
     shown = f"expected {result.expected:g}, measured {result.measured}"
     assert result.met == (not case.misses), shown
 
 
 @pytest.mark.parametrize("name", REPORTED)
-def test_a_value_without_an_aim_is_that_of_the_readme(scene, name):
+def test_a_value_without_an_aim_is_that_of_the_readme(name):
     (case,) = (c for c in QUICK if c.name == name)
     value, tolerance = REPORTED[name]
     assert case.run(quick=True).middle == pytest.approx(value, abs=tolerance)
@@ -67,7 +67,7 @@ def test_the_program_writes_a_table_and_counts_misses(tmp_path, capsys, monkeypa
     assert "no case nothing; there are bad" in capsys.readouterr().err
 
 
-def test_the_forces_of_limit_analysis_are_added_up_once_more(scene):
+def test_the_forces_of_limit_analysis_are_added_up_once_more():
     arch(oppenheim(), friction=0.7)
     found = bound()
     assert found.factor == pytest.approx(0.3736, rel=1e-3)
@@ -76,13 +76,13 @@ def test_the_forces_of_limit_analysis_are_added_up_once_more(scene):
 
 
 @pytest.mark.parametrize("thickness", [0.09, 0.1])
-def test_an_arch_too_thin_does_not_rest_whatever_the_solver_says(scene, thickness):
+def test_an_arch_too_thin_does_not_rest_whatever_the_solver_says(thickness):
     arch(semicircle(7, thickness))
     assert rests(limit.read()) == (thickness > 0.0957)
 
 
 @pytest.mark.parametrize("thickness", [0.1, 0.105, 0.1095, 0.11, 0.12])
-def test_an_arch_of_many_voussoirs_rests_as_its_thickness_says(scene, thickness):
+def test_an_arch_of_many_voussoirs_rests_as_its_thickness_says(thickness):
     """The interior point of Clp misses equilibrium by 3e-5 in some of them; the least thickness is 0.1074."""
     arch(semicircle(40, thickness))
     assert rests(limit.read()) == (thickness > 0.1074)

@@ -9,7 +9,7 @@ from contact_rows import CASES, Row
 
 
 @pytest.mark.parametrize("name", CASES)
-def test_a_quick_case_holds_its_limits_or_says_why_not(scene, name):
+def test_a_quick_case_holds_its_limits_or_says_why_not(name):
     rows = CASES[name](True)
     for row in rows:
         assert row.met is not False or row.misses, f"{row.what}: {row.measured}"

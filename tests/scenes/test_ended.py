@@ -49,7 +49,7 @@ def signalled():
 
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
 def test_a_signal_ends_limit_analysis_and_the_run_says_so(
-    scene, tmp_path, undrawn, monkeypatch, signalled, number
+    tmp_path, undrawn, monkeypatch, signalled, number
 ):
     asked, solved = tmp_path / "asked", solver._solved
 
@@ -74,7 +74,7 @@ def test_a_signal_ends_limit_analysis_and_the_run_says_so(
     assert curves[0].read_bytes() == curves[1].read_bytes()
 
 
-def test_a_signal_ends_drawing(scene, tmp_path, monkeypatch, signalled, capsys):
+def test_a_signal_ends_drawing(tmp_path, monkeypatch, signalled, capsys):
     slow, begun = tmp_path / "slow", tmp_path / "begun"
     slow.write_text(f"#!/bin/sh\ntouch {begun}\nexec sleep 60\n")
     slow.chmod(0o755)
@@ -88,7 +88,7 @@ def test_a_signal_ends_drawing(scene, tmp_path, monkeypatch, signalled, capsys):
     assert readRun(str(out))["ended"] == "done"
 
 
-def test_a_drawing_program_that_is_missing(scene, tmp_path, monkeypatch, capsys):
+def test_a_drawing_program_that_is_missing(tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(outcome.sys, "executable", "/nowhere/python3")
     assert carryOut(SMALL, parsed(*SHORT, "--out", str(tmp_path))) == 1
     said = capsys.readouterr()
@@ -98,7 +98,7 @@ def test_a_drawing_program_that_is_missing(scene, tmp_path, monkeypatch, capsys)
 
 @pytest.mark.parametrize("steps", [0, 300])
 def test_too_little_memory_is_one_sentence(
-    scene, tmp_path, monkeypatch, undrawn, capsys, steps
+    tmp_path, monkeypatch, undrawn, capsys, steps
 ):
     take = Run._take
 
@@ -145,7 +145,7 @@ def test_too_little_memory_for_numerical_libraries_is_one_sentence(program):
     assert (done.returncode, done.stderr) == (1, FULL + "\n")
 
 
-def test_a_clock_that_jumps_changes_nothing(scene, tmp_path, monkeypatch, undrawn):
+def test_a_clock_that_jumps_changes_nothing(tmp_path, monkeypatch, undrawn):
     words = [*SHORT, "--checkpoint-every", "5"]
     assert carryOut(SMALL, parsed(*words, "--out", str(tmp_path / "one"))) == 0
     now = iter(range(10**9, 0, -(10**5)))

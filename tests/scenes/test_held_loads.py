@@ -28,13 +28,13 @@ def found(folder, name):
 
 
 @pytest.mark.parametrize("name", held_loads.QUICK)
-def test_a_held_load_is_that_of_limit_analysis(scene, name):
+def test_a_held_load_is_that_of_limit_analysis(name):
     cells, met = held_loads.row(name, slow=False)
     assert met, cells
 
 
 @pytest.mark.parametrize("rate", [0.2, 4.0])
-def test_the_rate_of_the_growth_hardly_counts(scene, tmp_path, rate):
+def test_the_rate_of_the_growth_hardly_counts(tmp_path, rate):
     s, stone = stack(tmp_path)
     s.settle()
     assert s.accelerate(1.5, rate=rate) == COLLAPSED
@@ -53,7 +53,7 @@ def test_the_rate_of_the_growth_hardly_counts(scene, tmp_path, rate):
     assert curve["displacement_mm"][rows[-1]] > 1
 
 
-def test_a_structure_that_stands_has_a_load_that_was_held_and_no_other(scene, tmp_path):
+def test_a_structure_that_stands_has_a_load_that_was_held_and_no_other(tmp_path):
     s, stone = stack(tmp_path)
     s.settle()
     assert s.accelerate(0.2, rate=0.4) == AT_REST
@@ -65,7 +65,7 @@ def test_a_structure_that_stands_has_a_load_that_was_held_and_no_other(scene, tm
     assert found(tmp_path, "factor_not_held") == [None, None]
 
 
-def test_loads_of_later_stages_replace_others_and_can_be_bracketed(scene, tmp_path):
+def test_loads_of_later_stages_replace_others_and_can_be_bracketed(tmp_path):
     s, stone = stack(tmp_path)
     s.load(stone, (0, 0, -1000))
     s.settle()
@@ -113,7 +113,7 @@ def test_each_trial_of_a_bracket_begins_with_the_structure_at_rest(capacity):
     assert fragile.stands
 
 
-def test_a_fall_is_counted_from_the_state_to_which_the_scene_steps_back(scene, tmp_path):  # fmt: skip
+def test_a_fall_is_counted_from_the_state_to_which_the_scene_steps_back(tmp_path):
     s, stone = stack(tmp_path)
     s.settle()
     state = O.bodies[stone.body].state
@@ -140,7 +140,7 @@ def test_a_fall_is_counted_from_the_state_to_which_the_scene_steps_back(scene, t
         (lambda s, t: s.growWind(2e4, (1, 0, 0)), 1e-3 * WEIGHT * 0.15 / 0.3 / (0.3 * 0.6)),
     ],
 )  # fmt: skip
-def test_growing_loads_hold_what_statics_says(scene, tmp_path, grow, expected):
+def test_growing_loads_hold_what_statics_says(tmp_path, grow, expected):
     s, stone = stack(tmp_path)
     s.settle()
     assert grow(s, stone) == COLLAPSED
@@ -150,7 +150,7 @@ def test_growing_loads_hold_what_statics_says(scene, tmp_path, grow, expected):
     assert s.factor < 1.002 * entry["factor"] < 1.02 * expected
 
 
-def test_supports_of_later_stages_take_their_reaction(scene, tmp_path):
+def test_supports_of_later_stages_take_their_reaction(tmp_path):
     s, stone = stack(tmp_path)
     s.settle()
     s.hold(stone, "x")
@@ -165,7 +165,7 @@ def test_supports_of_later_stages_take_their_reaction(scene, tmp_path):
     s.finish()
 
 
-def test_a_lean_that_is_held_is_noted_with_its_factor_and_displacement(scene, tmp_path):
+def test_a_lean_that_is_held_is_noted_with_its_factor_and_displacement(tmp_path):
     s, stone = stack(tmp_path)
     s.settle()
     before = s.results.column("stone_x_mm")[-1]
@@ -184,7 +184,7 @@ def test_a_lean_that_is_held_is_noted_with_its_factor_and_displacement(scene, tm
     assert moved[0] > 1.2 * moved[1] > 0
 
 
-def test_suction_pulls_with_the_pressure_times_the_face(scene, tmp_path):
+def test_suction_pulls_with_the_pressure_times_the_face(tmp_path):
     s, stone = stack(tmp_path)
     s.settle()
     pulled = lambda: 1e3 * s.results.column("base_force_x_kN")[-1]
@@ -202,7 +202,7 @@ def test_suction_pulls_with_the_pressure_times_the_face(scene, tmp_path):
     s.finish()
 
 
-def test_a_press_of_a_later_stage_has_its_stress_with_the_weight_of_the_platen(scene, tmp_path):  # fmt: skip
+def test_a_press_of_a_later_stage_has_its_stress_with_the_weight_of_the_platen(tmp_path):  # fmt: skip
     s, _ = stack(tmp_path)
     top = s.platen("top", height=0.2)
     s.press(top, 0.05e6)
@@ -215,7 +215,7 @@ def test_a_press_of_a_later_stage_has_its_stress_with_the_weight_of_the_platen(s
     s.finish()
 
 
-def test_what_is_held_in_a_later_stage_stops_and_stays_held(scene, tmp_path):
+def test_what_is_held_in_a_later_stage_stops_and_stays_held(tmp_path):
     s, stone = stack(tmp_path, plane=False)
     s.settle()
     state = O.bodies[stone.body].state
@@ -228,7 +228,7 @@ def test_what_is_held_in_a_later_stage_stops_and_stays_held(scene, tmp_path):
     s.finish()
 
 
-def test_a_support_moves_at_its_rate_and_stands_then(scene, tmp_path):
+def test_a_support_moves_at_its_rate_and_stands_then(tmp_path):
     s, _ = stack(tmp_path)
     base = next(iter(s.description.targets.values()))
     s.settle()
@@ -249,7 +249,7 @@ def test_a_support_moves_at_its_rate_and_stands_then(scene, tmp_path):
 
 
 @pytest.mark.parametrize("direction", [(0, 0, -1), (0.6, 0, -0.8), (-1, 0, 0)])
-def test_a_push_is_counted_in_its_direction_without_dead_weight(scene, tmp_path, direction):  # fmt: skip
+def test_a_push_is_counted_in_its_direction_without_dead_weight(tmp_path, direction):
     s, stone = stack(tmp_path, "--rate", "2")
     s.load(stone, (50, 0, -1000))
     s.settle()
@@ -264,7 +264,7 @@ def test_a_push_is_counted_in_its_direction_without_dead_weight(scene, tmp_path,
     assert not run["too_fast"] and run["initial_stiffness_kN_per_mm"] > 0
 
 
-def test_a_bound_changes_nothing_of_the_scene(scene, tmp_path):
+def test_a_bound_changes_nothing_of_the_scene(tmp_path):
     s, stone = stack(tmp_path)
     s.settle()
     entry = s.bound(stone, direction=(1, 0, 0))
@@ -273,7 +273,7 @@ def test_a_bound_changes_nothing_of_the_scene(scene, tmp_path):
     s.finish()
 
 
-def test_a_driven_platen_is_a_support_in_limit_analysis(scene, tmp_path):
+def test_a_driven_platen_is_a_support_in_limit_analysis(tmp_path):
     s, stone = stack(tmp_path)
     top = s.platen("top", rotation="held", drive="xz")
     s.settle()
@@ -283,7 +283,7 @@ def test_a_driven_platen_is_a_support_in_limit_analysis(scene, tmp_path):
     assert {"top_force_x_kN", "top_force_z_kN"} <= set(readCurve(str(tmp_path)))
 
 
-def test_pushes_along_two_lines_have_numbers_of_the_last(scene, tmp_path):
+def test_pushes_along_two_lines_have_numbers_of_the_last(tmp_path):
     s, stone = stack(tmp_path, "--rate", "2")
     lower = s.handle(1, name="lower")
     s.settle()
@@ -298,7 +298,7 @@ def test_pushes_along_two_lines_have_numbers_of_the_last(scene, tmp_path):
     assert max(both) > run["peak_at_both_ends_kN"]
 
 
-def test_a_very_short_push_ends_where_it_was_asked_to_and_asks_for_the_unit(scene, tmp_path, capsys):  # fmt: skip
+def test_a_very_short_push_ends_where_it_was_asked_to_and_asks_for_the_unit(tmp_path, capsys):  # fmt: skip
     s, stone = stack(tmp_path, "--rate", "0.1")
     s.settle()
     assert s.push(stone, 0.002) == DONE
@@ -308,7 +308,7 @@ def test_a_very_short_push_ends_where_it_was_asked_to_and_asks_for_the_unit(scen
     assert end == pytest.approx(0.002, rel=0.06)
 
 
-def test_a_result_of_the_script_is_an_answer(scene, tmp_path, capsys):
+def test_a_result_of_the_script_is_an_answer(tmp_path, capsys):
     s, stone = stack(tmp_path)
     with pytest.raises(ValueError, match="comes after the first stage"):
         s.result("height", 1.0)

@@ -36,7 +36,7 @@ def run(out, *words, **settings):
 
 
 @pytest.fixture
-def finished(scene, tmp_path):
+def finished(tmp_path):
     out = tmp_path / "finished"
     assert run(out, *SHORT) == 0
     return out
@@ -132,7 +132,7 @@ def test_a_folder_is_for_one_run_at_a_time(finished, monkeypatch, capsys, locks)
         assert "on host elsewhere, process 1," in capsys.readouterr().err
 
 
-def test_files_of_a_run_that_was_killed_are_replaced(scene, tmp_path):
+def test_files_of_a_run_that_was_killed_are_replaced(tmp_path):
     child = os.fork()
     if child == 0:
         Results(str(tmp_path / "r"), ["a_mm"]).append([[1.0]])
@@ -143,7 +143,7 @@ def test_files_of_a_run_that_was_killed_are_replaced(scene, tmp_path):
     assert not (tmp_path / "r" / "run.lock").exists()
 
 
-def test_a_slow_push_obeys_at_once_and_keeps_checkpoints(scene, tmp_path, monkeypatch):
+def test_a_slow_push_obeys_at_once_and_keeps_checkpoints(tmp_path, monkeypatch):
     monkeypatch.setattr(running, "LOOK_EVERY", 0.1)
     out, ends = tmp_path / "slow", []
 
@@ -196,13 +196,13 @@ def test_odd_names_and_terminals_end_in_order(tmp_path):
     assert not os.path.exists(odd)
 
 
-def test_a_wall_that_falls_before_its_push_has_status_1(scene, tmp_path, monkeypatch):
+def test_a_wall_that_falls_before_its_push_has_status_1(tmp_path, monkeypatch):
     monkeypatch.setattr(Loading, "hasSunk", lambda self, down=None: True)
     assert run(tmp_path / "r", *SHORT) == 1
     assert readRun(str(tmp_path / "r"))["collapsed"]
 
 
-def test_a_wall_that_moves_against_its_push_has_collapsed(scene, tmp_path, capsys):
+def test_a_wall_that_moves_against_its_push_has_collapsed(tmp_path, capsys):
     """The foot of a tall loading block on slippery joints moves back while its head is pushed."""
     words = ["--rate", "100", "--until", "10", "--no-vtk"]
     for what in ("residualFriction=0.01", "friction=0.01", "cohesion=0", "tensileStrength=0"):  # fmt: skip
@@ -213,7 +213,7 @@ def test_a_wall_that_moves_against_its_push_has_collapsed(scene, tmp_path, capsy
     assert len(files.readCurve(str(tmp_path / "r"))["time_s"]) < 1000
 
 
-def test_no_earlier_checkpoint_is_promised(scene, tmp_path, monkeypatch, capsys):
+def test_no_earlier_checkpoint_is_promised(tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(keeping, "saveCheckpoint", lambda *words: noSpace(None))
     assert run(tmp_path / "r", *SHORT) == 0
     assert capsys.readouterr().err.endswith("No space left on device\n")

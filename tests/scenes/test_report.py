@@ -13,7 +13,7 @@ from small import SMALL, carryOut, parsed
 MOST = 3e6  # [bytes] of the report of COMP-4
 
 
-def test_a_run_leaves_its_report_beside_its_figures(scene, tmp_path):
+def test_a_run_leaves_its_report_beside_its_figures(tmp_path):
     assert carryOut(SMALL, parsed("--until", "0.3", "--rate", "60", "--out", str(tmp_path))) == 0  # fmt: skip
     text = (tmp_path / "report.html").read_text()
     run = readRun(str(tmp_path))
@@ -35,14 +35,14 @@ def test_a_run_leaves_its_report_beside_its_figures(scene, tmp_path):
     assert again.read_text() == text
 
 
-def test_a_lean_run_leaves_none_and_no_words_for_it(scene, tmp_path):
+def test_a_lean_run_leaves_none_and_no_words_for_it(tmp_path):
     words = ["--until", "0.05", "--rate", "60", "--lean", "--out", str(tmp_path)]
     assert carryOut(SMALL, parsed(*words)) == 0
     assert not (tmp_path / "report.html").exists()
     assert "built" not in readRun(str(tmp_path))
 
 
-def test_a_run_that_goes_on_has_no_report_of_before(scene, tmp_path, monkeypatch):
+def test_a_run_that_goes_on_has_no_report_of_before(tmp_path, monkeypatch):
     words = ["--rate", "60", "--no-vtk"]
     assert carryOut(SMALL, parsed("--until", "0.1", *words, "--out", str(tmp_path))) == 0  # fmt: skip
     assert {"report.html", "curve.png"} <= set(os.listdir(tmp_path))
@@ -53,7 +53,7 @@ def test_a_run_that_goes_on_has_no_report_of_before(scene, tmp_path, monkeypatch
     assert "run.json" in there and not {"report.html", "curve.png"} & set(there)
 
 
-def test_a_bound_alone_has_a_report_without_a_curve(scene, tmp_path):
+def test_a_bound_alone_has_a_report_without_a_curve(tmp_path):
     assert carryOut(SMALL, parsed("--preset", "bound", "--out", str(tmp_path))) == 0
     text = (tmp_path / "report.html").read_text()
     assert "There is no curve" in text and "an upper bound" in text

@@ -19,7 +19,7 @@ def tower(folder, stiffness):
     return scene
 
 
-def test_a_tower_leans_as_its_soil_gives_way_and_waits_for_its_slow_period(scene, tmp_path):  # fmt: skip
+def test_a_tower_leans_as_its_soil_gives_way_and_waits_for_its_slow_period(tmp_path):
     stiffness, pressure = 1.3 * OVERTURNING, 100.0  # its period is 14 s
     scene = tower(tmp_path, stiffness)
     assert scene.settle() == AT_REST
@@ -31,7 +31,7 @@ def test_a_tower_leans_as_its_soil_gives_way_and_waits_for_its_slow_period(scene
     assert readCurve(tmp_path)["top_x_mm"][-1] == pytest.approx(1e3 * lean * middle, rel=0.03)  # fmt: skip
 
 
-def test_a_tower_that_its_soil_does_not_hold_upright_is_not_at_rest(scene, tmp_path, capsys):  # fmt: skip
+def test_a_tower_that_its_soil_does_not_hold_upright_is_not_at_rest(tmp_path, capsys):
     scene = tower(tmp_path, 0.9 * OVERTURNING)
     assert scene.settle() == MOVING
     assert "buckles" in capsys.readouterr().out

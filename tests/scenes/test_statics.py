@@ -16,7 +16,7 @@ def sample(stage, count):
 
 
 @pytest.mark.parametrize("stage", statics.STAGES)
-def test_a_stage_obeys_newton_or_says_why_it_is_refused(scene, stage):
+def test_a_stage_obeys_newton_or_says_why_it_is_refused(stage):
     for cell in sample(stage, 1):
         try:
             refusal = statics.carryOut(cell)
@@ -26,7 +26,7 @@ def test_a_stage_obeys_newton_or_says_why_it_is_refused(scene, stage):
             assert len(refusal.splitlines()) == 1 and len(refusal) > 20, refusal
 
 
-def test_every_stage_has_a_cell_that_is_allowed(scene):
+def test_every_stage_has_a_cell_that_is_allowed():
     for stage in statics.STAGES:
         kind = {"drive": "driven", "release": "driven", "hold": "handle"}.get(stage, "free")  # fmt: skip
         cell = stage, kind, "x", "rigid", "softening"
@@ -41,7 +41,7 @@ def test_every_stage_has_a_cell_that_is_allowed(scene):
         (lambda s: s.columns.pop(_base(s)), "has no column|sum up"),
     ],
 )
-def test_the_oracle_sees_a_fault(scene, monkeypatch, spoil, message):
+def test_the_oracle_sees_a_fault(monkeypatch, spoil, message):
     act = statics.act
 
     def spoiled(made, cell, target, base):

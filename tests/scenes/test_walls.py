@@ -100,7 +100,7 @@ def base(model):
     return O.forces.f(model.description.targets["base"].body, True)
 
 
-def test_deformable_units_carry_the_weight_and_keep_the_balance(scene, tmp_path):
+def test_deformable_units_carry_the_weight_and_keep_the_balance(tmp_path):
     run, model, top = settled(tmp_path, "--blocks", "deformable", "--until", "0.3")
     weight = 6 * 3 * 0.22 * 0.102 * 0.081 * 1800 * 9.81
     load = 0.5e6 * 0.66 * 0.102 + weight
@@ -111,7 +111,7 @@ def test_deformable_units_carry_the_weight_and_keep_the_balance(scene, tmp_path)
 
 
 @pytest.mark.parametrize("blocks", ["rigid", "deformable"])
-def test_density_scaling_is_another_rate(scene, tmp_path, blocks):
+def test_density_scaling_is_another_rate(tmp_path, blocks):
     """Four times the mass at half the rate: the same run in twice the time, bit for bit, as these are powers of two."""
     curves = []
     for scaling, rate in ((1, 40), (4, 20)):
@@ -164,7 +164,7 @@ def test_a_push_that_is_too_fast_says_so_and_what_would_do(runScene, words, cure
     assert not readRun(out)["too_fast"] and "too fast" not in process.stdout
 
 
-def test_a_reading_that_is_not_finite_ends_the_run(scene, tmp_path, monkeypatch):
+def test_a_reading_that_is_not_finite_ends_the_run(tmp_path, monkeypatch):
     read, count = Structure.read, [20]
 
     def broken(self):

@@ -24,7 +24,7 @@ def curve(folder):
         (CANTILEVER, "--rate 150"),
     ],
 )
-def test_a_wall_turns_at_its_amplitudes_and_ends_at_zero(scene, tmp_path, wall, words):
+def test_a_wall_turns_at_its_amplitudes_and_ends_at_zero(tmp_path, wall, words):
     words = ["--no-vtk", "--history", "0.1,0.3x2,1", *words.split()]
     assert run(tmp_path, *words, wall=wall) == 0
     moved = curve(tmp_path)["displacement_mm"]
@@ -38,7 +38,7 @@ def test_a_wall_turns_at_its_amplitudes_and_ends_at_zero(scene, tmp_path, wall, 
     assert moved[-1] == pytest.approx(0, abs=0.01)
 
 
-def test_a_measured_history_with_noise_is_followed_through_its_turns(scene, tmp_path):
+def test_a_measured_history_with_noise_is_followed_through_its_turns(tmp_path):
     turns = [0.1, -0.05, 0.3, 0.27, 0.5, 0.1, 0.13, -0.4, -0.36, -0.5, 0.02, 0]
     points = [0.0]
     for turn in turns:
@@ -65,7 +65,7 @@ def test_a_measured_history_with_noise_is_followed_through_its_turns(scene, tmp_
     assert text["options"]["history"] == str(path)
 
 
-def test_the_velocity_changes_evenly_where_the_drive_turns(scene, tmp_path):
+def test_the_velocity_changes_evenly_where_the_drive_turns(tmp_path):
     words = ["--no-vtk", "--history", "1", "--rate", "40"]
     assert run(tmp_path, *words) == 0
     data = curve(tmp_path)
@@ -81,7 +81,7 @@ def test_the_velocity_changes_evenly_where_the_drive_turns(scene, tmp_path):
     assert (np.abs(change) < 1.7 * even).all()
 
 
-def test_a_push_is_the_history_of_one_point(scene, tmp_path):
+def test_a_push_is_the_history_of_one_point(tmp_path):
     assert run(tmp_path / "push", "--no-vtk", "--until", "1", "--rate", "20") == 0
     assert run(tmp_path / "loop", "--no-vtk", "--history", "1", "--rate", "20") == 0
     push, loop = curve(tmp_path / "push"), curve(tmp_path / "loop")
@@ -229,7 +229,7 @@ def test_a_wall_may_move_against_its_push_by_a_tenth_of_the_path_or_a_millimetre
         assert pushing.Pushing(moved=back).retreats(-1, whole) == retreats
 
 
-def test_a_wall_that_loses_its_force_in_a_loop_ends_the_run(scene, tmp_path):
+def test_a_wall_that_loses_its_force_in_a_loop_ends_the_run(tmp_path):
     """Without friction and with brittle bond the small wall slides on a bed joint as soon as the bond is gone."""
     bare = ["residualCohesion=0", "friction=0", "residualFriction=0", "tensileStrength=1e4"]  # fmt: skip
     words = [f"--set={name}.{value}" for name in ("bed", "head") for value in bare]
@@ -241,7 +241,7 @@ def test_a_wall_that_loses_its_force_in_a_loop_ends_the_run(scene, tmp_path):
     assert not readRun(str(tmp_path / "back"))["collapsed"]
 
 
-def test_a_finished_history_can_be_extended(scene, tmp_path):
+def test_a_finished_history_can_be_extended(tmp_path):
     words = ["--rate", "40", "--no-vtk"]
     assert run(tmp_path / "whole", "--history", "0.1,0.5,0.6", *words) == 0
     assert run(tmp_path / "parts", "--history", "0.1,0.5", *words) == 0
@@ -253,7 +253,7 @@ def test_a_finished_history_can_be_extended(scene, tmp_path):
     assert len(text["cycles"]) == 3 and text["options"]["history"] == longer[1]
 
 
-def test_a_file_can_be_extended_and_need_not_be_there_to_go_on(scene, tmp_path, at):
+def test_a_file_can_be_extended_and_need_not_be_there_to_go_on(tmp_path, at):
     path = tmp_path / "h.csv"
     path.write_text("displacement_mm\n0\n0.2\n-0.1\n")
     words = ["--history", str(path), "--rate", "40", "--no-vtk"]
@@ -280,7 +280,7 @@ def test_a_file_can_be_extended_and_need_not_be_there_to_go_on(scene, tmp_path, 
     ],
 )
 def test_another_history_is_refused_and_changes_nothing(
-    scene, tmp_path, at, capsys, began, words, message
+    tmp_path, at, capsys, began, words, message
 ):
     out = tmp_path / "broken"
     at(35, interrupt)

@@ -73,7 +73,7 @@ def answers(build, folder, stand, towards):
 
 @pytest.mark.parametrize("place", PLACES)
 @pytest.mark.parametrize("build", [pushedWall, leaningArch, fallingStack])
-def test_no_number_depends_on_the_place(scene, tmp_path_factory, build, place):
+def test_no_number_depends_on_the_place(tmp_path_factory, build, place):
     folder = tmp_path_factory.getbasetemp() / "here" / build.__name__
     folder.parent.mkdir(exist_ok=True)
     expected = here(build, str(folder))
