@@ -70,7 +70,7 @@ other.join()
 
 
 @pytest.mark.slow
-def test_threads_are_those_that_are_asked_for():
+def test_threads_are_those_that_are_asked_for(tmp_path):
     code = "from masonry import Scene; from yade import O; print(O.numThreads)"
     assert done(code, env=environment(OMP_NUM_THREADS="2")) == "2\n"
     assert done(code) == "1\n"

@@ -280,7 +280,7 @@ def left(folder):
             found[f"run.json: {name}"] = value
     if not os.path.exists(os.path.join(folder, checkpoints.NAME)):
         return found  # what fell within a step has no state that can be kept
-    data, kept = checkpoints.readState(folder)
+    data, kept = checkpoints.readState(os.path.join(folder, checkpoints.NAME))
     for name in ("resumed", "seconds"):
         kept["at"].pop(name)
     kept["at"]["stages"] = [(n, s, r) for n, s, _, r in kept["at"]["stages"]]
