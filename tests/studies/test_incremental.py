@@ -451,3 +451,5 @@ def test_between_levels_a_demand_changes_evenly_and_above_the_last_it_is_unknown
     assert [at(0.1), at(0.2), at(0.4), at(0.6)] == pytest.approx([0.5, 1, 3, 5])
     assert at(0.7) == at(1.0) == at(2.0) == math.inf
     assert math.isnan(_between([0.2, 0.6], [1.0, 5.0], 0.7))
+    # what has fallen stays so, also if a higher level was run
+    assert _between([0.2, 0.6, 1.0], [math.inf, 1.0, 5.0], 0.8) == math.inf

@@ -120,9 +120,9 @@ def _usual(record):
 
 def _between(intensities, demands, at):
     """The demand of a record at an intensity; the module says how."""
-    above = next((d for i, d in zip(intensities, demands) if i >= at), demands[-1])
-    if math.isinf(above):
-        return above
+    upTo = int(np.searchsorted(intensities, at)) + 1
+    if math.inf in demands[:upTo]:  # it falls at a lower intensity, or at the next one
+        return math.inf
     return np.interp(at, [0.0, *intensities], [0.0, *demands], right=math.nan)
 
 

@@ -202,11 +202,15 @@ class Incremental:
 
     def rows(self) -> list[tuple[Motion, float]]:
         """What every row is shaken by, in turn: a record and the factor on it [-]. The records must have been read."""
+        motions = self._known()
+        if self.scales is not None:
+            return [(motion, s) for motion in motions for s in self.scales]
+        return [(m, level / m.intensity) for m in motions for level in self.levels]
+
+    def _known(self):
         if self._motions is None:
             raise Refused("study: its records have not been read")
-        if self.scales is not None:
-            return [(motion, s) for motion in self._motions for s in self.scales]
-        return [(m, level / m.intensity) for m in self._motions for level in self.levels]  # fmt: skip
+        return self._motions
 
     def describe(self) -> dict[str, Any]:
         """As study.json has it. The records must have been read."""
@@ -214,7 +218,7 @@ class Incremental:
         return {
             "records": [
                 {"name": m.name, "sha256": digest(m.text), "intensity": m.intensity}
-                for m in self._motions
+                for m in self._known()
             ],
             "measure": self.measure.name,
             "levels": self.levels,
@@ -224,7 +228,7 @@ class Incremental:
     def doubts(self) -> list[str]:
         """Sentences on records that drift."""
         found = []
-        for motion in self._motions:
+        for motion in self._known():
             if doubt := accelerograms.drift(motion.values, motion.every).sentence():
                 found.append(f"note: the record {motion.name} drifts: {doubt}")
         return found
