@@ -177,7 +177,5 @@ def test_a_limit_of_the_size_of_files_is_no_fault_of_the_scene_of_a_study(tmp_pa
     words = dict(cwd=tmp_path, capture_output=True, text=True, timeout=60)
     done = subprocess.run(["bash", "-c", command], **words)
     assert done.returncode == 1
-    said = done.stderr[
-        done.stderr.rindex("cannot write ") :
-    ]  # behind what libraries say
+    _, _, said = done.stderr.rpartition("cannot write ")  # behind what libraries say
     assert "File too large" in said and "scene" not in said

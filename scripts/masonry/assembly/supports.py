@@ -7,9 +7,8 @@ from yade import O, Vector3
 
 from ..basics import GRAVITY
 
-HORIZONTAL = (
-    1e-3  # of all loads: horizontal ones above it must be carried on their own at rest
-)
+#: Share of all loads above which the horizontal ones must be carried on their own at rest [-].
+HORIZONTAL = 1e-3
 FILLED = 1e-9  # of a platen's side: what may be free of bricks if it is said to be full
 
 

@@ -25,12 +25,13 @@ _asked = False
 
 
 def _isAsked():
-    """Whether the user says how many threads: to ``yade``, which then sets the variable, and else sets it to 1, or in the
-    environment with which the process began."""
+    """Whether the user says how many threads: by an option of ``yade``, or by ``OMP_NUM_THREADS`` in the environment with which
+    the process began. Without such an option ``yade`` itself sets that variable to 1.
+    """
     with open("/proc/self/cmdline", "rb") as words, open("/proc/self/environ", "rb") as names:  # fmt: skip
-        ofYade = words.read().partition(b"\0-x\0")[0]
+        options = words.read().partition(b"\0-x\0")[0]
         return bool(
-            re.search(rb"\0(-\w*j|--thr|--cor)", ofYade)
+            re.search(rb"\0(-\w*j|--thr|--cor)", options)
             or re.search(rb"(^|\0)OMP_NUM_THREADS=", names.read())
         )
 
@@ -59,7 +60,7 @@ def allowed():
 
 
 def ofYade():
-    """The number of threads of YADE's own engines, of which their sums of forces depend in the last digits."""
+    """The number of threads of YADE's own engines. The last digits of the forces that they add up depend on it."""
     return _ofYade
 
 

@@ -136,8 +136,11 @@ def _surfaces(root):
     zones = np.flatnonzero(~rigid)
     triangles = [corners[first[zones, None, None] + sides].reshape(-1, 3)]
     owners = [np.repeat(zones, len(sides))]
-    laid = _newFaces if "face_offsets" in cells else _oldFaces
-    for found, owning in laid(cells, np.flatnonzero(rigid)):
+    if "face_offsets" in cells:
+        faces = [_newFaces(cells)]
+    else:
+        faces = _oldFaces(cells, np.flatnonzero(rigid))
+    for found, owning in faces:
         triangles.append(found)
         owners.append(owning)
     triangles = np.concatenate(triangles).astype(int)
@@ -159,13 +162,13 @@ def _oldFaces(cells, polyhedra):
         yield found[:, 1:], np.full(len(found), cell)
 
 
-def _newFaces(cells, _):
+def _newFaces(cells):
     """The same of all polyhedra at once, as later versions write them: corners by face, and faces by cell."""
     if (np.diff(cells["face_offsets"], prepend=0) != 3).any():
         raise ValueError("faces of its cells are no triangles")
     faces = cells["face_connectivity"].reshape(-1, 3)[cells["polyhedron_to_faces"]]
     ends = cells["polyhedron_offsets"]
-    yield faces, np.repeat(np.arange(len(ends)), np.diff(ends, prepend=0))
+    return faces, np.repeat(np.arange(len(ends)), np.diff(ends, prepend=0))
 
 
 def _opened(root):

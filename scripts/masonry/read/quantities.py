@@ -324,3 +324,9 @@ def described() -> str:
         lines = (f"- ``{one.key}``: {one.meaning} Source: {one.source} [{one.unit}]" for one in ones)  # fmt: skip
         text += "\n".join(["", f"{title}:", "", *lines, ""])
     return text
+
+
+def loadsOf(stages: Any) -> dict[int, str]:
+    """The name of its load, by the number of a stage that has one, from the entries ``stages`` of run.json."""
+    named = ((number, one.get("load")) for number, one in enumerate(stages, 1))
+    return {number: load[1] for number, load in named if load}

@@ -58,7 +58,7 @@ bool BodyColumns::sameFrame(int b) const {
 void BodyColumns::take(int b) {
     const auto& s = *states_[b];
     auto& seen = seen_[b];
-    if (!taken_[b]) {
+    if (!taken_[b]) { // of several changes between two steps the velocity before the first one counts
         taken_[b] = true;
         earlier_[b].blocked = seen.blocked;
         for (int d = 0; d < 6; ++d)

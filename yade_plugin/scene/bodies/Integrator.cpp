@@ -75,7 +75,9 @@ void Integrator::advance(yade::Scene& scene, BodyColumns& bodies, const std::vec
     }
 }
 
-// What forces and weight do to a body along its blocked axes, with its present motion less that of its last step [W].
+// The power of forces and weight on a body along its blocked axes with its present velocity, less that with the
+// velocity of its last step [W]. The work of a step is done half with the forces before it and half with those after
+// it, both times with its own velocity, which a script may have changed since.
 double Integrator::gainedPower(const BodyColumns& bodies, int b, const Vector3r& force, const Vector3r& torque) const {
     const auto& before = *bodies.earlier(b);
     const Vector3r on[] = {force + bodies.mass[b] * gravity, torque};
@@ -97,8 +99,7 @@ Integrator::Sums Integrator::advancePiece(const yade::Scene& scene, BodyColumns&
     RigidMotion motion;
     unsigned axes = 0;
     int spinning = 0;
-    double earlier =
-        0; // work with present velocities less that with those of the last step, where a script changed them [J]
+    double earlier = 0; // half of: the work of the last step less what it would be with present velocities [J]
     std::uint32_t blocked[RigidMotion::most]; // State.blockedDOFs of a body that RigidMotion moves, else all six
     for (int i = 0; i < count; ++i) {
         const int b = first + i;

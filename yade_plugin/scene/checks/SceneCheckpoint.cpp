@@ -252,7 +252,7 @@ std::string loadScene(const py::object& bytes) {
         transfer(present(), here, true);
         throw;
     }
-    auto& store = SceneStore::present();
+    auto& store = SceneStore::present(); // takes the velocities of the last step before a script prescribes others
     store.update();
     for (int b = 0; b < store.bodies.size(); ++b) {
         if (store.bodies.has(b)) store.bodies.take(b);

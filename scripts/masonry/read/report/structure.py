@@ -102,10 +102,9 @@ def valueOf(answer: dict[str, Any]) -> str:
 
 def sought(run: dict[str, Any]) -> list[tuple[dict[str, Any], str]]:
     """The largest load that was held and the smallest that was not, as answers, of a run that looked for one load."""
-    stages, found = run.get("stages") or [], []
-    loadOf = lambda n: (stages[n - 1].get("load") if 0 < n <= len(stages) else None) or []  # fmt: skip
+    loads, found = quantities.loadsOf(run.get("stages") or []), []
     ones = [a for a in answersOf(run) if a.get("name") in ("factor_held", "factor_not_held") and isNumber(a.get("value"))]  # fmt: skip
-    if len({(a.get("stage"), a.get("unit"), *loadOf(a.get("number", 0))[1:2]) for a in ones}) != 1:  # fmt: skip
+    if len({(a.get("stage"), a.get("unit"), loads.get(a.get("number"))) for a in ones}) != 1:  # fmt: skip
         return []
     for name, choose, what in (("factor_held", max, "largest load that was held"), ("factor_not_held", min, "smallest load that was not held")):  # fmt: skip
         alike = [a for a in ones if a["name"] == name]

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from typing import Annotated, Any
 
 from ...arguments import Name, number, validated
+from ...read import quantities
 from ..resuming import saidBefore
 from ..words import RESULT, Call
 
@@ -51,19 +52,13 @@ def answerText(answer, what=None):
     return f"{head} {answer['value']:.4g}{about}{unit}"
 
 
-def loadsOf(stages):
-    """The name of its load, by the number of a stage that has one: a dict, from the entries ``stages`` of run.json."""
-    named = ((n, one.get("load")) for n, one in enumerate(stages, 1))
-    return {number: load[1] for number, load in named if load}
-
-
 def answersText(answers, stages=()):
     """Entries of ``answers`` of run.json as lines to read. Stages of one kind that look for the load that is held and follow
     each other, as the trials of a bracket, have one line. If they put on several loads, each load has a line.
 
     :param stages: entries of ``stages`` of run.json, which say what the loads are
     """
-    loads = loadsOf(stages)
+    loads = quantities.loadsOf(stages)
     searches = lambda one: one["name"] in ("factor_held", "factor_not_held")
     trial = (
         lambda one: one["stage"] in ("lean", "load", "wind", "press") or one["number"]
