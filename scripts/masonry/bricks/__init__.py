@@ -6,6 +6,7 @@ one, and raise ValueError with all problems of what they are given at once:
 
 - :func:`Wall`: running, stack, header, English and Flemish bond, with :class:`Opening` and :class:`Lintel`;
 - :func:`Corner`, :func:`Tee` and :func:`Room`: walls that meet, with interlocking courses;
+- :func:`StoneWall`: squared or irregular stones, with the interlocking that :func:`leastTrace` measures;
 - :func:`Arch`, :func:`BarrelVault` and :func:`Dome`, from voussoirs;
 - :func:`Beam` and :func:`Floor`: beams that bend and floors that shear, in pieces (:mod:`masonry.bricks.beams`);
 - :func:`stack` and :func:`block`: boxes;
@@ -34,6 +35,7 @@ from .checks import Joint
 from .files import fromFile
 from .geometry import boxCorners
 from .openings import Lintel, Opening
+from .stones import StoneWall, leastTrace
 from .vaults import Arch, BarrelVault, Dome
 from .walls import Corner, Room, Tee, Wall, block, stack
 
@@ -50,11 +52,13 @@ __all__ = [
     "Lintel",
     "Opening",
     "Room",
+    "StoneWall",
     "Tee",
     "Wall",
     "block",
     "boxCorners",
     "fromFile",
+    "leastTrace",
     "stack",
     "summary",
 ]

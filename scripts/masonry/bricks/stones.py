@@ -1,0 +1,222 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Walls of natural stone, squared or irregular, whose interlocking is as good as a surveyor found it."""
+
+from __future__ import annotations
+
+import math
+from random import Random
+from typing import Annotated, Any
+
+import numpy as np
+
+from ..arguments import isA, number, oneOf, validated, whole
+from .blocks import Block, Bricks, Length, Sides, refuse
+
+#: Walls that are drawn until one has the trace that is asked for, and how near it must come [-].
+DRAWS, NEAR = 60, 0.025
+
+#: The largest scatter of the joints, over a stone's length or height [-]. Beyond it squared stones have no order left.
+MOST_SCATTER = 0.5
+
+#: The shortest piece of a squared stone, over the length of a stone [-].
+SHORTEST = 0.3
+
+#: Vertices of stones that are no further apart than this share of the wall are one [-].
+SAME = 1e-9
+
+MOST_STONES = 20_000
+
+Trace = Annotated[float, number("", 1, 10)]
+Scatter = Annotated[float, number("", 0, MOST_SCATTER)]
+
+
+@validated
+def StoneWall(
+    length: Length,
+    height: Length,
+    unit: Sides,
+    pattern: Annotated[str, oneOf("squared", "irregular")] = "squared",
+    scatter: Scatter | None = None,
+    trace: Trace | None = None,
+    seed: Annotated[int, whole(0, 2**31)] = 1,
+    part: str = "wall",
+) -> Bricks:
+    """A wall of natural stone along x, its lower left front corner at the origin: a :class:`Bricks` of one leaf.
+
+    ::
+
+        StoneWall(1.0, 1.2, unit=(0.20, 0.20, 0.15), scatter=0.1)                         # ashlar, nearly a running bond
+        StoneWall(1.6, 1.6, unit=(0.30, 0.40, 0.10), pattern="irregular", trace=1.1, seed=7)
+
+    Stones contain their mortar: they meet in the middle of the joint. Squared stones lie in level courses. Irregular ones
+    are the Voronoi cells of points, with lengths measured in lengths of a stone and heights in heights of a stone, so
+    that all are convex. In both the middle is a running bond; ``scatter`` moves its head joints, or its points.
+
+    :param length: [m]; ``height``: likewise. Courses and stones are stretched by the little that makes them fill the wall
+    :param unit: mean length of a stone, thickness of the wall, and mean height of a stone [m]
+    :param scatter: largest displacement of a head joint or a point, over the length and the height of a stone [-]. None:
+        0.25, and with ``trace`` another one in every draw
+    :param trace: length of the line of minimum trace over the height of the wall [-], see :func:`leastTrace`. Up to 60
+        walls are drawn, after the running bond itself with overlaps from none to half a stone: the first within 2.5 % of it
+        is taken, else the nearest
+    :param seed: of the draws; another one is another wall of the same kind
+    :raises ValueError: with all problems
+    """
+    problems = []
+    for what, stone, wall in (("length", unit[0], length), ("height", unit[2], height)):
+        if stone > wall:
+            problems.append(f"{what} of a stone, {stone:g} m, must be at most that of the wall, {wall:g} m")  # fmt: skip
+    refuse("stone wall", problems)
+    counts = length / unit[0], round(height / unit[2])
+    if pattern == "irregular":
+        counts = round(counts[0]), counts[1]
+    if counts[0] * counts[1] > MOST_STONES:
+        refuse("stone wall", [f"{counts[0] * counts[1]:.3g} stones are more than {MOST_STONES}: are all lengths in m?"])  # fmt: skip
+    lay = _squared if pattern == "squared" else _irregular
+    draw, best = Random(seed), None
+    for n in range(1 if trace is None else DRAWS):
+        own, overlap = scatter, 0.5
+        if own is None:
+            own = MOST_SCATTER / 2 if trace is None else MOST_SCATTER * draw.random() * (n > 0)  # fmt: skip
+        if n > 0:
+            overlap *= draw.random()
+        stones = lay(counts, overlap, own, draw)
+        bricks = _bricks(stones, (length / counts[0], height / counts[1]), unit[1], part)  # fmt: skip
+        if trace is None:
+            return bricks
+        miss = abs(leastTrace(bricks) / trace - 1)
+        if best is None or miss < best[0]:
+            best = miss, bricks
+        if miss <= NEAR:
+            break
+    return best[1]
+
+
+@validated
+def leastTrace(bricks: Annotated[Any, isA(Bricks)]) -> float:
+    """The line of minimum trace of a wall along x, the shortest way through its joints from its foot to its top, over its
+    height [-]. It is 1 if a straight vertical joint goes through, and grows with the interlocking of the stones.
+    """
+    from scipy.sparse import csr_array
+    from scipy.sparse.csgraph import dijkstra
+
+    sides, (low, high) = _sides(bricks)
+    near = SAME * float(np.max(high - low))
+    keys, points = {}, []
+
+    def numberOf(point):
+        key = tuple(np.round((point - low) / near / 4).astype(int))
+        if key not in keys:
+            keys[key] = len(points)
+            points.append(point)
+        return keys[key]
+
+    ends = np.array([[numberOf(a), numberOf(b)] for a, b in sides])
+    points = np.array(points)
+    lengths = {}
+    for a, b in ends:
+        along = points[b] - points[a]
+        size = np.hypot(*along)
+        # other stones may have corners on this side: it is cut there
+        at = (points - points[a]) @ along / size**2
+        off = np.abs(np.cross(along, points - points[a])) / size
+        on = np.flatnonzero((off < 4 * near) & (at > -SAME) & (at < 1 + SAME))
+        on = on[np.argsort(at[on])]
+        for one, two in zip(on, on[1:]):
+            lengths[one, two] = np.hypot(*(points[two] - points[one]))
+    start = np.flatnonzero(points[:, 1] < low[1] + 4 * near)
+    end = np.flatnonzero(points[:, 1] > high[1] - 4 * near)
+    rows, columns = np.array(list(lengths)).T
+    graph = csr_array((list(lengths.values()), (rows, columns)), [len(points)] * 2)
+    if not len(start):
+        return math.inf
+    found = dijkstra(graph, directed=False, indices=start, min_only=True)[end]
+    return float(found.min(initial=math.inf) / (high[1] - low[1]))
+
+
+def _sides(bricks):
+    """Sides of the front faces of all blocks that are joints, from (x, z) to (x, z) [m], and the corners of their box."""
+    found, pieces = [], {}
+    for block in bricks:
+        corners = np.array(block.corners)
+        front = corners[np.isclose(corners[:, 1], block.low[1])][:, [0, 2]]
+        middle = front.mean(axis=0)
+        turn = np.arctan2(*(front - middle).T[::-1])
+        ring = front[np.argsort(turn)]
+        for side in zip(ring, np.roll(ring, -1, axis=0)):
+            found.append(side)
+            key = block.brick, tuple(np.round(side[0] + side[1], 6))
+            pieces.setdefault(key, []).append(side)
+    # what two pieces of a brick share is no joint
+    cracks = {id(side) for sides in pieces.values() if len(sides) > 1 for side in sides}  # fmt: skip
+    points = np.array([a for a, _ in found])
+    low, high = points.min(axis=0), points.max(axis=0)
+    near = SAME * np.max(high - low)
+
+    def outside(a, b):
+        """Whether a side lies on the edge of the wall, which is no joint."""
+        return any(
+            abs(a[n] - at[n]) < near and abs(b[n] - at[n]) < near
+            for n in (0, 1)
+            for at in (low, high)
+        )
+
+    kept = [s for s in found if id(s) not in cracks and not outside(*s)]
+    return kept, (low, high)
+
+
+def _squared(counts, overlap, scatter, draw):
+    """Squared stones: (course, corners) of each, in lengths and heights of a stone."""
+    columns, courses = counts
+    for course in range(courses):
+        ends = [0.0]
+        for k in range(math.ceil(columns) + 1):
+            at = k + overlap * (course % 2) + scatter * (2 * draw.random() - 1)
+            if ends[-1] + SHORTEST <= at <= columns - SHORTEST:
+                ends.append(at)
+        ends.append(float(columns))
+        for a, b in zip(ends, ends[1:]):
+            yield course, [(a, course), (b, course), (b, course + 1), (a, course + 1)]
+
+
+def _irregular(counts, overlap, scatter, draw):
+    """Irregular stones: (course, corners) of each, in lengths and heights of a stone."""
+    from scipy.spatial import Voronoi
+
+    columns, courses = counts
+    points, rows = [], []
+    moved = lambda middle, most: min(max(middle + scatter * (2 * draw.random() - 1), 0.1), most - 0.1)  # fmt: skip
+    for row in range(courses):
+        # a course begins and ends with what the overlap leaves of a stone
+        shift = overlap * (row % 2)
+        ends = [0.0, *(k + shift for k in range(0 if shift else 1, columns)), columns]
+        middles = [(a + b) / 2 for a, b in zip(ends, ends[1:])]
+        for x in middles:
+            points.append((moved(x, columns), moved(row + 0.5, courses)))
+            rows.append(row)
+    points = np.array(points)
+    # mirrored points make the sides of the wall those of its stones
+    mirrored = [points]
+    for axis, most in ((0, columns), (1, courses)):
+        for at in (0, most):
+            other = points.copy()
+            other[:, axis] = 2 * at - other[:, axis]
+            mirrored.append(other)
+    diagram = Voronoi(np.concatenate(mirrored))
+    corners = np.clip(diagram.vertices, 0, counts)
+    for axis, most in ((0, columns), (1, courses)):
+        for at in (0, most):
+            corners[np.isclose(corners[:, axis], at, atol=1e-9), axis] = at
+    for n, row in enumerate(rows):
+        ring = corners[diagram.regions[diagram.point_region[n]]]
+        yield row, ring
+
+
+def _bricks(stones, scale, thickness, part):
+    """Blocks of stones that are given by the corners of their faces, in lengths and heights of a stone."""
+    blocks = []
+    for n, (course, ring) in enumerate(stones):
+        face = [(float(x) * scale[0], float(z) * scale[1]) for x, z in ring]
+        corners = [(x, y, z) for y in (0.0, float(thickness)) for x, z in face]
+        blocks.append(Block(tuple(corners), n, part, course))
+    return Bricks(blocks)

@@ -1,0 +1,231 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""From what a surveyor knows of a stone wall to its blocks and joints, by published rules; README.md tells them in words.
+
+Nothing here reads what was measured in the tests: :func:`read` leaves those columns to results.py.
+"""
+
+import csv
+import math
+import os
+from dataclasses import dataclass
+from random import Random
+from statistics import NormalDist
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+WALLS = os.path.join(HERE, "reference", "walls.csv")
+
+WEIGHT = 20e3  # of masonry, as the database counts it [N/m³]
+GRAVITY = 9.81  # [m/s²]
+SAMPLES = 12  # draws of the interval of a wall, beside two best estimates
+POINTS = ("8", "5", "12")  # along a joint, by turns
+#: Drifts of the cycles [%].
+DRIFTS = (0.05, 0.1, 0.15, 0.2, 0.3, 0.4, 0.6, 0.8, 1.0, 1.5, 2.0, 2.5)
+
+#: Mean values of table C8.5.I of Circolare 2019 by typology: tau0, and for regular bond fv0, of which the table has none for
+#: rubble and uncut stone [Pa]; Young's modulus [Pa].
+TABLE = {
+    "A": dict(tau0=0.025e6, fv0=None, E=870e6),
+    "B": dict(tau0=0.043e6, fv0=None, E=1230e6),
+    "C": dict(tau0=0.065e6, fv0=None, E=1740e6),
+    "D": dict(tau0=0.060e6, fv0=0.145e6, E=1410e6),
+    "E": dict(tau0=0.105e6, fv0=0.23e6, E=2850e6),
+    "E1": dict(tau0=0.0, fv0=0.0, E=2850e6),
+}
+
+#: Initial shear strength of EN 1996-1-1:2005, table 3.4, natural stone in general purpose mortar: characteristic values [Pa] from
+#: a strength of the mortar [MPa] on. Mortar without a known strength: as air lime.
+EN1996 = ((10.0, 0.20e6), (2.5, 0.15e6), (0.0, 0.10e6))
+#: Mean cohesion of general purpose mortar, JCSS Probabilistic Model Code, part 3.2: from a strength [MPa] on [Pa].
+JCSS = ((20.0, 0.42e6), (10.0, 0.37e6), (5.0, 0.28e6), (2.5, 0.14e6), (0.0, 0.04e6))
+MEAN = 0.8  # characteristic over mean value, EN 1052-3 [-]
+
+BOND = 0.7  # direct tensile strength over cohesion of a joint, Lourenço and Rots (1997) [-]
+STONE_TENSION = 0.1  # tensile over compressive strength of a soft stone [-]
+
+#: Coefficients of variation, JCSS Probabilistic Model Code, part 3.2; of E and of fc where only a table or a few prisms speak.
+SCATTER = dict(friction=0.19, bond=0.40, stiffness=0.30, strength=0.20)
+#: What a length and a height of stones that nobody wrote down may be, over the assumed ones [-].
+UNKNOWN_SIZE = 0.7, 1.4
+#: Line of minimum trace of rubble and uncut stone where none was measured, that of the other such walls of the database [-].
+TRACE = {"A": 1.1, "B": 1.1}
+#: Assumed sizes of such stones by typology: length and height [m].
+SIZES = {"A": (0.25, 0.15), "B": (0.25, 0.15), "C": (0.25, 0.15), "D": (0.30, 0.15), "E": (0.30, 0.15)}  # fmt: skip
+
+
+def _byMortar(row, table):
+    """A value by the strength of the mortar; mortar of unknown strength counts as the weakest."""
+    return 0.0 if row.dry else next(c for least, c in table if (row.mortar or 0.0) >= least)  # fmt: skip
+
+
+def _ofTypology(row):
+    """Cohesion of table C8.5.I [Pa]. Of irregular masonry it has tau0 alone, whose 1.5-fold is a tensile strength."""
+    of = TABLE[row.typology]
+    return 1.5 * of["tau0"] / BOND if of["fv0"] is None else of["fv0"]
+
+
+#: Cohesion [Pa] and friction [-] of joints, functions of a row by the name of a rule.
+BONDS = {
+    "en1996": lambda row: (_byMortar(row, EN1996) / MEAN, 0.4 / MEAN),
+    "ntc2018": lambda row: (_ofTypology(row), 0.577),
+    "stone": lambda row: (_byMortar(row, EN1996) / MEAN, 0.65),
+    "jcss": lambda row: (_byMortar(row, JCSS), 0.8),
+}
+#: Young's modulus over that of a compression test, by the name of a rule [-].
+STIFFNESSES = {"tested": 1.0, "cracked": 0.5}
+#: The rules that were chosen with the walls whose results are given.
+CHOSEN = "en1996", "tested"
+
+
+@dataclass(frozen=True)
+class Row:
+    """A wall as the database describes it, in SI units; None: unknown."""
+
+    number: str
+    campaign: str
+    name: str
+    typology: str
+    dry: bool
+    length: float
+    height: float
+    thickness: float
+    arm: float  # height of zero moment above the base
+    clamped: bool  # whether the top cannot turn
+    fc: float
+    E: float | None
+    stone: tuple | None  # length and height of a stone
+    fb: float | None  # strength of the stone
+    Eb: float | None
+    mortar: float | None  # strength of the mortar [MPa]
+    force: float  # vertical force at the base [N]
+    level: bool  # whether the bed joints are horizontal
+    trace: float | None  # line of minimum trace over a metre [-]
+    cyclic: bool
+
+
+def _number(text, factor=1.0):
+    """The value of a cell, the middle of a range; None if it is empty."""
+    parts = [float(p) for p in text.split("-") if p]
+    return factor * sum(parts) / len(parts) if parts else None
+
+
+def _row(cells):
+    get = lambda name, factor=1.0: _number(cells[name], factor)
+    height, stone = get("hb [mm]", 1e-3), get("lb [mm]", 1e-3)
+    trace = get("LMTvert [mm]", 1e-3)
+    return Row(
+        cells["ID"],
+        cells["Reference"],
+        cells["Test unit name"],
+        cells["Stone masonry typology"],
+        cells["Joints"] == "Dry",
+        get("L [mm]", 1e-3),
+        get("H [mm]", 1e-3),
+        get("t [mm]", 1e-3),
+        get("H0 [mm]", 1e-3),
+        get("H0/H") < 0.75,
+        get("fc [MPa]", 1e6),
+        get("Ecompr [MPa]", 1e6),
+        (stone, height) if stone and height else None,
+        get("fc,b [MPa]", 1e6),
+        get("Eb [MPa]", 1e6),
+        get("fc,m  [MPa]"),
+        get("Ntot [kN]", 1e3),
+        cells["HC"] == "R" or not cells["HC"] and cells["Stone masonry typology"] in "DE1",
+        trace or TRACE.get(cells["Stone masonry typology"]),  # 0 stands for unknown
+        cells["Cyclic / Monotonic"] == "Cyclic",
+    )
+
+
+def read():
+    """The walls by their number."""
+    with open(WALLS, encoding="utf-8-sig", newline="") as f:
+        return {cells["ID"]: _row(cells) for cells in csv.DictReader(f)}
+
+
+class Guess:
+    """Blocks, joints and load of a wall: a best estimate, or one of the draws of its interval.
+
+    :param row: :class:`Row`
+    :param bond: key of :data:`BONDS`
+    :param stiffness: key of :data:`STIFFNESSES`
+    :param sample: 0 and 1 are best estimates, pushed to the right and to the left, with two draws of the stones; 2 to SAMPLES + 1
+        a Latin hypercube of what is not known
+    """
+
+    def __init__(self, row, bond, stiffness, sample):
+        self.row, self.sample = row, sample
+        self.points = POINTS[sample % len(POINTS)]
+        self.drifts = DRIFTS
+        self.factors = {name: self._factor(name) for name in SCATTER}
+        self.cohesion, self.friction = BONDS[bond](row)
+        self.cohesion *= self.factors["bond"]
+        self.friction *= self.factors["friction"]
+        self.fc = row.fc * self.factors["strength"]
+        self.E = (row.E or TABLE[row.typology]["E"]) * self.factors["stiffness"]
+        self.E *= STIFFNESSES[stiffness]
+        self.pressure = row.force / (row.length * row.thickness) - WEIGHT * row.height
+        long, high = row.stone or SIZES[row.typology]
+        size = 1.0
+        if not row.stone and self.drawn:
+            low, most = map(math.log, UNKNOWN_SIZE)
+            size = math.exp(low + (most - low) * self._share("size"))
+        courses = max(round(row.height / (size * high)), 1)
+        self.stone = min(size * long, row.length), row.height / courses
+
+    @property
+    def drawn(self):
+        return self.sample > 1
+
+    def _share(self, what):
+        """Where a draw lies between 0 and 1, one in every interval of 1 / SAMPLES."""
+        draw = Random(f"{self.row.number} {what}")
+        order = draw.sample(range(SAMPLES), SAMPLES)
+        within = [draw.random() for _ in order]
+        n = self.sample - 2
+        return (order[n] + within[n]) / SAMPLES
+
+    def _factor(self, what):
+        """A lognormal factor of median 1."""
+        if not self.drawn:
+            return 1.0
+        spread = math.sqrt(math.log1p(SCATTER[what] ** 2))
+        return math.exp(spread * NormalDist().inv_cdf(self._share(what)))
+
+    def bricks(self, bricks):
+        """The stones.
+
+        :param bricks: :mod:`masonry.bricks`
+        """
+        row, (long, high) = self.row, self.stone
+        unit = (long, row.thickness, high)
+        if row.typology == "D":  # soft stone is sawn to size, and cracks
+            half = row.length / max(round(2 * row.length / long), 2)
+            return bricks.Wall(row.length, row.height, unit=(2 * half, *unit[1:]))
+        return bricks.StoneWall(
+            row.length,
+            row.height,
+            unit,
+            pattern="squared" if row.level else "irregular",
+            trace=row.trace,
+            seed=self.sample,
+        )
+
+    def masonry(self, materials):
+        """Joints and stones.
+
+        :param materials: :mod:`masonry.scene.materials`
+        """
+        row = self.row
+        soft = row.typology == "D"
+        return materials.masonry(
+            E=self.E,
+            unit_E=max(row.Eb or 0.0, 4 * self.E),
+            fc=self.fc,
+            fv0=self.cohesion,
+            friction=self.friction,
+            ft=BOND * self.cohesion,
+            unit=(self.stone[0], row.thickness, self.stone[1]),
+            joint=0.0,
+            density=WEIGHT / GRAVITY,
+            unit_ft=STONE_TENSION * row.fb if soft else None,
+        )
