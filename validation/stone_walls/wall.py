@@ -7,7 +7,9 @@ Its joints, stones and scatter come from rules.py; README.md says how.
 import os
 import sys
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+sys.path.insert(
+    0, os.path.dirname(os.path.abspath(sys.argv[0]))
+)  # in YADE, __file__ is YADE
 import rules
 from masonry import Scene, bricks, materials
 from masonry.scene import options
@@ -15,13 +17,15 @@ from masonry.scene import options
 LOST = 0.5  # share of the peak at which a push ends [-]
 STEP = 0.25  # drift from one look at the force to the next [%]
 FARTHEST = 4.0  # drift at which a push ends [%]
-RATE = 20  # [mm/s]
+RATE = 50  # [mm/s]
 
 parser = options.parser(__doc__, until=1, rate=RATE)
 parser.add_argument("--wall", metavar="ID", required=True, help="number of the wall in reference/walls.csv")  # fmt: skip
 parser.add_argument("--sample", metavar="N", type=int, default=0, help="0: best estimate; others: one of the interval")  # fmt: skip
 parser.add_argument("--bond", choices=list(rules.BONDS), default=rules.CHOSEN[0])
-parser.add_argument("--stiffness", choices=list(rules.STIFFNESSES), default=rules.CHOSEN[1])
+parser.add_argument(
+    "--stiffness", choices=list(rules.STIFFNESSES), default=rules.CHOSEN[1]
+)
 parser.add_argument("--cyclic", type=int, default=0, help="1: in cycles, with the cyclic law")  # fmt: skip
 args = parser.parse_args()
 

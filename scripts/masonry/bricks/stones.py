@@ -13,16 +13,24 @@ from ..arguments import isA, number, oneOf, validated, whole
 from .blocks import Block, Bricks, Length, Sides, refuse
 
 #: Walls that are drawn until one has the trace that is asked for, and how near it must come [-].
-DRAWS, NEAR = 60, 0.025
+DRAWS, NEAR = 30, 0.03
 
-#: The largest scatter of the joints, over a stone's length or height [-]. Beyond it squared stones have no order left.
-MOST_SCATTER = 0.5
+#: The largest scatter of the joints, over a stone's length or height [-]. Beyond it stones are no longer laid on beds.
+MOST_SCATTER = 0.4
 
 #: The shortest piece of a squared stone, over the length of a stone [-].
 SHORTEST = 0.3
 
 #: Vertices of stones that are no further apart than this share of the wall are one [-].
 SAME = 1e-9
+
+#: Where the points of the stones at both ends of a wall stand, in lengths of a stone from there [-]. As they stand above each
+#: other, the joints between these stones are level, as masons dress them: a wedge would be squeezed out.
+END = 0.3
+
+#: The least overlap of two head joints, and the shortest side of an irregular stone, over the size of a stone [-]. Shorter
+#: ones are closed: a joint that is so small would end a run as soon as its stones have slid along it.
+LEAST = 0.12
 
 MOST_STONES = 20_000
 
@@ -55,10 +63,10 @@ def StoneWall(
     :param length: [m]; ``height``: likewise. Courses and stones are stretched by the little that makes them fill the wall
     :param unit: mean length of a stone, thickness of the wall, and mean height of a stone [m]
     :param scatter: largest displacement of a head joint or a point, over the length and the height of a stone [-]. None:
-        0.25, and with ``trace`` another one in every draw
-    :param trace: length of the line of minimum trace over the height of the wall [-], see :func:`leastTrace`. Up to 60
-        walls are drawn, after the running bond itself with overlaps from none to half a stone: the first within 2.5 % of it
-        is taken, else the nearest
+        0.2, and with ``trace`` another one in every draw
+    :param trace: length of the line of minimum trace over the height of the wall [-], see :func:`leastTrace`. Up to 30
+        walls are drawn, those of squared stones after the running bond itself with overlaps from none to half a stone: the
+        first within 3 % of it is taken, else the nearest
     :param seed: of the draws; another one is another wall of the same kind
     :raises ValueError: with all problems
     """
@@ -78,7 +86,7 @@ def StoneWall(
         own, overlap = scatter, 0.5
         if own is None:
             own = MOST_SCATTER / 2 if trace is None else MOST_SCATTER * draw.random() * (n > 0)  # fmt: skip
-        if n > 0:
+        if n > 0 and pattern == "squared":
             overlap *= draw.random()
         stones = lay(counts, overlap, own, draw)
         bricks = _bricks(stones, (length / counts[0], height / counts[1]), unit[1], part)  # fmt: skip
@@ -168,13 +176,17 @@ def _sides(bricks):
 def _squared(counts, overlap, scatter, draw):
     """Squared stones: (course, corners) of each, in lengths and heights of a stone."""
     columns, courses = counts
+    below = np.array([0.0, columns])
     for course in range(courses):
         ends = [0.0]
         for k in range(math.ceil(columns) + 1):
             at = k + overlap * (course % 2) + scatter * (2 * draw.random() - 1)
+            nearest = below[np.argmin(np.abs(below - at))]
+            at = nearest if abs(nearest - at) < LEAST else at
             if ends[-1] + SHORTEST <= at <= columns - SHORTEST:
                 ends.append(at)
         ends.append(float(columns))
+        below = np.array(ends)
         for a, b in zip(ends, ends[1:]):
             yield course, [(a, course), (b, course), (b, course + 1), (a, course + 1)]
 
@@ -185,14 +197,15 @@ def _irregular(counts, overlap, scatter, draw):
 
     columns, courses = counts
     points, rows = [], []
-    moved = lambda middle, most: min(max(middle + scatter * (2 * draw.random() - 1), 0.1), most - 0.1)  # fmt: skip
     for row in range(courses):
         # a course begins and ends with what the overlap leaves of a stone
         shift = overlap * (row % 2)
         ends = [0.0, *(k + shift for k in range(0 if shift else 1, columns)), columns]
-        middles = [(a + b) / 2 for a, b in zip(ends, ends[1:])]
-        for x in middles:
-            points.append((moved(x, columns), moved(row + 0.5, courses)))
+        inner = [(a + b) / 2 for a, b in zip(ends[1:], ends[2:-1])]
+        for x in (END, *inner, columns - END):
+            across, up = (scatter * (2 * draw.random() - 1) for _ in "xz")
+            at = x + across * (END < x < columns - END), row + 0.5 + up
+            points.append([min(max(a, 0.1), most - 0.1) for a, most in zip(at, counts)])
             rows.append(row)
     points = np.array(points)
     # mirrored points make the sides of the wall those of its stones
@@ -207,9 +220,48 @@ def _irregular(counts, overlap, scatter, draw):
     for axis, most in ((0, columns), (1, courses)):
         for at in (0, most):
             corners[np.isclose(corners[:, axis], at, atol=1e-9), axis] = at
-    for n, row in enumerate(rows):
-        ring = corners[diagram.regions[diagram.point_region[n]]]
+    rings = [diagram.regions[diagram.point_region[n]] for n in range(len(rows))]
+    for row, ring in zip(rows, _withoutShort(rings, corners, counts)):
         yield row, ring
+
+
+def _withoutShort(rings, corners, counts):
+    """Stones whose short sides are closed, where all stones stay convex.
+
+    :param rings: corners of each stone, by number
+    :param corners: (x, z) of all, in lengths and heights of a stone
+    """
+    edges = {tuple(sorted(pair)) for ring in rings for pair in zip(ring, ring[1:] + ring[:1])}  # fmt: skip
+    long = lambda edge: math.dist(corners[edge[0]], corners[edge[1]])
+    fixed = (corners == 0) | (corners == np.array(counts))  # on a side of the wall
+    for one, two in sorted(edges, key=long):
+        if not 0 < long((one, two)) < LEAST:
+            continue
+        before = corners[[one, two]].copy()
+        if (fixed[one] & fixed[two]).sum() < min(fixed[one].sum(), fixed[two].sum()):
+            continue  # they lie on two sides of the wall
+        middle = before.mean(axis=0)
+        place = np.where(fixed[one], before[0], np.where(fixed[two], before[1], middle))
+        corners[[one, two]] = place
+        touched = [ring for ring in rings if one in ring or two in ring]
+        if all(_convex(corners[ring]) for ring in touched):
+            fixed[[one, two]] = fixed[one] | fixed[two]
+        else:
+            corners[[one, two]] = before
+    return [_distinct(corners[ring]) for ring in rings]
+
+
+def _distinct(ring):
+    """A polygon without its corners that repeat the one before."""
+    return ring[np.any(ring != np.roll(ring, 1, axis=0), axis=1)]
+
+
+def _convex(ring):
+    """Whether a polygon is convex, and has an area."""
+    along = np.diff(np.concatenate([ring, ring[:1]]), axis=0)
+    along = along[np.any(along != 0, axis=1)]
+    turns = np.cross(along, np.roll(along, -1, axis=0))
+    return len(turns) > 2 and (np.all(turns > 1e-6) or np.all(turns < -1e-6))
 
 
 def _bricks(stones, scale, thickness, part):

@@ -9,7 +9,8 @@ The format is found from the contents, not from the name of the file:
 - **ESM**, the Engineering Strong-Motion database, and ITACA (DYNA, ``.ASC``): 64 lines of header, each a key, a colon and a
   value, among them ``SAMPLING_INTERVAL_S``, ``NDATA``, ``UNITS`` (``cm/s^2``) and ``DATA_TYPE``. One sample a line follows.
 - **Text**: one column, accelerations, or two, time [s] and acceleration, with blanks or commas between them. Lines that
-  begin with # are comments, but for two that say what the numbers are: ``# unit: g`` and ``# every: 0.005 s``.
+  begin with # are comments, but for three that say what the numbers are: ``# unit: g``, ``# every: 0.005 s``, and
+  ``# components: x y z`` above three columns, two horizontal accelerations and the vertical one.
 
 g is 9.81 m/s². What a file says of itself is compared with what is in it: another number of samples, times that are not evenly apart, and
 numbers that are not finite are refused with the file, the line and the value.
@@ -21,6 +22,7 @@ import math
 import os
 import re
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -47,13 +49,13 @@ ENDS, RISES = 0.05, 0.5
 class Accelerogram:
     """What a file of accelerations holds.
 
-    :param values: the samples, in the unit of the file
+    :param values: the samples, in the unit of the file: numbers, or lists of three components
     :param every: time between two samples [s]; None: the file does not say it
     :param unit: a key of UNITS; None: the file does not say it
     :param kind: its format: ``"PEER"``, ``"ESM"`` or ``"text"``
     """
 
-    values: list[float]
+    values: list[Any]
     every: float | None
     unit: str | None
     kind: str
@@ -212,12 +214,13 @@ class _File:
             elif words:
                 rows.append(self.numbers(words, line))
                 at.append(line)
-                if len(words) > 2 or len(words) != len(rows[0]):
+                wrong = len(words) != 3 if "components" in known else len(words) > 2
+                if wrong or len(words) != len(rows[0]):
                     raise self.refused(
-                        f"{len(words)} numbers, and the lines must have one or two numbers each, all alike",
+                        f"{len(words)} numbers, and the lines must have one or two numbers each, all alike, or three below # components: x y z",
                         line,
                     )
-        values = self._enough([row[-1] for row in rows])
+        values = self._enough([row if len(row) == 3 else row[-1] for row in rows])
         every = known.get("every")
         if len(rows[0]) == 2:
             times = self._evenly([row[0] for row in rows], at)
@@ -229,7 +232,9 @@ class _File:
         return Accelerogram(values, every, known.get("unit"), "text")
 
     def _comment(self, text, line, known):
-        found = re.fullmatch(r"\s*#\s*(unit|every)\s*[:=]\s*(.*?)\s*", text, re.I)
+        found = re.fullmatch(
+            r"\s*#\s*(unit|every|components)\s*[:=]\s*(.*?)\s*", text, re.I
+        )
         if not found:
             return
         key, word = found[1].lower(), found[2]
@@ -237,6 +242,10 @@ class _File:
             raise self.refused(f"it says {key} twice", line)
         if key == "unit":
             known[key] = self.unit(word, line)
+        elif key == "components":
+            if word.split() != ["x", "y", "z"]:
+                raise self.refused(f"components {shown(word)} must be x y z", line)
+            known[key] = True
         else:
             known[key] = self.interval(re.sub(r"\s*s$", "", word), line)
 
@@ -266,14 +275,21 @@ class _File:
         return values
 
 
-def written(values: Numbers, every: float, title: str) -> str:
+def components(values: Any) -> Any:
+    """Samples as an array with a row a component, one or three."""
+    return np.atleast_2d(np.asarray(values, float).T)
+
+
+def written(values: Any, every: float, title: str) -> str:
     """A record as a text that :func:`read` gives back bit for bit.
 
-    :param values: samples [m/s²]; ``every``: the time between two of them [s]
+    :param values: samples [m/s²], or lists of three components; ``every``: the time between two of them [s]
     :param title: one line of comment
     """
     head = f"# {title}\n# unit: m/s²\n# every: {float(every)!r} s\n"
-    return head + "".join(f"{float(v)!r}\n" for v in values)
+    columns = components(values).tolist()
+    head += "# components: x y z\n" if len(columns) == 3 else ""
+    return head + "".join(" ".join(map(repr, row)) + "\n" for row in zip(*columns))
 
 
 # -- drift --------------------------------------------------------------------------------------------------------------

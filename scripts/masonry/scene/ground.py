@@ -7,7 +7,9 @@ import math
 import os
 from typing import Annotated, Any
 
-from ..arguments import FilePath, Numbers, listOf, number, path, validated
+import numpy as np
+
+from ..arguments import listOf, number, path, validated
 from ..basics import Refused
 from . import accelerograms
 from .accelerograms import UNEVEN, UNITS
@@ -38,31 +40,46 @@ LOWEST_PEAK, HIGHEST_PEAK = 1.5, 30.0
 #: No record has a larger peak [m/s²], several times the largest that was measured; and none has its samples farther apart [s].
 LARGEST_PEAK, COARSEST = 200.0, 0.5
 #: What stands for a sample that is missing, in any unit.
-MISSING = {-999.0, -9999.0, -99999.0}
+MISSING = [-999.0, -9999.0, -99999.0]
+
+
+def isThree(value: Any) -> bool:
+    """Whether a record is three files: two horizontal components and the vertical one."""
+    three = isinstance(value, (list, tuple)) and len(value) == 3
+    return three and all(isinstance(one, (str, os.PathLike)) for one in value)
 
 
 def record(value: Any, first: Any = None) -> Any:
-    """The kind of a record: a list of accelerations, or the path of a file."""
+    """The kind of a record: a list of accelerations, the path of a file, or a list of three paths."""
     if isinstance(value, (str, os.PathLike)):
         return path(value)
+    if isThree(value):
+        return [path(one) for one in value]
     return listOf(number("m/s²", -1e6, 1e6), 2)(value)
 
 
 def readRecord(
-    accelerations: Numbers | FilePath,
+    accelerations: Any,
     every: float | None,
     scale: float = 1.0,
     unit: str | None = None,
-) -> tuple[list[float], float]:
+) -> tuple[list[Any], float]:
     """Samples and the time between them [s] of a record.
 
+    :param accelerations: what :func:`record` takes
     :param scale: factor on the samples
     :param unit: of the samples, a key of UNITS; None: m/s², if the peak does not look like another unit
-    :returns: the samples [m/s²], without the scale, and the time between two of them
+    :returns: the samples [m/s²], or lists of their three components, without the scale, and the time between two of them
     :raises Refused: with what is wrong
     """
     if unit not in (None, *UNITS):
         raise Refused(f"unit must be one of {', '.join(UNITS)}, got {unit!r}")
+    if isThree(accelerations):
+        parts = [readRecord(one, every, scale, unit) for one in accelerations]
+        if len({(len(values), step) for values, step in parts}) > 1:
+            found = ", ".join(f"{len(values)} samples every {step:g} s" for values, step in parts)  # fmt: skip
+            raise Refused(f"{', '.join(map(str, accelerations))}: components of a record must be alike, not {found}")  # fmt: skip
+        return np.transpose([values for values, _ in parts]).tolist(), parts[0][1]
     if isinstance(accelerations, (str, os.PathLike)):
         named = accelerations
         found = accelerograms.read(named)
@@ -77,8 +94,8 @@ def readRecord(
                 raise Refused(f"{named}: it is in {found.unit}, not in {unit}")
             unit = found.unit
         accelerations = found.values
-    values: list[float] = [float(a) for a in accelerations]
-    if len(values) < 2 or not all(map(math.isfinite, values)):
+    values = np.asarray(accelerations, float)
+    if len(values) < 2 or not np.isfinite(values).all():
         raise Refused("a record needs two finite accelerations at least")
     if not (isinstance(every, (int, float)) and 0 < every < math.inf):
         raise Refused(f"every {every!r} s, the time between samples, must be above 0")
@@ -86,12 +103,12 @@ def readRecord(
         raise Refused(
             f"every {every:g} s, the time between samples, must be at most {COARSEST:g} s: is it in s, not ms?"
         )
-    missing = [n for n, v in enumerate(values) if v in MISSING]
-    if missing:
+    missing = np.argwhere(np.isin(values, MISSING))
+    if len(missing):
         raise Refused(
-            f"{len(missing)} samples stand for missing values, the first is number {missing[0]}, {values[missing[0]]:g}"
+            f"{len(missing)} samples stand for missing values, the first is number {missing[0][0]}, {values[tuple(missing[0])]:g}"
         )
-    peak = abs(scale) * max(abs(v) for v in values)
+    peak = abs(scale) * float(abs(values).max())
     if unit is None and peak > 0 and not LOWEST_PEAK <= peak <= HIGHEST_PEAK:
         other = "g" if peak < LOWEST_PEAK else "cm/s²"
         raise Refused(
@@ -104,4 +121,4 @@ def readRecord(
             f"the peak of the record, {strongest / 9.81:.3g} g in {unit or 'm/s²'}, must be at most {LARGEST_PEAK / 9.81:.2g} g: "
             "is it in another unit?"
         )
-    return [UNITS[unit or "m/s²"] * v for v in values], every
+    return (UNITS[unit or "m/s²"] * values).tolist(), every

@@ -26,7 +26,9 @@ This module needs no YADE.
 
 from __future__ import annotations
 
+import html
 import math
+import re
 from dataclasses import dataclass
 
 import numpy as np
@@ -119,6 +121,43 @@ def fit(low: Numbers, high: Numbers, confidence: float = CONFIDENCE) -> Fit:
         confidence,
         edge,
     )
+
+
+def nrml(
+    fits: dict[str, Fit], measure: str, state: str, what: str, highest: float
+) -> str:
+    """Fragilities as a model that OpenQuake reads, of NRML 0.5: GEM Foundation, OpenQuake engine manual, "Fragility Models".
+
+    Its mean and standard deviation are those of the intensity, not of its logarithm.
+
+    :param fits: by the taxonomy of the assets
+    :param measure: of intensity, as a column of study.csv
+    :param state: name of the limit state; ``what``: it in words
+    :param highest: level that was run [g]
+    :raises Refused: if OpenQuake does not know the measure
+    """
+    period = re.fullmatch(r"Sa_([\d.]+)s_g", measure)
+    if not (period or measure == "PGA_g"):
+        raise Refused(f"OpenQuake has no {measure}")
+    imt = f"SA({period[1]})" if period else "PGA"
+    lines = [
+        '<?xml version="1.0" encoding="UTF-8"?>',
+        '<nrml xmlns="http://openquake.org/xmlns/nrml/0.5">',
+        '<fragilityModel id="fragility" assetCategory="buildings" lossCategory="structural">',
+        f"<description>{html.escape(what)}</description>",
+        f"<limitStates>{state}</limitStates>",
+    ]
+    for name, fit in fits.items():
+        spread, name = fit.dispersion.value, re.sub(r"[^A-Za-z0-9_-]+", "_", name)[:100]
+        mean = fit.median.value * math.exp(spread**2 / 2)
+        deviation = mean * math.sqrt(math.expm1(spread**2))
+        lines += [
+            f'<fragilityFunction id="{name}" format="continuous" shape="logncdf">',
+            f'<imls imt="{imt}" minIML="0" maxIML="{highest:g}"/>',
+            f'<params ls="{state}" mean="{mean:.6g}" stddev="{deviation:.6g}"/>',
+            "</fragilityFunction>",
+        ]
+    return "\n".join([*lines, "</fragilityModel>", "</nrml>", ""])
 
 
 def _check(low, high):

@@ -21,7 +21,7 @@ from .. import arguments
 from ..arguments import FilePath, isNumber, listOf, number, shown, validated
 from ..basics import GRAVITY, Refused, refuse
 from ..scene import accelerograms
-from ..scene.ground import UNITS, readRecord
+from ..scene.ground import UNITS, isThree, readRecord, record
 from ..scene.spectrum import DAMPING, LONGEST, Period, Ratio, SHORTEST
 from ..scene.spectrum import spectralAcceleration
 
@@ -49,11 +49,14 @@ class Measure:
         ratio = "" if self.damping == DAMPING else f"_{100 * self.damping:g}%"
         return f"Sa_{self.period:g}s{ratio}_g"
 
-    def of(self, values: Sequence[float], every: float) -> float:
-        """The measure of a record [g].
+    def of(self, values: Sequence[Any], every: float) -> float:
+        """The measure of a record [g]; of three components the geometric mean of both horizontal ones.
 
         :param values: samples [m/s²]; ``every``: the time between them [s]
         """
+        parts = accelerograms.components(values).tolist()
+        if len(parts) == 3:
+            return math.sqrt(self.of(parts[0], every) * self.of(parts[1], every))
         if self.period is None:
             return max(abs(a) for a in values) / GRAVITY
         found = spectralAcceleration(values, every, self.period, self.damping) / GRAVITY
@@ -84,7 +87,7 @@ class Motion:
 
     name: str
     path: str
-    values: list[float]
+    values: list[Any]
     every: float
     intensity: float
 
@@ -107,12 +110,13 @@ class Incremental:
         scales: Any,
         measure: Any,
         unit: Any,
+        every: Any,
         problems: list[str],
     ) -> None:
         self.files = self._files(records, problems)
         self.levels, self.scales = levels, scales
         self.measure = Measure() if measure in (None, "PGA") else measure
-        self.unit = unit
+        self.unit, self.every = unit, every
         self._motions: list[Motion] | None = None
         if not isinstance(self.measure, Measure):
             problems.append(
@@ -143,7 +147,7 @@ class Incremental:
             problems.append("records: must be a list of files")
             return []
         try:
-            return [arguments.path(record) for record in records]
+            return [record(one) if isThree(one) else arguments.path(one) for one in records]  # fmt: skip
         except ValueError as error:
             problems.append(f"records: {error}")
             return []
@@ -175,6 +179,9 @@ class Incremental:
     def _paths(self, near, problems):
         found = []
         for pattern in self.files:
+            if isThree(pattern):
+                found.append(tuple(os.path.join(near, one) for one in pattern))
+                continue
             path = os.path.join(near, pattern)
             several = sorted(glob.glob(path)) if re.search(r"[*?[]", pattern) and not os.path.exists(path) else [path]  # fmt: skip
             if not several:
@@ -182,14 +189,17 @@ class Incremental:
             found += several
         twice = sorted({p for p in found if found.count(p) > 1})
         if twice:
-            problems.append(f"records: {', '.join(twice)} is given twice")
+            problems.append(f"records: {', '.join(map(str, twice))} is given twice")
         return found
 
     def _motion(self, path, before):
-        # what a file says itself needs no unit, and what it says counts
-        unit = None if accelerograms.read(path).unit else self.unit
-        values, every = readRecord(path, None, 1.0, unit)
-        stem = os.path.splitext(os.path.basename(path))[0]
+        # what a file says itself counts
+        files = [path] if isinstance(path, str) else path
+        said = accelerograms.read(files[0])
+        unit, every = (None if own else given for own, given in ((said.unit, self.unit), (said.every, self.every)))  # fmt: skip
+        values, every = readRecord(path, every, 1.0, unit)
+        stems = [os.path.splitext(os.path.basename(one))[0] for one in files]
+        stem = os.path.commonprefix(stems).rstrip("_-. ") or stems[0]
         stem = re.sub(r"[^A-Za-z0-9_-]+", "_", stem)[:60] or "record"
         name, count, names = stem, 1, {motion.name.lower() for motion in before}
         while name.lower() in names:
@@ -229,8 +239,9 @@ class Incremental:
         """Sentences on records that drift."""
         found = []
         for motion in self._known():
-            if doubt := accelerograms.drift(motion.values, motion.every).sentence():
-                found.append(f"note: the record {motion.name} drifts: {doubt}")
+            for part in accelerograms.components(motion.values).tolist():
+                if doubt := accelerograms.drift(part, motion.every).sentence():
+                    found.append(f"note: the record {motion.name} drifts: {doubt}")
         return found
 
 

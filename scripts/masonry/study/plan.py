@@ -38,13 +38,14 @@ class Study:
         falls. What varies beside that is drawn once for every record
     :param correlation: dict of pairs of names -> rank correlation of two distributions [-]
     :param records: of an ``"ida"``: files as in :mod:`masonry.scene.accelerograms`, with paths from the study's file on, or
-        patterns of files such as ``"records/*.AT2"``
+        patterns of files such as ``"records/*.AT2"``, or triples of files, of three components that act at once
     :param levels: of an ``"ida"``: growing values of the measure of intensity [g] to which all records are scaled
     :param scales: in place of levels: growing factors on the records as they are [-]
     :param measure: of intensity: ``"PGA"``, the peak ground acceleration (None means that, too), or
         :func:`masonry.study.Sa`, a spectral acceleration
     :param unit: of those records whose files do not say theirs: ``"m/s²"``, ``"g"`` or ``"cm/s²"``; None: m/s², and a
         record whose peak looks like another unit is refused
+    :param every: time between the samples of those whose files do not say it [s]
     :raises Refused: with all problems at once
     """
 
@@ -58,11 +59,12 @@ class Study:
         vary: Annotated[dict[Any, Any], isA(dict)] | None = None,
         design: Annotated[str, oneOf(*designs.DESIGNS)] = "random",
         correlation: Annotated[dict[tuple[str, str], float], isA(dict)] | None = None,
-        records: FilePath | Sequence[FilePath] | None = None,
+        records: FilePath | Sequence[FilePath | Sequence[FilePath]] | None = None,
         levels: Sequence[float] | None = None,
         scales: Sequence[float] | None = None,
         measure: str | incremental.Measure | None = None,
         unit: str | None = None,
+        every: float | None = None,
     ) -> None:
         problems = []
         self.scene, self.seed, self.design = str(scene), seed, design
@@ -74,7 +76,7 @@ class Study:
             self._take(key, what, problems)
         #: the records and their strengths of an incremental dynamic analysis, else None
         self.ida = None
-        own = dict(records=records, levels=levels, scales=scales, measure=measure, unit=unit)  # fmt: skip
+        own = dict(records=records, levels=levels, scales=scales, measure=measure, unit=unit, every=every)  # fmt: skip
         if design == "ida":
             self.ida = incremental.Incremental(**own, problems=problems)
             for name in {"record", "scale"} & {*self.options, *self.vary}:

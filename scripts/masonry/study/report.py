@@ -22,7 +22,8 @@ from ..basics import Refused, say
 from ..folders import check
 from . import estimate, pictures, sensitivity, statistics
 from .demands import QUANTILES, Demands
-from .gathering import Folder
+from .fragility import nrml as nrmlOf
+from .gathering import Folder, written
 from .records import Record, paired
 
 MEASURE = "peak_base_shear_kN"
@@ -110,20 +111,20 @@ def draw(record, measure):
         "fragility": lambda path: pictures.fragility(path, values, title),
         "curves": fan,
     }
-    yield from _drawn(record.directory, makes)
+    yield from _drawn(record.directory, {f"{n}.png": make for n, make in makes.items()})
 
 
 def _drawn(directory, makes):
-    """Write pictures, and yield a line for each, or why there is none.
+    """Write files, and yield a line for each, or why there is none.
 
-    :param makes: dict of a name -> function of the path that writes it or raises Refused
+    :param makes: dict of a name of a file -> function of the path that writes it or raises Refused
     """
     for name, make in makes.items():
-        path = os.path.join(directory, name + ".png")
+        path = os.path.join(directory, name)
         try:
             make(path)
         except Refused as refused:
-            yield f"no {name}.png: {refused}"
+            yield f"no {name}: {refused}"
         else:
             yield path
 
@@ -209,7 +210,8 @@ def _cell(value):
 
 
 def drawIncremental(demands, limit):
-    """Write the pictures of an incremental dynamic analysis, and yield a line for each, or why there is none."""
+    """Write the pictures of an incremental dynamic analysis and its fragility for OpenQuake, and yield a line for each, or why
+    there is none."""
     measure = label(demands.intensityName)
 
     def curves(path):
@@ -226,7 +228,14 @@ def drawIncremental(demands, limit):
         fit, text = demands.fragility(limit), f"probability: {reached(demands, limit)}"
         pictures.fitted(path, fit, demands.counts(limit), measure, text)
 
-    yield from _drawn(demands.directory, {"ida": curves, "fragility": fragility})
+    def nrml(path):
+        name, what = os.path.basename(os.path.abspath(demands.directory)), reached(demands, limit)  # fmt: skip
+        state = "collapse" if limit is None else "limit"
+        fits = {name: demands.fragility(limit)}
+        written(path, nrmlOf(fits, demands.intensityName, state, what, demands.levels[-1]))  # fmt: skip
+
+    makes = {"ida.png": curves, "fragility.png": fragility, "fragility.xml": nrml}
+    yield from _drawn(demands.directory, makes)
 
 
 #: Options beside the folder, and what ``--help`` says of them.

@@ -5,14 +5,14 @@ from __future__ import annotations
 
 import itertools
 from dataclasses import dataclass
-from typing import Annotated, Any
+from typing import Annotated, Any, Sequence
 
 from yade import O, Vector3
 
 from ...arguments import FilePath, Level, Numbers, number, oneOf, validated
 from ...basics import Refused, say
 from ...run import batch
-from ..accelerograms import drift
+from ..accelerograms import components, drift
 from ..ground import UNITS, readRecord, record
 from ...run.options import Damping
 from ..words import SHAKES
@@ -78,7 +78,7 @@ class Damped(Timed):
 @validated
 def shake(
     scene: Any,
-    accelerations: Annotated[Numbers | FilePath, record],
+    accelerations: Annotated[Numbers | FilePath | Sequence[FilePath], record],
     every: Duration | None = None,
     direction: Level = (1, 0, 0),
     scale: Annotated[float, number("", -1e6, 1e6)] = 1.0,
@@ -104,9 +104,10 @@ def shake(
     unit, and ``--scale S`` makes that shake S times as strong. A record that does not end at rest is named with its numbers; nothing is corrected.
 
     :param accelerations: a list, or the path of a file of PEER or ESM or of a text with one or two columns, as
-        :mod:`masonry.scene.accelerograms` says
+        :mod:`masonry.scene.accelerograms` says; or three paths, of both horizontal components and the vertical one, upwards,
+        which act at once
     :param every: time between two samples [s]; None: that of the file
-    :param direction: of the ground's motion, horizontal
+    :param direction: of the ground's motion, horizontal; the second of three components is at 90° to its left
     :param scale: factor on the accelerations
     :param unit: of the accelerations: ``"m/s²"``, ``"g"`` or ``"cm/s²"``; None: what the file says, or else m/s², and a
         record whose peak looks like another unit is refused
@@ -121,10 +122,14 @@ def shake(
         values, every = readRecord(*given)
     except Refused as refused:
         raise Refused(f"shake: {refused}") from None
-    doubt = drift(values, every).sentence()
-    if doubt:
-        say(f"note: shake: the record drifts: {doubt}")
-    direction = sideways(scene, direction, "shake")
+    motions = components(values).tolist()
+    for motion in motions:
+        if doubt := drift(motion, every).sentence():
+            say(f"note: shake: the record drifts: {doubt}")
+    axes = [sideways(scene, direction, "shake")]
+    if len(motions) == 3:
+        left = Vector3.UnitZ.cross(axes[0])
+        axes += [sideways(scene, left, "shake"), Vector3.UnitZ]
     if scene.args.density_scaling != 1:
         raise Refused("--density-scaling: a scene that is shaken runs in real time")
     at = scene.running.stage("shake", Damped())
@@ -142,12 +147,12 @@ def shake(
     def before(done, beyond):
         place = (done + 0.5) * O.dt / every
         first = int(place)
+        share, now = place - first, down
         if first + 1 < len(values):
-            share = place - first
-            a = (1 - share) * values[first] + share * values[first + 1]
-        else:
-            a = 0.0
-        model.scheme.setGravity(down - scale * a * direction)
+            for motion, axis in zip(motions, axes):
+                a = (1 - share) * motion[first] + share * motion[first + 1]
+                now = now - scale * a * axis
+        model.scheme.setGravity(now)
 
     duration = (len(values) - 1) * every + after
     timed(scene, at, scene.share * duration, before, each=1)
