@@ -29,7 +29,7 @@ SLOW = ["sanitizers", "fuzz", "studies", "scenes"]  # rings of which every test 
 WITHOUT_YADE = ["common", "law", "motion", "blocks", "contact", "files", "gates"] + [
     f"package/test_{name}.py"
     for name in "accelerograms bilinear bricks bricks_checks bricks_files bricks_vaults capacity compare_loops cycles imports "
-    "loops measure measured_loops plain_wall report_content".split()
+    "loops measure measured_loops plain_wall report_content stones".split()
 ]
 TOGETHER = [
     "programs",

@@ -92,6 +92,20 @@ def test_what_is_written_is_read_bit_for_bit(tmp_path_factory, values, every):
     assert readRecord(path, None) == (values, every)
 
 
+def test_three_components_are_read_from_one_file_or_three(tmp_path):
+    parts = [[0.0, 3.0, -0.1], [0.2, 2.0, 0.3], [1.0, -1.6, 0.4]]
+    rows = [*map(list, zip(*parts))]
+    one = file(tmp_path, accelerograms.written(rows, 0.02, "a record"))
+    assert readRecord(one, None) == (rows, 0.02)
+    three = [file(tmp_path, "\n".join(map(str, p)), f"{n}.txt") for n, p in enumerate(parts)]  # fmt: skip
+    assert readRecord(three, 0.02) == (rows, 0.02)
+    file(tmp_path, "1\n3\n", "2.txt")
+    with pytest.raises(Refused, match="must be alike, not 3 samples every 0.02 s, .*, 2 samples"):  # fmt: skip
+        readRecord(three, 0.02)
+    with pytest.raises(Refused, match="the first is number 1, -999"):
+        readRecord([[0, 1, 2], [0, -999, 1]], 0.02)
+
+
 def test_a_text_without_a_unit_keeps_the_rule_of_its_peak(tmp_path):
     plain = file(tmp_path, "0 0\n0.01 0.4\n0.02 0\n")
     assert read(plain).unit is None
@@ -144,6 +158,8 @@ GOOD = [0.1, 0.2, -0.1, 0.3, 0.1, -0.2]
         ("0 1\n0.01 2\n0.02 1\n0.01 3\n", r"line 2|line 4: its times are not evenly apart: 0.01 s must be after 0.02 s"),
         ("0 1\n0.01 2 3\n", r"line 2: 3 numbers, and the lines must have one or two"),
         ("0 1\n0.01\n", r"line 2: 1 numbers, and the lines must have one or two"),
+        ("# components: x y z\n0 1\n0.01 2\n", r"line 2: 2 numbers, .* or three below"),
+        ("# components: N E Z\n", r"line 1: components 'N E Z' must be x y z"),
         ("time_s,a\n0,1\n", r"line 1: 'time_s' is not a number"),
         ("0 1\n", r"it must have two lines of samples at least"),
         ("", r"it must have two lines of samples at least"),

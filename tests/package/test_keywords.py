@@ -180,3 +180,11 @@ def test_a_module_beside_the_scene_is_found_and_its_run_is_resumed(tmp_path):
     assert (here / "r" / "curve.csv").read_bytes() == curve
     other = run("--resume", "r", "--damping", "0.2", check=False)
     assert other.returncode == 2 and "--damping is 0.7" in other.stderr
+
+
+def test_an_option_that_a_scene_requires():
+    parser = options.parser("own", until=30)
+    parser.add_argument("--wall", required=True)
+    assert parser.parse_args(["--wall", "3"]).wall == "3"
+    with pytest.raises(SystemExit):
+        parser.parse_args([])

@@ -2,7 +2,7 @@
 """What the runs of the stone walls say, and what was measured; README.md says how each number is defined.
 
 /usr/bin/python3 validation/stone_walls/results.py --choose results/stone_walls/choose     # the eight combinations of rules
-/usr/bin/python3 validation/stone_walls/results.py results/stone_walls/push [CYCLES]       # predictions.csv and table.md
+/usr/bin/python3 validation/stone_walls/results.py results/stone_walls/push results/stone_walls/cycles       # predictions.csv and table.md
 """
 
 import argparse
@@ -19,9 +19,11 @@ import codes
 import numpy as np
 import rules
 from masonry.read import curves
-from masonry.read.files import readCurve
+from masonry.read.files import readCurve, readRun
 
-FLEXURE, SHEAR = 0.2, 0.4  # share of the work of the push that sliding takes [-]
+FLEXURE = (
+    0.8  # least peak over the strength in flexure of a wall that fails in flexure [-]
+)
 LOST, COLLAPSED = (
     0.8,
     0.5,
@@ -33,7 +35,7 @@ TYPES = {0.0: "shear", 0.5: "hybrid", 1.0: "flexure"}
 
 @dataclass
 class Numbers:
-    """Of one push: force [kN], secant stiffnesses [kN/mm], drifts [%], failure 0 shear, 0.5 hybrid, 1 flexure."""
+    """Of one push: force [kN], secant stiffnesses [kN/mm], drifts [%]."""
 
     peak: float
     elastic: float
@@ -41,10 +43,21 @@ class Numbers:
     atPeak: float
     ultimate: float
     collapse: float
-    failure: float
+
+    def failure(self, wall):
+        """0 shear, 1 flexure: whether the peak is near the strength in flexure of EN 1998-3, C.4.2.1.
+
+        :param wall: its number
+        """
+        return float(self.peak >= FLEXURE * STRENGTHS[wall])
+
+
+#: Strength in flexure by number of a wall [kN].
+STRENGTHS = {row["ID"]: 1e-3 * codes.flexure(codes.read(row), 1.15) for row in codes.rows()}  # fmt: skip
 
 
 NAMES = [one.name for one in fields(Numbers)]
+MEANINGS = dict(peak="peak", elastic="initial stiffness", effective="effective stiffness", atPeak="drift at the peak", ultimate="ultimate drift", collapse="drift of collapse")  # fmt: skip
 UNITS = dict(peak="kN", elastic="kN/mm", effective="kN/mm", atPeak="%", ultimate="%", collapse="%")  # fmt: skip
 
 
@@ -62,12 +75,8 @@ def ofRun(folder, height):
     peak = float(force[at])
     drift = lambda mm: 0.1 * mm / height
     ends = [_fallen(moved, force, at, share * peak) for share in (LOST, COLLAPSED)]
-    until = moved <= ends[0]
-    work = lambda name: curve[name][until][-1] - curve[name][0]
-    slid = work("dissipated_shear_J") / max(work("external_J"), 1e-9)
-    failure = 1.0 if slid < FLEXURE else 0.0 if slid > SHEAR else 0.5
     secants = [_secant(moved, force, share) for share in (ELASTIC, EFFECTIVE)]
-    return Numbers(peak, *secants, drift(moved[at]), *map(drift, ends), failure)
+    return Numbers(peak, *secants, drift(moved[at]), *map(drift, ends))
 
 
 def _fallen(moved, force, at, level):
@@ -101,17 +110,23 @@ def measured():
     return found
 
 
-def runs(folder):
-    """Rows of a study that ended, with the :class:`Numbers` of each: pairs of a dict of what varies and these, once for every
-    wall that is like the one that was run."""
-    walls, same = rules.read(), rules.twins([*rules.read()])
+def rows(folder):
+    """Rows of a study that ended: pairs of a dict of what varies and the folder of a row, once for every wall that is like the
+    one that was run."""
+    same = rules.twins([*rules.read()])
     with open(os.path.join(folder, "study.csv"), encoding="utf-8", newline="") as f:
         for values in csv.DictReader(f):
             row = os.path.join(folder, "rows", f"{int(values['run']):04}")
             if values["status"] == "ended":
-                numbers = ofRun(row, walls[values["wall"]].height)
                 for wall in same[values["wall"]]:
-                    yield {**values, "wall": wall}, numbers
+                    yield {**values, "wall": wall}, row
+
+
+def runs(folder):
+    """The rows of a study of pushes, with the :class:`Numbers` of each."""
+    walls = rules.read()
+    for values, row in rows(folder):
+        yield values, ofRun(row, walls[values["wall"]].height)
 
 
 def spread(ratios):
@@ -133,13 +148,127 @@ def choose(folder):
         for name in ("peak", "effective", "elastic", "ultimate"):
             mean, cov = spread([getattr(n, name) / tests[w][name] for w, n in of.items()])  # fmt: skip
             cells.append(f"{mean:.2f} ({100 * cov:.0f} %)")
-        right = sum(n.failure == tests[w]["failure"] for w, n in of.items())
+        right = sum(n.failure(w) == tests[w]["failure"] for w, n in of.items())
         print(f"| {bond} | {stiffness} | {len(of)} | {' | '.join(cells)} | {right} |")
+
+
+# -- predictions ------------------------------------------------------------------------------------------------------
+
+
+@dataclass
+class Prediction:
+    """Of one wall: the best estimate and the 10 and 90 % quantiles of every name of :class:`Numbers`, peaks to both sides, and
+    what its cycles say, by the law."""
+
+    best: dict
+    low: dict
+    high: dict
+    sides: tuple
+    cycles: dict
+
+
+def predictions(pushes, cycles):
+    """The :class:`Prediction` of every wall.
+
+    :param pushes: folder of the study push.py; ``cycles``: of cycles.py
+    """
+    found, loops = {}, {}
+    for values, numbers in runs(pushes):
+        found.setdefault(values["wall"], {})[int(values["sample"])] = numbers
+    for values, folder in rows(cycles):
+        loops.setdefault(values["wall"], {})[values["joints"]] = ofCycles(folder)
+    made = {}
+    for wall, samples in found.items():
+        best, low, high = {}, {}, {}
+        for name in NAMES:
+            own = [getattr(numbers, name) for numbers in samples.values()]
+            ends = quantiles(own, n=10, method="inclusive")
+            low[name], high[name] = ends[0], ends[-1]
+            best[name] = fmean(getattr(samples[n], name) for n in (0, 1))
+        # two best estimates that differ are the hybrid of both
+        best["failure"] = fmean(samples[n].failure(wall) for n in (0, 1))
+        sides = samples[0].peak, samples[1].peak
+        made[wall] = Prediction(best, low, high, sides, loops.get(wall, {}))
+    return made
+
+
+def ofCycles(folder):
+    """Work of all cycles [J], mean damping ratio of those from 0.2 % on [-], and the last residual displacement [mm]."""
+    cycles = readRun(folder)["cycles"]
+    damping = [one["damping"] for one in cycles[1:] if one["damping"] is not None]
+    last = [abs(cycles[-1][key] or 0.0) for key in ("residual_positive_mm", "residual_negative_mm")]  # fmt: skip
+    return dict(
+        work=sum(one["work_J"] for one in cycles),
+        damping=fmean(damping) if damping else math.nan,
+        residual=max(last),
+    )
+
+
+def write(made):
+    """predictions.csv: a row a wall."""
+    walls, lines = rules.read(), []
+    head = ["ID", "campaign", "wall", "failure", "peak_plus_kN", "peak_minus_kN"]
+    for name in NAMES:
+        unit = UNITS[name].replace("/", "_per_").replace("%", "percent")
+        head += [f"{name}_{unit}", f"{name}_low", f"{name}_high"]
+    head += [f"{what}_{law}" for what in ("work_J", "damping", "residual_percent") for law in ("paper", "cyclic")]  # fmt: skip
+    for number, row in walls.items():
+        own = made[number]
+        line = [number, row.campaign, row.name, TYPES[own.best["failure"]]]
+        line += [f"{peak:.1f}" for peak in own.sides]
+        for name in NAMES:
+            line += [f"{of[name]:.3g}" for of in (own.best, own.low, own.high)]
+        for what, scale in (("work", 1.0), ("damping", 1.0), ("residual", 0.1 / row.height)):  # fmt: skip
+            laws = [own.cycles.get(law) for law in ("softening", "cyclic")]
+            line += [f"{scale * one[what]:.3g}" if one else "" for one in laws]
+        lines.append(line)
+    with open(os.path.join(HERE, "predictions.csv"), "w", encoding="utf-8", newline="") as f:  # fmt: skip
+        csv.writer(f, lineterminator="\n").writerows([head, *lines])
+
+
+def table(made):
+    """Lines of table.md: mean and coefficient of variation of predicted over measured, by typology and for all 39."""
+    tests, walls = measured(), rules.read()
+    of = lambda kind: [w for w in tests if kind in ("all", walls[w].typology)]
+    kinds = [kind for kind in (*rules.TABLE, "all") if of(kind)]
+    cell = lambda ratios: "{:.2f} ({:.0f} %)".format(spread(ratios)[0], 100 * spread(ratios)[1]) if ratios else "–"  # fmt: skip
+    yield "| predicted over measured | " + " | ".join(f"{k} ({len(of(k))})" for k in kinds) + " |"  # fmt: skip
+    yield "|---" * (len(kinds) + 1) + "|"
+    for name in NAMES:
+        cells = [cell([made[w].best[name] / tests[w][name] for w in of(k)]) for k in kinds]  # fmt: skip
+        yield f"| this model: {MEANINGS[name]} | {' | '.join(cells)} |"
+    inside = lambda k, name: sum(made[w].low[name] <= tests[w][name] <= made[w].high[name] for w in of(k))  # fmt: skip
+    for name in ("peak", "ultimate"):
+        yield f"| {MEANINGS[name]} within the interval | {' | '.join(str(inside(k, name)) for k in kinds)} |"  # fmt: skip
+    right = lambda k: sum(made[w].best["failure"] == tests[w]["failure"] for w in of(k))
+    yield f"| failure type right | {' | '.join(str(right(k)) for k in kinds)} |"
+    said = {row["ID"]: codes.predict(row) for row in codes.rows()}
+    for rule in said["1"]:
+        peaks = {w: said[w][rule].peak for w in tests}
+        drifts = {w: said[w][rule].drift for w in tests}
+        for what, own, name in (("peak", peaks, "peak"), ("drift capacity", drifts, "ultimate")):  # fmt: skip
+            if any(own.values()):
+                cells = [cell([own[w] / tests[w][name] for w in of(k) if own[w]]) for k in kinds]  # fmt: skip
+                yield f"| {rule}: {what} | {' | '.join(cells)} |"
+        right = lambda k: sum(
+            _type(said[w][rule]) == tests[w]["failure"] for w in of(k)
+        )
+        yield f"| {rule}: failure type right | {' | '.join(str(right(k)) for k in kinds)} |"  # fmt: skip
+
+
+def _type(prediction):
+    return {"flexure": 1.0, "shear": 0.0, "sliding": 0.0}.get(prediction.failure)
 
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--choose", metavar="STUDY")
+    parser.add_argument("studies", nargs="*", help="of push.py and of cycles.py")
     args = parser.parse_args()
     if args.choose:
         choose(args.choose)
+    if args.studies:
+        made = predictions(*args.studies)
+        write(made)
+        with open(os.path.join(HERE, "table.md"), "w", encoding="utf-8") as f:
+            f.write("".join(line + "\n" for line in table(made)))

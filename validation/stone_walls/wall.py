@@ -26,15 +26,14 @@ parser.add_argument("--bond", choices=list(rules.BONDS), default=rules.CHOSEN[0]
 parser.add_argument(
     "--stiffness", choices=list(rules.STIFFNESSES), default=rules.CHOSEN[1]
 )
-parser.add_argument("--cyclic", type=int, default=0, help="1: in cycles, with the cyclic law")  # fmt: skip
+parser.add_argument("--cyclic", type=int, default=0, help="1: in cycles")  # fmt: skip
 args = parser.parse_args()
 
 row = rules.read()[args.wall]
 guess = rules.Guess(row, args.bond, args.stiffness, args.sample)
-if args.cyclic:
+args.points = guess.points
+if row.dry:  # the paper's law has no curve by which joints close
     args.joints = "cyclic"
-else:
-    args.points = guess.points
 wall = guess.bricks(bricks)
 height = row.height
 scene = Scene(

@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Walls of natural stone fill their rectangle with convex stones, and interlock as they are asked to."""
+
+from usual import *
+from masonry import bricks
+
+patterns = pytest.mark.parametrize("pattern", ["squared", "irregular"])
+lengths = some.floats(0.8, 2.5)
+sizes = some.floats(0.15, 0.4)
+
+
+@given(
+    pattern=some.sampled_from(["squared", "irregular"]),
+    length=lengths,
+    height=lengths,
+    unit=some.tuples(sizes, some.just(0.3), sizes),
+    scatter=some.floats(0, 0.4),
+    seed=some.integers(0, 1000),
+)
+@settings(max_examples=60, deadline=None)
+def test_stones_fill_the_wall_and_touch(pattern, length, height, unit, scatter, seed):
+    wall = bricks.StoneWall(length, height, unit, pattern, scatter, seed=seed)
+    assert wall.volume == pytest.approx(length * height * unit[1], rel=1e-9)
+    assert wall.low == pytest.approx((0, 0, 0), abs=1e-12)
+    assert wall.high == pytest.approx((length, unit[1], height), rel=1e-12)
+    assert not [p for p in wall.problems() if "odd size" not in p]
+    assert bricks.leastTrace(wall) >= 1 - 1e-9
+
+
+@patterns
+def test_a_seed_is_a_wall(pattern):
+    made = [list(bricks.StoneWall(1.2, 1.2, (0.2, 0.3, 0.15), pattern, seed=n)) for n in (1, 1, 2)]  # fmt: skip
+    assert made[0] == made[1] != made[2]
+
+
+@pytest.mark.parametrize("unit, courses", [((0.2, 0.2, 0.15), 8), ((0.3, 0.2, 0.1), 12), ((0.5, 0.2, 0.4), 3)])  # fmt: skip
+def test_the_trace_of_a_running_bond(unit, courses):
+    # a head joint in every course, and half a stone along each bed joint between them
+    wall = bricks.Wall(6 * unit[0], courses * unit[2], unit)
+    across = (courses - 1) * unit[0] / 2
+    assert bricks.leastTrace(wall) == pytest.approx(1 + across / (courses * unit[2]))
+
+
+def test_the_trace_of_other_walls():
+    stack = bricks.Wall(1.0, 1.0, unit=(0.25, 0.2, 0.1), bond="stack")
+    assert bricks.leastTrace(stack) == pytest.approx(1)
+    assert bricks.leastTrace(bricks.stack(4, (1, 1, 0.5))) == math.inf
+    moved = stack.moved(3, 1, -2)
+    assert bricks.leastTrace(moved) == pytest.approx(1)
+
+
+@pytest.mark.parametrize("trace", [1.1, 1.17, 1.25])
+@patterns
+def test_the_wall_has_the_trace_that_was_asked_for(pattern, trace):
+    walls = [bricks.StoneWall(1.6, 1.6, (0.2, 0.3, 0.15), pattern, trace=trace, seed=n) for n in range(5)]  # fmt: skip
+    found = [bricks.leastTrace(wall) for wall in walls]
+    assert max(found) < 1.1 * trace and min(found) > 0.9 * trace
+    assert len({round(f, 6) for f in found}) > 1
+
+
+def test_what_is_refused():
+    with pytest.raises(ValueError, match="length of a stone, 2 m.*\n?.*height of a stone, 3 m"):  # fmt: skip
+        bricks.StoneWall(1.0, 1.0, (2, 0.3, 3))
+    with pytest.raises(ValueError, match="are all lengths in m"):
+        bricks.StoneWall(1000, 1200, (0.2, 0.3, 0.15))
