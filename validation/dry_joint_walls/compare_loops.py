@@ -4,6 +4,7 @@
 /usr/bin/python3 validation/dry_joint_walls/compare_loops.py                      # all walls, cyclic law
 /usr/bin/python3 validation/dry_joint_walls/compare_loops.py --joints softening   # the paper's law
 /usr/bin/python3 validation/dry_joint_walls/compare_loops.py --walls WS1175       # one wall
+/usr/bin/python3 validation/dry_joint_walls/compare_loops.py --set shearStiffness=7.4e9 --results results/ks --out results/ks
 
 Runs what has no results yet, and writes loops_JOINTS.md, the tables, and loops_JOINTS_LEVEL.png, a figure a level. The
 cyclic law gets the properties and the limits of blind.json, the paper's law those of ``masonry.scene.materials``. Measured and
@@ -292,7 +293,16 @@ def main(words=None):
         help="folder of the results",
     )
     parser.add_argument("--out", default=HERE, help="folder of tables and figures")
+    parser.add_argument(
+        "--set",
+        nargs="+",
+        metavar="NAME=VALUE",
+        default=[],
+        help="properties of the cyclic law other than those of blind.json; give other folders, too",
+    )
     args = parser.parse_args(words)
+    for name, _, value in (word.partition("=") for word in args.set):
+        BLIND["properties"][name] = float(value)
     where = lambda wall: folder(wall, args.joints, args.results)
     studies.runMissing(
         [

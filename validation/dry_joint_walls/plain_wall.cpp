@@ -9,6 +9,10 @@
 // scripts/wall_dry.py: the vertical load keeps its line, the top is driven 1.325 m above the base, directly or through
 // a spring.
 //
+// For hypotheses on the loops (README.md, Loops): a cap, friction that wears off, shear stiffness by pressure, head
+// joints with a gap or without friction, soft joints at base and top, stones without elasticity, a load that rides,
+// rollers with friction.
+//
 // plain_wall NAME=VALUE ... < turning points [mm]; SI units but for level [kN], rate [mm/s] and every [mm].
 #include <algorithm>
 #include <cmath>
@@ -39,17 +43,32 @@ struct Point {
     double softness;         // of the blocks in series [m/Pa]
     double shearStiffness;   // with the blocks in series [Pa/m]
     double closingStiffness; // largest, for the time step and the friction of closing [Pa/m]
+    double shearSoftness;    // of the blocks in series [m/Pa]
+    double gap, friction;    // of a head joint [m], [-]
+    double factor;           // of kn, kn0 and ks
     double opening = 0, slide = 0, shear = 0, closing = 0; // closing: stress of the friction of closing [Pa]
+    double crushed = 0, slip = 0;                          // closure beyond the cap, accumulated slip [m]
 };
 
 std::map<std::string, double> options = {
     {"level", 175},         {"kn", 34e9}, {"kn0", 0},    {"cm", 0},       {"ks", 13.6e9},
     {"friction", 0.65},     {"rate", 50}, {"points", 8}, {"every", 0.05}, {"damping", 0.8},
-    {"closingFriction", 0}, {"rig", 0}}; // stiffness of a spring between the drive and the top [N/m]; 0: none
+    {"closingFriction", 0}, {"rig", 0}, // stiffness of a spring between the drive and the top [N/m]; 0: none
+    {"cap", 1e12},                      // pressure at which a point yields [Pa]; it unloads with its whole stiffness
+    {"worn", -1},         // friction that is left after much slip, decaying over 10 mm of it; below 0: it does not wear
+    {"shearPower", 0},    // ks grows with the pressure over that of the vertical load, by this power
+    {"headGap", 0},       // opening of head joints before the test [m]
+    {"headFriction", -1}, // of head joints; below 0: as of bed joints
+    {"supportFactor", 1}, // stiffness of the joints to base and top over that of the others
+    {"rigid", 0},         // 1: stones without elasticity
+    {"riding", 0},        // 1: the vertical load moves with the top
+    {"rollers", 0}};      // friction of rollers under the vertical load
+constexpr double wear = 10e-3, leastShear = 0.02; // [m]; least ks by pressure over ks
 
 // Pressure of a closed point [Pa]: the joint's curve in series with the blocks.
-double pressure(double closure, double softness) {
-    const double kn = options["kn"], kn0 = options["kn0"], limit = options["cm"];
+double pressure(double closure, double softness, double factor) {
+    static const double own = options["kn"], first = options["kn0"], limit = options["cm"];
+    const double kn = factor * own, kn0 = factor * first;
     const double straight = 1 / (1 / kn + softness);
     if (kn0 <= 0) return straight * closure;
     const double scale = kn0 * limit, end = scale * (std::sqrt(kn / kn0) - 1);
@@ -104,11 +123,16 @@ int main(int count, char** words) {
     std::vector<Point> points;
     const double shear = young / (2 * (1 + poisson));
     const auto join = [&](int a, int b, double x, double z, bool bed, double area) {
-        Point p{a, b, x - blocks[a].x, z - blocks[a].z, x - blocks[b].x, z - blocks[b].z, area, bed, 0, 0, 0};
+        Point p{a, b, x - blocks[a].x, z - blocks[a].z, x - blocks[b].x, z - blocks[b].z, area, bed};
         const double apart = (bed ? height : 2 * half) * (a == base || b == top ? 0.5 : 1); // of the centres
-        p.softness = apart / young;
-        p.shearStiffness = 1 / (1 / options["ks"] + apart / shear);
-        p.closingStiffness = 1 / (1 / options["kn"] + p.softness);
+        const bool rigid = options["rigid"] > 0, bare = !bed && options["headFriction"] >= 0;
+        p.softness = rigid ? 1e-14 : apart / young;
+        p.shearSoftness = rigid ? 1e-14 : apart / shear;
+        p.factor = a == base || b == top ? options["supportFactor"] : 1;
+        p.shearStiffness = 1 / (1 / (p.factor * options["ks"]) + p.shearSoftness);
+        p.closingStiffness = 1 / (1 / (p.factor * options["kn"]) + p.softness);
+        p.gap = bed ? 0 : options["headGap"];
+        p.friction = options[bare ? "headFriction" : "friction"];
         points.push_back(p);
     };
     std::vector<int> under{base};
@@ -131,9 +155,11 @@ int main(int count, char** words) {
     }
 
     std::vector<double> stiff(blocks.size()), turning(blocks.size());
+    const double power = options["shearPower"], stiffest = power > 0 ? 5 : 1; // most ks by pressure, over ks
     for (const Point& p : points) {
         const double k =
-            2 * std::max(p.closingStiffness * (1 + 4 * options["closingFriction"]), p.shearStiffness) * p.area;
+            2 * p.area *
+            std::max(p.closingStiffness * (1 + 4 * options["closingFriction"]), stiffest * p.shearStiffness);
         stiff[p.lower] += k;
         stiff[p.upper] += k;
         turning[p.lower] += k * (p.ax * p.ax + p.az * p.az + std::abs(p.ax * p.az));
@@ -147,27 +173,39 @@ int main(int count, char** words) {
     const double rig = options["rig"];
     double load = 0, velocity = 0, damping = 0.7;
     double drive = 0, pull = 0; // displacement [m] of the drive and its force [N]
-    const double friction = options["friction"], closing = options["closingFriction"];
+    const double closing = options["closingFriction"], cap = options["cap"], worn = options["worn"], ks = options["ks"],
+                 riding = options["riding"], usual = options["level"] * 1e3 / (halves * half * thickness);
     const auto step = [&] {
         for (Block& b : blocks) {
             b.force[0] = b.force[2] = 0;
             b.force[1] = -b.mass * gravity;
         }
         blocks[top].force[1] = -load;
+        blocks[top].force[2] -= riding * load * blocks[top].at[0];
         for (Point& p : points) {
             Block &a = blocks[p.lower], &b = blocks[p.upper];
             const double x = b.at[0] - b.at[2] * p.bz - a.at[0] + a.at[2] * p.az;
             const double z = b.at[1] + b.at[2] * p.bx - a.at[1] - a.at[2] * p.ax;
-            const double opening = p.bed ? z : x, slide = p.bed ? x : z;
+            const double opening = (p.bed ? z : x) + p.gap, slide = p.bed ? x : z;
             double normal = 0;
             if (opening < 0) {
-                const double pressed = pressure(-opening, p.softness);
+                const double trialPressure = std::max(pressure(-opening - p.crushed, p.softness, p.factor), 0.0);
+                const double pressed = std::min(trialPressure, cap);
+                p.crushed += (trialPressure - pressed) / p.closingStiffness;
                 const double most = closing * pressed; // friction of closing: a second spring with a slider
                 const double trial = p.closing - 4 * closing * p.closingStiffness * (opening - p.opening);
                 p.closing = std::clamp(trial, -most, most);
                 normal = -(pressed + p.closing);
-                const double limit = friction * pressed;
-                p.shear = std::clamp(p.shear + p.shearStiffness * (slide - p.slide), -limit, limit);
+                const double lost = worn < 0 ? 0 : (p.friction - worn) * (1 - std::exp(-p.slip / wear));
+                const double limit = (p.friction - lost) * pressed;
+                double stiffness = p.shearStiffness;
+                if (power > 0) {
+                    const double own = ks * std::max(leastShear, std::pow(pressed / usual, power));
+                    stiffness = std::min(1 / (1 / own + p.shearSoftness), stiffest * stiffness);
+                }
+                const double sheared = p.shear + stiffness * (slide - p.slide);
+                p.shear = std::clamp(sheared, -limit, limit);
+                p.slip += std::abs(sheared - p.shear) / stiffness;
             } else
                 p.shear = p.closing = 0;
             p.opening = opening;
@@ -219,7 +257,7 @@ int main(int count, char** words) {
             step();
             const double moved = drive;
             if (std::abs(moved - last) * 1e3 >= options["every"]) {
-                std::printf("%.5f,%.4f\n", moved * 1e3, pull * 1e-3);
+                std::printf("%.5f,%.4f\n", moved * 1e3, (pull + direction * options["rollers"] * load) * 1e-3);
                 last = moved;
             }
         }

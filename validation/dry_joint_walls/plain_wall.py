@@ -44,6 +44,20 @@ VARIANTS = {
     "linear, friction 0.5": {"friction": 0.5},
     "linear, friction of closing 0.15": {"closingFriction": 0.15},
     "linear, kn 10, friction 0.5": {"kn": 10e9, "friction": 0.5},
+    "linear, kn 17, ks 6.8": {"kn": 17e9, "ks": 6.8e9},
+    "linear, kn 360, ks 150": {"kn": 360e9, "ks": 150e9},
+    "linear, rigid stones, kn 340, ks 136": {"rigid": 1, "kn": 340e9, "ks": 136e9},
+    "linear, friction wears to 0.4": {"worn": 0.4},
+    "linear, cap 10 MPa": {"cap": 10e6},
+    "linear, ks by pressure": {"shearPower": 1},
+    "linear, gaps of 2 mm in head joints": {"headGap": 2e-3},
+    "linear, head joints without friction": {"headFriction": 0},
+    "linear, base and top joints ten times softer": {"supportFactor": 0.1},
+    "linear, load rides": {"riding": 1},
+    "linear, rollers of 1 %": {"rollers": 0.01},
+    "closing curve, ks 7.4": {**CURVE, "ks": 7.4e9},
+    "closing curve, ks 7.4, friction 0.5": {**CURVE, "ks": 7.4e9, "friction": 0.5},
+    "closing curve, ks 7.4, rig 37 kN/mm": {**CURVE, "ks": 7.4e9, "rig": 37e6},
 }
 
 
@@ -74,7 +88,8 @@ def run(history, program=PROGRAM, **options):
 
 
 def describe(moved, force):
-    """Cells of a row: stiffness from turn to turn of the first cycle, peaks, and work over measured work by range."""
+    """Cells of a row: stiffness from turn to turn of the first cycle, peaks, work over measured work by range, and mean
+    width of the loops from 5 mm on, the distance of both residual displacements."""
     first = loops.cycles(moved, force, measured.THRESHOLD)[0]
     cells = [f"{first.stiffness_kN_per_mm:.1f}"]
     cells.append(f"{force.max():.1f}, {-force.min():.1f}")
@@ -83,6 +98,8 @@ def describe(moved, force):
         work = np.array([p.work for p in found if low <= p.amplitude < high])
         tests, ours = work.mean(axis=0)
         cells.append(f"{ours:.0f} ({ours / tests:.2f})")
+    wide = [p.residuals[:, 0] - p.residuals[:, 1] for p in found if p.amplitude >= 5]
+    cells.append(f"{np.mean(wide, axis=0)[1]:.1f}")
     return cells
 
 
@@ -99,7 +116,13 @@ def main(words=None):
     ranges = [f"{low:g}–{high:g} mm" for low, high in compare_loops.RANGES]
     print(
         studies.head(
-            ["variant", "stiffness of the first cycle kN/mm", "V+, V− kN", *ranges]
+            [
+                "variant",
+                "stiffness of the first cycle kN/mm",
+                "V+, V− kN",
+                *ranges,
+                "width mm",
+            ]
         ),
         flush=True,
     )

@@ -10,6 +10,7 @@ from typing import Annotated, Any
 import numpy as np
 
 from ..arguments import isA, number, oneOf, validated, whole
+from ..basics import say
 from .blocks import Block, Bricks, Length, Sides, refuse
 
 #: Walls that are drawn until one has the trace that is asked for, and how near it must come [-].
@@ -66,7 +67,7 @@ def StoneWall(
         0.2, and with ``trace`` another one in every draw
     :param trace: length of the line of minimum trace over the height of the wall [-], see :func:`leastTrace`. Up to 30
         walls are drawn, those of squared stones after the running bond itself with overlaps from none to half a stone: the
-        first within 3 % of it is taken, else the nearest
+        first within 3 % of it is taken, else the nearest, and a note says how near it is
     :param seed: of the draws; another one is another wall of the same kind
     :raises ValueError: with all problems
     """
@@ -97,14 +98,16 @@ def StoneWall(
             best = miss, bricks
         if miss <= NEAR:
             break
+    if best[0] > NEAR:
+        say(f"note: stone wall: the nearest of {DRAWS} walls has a trace of {leastTrace(best[1]):.3g}, not {trace:g}")  # fmt: skip
     return best[1]
 
 
 @validated
 def leastTrace(bricks: Annotated[Any, isA(Bricks)]) -> float:
     """The line of minimum trace of a wall along x, the shortest way through its joints from its foot to its top, over its
-    height [-]. It is 1 if a straight vertical joint goes through, and grows with the interlocking of the stones.
-    """
+    height [-]. It is 1 if a straight vertical joint goes through, and grows with the interlocking of the stones; it is inf if
+    no way goes through because a course is one stone."""
     from scipy.sparse import csr_array
     from scipy.sparse.csgraph import dijkstra
 
@@ -119,8 +122,8 @@ def leastTrace(bricks: Annotated[Any, isA(Bricks)]) -> float:
             points.append(point)
         return keys[key]
 
-    ends = np.array([[numberOf(a), numberOf(b)] for a, b in sides])
-    points = np.array(points)
+    ends = [[numberOf(a), numberOf(b)] for a, b in sides]
+    points = np.array(points).reshape(-1, 2)
     lengths = {}
     for a, b in ends:
         along = points[b] - points[a]
@@ -134,12 +137,12 @@ def leastTrace(bricks: Annotated[Any, isA(Bricks)]) -> float:
             lengths[one, two] = np.hypot(*(points[two] - points[one]))
     start = np.flatnonzero(points[:, 1] < low[1] + 4 * near)
     end = np.flatnonzero(points[:, 1] > high[1] - 4 * near)
+    if not (len(start) and len(end)):
+        return math.inf
     rows, columns = np.array(list(lengths)).T
     graph = csr_array((list(lengths.values()), (rows, columns)), [len(points)] * 2)
-    if not len(start):
-        return math.inf
     found = dijkstra(graph, directed=False, indices=start, min_only=True)[end]
-    return float(found.min(initial=math.inf) / (high[1] - low[1]))
+    return float(found.min() / (high[1] - low[1]))
 
 
 def _sides(bricks):
@@ -202,7 +205,8 @@ def _irregular(counts, overlap, scatter, draw):
         shift = overlap * (row % 2)
         ends = [0.0, *(k + shift for k in range(0 if shift else 1, columns)), columns]
         inner = [(a + b) / 2 for a, b in zip(ends[1:], ends[2:-1])]
-        for x in (END, *inner, columns - END):
+        whole = (END, *inner, columns - END) if len(ends) > 2 else (columns / 2,)
+        for x in whole:
             across, up = (scatter * (2 * draw.random() - 1) for _ in "xz")
             at = x + across * (END < x < columns - END), row + 0.5 + up
             points.append([min(max(a, 0.1), most - 0.1) for a, most in zip(at, counts)])
