@@ -29,6 +29,7 @@ LOST, COLLAPSED = (
     0.5,
 )  # share of the peak at the ultimate drift and at collapse [-]
 ELASTIC, EFFECTIVE = 0.15, 0.7  # share of the peak at the secants [-]
+STANDS = 0.05  # drift that a wall reaches which carries its vertical load [%]
 WAVE = 0.2  # a fall of the force that is over within this displacement is a wave [mm]
 TYPES = {0.0: "shear", 0.5: "hybrid", 1.0: "flexure"}
 
@@ -62,18 +63,19 @@ UNITS = dict(peak="kN", elastic="kN/mm", effective="kN/mm", atPeak="%", ultimate
 
 
 def ofRun(folder, height):
-    """The :class:`Numbers` of a push.
+    """The :class:`Numbers` of a push; None if the wall could not carry its vertical load, and fell before it was pushed.
 
     :param height: of the wall [m]
     """
     curve = {name: np.array(values) for name, values in readCurve(folder).items()}
-    side = np.sign(curve["displacement_mm"][-1])
-    moved = np.maximum.accumulate(side * curve["displacement_mm"])
+    moved = np.maximum.accumulate(curve["displacement_mm"])
     # what both ends carry, so that no wave counts
-    force = np.minimum(side * curve["base_shear_kN"], side * curve["top_shear_kN"])
+    force = np.minimum(curve["base_shear_kN"], curve["top_shear_kN"])
+    drift = lambda mm: 0.1 * mm / height
+    if len(force) < 3 or force.max() <= 0 or drift(moved[-1]) < STANDS:
+        return None
     at = int(force.argmax())
     peak = float(force[at])
-    drift = lambda mm: 0.1 * mm / height
     ends = [_fallen(moved, force, at, share * peak) for share in (LOST, COLLAPSED)]
     secants = [_secant(moved, force, share) for share in (ELASTIC, EFFECTIVE)]
     return Numbers(peak, *secants, drift(moved[at]), *map(drift, ends))
@@ -126,7 +128,8 @@ def runs(folder):
     """The rows of a study of pushes, with the :class:`Numbers` of each."""
     walls = rules.read()
     for values, row in rows(folder):
-        yield values, ofRun(row, walls[values["wall"]].height)
+        if numbers := ofRun(row, walls[values["wall"]].height):
+            yield values, numbers
 
 
 def spread(ratios):
@@ -180,14 +183,16 @@ def predictions(pushes, cycles):
     made = {}
     for wall, samples in found.items():
         best, low, high = {}, {}, {}
+        firsts = [n for n in (0, 1) if n in samples] or [*samples]
         for name in NAMES:
             own = [getattr(numbers, name) for numbers in samples.values()]
             ends = quantiles(own, n=10, method="inclusive")
             low[name], high[name] = ends[0], ends[-1]
-            best[name] = fmean(getattr(samples[n], name) for n in (0, 1))
+            best[name] = fmean(getattr(samples[n], name) for n in firsts)
         # two best estimates that differ are the hybrid of both
-        best["failure"] = fmean(samples[n].failure(wall) for n in (0, 1))
-        sides = samples[0].peak, samples[1].peak
+        best["failure"] = fmean(samples[n].failure(wall) for n in firsts)
+        best["failure"] = round(2 * best["failure"]) / 2
+        sides = [fmean(samples[n].peak for n in samples if n % 2 == side and (n < 2 or side not in firsts)) for side in (0, 1)]  # fmt: skip
         made[wall] = Prediction(best, low, high, sides, loops.get(wall, {}))
     return made
 

@@ -17,6 +17,7 @@ WALLS = os.path.join(HERE, "reference", "walls.csv")
 WEIGHT = 20e3  # of masonry, as the database counts it [N/m³]
 GRAVITY = 9.81  # [m/s²]
 SAMPLES = 8  # draws of the interval of a wall, beside two best estimates
+LOWEST = 0.01  # least height of the force of a drive above a wall, the thickness of what it pushes [m]
 POINTS = ("8", "5", "12")  # along a joint, by turns
 #: Drifts of the cycles [%].
 DRIFTS = (0.1, 0.2, 0.4, 0.6, 1.0, 1.5, 2.0)
@@ -93,7 +94,7 @@ class Row:
     length: float
     height: float
     thickness: float
-    arm: float  # height of zero moment above the base
+    arm: float  # height of zero moment above the base, of a cantilever that of the force
     clamped: bool  # whether the top cannot turn
     fc: float
     E: float | None
@@ -126,7 +127,7 @@ def _row(cells):
         get("L [mm]", 1e-3),
         get("H [mm]", 1e-3),
         get("t [mm]", 1e-3),
-        get("H0 [mm]", 1e-3),
+        max(get("H0 [mm]", 1e-3), get("H [mm]", 1e-3) + LOWEST),
         get("H0/H") < 0.75,
         get("fc [MPa]", 1e6),
         get("Ecompr [MPa]", 1e6),
@@ -266,6 +267,7 @@ class Guess:
         for joint in (joints["bed"], joints["head"]):
             joint.updateAttrs(
                 dict(
+                    law="cyclic",  # the paper's has no curve by which joints close
                     cap=False,
                     compressionStiffnessLoss=0.0,
                     normalStiffness=max(self.row.Eb / self.stone[1], 2 * closing),

@@ -86,9 +86,10 @@ def StoneWall(
     for n in range(1 if trace is None else DRAWS):
         own, overlap = scatter, 0.5
         if own is None:
-            own = MOST_SCATTER / 2 if trace is None else MOST_SCATTER * draw.random() * (n > 0)  # fmt: skip
-        if n > 0 and pattern == "squared":
-            overlap *= draw.random()
+            own = MOST_SCATTER / 2 if trace is None else MOST_SCATTER * draw.random()
+        if pattern == "squared" and trace is not None:
+            # the running bond itself comes first
+            own, overlap = (own, 0.5 * draw.random()) if n else (0.0, 0.5)
         stones = lay(counts, overlap, own, draw)
         bricks = _bricks(stones, (length / counts[0], height / counts[1]), unit[1], part)  # fmt: skip
         if trace is None:
