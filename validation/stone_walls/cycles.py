@@ -11,7 +11,7 @@ from masonry.study import Study
 cyclic = [number for number, row in rules.read().items() if row.cyclic]
 study = Study(
     "wall.py",
-    options={"cyclic": 1, "rate": 100},
+    options={"cyclic": 1},
     design="grid",
     vary={"joints": ["cyclic", "softening"], "wall": list(rules.twins(cyclic))},
 )

@@ -16,7 +16,7 @@ WALLS = os.path.join(HERE, "reference", "walls.csv")
 
 WEIGHT = 20e3  # of masonry, as the database counts it [N/m³]
 GRAVITY = 9.81  # [m/s²]
-SAMPLES = 8  # draws of the interval of a wall, beside two best estimates
+SAMPLES = 6  # draws of the interval of a wall, beside two best estimates
 LOWEST = 0.01  # least height of the force of a drive above a wall, the thickness of what it pushes [m]
 POINTS = ("8", "5", "12")  # along a joint, by turns
 #: Drifts of the cycles [%].

@@ -82,11 +82,14 @@ class Pushing:
         """Whether the wall is a tenth of the whole path [mm], and 1 mm at least, behind where it turned or began."""
         return self.path - self.travelled(direction) > max(1.0, 0.1 * whole)
 
-    def hasLost(self, direction, shear):
-        """Whether the wall is farther out than ever before, and has lost its force there, a mean [kN]."""
+    def hasLost(self, direction, shear, top):
+        """Whether the wall is farther out than ever before, and has lost its force there: both a mean at its base, and what it
+        holds the drive with now [kN]. A slow wave can take the base alone below any share of a peak.
+        """
         side, out = direction > 0, direction * self.moved
         beyond = out > self.reach[side] and out > self.peaksAt[side] + 1
-        return beyond and shear is not None and direction * shear < 0.2 * self.peaks[side]  # fmt: skip
+        least = 0.2 * self.peaks[side]
+        return beyond and shear is not None and max(direction * shear, direction * top) < least  # fmt: skip
 
     def passOn(self, goals):
         """Go on to the first point that is not reached yet. Returns whether there is one, and whether the drive turns."""
@@ -237,7 +240,7 @@ def _lost(model, at, reading, direction, mean, whole):
     :param mean: base shear over a time, as in :meth:`Pushing.note` [kN]
     :param whole: length of the whole path [mm]
     """
-    if at.hasLost(direction, mean):
+    if at.hasLost(direction, mean, 1e-3 * reading.topShear):
         return "less than a fifth of the peak of its force is left"
     sunk = reading.sunk + min(0.0, reading.along * model.loading.direction[2])
     if model.loading.hasSunk(sunk):
