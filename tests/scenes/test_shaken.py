@@ -48,6 +48,35 @@ def test_the_command_line_replaces_the_record_with_its_factor_and_unit(tmp_path,
     assert weaker == shaken(tmp_path / "f")
 
 
+def test_three_components_act_at_once(tmp_path):
+    """Each by itself is what the one record is along its direction, and the vertical one is felt by the base."""
+    paths = {name: str(tmp_path / name) for name in ("some", "none", "up")}
+    for name, factor in (("some", 1), ("none", 0), ("up", 0.5)):
+        (tmp_path / name).write_text("# unit: m/s²\n" + "".join(f"{factor * a!r}\n" for a in RECORD))  # fmt: skip
+
+    def run(folder, *three, **settings):
+        words = ["--lean", "--out", str(tmp_path / folder)]
+        scene = Scene("block", bricks.stack(1, (0.3, 0.3, 0.3)), materials.dry(0.2, normalStiffness=1e10), plane=False, arguments=words)  # fmt: skip
+        scene.platen("bottom")
+        scene.watch((0, 0, 0.3), name="top")
+        scene.settle()
+        scene.shake([paths[n] for n in three] or RECORD, EVERY, **settings)
+        scene.finish()
+        return scene.results
+
+    alone = run("a", direction=(0, 1, 0)).column("top_y_mm")
+    assert max(map(abs, alone)) > 0.03
+    assert run("b", "none", "some", "none").column("top_y_mm") == alone
+    turned = run("c", "some", "none", "none", direction=(0, 1, 0))
+    assert turned.column("top_y_mm") == alone
+    forces = run("d", "none", "none", "up").column("base_force_z_kN")
+    ratios = [force / forces[0] for force in forces]
+    for end in (min, max):
+        assert end(ratios) == pytest.approx(1 + end(RECORD) * 0.5 / 9.81, abs=0.02)
+    with pytest.raises(ValueError, match="the scene is in the x-z plane"):
+        shaken(tmp_path / "e", accelerations=[paths["some"]] * 3)
+
+
 def test_a_record_of_the_command_line_that_is_wrong_is_refused_before_the_run(tmp_path):
     path = tmp_path / "short.AT2"
     path.write_text("ACCELERATION IN UNITS OF G\nNPTS= 5, DT= 0.01 SEC\n0.1 0.2\n")

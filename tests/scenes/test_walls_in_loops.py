@@ -205,7 +205,7 @@ def test_a_loop_that_unloads_is_no_collapse_and_a_lost_side_is_one():
         for _ in range(3):
             at.now += 1
             mean = at.note(shear, 1)
-        return at.hasLost(direction, mean)
+        return at.hasLost(direction, mean, shear)
 
     goals = history.targets([5, -5, 8, -8])
     assert not row(5, 100, 1)
@@ -219,6 +219,13 @@ def test_a_loop_that_unloads_is_no_collapse_and_a_lost_side_is_one():
     at.passOn(goals)
     assert not row(-4, -1, -1)
     assert row(-6.1, -11, -1) and not row(-6.1, -13, -1)
+
+
+def test_a_wave_at_the_base_is_no_collapse():
+    at = pushing.Pushing()
+    at.moved = 2.0
+    assert not at.hasLost(1, -0.5, 1.9)  # the base of a soft wall lags behind
+    assert at.hasLost(1, -0.5, -0.1)
 
 
 @pytest.mark.parametrize("whole, most", [(5.0, 1.0), (50.0, 5.0)])

@@ -3,6 +3,7 @@
 
 from usual import *
 import hashlib
+from xml.etree import ElementTree
 import cluster
 from masonry.read import drawing
 from masonry.study import Sa, Study, report, uniform
@@ -123,6 +124,14 @@ def test_the_report_has_curves_and_a_fragility(whole, capsys):
     assert "rows that have not ended: 3 above collapse" in said
     for name in ("ida.png", "fragility.png"):
         assert (out / name).stat().st_size > 20_000
+    fit = Demands(Record(out)).fragility()
+    space = "{http://openquake.org/xmlns/nrml/0.5}"
+    [function] = ElementTree.parse(out / "fragility.xml").iter(f"{space}fragilityFunction")  # fmt: skip
+    imls, params = function
+    assert (function.get("id"), imls.get("imt"), params.get("ls")) == ("out", "PGA", "collapse")  # fmt: skip
+    mean, deviation = (float(params.get(name)) for name in ("mean", "stddev"))
+    assert math.log1p((deviation / mean) ** 2) == pytest.approx(fit.dispersion.value**2, rel=1e-3)  # fmt: skip
+    assert mean**2 / math.hypot(mean, deviation) == pytest.approx(fit.median.value, rel=1e-3)  # fmt: skip
     assert report.main([str(out), "--limit", "30", "--no-pictures"]) == 0
     said = capsys.readouterr().out
     assert "shake 2 largest displacement of corner x [mm] reaches 30" in said
@@ -239,6 +248,22 @@ def test_what_varies_beside_is_drawn_once_for_every_record(tmp_path):
     assert all(len(set(values[n : n + 4])) == 1 for n in (0, 4, 8))
     again = planned(tmp_path, vary={"bed.friction": uniform(0.4, 0.8)}, seed=3)
     assert again.rows() == found
+
+
+def test_three_components_are_one_record(tmp_path):
+    for name, peak in (("n", 0.4), ("e", 0.9), ("z", 2.0)):
+        (tmp_path / f"quake_{name}.txt").write_text(f"0\n{peak}\n0\n")
+    triple = [f"quake_{name}.txt" for name in "nez"]
+    made = planned(tmp_path, records=[triple, "long.txt"], unit="g", every=0.01)
+    first, second = made.ida.read("")
+    assert (first.name, second.name, second.every) == ("quake", "long", 0.001)
+    assert first.intensity == pytest.approx(math.sqrt(0.4 * 0.9))
+    path = tmp_path / "kept.txt"
+    path.write_text(first.text)
+    from masonry.scene.ground import readRecord
+
+    assert readRecord(str(path), None) == (first.values, 0.01)
+    assert first.values[1] == pytest.approx([3.924, 8.829, 19.62])
 
 
 def test_records_of_one_name_are_named_apart(tmp_path):

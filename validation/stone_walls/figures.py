@@ -59,7 +59,7 @@ def cracks(folders):
         panel.imshow(plt.imread(os.path.join(folder, "cracks.png")))
         panel.set_title(f"{rules.read()[wall].name}; test: {failure}", size=9)
         panel.axis("off")
-    figure.savefig(os.path.join(HERE, "cracks.png"), dpi=110)
+    figure.savefig(os.path.join(HERE, "cracks.png"), dpi=100)
 
 
 if __name__ == "__main__":

@@ -11,7 +11,7 @@ import math
 import os
 import sys
 from dataclasses import dataclass, fields
-from statistics import fmean, quantiles, stdev
+from statistics import NormalDist, fmean, quantiles, stdev
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, HERE)
@@ -29,6 +29,9 @@ LOST, COLLAPSED = (
     0.5,
 )  # share of the peak at the ultimate drift and at collapse [-]
 ELASTIC, EFFECTIVE = 0.15, 0.7  # share of the peak at the secants [-]
+BEYOND = NormalDist().inv_cdf(
+    0.9
+)  # standard deviations from the median to the 90 % quantile
 STANDS = 0.05  # drift that a wall reaches which carries its vertical load [%]
 WAVE = 0.2  # a fall of the force that is over within this displacement is a wave [mm]
 TYPES = {0.0: "shear", 0.5: "hybrid", 1.0: "flexure"}
@@ -160,12 +163,13 @@ def choose(folder):
 
 @dataclass
 class Prediction:
-    """Of one wall: the best estimate and the 10 and 90 % quantiles of every name of :class:`Numbers`, peaks to both sides, and
-    what its cycles say, by the law."""
+    """Of one wall: the best estimate and the 10 and 90 % quantiles of every name of :class:`Numbers`, how many draws carried
+    the vertical load, peaks to both sides, and what its cycles say, by the law."""
 
     best: dict
     low: dict
     high: dict
+    draws: int
     sides: tuple
     cycles: dict
 
@@ -186,43 +190,86 @@ def predictions(pushes, cycles):
         firsts = [n for n in (0, 1) if n in samples] or [*samples]
         for name in NAMES:
             own = [getattr(numbers, name) for numbers in samples.values()]
-            ends = quantiles(own, n=10, method="inclusive")
+            ends = quantiles(own if len(own) > 1 else 2 * own, n=10, method="inclusive")  # fmt: skip
             low[name], high[name] = ends[0], ends[-1]
             best[name] = fmean(getattr(samples[n], name) for n in firsts)
         # two best estimates that differ are the hybrid of both
         best["failure"] = fmean(samples[n].failure(wall) for n in firsts)
         best["failure"] = round(2 * best["failure"]) / 2
-        sides = [fmean(samples[n].peak for n in samples if n % 2 == side and (n < 2 or side not in firsts)) for side in (0, 1)]  # fmt: skip
-        made[wall] = Prediction(best, low, high, sides, loops.get(wall, {}))
+        sides = [_peakOf(samples, side) for side in (0, 1)]
+        made[wall] = Prediction(
+            best, low, high, len(samples), sides, loops.get(wall, {})
+        )
     return made
+
+
+def _peakOf(samples, side):
+    """The peak to a side: of its best estimate, else of its other draws, else of all [kN]."""
+    own = [samples[n].peak for n in samples if n % 2 == side]
+    return samples[side].peak if side in samples else fmean(own or [n.peak for n in samples.values()])  # fmt: skip
+
+
+def errors(made):
+    """What the walls with results say of the model: mean and standard deviation of the logarithms of measured over predicted
+    values, by the names of :class:`Numbers`."""
+    tests = measured()
+    logs = {name: [math.log(tests[w][name] / made[w].best[name]) for w in tests] for name in NAMES}  # fmt: skip
+    return {name: (fmean(values), stdev(values)) for name, values in logs.items()}
+
+
+def expected(prediction, error):
+    """Between which values four of five tests are expected, by name: the interval of a wall, moved and widened by the error of
+    the model as the known walls have it.
+
+    :param error: of :func:`errors`
+    """
+    found = {}
+    for name, (shift, spread) in error.items():
+        best = math.log(prediction.best[name])
+        own = math.log(prediction.high[name] / prediction.low[name]) / (2 * BEYOND)
+        half = BEYOND * math.hypot(spread, own)
+        found[name] = math.exp(best + shift - half), math.exp(best + shift + half)
+    return found
 
 
 def ofCycles(folder):
     """Work of all cycles [J], mean damping ratio of those from 0.2 % on [-], and the last residual displacement [mm]."""
-    cycles = readRun(folder)["cycles"]
+    cycles = readRun(folder).get("cycles")
+    if not cycles:  # the wall fell before or within the first one
+        return None
     damping = [one["damping"] for one in cycles[1:] if one["damping"] is not None]
-    last = [abs(cycles[-1][key] or 0.0) for key in ("residual_positive_mm", "residual_negative_mm")]  # fmt: skip
+    residuals = [cycles[-1][f"residual_{side}_mm"] for side in ("positive", "negative")]
     return dict(
         work=sum(one["work_J"] for one in cycles),
         damping=fmean(damping) if damping else math.nan,
-        residual=max(last),
+        residual=max(abs(value or 0.0) for value in residuals),
     )
 
 
 def write(made):
     """predictions.csv: a row a wall."""
-    walls, lines = rules.read(), []
-    head = ["ID", "campaign", "wall", "failure", "peak_plus_kN", "peak_minus_kN"]
+    walls, lines, error = rules.read(), [], errors(made)
+    head = [
+        "ID",
+        "campaign",
+        "wall",
+        "draws",
+        "failure",
+        "peak_plus_kN",
+        "peak_minus_kN",
+    ]
     for name in NAMES:
         unit = UNITS[name].replace("/", "_per_").replace("%", "percent")
-        head += [f"{name}_{unit}", f"{name}_low", f"{name}_high"]
+        head += [f"{name}_{unit}"] + [f"{name}_{end}" for end in ("low", "high", "from", "to")]  # fmt: skip
     head += [f"{what}_{law}" for what in ("work_J", "damping", "residual_percent") for law in ("paper", "cyclic")]  # fmt: skip
     for number, row in walls.items():
         own = made[number]
-        line = [number, row.campaign, row.name, TYPES[own.best["failure"]]]
+        line = [number, row.campaign, row.name, own.draws, TYPES[own.best["failure"]]]
+        ends = expected(own, error)
         line += [f"{peak:.1f}" for peak in own.sides]
         for name in NAMES:
-            line += [f"{of[name]:.3g}" for of in (own.best, own.low, own.high)]
+            cells = own.best[name], own.low[name], own.high[name], *ends[name]
+            line += [f"{value:.3g}" for value in cells]
         for what, scale in (("work", 1.0), ("damping", 1.0), ("residual", 0.1 / row.height)):  # fmt: skip
             laws = [own.cycles.get(law) for law in ("softening", "cyclic")]
             line += [f"{scale * one[what]:.3g}" if one else "" for one in laws]
@@ -242,9 +289,13 @@ def table(made):
     for name in NAMES:
         cells = [cell([made[w].best[name] / tests[w][name] for w in of(k)]) for k in kinds]  # fmt: skip
         yield f"| this model: {MEANINGS[name]} | {' | '.join(cells)} |"
-    inside = lambda k, name: sum(made[w].low[name] <= tests[w][name] <= made[w].high[name] for w in of(k))  # fmt: skip
+    error = errors(made)
+    known = {w: expected(made[w], error) for w in tests}
     for name in ("peak", "ultimate"):
-        yield f"| {MEANINGS[name]} within the interval | {' | '.join(str(inside(k, name)) for k in kinds)} |"  # fmt: skip
+        narrow = lambda k: sum(made[w].low[name] <= tests[w][name] <= made[w].high[name] for w in of(k))  # fmt: skip
+        wide = lambda k: sum(known[w][name][0] <= tests[w][name] <= known[w][name][1] for w in of(k))  # fmt: skip
+        yield f"| {MEANINGS[name]} within the interval of what is unknown | {' | '.join(str(narrow(k)) for k in kinds)} |"  # fmt: skip
+        yield f"| {MEANINGS[name]} within that and the error of the model | {' | '.join(str(wide(k)) for k in kinds)} |"  # fmt: skip
     right = lambda k: sum(made[w].best["failure"] == tests[w]["failure"] for w in of(k))
     yield f"| failure type right | {' | '.join(str(right(k)) for k in kinds)} |"
     said = {row["ID"]: codes.predict(row) for row in codes.rows()}

@@ -124,24 +124,24 @@ def leastTrace(bricks: Annotated[Any, isA(Bricks)]) -> float:
         return keys[key]
 
     ends = [[numberOf(a), numberOf(b)] for a, b in sides]
-    points = np.array(points).reshape(-1, 2)
+    places = np.array(points).reshape(-1, 2)
     lengths = {}
     for a, b in ends:
-        along = points[b] - points[a]
+        along = places[b] - places[a]
         size = np.hypot(*along)
         # other stones may have corners on this side: it is cut there
-        at = (points - points[a]) @ along / size**2
-        off = np.abs(np.cross(along, points - points[a])) / size
+        at = (places - places[a]) @ along / size**2
+        off = np.abs(np.cross(along, places - places[a])) / size
         on = np.flatnonzero((off < 4 * near) & (at > -SAME) & (at < 1 + SAME))
         on = on[np.argsort(at[on])]
         for one, two in zip(on, on[1:]):
-            lengths[one, two] = np.hypot(*(points[two] - points[one]))
-    start = np.flatnonzero(points[:, 1] < low[1] + 4 * near)
-    end = np.flatnonzero(points[:, 1] > high[1] - 4 * near)
+            lengths[one, two] = np.hypot(*(places[two] - places[one]))
+    start = np.flatnonzero(places[:, 1] < low[1] + 4 * near)
+    end = np.flatnonzero(places[:, 1] > high[1] - 4 * near)
     if not (len(start) and len(end)):
         return math.inf
     rows, columns = np.array(list(lengths)).T
-    graph = csr_array((list(lengths.values()), (rows, columns)), [len(points)] * 2)
+    graph = csr_array((list(lengths.values()), (rows, columns)), [len(places)] * 2)
     found = dijkstra(graph, directed=False, indices=start, min_only=True)[end]
     return float(found.min() / (high[1] - low[1]))
 

@@ -77,8 +77,8 @@ def readRecord(
     if isThree(accelerations):
         parts = [readRecord(one, every, scale, unit) for one in accelerations]
         if len({(len(values), step) for values, step in parts}) > 1:
-            found = ", ".join(f"{len(values)} samples every {step:g} s" for values, step in parts)  # fmt: skip
-            raise Refused(f"{', '.join(map(str, accelerations))}: components of a record must be alike, not {found}")  # fmt: skip
+            sizes = ", ".join(f"{len(values)} samples every {step:g} s" for values, step in parts)  # fmt: skip
+            raise Refused(f"{', '.join(map(str, accelerations))}: components of a record must be alike, not {sizes}")  # fmt: skip
         return np.transpose([values for values, _ in parts]).tolist(), parts[0][1]
     if isinstance(accelerations, (str, os.PathLike)):
         named = accelerations

@@ -1,0 +1,90 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Tables, figure and fragility model of the analyses of this folder.
+
+/usr/bin/python3 validation/records/results.py DIR          DIR has the folders of the studies: parapet, gable, facade, ...
+"""
+
+import os
+import sys
+
+import numpy as np
+from masonry.basics import Refused
+from masonry.read import drawing
+from masonry.scene.ground import readRecord
+from masonry.study import Sa, fragility
+from masonry.study.demands import Demands
+from masonry.study.gathering import written
+from masonry.study.incremental import Measure
+from masonry.study.records import Record
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+#: Of every structure the point whose largest displacement out of the plane is the demand, and half the thickness [mm].
+POINTS = {"parapet": ("crest", 100), "gable": ("ridge", 150), "facade": ("top", 200)}
+MEASURES = Measure(), Sa(0.3), Sa(1.0)
+WHAT = "collapse of three structures of dry stones, twelve records of three components; PGA is the geometric mean of both horizontal components"  # fmt: skip
+
+
+def fits(found, folder, limit=None):
+    """The fragility of collapse by every measure of intensity, dict of its name -> Fit. The levels of each record are
+    converted by its own ratio of the measures.
+
+    :param limit: of the demand in place of collapse [mm]
+    """
+    low, high = found.intervals(limit)
+    motions = [readRecord(os.path.join(folder, "records", f"{name}.txt"), None) for name in found.names]  # fmt: skip
+    peaks = np.array([Measure().of(*motion) for motion in motions])
+    made = {}
+    for measure in MEASURES:
+        ratio = np.array([measure.of(*motion) for motion in motions]) / peaks
+        made[measure.name] = fragility.fit(low * ratio, high * ratio)
+    return made
+
+
+def tell(name, made):
+    """Print median and dispersion with their intervals, for every measure of intensity."""
+    for measure, fit in made.items():
+        numbers = [f"{one.value:.2f} ({one.low:.2f} … {one.high:.2f})" for one in (fit.median, fit.dispersion)]  # fmt: skip
+        print(f"| {name} | {measure} | {' | '.join(numbers)} | {fit.reached} of {fit.records} |")  # fmt: skip
+
+
+def demands(name, found):
+    """Print the level at which every record makes a structure fall, and the quantiles of the demand at every level [mm]."""
+    print(f"{name}: falls at {', '.join(f'{level:g}' for level in found.fell)} g")
+    for level, fell, known in found.counts():
+        print(f"| {level:g} | {' | '.join(f'{q:.0f}' for q in found.quantiles(level))} | {fell} of {known} |")  # fmt: skip
+
+
+def draw(path, all):
+    """The fragilities of all structures by the peak ground acceleration, and the shares of records that fell."""
+    with drawing.picture(path, 6.0, 3.8, 110, {"font.size": 8}) as figure:
+        axis = figure.subplots()
+        for n, (name, (found, made)) in enumerate(all.items()):
+            x, fit = np.linspace(0.02, 1.1 * found.levels[-1], 300), made["PGA_g"]
+            label = f"{name}: median {fit.median.value:.2f} g, dispersion {fit.dispersion.value:.2f}"  # fmt: skip
+            axis.plot(x, [fit.probability(v).value for v in x], color=f"C{n}", label=label)  # fmt: skip
+            axis.plot(*zip(*((v, k / of) for v, k, of in found.counts() if of)), ls="", marker="o", ms=4, color=f"C{n}")  # fmt: skip
+        drawing.finish(axis, "PGA [g]", "probability of collapse", loc="lower right")
+
+
+def main(folder):
+    """The program."""
+    all = {}
+    for name, (point, half) in POINTS.items():
+        place = os.path.join(folder, name)
+        try:
+            found = Demands(Record(place), f"shake_2_largest_displacement_of_{point}_y_mm")  # fmt: skip
+            all[name] = found, fits(found, place)
+        except Refused as refused:
+            print(refused)
+            continue
+        tell(f"{name}, falls", all[name][1])
+        tell(f"{name}, {half} mm", fits(found, place, half))
+        demands(name, found)
+    models = {name: made["PGA_g"] for name, (_, made) in all.items()}
+    highest = max(found.levels[-1] for found, _ in all.values())
+    written(os.path.join(HERE, "fragility.xml"), fragility.nrml(models, "PGA_g", "collapse", WHAT, highest))  # fmt: skip
+    draw(os.path.join(HERE, "fragility.png"), all)
+
+
+if __name__ == "__main__":
+    main(sys.argv[1])
