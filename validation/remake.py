@@ -113,6 +113,13 @@ def ofCases():
         yield Result(f"{case}/figures", ((PYTHON, "validation/figures.py", case),), figures, ("validation/figures.py",), 0.3, needs=tuple(names))  # fmt: skip
 
 
+#: Folders of the studies of stone walls, and the walls whose crack patterns are drawn.
+RUNS_OF_STONE = [
+    f"results/validation/stone_walls/{name}" for name in ("push", "cycles")
+]
+CRACKED = ("5", "13", "22", "50", "120")
+
+
 def ofStudies():
     """The results of the studies, each with a program of its own."""
     program = lambda path, *words: (PYTHON, f"validation/{path}", *words)
@@ -154,8 +161,10 @@ def ofStudies():
         Result("random_fields/one_brick", study("random_fields/one_brick"), ("random_fields/*_one_brick.png",), ("validation/random_fields/*.py", *RIGID), 20, ("validation/random_fields/one_brick",)),
         Result("records", (*((PYTHON, "-m", "masonry.study", f"validation/records/ida_{name}.py", "--out", f"results/validation/records/{name}") for name in ("parapet", "gable", "facade")), program("records/results.py", "results/validation/records")),
                ("records/fragility.xml", "records/fragility.png"), ("validation/records/*.py", *RIGID), 20, ("validation/records",)),
-        Result("stone_walls", (*(study(f"stone_walls/{name}")[0] for name in ("push", "cycles")), program("stone_walls/results.py", *(f"results/validation/stone_walls/{name}" for name in ("push", "cycles")))),
-               ("stone_walls/predictions.csv", "stone_walls/table.md", "stone_walls/peaks.png"), (*own("stone_walls"), *RIGID, *CYCLIC), 120, ("validation/stone_walls/push", "validation/stone_walls/cycles")),
+        Result("stone_walls", (*(study(f"stone_walls/{name}")[0] for name in ("push", "cycles")), *(program(*words, *RUNS_OF_STONE) for words in (("stone_walls/results.py",), ("stone_walls/figures.py", "peaks")))),
+               ("stone_walls/predictions.csv", "stone_walls/table.md", "stone_walls/peaks.png"), (*own("stone_walls"), *RIGID, *CYCLIC), 70, ("validation/stone_walls/push", "validation/stone_walls/cycles")),
+        Result("stone_walls/cracks", (*(inYade("stone_walls/wall.py", "--wall", wall, "--out", f"results/validation/stone_walls/cracks/{wall}") for wall in CRACKED), program("stone_walls/figures.py", "cracks", *(f"results/validation/stone_walls/cracks/{wall}" for wall in CRACKED))),
+               ("stone_walls/cracks.png",), (*own("stone_walls"), *RIGID, *CYCLIC), 1, ("validation/stone_walls/cracks",)),
         Result("multifidelity", (program("multifidelity/multifidelity.py", "--jobs", "2"),), ("multifidelity/multifidelity.png",), (*own("multifidelity"), *RIGID, *DEFORMABLE), 120, ("validation/multifidelity",)),
     ]  # fmt: skip
 

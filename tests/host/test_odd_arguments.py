@@ -250,6 +250,8 @@ CALLS = {
     "bricks.block": (nothing, bricks.block, dict(low=(0, 0, 0), high=(1, 1, 1), part="block", kind="block")),
     "bricks.Block": (nothing, bricks.Block, dict(corners=CUBE, brick=0, part="wall", course=-1, kind="brick")),
     "bricks.Bricks": (nothing, bricks.Bricks, dict(blocks=list(WALL))),
+    "bricks.StoneWall": (nothing, bricks.StoneWall, dict(length=0.88, height=0.6, unit=(0.2, 0.1, 0.15), pattern="irregular", scatter=0.2, trace=1.2, seed=1, part="p")),
+    "bricks.leastTrace": (nothing, bricks.leastTrace, dict(bricks=WALL)),
     "bricks.boxCorners": (nothing, bricks.boxCorners, dict(low=(0, 0, 0), high=(1, 1, 1))),
     "bricks.summary": (nothing, bricks.summary, dict(bricks=WALL)),
     "bricks.fromFile": (nothing, bricks.fromFile, dict(path="cube.obj", scale=1.0, kind="block")),
