@@ -159,6 +159,7 @@ def ofStudies():
         Result("sensitivity/comp1", study("sensitivity/comp1"), ("sensitivity/comp1_*.png",), ("validation/sensitivity/comp1.py", "validation/sensitivity/ranges.py", *RIGID), 16, ("validation/sensitivity/comp1",)),
         Result("random_fields/one_metre", study("random_fields/one_metre"), ("random_fields/*_one_metre.png",), ("validation/random_fields/*.py", *RIGID), 20, ("validation/random_fields/one_metre",)),
         Result("random_fields/one_brick", study("random_fields/one_brick"), ("random_fields/*_one_brick.png",), ("validation/random_fields/*.py", *RIGID), 20, ("validation/random_fields/one_brick",)),
+        Result("open_tests", tuple(inYade(f"open_tests/{name}.py") for name in ("shear_walls", "panels", "strips", "specimens")), (), ("validation/open_tests/*.py", *RIGID, *DEFORMABLE), 16),
         Result("records", (*((PYTHON, "-m", "masonry.study", f"validation/records/ida_{name}.py", "--out", f"results/validation/records/{name}") for name in ("parapet", "gable", "facade")), program("records/results.py", "results/validation/records")),
                ("records/fragility.xml", "records/fragility.png"), ("validation/records/*.py", *RIGID), 20, ("validation/records",)),
         Result("stone_walls", (*(study(f"stone_walls/{name}")[0] for name in ("push", "cycles")), *(program(*words, *RUNS_OF_STONE) for words in (("stone_walls/results.py",), ("stone_walls/figures.py", "peaks")))),
