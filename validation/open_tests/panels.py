@@ -101,6 +101,24 @@ def panel(stress=0.1e6, edges="returns", top="beam", halves=True, base=None, opt
     return found, found / (4.76 if stress else 3.04)
 
 
+def byHand(vertical, fixed=True, stress=0.1e6):
+    """Cells of yield lines: pressure [kPa] with AS 3700's stepped strength along the courses and the bond wrench's across them.
+
+    Diagonal cracks follow the bond, two courses in a unit; a horizontal crack joins them in the middle.
+
+    :param vertical: whether bending across the bed joints carries at the same time
+    :param fixed: whether the vertical edges carry moments
+    """
+    modulus, run = UNIT[1] ** 2 / 6, HEIGHT / 2 * UNIT[0] / (2 * UNIT[2])
+    weight = DATA["density"] * 9.81 * HEIGHT / 2
+    along = 2e6 * (WRENCH / 1e6) ** 0.5 * modulus  # [N]
+    across = (WRENCH + stress + weight) * modulus * vertical
+    ridge = LENGTH - 2 * run
+    work = (2 + 2 * fixed) * HEIGHT / run * along + 4 * LENGTH / HEIGHT * across
+    found = 1e-3 * work / (HEIGHT * (2 * LENGTH + ridge) / 6)
+    return found, found / (4.76 if stress else 3.04)
+
+
 NO_TENSION = dict(options=("--set", "bed.tensileStrength=0"))
 VARIANTS = {
     "as it is": {},
@@ -121,6 +139,9 @@ VARIANTS = {
     "whole bricks": dict(halves=False, unit_ft=None),
 }
 CASES = {name: lambda v=v: panel(**v) for name, v in VARIANTS.items()}
+CASES["by hand, both ways of bending at once"] = lambda: byHand(True)
+CASES["by hand, along the courses alone"] = lambda: byHand(False)
+CASES["by hand, along the courses alone, hinged at its edges"] = lambda: byHand(False, fixed=False)  # fmt: skip
 
 if __name__ == "__main__":
     sys.exit(main(__doc__, ["held kPa", "over test"], CASES))
