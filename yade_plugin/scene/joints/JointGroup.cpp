@@ -60,16 +60,17 @@ void JointShapes::take(int joint, JointShapes& from, int other) {
     }
 }
 
-void JointShapes::shareShapes() {
+void JointShapes::shareShapes(bool known) {
     constexpr int most = JointFrames::most;
     const int count = int(joints.size());
     if (alike || count < most) return;
     const double length = joints[0].span().norm();
+    const auto same = [known](double a, double b, double scale) { return known ? a == b : sameButRoundOff(a, b, scale); };
     for (int p = 0; p < points; ++p)
         for (int j = 1; j < count; ++j) {
-            if (!sameButRoundOff(areaAt(p, j), areaAt(p, 0), areaAt(p, 0))) return;
+            if (!same(areaAt(p, j), areaAt(p, 0), areaAt(p, 0))) return;
             for (int d = 0; d < 3; ++d)
-                if (!sameButRoundOff(offsetAt(p, j)[d], offsetAt(p, 0)[d], length)) return;
+                if (!same(offsetAt(p, j)[d], offsetAt(p, 0)[d], length)) return;
         }
     for (auto* column : {&area, &offset[0], &offset[1], &offset[2]}) {
         std::vector<double> shared(std::size_t(most) * points);

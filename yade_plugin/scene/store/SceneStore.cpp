@@ -289,15 +289,17 @@ void SceneStore::readJoints() {
             group->scene = life_;
             group->inScene = true;
         }
+        bool known = false;
         for (int j = 0; j < count; ++j) {
             const auto& joint = found[group.members[j]];
+            known = known || (joint.geom->group->inScene && !joint.geom->refined().points);
             kind.shapes->take(j, *joint.geom->group, joint.geom->index);
             kind.states->take(j, *joint.phys->group, joint.phys->index);
             joint.geom->group = kind.shapes;
             joint.phys->group = kind.states;
             joint.geom->index = joint.phys->index = j;
         }
-        kind.shapes->shareShapes();
+        kind.shapes->shareShapes(known);
         made.push_back(kind);
     }
     // A view that still has one of the old groups belongs to a joint that was taken out of the scene, or to one of
