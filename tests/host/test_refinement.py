@@ -204,12 +204,15 @@ def test_a_run_that_was_saved_goes_on_in_the_same_bits(case, tmp_path):
 
 def test_joints_keep_their_points_to_the_bit_when_others_are_refined(tmp_path):
     """Points of joints of one size are kept once, where they differ by round-off; those of two sizes are not. When all of the
-    second size have got other points, those of the first must stay what they were, or no earlier state could be loaded."""
+    second size have got other points, those of the first must stay what they were, or no earlier state could be loaded.
+    """
     O.reset()
     unit, path = unitMaterial(young=1e13, poisson=0.2), str(tmp_path / "c")
     pile(34, x=0.1, size=UNIT, material=unit, inPlane=True)
     top = pile(34, x=1.0, size=(LENGTH, 2 * WIDTH, HEIGHT), material=unit, inPlane=True)[-1]  # fmt: skip
-    load = MasonryLoad(body=top, point=(1 + LENGTH / 2, WIDTH, 34 * HEIGHT), label="load")
+    load = MasonryLoad(
+        body=top, point=(1 + LENGTH / 2, WIDTH, 34 * HEIGHT), label="load"
+    )
     joints = join(MasonryJoint(**JOINT), gravity=(0, 0, 0), damping=0.7, inPlane=True, loads=[load], subcontacts=3)  # fmt: skip
     engine("joints").points = 12
     run(1)

@@ -46,3 +46,18 @@ def test_small_horizontal_loads_must_be_carried_on_their_own(scene, tmp_path):
         supports.carried = lambda: Vector3(0, 0, 1000)
         assert supports.unrest()[0] == pytest.approx(missing, rel=1e-3)
     scene.finish()
+
+
+def test_a_wall_that_is_soft_sinks_far_and_slowly_and_has_not_fallen(scene, tmp_path):
+    """Its blocks move by a tenth of their size, as fast as blocks fall if the load comes in the usual time."""
+    side, pressure, stiffness = 0.25, 1e6, 2e8
+    blocks = bricks.stack(4, (side, side, side))
+    stones = materials.dry(friction=0.7, density=DENSITY, normalStiffness=stiffness)
+    scene = Scene("soft", blocks, stones, arguments=["--out", str(tmp_path), "--lean"])
+    scene.platen("bottom")
+    top = scene.platen("top", guided="x")
+    scene.press(top, pressure)
+    assert scene.settle() == AT_REST
+    scene.finish()
+    sinks = 5 * pressure / stiffness + sum(range(1, 5)) * DENSITY * G * side / stiffness
+    assert readCurve(tmp_path)["top_z_mm"][-1] == pytest.approx(-1e3 * sinks, rel=0.01)  # fmt: skip

@@ -6,6 +6,7 @@ import math
 from yade import O, Vector3
 
 from ..basics import GRAVITY
+from .motion import FALLEN
 
 #: Share of all loads above which the horizontal ones must be carried on their own at rest [-].
 HORIZONTAL = 1e-3
@@ -167,10 +168,45 @@ class Supports:
         least = 1e-12 * GRAVITY * self.freeMass
         return missing, moving / max(elastic, least) if moving else 0.0
 
+    def _sinking(self):
+        """How far the structure sinks under all its vertical loads, at most about [m]: as a column of its height and volume that is
+        everywhere as soft as at its softest joint."""
+        structure, description = self.structure, self.description
+        load = structure.gravity * self.freeMass
+        load -= sum(force[2] for _, force in structure.loading.deadLoads())
+        height = description.high[2] - description.low[2]
+        return max(0.0, load) * height / self._softest() / self._area(height)
+
+    def _softest(self):
+        """The least modulus of the masonry across a joint: the joint in a row with the bricks, where these are deformable [Pa]."""
+        zones = self.structure.zones
+        deformable = set(zones.bodies) if zones else ()
+        moduli = []
+        for one in self.structure.interactions:
+            modulus = one.phys.normalStiffness * (
+                one.geom.distance1 + one.geom.distance2
+            )
+            young = [O.bodies[b].material.young for b in (one.id1, one.id2) if b in deformable]  # fmt: skip
+            moduli.append(1 / (1 / modulus + (1 / min(young) if young else 0)))
+        return min(moduli, default=math.inf)
+
+    def _area(self, height):
+        """The mean horizontal section of the bricks over a height [m²]."""
+        bodies = (O.bodies[body] for body in self.structure.ids)
+        return sum(b.state.mass / b.material.density for b in bodies) / height
+
     def slowest(self):
-        """The longest period of what is free, as one rigid body on the springs of a platen [s]; 0 without springs. Its weight makes a
-        rotation slower; where that overturns it, there is no period."""
-        held, found = {target.body for target in self.held}, [0.0]
+        """The longest period of what is free [s]: as one rigid body on the springs of a platen, or of a structure that sinks so far
+        under its loads that a swing would look like a fall; 0 without either. Its weight makes a rotation slower; where that
+        overturns it, there is no period."""
+        held, found, sinking = (
+            {target.body for target in self.held},
+            [0.0],
+            self._sinking(),
+        )
+        if 2 * sinking > FALLEN * min(self.description.size(n) for n in range(len(self.structure.ids))):  # fmt: skip
+            gravity = GRAVITY / self.structure.args.density_scaling
+            found.append(2 * math.pi * math.sqrt(sinking / gravity))
         free = [body.state for body in O.bodies if body.id not in held]
         for one in self.description.connectors:
             if not (one.isSupport and one.ends[0].target and one.ends[0].target.box):

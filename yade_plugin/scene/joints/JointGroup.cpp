@@ -65,7 +65,9 @@ void JointShapes::shareShapes(bool known) {
     const int count = int(joints.size());
     if (alike || count < most) return;
     const double length = joints[0].span().norm();
-    const auto same = [known](double a, double b, double scale) { return known ? a == b : sameButRoundOff(a, b, scale); };
+    const auto same = [known](double a, double b, double scale) {
+        return known ? a == b : sameButRoundOff(a, b, scale);
+    };
     for (int p = 0; p < points; ++p)
         for (int j = 1; j < count; ++j) {
             if (!same(areaAt(p, j), areaAt(p, 0), areaAt(p, 0))) return;

@@ -257,8 +257,8 @@ struct JointShapes : JointGroup {
     void take(int joint, JointShapes& from, int other);
     // If areas and offsets of all joints are the same but for round-off, keeps those of the first joint alone and sets
     // `alike`. Each value then stands `JointFrames::most` times, so that a batch of joints reads them as it reads
-    // others, and they stay in the innermost cache. `known`: a joint that was in the scene before keeps the numbers that
-    // it has, so they must be the same to the bit.
+    // others, and they stay in the innermost cache. `known`: a joint that was in the scene before keeps the numbers
+    // that it has, so they must be the same to the bit.
     void shareShapes(bool known);
 
 private:
