@@ -85,7 +85,7 @@ def standing(scaling=1.0, height=0.6):
         advance=nothing, show=nothing, record=nothing, flush=nothing, mark=nothing,
         readings=SimpleNamespace(time=None),
     )  # fmt: skip
-    motion = SimpleNamespace(checkFall=nothing)
+    motion = SimpleNamespace(checkFall=nothing, fastest=lambda far: 0.0)
     made = SimpleNamespace(loading=SimpleNamespace(loadFactor=0.0), supports=SimpleNamespace(), motion=motion)  # fmt: skip
     args = SimpleNamespace(density_scaling=scaling)
     return SimpleNamespace(args=args, description=box, running=running, model=made, share=1)  # fmt: skip
@@ -107,14 +107,16 @@ def test_a_growth_takes_longer_with_scaled_masses_and_has_the_load_of_the_middle
 # -- a trial ----------------------------------------------------------------------------------------------------------
 
 
-def trial(looks, source=0.2, goal=0.5, scaling=1.0):
+def trial(looks, source=0.2, goal=0.5, scaling=1.0, speeds=None):
     """A trial in which the looks find the structure at rest or not, as a function of their number says. Returns whether it
     was held, its memory and the load at each look."""
     O.dt = 1e-4
     scene, load, number = standing(scaling), Load(), iter(range(10**6))
-    at = growing.Growing(goal=goal, source=source)
+    at = growing.Growing(goal=goal, source=source, marks=[])
     scene.model.supports.unrest = lambda: (0.0, 0.0) if looks(next(number)) else (2 * REST, 2 * CALM)  # fmt: skip
     scene.model.supports.slowest = lambda: 0.0
+    if speeds:
+        scene.model.motion.fastest = lambda far: speeds(at.taken)
     held = growing._Search(scene, at, load, 0.01)._trial()
     return held, at, load.values, scene
 
@@ -138,6 +140,19 @@ def test_a_trial_without_looks_at_rest_in_a_row_is_given_up_in_its_time(scaling)
     held, at, _, _ = trial(lambda n: n % LOOKS, scaling=scaling)
     assert not held and growing.WHY[at.ended].startswith("it was still moving")
     assert at.taken * O.dt == pytest.approx(growing.TRIAL * math.sqrt(scaling), rel=EVERY * O.dt / growing.TRIAL)  # fmt: skip
+
+
+def test_a_trial_ends_when_the_structure_moves_faster_and_faster():
+    faster = lambda steps: 2 * growing.SURE * steps / 3000  # SURE after 15 looks
+    held, at, _, _ = trial(lambda n: False, speeds=faster)
+    assert not held and growing.WHY[at.ended].startswith("it moved faster")
+    assert 1500 < at.taken < 3500  # at once when it is fast, and faster than twice
+    slower = lambda steps: 4 * growing.SURE if steps < 900 else 2 * growing.SURE
+    held, at, _, _ = trial(lambda n: False, speeds=slower)
+    assert growing.WHY[at.ended].startswith("it was still moving")
+    # blocks that the load itself moves, in the eight looks in which it is put on, have not fallen
+    swing = lambda steps: growing.SURE * 2 ** (steps / EVERY) if steps < 8 * EVERY else 0  # fmt: skip
+    assert trial(lambda n: n > 8, speeds=swing)[0]
 
 
 # -- the search -------------------------------------------------------------------------------------------------------

@@ -124,7 +124,9 @@ def test_a_fall_is_counted_from_the_state_to_which_the_scene_steps_back(tmp_path
     s.stepBack()
     state.vel = fast
     s.model.motion.checkFall()  # it is where it was at rest, so it has not fallen yet
+    assert s.model.motion.fastest() > 1 and s.model.motion.fastest(0.05) < 0.1
     state.pos += far
+    assert s.model.motion.fastest(0.05) > 1
     with pytest.raises(Collapsed, match="brick 2 .* has moved by .100, 0, 0. mm"):
         s.model.motion.checkFall()
     s.stepBack()

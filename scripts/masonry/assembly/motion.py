@@ -82,9 +82,16 @@ class Motion:
                     speeds[index] = mean.norm()
         return speeds
 
-    def fastest(self):
-        """Velocity of the fastest block over that of one that has fallen [-]."""
-        return max(v / falling for v, falling in zip(self._speeds(), self._falling))
+    def fastest(self, far=0.0):
+        """Velocity of the fastest block over that of one that has fallen [-].
+
+        :param far: how far a block that counts has moved since the last state at rest, over its largest side [-]
+        """
+        blocks = zip(self._speeds(), self._falling, self._moved(), self._sizes)
+        return max((v / falling for v, falling, moved, size in blocks if moved.norm() >= far * size), default=0.0)  # fmt: skip
+
+    def _moved(self):
+        return [state.pos - place for state, place in zip(self._states, self._places)]
 
     def checkFall(self, far=FALLEN):
         """Raise Collapsed if a block has moved far since the last state at rest, and is fast.
@@ -92,8 +99,7 @@ class Motion:
         :param far: over the largest side of the block [-]
         """
         speeds = None
-        for index, state in enumerate(self._states):
-            moved = state.pos - self._places[index]
+        for index, moved in enumerate(self._moved()):
             if moved.norm() <= far * self._sizes[index]:
                 continue
             speeds = speeds or self._speeds()

@@ -23,7 +23,7 @@ from typing import Any, Sequence
 from yade import O
 
 from ..._masonry import loadScene, saveScene
-from ...assembly.motion import REST
+from ...assembly.motion import FALLEN, REST
 from ...basics import Collapsed, say
 from .rest import CALM, EVERY, LOOKS, WAITED, buckles, rampTime
 from .answers import AT_REST, DONE, Answer
@@ -36,9 +36,14 @@ TRIAL = (
 )
 MOST_KEPT, LEAST_KEPT = 128, 8  # states that are kept during a growth
 KEPT_BYTES = 100e6  # that they may have in all; a checkpoint during the growth or the search has them
+#: A block of a trial that has moved as far as one that has fallen, has this share of its speed, and is twice as fast as in the
+#: first half of the trial, does not come to rest [-]: see :meth:`masonry.assembly.motion.Motion.fastest`. Blocks at a crack that
+#: snaps are as fast, but have not moved so far.
+SURE = 0.25
 #: How trials end that are not held.
 WHY = (
     "it fell",
+    "it moved faster and faster",
     "it was still moving when the trial ended",
     "it buckles: a small push sideways grows",
 )
@@ -78,6 +83,7 @@ class Growing(Timed):
     taken: int = 0  # steps so far
     quiet: int = 0  # looks that found the structure at rest, one after the other
     ended: int = 0  # how the last one ended that was not held: a number of WHY
+    marks: Sequence[Any] = ()  # velocities after 1, 2, 4, ... looks [-]
 
 
 def grow(scene, name, load, duration, towards, within=WITHIN):
@@ -257,17 +263,17 @@ class _Search:
                 chosen = self._next()
                 if chosen is None and at.held and not at.buckled and self._buckles():
                     at.buckled, at.climbs = 1, 0
-                    at.lost, at.held = [*at.held, 1, 2], None
+                    at.lost, at.held = [*at.held, 1, 3], None
                     continue
                 if chosen is None:
                     return
                 at.source, at.goal, state, at.calm = chosen
-                at.taken = at.quiet = 0
+                at.taken, at.quiet, at.marks = 0, 0, []
                 if state is not None:
                     loadScene(_state(state))
             held = self._trial()
             if held and at.buckled and self._buckles():
-                held, at.ended = False, 2
+                held, at.ended = False, 3
             end = [at.goal, 1e3 * self.model.loading.alongNow()]
             if held:
                 at.held, at.heldState = end, _text(saveScene("null"))
@@ -403,9 +409,21 @@ class _Search:
             at.quiet = at.quiet + 1 if rests else 0
             if at.quiet == LOOKS:
                 return True
-            if at.taken >= most:
+            if self._accelerates(model.motion.fastest(FALLEN)):
                 at.ended = 1
                 return False
+            if at.taken >= most:
+                at.ended = 2
+                return False
+
+    def _accelerates(self, speed):
+        """Whether the fastest block is fast, and at least twice as fast as in the first half of the trial."""
+        at = self.at
+        looks = at.taken // EVERY
+        if looks & (looks - 1) == 0:
+            at.marks = [*at.marks, speed]
+        before = at.marks[max(0, looks.bit_length() - 2)]
+        return looks > 8 and speed > SURE and speed > 2 * before
 
     def _show(self, name):
         at = self.at
