@@ -10,6 +10,8 @@ from .motion import FALLEN
 
 #: Share of all loads above which the horizontal ones must be carried on their own at rest [-].
 HORIZONTAL = 1e-3
+#: Share of its height by which a structure sinks at most that is to come to rest [-].
+LOST = 0.5
 FILLED = 1e-9  # of a platen's side: what may be free of bricks if it is said to be full
 
 
@@ -168,27 +170,33 @@ class Supports:
         least = 1e-12 * GRAVITY * self.freeMass
         return missing, moving / max(elastic, least) if moving else 0.0
 
-    def _sinking(self):
-        """How far the structure sinks under all its vertical loads, at most about [m]: as a column of its height and volume that is
-        everywhere as soft as at its softest joint."""
+    def _sinkingPeriod(self):
+        """The period in which a structure swings vertically that sinks so far under its loads that a swing would look like a fall [s];
+        0 of one that is stiffer, or so soft that it is lost. It counts as a column of its height and volume that is everywhere as
+        soft as at its softest joint."""
         structure, description = self.structure, self.description
         load = structure.gravity * self.freeMass
         load -= sum(force[2] for _, force in structure.loading.deadLoads())
         height = description.high[2] - description.low[2]
-        return max(0.0, load) * height / self._softest() / self._area(height)
+        sinking = max(0.0, load) * height / self._softest() / self._area(height)
+        least = min(description.size(n) for n in range(len(structure.ids)))
+        if not FALLEN * least < 2 * sinking < LOST * height:
+            return 0.0
+        return (
+            2 * math.pi * math.sqrt(sinking * structure.args.density_scaling / GRAVITY)
+        )
 
     def _softest(self):
         """The least modulus of the masonry across a joint: the joint in a row with the bricks, where these are deformable [Pa]."""
         zones = self.structure.zones
         deformable = set(zones.bodies) if zones else ()
-        moduli = []
+        moduli = [math.inf]
         for one in self.structure.interactions:
-            modulus = one.phys.normalStiffness * (
-                one.geom.distance1 + one.geom.distance2
-            )
-            young = [O.bodies[b].material.young for b in (one.id1, one.id2) if b in deformable]  # fmt: skip
-            moduli.append(1 / (1 / modulus + (1 / min(young) if young else 0)))
-        return min(moduli, default=math.inf)
+            thickness = one.geom.distance1 + one.geom.distance2
+            compliance = 1 / (one.phys.normalStiffness * thickness)
+            compliance += max((1 / O.bodies[b].material.young for b in (one.id1, one.id2) if b in deformable), default=0.0)  # fmt: skip
+            moduli.append(1 / compliance)
+        return min(moduli)
 
     def _area(self, height):
         """The mean horizontal section of the bricks over a height [m²]."""
@@ -199,14 +207,8 @@ class Supports:
         """The longest period of what is free [s]: as one rigid body on the springs of a platen, or of a structure that sinks so far
         under its loads that a swing would look like a fall; 0 without either. Its weight makes a rotation slower; where that
         overturns it, there is no period."""
-        held, found, sinking = (
-            {target.body for target in self.held},
-            [0.0],
-            self._sinking(),
-        )
-        if 2 * sinking > FALLEN * min(self.description.size(n) for n in range(len(self.structure.ids))):  # fmt: skip
-            gravity = GRAVITY / self.structure.args.density_scaling
-            found.append(2 * math.pi * math.sqrt(sinking / gravity))
+        held = {target.body for target in self.held}
+        found = [self._sinkingPeriod()]
         free = [body.state for body in O.bodies if body.id not in held]
         for one in self.description.connectors:
             if not (one.isSupport and one.ends[0].target and one.ends[0].target.box):
