@@ -61,3 +61,16 @@ def test_a_wall_that_is_soft_sinks_far_and_slowly_and_has_not_fallen(scene, tmp_
     scene.finish()
     sinks = 5 * pressure / stiffness + sum(range(1, 5)) * DENSITY * G * side / stiffness
     assert readCurve(tmp_path)["top_z_mm"][-1] == pytest.approx(-1e3 * sinks, rel=0.01)  # fmt: skip
+
+
+def test_a_press_over_rollers_keeps_its_line_while_what_it_presses_leans(tmp_path):
+    """If it rode with the platen until a push begins, and then came back to its line at once, that would be a blow."""
+    scene = tower(tmp_path, 3 * OVERTURNING)
+    roof = scene.platen("top", rotation="free", name="roof")
+    scene.press(roof, 1e4, riding=False)
+    scene.load(roof, (3e3, 0, 0))
+    assert scene.settle() == AT_REST
+    load = scene.model.loading.loads["roof_force"]
+    moved = load.displacement()[0]
+    assert moved > 1e-3 and load.point[0] + moved == pytest.approx(SIDE / 2, abs=1e-2 * moved)  # fmt: skip
+    scene.finish()

@@ -228,6 +228,7 @@ class Run:
         :param one: function that makes one step, of its number in this call, from 0; None: YADE makes it
         """
         at = self.at
+        self.model.loading.keepLoadLine()
         if not self.takesUp:
             self.advanced, at.left = True, steps
         elif self.redoes:

@@ -231,7 +231,6 @@ def _setVelocity(scene, full, start, growth, steps):
     if start < growth:
         load.ramp = scene.running.at.left or steps
         load.acceleration = full * (growth - start) / (steps * O.dt)
-    loading.keepLoadLine()
 
 
 def _lost(model, at, reading, direction, mean, whole):
