@@ -470,23 +470,23 @@ def test_stones_that_are_pressed_hard_are_moved_by_no_tilt(tmp_path):
     assert "factor" not in entry
 
 
-@pytest.mark.parametrize("imbalance", [0.0, 0.03])
-def test_a_peak_may_be_above_its_bound_by_two_per_cent_and_the_imbalance(imbalance):
+def test_a_peak_may_be_above_its_bound_by_two_per_cent():
+    """Also where a part of the force does not reach the supports: then it is off by that."""
     from masonry.scene.bound_texts import over
 
-    entries, most = {"lean": {"factor": 0.5, "unit": "g"}}, 1.02 + imbalance
+    entries = {"lean": {"factor": 0.5, "unit": "g"}}
 
     def warned(peak, held):
         """Whether a push to both sides and a load that was held are above their bounds, of 40 kN, 60 kN and 0.5 g."""
-        run = dict(peak_base_shear_kN=40 * peak, bound_base_shear_kN=40, dynamic_imbalance=imbalance,
+        run = dict(peak_base_shear_kN=40 * peak, bound_base_shear_kN=40, dynamic_imbalance=0.05,
                    negative_peak_base_shear_kN=-60 * peak, negative_bound_base_shear_kN=-60)  # fmt: skip
         return list(over(entries, {"lean": 0.5 * held}, run))
 
-    assert warned(0.999 * most, 0.999 * 1.02) == []
-    push, back = warned(1.001 * most, 0.999 * 1.02)
-    assert f"more than {100 * (most - 1):.1f} % above the upper bound" in push
+    assert warned(1.019, 1.019) == []
+    push, back = warned(1.03, 1.019)
+    assert "3.0 % above the upper bound" in push
     assert "40 kN" in push and "-60" not in back and "60 kN" in back
-    (lean,) = warned(0.999 * most, 1.001 * 1.02)  # at rest nothing moves
+    (lean,) = warned(1.019, 1.021)
     assert lean.startswith("lean: the load that was held, 0.5105 g")
 
 
@@ -500,7 +500,7 @@ def test_a_peak_above_its_bound_is_a_warning_with_both_numbers(tmp_path, capsys)
     s.running.at.bounds["top along x"]["factor"] = 0.9 * peak
     s.finish()
     said = capsys.readouterr().out
-    more = f"warning: the largest force of the push, {peak:.4g} kN, is more than"
+    more = f"warning: the largest force of the push, {peak:.4g} kN, is 11.1 % above"
     assert more in said
     assert f"{0.9 * peak:.4g} kN" in said
 

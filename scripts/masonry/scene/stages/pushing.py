@@ -21,13 +21,13 @@ ROW_EVERY = 0.01  # [mm] of a push between rows of curve.csv
 SHORT = 0.05  # [mm]: a shorter push has rows that are closer together
 ARRIVED = 2e-3  # [mm] from a turning point of a history at which the drive turns: what remains of the path takes it there
 GROWING = 20  # rows at least while the velocity of the drive grows
-LONGEST = 5  # the longest first period that is looked for, over rampTime() [-]
+LONGEST = 20  # the longest first period that is looked for, over rampTime() [-]
 #: Likewise, over the time that the path takes at full speed: a shorter push is no slow one [-].
 SHARE = 1.0
 #: Frames for ParaView along a history, beside those at its turning points and zeros.
 FRAMES = 200
 SUDDEN = 0.1  # of the peak: a larger fall within a tenth of a millimetre is few bricks that give way at once
-AVERAGED = 1.0  # [mm] of a push, or a first period: over it the mean of the force tells a collapse
+AVERAGED = 1.0  # [mm] of a push; over it, or the first period, or the longest that is looked for, the mean of the force tells a collapse
 DAMPED = 0.1  # of what loops lose: a larger share of damping is a warning, because the loops are too fat by it
 
 
@@ -45,6 +45,7 @@ class Pushing:
     start: float = 0.0
     path: float = 0.0  # length of the path to there [mm]
     period: float = 0.0  # the first one when the push began [s]; 0 if none was found
+    slowest: float = 0.0  # that period, or the longest that was looked for [s]
     #: of the blocks then, while the velocity grows [m]
     places: list = field(default_factory=list)
     turned: bool = False  # whether the drive has turned since the push began
@@ -170,7 +171,7 @@ def drivePush(scene, name, args, began, continued=False):
         if at.places and not undamped:
             _keepFreeVibration(run, model, at)
         shear, travelled = 1e-3 * reading.baseShear, at.travelled(goal.direction)
-        mean = at.note(shear, max(at.period, AVERAGED / args.rate))
+        mean = at.note(shear, max(at.slowest, AVERAGED / args.rate))
         how = _lost(model, at, reading, goal.direction, mean, whole)
         if args.history:
             at.since, at.growth = at.now, growth
@@ -213,7 +214,9 @@ def _entered(scene, name, args, at, began, continued):
         at.now = at.since = O.time
         at.moved = 1e3 * run.record().along
         run.frame()
-        at.period = _measuredPeriod(scene, name, args, pathOf(args, at.start))
+        longest = min(LONGEST * rampTime(args), SHARE * pathOf(args, at.start) / args.rate)  # fmt: skip
+        at.period = _measuredPeriod(scene, name, args, longest)
+        at.slowest = at.period or longest
         at.places = model.motion.positions() if at.period else []
         vibration = [at.period, 0.0, 0.0]
         run.at.freeVibrations = {**run.at.freeVibrations, str(run.entered): vibration}
@@ -247,13 +250,9 @@ def _lost(model, at, reading, direction, mean, whole):
     return "it moves against its push" if at.retreats(direction, whole) else None
 
 
-def _measuredPeriod(scene, name, args, path):
-    """The first period along a push that begins [s], or 0 with a note if none is found.
-
-    :param path: length of the whole path [mm]
-    """
+def _measuredPeriod(scene, name, args, longest):
+    """The first period along a push that begins [s], or 0 with a note if none is found up to the longest [s]."""
     run, model = scene.running, scene.model
-    longest = min(LONGEST * rampTime(args), SHARE * path / args.rate)
     with run.clock("setup"), run.breakable():
         period = firstPeriod(model, model.loading.direction, longest)
     if not period:
