@@ -368,3 +368,27 @@ def test_what_moves_in_its_plane_is_seen_there_also_if_it_is_deep(tmp_path, plan
     scene.begin()
     assert scene.description.views == ({"stack": [0, 1, 0]} if plane else {})
     scene.finish()
+
+
+def test_a_wall_that_a_push_lets_go_swings_back_and_has_not_fallen(tmp_path):
+    """Its numbers are those of the push, and what happens afterwards is none of them."""
+    runs = []
+    for lets in (False, True):
+        O.reset()
+        wall = bricks.Wall(1.0, 1.5, unit=(0.25, 0.12, 0.1), halves=False)
+        stones = materials.dry(friction=0.7, density=2000, normalStiffness=5e9)
+        scene = Scene("wall", wall, stones, arguments=["--out", str(tmp_path / str(lets)), "--lean"])  # fmt: skip
+        scene.platen("bottom")
+        top = scene.platen("top", rotation="free")
+        scene.press(top, 0.05e6)
+        scene.settle()
+        scene.push(top, 30)
+        if lets:
+            scene.release(top, "x")
+            assert scene.settle() == AT_REST
+            assert abs(readCurve(tmp_path / "True")["top_x_mm"][-1]) < 3
+        scene.finish()
+        runs.append(readRun(tmp_path / str(lets)))
+    ofPush = [k for k in runs[0] if any(word in k for word in ("peak", "end_", "push_work", "sudden", "force_drop"))]  # fmt: skip
+    assert len(ofPush) > 8
+    assert {k: runs[1].get(k) for k in ofPush} == {k: runs[0][k] for k in ofPush}

@@ -9,7 +9,7 @@ from ..basics import GRAVITY, Collapsed
 
 #: A block falls when it has moved by this share of its largest side and is as fast as :data:`FAST` says.
 FALLEN = 0.05
-#: The same share where joints are so soft that a block may swing as far as :data:`FALLEN` without falling.
+#: The same share where a block may swing as far as :data:`FALLEN` without falling: where joints are soft, or a drive let it go.
 FAR = 1.0
 #: The velocity of a falling block over √(g·side). A block that falls freely has it after half a hundredth of its side.
 FAST = 0.1
@@ -33,7 +33,8 @@ class Motion:
         self.restart()
 
     def restart(self):
-        """From now on :meth:`checkFall` counts displacements."""
+        """From now on :meth:`checkFall` counts displacements, up to :attr:`far` over the largest side of a block [-]."""
+        self.far = FALLEN
         self._places = [Vector3(state.pos) for state in self._states]
 
     @property
@@ -93,12 +94,12 @@ class Motion:
     def _moved(self):
         return [state.pos - place for state, place in zip(self._states, self._places)]
 
-    def checkFall(self, far=FALLEN):
+    def checkFall(self, far=None):
         """Raise Collapsed if a block has moved far since the last state at rest, and is fast.
 
-        :param far: over the largest side of the block [-]
+        :param far: over the largest side of the block [-]; None: :attr:`far`
         """
-        speeds = None
+        speeds, far = None, self.far if far is None else far
         for index, moved in enumerate(self._moved()):
             if moved.norm() <= far * self._sizes[index]:
                 continue

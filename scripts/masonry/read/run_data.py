@@ -68,10 +68,11 @@ class RunData:
 
     @functools.cached_property
     def rows(self) -> list[int]:
-        """Numbers of the rows of the push, from 0. If the run loads in no other way, what comes before belongs to it."""
+        """Numbers of the rows of the push, from 0. If the run loads in no other way, what comes before belongs to it, but not what
+        comes after it, for example when the drive has let go."""
         loads = [load for load, _, _ in self._stages if load]
         if self.pushes and all(load == loads[-1] for load in loads):
-            return list(range(self._count))
+            return list(range(self.pushes[-1][1]))
         return [n for first, end in self.pushes for n in range(first, end)]
 
     def whole(self, name: str) -> Any:

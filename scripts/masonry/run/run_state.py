@@ -54,6 +54,7 @@ class RunState:
     beside: dict = field(default_factory=dict)
     atRest: str = ""  # the last state at rest, as text, for stepBack()
     places: list = _holding(list, 0.0)  # of masonry.assembly.motion.Motion
+    far: float = 0.0  # likewise
     answers: dict = _holding(dict, [])  # of the stages, by their number
     notes: list = _holding(list, {})  # what the run said, as in run.json
     supportsMoved: bool = False  # whether a stage has moved supports

@@ -68,6 +68,7 @@ class State:
             "now": stateOf(self._scene),
             "atRest": self._rest[1],
             "places": self._scene.model.motion.places,
+            "far": self._scene.model.motion.far,
         }
 
     def put(self, state):
@@ -83,7 +84,7 @@ class State:
         model = self._scene.model
         if at.atRest:
             model.atRest = base64.b64decode(at.atRest)
-        model.motion.places = at.places
+        model.motion.places, model.motion.far = at.places, at.far
 
 
 def enter(scene, number, farther):

@@ -31,6 +31,7 @@ PERIODS = 4.0
 WAITED = 10.0
 #: Height over the least width from which a structure that has settled is looked at for buckling [-].
 SLENDER = 8.0
+SWINGING = 4.0  # [s] in the scene for which settle() waits at least where a drive let go of what swings now
 SETTLING = 0.5  # most local damping of deformable units in settle(): with more they creep to rest
 
 
@@ -80,8 +81,8 @@ def settle(
     hardly anything moves. Presses and dead loads grow when it is called first; they stay when it is called again, for
     example after :meth:`release`. What then falls slowly needs ``longest``.
 
-    :param longest: time in the scene after which it is given up [s]; None: 0.4 s, and longer for tall structures and for
-        soft springs under platens
+    :param longest: time in the scene after which it is given up [s]; None: 0.4 s, and longer for tall structures, for
+        soft springs under platens, and after the release of a drive
     :param damping: kind of damping in this stage, ``"local"`` or ``"combined"``; None: that of the options. Local
         damping, of 0.5 at most in deformable units, takes the vibrations out sooner, and holds a mechanism back
     :param record: whether its end is a row of curve.csv
@@ -117,7 +118,8 @@ def waitForRest(scene, at, longest, grow, over=0.0, record=True, buckling=False)
     ramp = max(ramp, over, PERIODS * slowest)
     growing = max(1, int(ramp / O.dt))
     every = max(n for n in SHORTER if n == 1 or n <= growing / 3)
-    longest = longest or max(20 * ramp, WAITED * slowest)
+    swinging = SWINGING * scene.args.density_scaling**0.5 * (model.motion.far == FAR)
+    longest = longest or max(20 * ramp, WAITED * slowest, swinging)
     if math.isinf(O.dt):
         raise Refused("every brick is held, so nothing can move")
     most = int(longest / O.dt)

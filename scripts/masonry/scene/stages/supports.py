@@ -10,6 +10,7 @@ from yade import O, Vector3
 
 from ...arguments import Freedoms, number, validated
 from ...assembly.blocks import vector
+from ...assembly.motion import FAR
 from ..history import MOST
 from ..loads import Force
 from ...run.options import Rate
@@ -75,6 +76,7 @@ def letGo(scene, target, axes, force):
         if drive:
             drive.driven, drive.velocity = False, 0
             drive.force = vector(force or (0, 0, 0), "release: force [N]")
+            scene.model.motion.far = FAR  # what it held swings back
         else:
             state.blockedDOFs = state.blockedDOFs.replace(axis, "")
     return DONE
