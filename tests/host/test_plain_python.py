@@ -75,12 +75,37 @@ def test_threads_are_those_that_are_asked_for(tmp_path):
     assert done(code, env=environment(OMP_NUM_THREADS="2")) == "2\n"
     assert done(code) == "1\n"
     script = tmp_path / "threads.py"
-    script.write_text("from masonry.assembly import threads; print('steps', threads.allowed())")  # fmt: skip
+    script.write_text(
+        """
+import ctypes
+from masonry.assembly import threads
+print("steps", threads.allowed())
+for host in (False, True):
+    threads.beginScene(host)
+    print("YADE", ctypes.CDLL(None).omp_get_max_threads())
+"""
+    )
     usual = min(4, len(os.sched_getaffinity(0)))
-    for words, count in (([], usual), (["-j1"], 1), (["--threads", "3"], 3)):
+    for words, count, host in (([], usual, 1), (["-j1"], 1, 1), (["--threads", "3"], 3, 3)):  # fmt: skip
         command = ["yade", *words, "-n", "-x", str(script), "-j7"]
         run = subprocess.run(command, env=environment(), capture_output=True, text=True)
-        assert f"steps {count}\n" in run.stdout
+        assert f"steps {count}\nYADE 1\nYADE {host}\n" in run.stdout
+
+
+@pytest.mark.parametrize(
+    "asked, allowed, few, said",
+    [(True, 4, 900, True), (False, 4, 900, False), (True, 1, 900, False), (True, 4, 100, False)],
+)  # fmt: skip
+def test_fewer_threads_than_were_asked_for_are_remarked_upon(monkeypatch, asked, allowed, few, said):  # fmt: skip
+    from masonry.assembly import threads
+
+    taken = {1: (few, 1e-5), 4: (1000 - few, 2e-5)}
+    records = [dict(threads=n, steps=steps, time=steps * each) for n, (steps, each) in taken.items()]  # fmt: skip
+    monkeypatch.setattr(threads, "records", lambda: records)
+    monkeypatch.setattr(threads, "_asked", asked)
+    monkeypatch.setattr(threads, "_allowed", allowed)
+    expected = "4 threads were allowed, and 90 % of the steps used 1, which was quicker: a step took 10 µs, and 20 µs on 4"  # fmt: skip
+    assert threads.remark() == (expected if said else None)
 
 
 def test_a_process_without_HOME_starts_yade():

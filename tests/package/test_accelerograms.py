@@ -99,6 +99,8 @@ def test_three_components_are_read_from_one_file_or_three(tmp_path):
     assert readRecord(one, None) == (rows, 0.02)
     three = [file(tmp_path, "\n".join(map(str, p)), f"{n}.txt") for n, p in enumerate(parts)]  # fmt: skip
     assert readRecord(three, 0.02) == (rows, 0.02)
+    inG = readRecord(three, 0.02, unit="g")[0]
+    assert np.array(inG) == pytest.approx(9.81 * np.array(rows))
     file(tmp_path, "1\n3\n", "2.txt")
     with pytest.raises(Refused, match="must be alike, not 3 samples every 0.02 s, .*, 2 samples"):  # fmt: skip
         readRecord(three, 0.02)
@@ -261,5 +263,6 @@ def test_a_list_is_read_in_its_unit(peak, unit, found):
     assert readRecord([0, peak], 0.01, unit=unit)[0] == pytest.approx([0, found])
     with pytest.raises(Refused, match="unit must be one of m/s², g, cm/s²"):
         readRecord([0, peak], 0.01, unit="mm/s²")
-    with pytest.raises(Refused, match="the peak of the record is 0.2"):
-        readRecord([0, 2, -1], 0.01, scale=0.1)
+    for scale in (0.1, -0.1):
+        with pytest.raises(Refused, match="the peak of the record is 0.2"):
+            readRecord([0, 2, -1], 0.01, scale=scale)

@@ -28,6 +28,29 @@ def rotation(axis, angle):
     return np.eye(3) + math.sin(angle) * cross + (1 - math.cos(angle)) * cross @ cross
 
 
+def test_faces_are_the_same_in_both_layouts_of_vtk():
+    """Cells 0 and 2 are polyhedra, cell 1 is a tetrahedron, which has no faces of its own."""
+    dice = random.Random(2)
+    faces = [[dice.randrange(9) for _ in range(3)] for _ in range(9)]
+    own, stored = {0: faces[:4], 1: [], 2: faces[4:]}, dice.sample(range(9), 9)
+    lists = [[len(f), *(n for face in f for n in (3, *face))] if f else [] for f in own.values()]  # fmt: skip
+    old = {"faces": np.concatenate(lists).astype(int), "faceoffsets": np.cumsum([len(l) for l in lists])}  # fmt: skip
+    new = {
+        "face_connectivity": np.array([faces[n] for n in stored]).ravel(),
+        "face_offsets": np.arange(3, 28, 3),
+        "polyhedron_to_faces": np.argsort(stored),
+        "polyhedron_offsets": np.cumsum([len(f) for f in own.values()]),
+    }
+    triangles, owners = frames._newFaces(new)
+    assert triangles.tolist() == faces
+    found = [*frames._oldFaces(old, [0, 2])]
+    assert np.concatenate([f for f, _ in found]).tolist() == faces
+    assert owners.tolist() == np.concatenate([o for _, o in found]).tolist()
+    new["face_offsets"][3] += 1
+    with pytest.raises(ValueError, match="no triangles"):
+        frames._newFaces(new)
+
+
 def writeRun(folder, **message):
     """run.json and curve.csv beside frames."""
     curve = [[k, k / 10, 5 * k] for k in range(len(STEPS))]

@@ -3,6 +3,7 @@
 
 from usual import *
 from masonry import bricks
+from masonry.bricks.stones import LEAST, SHORTEST, _sides
 
 patterns = pytest.mark.parametrize("pattern", ["squared", "irregular"])
 lengths = some.floats(0.8, 2.5)
@@ -29,8 +30,30 @@ def test_stones_fill_the_wall_and_touch(pattern, length, height, unit, scatter, 
 
 @patterns
 def test_a_seed_is_a_wall(pattern):
-    made = [list(bricks.StoneWall(1.2, 1.2, (0.2, 0.3, 0.15), pattern, seed=n)) for n in (1, 1, 2)]  # fmt: skip
-    assert made[0] == made[1] != made[2]
+    wall = lambda **how: list(bricks.StoneWall(1.2, 1.2, (0.2, 0.3, 0.15), pattern, **how))  # fmt: skip
+    assert wall() == wall(seed=1, scatter=0.2) != wall(seed=2)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_joints_of_irregular_stones_are_long_and_level_at_the_ends(seed):
+    sides, (low, high) = _sides(bricks.StoneWall(1.5, 1.2, (0.3, 0.2, 0.1), "irregular", 0.2, seed=seed))  # fmt: skip
+    for one, two in sides:
+        along = abs(two - one) / (0.3, 0.1)
+        assert np.hypot(*along) > LEAST
+        if min(one[0], two[0]) < 1e-9 or max(one[0], two[0]) > high[0] - 1e-9:
+            assert along[1] < LEAST / 2  # where a short side beside it was closed
+
+
+def test_head_joints_scatter_to_both_sides_and_overlap_or_lie_in_line():
+    scatter, count = 0.3, 60
+    wall = bricks.StoneWall(count, 4, (1, 1, 1), scatter=scatter)
+    ends = [np.array([b.low[0] for b in wall if b.course == n] + [count]) for n in range(4)]  # fmt: skip
+    moved = ends[0][1:-1] - np.arange(1, count)
+    assert -scatter < min(moved) < -0.9 * scatter and 0.9 * scatter < max(moved) < scatter  # fmt: skip
+    for below, above in zip(ends, ends[1:]):
+        assert min(np.diff(above)) > SHORTEST - 1e-9
+        apart = abs(np.subtract.outer(below, above))
+        assert apart[apart > 1e-9].min() > LEAST - 1e-9
 
 
 @pytest.mark.parametrize("unit, courses", [((0.2, 0.2, 0.15), 8), ((0.3, 0.2, 0.1), 12), ((0.5, 0.2, 0.4), 3)])  # fmt: skip
@@ -45,8 +68,17 @@ def test_the_trace_of_other_walls():
     stack = bricks.Wall(1.0, 1.0, unit=(0.25, 0.2, 0.1), bond="stack")
     assert bricks.leastTrace(stack) == pytest.approx(1)
     assert bricks.leastTrace(bricks.stack(4, (1, 1, 0.5))) == math.inf
-    moved = stack.moved(3, 1, -2)
-    assert bricks.leastTrace(moved) == pytest.approx(1)
+    assert bricks.leastTrace(stack.moved(3, 1, -2)) == pytest.approx(1)
+
+
+@pytest.mark.parametrize("scatter", [0, 0.2, 0.4])
+def test_the_trace_goes_up_through_one_head_joint_of_every_course(scatter):
+    wall = bricks.StoneWall(1.6, 1.2, (0.2, 0.3, 0.15), scatter=scatter).moved(3, 1, -2)
+    heads = [[b.low[0] for b in wall if b.course == n][1:] for n in range(8)]
+    ways = dict.fromkeys(heads[0], 1.2)
+    for above in heads[1:]:
+        ways = {x: min(way + abs(x - other) for other, way in ways.items()) for x in above}  # fmt: skip
+    assert bricks.leastTrace(wall) == pytest.approx(min(ways.values()) / 1.2)
 
 
 @pytest.mark.parametrize("trace", [1.1, 1.17, 1.25])
@@ -56,6 +88,13 @@ def test_the_wall_has_the_trace_that_was_asked_for(pattern, trace):
     found = [bricks.leastTrace(wall) for wall in walls]
     assert max(found) < 1.1 * trace and min(found) > 0.9 * trace
     assert len({round(f, 6) for f in found}) > 1
+
+
+def test_the_first_wall_that_is_near_the_trace_is_taken():
+    build = lambda **how: bricks.StoneWall(1.2, 1.2, (0.2, 0.3, 0.15), **how)
+    running = build(scatter=0)
+    near = 1.02 * bricks.leastTrace(running)
+    assert list(build(trace=near)) == list(running)
 
 
 def test_what_is_refused():

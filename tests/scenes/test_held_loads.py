@@ -4,7 +4,7 @@
 from hosted import *
 from masonry._masonry import saveScene
 from masonry.basics import Collapsed
-from masonry.scene.stages import gravity
+from masonry.scene.stages import gravity, growing
 
 sys.path[:0] = [os.path.join(ROOT, "validation", *f) for f in (["held_loads"], [])]
 import held_loads  # noqa: E402
@@ -325,17 +325,33 @@ def test_a_result_of_the_script_is_an_answer(tmp_path, capsys):
     assert "script: height 0.7 m\n" in capsys.readouterr().out
 
 
+def test_states_of_a_growth_are_evenly_apart_and_not_too_many(monkeypatch):
+    loading = SimpleNamespace(loadFactor=0.0)
+    motion = SimpleNamespace(fastest=lambda: 0.0, checkFall=lambda: None)
+    scene = SimpleNamespace(model=SimpleNamespace(loading=loading, motion=motion), args=SimpleNamespace(density_scaling=1))  # fmt: skip
+    monkeypatch.setattr(growing, "saveScene", lambda name: b"state")
+    at = growing.Growing(kept=[[0.0, ""]])
+    growth = growing._Growth(scene, at, None, 1.0)
+    for loading.loadFactor in range(1, 1000):
+        growth._after()
+        assert len(at.kept) <= growing.MOST_KEPT
+    factors = [factor for factor, _ in at.kept]
+    assert len(set(np.diff(factors))) == 1 and len(factors) > growing.MOST_KEPT / 2 - 1
+
+
 @pytest.mark.parametrize("stage", ["growLoad", "load"])
 def test_a_perfect_column_holds_no_more_than_its_buckling_load(tmp_path, stage):
-    """A chain of n rigid blocks on elastic joints with the rotational stiffness k buckles at 4 k/h sin²(π/(4 n + 2))."""
-    n, side, stiffness = 10, 0.2, 5e8
+    """A chain of n rigid blocks on elastic joints with the rotational stiffness k buckles at 4 k/h sin²(π/(4 n + 2)), in space
+    along y, where it is thinner."""
+    n, side, stiffness, plane = 10, 0.2, 5e8, stage == "growLoad"
+    wide = side if plane else 1.5 * side
     joint = MasonryJoint(elastic=True, normalStiffness=stiffness, shearStiffness=2e8)
     light = materials.Masonry(MasonryMat(young=2e10, poisson=0.2, density=200), {"bed": joint})  # fmt: skip
-    scene = Scene("column", bricks.stack(n, (side,) * 3), light, arguments=["--lean", "--out", str(tmp_path)])  # fmt: skip
+    scene = Scene("column", bricks.stack(n, (wide, side, side)), light, plane=plane, arguments=["--lean", "--out", str(tmp_path)])  # fmt: skip
     scene.platen("bottom")
-    head = scene.handle((side / 2, side / 2, n * side - 0.01))
+    head = scene.handle((wide / 2, side / 2, n * side - 0.01))
     scene.settle()
-    turning = stiffness * side**4 / 12
+    turning = stiffness * wide * side**3 / 12
     euler = 4 * turning / side * np.sin(np.pi / (4 * n + 2)) ** 2
     if stage == "growLoad":
         scene.growLoad(head, (0, 0, -3 * euler), within=0.02)

@@ -2,7 +2,9 @@
 """Scenes that are shaken: the record and its strength from the command line, and what a run says of a record."""
 
 from hosted import *
+from masonry.assembly.scheme import Scheme
 from masonry.scene import accelerograms
+from masonry.scene.stages.shake import displacements
 
 EVERY = 0.005
 RECORD = [3 * math.sin(0.6 * n) * math.sin(math.pi * n / 60) for n in range(61)]
@@ -18,6 +20,28 @@ def shaken(folder, *words, **settings):
     scene.shake(**{"accelerations": RECORD, "every": EVERY, **settings})
     scene.finish()
     return scene.results.column("top_x_mm")
+
+
+def test_steps_have_the_impulse_of_the_record(tmp_path, monkeypatch):
+    """Each step has the acceleration of its middle, which is the mean where that changes evenly."""
+    steps, put = {}, Scheme.setGravity
+    monkeypatch.setattr(Scheme, "setGravity", lambda self, g: (steps.update({O.iter: g[0]}), put(self, g)))  # fmt: skip
+    shaken(tmp_path, accelerations=[3.0, 0.0], every=0.02)
+    assert sum(steps.values()) * O.dt == pytest.approx(-0.5 * 3.0 * 0.02, rel=1e-4)
+
+
+def test_answers_have_the_sign_of_the_largest_displacement_and_the_first_fall():
+    columns = {"top_x_mm": [1.0, -3.0, 2.0], "time_s": [5.0, 6.0, 7.0]}
+    targets = {"top": SimpleNamespace(name="top", fixed=False)}
+    falls = lambda: {3: {"fell": 6.5}, 1: {"fell": 6.25}}
+    scene = SimpleNamespace(collapsed=True, model=SimpleNamespace(fallen=falls))
+    scene.description = SimpleNamespace(targets=targets, drifts=[])
+    found = displacements(scene, SimpleNamespace(column=columns.get))
+    assert [(a.name, a.value) for a in found] == [
+        ("largest_displacement_of_top_x", -3.0),
+        ("displacement_of_top_x_at_the_end", 2.0),
+        ("time_of_collapse", 1.25),
+    ]
 
 
 @pytest.fixture

@@ -3,6 +3,7 @@
 
 from hosted import *
 from masonry import AT_REST, MOVING
+from masonry.scene.stages import growing, rest
 
 SIDE, HEIGHT, DENSITY = 2.0, 20.0, 2000.0  # [m], [m], [kg/m³]
 #: Weight times the height of the middle [N m]: a soil that is less stiff per radian does not hold the tower upright.
@@ -35,6 +36,48 @@ def test_a_tower_that_its_soil_does_not_hold_upright_is_not_at_rest(tmp_path, ca
     scene = tower(tmp_path, 0.9 * OVERTURNING)
     assert scene.settle() == MOVING
     assert "buckles" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("length, height", [(8.0, 1.0), (1.0, 8.0)])
+@pytest.mark.parametrize("place", [(0, 0, 0), (30, 0, -10)])
+def test_the_slowest_period_is_that_of_a_body_that_rocks(tmp_path, length, height, place):  # fmt: skip
+    """T = 2π √(I / (k - W h/2)), with the inertia I = m (l²/12 + h²/3) about the soil."""
+    wall = bricks.Wall(length, height, (0.5, 0.3, 0.25), halves=False).moved(*place)
+    scene = Scene("wall", wall, materials.dry(density=DENSITY), arguments=["--out", str(tmp_path), "--lean"])  # fmt: skip
+    mass = DENSITY * length * height * 0.3
+    stiffness = 2 * mass * G * height / 2
+    scene.platen("bottom", springs={"Y": stiffness}, height=0.01)
+    scene.begin()
+    inertia = mass * (length**2 / 12 + height**2 / 3)
+    expected = 2 * math.pi * math.sqrt(inertia / (stiffness / 2))
+    assert scene.model.supports.slowest() == pytest.approx(expected, rel=0.03)
+    scene.finish()
+
+
+@pytest.mark.parametrize("soil, seconds", [(0.0, growing.TRIAL), (2.0, 20.0)])
+def test_a_trial_puts_its_load_on_in_a_slow_period_and_waits_for_ten(soil, seconds):
+    O.dt, loads, nothing = 1e-3, [], lambda *words: None
+    supports = SimpleNamespace(unrest=lambda: (1.0, 1.0), slowest=lambda: soil)
+    motion = SimpleNamespace(checkFall=nothing, fastest=lambda: 0.0)
+    scene = SimpleNamespace(
+        args=SimpleNamespace(density_scaling=1.0),
+        description=SimpleNamespace(low=(0, 0, 0), high=(0, 0, 1)),
+        running=SimpleNamespace(advance=nothing),
+        model=SimpleNamespace(loading=SimpleNamespace(), motion=motion, supports=supports),
+    )  # fmt: skip
+    load = SimpleNamespace(put=loads.append, at=lambda began, share: share, shareOf=lambda factor: factor)  # fmt: skip
+    at = growing.Growing(source=0.0, goal=1.0)
+    assert not growing._Search(scene, at, load, 0.01)._trial()
+    assert at.taken * O.dt == pytest.approx(seconds)
+    assert loads.index(1.0) + 1 == max(1, soil / (O.dt * rest.EVERY))
+
+
+@pytest.mark.parametrize("plane, slender", [(True, False), (False, True)])
+def test_a_thin_wall_is_slender_unless_it_stays_in_its_plane(plane, slender):
+    box = SimpleNamespace(low=(0, 0, 0), high=(1.0, 0.125, 1.0), plane=plane)
+    supports = SimpleNamespace(slowest=lambda: 0.0)
+    scene = SimpleNamespace(description=box, model=SimpleNamespace(supports=supports))
+    assert rest.isSlender(scene) == slender
 
 
 def test_small_horizontal_loads_must_be_carried_on_their_own(scene, tmp_path):

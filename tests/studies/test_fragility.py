@@ -2,6 +2,7 @@
 """Fragility from the levels between which records reach a limit: drawn data, closed forms, and what cannot be found."""
 
 from usual import *
+from xml.etree import ElementTree
 from hypothesis import reject
 from scipy import special
 from masonry.study import fragility
@@ -148,3 +149,15 @@ def test_data_that_cannot_give_it_are_refused_with_a_sentence(capacities, messag
         return
     with pytest.raises(Refused, match=message):
         fragility.fit(low, high)
+
+
+def test_a_model_for_openquake_has_names_and_measures_that_it_reads():
+    fit = fragility.fit(*drawn(1, 20))
+    text = fragility.nrml({"house <1>": fit}, "Sa_0.5s_g", "limit", "x < 1 & more", 2.0)
+    root = ElementTree.fromstring(text.encode())
+    space = "{http://openquake.org/xmlns/nrml/0.5}"
+    assert root.find(f".//{space}description").text == "x < 1 & more"
+    function = root.find(f".//{space}fragilityFunction")
+    assert function.get("id") == "house_1_" and function[0].get("imt") == "SA(0.5)"
+    with pytest.raises(Refused, match="OpenQuake has no Sa_0.5s_2%_g"):
+        fragility.nrml({}, "Sa_0.5s_2%_g", "limit", "", 2.0)

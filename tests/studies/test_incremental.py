@@ -129,6 +129,7 @@ def test_the_report_has_curves_and_a_fragility(whole, capsys):
     [function] = ElementTree.parse(out / "fragility.xml").iter(f"{space}fragilityFunction")  # fmt: skip
     imls, params = function
     assert (function.get("id"), imls.get("imt"), params.get("ls")) == ("out", "PGA", "collapse")  # fmt: skip
+    assert float(imls.get("maxIML")) == LEVELS[-1]
     mean, deviation = (float(params.get(name)) for name in ("mean", "stddev"))
     assert math.log1p((deviation / mean) ** 2) == pytest.approx(fit.dispersion.value**2, rel=1e-3)  # fmt: skip
     assert mean**2 / math.hypot(mean, deviation) == pytest.approx(fit.median.value, rel=1e-3)  # fmt: skip
@@ -258,6 +259,7 @@ def test_three_components_are_one_record(tmp_path):
     first, second = made.ida.read("")
     assert (first.name, second.name, second.every) == ("quake", "long", 0.001)
     assert first.intensity == pytest.approx(math.sqrt(0.4 * 0.9))
+    assert len(made.ida.doubts()) == 4  # none of the components ends at rest
     path = tmp_path / "kept.txt"
     path.write_text(first.text)
     from masonry.scene.ground import readRecord
