@@ -171,6 +171,18 @@ def test_an_elastic_joint_stores_half_the_stiffness_times_the_square_of_its_jump
     move(4e-6, (0.6, 0.8, 0))
     stored = dict(elastic_compression=0.5 * kn * 9e-12, elastic_shear=0.5 * ks * 16e-12)
     perArea(external=sum(stored.values()), **stored)
+    move(-4e-6, (0.6, 0.8, 0))
+    move(3e-6, (0, 0, 1))
+    # the error is relative to the largest work, also where all of it has come back
+    assert abs(energy().balance()["error"]) < 1e-3
+
+
+def test_round_off_is_no_error_where_no_work_is_done():
+    panel(gravity=(0, 0, 0))
+    for n in range(20):
+        O.bodies[0].state.vel = Vector3(1, 0, 1) * (-1) ** n * 1e-13
+        run(1)
+    assert abs(energy().balance()["error"]) < 1e-6
 
 
 @FUNCTORS

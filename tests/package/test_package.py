@@ -122,6 +122,8 @@ def test_a_preset_names_the_property_that_was_not_measured(name, end):
     wall = {**LIKE, name: presets.RANGE[name][end] + (0.02 * (2 * end - 1)) * presets.RANGE[name][1]}  # fmt: skip
     preset = presets.presetOf(parse("--preset", "fast"), "my_wall", wall)
     (sentence,) = preset["outside"]
+    rounded = {**LIKE, name: presets.RANGE[name][end] + 0.004 * (2 * end - 1) * presets.RANGE[name][1]}  # fmt: skip
+    assert presets.outsideOf(rounded) == []
     assert preset["promise"] is None and sentence.startswith(name.partition(" [")[0])
     assert sentence in presets.presetNote(preset)
 

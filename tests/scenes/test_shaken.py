@@ -32,16 +32,11 @@ def test_steps_have_the_impulse_of_the_record(tmp_path, monkeypatch):
 
 def test_answers_have_the_sign_of_the_largest_displacement_and_the_first_fall():
     columns = {"top_x_mm": [1.0, -3.0, 2.0], "time_s": [5.0, 6.0, 7.0]}
-    targets = {"top": SimpleNamespace(name="top", fixed=False)}
-    falls = lambda: {3: {"fell": 6.5}, 1: {"fell": 6.25}}
-    scene = SimpleNamespace(collapsed=True, model=SimpleNamespace(fallen=falls))
-    scene.description = SimpleNamespace(targets=targets, drifts=[])
+    model = SimpleNamespace(fallen=lambda: {3: {"fell": 6.5}, 1: {"fell": 6.25}})
+    scene = SimpleNamespace(collapsed=True, model=model)
+    scene.description = SimpleNamespace(targets={1: SimpleNamespace(name="top", fixed=False)}, drifts=[])  # fmt: skip
     found = displacements(scene, SimpleNamespace(column=columns.get))
-    assert [(a.name, a.value) for a in found] == [
-        ("largest_displacement_of_top_x", -3.0),
-        ("displacement_of_top_x_at_the_end", 2.0),
-        ("time_of_collapse", 1.25),
-    ]
+    assert [answer.value for answer in found] == [-3.0, 2.0, 1.25]
 
 
 @pytest.fixture
@@ -51,13 +46,6 @@ def peer(tmp_path):
     path = tmp_path / "strong.AT2"
     path.write_text("\n".join(lines + [repr(2 * a / 9.81) for a in RECORD]))
     return str(path)
-
-
-def test_a_file_shakes_as_the_list_that_it_holds(tmp_path, peer):
-    strong = [9.81 * (2 * a / 9.81) for a in RECORD]
-    listed = shaken(tmp_path / "a", accelerations=strong)
-    assert shaken(tmp_path / "b", accelerations=peer, every=None) == listed
-    assert max(map(abs, listed)) > 0.3
 
 
 def test_the_command_line_replaces_the_record_with_its_factor_and_unit(tmp_path, peer):

@@ -57,14 +57,12 @@ def test_the_slowest_period_is_that_of_a_body_that_rocks(tmp_path, length, heigh
 @pytest.mark.parametrize("soil, seconds", [(0.0, growing.TRIAL), (2.0, 20.0)])
 def test_a_trial_puts_its_load_on_in_a_slow_period_and_waits_for_ten(soil, seconds):
     O.dt, loads, nothing = 1e-3, [], lambda *words: None
-    supports = SimpleNamespace(unrest=lambda: (1.0, 1.0), slowest=lambda: soil)
-    motion = SimpleNamespace(checkFall=nothing, fastest=lambda: 0.0)
-    scene = SimpleNamespace(
-        args=SimpleNamespace(density_scaling=1.0),
-        description=SimpleNamespace(low=(0, 0, 0), high=(0, 0, 1)),
-        running=SimpleNamespace(advance=nothing),
-        model=SimpleNamespace(loading=SimpleNamespace(), motion=motion, supports=supports),
-    )  # fmt: skip
+    model, scene = SimpleNamespace(loading=SimpleNamespace()), SimpleNamespace()
+    model.supports = SimpleNamespace(unrest=lambda: (1.0, 1.0), slowest=lambda: soil)
+    model.motion = SimpleNamespace(checkFall=nothing, fastest=lambda: 0.0)
+    scene.args, scene.model = SimpleNamespace(density_scaling=1.0), model
+    scene.description = SimpleNamespace(low=(0, 0, 0), high=(0, 0, 1))
+    scene.running = SimpleNamespace(advance=nothing)
     load = SimpleNamespace(put=loads.append, at=lambda began, share: share, shareOf=lambda factor: factor)  # fmt: skip
     at = growing.Growing(source=0.0, goal=1.0)
     assert not growing._Search(scene, at, load, 0.01)._trial()

@@ -7,7 +7,7 @@ from xml.etree import ElementTree
 import cluster
 from masonry.read import drawing
 from masonry.study import Sa, Study, report, uniform
-from masonry.study.demands import Demands, _between, _quantile
+from masonry.study.demands import Demands, _between, _quantile, _usual
 from masonry.study.gathering import Folder
 from masonry.study.incremental import Chains
 from masonry.study.records import Record
@@ -479,4 +479,13 @@ def test_between_levels_a_demand_changes_evenly_and_above_the_last_it_is_unknown
     assert at(0.7) == at(1.0) == at(2.0) == math.inf
     assert math.isnan(_between([0.2, 0.6], [1.0, 5.0], 0.7))
     # what has fallen stays so, also if a higher level was run
+    made = object.__new__(Demands)
+    made.rows, made.stood = [([0.2, 0.6, 1.0], [1.0, math.inf, 1.0])], [[0.2, 1.0]]
+    assert made.intervals() == made.intervals(2.0) == ([0.2], [0.6])
     assert _between([0.2, 0.6, 1.0], [math.inf, 1.0, 5.0], 0.8) == math.inf
+
+
+def test_the_usual_demand_is_that_of_the_largest_amount():
+    values = {"shake_2_largest_x_mm": [-5.0, 1.0], "shake_2_largest_y_mm": [2.0, 3.0]}
+    record = SimpleNamespace(measures=values, numbers=lambda name: np.array(values[name]))  # fmt: skip
+    assert _usual(record) == "shake_2_largest_x_mm"
