@@ -339,6 +339,14 @@ def test_states_of_a_growth_are_evenly_apart_and_not_too_many(monkeypatch):
     assert len(set(np.diff(factors))) == 1 and len(factors) > growing.MOST_KEPT / 2 - 1
 
 
+def test_buckling_is_looked_for_in_the_state_that_was_held(monkeypatch):
+    loaded, at = [], growing.Growing(heldState=growing._text(b"held"))
+    monkeypatch.setattr(growing, "loadScene", loaded.append)
+    monkeypatch.setattr(growing, "buckles", lambda scene: len(loaded) == 1)
+    scene = SimpleNamespace(model=None, running=None)
+    assert growing._Search(scene, at, None, 0.01)._buckles() and loaded == [b"held"]
+
+
 @pytest.mark.parametrize("stage", ["growLoad", "load"])
 def test_a_perfect_column_holds_no_more_than_its_buckling_load(tmp_path, stage):
     """A chain of n rigid blocks on elastic joints with the rotational stiffness k buckles at 4 k/h sin²(π/(4 n + 2)), in space

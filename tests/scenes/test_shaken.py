@@ -28,6 +28,7 @@ def test_steps_have_the_impulse_of_the_record(tmp_path, monkeypatch):
     monkeypatch.setattr(Scheme, "setGravity", lambda self, g: (steps.update({O.iter: g[0]}), put(self, g)))  # fmt: skip
     shaken(tmp_path, accelerations=[3.0, 0.0], every=0.02)
     assert sum(steps.values()) * O.dt == pytest.approx(-0.5 * 3.0 * 0.02, rel=1e-4)
+    assert (max(steps) - min(steps)) * O.dt == pytest.approx(0.02, abs=O.dt)
 
 
 def test_answers_have_the_sign_of_the_largest_displacement_and_the_first_fall():
