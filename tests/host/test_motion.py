@@ -2,6 +2,8 @@
 """Damping, drives, prescribed places and neighbours of another kind, against numbers that follow by hand."""
 
 from hosted import *
+from masonry._masonry import loadScene, saveScene
+from yade.utils import sphere
 
 # -- damping ---------------------------------------------------------------------------------------------------------
 
@@ -102,13 +104,16 @@ def test_a_drive_meets_its_velocity_in_every_step_whatever_the_weight_and_way(
     corner = Vector3(0.2, 0.051, 0.16)
     direction = Vector3(*sign)
     driven = dict(direction=direction, driven=True, velocity=0.003)
-    insert(MasonryLoad(body=1, point=corner, **driven))
+    load = insert(MasonryLoad(body=1, point=corner, **driven))
     O.dt = 0.3 * criticalTimeStep()[0]
-    for _ in range(200):
+    load.ramp, load.acceleration = 50, 0.003 / (50 * O.dt)  # from rest on
+    for step in range(1, 201):
         arm = s.ori * s.refOri.conjugate() * (corner - s.refPos)
         O.step()
         moving = s.vel + s.angVel.cross(arm)
-        assert moving.dot(direction.normalized()) == pytest.approx(0.003, rel=1e-5)
+        expected = 0.003 * min(1, step / 50)
+        assert moving.dot(direction.normalized()) == pytest.approx(expected, rel=1e-5)
+    assert abs(balance()["error"]) < 1e-6
 
 
 def test_a_drive_at_rest_carries_the_weight_and_what_pushes():
@@ -139,15 +144,26 @@ def test_a_load_that_is_dead_does_no_work():
 
 @pytest.mark.parametrize("plane", [True, False], ids=["plane", "space"])
 def test_a_motion_that_a_script_changes_at_every_step_does_its_work(scene, plane):
-    """The work of a step is done with the velocity of that step, also if the next one has another."""
+    """The work of a step is done with the velocity of that step, also if the next one has another, or several ones
+    while bodies are added and states are loaded."""
     stack(count=2, damping=0.1)
     base, dice = O.bodies[0].state, random.Random(3)
     if not plane:
         O.bodies[1].state.blockedDOFs = ""
     run(1)
-    for _ in range(300):
+    for step in range(300):
+        if step % 50 == 25:
+            state = saveScene("null")
+            base.vel = 2 * base.vel
+            run(2)
+            loadScene(state)
         base.vel = Vector3(dice.uniform(-1, 1), 0, dice.uniform(-1, 1)) * 1e-3
         base.angVel = Vector3(0, dice.uniform(-1, 1) * 1e-2, 0)
+        if step % 50 == 0:
+            other = O.bodies.append(sphere((5, 0, step), 0.1, fixed=True))
+            O.bodies[other].state.vel = Vector3(0, 0, 1e-3)
+            criticalTimeStep()
+            base.vel = -base.vel
         run(1)
     assert abs(balance()["external"]) > 1e-4
     assert abs(balance()["error"]) < 1e-6
