@@ -271,7 +271,7 @@ def _solids(surface, scale, problems):
         )
         return
     used = sorted({n for face in surface.faces for n in face})
-    merge = _merged(points, used)
+    merge = _merged(points, used) if used else {}
     faces, numbers = [], []
     for number, face in enumerate(surface.faces):
         face = [merge[n] for n in face]
