@@ -123,9 +123,7 @@ class Record:
                 self.elevation = self._drawing(model)
                 self.picture = dataOfModel(model, curve=self.columns)
                 number = elevation.frameOfCracks(self.run, self.directory)
-                last = number == model.count - 1
-                when = elevation.whenOf(self.run, self.directory, number)
-                self.whenCracked = f"{'at the end of the run' if last else 'when the collapse began'}, {when}"
+                self.whenCracked = elevation.whenOf(self.run, self.directory, number)
         except Refused as refused:
             self.missing = str(refused)
         except (ValueError, ArithmeticError, np.linalg.LinAlgError, OSError) as error:
