@@ -154,7 +154,7 @@ def jointFrame(opening, closed=0.0, slide=0.0):
 
 
 def test_the_magnification_is_the_usual_one_unless_that_is_absurd():
-    of = lambda frame, moved: magnificationOf(frame, np.full((100, 3), moved / 3**0.5), 3, H)  # fmt: skip
+    of = lambda frame, moved: magnificationOf(frame, np.full((100, 3), moved / 3**0.5), [boxPoints(3, T, H)])  # fmt: skip
     assert of(jointFrame(1e-3), 12e-3) == of(jointFrame(1e-4), 0.3e-3) == MAGNIFICATIONS[0]  # fmt: skip
     assert of(jointFrame(1e-3), 1.0) == 1
     # rigid motion and shortening alone are true to scale, however small; so is what has no joints

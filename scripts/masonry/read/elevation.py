@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import copy
-import itertools
 import os
 from dataclasses import dataclass, field
 from typing import Any
@@ -13,15 +12,24 @@ import numpy as np
 
 from ..arguments import FilePath
 from ..basics import Refused
-from ..bricks.geometry import Alike, Solids
+from ..bricks.geometry import Alike, Solids, boxCorners
 from . import drawing
 from .cracks import CRACK, CRUSHED, crushed, widths
 from .curve_figure import plan, unitOf
 from .files import readCurve, readRun
 from .frames import frameAt, frameTimes, readFrame
 
-from .painting import GHOST, LEVEL, MORTAR, SHADES, TIES, Painting, fromBackToFront  # fmt: skip
-from .views import REACH, courseOf, magnificationOf, scaleText, spaceViewOf, viewOf
+from .painting import GHOST, MORTAR, SHADES, TIES, Painting, fromBackToFront  # fmt: skip
+from .views import (
+    FROM_ABOVE,
+    IN_SPACE,
+    REACH,
+    courseOf,
+    magnificationOf,
+    scaleText,
+    spaceViewOf,
+    viewOf,
+)
 
 #: A block of a part is in an elevation if it reaches into the depth of the façade by this share of its own depth or of the
 #: façade's; what belongs to no part, as a platen, if it touches this depth.
@@ -60,10 +68,23 @@ class Structure:
         #: numbers of the points of every block, by the id of its body
         self.corners = {body: np.unique(np.concatenate(c)) for body, c in cells.items()}
         self.moved = self.blocks["displacement"] - self.still
-        below = self.corners.pop(self.ground, None)
-        #: height of the ground [m], or None
-        self.level = None if below is None else (self.blocks["points"] + self.moved)[below, 2].max()  # fmt: skip
+        if self.ground in self.corners:
+            self._lay()
         self._cracks: dict[int, list[Any]] | None = None
+
+    def _lay(self):
+        """Let the ground be a slab that is as large as what stands and lies on it."""
+        points = self.blocks["points"]
+        level = (points + self.moved)[self.corners.pop(self.ground), 2].max()
+        nodes = self.points(self.corners)
+        both = np.concatenate([points[nodes], (points + self.moved)[nodes]])
+        (*low, _), (*high, _) = both.min(axis=0), both.max(axis=0)
+        room = 0.05 * np.ptp(both, axis=0).max()
+        slab = boxCorners((*np.array(low) - room, level - room), (*np.array(high) + room, level))  # fmt: skip
+        self.blocks = {**self.blocks, "points": np.concatenate([points, slab])}
+        self.moved = np.concatenate([self.moved, np.zeros((8, 3))])
+        self.corners[self.ground] = np.arange(len(points), len(points) + 8)
+        self.shades = {**self.shades, self.ground: "ground"}
 
     def points(self, bodies):
         """Numbers of the points of some blocks."""
@@ -118,34 +139,13 @@ class Elevation:
                 sense = "towards" if farthest > 0 else "away from"
                 self.note += f" (moved up to {1e3 * self.across:.3g} mm {sense} the viewer)"  # fmt: skip
 
-    @property
-    def askew(self):
-        """Whether it is seen neither from the front nor from above."""
-        return np.abs(self.view.towards).max() < 1 - 1e-6 and abs(self.view.towards[2]) > LEVEL  # fmt: skip
-
     def flat(self, points):
         return (points - self.view.start) @ self.to
-
-    def size(self):
-        return np.ptp(self.flat(self.structure.blocks["points"][self.nodes]), axis=0).max()  # fmt: skip
-
-    def ground(self, magnification):
-        """Corners of the ground below all blocks, where they are drawn and as they were built (8, 3) [m]; none without a ground."""
-        s = self.structure
-        if s.level is None:
-            return np.zeros((0, 3))
-        built = s.blocks["points"][self.nodes]
-        points = np.concatenate([built, built + magnification * s.moved[self.nodes]])
-        low, high = points.min(axis=0), points.max(axis=0)
-        room = 0.05 * (high - low).max()
-        low, high = np.append(low[:2], s.level) - room, np.append(high[:2] + room, s.level)  # fmt: skip
-        return np.array(list(itertools.product(*zip(low, high))))
 
     def box(self, magnification):
         """Two corners of what is drawn: all of it, but for what flew away, with room for the scale below."""
         flat = self.flat(self.structure.blocks["points"][self.nodes])
         now = flat + magnification * self.structure.moved[self.nodes] @ self.to
-        now = np.concatenate([now, self.flat(self.ground(magnification))])
         low, high = flat.min(axis=0), flat.max(axis=0)
         reach = REACH * (high - low).max()
         low = np.maximum(np.minimum(low, now.min(axis=0)), low - reach)
@@ -168,9 +168,6 @@ class Elevation:
         painting = Painting(self.view.towards, thin, bold)
         now = copy.copy(built)
         now.groups = [Alike(g.index, g.corners + magnification * s.moved[np.array([nodes[n] for n in g.index])], g.faces) for g in built.groups]  # fmt: skip
-        if s.level is not None:
-            (ground,) = Solids([self.ground(magnification)]).groups
-            painting.block(ground.corners[0], ground.faces, ground.normals[0], SHADES["ground"])  # fmt: skip
         for g in built.groups if magnification else ():
             for corners, normals in zip(g.corners, g.normals):
                 painting.block(corners, g.faces, normals, GHOST)
@@ -182,10 +179,9 @@ class Elevation:
             near = 1e-4 * built.diagonal[n]
             painting.cracks(s.cracks(body), planes, g.normals[row], near, magnification)
         painting.finish(axes, self.flat, s.joints is not None)
-        shades = {s.shades.get(body) for body in self.bodies} | (
-            {"ground"} if s.level is not None else set()
-        )
-        for shade in sorted(shades - {None}):
+        for shade in sorted(
+            {s.shades[body] for body in self.bodies if body in s.shades}
+        ):
             axes.add_collection(PolyCollection([], facecolor=SHADES[shade], edgecolor=MORTAR, label=shade))  # fmt: skip
         for body in set(s.names) & set(self.bodies):
             middle = self.flat(s.blocks["points"][s.corners[body]]).mean(axis=0)
@@ -204,14 +200,14 @@ class Elevation:
         axes.set_ylim(low[1], high[1])
         axes.set_aspect("equal")
         axes.spines[["top", "right"]].set_visible(False)
-        if self.askew:
+        if self.view.name == IN_SPACE:
             axes.set_axis_off()
         axes.set_xlabel(self.view.labels[0])
         axes.set_ylabel(self.view.labels[1])
         most = LONGEST / scale
         power = 10.0 ** np.floor(np.log10(most))
         length = max(n * power for n in (1, 2, 5) if n * power <= most)
-        x, y = low + (0.03, 0.02) * (high - low)
+        x, y = low + 8 / scale
         axes.plot([x, x + length], [y, y], color="black", lw=2, solid_capstyle="butt", label="_scale")  # fmt: skip
         axes.annotate(f"{length:g} m", (x + length, y), xytext=(4, 0), textcoords="offset points", va="center", fontsize=8)  # fmt: skip
 
@@ -276,19 +272,17 @@ def figureOf(structure: Structure, title: str, magnification: float | None = Non
     """
     elevations = elevationsOf(structure)
     if magnification is None:
-        course = courseOf(structure.blocks["points"][c] for c in structure.corners.values())  # fmt: skip
-        drawn = structure.points(structure.corners)
-        size = max(one.size() for one in elevations)
-        magnification = magnificationOf(structure.joints, structure.moved[drawn], size, course)  # fmt: skip
+        nodes = structure.points(structure.corners)
+        blocks = [structure.blocks["points"][own] for own in structure.corners.values()]
+        magnification = magnificationOf(structure.joints, structure.moved[nodes], blocks)  # fmt: skip
     scales = [magnification] * len(elevations)
     front = max(elevations, key=lambda one: (one.across, len(one.bodies))).view.towards
-    across = any(one.across or one.view.name for one in elevations)
+    across = any(one.across or one.view.name == FROM_ABOVE for one in elevations)
     inSpace = [("", structure, magnification)] if across else []
     for moment, one, m in [*inSpace, *([(*later, 1)] if later else [])]:
-        bodies = list(one.corners)
-        nodes = one.points(bodies)
+        nodes = one.points(one.corners)
         view = spaceViewOf(front, one.blocks["points"][nodes], one.moved[nodes])
-        elevations.append(Elevation(one, "", view, bodies, moment=moment))
+        elevations.append(Elevation(one, "", view, list(one.corners), moment=moment))
         scales.append(m)
     boxes = [one.box(m) for one, m in zip(elevations, scales)]
     sizes = np.array([high - low for low, high in boxes])

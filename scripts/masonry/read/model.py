@@ -16,7 +16,7 @@ from .cracks import CRACK, DAMAGED, crushed, widths
 from .curve_figure import plan, unitOf
 from .files import filesOf, readCurve, readRun
 from .frames import framePaths, frameTimes, readFrame, readSurfaces
-from .views import REACH, courseOf, magnificationOf, viewOf
+from .views import REACH, magnificationOf, viewOf
 
 SHARP = np.cos(np.radians(20))  # of the angle from which an edge of a block is drawn
 #: Kinds of a crack; a joint can be crushed beside the first or the second.
@@ -192,7 +192,7 @@ class Model:
         moved = self.displacements(-1)[self.framed]
         if magnification is None:
             own = [self.points[self.owner == n] for n in np.flatnonzero(self.looks != GROUND)]  # fmt: skip
-            magnification = magnificationOf(joints, moved, size, courseOf(own))
+            magnification = magnificationOf(joints, moved, own)
         seen = np.clip(points + magnification * moved, low - REACH * size, high + REACH * size)  # fmt: skip
         low, high = np.minimum(low, seen.min(axis=0)), np.maximum(high, seen.max(axis=0))  # fmt: skip
         if moved.mean(axis=0) @ towards < -0.1 * size:  # it fell to the other side

@@ -9,6 +9,8 @@ from typing import Any
 
 import numpy as np
 
+from .views import LEVEL
+
 GHOST, MORTAR = (
     "#e6e6e6",
     "#595959",
@@ -26,7 +28,6 @@ SHADES = {
 CRACKS, CRUSHED = {"open": "#d62728", "slid": "#1f77b4"}, "#101010"
 #: Lines of ties by their state.
 TIES = {"elastic": ("#333333", "-"), "yielded": ("#ff7f0e", "-"), "broken": ("#9467bd", ":")}  # fmt: skip
-LEVEL = 1e-3  # cosine below which a face stands along the line of sight
 
 
 def rgb(colour: str) -> np.ndarray:

@@ -19,6 +19,11 @@ ASIDE, ABOVE = (
     32,
     24,
 )  # [°] in plan beside the front, and over the ground, from where a structure is seen in space
+FROM_ABOVE, IN_SPACE = (
+    "from above",
+    "in space",
+)  # names of views that are not from the front
+LEVEL = 1e-3  # cosine below which a face stands along the line of sight
 REACH = 1.5  # how far what moved is in a picture, over the size of what was built
 #: How a part is seen. ``right`` and ``up`` are unit vectors of the picture, ``towards`` is that to the viewer; ``labels``
 #: are those of the axes, and ``name`` says where the viewer stands. A point p lies at ((p - start)·right, (p - start)·up).
@@ -86,21 +91,21 @@ def spaceViewOf(front, points, moved):
         along = -along
     plan = np.cos(turn) * side + np.sin(turn) * along
     away = np.append(np.cos(rise) * plan, np.sin(rise))
-    return _viewFrom(away, np.zeros((1, 3)), False)._replace(name="in space")
+    return _viewFrom(away, points, False)
 
 
 def _viewFrom(away, points, either):
     """The view of points by a viewer in this direction; ``either``: or opposite, if that turns x or y to the right."""
     if abs(away[2]) > 1 - 1e-6:
         right, up = np.eye(3)[:2]
-        name = "from above"
+        name = FROM_ABOVE
     else:
         up = np.array([0, 0, 1]) - away[2] * away
         up /= np.linalg.norm(up)
         right = np.cross(up, away)
         if either and (right[0] < -1e-3 or (abs(right[0]) <= 1e-3 and right[1] < 0)):
             right = -right
-        name = ""
+        name = IN_SPACE if abs(away[2]) > LEVEL else ""
     towards = np.cross(right, up)
     start, labels = np.zeros(3), []
     for direction in (right, up):
@@ -115,19 +120,22 @@ def _viewFrom(away, points, either):
     return View(right, up, towards, start, labels, name)
 
 
-def magnificationOf(joints: Any, moved: Any, size: float, course: float) -> int:
+def magnificationOf(joints: Any, moved: Any, blocks: Any) -> int:
     """How much displacements are magnified: as usual, or less where blocks would be drawn far away or over each other, and not
     at all where no joint is cracked, as rigid motion and elastic shortening alone would then be drawn.
 
     :param joints: the frame of the joints, or None
     :param moved: displacements of points of the blocks (n, 3) [m]
-    :param size: largest extent of the structure [m]; ``course``: the usual height of a block [m]
+    :param blocks: arrays of the corners of each (n, 3) [m]
     """
     if not joints or not widths(joints)[2].any():
         return 1
+    size = np.ptp(np.concatenate(blocks), axis=0).max()
     far = np.linalg.norm(moved, axis=1).max()
     closed = max(-joints["opening"].min(), 0)
-    fits = lambda m: m * far <= FARTHEST * size and m * closed <= OVERLAP * course
+    fits = lambda m: m * far <= FARTHEST * size and m * closed <= OVERLAP * courseOf(
+        blocks
+    )
     return next((m for m in MAGNIFICATIONS if fits(m)), 1)
 
 
