@@ -73,10 +73,7 @@ def build(view, run):
         for name, formula in (("slid joints", slid), ("open joints", f"{isOpen} * {hurt}")):  # fmt: skip
             cells = chosen(joints, name, formula)
             rims = pv.ExtractEdges(Input=cells)
-            for thing in (
-                drawn(cells, view, colours["slid"]),
-                drawn(rims, view, colours["slid"], 3),
-            ):
+            for thing in (drawn(cells, view, colours["slid"]), drawn(rims, view, colours["slid"], 3)):  # fmt: skip
                 thing.Position = nearer
                 if name == "open joints":
                     pv.ColorBy(thing, ("CELLS", "opening [mm]"))

@@ -15,14 +15,10 @@ from .cracks import widths
 MAGNIFICATIONS = 30, 20, 10, 5, 2, 1
 FARTHEST = 0.25  # largest drawn displacement over the size of the structure
 OVERLAP = 0.25  # how far blocks overlap at most where a joint closed, over the height of a course
-ASIDE, ABOVE = (
-    32,
-    24,
-)  # [°] in plan beside the front, and over the ground, from where a structure is seen in space
-FROM_ABOVE, IN_SPACE = (
-    "from above",
-    "in space",
-)  # names of views that are not from the front
+#: From where a structure is seen in space, in plan beside its front and over the ground [°].
+ASIDE, ABOVE = 32, 24
+#: Names of views that are not from the front.
+FROM_ABOVE, IN_SPACE = "from above", "in space"
 LEVEL = 1e-3  # cosine below which a face stands along the line of sight
 REACH = 1.5  # how far what moved is in a picture, over the size of what was built
 #: How a part is seen. ``right`` and ``up`` are unit vectors of the picture, ``towards`` is that to the viewer; ``labels``
