@@ -277,8 +277,9 @@ def figureOf(structure: Structure, title: str, magnification: float | None = Non
         magnification = magnificationOf(structure.joints, structure.moved[nodes], blocks)  # fmt: skip
     scales = [magnification] * len(elevations)
     front = max(elevations, key=lambda one: (one.across, len(one.bodies))).view.towards
-    across = any(one.across or one.view.name == FROM_ABOVE for one in elevations)
-    inSpace = [("", structure, magnification)] if across else []
+    names = {one.view.name for one in elevations}
+    across = FROM_ABOVE in names or any(one.across for one in elevations)
+    inSpace = [("", structure, magnification)] if across and IN_SPACE not in names else []
     for moment, one, m in [*inSpace, *([(*later, 1)] if later else [])]:
         nodes = one.points(one.corners)
         view = spaceViewOf(front, one.blocks["points"][nodes], one.moved[nodes])
