@@ -187,15 +187,15 @@ def test_blocks_are_drawn_after_those_that_they_hide(towards):
     boxes = np.array([(np.min(b, axis=0), np.max(b, axis=0)) for b in bricks])
     hidden = 0
     rays = np.random.default_rng(1).uniform((-0.2, -0.2, 0), (1.2, 0.4, 0.4), (400, 3))
-    for ray in rays:  # where a line of sight enters each box
+    for ray in rays:  # where a line of sight goes into each box and out of it
         with np.errstate(divide="ignore", invalid="ignore"):
             ends = np.sort((boxes - ray) / towards, axis=1)
-        enter, leave = np.nanmax(ends[:, 0], axis=1), np.nanmin(ends[:, 1], axis=1)
+        enter, exit_ = np.nanmax(ends[:, 0], axis=1), np.nanmin(ends[:, 1], axis=1)
         inside = (boxes[:, 0] < ray) & (ray < boxes[:, 1]) | (np.abs(towards) > 1e-9)
-        met = np.flatnonzero((leave - enter > 1e-6) & inside.all(axis=1))
+        met = np.flatnonzero((exit_ - enter > 1e-6) & inside.all(axis=1))
         for a in met:
             for b in met:
-                if enter[a] >= leave[b] - 1e-9:  # a is nearer to the viewer
+                if enter[a] >= exit_[b] - 1e-9:  # a is nearer to the viewer
                     hidden += 1
                     assert place[a] > place[b], (bricks[a], bricks[b])
     assert hidden > 50
@@ -314,6 +314,24 @@ def test_an_open_joint_is_drawn_on_the_faces_of_both_blocks(scene, tmp_path, dra
         assert (ends[..., 0].min(), ends[..., 0].max()) == pytest.approx((0, 2 * L))
     assert axes.get_xlabel() == "x [m]" and axes.get_ylabel() == "z [m]"
     assert "displacements × 30" in figure._suptitle.get_text()
+
+
+def test_drawn_blocks_overlap_by_their_closure_and_no_more(scene, tmp_path, drawn):
+    """A brick that is pushed along its bed joint and into it, so that the joint slides and closes."""
+    lower = box((0, 0, 0), (3 * L, T, H))
+    pull(scene, tmp_path, box((L, 0, H), (2 * L, T, 2 * H)), (1.0, 0, -0.02))
+    folder = writeRun(tmp_path, ["time_s", "f_kN"], [[0, 0], [1, 1]])
+    elevation.cracks(folder)
+    (axes,), title = drawn["cracks.png"].axes, drawn["cracks.png"]._suptitle.get_text()
+    assert "displacements ×" in title, title
+    magnification = int(re.search(r"displacements × (\d+)", title)[1])
+    closed = -frames.readFrame(folder, "joints")["opening"].min()
+    assert closed > 0.03e-3 and magnification > 1
+    bricks = [shape for shape, face, _ in polygonsOf(axes) if face == SHADES["brick"]]
+    low, high = sorted((shape[:, 1] for shape in bricks), key=np.mean)
+    overlap = low.max() - high.min()
+    assert overlap == pytest.approx(magnification * closed, rel=0.01)
+    assert overlap <= H / 4 and lower == 0
 
 
 def test_a_corner_has_an_elevation_for_each_wall_and_what_parts_them_is_seen_in_space(scene, tmp_path, drawn):  # fmt: skip

@@ -79,8 +79,8 @@ class Structure:
         nodes = self.points(self.corners)
         both = np.concatenate([points[nodes], (points + self.moved)[nodes]])
         (*low, _), (*high, _) = both.min(axis=0), both.max(axis=0)
-        room = 0.05 * np.ptp(both, axis=0).max()
-        slab = boxCorners((*np.array(low) - room, level - room), (*np.array(high) + room, level))  # fmt: skip
+        margin = 0.05 * np.ptp(both, axis=0).max()
+        slab = boxCorners((*np.array(low) - margin, level - margin), (*np.array(high) + margin, level))  # fmt: skip
         self.blocks = {**self.blocks, "points": np.concatenate([points, slab])}
         self.moved = np.concatenate([self.moved, np.zeros((8, 3))])
         self.corners[self.ground] = np.arange(len(points), len(points) + 8)
@@ -279,7 +279,9 @@ def figureOf(structure: Structure, title: str, magnification: float | None = Non
     front = max(elevations, key=lambda one: (one.across, len(one.bodies))).view.towards
     names = {one.view.name for one in elevations}
     across = FROM_ABOVE in names or any(one.across for one in elevations)
-    inSpace = [("", structure, magnification)] if across and IN_SPACE not in names else []
+    inSpace = (
+        [("", structure, magnification)] if across and IN_SPACE not in names else []
+    )
     for moment, one, m in [*inSpace, *([(*later, 1)] if later else [])]:
         nodes = one.points(one.corners)
         view = spaceViewOf(front, one.blocks["points"][nodes], one.moved[nodes])

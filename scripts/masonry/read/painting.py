@@ -73,9 +73,11 @@ def fromBackToFront(solids: Any, sight: np.ndarray) -> list[int]:
     for a, b, facing in zip(one.tolist(), two.tolist(), nearer):
         if abs(facing) > LEVEL:
             after[a if facing > 0 else b].append(b if facing > 0 else a)
-    waits = np.bincount([n for fronts in after for n in fronts], minlength=solids.count)
+    pending = np.bincount(
+        [n for fronts in after for n in fronts], minlength=solids.count
+    )
     depth, left, order = (low + high)[:, 2], set(range(solids.count)), []
-    ready = [(depth[n], n) for n in np.flatnonzero(waits == 0).tolist()]
+    ready = [(depth[n], n) for n in np.flatnonzero(pending == 0).tolist()]
     heapq.heapify(ready)
     while left:
         n = heapq.heappop(ready)[1] if ready else min(left, key=lambda n: depth[n])
@@ -83,8 +85,8 @@ def fromBackToFront(solids: Any, sight: np.ndarray) -> list[int]:
             left.remove(n)
             order.append(n)
             for front in after[n]:
-                waits[front] -= 1
-                if not waits[front]:
+                pending[front] -= 1
+                if not pending[front]:
                     heapq.heappush(ready, (depth[front], front))
     return order
 
