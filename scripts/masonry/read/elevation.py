@@ -134,7 +134,7 @@ class Elevation:
             moved = structure.moved[structure.points(members)]
             across = moved @ view.towards
             farthest = across[np.argmax(np.abs(across))]
-            if abs(farthest) > np.linalg.norm(moved @ self.to, axis=1).max():
+            if abs(farthest) > 0.5 * np.linalg.norm(moved @ self.to, axis=1).max():
                 self.across = abs(farthest)
                 sense = "towards" if farthest > 0 else "away from"
                 self.note += f" (moved up to {1e3 * self.across:.3g} mm {sense} the viewer)"  # fmt: skip
@@ -226,8 +226,9 @@ class Elevation:
 
 
 def elevationsOf(structure: Structure) -> list[Elevation]:
-    """One elevation for each façade: the largest parts first, and none for a part that is seen in another one's."""
-    parts = structure.parts or {"": list(structure.corners)}
+    """One elevation for each façade: the largest parts first, and none for a part that is seen in another one's or is held."""
+    stands = lambda part: any(structure.shades.get(body) != "held" for body in part)
+    parts = {n: part for n, part in structure.parts.items() if stands(part)} or {"": list(structure.corners)}  # fmt: skip
     found: list[Elevation] = []
     seen: set[int] = set()
     for name, members in sorted(parts.items(), key=lambda part: -len(part[1])):
@@ -351,11 +352,15 @@ def structureOf(run: dict[str, Any], blocks: dict[str, Any], joints: dict[str, A
         if not members:
             raise Refused(f"{directory}: parts: {name} has no bodies")
     masonry = {body for part in parts.values() for body in part} or bodies
+    held = {one["body"]: "held" for one in run.get("targets") or [] if one.get("held")}
     return Structure(
         blocks,
         joints,
         parts,
-        {body: "platen" for body in bodies - masonry - {run.get("ground_body")}},
+        {
+            **{body: "platen" for body in bodies - masonry - {run.get("ground_body")}},
+            **held,
+        },  # fmt: skip
         sights=run.get("views") or {},
         ground=run.get("ground_body"),
         still=still,
@@ -387,7 +392,9 @@ def cracksOfFrame(run: dict[str, Any], directory: FilePath, number: int | None =
     frames = {n: [readFrame(directory, kind, n) for kind in ("blocks", "joints")] for n in {chosen, last}}  # fmt: skip
     later = None
     if number is None and chosen != last:
-        later = whenOf(run, directory, last), structureOf(run, *frames[last], directory)
+        later = f"{whenOf(run, directory, last)}, true to scale", structureOf(
+            run, *frames[last], directory
+        )
     return cracksOf(run, *frames[chosen], whenOf(run, directory, chosen), directory, later)  # fmt: skip
 
 

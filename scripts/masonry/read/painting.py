@@ -18,7 +18,7 @@ GHOST, MORTAR = (
 #: Colours of blocks, by what the legend says of them if they are no bricks.
 SHADES = {
     "brick": "#f3e3c8",
-    "held": "#737373",
+    "held": "#85898f",
     "loaded": "#9fc3e6",
     "watched": "#c7e0b4",
     "loaded or watched": "#9fc3e6",
@@ -48,7 +48,7 @@ FACES = {kind: mixed(colour, 0.45, SHADES["brick"]) for kind, colour in CRACKS.i
 def fromBackToFront(solids: Any, sight: np.ndarray) -> list[int]:
     """Numbers of convex blocks in the order in which they are drawn, so that each hides what is behind it.
 
-    Of two blocks whose pictures overlap, that is in front which lies on the viewer's side of the face that parts them best.
+    Of two blocks whose pictures overlap, that is in front which lies on the viewer's side of a face that parts them.
     Where these answers go in a circle, the block that is farthest away comes first.
 
     :param solids: :class:`masonry.bricks.geometry.Solids`
@@ -59,20 +59,14 @@ def fromBackToFront(solids: Any, sight: np.ndarray) -> list[int]:
         seen = group.corners @ sight.T
         low[group.index], high[group.index] = seen.min(axis=1), seen.max(axis=1)
     slack = 1e-3 * np.median(high - low)
-    pairs = [np.zeros((2, 0), int)]
+    of = {n: one for group in solids.groups for n, *one in zip(group.index.tolist(), group.corners, group.normals, group.offsets)}  # fmt: skip
+    after: list[list[int]] = [[] for _ in range(solids.count)]
     for a in range(solids.count):
         over = (low[a, :2] < high[a + 1 :, :2] - slack) & (low[a + 1 :, :2] < high[a, :2] - slack)  # fmt: skip
-        others = a + 1 + np.flatnonzero(over.all(axis=1))
-        pairs.append(np.array([np.full(len(others), a), others]))
-    one, two = np.concatenate(pairs, axis=1)
-    _, faces, _ = solids.compare(one, two)
-    normals = {n: own for group in solids.groups for n, own in zip(group.index, group.normals)}  # fmt: skip
-    ways = [normals[n][face] @ sight[2] for n, face in zip((*one, *two), faces.ravel())]
-    nearer = np.subtract(*np.reshape(ways, (2, -1)))
-    after: list[list[int]] = [[] for _ in range(solids.count)]
-    for a, b, facing in zip(one.tolist(), two.tolist(), nearer):
-        if abs(facing) > LEVEL:
-            after[a if facing > 0 else b].append(b if facing > 0 else a)
+        for b in (a + 1 + np.flatnonzero(over.all(axis=1))).tolist():
+            nearer = _nearer(of[a], of[b], sight[2], slack)
+            if nearer:
+                after[a if nearer > 0 else b].append(b if nearer > 0 else a)
     pending = np.bincount(
         [n for fronts in after for n in fronts], minlength=solids.count
     )
@@ -89,6 +83,24 @@ def fromBackToFront(solids: Any, sight: np.ndarray) -> list[int]:
                 if not pending[front]:
                     heapq.heappush(ready, (depth[front], front))
     return order
+
+
+def _nearer(first, second, towards, slack):
+    """1 if the second of two blocks can hide the first, -1 if the first can hide the second, 0 if none hides the other.
+
+    :param first: corners, normals and offsets of its faces
+    """
+    gaps, facing = [], []
+    for (_, normals, offsets), (corners, *_), sign in ((first, second, 1), (second, first, -1)):  # fmt: skip
+        gaps.append((corners @ normals.T).min(axis=0) - offsets)
+        facing.append(sign * (normals @ towards))
+    gaps, facing = np.concatenate(gaps), np.concatenate(facing)
+    ways = facing > LEVEL, facing < -LEVEL, np.abs(facing) <= LEVEL
+    front, back, beside = (gaps[way].max(initial=-np.inf) for way in ways)
+    # planes that part them on both sides, or along the line of sight
+    if beside > -slack or min(front, back) > -slack:
+        return 0
+    return 1 if front > back else -1
 
 
 class Painting:
