@@ -316,6 +316,17 @@ def test_an_open_joint_is_drawn_on_the_faces_of_both_blocks(scene, tmp_path, dra
     assert "displacements × 30" in figure._suptitle.get_text()
 
 
+def test_the_seam_in_a_brick_of_two_halves_is_no_mortar_joint(scene, tmp_path, drawn):
+    box((0, 0, 0), (L, T, H))
+    pull(scene, tmp_path, box((L, 0, 0), (2 * L, T, H)), (1.0, 0, 0), most=1e-6)
+    for kinds, places in ((["bed"], 0), (["crack"], 1)):
+        elevation.cracks(writeRun(tmp_path, ["time_s", "f_kN"], [[0, 0], [1, 1]], kinds=kinds))  # fmt: skip
+        (axes,) = drawn["cracks.png"].axes
+        seams = [shape for shape, _, edge in polygonsOf(axes) if edge == SHADES["brick"]]  # fmt: skip
+        assert len({tuple(shape[:, 0].round(4)) for shape in seams}) == places
+        assert "no joint is cracked, true to scale" in drawn["cracks.png"]._suptitle.get_text()  # fmt: skip
+
+
 def test_drawn_blocks_overlap_by_their_closure_and_no_more(scene, tmp_path, drawn):
     """A brick that is pushed along its bed joint and into it, so that the joint slides and closes."""
     lower = box((0, 0, 0), (3 * L, T, H))

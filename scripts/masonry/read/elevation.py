@@ -14,7 +14,7 @@ from ..arguments import FilePath
 from ..basics import Refused
 from ..bricks.geometry import Alike, Solids, boxCorners
 from . import drawing
-from .cracks import CRACK, CRUSHED, crushed, widths
+from .cracks import CRACK, CRACK_SURFACE, CRUSHED, crushed, widths
 from .curve_figure import plan, unitOf
 from .files import readCurve, readRun
 from .frames import frameAt, frameTimes, readFrame
@@ -47,6 +47,7 @@ class Structure:
     - ``shades``: key of :data:`SHADES` by the id of a body; others are bricks
     - ``names``: texts that stand on bodies, by their ids
     - ``sights``: directions of sight by part; ``ground``: the body on which blocks fall, or None: it is drawn as far as needed
+    - ``seams``: numbers of the kinds of joints inside units, which are not drawn unless they crack
     - ``still``: displacement that is taken off all others [m]
     - ``ties``: entries of run.json
     """
@@ -58,6 +59,7 @@ class Structure:
     names: dict[int, str] = field(default_factory=dict)
     sights: dict[str, Any] = field(default_factory=dict)
     ground: int | None = None
+    seams: tuple[int, ...] = ()
     still: Any = 0.0
     ties: list[dict[str, Any]] = field(default_factory=list)
 
@@ -100,15 +102,17 @@ class Structure:
         return own[np.sort(ConvexHull(self.blocks["points"][own]).vertices)]
 
     def cracks(self, body):
-        """What is cracked or crushed on a block, with each point of its joints: the kind of crack, or None; the crushing, or None
-        [m]; the corners as built [m]; and their displacements with this block [m]."""
+        """What is cracked or crushed on a block, or is a seam, with each point of its joints: the kind of crack, "seam" or None;
+        the crushing, or None [m]; the corners as built [m]; and their displacements with this block [m].
+        """
         j = self.joints
         if self._cracks is None:
             self._cracks = {}
             _, opened, cracked = widths(j) if j else ((), (), np.zeros(0, bool))
             spoilt = crushed(j) if j else cracked
-            for i in np.flatnonzero(cracked | spoilt):
-                kind = (("slid", "open")[int(opened[i])]) if cracked[i] else None
+            seam = np.isin(j["kind"], self.seams) & ~cracked if j and self.seams else spoilt & False  # fmt: skip
+            for i in np.flatnonzero(cracked | spoilt | seam):
+                kind = ("slid", "open")[int(opened[i])] if cracked[i] else "seam" if seam[i] else None  # fmt: skip
                 cell, closure = j["cells"][i], j["crushing"][i] if spoilt[i] else None
                 for own, name in zip(j["bodies"][i], ("displacement", "second_displacement")):  # fmt: skip
                     crack = kind, closure, j["points"][cell], j[name][cell] - self.still
@@ -174,10 +178,13 @@ class Elevation:
         for n in fromBackToFront(now, sight):
             body, row = self.bodies[n], now.rowOf[n]
             g, before = (solids.groups[solids.groupOf[n]] for solids in (now, built))
-            painting.block(g.corners[row], g.faces, g.normals[row], SHADES[s.shades.get(body, "brick")])  # fmt: skip
+            colour = SHADES[s.shades.get(body, "brick")]
+            painting.block(g.corners[row], g.faces, g.normals[row], colour)
             planes = before.normals[row], before.offsets[row]
             near = 1e-4 * built.diagonal[n]
-            painting.cracks(s.cracks(body), planes, g.normals[row], near, magnification)
+            painting.cracks(
+                s.cracks(body), planes, g.normals[row], near, magnification, colour
+            )
         painting.finish(axes, self.flat, s.joints is not None)
         for shade in sorted(
             {s.shades[body] for body in self.bodies if body in s.shades}
@@ -358,11 +365,14 @@ def structureOf(run: dict[str, Any], blocks: dict[str, Any], joints: dict[str, A
         joints,
         parts,
         {
-            **{body: "platen" for body in bodies - masonry - {run.get("ground_body")}},
             **held,
-        },  # fmt: skip
+            **dict.fromkeys(bodies - masonry - {run.get("ground_body")}, "platen"),
+        },
         sights=run.get("views") or {},
         ground=run.get("ground_body"),
+        seams=tuple(
+            n for n, kind in enumerate(run.get("kinds") or []) if kind == CRACK_SURFACE
+        ),  # fmt: skip
         still=still,
         ties=run.get("ties") or [],
     )

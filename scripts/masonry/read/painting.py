@@ -129,12 +129,13 @@ class Painting:
         light = min(1, 0.55 + 0.45 * normal @ self.towards + 0.3 * max(normal[2], 0))
         return mixed(colour, light, "#000000") if colour != GHOST else colour
 
-    def cracks(self, found, built, now, near, magnification):
-        """Joints of a block that are open, slid or crushed: their faces that are seen, and their edges on its other faces.
+    def cracks(self, found, built, now, near, magnification, colour):
+        """Joints of a block that are open, slid or crushed: their faces that are seen, and their edges on its other faces, from
+        which the edges of seams are taken away.
 
         :param found: as :meth:`masonry.read.elevation.Structure.cracks` gives them
         :param built: normals and offsets of the faces of the block as it was built; ``now``: normals as it is drawn
-        :param near: how far a corner is from a face at most that it lies on [m]
+        :param colour: of the block; ``near``: how far a corner is from a face at most that it lies on [m]
         """
         seen = now @ self.towards > LEVEL
         normals, offsets = built[0][seen], built[1][seen]
@@ -142,14 +143,16 @@ class Painting:
             drawn = corners + magnification * moved
             on = np.abs(corners @ normals.T - offsets) < near
             whole = on.all(axis=0)
-            for normal in now[seen][whole] if kind else ():
+            for normal in now[seen][whole] if kind in CRACKS else ():
                 self.add(drawn, self.lit(FACES[kind], normal), "none", 0)
                 self.kinds.add(kind)
             both = (on & np.roll(on, 1, axis=0))[:, ~whole].any(axis=1)
             for k in np.flatnonzero(both):
                 ends = drawn[[k - 1, k]]
                 if kind:
-                    self.add(ends, "none", CRACKS[kind], self.bold)
+                    side = now[seen][(on[[k - 1, k]].all(axis=0) & ~whole).argmax()]
+                    edge = CRACKS.get(kind) or self.lit(colour, side)
+                    self.add(ends, "none", edge, self.bold if kind in CRACKS else 2 * self.thin)  # fmt: skip
                 if closure is not None:
                     self.spots.append((ends.mean(axis=0), 12 + 8e3 * closure))
 

@@ -16,6 +16,7 @@ import numpy as np
 from ...arguments import FilePath
 from ...basics import Refused
 from .. import bilinear, quantities
+from ..cracks import CRACK_SURFACE
 from ..curve_figure import plan
 from ..files import filesOf, readCurve, readRun, readWhole
 from .. import drawing, elevation
@@ -25,7 +26,6 @@ from ..page.data import dataOfModel
 from ..run_data import BASE, MOVED, TOP, RunData
 from .pieces import written
 
-CRACK_SURFACE = "crack"  # the kind of joint between the halves of a brick
 MOST_NAMES = 12  # of blocks in the drawing
 LARGEST_PICTURE = 600e3  # [bytes] of a figure that goes into a report
 
