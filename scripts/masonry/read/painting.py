@@ -95,8 +95,8 @@ def _nearer(first, second, towards, slack):
         gaps.append((corners @ normals.T).min(axis=0) - offsets)
         facing.append(sign * (normals @ towards))
     gaps, facing = np.concatenate(gaps), np.concatenate(facing)
-    ways = facing > LEVEL, facing < -LEVEL, np.abs(facing) <= LEVEL
-    front, back, beside = (gaps[way].max(initial=-np.inf) for way in ways)
+    sides = facing > LEVEL, facing < -LEVEL, np.abs(facing) <= LEVEL
+    front, back, beside = (gaps[side].max(initial=-np.inf) for side in sides)
     # planes that part them on both sides, or along the line of sight
     if beside > -slack or min(front, back) > -slack:
         return 0
