@@ -26,6 +26,7 @@ SHADES = {
     "ground": "#a3ad98",
 }
 CRACKS, CRUSHED = {"open": "#d62728", "slid": "#1f77b4"}, "#101010"
+MOST = 5e-3  # [m] closure from which the sign of a crushed point is no larger
 #: Lines of ties by their state.
 TIES = {"elastic": ("#333333", "-"), "yielded": ("#ff7f0e", "-"), "broken": ("#9467bd", ":")}  # fmt: skip
 
@@ -154,7 +155,9 @@ class Painting:
                     edge = CRACKS.get(kind) or self.lit(colour, side)
                     self.add(ends, "none", edge, self.bold if kind in CRACKS else 2 * self.thin)  # fmt: skip
                 if closure is not None:
-                    self.spots.append((ends.mean(axis=0), 12 + 8e3 * closure))
+                    self.spots.append(
+                        (ends.mean(axis=0), 12 + 8e3 * min(closure, MOST))
+                    )
 
     def finish(self, axes, flat, legend):
         """Put it into axes, with names for the legend.
