@@ -32,7 +32,6 @@ scene = Scene("falling_gable", wall, stone, plane=False, title="Gable under grow
 scene.platen("bottom")
 scene.watch((LENGTH / 2, THICK, EAVES + RISE - 0.1), name="ridge")
 scene.watch((LENGTH / 2, THICK, EAVES - 0.1), name="eaves")
-scene.view((1, 0.6, -0.2))
 scene.settle()
 scene.shake(pulses, EVERY, direction=(0, 1, 0), after=0.5)
 scene.finish()

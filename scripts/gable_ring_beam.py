@@ -41,7 +41,6 @@ if beamed:
         scene.spring((x, THICK / 2, EAVES - COURSE / 2), stiffness=(0, 20e6, 0))
 scene.watch((LENGTH / 2, THICK / 2, EAVES + RISE - 0.1), name="ridge")
 scene.watch((LENGTH / 2, THICK / 2, EAVES - 0.1), name="eaves")
-scene.view((1, 0.4, -0.1))
 scene.settle()
 scene.accelerate(0.4 if beamed else 0.2, towards=(0, 1, 0), rate=0.4)
 areas, heights = (LENGTH * EAVES, LENGTH * RISE / 2), (EAVES / 2, EAVES + RISE / 3)

@@ -21,7 +21,6 @@ stones = materials.dry(friction=0.6, density=2400, normalStiffness=5e9)
 scene = Scene("pulsed_wall", wall, stones, plane=False, title="Dry-stone wall after 20 pulses", collapse="follow")  # fmt: skip
 scene.platen("bottom")
 scene.watch(wall.high, name="crest")
-scene.view((1, 0.6, -0.3))
 scene.settle()
 scene.shake(pulses, EVERY, direction=(0.8, 0.6, 0))
 scene.finish()

@@ -32,7 +32,6 @@ for z in (HEIGHT / 2, HEIGHT - 0.1):  # two floors
     for x in (0.2, 0.6, 1.0, 1.4):
         scene.spring((x, THICK / 2, z), stiffness=(0, 20e6, 0))
 scene.watch((LENGTH / 2, THICK - 0.1, HEIGHT + PARAPET - 0.1), name="crest")
-scene.view((1, -0.6, -0.2))
 scene.settle()
 scene.shake(pulses, EVERY, direction=(0, 1, 0))
 blow = max(-1e3 * force for force in scene.results.column("pavement_force_z_kN"))

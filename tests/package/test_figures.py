@@ -5,9 +5,11 @@ from usual import *
 from masonry.read import curve_figure, drawing, elevation, figures, frames
 from masonry.read.files import readRun
 from masonry.read.elevation import Structure
-from masonry.read.views import magnificationOf, viewOf
-from matplotlib.collections import LineCollection
-from matplotlib.colors import to_rgba
+from masonry.bricks.geometry import Solids, boxCorners
+from masonry.read.painting import CRACKS, SHADES, fromBackToFront, rgb
+from masonry.read.views import MAGNIFICATIONS, magnificationOf, spaceViewOf, viewOf
+from matplotlib.collections import PolyCollection
+from matplotlib.colors import to_hex
 
 L, T, H = 0.2, 0.1, 0.08  # [m] of a brick
 
@@ -69,6 +71,14 @@ def test_what_energies_there_are_is_drawn_since_the_first_row(tmp_path, drawn):
     }
 
 
+def test_one_row_has_a_point_and_no_energies(tmp_path, drawn):
+    entry = {"x": axis("u_mm"), "y": [axis("f_kN")]}
+    curve_figure.curve(writeRun(tmp_path, ["u_mm", "f_kN", "external_J"], [[1, 2, 3]], figure=entry))  # fmt: skip
+    (top,) = drawn["curve.png"].axes
+    (line,) = [line for line in top.lines if line.get_marker() == "o"]
+    assert line.get_xydata().tolist() == [[1, 2]]
+
+
 def test_what_cannot_be_drawn_is_refused_in_a_sentence(tmp_path):
     columns, rows = ["u_mm", "f_kN"], [[0, 0], [1, 1]]
     with pytest.raises(Refused, match='run.json has no entry "figure".*older version'):
@@ -125,15 +135,76 @@ def test_the_direction_of_sight_can_be_reported():
     assert view.right == pytest.approx([-1, 0, 0])
 
 
+def test_a_structure_in_space_is_seen_from_above_at_the_side_to_which_it_moved():
+    wall = boxPoints(3, 0.2, 2)
+    for away in (-1.0, 1.0):
+        moved = wall[:, 2:] * (0, away, 0)
+        towards = spaceViewOf(np.array([0, -1.0, 0]), wall, moved).towards
+        assert towards[1] * away > 0.5 and towards[2] > 0.3
+        assert np.linalg.norm(towards) == pytest.approx(1)
+    # where most of it moved is nearer than the rest
+    moved = wall[:, :1] * (0, -0.1, 0)
+    assert spaceViewOf(np.array([0, -1.0, 0]), wall, moved).towards[0] > 0.3
+
+
+def jointFrame(opening, closed=0.0, slide=0.0):
+    """Two points of a joint that has cracked: an open one and a closed one [m]."""
+    one = np.ones(2)
+    return {"opening": np.array([opening, -closed]), "slide": slide * np.eye(2, 3), "damage_tension": one, "damage_shear": one}  # fmt: skip
+
+
 def test_the_magnification_is_the_usual_one_unless_that_is_absurd():
-    of = magnificationOf
-    assert of(3, np.full(100, 12e-3)) == of(3, np.full(100, 0.3e-3)) == 30
-    assert of(3, np.zeros(100)) == of(3, []) == 30
-    assert of(3, np.full(100, 1.0)) == 1
-    assert of(3, np.full(100, 1e-6)) == 100000
-    fallen = np.full(100, 5e-3)
-    fallen[0] = 2  # one brick has fallen
-    assert of(3, fallen) == 30
+    of = lambda frame, moved: magnificationOf(frame, np.full((100, 3), moved / 3**0.5), [boxPoints(3, T, H)])  # fmt: skip
+    assert of(jointFrame(1e-3), 12e-3) == of(jointFrame(1e-4), 0.3e-3) == MAGNIFICATIONS[0]  # fmt: skip
+    assert of(jointFrame(1e-3), 1.0) == 1
+    # rigid motion and shortening alone are true to scale, however small; so is what has no joints
+    assert of(jointFrame(1e-6), 1e-6) == of(jointFrame(1e-6), 0.05) == of(None, 1e-3) == 1  # fmt: skip
+    for closed in (1e-4, 1e-3, 5e-3):
+        assert of(jointFrame(1e-3, closed), 5e-3) * closed <= H / 4
+    assert of(jointFrame(0, 0, 1e-3), 12e-3) == MAGNIFICATIONS[0]
+
+
+# -- what hides what -----------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("towards", [(0.5, -0.75, 0.4), (-0.5, -0.75, 0.4), (0, -1, 0), (0.3, 0.9, 0.2), (0, 0, 1)])  # fmt: skip
+def test_blocks_are_drawn_after_those_that_they_hide(towards):
+    """A wall of two wythes in bond, of bricks of two lengths, on a slab that is wider than all of them."""
+    bricks = [boxCorners((-1, -1, -0.1), (2, 1, 0))]
+    for z in range(5):
+        for y in range(2):
+            ends = [0, *np.arange(0.1 + 0.1 * ((z + y) % 2), 1, 0.2), 1]
+            bricks += [boxCorners((a, 0.1 * y, 0.08 * z), (b, 0.1 * y + 0.1, 0.08 * z + 0.08)) for a, b in zip(ends, ends[1:])]  # fmt: skip
+    view = spaceViewOf(np.array([0, -1.0, 0]), np.eye(3), np.zeros((3, 3)))
+    towards = np.array(towards) / np.linalg.norm(towards)
+    right = np.cross((0, 0, 1), towards) if towards[2] < 1 else np.array([1.0, 0, 0])
+    right /= np.linalg.norm(right)
+    sight = np.array([right, np.cross(towards, right), towards])
+    assert abs(np.linalg.det([view.right, view.up, view.towards]) - 1) < 1e-9
+    order = fromBackToFront(Solids(bricks), sight)
+    assert sorted(order) == list(range(len(bricks)))
+    place = {n: at for at, n in enumerate(order)}
+    boxes = np.array([(np.min(b, axis=0), np.max(b, axis=0)) for b in bricks])
+    hidden = 0
+    rays = np.random.default_rng(1).uniform((-0.2, -0.2, 0), (1.2, 0.4, 0.4), (400, 3))
+    for ray in rays:  # where a line of sight goes into each box and out of it
+        with np.errstate(divide="ignore", invalid="ignore"):
+            ends = np.sort((boxes - ray) / towards, axis=1)
+        enter, exit_ = np.nanmax(ends[:, 0], axis=1), np.nanmin(ends[:, 1], axis=1)
+        inside = (boxes[:, 0] < ray) & (ray < boxes[:, 1]) | (np.abs(towards) > 1e-9)
+        met = np.flatnonzero((exit_ - enter > 1e-6) & inside.all(axis=1))
+        for a in met:
+            for b in met:
+                if enter[a] >= exit_[b] - 1e-9:  # a is nearer to the viewer
+                    hidden += 1
+                    assert place[a] > place[b], (bricks[a], bricks[b])
+    assert hidden > 50
+
+
+def test_the_ground_and_the_stones_have_colours_of_other_brightness():
+    bright = {name: rgb(SHADES[name]) @ (0.299, 0.587, 0.114) for name in ("brick", "platen", "ground")}  # fmt: skip
+    values = sorted(bright.values())
+    assert min(np.diff(values)) > 20, bright
 
 
 # -- frames and cracks.png of real blocks ----------------------------------------------------------------------------
@@ -204,12 +275,23 @@ def test_frames_are_in_the_order_of_their_numbers_and_damage_is_refused(scene, t
             frames.readFrame(str(tmp_path), "joints")
 
 
+def polygonsOf(axes):
+    """All that is drawn of blocks and cracks: polygons with the colours of their faces and edges."""
+    (all_,) = [c for c in axes.collections if isinstance(c, PolyCollection) and len(c.get_paths())]  # fmt: skip
+    shapes = [path.vertices[:-1] for path in all_.get_paths()]
+    faces, edges = all_.get_facecolors(), all_.get_edgecolors()
+    look = lambda colours, n: to_hex(colours[n]) if colours[n][3] else "none"
+    return [(shape, look(faces, n), look(edges, n)) for n, shape in enumerate(shapes)]
+
+
 def crackLines(axes):
     """Lines of cracks by kind: arrays of pairs of ends."""
-    (lines,) = [c for c in axes.collections if isinstance(c, LineCollection) and len(c.get_segments())]  # fmt: skip
-    colours = np.array([to_rgba(c) for c in lines.get_colors()])
-    segments = np.array(lines.get_segments())
-    return {kind: segments[(colours == to_rgba(colour)).all(axis=1)] for kind, colour in elevation.CRACKS.items()}  # fmt: skip
+    return {kind: np.array([shape for shape, _, edge in polygonsOf(axes) if edge == colour]) for kind, colour in CRACKS.items()}  # fmt: skip
+
+
+def crackFaces(axes):
+    """Faces of cracked joints that are seen: polygons without edges."""
+    return [shape for shape, _, edge in polygonsOf(axes) if edge == "none"]
 
 
 def test_an_open_joint_is_drawn_on_the_faces_of_both_blocks(scene, tmp_path, drawn):
@@ -234,7 +316,36 @@ def test_an_open_joint_is_drawn_on_the_faces_of_both_blocks(scene, tmp_path, dra
     assert "displacements × 30" in figure._suptitle.get_text()
 
 
-def test_a_corner_has_an_elevation_for_each_wall_and_shows_its_joint_in_both(scene, tmp_path, drawn):  # fmt: skip
+def test_the_seam_in_a_brick_of_two_halves_is_no_mortar_joint(scene, tmp_path, drawn):
+    box((0, 0, 0), (L, T, H))
+    pull(scene, tmp_path, box((L, 0, 0), (2 * L, T, H)), (1.0, 0, 0), most=1e-6)
+    for kinds, places in ((["bed"], 0), (["crack"], 1)):
+        elevation.cracks(writeRun(tmp_path, ["time_s", "f_kN"], [[0, 0], [1, 1]], kinds=kinds))  # fmt: skip
+        (axes,) = drawn["cracks.png"].axes
+        seams = [shape for shape, _, edge in polygonsOf(axes) if edge == SHADES["brick"]]  # fmt: skip
+        assert len({tuple(shape[:, 0].round(4)) for shape in seams}) == places
+        assert "no joint is cracked, true to scale" in drawn["cracks.png"]._suptitle.get_text()  # fmt: skip
+
+
+def test_drawn_blocks_overlap_by_their_closure_and_no_more(scene, tmp_path, drawn):
+    """A brick that is pushed along its bed joint and into it, so that the joint slides and closes."""
+    lower = box((0, 0, 0), (3 * L, T, H))
+    pull(scene, tmp_path, box((L, 0, H), (2 * L, T, 2 * H)), (1.0, 0, -0.02))
+    folder = writeRun(tmp_path, ["time_s", "f_kN"], [[0, 0], [1, 1]])
+    elevation.cracks(folder)
+    (axes,), title = drawn["cracks.png"].axes, drawn["cracks.png"]._suptitle.get_text()
+    assert "displacements ×" in title, title
+    magnification = int(re.search(r"displacements × (\d+)", title)[1])
+    closed = -frames.readFrame(folder, "joints")["opening"].min()
+    assert closed > 0.03e-3 and magnification > 1
+    bricks = [shape for shape, face, _ in polygonsOf(axes) if face == SHADES["brick"]]
+    low, high = sorted((shape[:, 1] for shape in bricks), key=np.mean)
+    overlap = low.max() - high.min()
+    assert overlap == pytest.approx(magnification * closed, rel=0.01)
+    assert overlap <= H / 4 and lower == 0
+
+
+def test_a_corner_has_an_elevation_for_each_wall_and_what_parts_them_is_seen_in_space(scene, tmp_path, drawn):  # fmt: skip
     """A wall along x and one along y that butts against it and is pulled away along y."""
     high = 4 * H
     front = [box((n * L, 0, 0), ((n + 1) * L, T, high)) for n in (0, 1)]
@@ -248,11 +359,9 @@ def test_a_corner_has_an_elevation_for_each_wall_and_shows_its_joint_in_both(sce
     assert "viewer" not in panels["side"].get_title()
     lines = crackLines(panels["side"])["open"]
     places = lines[:, :, 0].mean(axis=1)
-    assert sorted(set(places.round(3))) == pytest.approx([T, T + 30 * 2e-3], abs=5e-3)
-    faces = [c for c in panels["front"].collections if c.get_label() == "open, its face"]  # fmt: skip
-    assert (
-        len(faces[0].get_paths()) == 2 * 25
-    )  # its points, five a side, on both blocks
+    # the other face of the joint is behind the end of the front wall
+    assert set(places.round(3)) == {round(T + 30 * 2e-3, 3)}
+    assert not crackFaces(panels["front"])  # which looks away from the viewer
 
     # a ground that has moved with everything is taken off
     message = json.load(open(os.path.join(folder, "run.json")))
@@ -260,6 +369,12 @@ def test_a_corner_has_an_elevation_for_each_wall_and_shows_its_joint_in_both(sce
     elevation.cracks(folder)
     panels = {axes.get_title().split(" ")[0]: axes for axes in drawn["cracks.png"].axes}
     assert "moved up to 2 mm towards the viewer" in panels["front"].get_title()
+    # the points of the joint, five a side, on the block whose face looks to the viewer
+    assert len(crackFaces(panels["in"])) == 25 and not panels["in"].axison
+    for axes in panels.values():  # nothing is cut off
+        (x, *_), (y, *_) = limits = np.sort([axes.get_xlim(), axes.get_ylim()])
+        corners = np.concatenate([shape for shape, _, _ in polygonsOf(axes)])
+        assert (corners > (x, y)).all() and (corners < limits[:, 1]).all()
 
 
 def made(*boxes):
@@ -284,6 +399,25 @@ def test_a_facade_has_one_elevation_with_all_parts_in_it():
         ("front", {*range(8), 16, 17}),
         ("back", {*range(8, 16), 16}),
     ]
+
+
+def test_a_picture_names_its_moment_as_it_is(tmp_path):
+    """Three frames of a run that fell: the collapse was noticed at the first, the first block had fallen at the second."""
+    sets = "".join(f'<DataSet timestep="{t}"/>' for t in (0.5, 1.0, 1.5))
+    (tmp_path / "joints.pvd").write_text(f"<VTKFile><Collection>{sets}</Collection></VTKFile>")  # fmt: skip
+    entry = {"x": axis("u_mm", "displacement of ridge [mm]"), "y": [axis("f_kN")]}
+    folder = writeRun(tmp_path, ["time_s", "u_mm", "f_kN"], [[0, 0, 0], [2, 20, 1]], figure=entry)  # fmt: skip
+    run = readRun(folder)
+    of = lambda n: elevation.whenOf(run, folder, n)
+    assert of(0) == "during the run: t = 0.5 s, displacement of ridge = 5.0 mm"
+    assert of(2) == "at the end: t = 1.5 s, displacement of ridge = 15.0 mm"
+    assert elevation.frameOfCracks(run, folder) == 2
+    fall = lambda name, value: {"stage": "fall", "name": name, "value": value}
+    run["answers"] = [fall("first_fall", 1.02), fall("noticed_at", 0.49)]
+    assert elevation.frameOfCracks(run, folder) == 0
+    assert of(0).startswith("when the collapse was noticed: t = 0.5 s")
+    assert of(1).startswith("when the first block had fallen: t = 1 s")
+    assert of(2).startswith("at the end: ")
 
 
 def test_bodies_that_are_not_there_are_refused(scene, tmp_path):

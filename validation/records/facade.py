@@ -40,7 +40,6 @@ for z in (STOREY - COURSE / 2, 2 * STOREY - COURSE / 2):
         scene.tie(joist, anchor=(x + 4, THICK / 2, z), stiffness=10e6, strength=FRICTION * LOAD, compression=True)  # fmt: skip
 scene.watch((LENGTH / 2, THICK / 2, 2 * STOREY - 0.1), name="top")
 scene.watch((LENGTH / 2, THICK / 2, STOREY - 0.1), name="floor")
-scene.view((1, 0.4, -0.1))
 scene.settle()
 files = [pathlib.Path(sys.argv[0]).with_name("reference") / f"19760911_1635_GMN_{c}.acc" for c in ("NS", "WE", "UD")]  # fmt: skip
 scene.shake(files, 0.005, unit="m/s²")

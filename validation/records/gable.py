@@ -37,7 +37,6 @@ for x, z in ((LENGTH / 2, RISE - 0.6), (1.2, 0.6), (LENGTH - 1.2, 0.6)):
     for anchor in ((x, THICK / 2 + 4, EAVES + z), (x + 4, THICK / 2, EAVES + z)):
         scene.tie(stone, anchor=anchor, stiffness=10e6, strength=FRICTION * PURLIN, compression=True)  # fmt: skip
 scene.watch((LENGTH / 2, THICK / 2, EAVES + RISE - 0.6), name="ridge")
-scene.view((1, 0.4, -0.1))
 scene.settle()
 files = [pathlib.Path(sys.argv[0]).with_name("reference") / f"19760911_1635_GMN_{c}.acc" for c in ("NS", "WE", "UD")]  # fmt: skip
 scene.shake(files, 0.005, unit="m/s²")

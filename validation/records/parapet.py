@@ -27,7 +27,6 @@ scene.platen("bottom")
 for x in (0.3, 0.9, 1.5, 2.1):  # the roof
     scene.spring((x, THICK / 2, HEIGHT - 0.1), stiffness=(20e6, 20e6, 0))
 scene.watch((LENGTH / 2, THICK - 0.1, HEIGHT + PARAPET - 0.1), name="crest")
-scene.view((1, -0.6, -0.2))
 scene.settle()
 files = [pathlib.Path(sys.argv[0]).with_name("reference") / f"19760911_1635_GMN_{c}.acc" for c in ("NS", "WE", "UD")]  # fmt: skip
 scene.shake(files, 0.005, unit="m/s²")

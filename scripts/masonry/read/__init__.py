@@ -8,7 +8,8 @@
 - :mod:`masonry.read.cracks`: where joints are cracked and crushed, and how a wall gave way
 - :mod:`masonry.read.measure`: all numbers of a run, as a program, too
 - :mod:`masonry.read.figures`: its figures, as a program, too; :mod:`masonry.read.curve_figure` and
-  :mod:`masonry.read.elevation` draw them on :mod:`masonry.read.drawing`, as :mod:`masonry.read.views` sees a structure
+  :mod:`masonry.read.elevation` draw them on :mod:`masonry.read.drawing`, as :mod:`masonry.read.views` sees a structure, in the
+  style of :mod:`masonry.read.painting`
 - :mod:`masonry.read.shown`: a run and its curve in a notebook, and its columns as arrays
 - :mod:`masonry.read.comparison`: figures of several runs
 - :mod:`masonry.read.model`: the model of the 3-D picture, how blocks move and what joints do in all frames. Of it are made

@@ -15,6 +15,7 @@ import numpy as np
 CRACK = 0.05e-3  # [m] opening or slide from which a joint is cracked
 CRUSHED = 0.5e-3  # [m] plastic closure from which a joint is crushed
 DAMAGED = 0.05  # [-] damage in tension or shear from which a joint is cracked
+CRACK_SURFACE = "crack"  # the kind of joint between the halves of a brick
 NEAR = 3  # courses to either side of the diagonal: joints within them are near it
 OUTER = 2  # courses at base and top: joints there do not count for the diagonal, since they crack by rocking
 

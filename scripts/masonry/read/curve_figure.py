@@ -43,11 +43,14 @@ def plan(
 
 
 def energies(data: dict[str, Any]) -> tuple[dict[str, Any], Any]:
-    """Energies to draw, since the first row: a dict of name -> values [J], and the work done, or None if there is none.
+    """Energies to draw, since the first row: a dict of name -> values [J], and the work done, or None if there is none. One row
+    alone has none.
 
     :param data: dict of column name -> array; what has an energy ends in ``_J``
     """
-    since = {k[:-2]: v - v[0] for k, v in data.items() if k.endswith("_J")}
+    since = {
+        k[:-2]: v - v[0] for k, v in data.items() if k.endswith("_J") and len(v) > 1
+    }
     work = [since.pop(name) for name in ("external", "gravity") if name in since]
     elastic = [since.pop(name) for name in list(since) if name.startswith("elastic_")]
     stack = {"elastic": sum(elastic)} if elastic else {}
@@ -76,7 +79,7 @@ def figureOf(run: dict[str, Any], data: dict[str, Any], directory: FilePath) -> 
     """The figure of curve.png, to be drawn and saved in :func:`masonry.read.drawing.style`. Raises Refused.
 
     Loops have axes through zero and their envelope in bold, and their energies are drawn over the length of the way.
-    Without columns of energies there is no panel of them.
+    Without energies there is no panel of them.
 
     :param run: entries of run.json: ``figure`` and ``title``
     :param data: dict of column name -> numbers

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import copy
 import os
 from dataclasses import dataclass, field
 from typing import Any
@@ -11,30 +12,30 @@ import numpy as np
 
 from ..arguments import FilePath
 from ..basics import Refused
+from ..bricks.geometry import Alike, Solids, boxCorners
 from . import drawing
-from .cracks import CRACK, CRUSHED, crushed, widths
+from .cracks import CRACK, CRACK_SURFACE, CRUSHED, crushed, widths
 from .curve_figure import plan, unitOf
 from .files import readCurve, readRun
 from .frames import frameAt, frameTimes, readFrame
-from .views import REACH, magnificationOf, outline, viewOf
 
-ASKEW = 0.14  # cosine from which a joint is drawn as an area, not as a line: 8° between its face and the line of sight
+from .painting import GHOST, MORTAR, SHADES, TIES, Painting, fromBackToFront  # fmt: skip
+from .views import (
+    FROM_ABOVE,
+    IN_SPACE,
+    REACH,
+    courseOf,
+    magnificationOf,
+    scaleText,
+    spaceViewOf,
+    viewOf,
+)
+
 #: A block of a part is in an elevation if it reaches into the depth of the façade by this share of its own depth or of the
 #: façade's; what belongs to no part, as a platen, if it touches this depth.
 INSIDE = 0.25
 
-BRICK, PLATEN = "#f3e3c8", "#c3c6ca"
-#: Colours of blocks that are no plain bricks, by what the legend says.
-SHADES = {
-    "held": "0.45",
-    "loaded": "#9fc3e6",
-    "watched": "#c7e0b4",
-    "loaded or watched": "#9fc3e6",
-    "platen": PLATEN,
-}
-CRACKS = {"open": "tab:red", "slid": "tab:blue"}
-#: Lines of ties by their state.
-TIES = {"elastic": ("0.2", "-"), "yielded": ("tab:orange", "-"), "broken": ("tab:purple", ":")}  # fmt: skip
+LONGEST = 80  # of the scale on paper [1/72 inch]
 
 
 @dataclass
@@ -45,7 +46,8 @@ class Structure:
     - ``parts``: name -> ids of bodies, the façades first of all; all blocks are one part if it is empty
     - ``shades``: key of :data:`SHADES` by the id of a body; others are bricks
     - ``names``: texts that stand on bodies, by their ids
-    - ``sights``: directions of sight by part; ``hidden``: ids of bodies that are not drawn, such as that of the ground
+    - ``sights``: directions of sight by part; ``ground``: the body on which blocks fall, or None: it is drawn as far as needed
+    - ``seams``: numbers of the kinds of joints inside units, which are not drawn unless they crack
     - ``still``: displacement that is taken off all others [m]
     - ``ties``: entries of run.json
     """
@@ -56,72 +58,103 @@ class Structure:
     shades: dict[int, str] = field(default_factory=dict)
     names: dict[int, str] = field(default_factory=dict)
     sights: dict[str, Any] = field(default_factory=dict)
-    hidden: tuple[int, ...] = ()
+    ground: int | None = None
+    seams: tuple[int, ...] = ()
     still: Any = 0.0
     ties: list[dict[str, Any]] = field(default_factory=list)
 
     def __post_init__(self):
         cells: dict[int, list[Any]] = {}
         for body, cell in zip(self.blocks["body"], self.blocks["cells"]):
-            if body not in self.hidden:
-                cells.setdefault(int(body), []).append(cell)
+            cells.setdefault(int(body), []).append(cell)
         #: numbers of the points of every block, by the id of its body
         self.corners = {body: np.unique(np.concatenate(c)) for body, c in cells.items()}
         self.moved = self.blocks["displacement"] - self.still
+        if self.ground in self.corners:
+            self._lay()
+        self._cracks: dict[int, list[Any]] | None = None
+
+    def _lay(self):
+        """Let the ground be a slab that is as large as what stands and lies on it."""
+        points = self.blocks["points"]
+        level = (points + self.moved)[self.corners.pop(self.ground), 2].max()
+        nodes = self.points(self.corners)
+        both = np.concatenate([points[nodes], (points + self.moved)[nodes]])
+        (*low, _), (*high, _) = both.min(axis=0), both.max(axis=0)
+        margin = 0.05 * np.ptp(both, axis=0).max()
+        slab = boxCorners((*np.array(low) - margin, level - margin), (*np.array(high) + margin, level))  # fmt: skip
+        self.blocks = {**self.blocks, "points": np.concatenate([points, slab])}
+        self.moved = np.concatenate([self.moved, np.zeros((8, 3))])
+        self.corners[self.ground] = np.arange(len(points), len(points) + 8)
+        self.shades = {**self.shades, self.ground: "ground"}
 
     def points(self, bodies):
         """Numbers of the points of some blocks."""
         return np.concatenate([self.corners[body] for body in bodies])
 
+    def outer(self, body):
+        """Numbers of the points of a block that are corners of it, of as many as a deformable unit has."""
+        own = self.corners[body]
+        if len(own) <= 8:
+            return own
+        from scipy.spatial import ConvexHull
+
+        return own[np.sort(ConvexHull(self.blocks["points"][own]).vertices)]
+
+    def cracks(self, body):
+        """What is cracked or crushed on a block, or is a seam, with each point of its joints: the kind of crack, "seam" or None;
+        the crushing, or None [m]; the corners as built [m]; and their displacements with this block [m].
+        """
+        j = self.joints
+        if self._cracks is None:
+            self._cracks = {}
+            _, opened, cracked = widths(j) if j else ((), (), np.zeros(0, bool))
+            spoilt = crushed(j) if j else cracked
+            seam = np.isin(j["kind"], self.seams) & ~cracked if j and self.seams else spoilt & False  # fmt: skip
+            for i in np.flatnonzero(cracked | spoilt | seam):
+                kind = ("slid", "open")[int(opened[i])] if cracked[i] else "seam" if seam[i] else None  # fmt: skip
+                cell, closure = j["cells"][i], j["crushing"][i] if spoilt[i] else None
+                for own, name in zip(j["bodies"][i], ("displacement", "second_displacement")):  # fmt: skip
+                    crack = kind, closure, j["points"][cell], j[name][cell] - self.still
+                    self._cracks.setdefault(int(own), []).append(crack)
+        return self._cracks.get(body, [])
+
 
 class Elevation:
-    """A façade and what is seen of the structure in it."""
+    """What is seen of a structure from one side: a façade with all that stands in it, or all of it in space."""
 
-    def __init__(self, structure, name, members):
+    def __init__(self, structure, name, view, bodies, members=(), moment=""):
+        """
+        :param view: a :class:`masonry.read.views.View`; ``bodies``: ids of the blocks that are drawn
+        :param members: of these, the ones of the façade, of which it is said whether they moved across it
+        :param moment: what is said of it if it is not that of the other elevations
+        """
         self.structure, self.name = structure, name
-        points, joints = structure.blocks["points"], structure.joints
-        normals, areas = np.zeros((0, 3)), np.zeros(0)
-        if joints:
-            inside = np.isin(joints["bodies"], members).all(axis=1)
-            normals, areas = joints["normal"][inside], joints["area"][inside]
-        nodes = structure.points(members)
-        self.view = viewOf(points[nodes], normals, areas, structure.sights.get(name))
-        depth = points @ self.view.towards
-        near, far = depth[nodes].max(), depth[nodes].min()
-        parted = {body for part in structure.parts.values() for body in part}
-        self.bodies = []
-        for body, own in structure.corners.items():
-            high, low = depth[own].max(), depth[own].min()
-            common = min(high, near) - max(low, far)
-            inside = INSIDE if body in parted else -1e-6
-            if common >= inside * min(high - low, near - far):
-                self.bodies.append(body)
-        self.to = np.column_stack([self.view.right, self.view.up])
-        self.nodes = structure.points(self.bodies)
-        moved = structure.moved[nodes]
-        self.inPlane = np.linalg.norm(moved @ self.to, axis=1)
-        across = moved @ self.view.towards
-        farthest = across[np.argmax(np.abs(across))]
-        self.note = self.view.name
-        if abs(farthest) > self.inPlane.max():
-            sense = "towards" if farthest > 0 else "away from"
-            self.note += f" (moved up to {1e3 * abs(farthest):.3g} mm {sense} the viewer)"  # fmt: skip
+        self.view, self.bodies = view, bodies
+        self.to = np.column_stack([view.right, view.up])
+        self.nodes = structure.points(bodies)
+        self.note, self.across = " ".join(t for t in (view.name, moment) if t), 0.0
+        if len(members):
+            moved = structure.moved[structure.points(members)]
+            across = moved @ view.towards
+            farthest = across[np.argmax(np.abs(across))]
+            if abs(farthest) > 0.5 * np.linalg.norm(moved @ self.to, axis=1).max():
+                self.across = abs(farthest)
+                sense = "towards" if farthest > 0 else "away from"
+                self.note += f" (moved up to {1e3 * self.across:.3g} mm {sense} the viewer)"  # fmt: skip
 
     def flat(self, points):
         return (points - self.view.start) @ self.to
 
-    def size(self):
-        return np.ptp(self.flat(self.structure.blocks["points"][self.nodes]), axis=0).max()  # fmt: skip
-
     def box(self, magnification):
-        """Two corners of what is drawn: all of it, but for what flew away."""
+        """Two corners of what is drawn: all of it, but for what flew away, with room for the scale below."""
         flat = self.flat(self.structure.blocks["points"][self.nodes])
         now = flat + magnification * self.structure.moved[self.nodes] @ self.to
         low, high = flat.min(axis=0), flat.max(axis=0)
         reach = REACH * (high - low).max()
         low = np.maximum(np.minimum(low, now.min(axis=0)), low - reach)
         high = np.minimum(np.maximum(high, now.max(axis=0)), high + reach)
-        return np.array([low, high]) + 0.045 * (high - low).max() * np.array([[-1], [1]])  # fmt: skip
+        return np.array([low, high]) + (high - low).max() * np.array([[-0.045, -0.12], [0.045, 0.045]])  # fmt: skip
 
     def draw(self, axes, magnification, scale):
         """Draw it.
@@ -131,74 +164,59 @@ class Elevation:
         """
         from matplotlib.collections import LineCollection, PolyCollection
 
-        s = self.structure
-        faces = []
-        for body in self.bodies:
-            points = s.blocks["points"][s.corners[body]]
-            moved = magnification * s.moved[s.corners[body]]
-            flat, depth = self.flat(points), points @ self.view.towards
-            rim = outline(flat, depth)
-            near = (depth + moved @ self.view.towards).max()
-            faces.append((near, flat[rim], flat[rim] + moved[rim] @ self.to, s.shades.get(body)))  # fmt: skip
-        faces.sort(key=lambda face: face[0])  # from the back to the front
-        course = np.median([np.ptp(face[1], axis=0).min() for face in faces]) * scale
-        thin, bold = np.clip(0.041 * course, 0.1, 0.35), np.clip(0.21 * course, 0.7, 1.8)  # fmt: skip
-        many = len(faces) > 1500  # an SVG file has a picture of so many
-        if magnification:
-            axes.add_collection(PolyCollection([f[1] for f in faces], facecolor="0.9", edgecolor="0.8", lw=0.85 * thin, rasterized=many))  # fmt: skip
-        colours = [SHADES.get(face[3], BRICK) for face in faces]
-        axes.add_collection(PolyCollection([f[2] for f in faces], facecolor=colours, edgecolor="0.45", lw=thin, rasterized=many))  # fmt: skip
-        for shade in sorted({face[3] for face in faces if face[3]}):
-            axes.add_collection(PolyCollection([], facecolor=SHADES[shade], edgecolor="0.45", label=shade))  # fmt: skip
+        s, sight = self.structure, np.array([*self.to.T, self.view.towards])
+        nodes = [s.outer(body) for body in self.bodies]
+        built = Solids([s.blocks["points"][own] for own in nodes])
+        course = scale * courseOf(s.blocks["points"][own] for own in nodes)
+        thin, bold = np.clip(0.06 * course, 0.15, 0.5), np.clip(0.21 * course, 0.7, 1.8)
+        painting = Painting(self.view.towards, thin, bold)
+        now = copy.copy(built)
+        now.groups = [Alike(g.index, g.corners + magnification * s.moved[np.array([nodes[n] for n in g.index])], g.faces) for g in built.groups]  # fmt: skip
+        for g in built.groups if magnification else ():
+            for corners, normals in zip(g.corners, g.normals):
+                painting.block(corners, g.faces, normals, GHOST)
+        for n in fromBackToFront(now, sight):
+            body, row = self.bodies[n], now.rowOf[n]
+            g, before = (solids.groups[solids.groupOf[n]] for solids in (now, built))
+            colour = SHADES[s.shades.get(body, "brick")]
+            painting.block(g.corners[row], g.faces, g.normals[row], colour)
+            planes = before.normals[row], before.offsets[row]
+            near = 1e-4 * built.diagonal[n]
+            painting.cracks(
+                s.cracks(body), planes, g.normals[row], near, magnification, colour
+            )
+        painting.finish(axes, self.flat, s.joints is not None)
+        for shade in sorted(
+            {s.shades[body] for body in self.bodies if body in s.shades}
+        ):
+            axes.add_collection(PolyCollection([], facecolor=SHADES[shade], edgecolor=MORTAR, label=shade))  # fmt: skip
         for body in set(s.names) & set(self.bodies):
             middle = self.flat(s.blocks["points"][s.corners[body]]).mean(axis=0)
             axes.annotate(s.names[body], middle, ha="center", va="center", fontsize=8)
-        if s.joints:
-            self._cracks(axes, magnification, bold)
         for state, (colour, dash) in TIES.items():
             ends = [self._tie(one, magnification) for one in s.ties if one["state"] == state and set(one["bodies"]) & set(self.bodies)]  # fmt: skip
             if ends:
                 label = "tie" if state == "elastic" else f"tie, {state}"
                 axes.add_collection(LineCollection(ends, color=colour, lw=1.2 * bold, ls=dash, label=label, zorder=4))  # fmt: skip
+        self._frame(axes, magnification, scale)
+
+    def _frame(self, axes, magnification, scale):
+        """Axes, or none in space, and the scale below the structure."""
         low, high = self.box(magnification)
         axes.set_xlim(low[0], high[0])
         axes.set_ylim(low[1], high[1])
         axes.set_aspect("equal")
+        axes.spines[["top", "right"]].set_visible(False)
+        if self.view.name == IN_SPACE:
+            axes.set_axis_off()
         axes.set_xlabel(self.view.labels[0])
         axes.set_ylabel(self.view.labels[1])
-
-    def _cracks(self, axes, magnification, bold):
-        """Joints that are open, slid or crushed, on the faces of both blocks. What is cracked most is drawn last."""
-        from matplotlib.collections import LineCollection, PolyCollection
-
-        j = self.structure.joints
-        size, opened, cracked = widths(j)
-        spoilt = crushed(j)
-        mine = np.isin(j["bodies"], self.bodies).any(axis=1)
-        areas, lines, spots = {"open": [], "slid": []}, [], []
-        for i in np.flatnonzero(mine & (cracked | spoilt))[np.argsort(size[mine & (cracked | spoilt)])]:  # fmt: skip
-            cell, kind = j["cells"][i], "open" if opened[i] else "slid"
-            flat = self.flat(j["points"][cell])
-            along = np.cross(j["normal"][i], self.view.towards)
-            for name in ("displacement", "second_displacement"):
-                now = flat + magnification * (j[name][cell] - self.structure.still) @ self.to  # fmt: skip
-                if spoilt[i] and name == "displacement":
-                    spots.append((*now.mean(axis=0), 12 + 8e3 * j["crushing"][i]))
-                if not cracked[i]:
-                    continue
-                if abs(j["normal"][i] @ self.view.towards) > ASKEW:
-                    areas[kind].append(now)
-                    continue
-                reach = flat @ (along @ self.view.right, along @ self.view.up)
-                lines.append((now[[reach.argmin(), reach.argmax()]], kind))
-        for kind, colour in CRACKS.items():
-            if areas[kind]:
-                axes.add_collection(PolyCollection(areas[kind], facecolor=colour, alpha=0.35, lw=0, label=kind + ", its face"))  # fmt: skip
-            axes.add_collection(LineCollection([], color=colour, lw=bold, label=kind))
-        axes.add_collection(LineCollection([ends for ends, _ in lines], colors=[CRACKS[kind] for _, kind in lines], lw=bold))  # fmt: skip
-        if spots:
-            x, y, wide = np.transpose(spots)
-            axes.scatter(x, y, s=wide * min(1, bold / 1.8) ** 2, color="black", marker="X", lw=0, label="crushed", zorder=5)  # fmt: skip
+        most = LONGEST / scale
+        power = 10.0 ** np.floor(np.log10(most))
+        length = max(n * power for n in (1, 2, 5) if n * power <= most)
+        x, y = low + 8 / scale
+        axes.plot([x, x + length], [y, y], color="black", lw=2, solid_capstyle="butt", label="_scale")  # fmt: skip
+        axes.annotate(f"{length:g} m", (x + length, y), xytext=(4, 0), textcoords="offset points", va="center", fontsize=8)  # fmt: skip
 
     def _tie(self, tie, magnification):
         s, ends = self.structure, []
@@ -215,31 +233,69 @@ class Elevation:
 
 
 def elevationsOf(structure: Structure) -> list[Elevation]:
-    """One elevation for each façade: the largest parts first, and none for a part that is seen in another one's."""
-    parts = structure.parts or {"": list(structure.corners)}
+    """One elevation for each façade: the largest parts first, and none for a part that is seen in another one's or is held."""
+    stands = lambda part: any(structure.shades.get(body) != "held" for body in part)
+    parts = {n: part for n, part in structure.parts.items() if stands(part)} or {"": list(structure.corners)}  # fmt: skip
     found: list[Elevation] = []
     seen: set[int] = set()
     for name, members in sorted(parts.items(), key=lambda part: -len(part[1])):
         if len(seen & set(members)) > 0.5 * len(members):
             continue
-        found.append(Elevation(structure, name, members))
+        found.append(_facade(structure, name, members))
         seen |= set(found[-1].bodies)
     order = list(parts)
     return sorted(found, key=lambda one: order.index(one.name))
 
 
-def figureOf(structure: Structure, title: str, magnification: float | None = None) -> Any:  # fmt: skip
-    """A figure of all façades in one scale, to be drawn and saved in :func:`masonry.read.drawing.style`: the deformed structure,
-    magnified, over the undeformed one, with its cracks.
+def _facade(structure, name, members):
+    """The :class:`Elevation` of a part, with all that reaches into the depth of it."""
+    points, joints = structure.blocks["points"], structure.joints
+    normals, areas = np.zeros((0, 3)), np.zeros(0)
+    if joints:
+        inside = np.isin(joints["bodies"], members).all(axis=1)
+        normals, areas = joints["normal"][inside], joints["area"][inside]
+    nodes = structure.points(members)
+    view = viewOf(points[nodes], normals, areas, structure.sights.get(name))
+    depth = points @ view.towards
+    near, far = depth[nodes].max(), depth[nodes].min()
+    parted = {body for part in structure.parts.values() for body in part}
+    bodies = []
+    for body, own in structure.corners.items():
+        high, low = depth[own].max(), depth[own].min()
+        common = min(high, near) - max(low, far)
+        inside = INSIDE if body in parted else -1e-6
+        if common >= inside * min(high - low, near - far):
+            bodies.append(body)
+    return Elevation(structure, name, view, bodies, members)
 
-    :param title: above it; ``{}`` in it is the magnification
+
+def figureOf(structure: Structure, title: str, magnification: float | None = None, later: Any = None) -> Any:  # fmt: skip
+    """A figure of all façades in one scale, to be drawn and saved in :func:`masonry.read.drawing.style`: the deformed structure,
+    magnified, over the undeformed one, with its cracks. What moves across a façade, is seen from above or falls is seen in space,
+    too.
+
+    :param title: above it; ``{}`` in it is what is said of the magnification
     :param magnification: of displacements; 0: the structure as it is built; None: as in :func:`magnificationOf`
+    :param later: a moment, and the structure at that moment, which is drawn true to scale; or None
     """
     elevations = elevationsOf(structure)
     if magnification is None:
-        size = max(one.size() for one in elevations)
-        magnification = magnificationOf(size, np.concatenate([one.inPlane for one in elevations]))  # fmt: skip
-    boxes = [one.box(magnification) for one in elevations]
+        nodes = structure.points(structure.corners)
+        blocks = [structure.blocks["points"][own] for own in structure.corners.values()]
+        magnification = magnificationOf(structure.joints, structure.moved[nodes], blocks)  # fmt: skip
+    scales = [magnification] * len(elevations)
+    front = max(elevations, key=lambda one: (one.across, len(one.bodies))).view.towards
+    names = {one.view.name for one in elevations}
+    across = FROM_ABOVE in names or any(one.across for one in elevations)
+    inSpace = (
+        [("", structure, magnification)] if across and IN_SPACE not in names else []
+    )
+    for moment, one, m in [*inSpace, *([(*later, 1)] if later else [])]:
+        nodes = one.points(one.corners)
+        view = spaceViewOf(front, one.blocks["points"][nodes], one.moved[nodes])
+        elevations.append(Elevation(one, "", view, list(one.corners), moment=moment))
+        scales.append(m)
+    boxes = [one.box(m) for one, m in zip(elevations, scales)]
     sizes = np.array([high - low for low, high in boxes])
     columns = max(range(1, len(sizes) + 1), key=lambda n: _scale(sizes, n))
     scale = _scale(sizes, columns)
@@ -247,7 +303,7 @@ def figureOf(structure: Structure, title: str, magnification: float | None = Non
     wides = [scale * max(sizes[c::columns, 0]) for c in range(columns)]
     highs = [scale * max(sizes[n, 1] for n in row) for row in rows]
     # inches for labels beside and below each, for the legend at the right, and for the title
-    above = 0.75 if title else 0.3
+    above = 0.85 if title else 0.3
     width, height = max(sum(wides) + 0.85 * columns + 1.6, 7.0), sum(highs) + 0.75 * len(rows) + above  # fmt: skip
     figure = drawing.empty(width, height)
     y, handles = height - above, {}
@@ -256,14 +312,15 @@ def figureOf(structure: Structure, title: str, magnification: float | None = Non
         for n, wide in zip(row, wides):
             w, h = scale * sizes[n]
             axes = figure.add_axes([x / width, y / height, w / width, h / height])
-            elevations[n].draw(axes, magnification, 72 * scale)
+            elevations[n].draw(axes, scales[n], 72 * scale)
             head = f"{elevations[n].name if len(sizes) > 1 else ''} {elevations[n].note}"  # fmt: skip
             axes.set_title(head.strip(), fontsize=9, pad=3)
             handles.update((label, handle) for handle, label in zip(*axes.get_legend_handles_labels()))  # fmt: skip
             x += wide + 0.85
         y -= 0.75
     if title:
-        figure.suptitle(title.replace("{}", str(magnification)), fontsize=10, y=1 - 0.1 / height)  # fmt: skip
+        title = title.replace("{}", scaleText(structure.joints, magnification))
+        figure.suptitle(title, fontsize=9, x=0.3 / width, y=1 - 0.1 / height, ha="left")  # fmt: skip
     if handles:
         figure.legend(handles.values(), handles, loc="upper right", fontsize=8, bbox_to_anchor=(1 - 0.08 / width, 1 - above / height))  # fmt: skip
     return figure
@@ -302,42 +359,74 @@ def structureOf(run: dict[str, Any], blocks: dict[str, Any], joints: dict[str, A
         if not members:
             raise Refused(f"{directory}: parts: {name} has no bodies")
     masonry = {body for part in parts.values() for body in part} or bodies
-    ground = run.get("ground_body")
+    held = {one["body"]: "held" for one in run.get("targets") or [] if one.get("held")}
     return Structure(
         blocks,
         joints,
         parts,
-        {body: "platen" for body in bodies - masonry},
+        {
+            **held,
+            **dict.fromkeys(bodies - masonry - {run.get("ground_body")}, "platen"),
+        },
         sights=run.get("views") or {},
-        hidden=() if ground is None else (ground,),
+        ground=run.get("ground_body"),
+        seams=tuple(
+            n for n, kind in enumerate(run.get("kinds") or []) if kind == CRACK_SURFACE
+        ),  # fmt: skip
         still=still,
         ties=run.get("ties") or [],
     )
 
 
-def cracksOf(run: dict[str, Any], blocks: dict[str, Any], joints: dict[str, Any], when: str, directory: FilePath) -> Any:  # fmt: skip
+def cracksOf(run: dict[str, Any], blocks: dict[str, Any], joints: dict[str, Any], when: str, directory: FilePath, later: Any = None) -> Any:  # fmt: skip
     """The figure of cracks.png. Cracks are red, joints that slid are blue, and crushed spots are black. Raises Refused.
 
-    :param when: text that says when the frame was written; the others are those of :func:`structureOf`
+    :param when: text that names the moment of the frame; ``later`` is as in :func:`figureOf`; the others are those of
+        :func:`structureOf`
     """
     title = (
-        f"{run['title']}\n{when}, displacements × {{}}; "
+        f"{run['title']}\n{when}\n{{}}; "
         f"open or slid more than {1e3 * CRACK:g} mm, crushed more than {1e3 * CRUSHED:g} mm"
     )
-    return figureOf(structureOf(run, blocks, joints, directory), title)
+    return figureOf(structureOf(run, blocks, joints, directory), title, later=later)
+
+
+def cracksOfFrame(run: dict[str, Any], directory: FilePath, number: int | None = None) -> Any:  # fmt: skip
+    """The figure of cracks.png of a frame that a run has left; of a run that followed a collapse, with its end beside it.
+
+    :param run: entries of run.json
+    :param number: of the frame, from 0; negative numbers count from the end; None: as in :func:`frameOfCracks`
+    """
+    last = len(frameTimes(directory)) - 1
+    chosen = frameOfCracks(run, directory) if number is None else number % (last + 1)
+    frames = {n: [readFrame(directory, kind, n) for kind in ("blocks", "joints")] for n in {chosen, last}}  # fmt: skip
+    later = None
+    if number is None and chosen != last:
+        later = f"{whenOf(run, directory, last)}, true to scale", structureOf(
+            run, *frames[last], directory
+        )
+    return cracksOf(run, *frames[chosen], whenOf(run, directory, chosen), directory, later)  # fmt: skip
 
 
 def cracks(directory: FilePath, number: int | None = None) -> None:
-    """Draw cracks.png of a frame that a run has left.
-
-    :param number: of the frame, from 0; negative numbers count from the end; None: as in :func:`frameOfCracks`
-    """
-    run = readRun(directory)
-    number = frameOfCracks(run, directory) if number is None else number
-    blocks, joints = (readFrame(directory, kind, number) for kind in ("blocks", "joints"))  # fmt: skip
+    """Draw cracks.png; ``number`` is as in :func:`cracksOfFrame`."""
     with drawing.style():
-        figure = cracksOf(run, blocks, joints, whenOf(run, directory, number), directory)  # fmt: skip
-        drawing.save(figure, os.path.join(directory, "cracks.png"), 90)
+        figure = cracksOfFrame(readRun(directory), directory, number)
+        drawing.save(figure, os.path.join(directory, "cracks.png"), 110)
+
+
+#: What is said of the moments that a run that followed a collapse names, by their names among its answers.
+MOMENTS = {
+    "noticed_at": "when the collapse was noticed",
+    "first_fall": "when the first block had fallen",
+}
+
+
+def _moments(run, directory):
+    """Numbers of the frames nearest to the moments of a collapse, and what they are, the first one first."""
+    times = {a["name"]: a["value"] for a in run.get("answers") or [] if a["stage"] == "fall"}  # fmt: skip
+    found = sorted((times[name], text) for name, text in MOMENTS.items() if name in times)  # fmt: skip
+    return [(frameAt(directory, time), text) for time, text in found]
 
 
 def frameOfCracks(run: dict[str, Any], directory: FilePath) -> int:
@@ -346,18 +435,20 @@ def frameOfCracks(run: dict[str, Any], directory: FilePath) -> int:
 
     :param run: entries of run.json
     """
-    answers = {a["name"]: a["value"] for a in run.get("answers") or [] if a["stage"] == "fall"}  # fmt: skip
-    found = [answers[n] for n in ("noticed_at", "first_fall") if n in answers]
-    return frameAt(directory, min(found)) if found else len(frameTimes(directory)) - 1
+    moments = _moments(run, directory)
+    return moments[0][0] if moments else len(frameTimes(directory)) - 1
 
 
 def whenOf(run: dict[str, Any], directory: FilePath, number: int) -> str:
-    """When a frame was written: the x of curve.png at its time, else its time."""
-    time = frameTimes(directory)[number]
+    """Which moment a frame shows: what it is, its time, and the x of curve.png."""
+    times = frameTimes(directory)
+    names = {len(times) - 1: "at the end", **dict(reversed(_moments(run, directory)))}
+    texts = [f"t = {times[number]:.3g} s"]
     data = readCurve(directory) if "figure" in run else {}
     if "time_s" in data:
         spec = plan(run, data, directory)["x"]
         if spec["column"] != "time_s":
-            value, unit = np.interp(time, data["time_s"], data[spec["column"]]), unitOf(spec)  # fmt: skip
-            return f"at {value:{'.1f' if unit == 'mm' else '.3g'}} {unit}"
-    return f"at {time:.3g} s"
+            value, unit = np.interp(times[number], data["time_s"], data[spec["column"]]), unitOf(spec)  # fmt: skip
+            name = spec["label"].rsplit(" [", 1)[0]
+            texts.append(f"{name} = {value:{'.1f' if unit == 'mm' else '.3g'}} {unit}")
+    return f"{names.get(number, 'during the run')}: {', '.join(texts)}"

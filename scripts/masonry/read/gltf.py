@@ -11,14 +11,12 @@ import numpy as np
 
 from ..basics import Refused, plain
 from ..folders import replaced
-from .model import BRICK, CRUSHED_TOO, GROUND, OPEN, PLATEN, SLID, Model
+from . import painting
+from .model import CRUSHED_TOO, LOOKS, OPEN, SLID, Model
 
 FLOAT, BYTE = 5126, 5121  # numbers of glTF for types of numbers
 UP = [-(0.5**0.5), 0.0, 0.0, 0.5**0.5]  # turns z to y, (x, y, z, w)
-
-#: Names and colours as a screen shows them, from 0 to 255; those of joints are as in cracks.png.
-LOOKS = {BRICK: ("brick", (240, 222, 191)), PLATEN: ("platen", (185, 189, 194)), GROUND: ("ground", (141, 134, 116))}  # fmt: skip
-KINDS = {OPEN: (214, 39, 40), SLID: (31, 119, 180), CRUSHED_TOO: (16, 16, 16)}
+KINDS = {OPEN: painting.CRACKS["open"], SLID: painting.CRACKS["slid"], CRUSHED_TOO: painting.CRUSHED}  # fmt: skip
 
 
 def write(directory, path, number=None, magnification=1.0, rate=10):
@@ -108,10 +106,10 @@ class _File:
         """The deformed shape of the only frame; returns how many points of joints are drawn."""
         points = model.points + magnification * model.displacements(0)
         looks = model.looks[model.owner[model.triangles[:, 0]]]
-        for look, (name, colour) in LOOKS.items():
+        for look, name in enumerate(LOOKS):
             chosen = model.triangles[looks == look]
             if len(chosen):
-                self._node(name=name, mesh=self._mesh(points[chosen], self._material(name, colour)))  # fmt: skip
+                self._node(name=name, mesh=self._mesh(points[chosen], self._material(name, painting.SHADES[name])))  # fmt: skip
         joints = model.joints
         fans, colours = [], []
         for n in np.flatnonzero(joints.kind[0]):
@@ -124,13 +122,13 @@ class _File:
             # on the faces of both blocks
             corners = joints.corners + magnification * joints.displacements(0)
             both = np.concatenate([side[np.array(fans)] for side in corners])
-            mesh = self._mesh(both, self._material("joints", (255, 255, 255)), np.tile(colours, (2, 1)))  # fmt: skip
+            mesh = self._mesh(both, self._material("joints", "#ffffff"), np.tile(colours, (2, 1)))  # fmt: skip
             self._node(name="joints", mesh=mesh)
         return int((joints.kind[0] > 0).sum())
 
     def animation(self, model, magnification, rate):
         """Every block as a node that moves. Blocks of one shape share a mesh."""
-        materials = {look: self._material(*about) for look, about in LOOKS.items()}
+        materials = [self._material(name, painting.SHADES[name]) for name in LOOKS]
         times = self._array(np.arange(len(model.times)) / rate, "SCALAR")
         channels, samplers, meshes = [], [], {}
         order = np.argsort(model.owner[model.triangles[:, 0]], kind="stable")
@@ -142,7 +140,7 @@ class _File:
             key = look, np.rint(corners / 1e-7).astype(int).tobytes()
             if key not in meshes:
                 meshes[key] = self._mesh(corners, materials[look])
-            self._node(name=f"{LOOKS[look][0]} {body}", mesh=meshes[key], translation=centre.tolist(), extras={"body": body})  # fmt: skip
+            self._node(name=f"{LOOKS[look]} {body}", mesh=meshes[key], translation=centre.tolist(), extras={"body": body})  # fmt: skip
             shift = magnification * model.shift[:, block]
             turn = magnification * model.turn[:, block]
             for moves, values, path, of in ((shift, centre + shift, "translation", "VEC3"), (turn, quaternions(turn), "rotation", "VEC4")):  # fmt: skip
@@ -167,8 +165,8 @@ class _File:
 
 
 def linear(colour):
-    """A colour as light has it, from 0 to 1, of one as a screen has it, from 0 to 255."""
-    share = np.array(colour) / 255
+    """Red, green and blue as light has them, from 0 to 1, of a colour "#rrggbb" as a screen has it."""
+    share = painting.rgb(colour) / 255
     return np.where(share <= 0.04045, share / 12.92, ((share + 0.055) / 1.055) ** 2.4)
 
 

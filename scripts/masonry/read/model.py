@@ -23,6 +23,7 @@ SHARP = np.cos(np.radians(20))  # of the angle from which an edge of a block is 
 OPEN, SLID, CRUSHED_TOO = 1, 2, 4
 #: Kinds of blocks.
 PLATEN, BRICK, GROUND = 0, 1, 2
+LOOKS = "platen", "brick", "ground"  # their names
 VALUES = "opening", "slide", "closure", "damage", "kind"
 OLDER = "its frames were written by an older version of the plugin, which did not say how blocks turn; run the scene again"
 
@@ -183,14 +184,15 @@ class Model:
 
         :param magnification: of displacements; None: as in :func:`masonry.read.views.magnificationOf`
         """
-        joints = readFrame(self.directory, "joints", self.numbers[0])
+        joints = readFrame(self.directory, "joints", self.numbers[-1])
         points = self.points[self.framed]
         towards = viewOf(points, joints["normal"], joints["area"]).towards
         low, high = points.min(axis=0), points.max(axis=0)
         size = float((high - low).max())
         moved = self.displacements(-1)[self.framed]
         if magnification is None:
-            magnification = magnificationOf(size, np.linalg.norm(moved, axis=1))
+            own = [self.points[self.owner == n] for n in np.flatnonzero(self.looks != GROUND)]  # fmt: skip
+            magnification = magnificationOf(joints, moved, own)
         seen = np.clip(points + magnification * moved, low - REACH * size, high + REACH * size)  # fmt: skip
         low, high = np.minimum(low, seen.min(axis=0)), np.maximum(high, seen.max(axis=0))  # fmt: skip
         if moved.mean(axis=0) @ towards < -0.1 * size:  # it fell to the other side

@@ -4,7 +4,7 @@ window or in pvpython without one, with the environment variable MASONRY_VIEW, t
 
 - ``runs``: of each its ``folder``, ``title``, ``magnification`` of displacements, ``ground``: ids of the bodies of the ground,
   ``platens``: those of all other bodies that are no masonry, ``widest_mm``: opening at the end of the colours, ``crack`` [m] and
-  ``damaged`` [-] as in masonry.read.cracks, and the camera: ``middle``, ``towards`` the viewer and ``half_height`` [m]
+  ``damaged`` [-] as in masonry.read.cracks, ``colours`` by name, and the camera: ``middle``, ``towards`` the viewer and ``half_height`` [m]
 - ``time``: of the frame that is shown [s]; ``size`` [pixels]; ``rate``: frames of a film a second
 - ``picture``, ``film``: paths of the files to write, or null
 """
@@ -14,8 +14,6 @@ import os
 
 import paraview.simple as pv
 
-LOOKS = {"bricks": (0.93, 0.82, 0.67), "platens": (0.72, 0.74, 0.76), "ground": (0.55, 0.52, 0.45)}  # fmt: skip
-EDGE, SLID, TIE = (0.35, 0.27, 0.2), (0.12, 0.36, 0.66), (0.2, 0.2, 0.2)
 OPENINGS = (0, 1, 0.78, 0.2), (0.35, 0.95, 0.35, 0.1), (0.7, 0.78, 0.05, 0.1), (1, 0.35, 0, 0.2)  # fmt: skip
 
 
@@ -52,38 +50,39 @@ def build(view, run):
     """Fill a view with a run."""
     blocks, towards = moved(run, "blocks"), run["towards"]
     nearer = [0.003 * run["half_height"] * v for v in towards]  # lines lie before faces
+    colours = run["colours"]
     among = lambda ids: "+".join(f"(body=={one})" for one in ids) or "body*0"
-    others = {"ground": among(run["ground"]), "platens": among(run["platens"])}
-    formulas = {"bricks": f"1-({others['ground']})-({others['platens']})", **others}
+    others = {"ground": among(run["ground"]), "platen": among(run["platens"])}
+    formulas = {"brick": f"1-({others['ground']})-({others['platen']})", **others}
     for name, formula in formulas.items():
         part = chosen(blocks, name, formula)
-        drawn(part, view, LOOKS[name])
+        drawn(part, view, colours[name])
         edges = pv.FeatureEdges(Input=pv.ExtractSurface(Input=part), FeatureAngle=20)
         edges.ManifoldEdges = edges.NonManifoldEdges = edges.BoundaryEdges = 0
-        drawn(edges, view, EDGE, 1).Position = nearer
+        drawn(edges, view, colours["mortar"], 1).Position = nearer
 
     # joints on the faces of both of their blocks
     isOpen = f"(opening > {run['crack']}) * (opening > 0.5 * mag(slide))"
     hurt = f"(max(damage_tension, damage_shear) > {run['damaged']})"
     slid = f"(1 - {isOpen}) * (mag(slide) > {run['crack']}) * {hurt}"
-    colours = pv.GetColorTransferFunction("opening [mm]")
-    colours.AutomaticRescaleRangeMode = "Never"
+    ramp = pv.GetColorTransferFunction("opening [mm]")
+    ramp.AutomaticRescaleRangeMode = "Never"
     for vector in ("displacement", "second_displacement"):
         joints = pv.Calculator(Input=moved(run, "joints", vector), AttributeType="Cell Data")  # fmt: skip
         joints.ResultArrayName, joints.Function = "opening [mm]", "1000 * opening"
         for name, formula in (("slid joints", slid), ("open joints", f"{isOpen} * {hurt}")):  # fmt: skip
             cells = chosen(joints, name, formula)
             rims = pv.ExtractEdges(Input=cells)
-            for thing in (drawn(cells, view, SLID), drawn(rims, view, SLID, 3)):
+            for thing in (drawn(cells, view, colours["slid"]), drawn(rims, view, colours["slid"], 3)):  # fmt: skip
                 thing.Position = nearer
                 if name == "open joints":
                     pv.ColorBy(thing, ("CELLS", "opening [mm]"))
-                    thing.LookupTable = colours
+                    thing.LookupTable = ramp
     if os.path.exists(os.path.join(run["folder"], "connectors.pvd")):
-        drawn(moved(run, "connectors"), view, TIE, 4).Position = nearer
+        drawn(moved(run, "connectors"), view, colours["mortar"], 4).Position = nearer
     # drawing has set the range of colours to that of the frame
-    colours.RGBPoints = [v for share, *rgb in OPENINGS for v in (share * run["widest_mm"], *rgb)]  # fmt: skip
-    bar = pv.GetScalarBar(colours, view)
+    ramp.RGBPoints = [v for share, *rgb in OPENINGS for v in (share * run["widest_mm"], *rgb)]  # fmt: skip
+    bar = pv.GetScalarBar(ramp, view)
     bar.Title, bar.ComponentTitle, bar.Visibility = "opening [mm]", "", 1
     bar.TitleColor = bar.LabelColor = (0, 0, 0)
     bar.WindowLocation, bar.Position = "Any Location", (0.87, 0.28)

@@ -23,7 +23,6 @@ from ..arguments import nearest, validated
 from ..basics import Refused
 from . import curve_figure, drawing, elevation, quantities
 from .files import filesOf, readCurve, readRun
-from .frames import readFrame
 
 DPI = 72  # of pictures in a notebook, for 10 to 50 kB each
 
@@ -167,12 +166,9 @@ class RunFolder:
 
     def _cracks(self):
         try:
-            last = elevation.frameOfCracks(self.numbers, self.directory)
+            return _drawn(lambda: elevation.cracksOfFrame(self.numbers, self.directory))
         except Refused:  # there are none with --no-vtk
             return ""
-        blocks, joints = (readFrame(self.directory, kind, last) for kind in ("blocks", "joints"))  # fmt: skip
-        when = elevation.whenOf(self.numbers, self.directory, last)
-        return cracksOf(self.numbers, blocks, joints, when, self.directory)
 
     def __repr__(self):
         return f"{self.numbers.get('scene')}: results in {self.directory}"

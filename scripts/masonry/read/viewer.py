@@ -22,7 +22,7 @@ import numpy as np
 from .. import folders, memory
 from ..arguments import FilePath
 from ..basics import Refused, say
-from . import gltf, page
+from . import gltf, page, painting
 from .cracks import CRACK, DAMAGED
 from .elevation import whenOf
 from .files import filesOf, readCurve, readRun
@@ -103,6 +103,7 @@ def sceneOf(directory: FilePath, number: int, magnification: float | None, shape
         "ground": bodies(GROUND),
         "platens": bodies(PLATEN),
         "widest_mm": page.data.nice(1e3 * max(widest, 4 * CRACK)),
+        "colours": {n: (painting.rgb(c) / 255).tolist() for n, c in {**painting.SHADES, **painting.CRACKS, "mortar": painting.MORTAR}.items()},  # fmt: skip
         "crack": CRACK,
         "damaged": DAMAGED,
         "bounds": np.column_stack([sight.low, sight.high]).ravel().tolist(),

@@ -8,12 +8,18 @@ from typing import Any
 
 import numpy as np
 
-MAGNIFICATION = 30  # of displacements in cracks.png, as in figure 6 of the paper (see yade_plugin/law/README.md)
+from .cracks import widths
 
-#: Smallest and largest size of the drawn displacements over the size of the structure with the usual magnification. Outside
-#: these limits another magnification is chosen, so that they are about as large as :data:`SHOWN`.
-SEEN = 0.002, 0.6
-SHOWN = 0.06
+#: Magnifications of displacements in cracks.png, the usual one first, as in figure 6 of the paper (see
+#: yade_plugin/law/README.md).
+MAGNIFICATIONS = 30, 20, 10, 5, 2, 1
+FARTHEST = 0.25  # largest drawn displacement over the size of the structure
+OVERLAP = 0.25  # how far blocks overlap at most where a joint closed, over the height of a course
+#: From where a structure is seen in space, in plan beside its front and over the ground [°].
+ASIDE, ABOVE = 32, 24
+#: Names of views that are not from the front.
+FROM_ABOVE, IN_SPACE = "from above", "in space"
+LEVEL = 1e-3  # cosine below which a face stands along the line of sight
 REACH = 1.5  # how far what moved is in a picture, over the size of what was built
 #: How a part is seen. ``right`` and ``up`` are unit vectors of the picture, ``towards`` is that to the viewer; ``labels``
 #: are those of the axes, and ``name`` says where the viewer stands. A point p lies at ((p - start)·right, (p - start)·up).
@@ -33,12 +39,15 @@ def viewOf(points, normals, areas, sight=None):
     :param areas: areas of these joints [m²]
     :param sight: direction of sight (x, y, z), if the user gave one
     """
+    from scipy.spatial import ConvexHull
+
     flat, height = points[:, :2], np.ptp(points[:, 2])
-    corners = hull(flat)
+    corners = flat[ConvexHull(flat).vertices]
     edges = np.roll(corners, -1, axis=0) - corners
+    edges /= np.linalg.norm(edges, axis=1)[:, None]
     best = None
-    for edge in edges[np.linalg.norm(edges, axis=1) > 1e-9]:
-        along = edge / np.linalg.norm(edge)
+    # of rectangles that are as small, one along an axis
+    for along in sorted(edges, key=lambda edge: round(np.abs(edge).min(), 6)):
         across = np.array([-along[1], along[0]])
         sides = np.ptp(flat @ along), np.ptp(flat @ across)
         if best is None or sides[0] * sides[1] < best[0] * best[1] * (1 - 1e-9):
@@ -59,24 +68,46 @@ def viewOf(points, normals, areas, sight=None):
     return _viewFrom(away, points, sight is None)
 
 
+def spaceViewOf(front, points, moved):
+    """The view of a structure in space, from above: from the side to which it moved, so that what fell lies in front, and beside
+    the front where most of it moved.
+
+    :param front: direction to the viewer of the part that shows it, as :func:`viewOf` gives it
+    :param points: as built (n, 3) [m]; ``moved``: their displacements (n, 3) [m]
+    """
+    side = front[:2] if abs(front[2]) < 0.9 else np.array([0, -1.0])
+    side = side / np.linalg.norm(side)
+    if moved.mean(axis=0)[:2] @ side < 0:
+        side = -side
+    weights = np.linalg.norm(moved, axis=1) + 1e-9
+    lean = np.average(points, axis=0, weights=weights) - points.mean(axis=0)
+    turn, rise = np.radians(ASIDE), np.radians(ABOVE)
+    along = np.array([-side[1], side[0]])
+    if round(lean[:2] @ along / np.ptp(points, axis=0).max(), 3) < 0:
+        along = -along
+    plan = np.cos(turn) * side + np.sin(turn) * along
+    away = np.append(np.cos(rise) * plan, np.sin(rise))
+    return _viewFrom(away, points, False)
+
+
 def _viewFrom(away, points, either):
     """The view of points by a viewer in this direction; ``either``: or opposite, if that turns x or y to the right."""
     if abs(away[2]) > 1 - 1e-6:
         right, up = np.eye(3)[:2]
-        name = "from above"
+        name = FROM_ABOVE
     else:
         up = np.array([0, 0, 1]) - away[2] * away
         up /= np.linalg.norm(up)
         right = np.cross(up, away)
         if either and (right[0] < -1e-3 or (abs(right[0]) <= 1e-3 and right[1] < 0)):
             right = -right
-        name = ""
+        name = IN_SPACE if abs(away[2]) > LEVEL else ""
     towards = np.cross(right, up)
     start, labels = np.zeros(3), []
     for direction in (right, up):
         axis = int(np.argmax(np.abs(direction)))
-        if direction[axis] > 1 - 1e-5:
-            labels.append("xyz"[axis] + " [m]")
+        if abs(direction[axis]) > 1 - 1e-5:
+            labels.append("−" * int(direction[axis] < 0) + "xyz"[axis] + " [m]")
             continue
         start = start + (points @ direction).min() * direction
         angle = np.degrees(np.arctan2(direction[1], direction[0]))
@@ -85,69 +116,31 @@ def _viewFrom(away, points, either):
     return View(right, up, towards, start, labels, name)
 
 
-def hull(points):
-    """Corners of the convex hull of points in a plane, counter-clockwise: an array of (x, y)."""
-    points = np.unique(np.asarray(points, float).round(12), axis=0)
-    if len(points) < 3:
-        return points
+def magnificationOf(joints: Any, moved: Any, blocks: Any) -> int:
+    """How much displacements are magnified: as usual, or less where blocks would be drawn far away or over each other, and not
+    at all where no joint is cracked, as rigid motion and elastic shortening alone would then be drawn.
 
-    def half(ordered):
-        chain = []
-        for p in ordered:
-            while len(chain) > 1:
-                (ax, ay), (bx, by) = chain[-2], chain[-1]
-                if (bx - ax) * (p[1] - ay) - (by - ay) * (p[0] - ax) > 0:
-                    break
-                chain.pop()
-            chain.append(p)
-        return chain[:-1]
-
-    ordered = points.tolist()
-    return np.array(half(ordered) + half(ordered[::-1]))
-
-
-def outline(flat, depth):
-    """Numbers of the points that lie on the outline of a block, in order around it.
-
-    Of points behind each other the one next to the viewer is taken. Points between corners are kept, since the side of a
-    deformable block can bend.
+    :param joints: the frame of the joints, or None
+    :param moved: displacements of points of the blocks (n, 3) [m]
+    :param blocks: arrays of the corners of each (n, 3) [m]
     """
-    corners = hull(flat)
-    near = 1e-6 * np.ptp(flat, axis=0).max()
-    order, place = [], []
-    behind = np.argsort(-depth, kind="stable")
-    for n, (a, b) in enumerate(zip(corners, np.roll(corners, -1, axis=0))):
-        length = np.linalg.norm(b - a)
-        if length <= near:
-            continue
-        along = (b - a) / length
-        off = flat[behind] - a
-        s = off @ along
-        on = np.abs(off[:, 0] * along[1] - off[:, 1] * along[0]) < near
-        on &= (s > -near) & (s < length - near)
-        order += behind[on].tolist()
-        place += (n + s[on] / length).tolist()
-    order, place = np.array(order, int), np.array(place)
-    ranks = np.argsort(place, kind="stable")
-    keep = np.append(True, np.diff(place[ranks]) > 1e-6)
-    return order[ranks][keep]
+    if not joints or not widths(joints)[2].any():
+        return 1
+    size = np.ptp(np.concatenate(blocks), axis=0).max()
+    far = np.linalg.norm(moved, axis=1).max()
+    closed = max(-joints["opening"].min(), 0)
+    fits = lambda m: m * far <= FARTHEST * size and m * closed <= OVERLAP * courseOf(
+        blocks
+    )
+    return next((m for m in MAGNIFICATIONS if fits(m)), 1)
 
 
-def magnificationOf(size: float, moved: Any) -> int:
-    """How much displacements are magnified: as usual, or by 1, 2 or 5 times a power of ten if that would be absurd.
+def courseOf(blocks: Any) -> float:
+    """The usual height of a block [m]: the median of their shortest sides, of arrays of their corners (n, 3) [m]."""
+    return float(np.median([np.ptp(corners, axis=0).min() for corners in blocks]))
 
-    :param size: largest extent of the structure [m]
-    :param moved: displacements of the corners of its blocks [m]. If some are far too large, as those of bricks that fell,
-        one in fifty is left out of consideration
-    """
-    far = max(moved, default=0.0)
-    if MAGNIFICATION * far > SEEN[1] * size:
-        most = float(np.quantile(moved, 0.98))
-        if MAGNIFICATION * most >= SEEN[0] * size:
-            far = most
-    if not far or SEEN[0] * size <= MAGNIFICATION * far <= SEEN[1] * size:
-        return MAGNIFICATION
-    wanted = SHOWN * size / far
-    power = 10 ** np.floor(np.log10(wanted))
-    nice = max(step * power for step in (1, 2, 5) if step * power <= wanted)
-    return max(1, int(nice))
+
+def scaleText(joints: Any, magnification: float) -> str:
+    """What a picture says of its magnification and, where no joint of a frame is cracked, of that."""
+    parted = "" if widths(joints)[2].any() else "no joint is cracked, "
+    return parted + ("true to scale" if magnification == 1 else f"displacements × {magnification:g}")  # fmt: skip

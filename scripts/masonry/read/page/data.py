@@ -15,10 +15,12 @@ import numpy as np
 
 from ...arguments import FilePath
 from ...basics import plain
+from .. import painting
 from ..cracks import CRACK, CRUSHED, DAMAGED
 from ..files import filesOf
 from ..frames import readFrame
-from ..model import CRUSHED_TOO, GROUND, LEAST, OPEN, SLID, Model
+from ..model import CRUSHED_TOO, GROUND, LEAST, LOOKS, OPEN, SLID, Model
+from ..views import courseOf
 
 
 class _Arrays:
@@ -118,10 +120,11 @@ def _head(model, magnification, curve):
         "high": sight.high.tolist(),
         "towards": sight.towards.tolist(),
         "flat": sight.flat,
-        "course": float(np.median([np.ptp(corners, axis=0).min() for corners in ends])),
+        "course": courseOf(ends),
         "farthest": float(model.farthest.max()),
         "ramp": nice(float(model.farthest.max()) or 1.0),
         "kinds": {"open": OPEN, "slid": SLID, "crushed": CRUSHED_TOO},
+        "colours": {**painting.CRACKS, "crushed": painting.CRUSHED, "looks": [painting.SHADES[look] for look in LOOKS], "ties": [c for c, _ in painting.TIES.values()]},
         "limits": {"crack": CRACK, "damaged": DAMAGED, "crushed": CRUSHED},
     }  # fmt: skip
 

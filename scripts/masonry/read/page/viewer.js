@@ -24,9 +24,6 @@
     damage: ["#f2c14e", "#d9772b", "#a23b5b", "#3d1259"],
     moved: ["#f3e3c8", "#a9cfa4", "#3f9aa0", "#1d3f77"],
   };
-  const KINDS = { open: "#d62728", slid: "#1f77b4", crushed: "#101010" }; // as in cracks.png
-  const TIES = ["#333333", "#ff7f0e"]; // elastic, has yielded; as in cracks.png
-  const LOOKS = ["#b9bdc2", "#f0debf", "#8d8674"]; // platens, bricks, the ground
   const EDGE = "#4d4437", WAS = "#808890";
   const NAMES = {
     crack: "cracks: open or slid", opening: "opening", slide: "slide", closure: "plastic closure", damage: "damage",
@@ -205,7 +202,7 @@
       for (let n = 0; n < owner.length; ++n) this.carried(owner[n], points, n).toArray(this.moved, 3 * n);
       data.free.values.forEach((n, i) => this.vector("moved", i).toArray(this.moved, 3 * n));
       this.places.array.forEach((_, i, to) => { to[i] = points[i] + this.magnify * this.moved[i]; });
-      const plain = LOOKS.map((hex) => new THREE.Color(hex));
+      const plain = this.head.colours.looks.map((hex) => new THREE.Color(hex));
       for (let n = 0; n < owner.length; ++n) {
         const far = Math.hypot(...this.moved.subarray(3 * n, 3 * n + 3));
         (this.blocks === "moved" ? colourOf(RAMPS.moved, far / this.head.ramp) : plain[data.looks.values[owner[n]]]).toArray(this.shades.array, 3 * n);
@@ -264,7 +261,7 @@
       if (joints === "crack") {
         const kind = this.number("kind", point);
         const name = ["crushed", "open", "slid"].find((one) => kind & head.kinds[one]);
-        return name ? new THREE.Color(KINDS[name]).toArray() : null;
+        return name ? new THREE.Color(head.colours[name]).toArray() : null;
       }
       const value = this.number(joints, point), { least, top } = head.values[joints];
       return value > least ? colourOf(RAMPS[joints], value / top).toArray() : null;
@@ -278,7 +275,7 @@
         if (condition === 2) continue;
         for (const n of [2 * tie, 2 * tie + 1]) {
           ends.push(...this.vector("tieMoved", n).multiplyScalar(this.magnify).add(new THREE.Vector3().fromArray(built, 3 * n)).toArray());
-          shades.push(...new THREE.Color(TIES[condition]).toArray());
+          shades.push(...new THREE.Color(this.head.colours.ties[condition]).toArray());
         }
       }
       this.draft(this.ties, ends, shades);
@@ -312,14 +309,14 @@
       };
       if (joints === "crack") {
         const [limit, crushed] = [head.limits.crack, head.limits.crushed].map((value) => digits(1e3 * value));
-        parts.push(make("section", {}, swatch(KINDS.open, `open > ${limit} mm`), swatch(KINDS.slid, `slid > ${limit} mm`), swatch(KINDS.crushed, `closed > ${crushed} mm`)));
+        parts.push(make("section", {}, swatch(head.colours.open, `open > ${limit} mm`), swatch(head.colours.slid, `slid > ${limit} mm`), swatch(head.colours.crushed, `closed > ${crushed} mm`)));
       } else if (joints !== "none") {
         const { least, top, most } = head.values[joints];
         const [unit, factor] = joints === "damage" ? ["–", 1] : ["mm", 1e3];
         parts.push(bar(joints, `${NAMES[joints]} [${unit}]`, least, top, most, factor));
       }
       if (this.blocks === "moved") parts.push(bar("moved", "displacement [mm]", 0, head.ramp, 0, 1e3));
-      if (this.data.tiePoints) parts.push(make("section", {}, swatch(TIES[0], "tie"), swatch(TIES[1], "tie that has yielded")));
+      if (this.data.tiePoints) parts.push(make("section", {}, swatch(head.colours.ties[0], "tie"), swatch(head.colours.ties[1], "tie that has yielded")));
       this.legend.replaceChildren(...parts);
       this.legend.hidden = !parts.length;
     }

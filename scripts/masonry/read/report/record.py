@@ -16,6 +16,7 @@ import numpy as np
 from ...arguments import FilePath
 from ...basics import Refused
 from .. import bilinear, quantities
+from ..cracks import CRACK_SURFACE
 from ..curve_figure import plan
 from ..files import filesOf, readCurve, readRun, readWhole
 from .. import drawing, elevation
@@ -25,7 +26,6 @@ from ..page.data import dataOfModel
 from ..run_data import BASE, MOVED, TOP, RunData
 from .pieces import written
 
-CRACK_SURFACE = "crack"  # the kind of joint between the halves of a brick
 MOST_NAMES = 12  # of blocks in the drawing
 LARGEST_PICTURE = 600e3  # [bytes] of a figure that goes into a report
 
@@ -123,9 +123,7 @@ class Record:
                 self.elevation = self._drawing(model)
                 self.picture = dataOfModel(model, curve=self.columns)
                 number = elevation.frameOfCracks(self.run, self.directory)
-                last = number == model.count - 1
-                when = elevation.whenOf(self.run, self.directory, number)
-                self.whenCracked = f"{'at the end of the run' if last else 'when the collapse began'}, {when}"
+                self.whenCracked = elevation.whenOf(self.run, self.directory, number)
         except Refused as refused:
             self.missing = str(refused)
         except (ValueError, ArithmeticError, np.linalg.LinAlgError, OSError) as error:
