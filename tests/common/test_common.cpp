@@ -202,6 +202,16 @@ TEST_CASE("the larger and the smaller of two numbers, of which the second is tak
     CHECK(all<double>(0.1) == 0.1);
 }
 
+TEST_CASE("the number that is picked has its own bits, whatever the other is") {
+    const double odd[] = {0.0, -0.0, 1.0, infinity, -infinity, 5e-324, 1e308, notANumber};
+    for (double a : odd)
+        for (double b : odd) {
+            const double first = pick(1, a, b), second = pick(0, a, b);
+            CHECK(std::memcmp(&first, &a, sizeof a) == 0);
+            CHECK(std::memcmp(&second, &b, sizeof b) == 0);
+        }
+}
+
 namespace {
 
 void checkPacks(int expectedWidth, int width, int found, std::string (*differences)(double, double)) {

@@ -52,6 +52,16 @@ template <class T> MASONRY_INLINED T all(double x) { return T{} + x; }
 
 MASONRY_INLINED double choose(bool m, double a, double b) { return m ? a : b; }
 MASONRY_INLINED Pack choose(const PackMask& m, const Pack& a, const Pack& b) { return m ? a : b; }
+// The number a for 1 and b for 0, by their bits. Where a loop writes several columns on one condition, the compiler
+// makes of `which ? a : b` stores that leave places out, and a processor waits when it reads such a place again.
+MASONRY_INLINED double pick(std::int64_t which, double a, double b) {
+    std::int64_t one, other;
+    std::memcpy(&one, &a, sizeof a);
+    std::memcpy(&other, &b, sizeof b);
+    one = (one & -which) | (other & ~-which);
+    std::memcpy(&a, &one, sizeof a);
+    return a;
+}
 template <class T> MASONRY_INLINED T larger(const T& a, const T& b) { return choose(a > b, a, b); }
 template <class T> MASONRY_INLINED T smaller(const T& a, const T& b) { return choose(a < b, a, b); }
 

@@ -3,7 +3,8 @@
 // subcontacts have yielded. Beside what ColumnsOf.hpp asks for, the law gives:
 //
 //   Column::Crushing             the first of these columns; all that come after it are used likewise
-//   fewestSideBySide             from how many subcontacts on the whole law costs less side by side than one by one
+//   fasterOneByOne(many, groups) whether the whole law costs less one by one than side by side, for so many subcontacts
+//                                that stand in so many groups of eight
 //
 // and, for its equations, the functions
 //
@@ -162,17 +163,19 @@ void ColumnsSideBySide<LawType>::advance(int point, int from, int count, const d
     int many = 0;
     for (int n = 0; n < count; ++n)
         if (pending[n]) waiting[many++] = n;
-    if (many < LawType::fewestSideBySide) {
+    const int begin = waiting[0] / lanes * lanes, end = std::min(waiting[many - 1] / lanes * lanes + lanes, count);
+    if (LawType::fasterOneByOne(many, (end - begin + lanes - 1) / lanes)) {
         for (int n = 0; n < many; ++n) {
             const int i = waiting[n];
             normalStress[i] = advanceOne(point, from + i, {opening[i], {slideA[i], jumps.slideB[i]}});
         }
         return;
     }
-    for (int n = 0; n < count; n += lanes)
+    for (int n = begin; n < end; n += lanes)
         yieldFrom(point, from + n);
-    advanceSideBySide(equations_, law_->tension(), law_->shear(), columns_.from(first), &rows_[first], regime, jumps,
-                      pending, count, normalStress);
+    const Jumps theirs{jumps.opening + begin, jumps.slideA + begin, jumps.slideB + begin, jumps.plane};
+    advanceSideBySide(equations_, law_->tension(), law_->shear(), columns_.from(first + begin), &rows_[first + begin],
+                      regime + begin, theirs, pending + begin, end - begin, normalStress + begin);
 }
 
 } // namespace masonry

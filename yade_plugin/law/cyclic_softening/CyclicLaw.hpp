@@ -17,9 +17,9 @@ public:
     using Column = CyclicColumn;
     using Equations = CyclicEquations;
 
-    // From how many subcontacts on that may yield it is faster to gather them and advance several at a time than each
-    // of them by itself (measured, tests/law/benchmark_law.cpp).
-    static constexpr int fewestSideBySide = 3;
+    // Whether so many subcontacts that may yield are advanced faster one by one than gathered and several at a time,
+    // wherever they stand (measured, tests/law/benchmark_law.cpp).
+    static constexpr bool fasterOneByOne(int many, int /*groups*/) { return many < 3; }
 
     // Throws std::invalid_argument with all problems of the properties at once.
     explicit CyclicLaw(const JointProperties& properties);

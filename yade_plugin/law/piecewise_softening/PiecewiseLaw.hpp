@@ -20,10 +20,10 @@ public:
     using Column = PiecewiseColumn;
     using Equations = PiecewiseEquations;
 
-    // From how many subcontacts on that may yield it is faster to advance the whole batch of up to 32 side by side than
-    // each of them by itself. Side by side, a step costs the same for one as for all of a batch: about as much as five
-    // steps of one subcontact each (measured, tests/law/benchmark_law.cpp).
-    static constexpr int fewestSideBySide = 5;
+    // Whether so many subcontacts that may yield are advanced faster one by one than side by side with the others of
+    // their groups of eight. Side by side, a group costs the same for one as for all: as much as one subcontact by
+    // itself, and the first group as much as two (measured, tests/law/benchmark_law.cpp).
+    static constexpr bool fasterOneByOne(int many, int groups) { return many <= groups; }
 
     // Throws std::invalid_argument with all problems of the properties at once.
     explicit PiecewiseLaw(const JointProperties& properties) : PiecewiseLaw(properties, problems(properties)) {}

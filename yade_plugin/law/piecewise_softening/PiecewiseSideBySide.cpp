@@ -60,14 +60,15 @@ MASONRY_INLINED Mask stayElasticAs(const PiecewiseEquations& given, const Piecew
         const bool keeps = !yielded | ((e.kn - tensileSecant) * moved.before * moved.elastic >= 0);
         const bool elastic =
             e.isElastic({within, bond, squaredCap, hardens}, moved.elastic, sigma, tauSquared, closure, rest) & keeps;
+        const Mask stays = elastic ? 1 : 0;
         normalStress[i] = sigma;
-        opening[i] = elastic ? moved.total : oldOpening;
-        shearStressA[i] = elastic ? a : oldA;
-        if (spatial) shearStressB[i] = elastic ? b : oldB;
-        largestOpening[i] = elastic ? moved.farthest : farthest;
-        largestClosure[i] = (elastic & (closure > closest)) ? closure : closest;
-        pending[i] = elastic ? 0 : 1;
-        waiting += elastic ? 0 : 1;
+        opening[i] = pick(stays, moved.total, oldOpening);
+        shearStressA[i] = pick(stays, a, oldA);
+        if (spatial) shearStressB[i] = pick(stays, b, oldB);
+        largestOpening[i] = pick(stays, moved.farthest, farthest);
+        largestClosure[i] = pick(stays, closure > closest ? closure : closest, closest);
+        pending[i] = 1 - stays;
+        waiting += 1 - stays;
     }
     return waiting;
 }

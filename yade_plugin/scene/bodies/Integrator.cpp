@@ -159,22 +159,24 @@ Integrator::Sums Integrator::advancePiece(const yade::Scene& scene, BodyColumns&
 
 // Sums m g·u and m u of rigid bodies, with their displacements u since the reference state.
 void Integrator::findWeights(const BodyColumns& bodies, int first, int count, Sums& all) const {
-    double masses[RigidMotion::most];     // 0 where there is no rigid body
-    double falls[RigidMotion::most] = {}; // gravity times displacement
-    for (int i = 0; i < count; ++i)
-        masses[i] = bodies.has(first + i) && !bodies.isUnit[first + i] ? bodies.mass[first + i] : 0;
+    const double *now[3], *before[3];
     for (int d = 0; d < 3; ++d) {
-        const double g = gravity[d], *now = &bodies.position[d][first], *before = &bodies.referencePosition[d][first];
-        double moment = 0;
-        for (int i = 0; i < count; ++i) {
-            const double moved = now[i] - before[i];
-            falls[i] += g * moved;
-            moment += masses[i] * moved;
-        }
-        all.moment[d] = moment;
+        now[d] = &bodies.position[d][first];
+        before[d] = &bodies.referencePosition[d][first];
     }
-    for (int i = 0; i < count; ++i)
-        all.energies.fallen += masses[i] * falls[i];
+    // The three sums side by side: an addition then waits for none of another sum.
+    double moment[3] = {};
+    for (int i = 0; i < count; ++i) {
+        const double mass = bodies.has(first + i) && !bodies.isUnit[first + i] ? bodies.mass[first + i] : 0;
+        double falls = 0; // gravity times displacement
+        for (int d = 0; d < 3; ++d) {
+            const double moved = now[d][i] - before[d][i];
+            falls += gravity[d] * moved;
+            moment[d] += mass * moved;
+        }
+        all.energies.fallen += mass * falls;
+    }
+    all.moment = {moment[0], moment[1], moment[2]};
 }
 
 // The step is made in the host's State, because only that holds the angular momentum of the body.
