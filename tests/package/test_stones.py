@@ -77,7 +77,7 @@ def test_the_trace_goes_up_through_one_head_joint_of_every_course(scatter):
     heads = [[b.low[0] for b in wall if b.course == n][1:] for n in range(8)]
     ways = dict.fromkeys(heads[0], 1.2)
     for above in heads[1:]:
-        ways = {x: min(way + abs(x - other) for other, way in ways.items()) for x in above}  # fmt: skip
+        ways = {x: min(path + abs(x - other) for other, path in ways.items()) for x in above}  # fmt: skip
     assert bricks.leastTrace(wall) == pytest.approx(min(ways.values()) / 1.2)
 
 

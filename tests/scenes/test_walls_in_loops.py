@@ -221,12 +221,12 @@ def test_a_loop_that_unloads_is_no_collapse_and_a_lost_side_is_one():
     assert row(-6.1, -11, -1) and not row(-6.1, -13, -1)
 
 
-@pytest.mark.parametrize("way", [1, -1])
-def test_a_wave_at_the_base_is_no_collapse(way):
-    at = pushing.Pushing(moved=2.0 * way)
+@pytest.mark.parametrize("side", [1, -1])
+def test_a_wave_at_the_base_is_no_collapse(side):
+    at = pushing.Pushing(moved=2.0 * side)
     # the base of a soft wall lags behind
-    assert not at.hasLost(way, -0.5 * way, 1.9 * way)
-    assert at.hasLost(way, -0.5 * way, -0.1 * way)
+    assert not at.hasLost(side, -0.5 * side, 1.9 * side)
+    assert at.hasLost(side, -0.5 * side, -0.1 * side)
 
 
 @pytest.mark.parametrize("whole, most", [(5.0, 1.0), (50.0, 5.0)])

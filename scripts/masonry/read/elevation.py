@@ -399,13 +399,12 @@ def cracksOfFrame(run: dict[str, Any], directory: FilePath, number: int | None =
     """
     last = len(frameTimes(directory)) - 1
     chosen = frameOfCracks(run, directory) if number is None else number % (last + 1)
-    frames = {n: [readFrame(directory, kind, n) for kind in ("blocks", "joints")] for n in {chosen, last}}  # fmt: skip
-    later = None
+    later, of = None, lambda kind, frame: readFrame(directory, kind, frame)
     if number is None and chosen != last:
-        later = f"{whenOf(run, directory, last)}, true to scale", structureOf(
-            run, *frames[last], directory
-        )
-    return cracksOf(run, *frames[chosen], whenOf(run, directory, chosen), directory, later)  # fmt: skip
+        end = structureOf(run, of("blocks", last), of("joints", last), directory)
+        later = f"{whenOf(run, directory, last)}, true to scale", end
+    when = whenOf(run, directory, chosen)
+    return cracksOf(run, of("blocks", chosen), of("joints", chosen), when, directory, later)  # fmt: skip
 
 
 def cracks(directory: FilePath, number: int | None = None) -> None:
