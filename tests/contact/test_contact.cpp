@@ -531,6 +531,33 @@ TEST_CASE("the axis that separated two blocks is kept, and never hides an overla
     }
 }
 
+TEST_CASE("a pair that moves a little at a time has the answer of a pair that is looked at for the first time") {
+    Dice dice(14);
+    int separated = 0, touching = 0;
+    for (int n = 0; n < 300; ++n) {
+        Pair pair(anyBlock(dice), n % 2 ? anyBlock(dice) : box(brick));
+        // They begin just apart or just in each other, some with faces or edges that are parallel.
+        const Turn turn = n % 3 ? anyTurn(dice) : about(M_PI / 2, Vector::Unit(n % 9 / 3));
+        auto pose = pressed(pair, turn, inCube(dice).normalized(), Vector::Zero(), 1e-4 * between(dice, -1, 1));
+        int axis = 0;
+        for (int i = 0; i < 100; ++i) {
+            const double step = std::pow(10, between(dice, -16, -4));
+            pose = moved(pose, step * inCube(dice), step * inCube(dice));
+            Overlap kept;
+            const bool touches = pair.finder.find(pair.one, pair.other, pose, axis, kept);
+            const auto fresh = pair.at(pose);
+            (touches ? touching : separated) += 1;
+            REQUIRE(touches == (fresh.pressing > 0));
+            if (!touches) continue;
+            CHECK((wrench(kept) - wrench(fresh)).isZero(0));
+            CHECK(kept.area == fresh.area);
+            CHECK(kept.meanSquare == fresh.meanSquare);
+        }
+    }
+    CHECK(separated > 5000);
+    CHECK(touching > 5000);
+}
+
 namespace {
 
 // Friction on a brick that lies in a face of a large slab with a normal force, moved by hand.

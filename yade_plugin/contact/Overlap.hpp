@@ -84,8 +84,8 @@ private:
     // Makes the part of `whole_` where this one of them is the nearest the present polygon; false if there is none.
     bool cell(const Side& inside, int number, int count);
     void addPatches(const Side& of, const Side& inside, double sign);
-    void addPressure(const Plane& pressure, const Plane& face, Sums&) const;
-    void addArea(const Plane& face, Sums&) const;
+    // Adds integrals of a pressure over the present polygon, and those of the area if they are wanted.
+    void addParts(const Plane& pressure, const Plane& face, bool area, Sums&) const;
     double squareOf(const Plane& depth, const Eigen::Vector3d& normal) const;
     Corner& corner(int number) { return polygon_[std::size_t(number)]; }
     double depthIntegral(const Side& of, const Side& inside);

@@ -146,7 +146,8 @@ struct JointShapes : JointGroup {
     // What becomes of joints in a run.
     std::vector<RefinedJoint> refined; // set by Refinement
     // Whether the contact of its blocks has taken the place of a joint, set by JointConversion: a step leaves its state
-    // as it is, and it has no forces any more. Such a joint keeps its place in the columns.
+    // as it is, and it has no forces any more. Such a joint keeps its place in the columns. 1 when it has been set, 2
+    // after one more step without a jump: from then on a step would change nothing.
     std::vector<unsigned char> converted;
 
     // Intact joints (see JointPlan): a joint between rigid blocks that has always been elastic. Its jump is linear over

@@ -9,7 +9,6 @@
 #include "motion/JointFrames.hpp"
 #include <algorithm>
 #include <atomic>
-#include <cstring>
 #include <numeric>
 
 namespace masonry {
@@ -19,6 +18,7 @@ namespace {
 constexpr int most = JointFrames::most; // largest number of joints in a batch
 constexpr int bodiesAPiece = 64;        // how many bodies a thread takes at a time
 constexpr int nodesAPiece = 64;         // how many nodes, or rows of them, a thread takes at a time
+constexpr unsigned char atRest = 2;     // of JointShapes::converted
 constexpr double flat = 1e-9; // distances [m], angles [rad] and directions out of the plane below this count as none
 
 // Whether a body can only move and turn in a plane y = constant.
@@ -380,18 +380,30 @@ struct JointPlan::Run {
     }
 };
 
-// Joints are advanced in runs of whole lanes, which are either all intact or all not.
+// Joints are advanced in runs of whole lanes, which are either all intact or all not. Where contacts have taken the
+// place of all joints in some lanes, there is nothing to do: these joints keep their state, and have no forces.
 JointPlan::Taken JointPlan::advanceBatch(SceneContents& store, const JointKind& kind, const Kind& plan, int from,
                                          int n) {
     Run run(kind, plan, store);
     const unsigned char* pointwise = &kind.shapes->pointwise[from];
+    const auto replaced = [&](int first) {
+        const auto* joint = &kind.shapes->converted[from + first];
+        return std::all_of(joint, joint + std::min(lanes, n - first), [](unsigned char c) { return c == atRest; });
+    };
     Taken taken;
     for (int first = 0; first < n;) {
+        const bool still = replaced(first);
         int beyond = first + lanes;
-        while (beyond < n && pointwise[beyond] == pointwise[first])
+        while (beyond < n && pointwise[beyond] == pointwise[first] && replaced(beyond) == still)
             beyond += lanes;
         run.from = from + first;
         run.n = std::min(beyond, n) - first;
+        if (still) {
+            const std::size_t width = plane_ ? 4 : 9;
+            std::fill_n(&onJoints_[width * (plan.first + run.from)], width * run.n, 0.0);
+            first = beyond;
+            continue;
+        }
         align(run);
         if (pointwise[first]) {
             const Taken more = advancePoints(run);
@@ -513,9 +525,8 @@ JointPlan::Taken JointPlan::advancePoints(Run& run) {
     Taken taken;
     int still[most], stills = 0; // joints that contacts have taken the place of: they keep their state
     Vector3r kept[most];         // and their jumps at a point
-    if (std::memchr(&shapes.converted[from], 1, std::size_t(n)))
-        for (int i = 0; i < n; ++i)
-            if (shapes.converted[from + i]) still[stills++] = i;
+    for (int i = 0; i < n; ++i)
+        if (shapes.converted[from + i]) still[stills++] = i;
     for (int p = 0; p < shapes.points; ++p) {
         const std::size_t i = shapes.at(p, from), shape = shapes.alike ? shapes.shape(p, 0) : i;
         const std::size_t first = std::size_t(p) * stride + from;
@@ -571,8 +582,10 @@ JointPlan::Taken JointPlan::advancePoints(Run& run) {
     }
     finish(run);
     const int width = plane_ ? 4 : 9;
-    for (int s = 0; s < stills; ++s)
+    for (int s = 0; s < stills; ++s) {
+        shapes.converted[from + still[s]] = atRest;
         std::fill_n(&onJoints_[std::size_t(width) * (plan.first + from + still[s])], width, 0.0);
+    }
     return taken;
 }
 
