@@ -319,7 +319,8 @@ def figureOf(structure: Structure, title: str, magnification: float | None = Non
             x += wide + 0.85
         y -= 0.75
     if title:
-        title = title.replace("{}", scaleText(structure.joints, magnification))
+        if structure.joints is not None:  # else nothing has moved
+            title = title.replace("{}", scaleText(structure.joints, magnification))
         figure.suptitle(title, fontsize=9, x=0.3 / width, y=1 - 0.1 / height, ha="left")  # fmt: skip
     if handles:
         figure.legend(handles.values(), handles, loc="upper right", fontsize=8, bbox_to_anchor=(1 - 0.08 / width, 1 - above / height))  # fmt: skip
