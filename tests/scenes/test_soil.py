@@ -59,7 +59,7 @@ def test_a_trial_puts_its_load_on_in_a_slow_period_and_waits_for_ten(soil, secon
     O.dt, loads, nothing = 1e-3, [], lambda *words: None
     model, scene = SimpleNamespace(loading=SimpleNamespace()), SimpleNamespace()
     model.supports = SimpleNamespace(unrest=lambda: (1.0, 1.0), slowest=lambda: soil)
-    model.motion = SimpleNamespace(checkFall=nothing, fastest=lambda: 0.0)
+    model.motion = SimpleNamespace(checkFall=nothing, fastest=lambda far: 0.0)
     scene.args, scene.model = SimpleNamespace(density_scaling=1.0), model
     scene.description = SimpleNamespace(low=(0, 0, 0), high=(0, 0, 1))
     scene.running = SimpleNamespace(advance=nothing)
