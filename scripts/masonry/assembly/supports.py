@@ -10,8 +10,7 @@ from .motion import FALLEN
 
 #: Share of all loads above which the horizontal ones must be carried on their own at rest [-].
 HORIZONTAL = 1e-3
-#: Share of its height by which a structure sinks at most that is to come to rest [-].
-LOST = 0.5
+LOST = 0.5  # of its height [-]: a structure that would swing by more under its loads is not waited for
 FILLED = 1e-9  # of a platen's side: what may be free of bricks if it is said to be full
 
 
@@ -171,9 +170,10 @@ class Supports:
         return missing, moving / max(elastic, least) if moving else 0.0
 
     def _sinkingPeriod(self):
-        """The period in which a structure swings vertically that sinks so far under its loads that a swing would look like a fall [s];
-        0 of one that is stiffer, or so soft that it is lost. It counts as a column of its height and volume that is everywhere as
-        soft as at its softest joint."""
+        """The vertical period of a structure that is so soft that it could be taken for one that falls, while it only sinks under
+        its loads and swings [s]; 0 of a stiffer one, and of one that would lose more of its height than :data:`LOST` says. The
+        structure counts as a column of its height and volume that is everywhere as soft as at its softest joint.
+        """
         structure, description = self.structure, self.description
         load = structure.gravity * self.freeMass
         load -= sum(force[2] for _, force in structure.loading.deadLoads())
@@ -182,12 +182,11 @@ class Supports:
         least = min(description.size(n) for n in range(len(structure.ids)))
         if not FALLEN * least < 2 * sinking < LOST * height:
             return 0.0
-        return (
-            2 * math.pi * math.sqrt(sinking * structure.args.density_scaling / GRAVITY)
-        )
+        scaled = sinking * structure.args.density_scaling
+        return 2 * math.pi * math.sqrt(scaled / GRAVITY)
 
     def _softest(self):
-        """The least modulus of the masonry across a joint: the joint in a row with the bricks, where these are deformable [Pa]."""
+        """The least modulus of the masonry across any of its joints [Pa]; deformable bricks add their own compliance."""
         zones = self.structure.zones
         deformable = set(zones.bodies) if zones else ()
         moduli = [math.inf]

@@ -11,10 +11,8 @@ import numpy as np
 
 from .views import LEVEL
 
-GHOST, MORTAR = (
-    "#e6e6e6",
-    "#595959",
-)  # where blocks stood, and joints that are not cracked
+GHOST = "#e6e6e6"  # where blocks stood
+MORTAR = "#595959"  # joints that are not cracked
 #: Colours of blocks, by what the legend says of them if they are no bricks.
 SHADES = {
     "brick": "#f3e3c8",

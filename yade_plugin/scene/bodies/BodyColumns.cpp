@@ -30,9 +30,8 @@ void BodyColumns::read(const yade::Scene& scene) {
             take(b);
         else
             seen_[b].blocked = 63;
-        // a body that is added to a scene was not there in the last step, and did no work
-        const bool added = !before.empty() && b >= int(before.size());
-        if (!added && (before.empty() || before[b] != states_[b])) forgetEarlier(b);
+        // a body that was added since was not there in the last step, and did no work
+        if (before.empty() || (b < int(before.size()) && before[b] != states_[b])) forgetEarlier(b);
     }
 }
 

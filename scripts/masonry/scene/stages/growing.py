@@ -36,9 +36,9 @@ TRIAL = (
 )
 MOST_KEPT, LEAST_KEPT = 128, 8  # states that are kept during a growth
 KEPT_BYTES = 100e6  # that they may have in all; a checkpoint during the growth or the search has them
-#: A block of a trial that has moved as far as one that has fallen, has this share of its speed, and is twice as fast as in the
-#: first half of the trial, does not come to rest [-]: see :meth:`masonry.assembly.motion.Motion.fastest`. Blocks at a crack that
-#: snaps are as fast, but have not moved so far.
+#: A trial is not held as soon as a block has moved as far as one that has fallen, has at least this share of its speed [-], and is
+#: twice as fast as the fastest one in the first half of the trial (:meth:`masonry.assembly.motion.Motion.fastest`). Blocks at a crack that
+#: opens suddenly can be as fast, but have not moved so far.
 SURE = 0.25
 #: How trials end that are not held.
 WHY = (

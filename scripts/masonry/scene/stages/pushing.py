@@ -27,7 +27,9 @@ SHARE = 1.0
 #: Frames for ParaView along a history, beside those at its turning points and zeros.
 FRAMES = 200
 SUDDEN = 0.1  # of the peak: a larger fall within a tenth of a millimetre is few bricks that give way at once
-AVERAGED = 1.0  # [mm] of a push; over it, or the first period, or the longest that is looked for, the mean of the force tells a collapse
+#: A push has collapsed by the mean of its force over so much of it [mm], and over its first period at least. If no period was
+#: found, it is over the longest that was looked for.
+AVERAGED = 1.0
 DAMPED = 0.1  # of what loops lose: a larger share of damping is a warning, because the loops are too fat by it
 
 

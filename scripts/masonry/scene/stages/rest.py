@@ -31,7 +31,7 @@ PERIODS = 4.0
 WAITED = 10.0
 #: Height over the least width from which a structure that has settled is looked at for buckling [-].
 SLENDER = 8.0
-SWINGING = 4.0  # [s] in the scene for which settle() waits at least where a drive let go of what swings now
+SWINGING = 4.0  # [s] in the scene: settle() waits at least so long after the release of a drive
 SETTLING = 0.5  # most local damping of deformable units in settle(): with more they creep to rest
 
 
