@@ -116,6 +116,36 @@ def test_a_drive_meets_its_velocity_in_every_step_whatever_the_weight_and_way(
     assert abs(balance()["error"]) < 1e-6
 
 
+def test_a_drive_in_a_pattern_moves_the_mean_of_its_points_with_forces_in_proportion():
+    stack(count=3, damping=0.5)
+    corners = {1: Vector3(0.2, 0.051, 0.16), 2: Vector3(0.1, 0.02, 0.3)}
+    shares, direction = (0.25, 0.75), Vector3(1, 0, 2).normalized()
+    states = [O.bodies[body].state for body in corners]
+    driven = dict(direction=direction, driven=True, velocity=0.003)
+    load = insert(MasonryLoad(body=1, point=corners[1], others=[2], otherPoints=[corners[2]], shares=shares, **driven))  # fmt: skip
+    O.dt = 0.3 * criticalTimeStep()[0]
+    for step in range(200):
+        arms = [
+            s.ori * s.refOri.conjugate() * (corner - s.refPos)
+            for s, corner in zip(states, corners.values())
+        ]
+        O.step()
+        speeds = [(s.vel + s.angVel.cross(a)).dot(direction) for s, a in zip(states, arms)]  # fmt: skip
+        assert np.dot(shares, speeds) == pytest.approx(0.003, rel=1e-5)
+    assert speeds[0] != pytest.approx(speeds[1], rel=0.1)
+    assert abs(balance()["error"]) < 1e-6
+
+
+def test_a_pattern_of_a_drive_that_does_not_fit_is_refused():
+    point = dict(point=(0, 0, 0), otherPoints=[(0, 0, 0)])
+    with pytest.raises(ValueError, match="shares must be 1 in sum"):
+        MasonryLoad(body=1, others=[2], shares=[0.5, 0.6], **point)
+    with pytest.raises(ValueError, match="must have a number of each other body"):
+        MasonryLoad(body=1, others=[2], shares=[1.0], **point)
+    with pytest.raises(ValueError, match="must be different bodies"):
+        MasonryLoad(body=1, others=[1], shares=[0.5, 0.5], **point)
+
+
 def test_a_drive_at_rest_carries_the_weight_and_what_pushes():
     stack(count=2)
     O.bodies[1].state.blockedDOFs = "XYZ"

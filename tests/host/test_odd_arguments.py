@@ -105,7 +105,7 @@ class Of:
 
 
 TOP, LEVEL = Of("top"), (1, 0, 0)
-PUSHES = dict(target=TOP, direction=LEVEL, rate=200.0, continued=False)
+PUSHES = dict(target=TOP, direction=LEVEL, rate=200.0, continued=False, control=TOP)
 WINDS = dict(pressure=10.0, towards=LEVEL, part=None)
 GROWS = dict(over=0.02, within=0.5)
 

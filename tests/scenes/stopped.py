@@ -57,6 +57,7 @@ STAGES = {
         "bound": f"print(scene.bound(towards={TOWARDS})['load'])",
     },
     "rigid": {
+        "pattern": f"scene.push(<'masses'|'mode'|lambda x, y, z: z>, <0.05~0.2>, {TOWARDS}, control=top)",
         "wind": f"scene.wind(<100~900>, {TOWARDS}, {LONGEST})",
         "growWind": f"scene.growWind(<300~3000>, {TOWARDS}, {GROWS})",
         "bracketWind": bracket("wind(1e3 * f, (1, 0, 0)"),

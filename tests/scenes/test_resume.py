@@ -56,6 +56,16 @@ scene.settle()
 scene.push(top, 0.1)
 scene.finish()
 """,
+    "patterns": """
+scene = Scene("s", bricks.Wall(0.44, 0.324), materials.calciumSilicate(), rate=100)
+scene.platen("bottom")
+low, high = scene.handle(0), scene.handle(-1)
+scene.settle()
+scene.push("mode", 0.1, control=high)
+scene.release(high, "x")
+scene.cycle({low: 1, high: 2}, [0.1], control=low)
+scene.finish()
+""",
     "fall": """
 wall = bricks.Wall(0.6, 0.9, unit=(0.6, 0.3, 0.3), halves=False)
 stones = materials.dry(0.6, 2e8, density=2200)
@@ -92,6 +102,7 @@ def resumed(script, whole):
         ("soft", (0.01, 0.13, 0.75)),
         ("line", (0.3, 0.8, 0.9, 0.95)),
         ("fall", (0.5, 0.95)),
+        ("patterns", (0.3, 0.5, 0.9)),
     ],
 )
 def test_a_run_stopped_again_and_again_leaves_what_an_unbroken_one_does(

@@ -244,11 +244,13 @@ void MasonryEnergy::countBodies(const EngineScope& turn) {
     }
     fallen = workOfGravity(fallen, gravity, moment, before);
     for (auto* load : turn->loads) {
-        const State& s = *bodyAt(*scene, load->body, "MasonryLoad.body").state;
-        const BodyForces on{forces.getForce(load->body), forces.getTorque(load->body)};
-        const auto step = stepOf(s, on, gravity, scene->dt, damping);
-        load->workBefore(scene->dt, s);
-        load->workAfter(scene->dt, step.vel, step.angVel);
+        const auto before = [&](int body) -> const State& { return *bodyAt(*scene, body, "MasonryLoad.body").state; };
+        const auto after = [&](int body) {
+            const BodyForces on{forces.getForce(body), forces.getTorque(body)};
+            return stepOf(before(body), on, gravity, scene->dt, damping);
+        };
+        load->workBefore(scene->dt, before);
+        load->workAfter(scene->dt, after);
     }
 }
 

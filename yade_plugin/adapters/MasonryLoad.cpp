@@ -11,9 +11,11 @@ namespace masonry {
 
 void MasonryLoad::action() {
     const EngineScope turn(*scene, *this);
-    if (turn->zones && turn->zones->unitOf(body))
-        throw std::invalid_argument("MasonryLoad.body " + std::to_string(body) +
-                                    " is a deformable unit; load a rigid block joined to it");
+    eachBody([&](int id) {
+        if (turn->zones && turn->zones->unitOf(id))
+            throw std::invalid_argument("MasonryLoad.body " + std::to_string(id) +
+                                        " is a deformable unit; load a rigid block joined to it");
+    });
     act(*scene, turn->gravity());
     turn.end();
 }

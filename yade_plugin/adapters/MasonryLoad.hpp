@@ -15,16 +15,24 @@ public:
         "velocity of that point in one direction. The block remains free to rotate and to move in other directions. "
         "Stands after the loop of the joints and before the integrator. It switches off the damping of the block, so "
         "that the velocity is exact, unless damped keeps it; two driven loads on one block are exact only if the block "
-        "cannot rotate.";
+        "cannot rotate. A drive can move several blocks with forces in a fixed proportion; the velocity is then that "
+        "of "
+        "their points in the mean by the shares of the force.";
 
     template <class Visit> static void attributes(Visit&& visit) {
         using L = MasonryLoad;
         visit("body", &L::body, number("", "Id of the loaded body").atLeast(0));
         visit("point", &L::point, number("m", "Loaded point in the reference state of the body, global axes"));
         visit("force", &L::force, number("N", "Force at the point"));
+        visit("others", &L::others, described("Ids of further blocks that the drive moves"));
+        visit("otherPoints", &L::otherPoints, described("Their points, likewise [m]"));
+        visit("shares", &L::shares,
+              described("Of the force of the drive that body and the others take, 1 in sum; empty without others"));
         visit("direction", &L::direction, described("Direction of the driven velocity; not zero"));
         visit("driven", &L::driven, described("Whether the velocity is prescribed"));
-        visit("damped", &L::damped, described("Whether the block keeps its numerical damping; not if it is driven"));
+        visit("damped", &L::damped,
+              described("Whether the blocks keep their numerical damping; a drive then meets its velocity but for what "
+                        "damping takes in a step"));
         visit("velocity", &L::velocity,
               number("m/s", "Velocity of the point along the direction, when the ramp is over"));
         visit("ramp", &L::ramp,

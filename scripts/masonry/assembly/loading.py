@@ -6,6 +6,7 @@ from yade.wrapper import MasonryLoad
 
 from .._masonry import loadScene, saveScene
 from ..basics import Refused
+from .drives import PATTERN, bodiesOf, isAlong
 
 
 class Loading:
@@ -154,57 +155,30 @@ class Loading:
     def isDriven(self, target, axis):
         """Whether a drive holds or moves a target along an axis."""
         return any(
-            load and load.body == target.body and load.driven and abs(load.direction["xyz".index(axis)]) > 1e-12
+            load and target.body in bodiesOf(load) and isAlong(load, axis)
             for load in self.loads.values()
-        )  # fmt: skip
+        )
 
     def driveOf(self, target, axis):
         """The load that drives a target along an axis, or None."""
         return self.loads.get(f"{target.name}_drive_{axis}")
 
     def pushOf(self, target, axis):
-        """The drive that a push made, if it holds a target along an axis, else None."""
-        load = self.loads.get(f"{target.name}_drive")
-        if axis not in "xyz" or not (load and load.driven):
-            return None
-        return load if abs(load.direction["xyz".index(axis)]) > 1e-12 else None
+        """The drive that a push made, if it holds a target along an axis, alone or with others, else None."""
+        for label in (f"{target.name}_drive", PATTERN):
+            load = self.loads.get(label)
+            if load and target.body in bodiesOf(load) and isAlong(load, axis):
+                return load
+        return None
+
+    def patternDrive(self):
+        """The engine of a push in a pattern; it is made if it is missing."""
+        return self._added(PATTERN, self.ids[0], (0, 0, 0))
 
     def driveForce(self, target, axis):
         """Force of the drive of a target along an axis [N], as a vector."""
         load = self.driveOf(target, axis)
         return load.reaction * load.direction.normalized()
-
-    def pushTo(self, target, direction, name="push"):
-        """From now on ``push`` moves this target in this direction. The other drives hold what they hold."""
-        if self.description.plane and direction[1]:
-            raise ValueError(
-                f"{name}: the scene is in the x-z plane; Scene(..., plane=False) is in space"
-            )
-        blocked = O.bodies[target.body].state.blockedDOFs
-        if not any(v and a not in blocked for a, v in zip("xyz", direction)):
-            raise ValueError(
-                f"{name}: {target.name} is held along {tuple(direction)}, and cannot be pushed there"
-            )
-        load = self.loads.get(f"{target.name}_drive")
-        if target.drives:
-            along = [a for a, v in zip("xyz", direction) if abs(v) > 1 - 1e-12]
-            load = self.driveOf(target, along[0]) if along else None
-            if load is None:
-                raise ValueError(
-                    f"{name}: {target.name} has drives along {', '.join(target.drives)} alone, not along {tuple(direction)}"
-                )
-        elif load.driven and load.direction.cross(direction).norm() > 1e-12:
-            raise ValueError(
-                f"{name}: the drive of {target.name} holds it along {tuple(load.direction)}, and would let go of it to push "
-                f"along {tuple(direction)}; drive='xz' and the like give it a drive for every axis"
-            )
-        for label, other in self.loads.items():
-            if "_drive" in label:
-                other.velocity = other.ramp = 0
-        load.damped = False
-        load.direction, load.driven = direction, True
-        self.target, self.direction, self.loads["push"] = target, direction, load
-        self.followed, self.origin, self.pushing = target, (0, 0, 0), True
 
     def follow(self, target, direction):
         """From now on record the displacement of a target, or None, along a direction. Returns its origin [m]."""
@@ -251,6 +225,7 @@ class Loading:
                 continue
             load = self.loads[f"{target.name}_force"]
             drive = self.loads["push"] if target is self.target else load
+            drive = load if drive.others else drive
             along = drive.displacement()
             away = (along[0], 0 if self.description.plane else along[1], 0)
             load.point = self._lines[target.name] - Vector3(*away)

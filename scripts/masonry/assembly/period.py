@@ -78,6 +78,31 @@ def firstPeriod(structure, direction, longest):
     return 2 * O.dt * (1 + every * (n + back[n - 1] / (back[n - 1] - back[n])))
 
 
+def firstMode(structure, direction, longest):
+    """Displacements of all bodies along a direction in the first mode of a structure at rest, by YADE's ids, the largest amount 1; None if
+    no first period is found. Afterwards the scene is as before.
+
+    They are those after half the first period under a uniform acceleration, of both sides. There the first mode has its largest
+    displacement, and all others have less than by the square of their periods. Parameters as in :func:`firstPeriod`.
+    """
+    period = firstPeriod(structure, direction, longest)
+    if period is None:
+        return None
+    before, sides = saveScene("null"), []
+    push = SHARE * GRAVITY / structure.args.density_scaling * direction
+    steps = round(0.5 * period / O.dt)
+    try:
+        for sign in (1, -1):
+            next(_momenta(structure, direction, sign * push, steps))
+            sides.append([body.state.pos.dot(direction) for body in O.bodies])
+            loadScene(before)
+    finally:
+        loadScene(before)
+    shape = [there - back for there, back in zip(*sides)]
+    largest = max(map(abs, shape))
+    return [one / largest for one in shape]
+
+
 def buckles(structure, direction):
     """Whether a small push along a direction grows, or does not come back within :data:`LONGEST`, or within the longest period on
     springs if that is longer. Afterwards the scene is as before, to the last bit. It takes the steps of some periods.

@@ -6,6 +6,7 @@ import math
 from yade import O, Vector3
 
 from ..basics import GRAVITY
+from .drives import forceOn
 from .motion import FALLEN
 
 #: Share of all loads above which the horizontal ones must be carried on their own at rest [-].
@@ -79,8 +80,8 @@ class Supports:
         """Force of what loads, drives and holds a target on it [N]."""
         total, blocked = Vector3(0, 0, 0), O.bodies[target.body].state.blockedDOFs
         for label, load in self.structure.loading.loads.items():
-            if label != "push" and load.body == target.body:
-                total += load.force + load.reaction * load.direction.normalized()
+            if label != "push":
+                total += forceOn(load, target.body)
         on = self.forceOn(target)
         for i, axis in enumerate("xyz"):
             if axis in blocked:

@@ -33,6 +33,7 @@ def parser() -> argparse.ArgumentParser:
     p.add_argument("result", nargs="*", metavar="FOLDER", help="folder of results")
     p.add_argument("--rule", choices=list(RULES), default="en1998", help="of the bilinear curve: that of annex B.3 (default), or the convention for masonry walls")  # fmt: skip
     p.add_argument("--mechanism", metavar="MM", type=float, help="with en1998, displacement at which the plastic mechanism forms; else that of the peak")  # fmt: skip
+    p.add_argument("--column", metavar="NAME", help="displacement of curve.csv that the curve has, as roof_x_mm, with its --height; else that of the pushed point")  # fmt: skip
     p.add_argument("--height", metavar="M", type=float, help="of the recorded point above the base, for drifts, where run.json does not have it")  # fmt: skip
     p.add_argument("--out", metavar="DIR", help="folder of the files, for one FOLDER; else that folder")  # fmt: skip
     g = p.add_argument_group("equivalent system")
@@ -152,7 +153,7 @@ def main(words: Sequence[str] | None = None) -> int:
         spectrum, system, status = spectrumOf(args), systemOf(args), 0
         for folder in args.result:
             try:
-                found = assess(folder, spectrum, system, args.rule, args.mechanism, args.limited, args.iterate, args.height, args.out)  # fmt: skip
+                found = assess(folder, spectrum, system, args.rule, args.mechanism, args.limited, args.iterate, args.height, args.out, args.column)  # fmt: skip
             except Refused as problem:
                 say(problem, sys.stderr)
                 status = 2

@@ -39,6 +39,7 @@ def assess(
     iterate: bool = False,
     height: Annotated[float, number("m", 0, above=True)] | None = None,
     out: FilePath | None = None,
+    column: str | None = None,
 ) -> dict[str, Any]:
     """Write capacity.json and capacity.png of a run: the bilinear curve of its push, its drifts and, for a spectrum, the
     target displacement by the N2 method. Returns what capacity.json has.
@@ -52,6 +53,7 @@ def assess(
     :param iterate: whether the plastic mechanism forms at the target displacement, :func:`masonry.capacity.iterated`
     :param height: as in :func:`masonry.read.bilinear.drifts`
     :param out: folder of both files; None: ``directory``
+    :param column: as in :func:`masonry.read.bilinear.pushover`
     :returns: dict with ``scene``, ``title``, ``rule``, ``numbers`` (a list of dicts as in :class:`masonry.read.bilinear.Number`), ``notes``,
         and with a spectrum ``spectrum``, ``holds``, ``verdict`` and ``assumed``
     :raises Refused: if the run has no whole push, or if something is missing for the demand; nothing is written then
@@ -60,7 +62,7 @@ def assess(
         raise Refused(
             "iterate: it is of the rule en1998 with a spectrum, and finds the mechanism itself: leave rule= and mechanism= away"
         )
-    push = bilinear.pushover(directory)
+    push = bilinear.pushover(directory, column)
     needs = None
     if spectrum:
         known = system or n2.ofRun(push.run, push.directory)

@@ -345,13 +345,15 @@ class Pushover:
 
 
 @validated
-def pushover(directory: FilePath) -> Pushover:
+def pushover(directory: FilePath, column: str | None = None) -> Pushover:
     """Read the curve of the push of a run.
 
     :param directory: folder of results
+    :param column: of curve.csv whose displacement the curve has, for example ``roof_x_mm``, from where the push began; None: that of the
+        pushed point
     :raises Refused: if the run has no push, was interrupted, failed, or goes along a history
     """
-    data = RunData.read(directory)
+    data = RunData.read(directory, column)
     run = data.run
     if run.get("interrupted"):
         raise Refused(

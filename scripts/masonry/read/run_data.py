@@ -11,6 +11,7 @@ from typing import Any, Callable, Sequence
 import numpy as np
 
 from ..arguments import FilePath
+from ..basics import Refused
 from . import cracks, curves, loops
 from .files import readCurve, readRun
 
@@ -39,9 +40,24 @@ class RunData:
         self.run, self.column, self.joints, self._height = run, column, joints, height
 
     @classmethod
-    def read(cls, directory: FilePath, height: float | None = None) -> RunData:
-        """That of a folder of results. Raises Refused."""
-        return cls(readRun(directory), readCurve(directory).get, height=height)
+    def read(cls, directory: FilePath, moved: str | None = None) -> RunData:
+        """That of a folder of results. Raises Refused.
+
+        :param moved: name of a column of curve.csv whose displacements are those of the push, from where it began; None: those of the
+            pushed point
+        """
+        curve = readCurve(directory)
+        data = cls(readRun(directory), curve.get)
+        if moved is None or not data.isPush:
+            return data
+        if moved not in curve or not moved.endswith("_mm"):
+            names = ", ".join(name for name in curve if name.endswith("_mm"))
+            raise Refused(f"{directory}: column {moved!r} must be a displacement of curve.csv: {names}")  # fmt: skip
+        values, usual = (np.array(curve[name]) - curve[name][data.rows[0]] for name in (moved, MOVED))  # fmt: skip
+        along = math.copysign(1, values[data.rows] @ usual[data.rows])
+        unknown = {"drift_height_m": None, "recorded_height_m": None}  # of that point
+        columns: dict[str, Any] = {**curve, MOVED: along * values, MASONRY: None}
+        return cls({**data.run, **unknown}, columns.get)
 
     # -- which rows
 

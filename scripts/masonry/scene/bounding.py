@@ -11,13 +11,15 @@ from ..basics import Interrupted
 from .bounds import EVERY, SMALL, findBy, nameInDomain, nameOfLean, nameOfPush
 from .resuming import saidBefore
 from .stages import gravity
-from .targets import Loaded, MovingPlaten
+from .stages.pattern import Pushed, patternOf
+from .targets import MovingPlaten
+from .words import asData
 
 
 @validated
 def bound(
     scene: Any,
-    target: Loaded | None = None,
+    target: Pushed | None = None,
     direction: Direction = (1, 0, 0),
     towards: Level | None = None,
 ) -> Any:
@@ -26,7 +28,7 @@ def bound(
     Stages that push or lean find their bound by themselves, if there are at most 3000 joints; this is for other
     loads, and for larger structures.
 
-    :param target: what is pushed, as in :meth:`push`, along ``direction``; its factor is the force of the push [kN]
+    :param target: what is pushed, or a pattern, as in :meth:`push`, along ``direction``; its factor is the force of the push [kN]
     :param towards: horizontal direction of an acceleration, whose factor is in g; give this or ``target``
     :returns: the entry of run.json: a dict with ``factor``, ``exact`` and the others that :mod:`masonry.run.results`
         lists
@@ -36,10 +38,11 @@ def bound(
 
     def find():
         _begin(scene, "bound")
-        before = saidBefore(scene, "bound", target=getattr(target, "name", ""))
+        before = saidBefore(scene, "bound", target=asData(target) or "")
         if target is not None:
             along = vector(direction, "bound: direction").normalized()
-            name, load = nameOfPush(target, along), ("push", target, along)
+            pushed = patternOf(scene, target, along, scene.args)
+            name, load = nameOfPush(pushed, along), ("push", pushed, along)
         else:
             along = gravity.sideways(scene, towards, "bound")
             name, load = nameOfLean(along), ("lean", along)

@@ -95,7 +95,7 @@ class Bounds:
     def push(self, target, direction, both=False, lowerUpTo=0, background=False):
         """Find the bound of a push [kN], without what acts beside it. Returns its entry of run.json, the last one if there are two.
 
-        :param target: what is pushed
+        :param target: what is pushed, or a :class:`masonry.assembly.drives.Pattern`
         :param direction: unit vector of the push
         :param both: whether it goes there and back
         :param lowerUpTo: up to so many joints a collapse without dilatancy is looked for, too, if the bound is not exact
@@ -109,7 +109,7 @@ class Bounds:
         return entry
 
     def _pushed(self, target, direction, assembly):
-        return limit_loads.push(self.model, assembly, target, direction)
+        return limit_loads.push(assembly, target, direction)
 
     def domain(self, target, normals, direction, lowerUpTo=0, background=False):
         """Find the bounds of a push under several normal forces. Returns their entries of run.json.

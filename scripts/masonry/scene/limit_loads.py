@@ -7,6 +7,9 @@
 import numpy as np
 from yade import O, Vector3
 
+from ..assembly.drives import bodiesOf
+from ..basics import Refused
+
 
 def beside(model, gravity):
     """What acts beside a load and what holds the structure now: data that can be compared."""
@@ -18,7 +21,7 @@ def beside(model, gravity):
 def forces(model, assembly, pushed=None, pressed=None):
     """Presses, dead loads and wind with their whole; points that drives hold become props.
 
-    :param pushed: target and direction of a push, whose own drive is no prop, or None
+    :param pushed: target or pattern, and direction, of a push, whose own drive is no prop, or None
     :param pressed: target and normal force [kN] that replaces its press, or None
     """
     loads = np.zeros_like(assembly.held, float)
@@ -29,20 +32,32 @@ def forces(model, assembly, pushed=None, pressed=None):
             force = Vector3(force[0], force[1], own - 1e3 * pressed[1])
         if force.norm():
             loads += assembly.force(block, np.array(force), point)
+        if not load.driven:
+            continue
         along = np.array(load.direction.normalized())
-        own = pushed and pushed[0].body == load.body
-        if load.driven and not (own and abs(along @ pushed[1]) > 1 - 1e-9):
-            assembly.props.append((block, along, point))
+        own = pushed and [body for body, *_ in pushed[0].parts] == [*bodiesOf(load)]
+        if own and abs(along @ pushed[1]) > 1 - 1e-9:
+            continue
+        if load.others:
+            raise Refused("limit analysis: the drive of a push in a pattern holds the structure; release() lets it go")  # fmt: skip
+        assembly.props.append((block, along, point))
     return loads
 
 
-def push(model, assembly, target, direction):
-    """The live load of a push: 1 kN along a direction."""
-    load = next(x for x in model.loading.loads.values() if x and x.body == target.body)
-    away = load.displacement() if not assembly.stood else np.zeros(3)
-    point = np.array(target.point) + np.array(away)
-    block = assembly.ids.index(target.body)
-    return assembly.force(block, 1e3 * np.array(direction), point)
+def push(assembly, pushed, direction):
+    """The live load of a push of a target, or in a pattern: 1 kN along a direction."""
+    found = np.zeros_like(assembly.held, float)
+    for body, point, share in pushed.parts:
+        at = np.array(point if assembly.stood else placeOf(body, point))
+        force = 1e3 * share * np.array(direction)
+        found += assembly.force(assembly.ids.index(body), force, at)
+    return found
+
+
+def placeOf(body, point):
+    """Where a point of a body is now [m]: ``point`` is its place in the structure as built."""
+    state = O.bodies[body].state
+    return state.pos + state.ori * state.refOri.conjugate() * (Vector3(*point) - state.refPos)  # fmt: skip
 
 
 def sumOf(assembly, loads):
@@ -56,7 +71,7 @@ def sumOf(assembly, loads):
 
 def pointOf(load, assembly):
     """Where a MasonryLoad acts, on blocks as the assembly has them [m]."""
-    return load.point if assembly.stood else load.point + load.displacement()
+    return load.point if assembly.stood else placeOf(load.body, load.point)
 
 
 def carriedBy(assembly, dead):

@@ -12,7 +12,7 @@ from ..assembly.columns import Column
 from ..bricks import Block
 
 
-@dataclass
+@dataclass(eq=False)
 class Target:
     """A platen, or a brick that is held, loaded or watched. ``scene.platen`` and its like make it.
 
@@ -34,6 +34,11 @@ class Target:
     pressed: float | None = None  # [Pa] on the bricks below
     riding: bool = True  # whether the load moves with the platen
     joined: bool = True  # whether a platen has joints with what it touches
+
+    @property
+    def parts(self) -> tuple[tuple[Any, Any, float]]:
+        """What a push of it moves, as in :class:`masonry.assembly.drives.Pattern`."""
+        return ((self.body, self.point, 1.0),)
 
     def columns(self, plane: bool) -> Iterator[Column]:
         """What is recorded of it: displacements, forces where it is held, and its rotation.
@@ -211,10 +216,8 @@ AnyTarget = Annotated[
         lambda target: True,
     ),
 ]
-Loaded = Annotated[
-    Target,
-    _target("a platen that moves, or a handle(), of this scene", lambda t: t.loaded),
-]
+kindOfLoaded = _target("a platen that moves, or a handle(), of this scene", lambda t: t.loaded)  # fmt: skip
+Loaded = Annotated[Target, kindOfLoaded]
 MovingPlaten = Annotated[
     Target,
     _target("a platen of this scene that moves", lambda t: t.box and not t.fixed),

@@ -115,7 +115,7 @@ def asData(value):
     if callable(value):
         return "a function"
     if isinstance(value, dict):
-        return {str(key): asData(one) for key, one in value.items()}
+        return {str(asData(key)): asData(one) for key, one in value.items()}
     if isinstance(getattr(value, "name", None), str):
         return value.name
     try:

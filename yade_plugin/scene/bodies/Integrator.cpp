@@ -40,9 +40,10 @@ void Integrator::advance(yade::Scene& scene, BodyColumns& bodies, const std::vec
     combines_ = combined();
     for (auto& column : last_)
         if (combined()) column.resize(count, 0);
+    const auto motionOf = [&](int body) -> const auto& { return bodies.state(body); };
     for (auto* load : loads) { // a script may have changed its body since the load acted
-        bodyAt(scene, load->body, "MasonryLoad.body");
-        load->workBefore(scene.dt, bodies.state(load->body));
+        load->eachBody([&](int body) { bodyAt(scene, body, "MasonryLoad.body"); });
+        load->workBefore(scene.dt, motionOf);
     }
     const auto halfOfForeignWork = [&] {
         double power = 0;
@@ -69,10 +70,8 @@ void Integrator::advance(yade::Scene& scene, BodyColumns& bodies, const std::vec
     fallen = workOfGravity(fallen, gravity, moment, before);
     external += foreignWork;
     pendingExternal += halfOfForeignWork();
-    for (auto* load : loads) {
-        const auto& s = bodies.state(load->body);
-        load->workAfter(scene.dt, s.vel, s.angVel);
-    }
+    for (auto* load : loads)
+        load->workAfter(scene.dt, motionOf);
 }
 
 // The power of forces and weight on a body along its blocked axes with its present velocity, less that with the

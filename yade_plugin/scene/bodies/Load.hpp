@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A load on a rigid block, at a point fixed to it, from which an engine derives; and loads that are not ours.
+// A load on rigid blocks, at points fixed to them, from which an engine derives; and loads that are not ours.
 #pragma once
 #include "host/Yade.hpp"
 
@@ -19,14 +19,20 @@ public:
     Vector3r point = Vector3r::Zero();      // loaded point in the reference state of the body, global axes [m]
     Vector3r force = Vector3r::Zero();      // at the point [N]
     Vector3r direction = Vector3r::UnitX(); // of the driven velocity
-    bool driven = false;                    // whether the velocity of the point along `direction` is prescribed
-    bool damped = false;                    // whether the block keeps its numerical damping
-    double velocity = 0;                    // of the point along `direction`, when `ramp` is over [m/s]
-    int ramp = 0;                           // steps until then, in each of which the velocity grows evenly
-    double acceleration = 0;                // in the ramp [m/s²]
-    double reaction = 0;                    // force of the drive along `direction` [N]
-    double work = 0;                        // of force and drive so far [J]
-    double pendingWork = 0;                 // second half of the last step's work, which the next step adds [J]
+    // Further bodies that the drive moves, their points likewise, and the shares of the drive's force that `body` and
+    // the others take: 1 in sum, or empty without others. The velocity that is prescribed is that of all points along
+    // `direction` in the mean by these shares, which is the one that the force of the drive does work on.
+    std::vector<int> others;
+    std::vector<Vector3r> otherPoints;
+    std::vector<double> shares;
+    bool driven = false;     // whether the velocity of the point along `direction` is prescribed
+    bool damped = false;     // whether the block keeps its numerical damping
+    double velocity = 0;     // of the point along `direction`, when `ramp` is over [m/s]
+    int ramp = 0;            // steps until then, in each of which the velocity grows evenly
+    double acceleration = 0; // in the ramp [m/s²]
+    double reaction = 0;     // force of the drive along `direction`, on all bodies [N]
+    double work = 0;         // of force and drive so far [J]
+    double pendingWork = 0;  // second half of the last step's work, which the next step adds [J]
 
     // What is wrong with these values, one sentence for each problem; empty if nothing is.
     std::vector<std::string> problems() const;
@@ -35,14 +41,33 @@ public:
     // Displacement of the loaded point since the reference state [m].
     Vector3r displacementIn(const yade::Scene&) const;
 
+    // Calls a function with the id of each body that is loaded.
+    template <class F> void eachBody(F&& act) const {
+        act(body);
+        for (const int other : others)
+            act(other);
+    }
+
     // For the engine that counts energies. Half of a load's work is done with the velocity before the step, and half
-    // with the one after it, as in BodyStep.
-    void workBefore(double dt, const yade::State&);
-    void workAfter(double dt, const Vector3r& vel, const Vector3r& angVel);
+    // with the one after it, as in BodyStep. `motionOf` gives `vel` and `angVel` of a body.
+    template <class F> void workBefore(double dt, F&& motionOf) { work += pendingWork + 0.5 * dt * power(motionOf); }
+    template <class F> void workAfter(double dt, F&& motionOf) { pendingWork = 0.5 * dt * power(motionOf); }
 
 private:
-    Vector3r total_ = Vector3r::Zero(); // force and reaction in the present step [N]
-    Vector3r arm_ = Vector3r::Zero();   // from the body's centre to the point in the present step [m]
+    struct Part {
+        int body;
+        Vector3r force, arm; // force and drive on it [N], and from its centre to its point [m], in the present step
+    };
+    std::vector<Part> parts_;
+
+    template <class F> double power(F&& motionOf) const {
+        double sum = 0;
+        for (const auto& part : parts_) {
+            const auto& motion = motionOf(part.body);
+            sum += part.force.dot(motion.vel + motion.angVel.cross(part.arm));
+        }
+        return sum;
+    }
 };
 
 } // namespace masonry

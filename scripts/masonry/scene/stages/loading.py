@@ -26,6 +26,7 @@ from .growing import WITHIN, found, grow
 from .answers import AT_REST
 from .stage import stage
 from .supports import atOnce
+from ..words import PUSHES
 from .timed import Duration
 
 GROWS = 2.0  # [s] in which a load grows to its whole
@@ -276,7 +277,12 @@ def prepare(scene, word, arguments):
 
     :param word: what the script said; ``arguments``: its arguments as data
     """
-    target = scene.targets.get(arguments.get("target") or arguments.get("platen"))
+    target = arguments.get("target") or arguments.get("platen")
+    inPattern = isinstance(target, dict) or target not in scene.targets
+    if word in PUSHES and inPattern:
+        scene.model.loading.patternDrive()
+        return
+    target = None if inPattern else scene.targets[target]
     if word in ("load", "growLoad") and target:
         scene.model.loading.forceOf(target)
     elif word in ("press", "growPress") and target:

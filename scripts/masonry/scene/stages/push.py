@@ -8,14 +8,16 @@ from typing import Annotated, Any
 
 from ...arguments import Direction, FilePath, Numbers, listOf, number, validated, whole
 from ...assembly.blocks import vector
+from ...assembly.drives import pushTo
 from ...basics import NotAccurate, Refused, say
 from ...read import curves
 from ...read.run_data import BASE, MOVED, TOP, RunData
 from .. import history
 from ..bounds import findBound, nameOfPush
 from ...run.options import Rate
-from ..targets import Loaded
+from ..targets import AnyTarget
 from ..words import PUSHES
+from .pattern import Pushed, controlOf, patternOf
 from .pushing import SHORT, drivePush
 from .answers import DONE, Answer
 from .stage import stage
@@ -52,68 +54,81 @@ def peaks(scene, rows):
 @validated
 def push(
     scene: Any,
-    target: Loaded,
+    target: Pushed,
     until: Annotated[float, number("mm", 0, history.MOST, above=True)] | None = None,
     direction: Direction = (1, 0, 0),
     rate: Rate | None = None,
     continued: bool = False,
+    control: AnyTarget | None = None,
 ) -> str:
-    """Push a target at a constant velocity, as the drive of a testing machine does.
+    """Push a target at a constant velocity, as the drive of a testing machine does, or several points in a pattern.
 
-    :param target: a platen that moves, or a :meth:`handle`
+    In a pattern the forces keep their proportion, whatever the structure does, and the mean displacement of the points, by their shares of
+    the force, grows at the rate. The shares are forces: a triangle over floors of other masses is mass times height. Loads of
+    :meth:`load` and :meth:`press` are no masses; a :class:`masonry.bricks.Floor` has one.
+
+    :param target: a platen that moves, or a :meth:`handle`; or a dict from some of these to their shares of the force, ``{roof: 2, floor: 1}``;
+        or, for a force on every rigid block that is free, ``"masses"``, as of a uniform acceleration, ``"triangle"``, mass times height
+        above the lowest brick, ``"mode"``, mass times the first mode along the push in the present state; or a function of x, y
+        and z [m] that multiplies the masses
     :param until: displacement from where the push begins [mm]; the drive then stops and holds. ``--until`` and
         ``--history`` replace it; None: one of these must be given
     :param direction: of the push
     :param rate: [mm/s]; None: ``--rate``
     :param continued: whether displacements count on from where the push before began, of this target in this direction,
         and not from where the target is now
+    :param control: the target whose displacement ``until`` and the curve count; None: what is pushed, of a dict the highest, else the first
+        that is watched or moves
     """
     if until is not None:
         until *= scene.share
-    return _drive(scene, "push", target, dict(until=until), direction, rate, continued)
+    aims = dict(until=until)
+    return _drive(scene, "push", target, aims, direction, rate, continued, control)
 
 
 @stage(bounded=True, farther=("amplitudes", "repeats"), options=OPTIONS, answers=peaks)
 @validated
 def cycle(
     scene: Any,
-    target: Loaded,
+    target: Pushed,
     amplitudes: Annotated[Numbers, listOf(number("mm", history.LEAST, history.MOST))],
     repeats: Annotated[int, whole(1, history.CYCLES)] = 1,
     direction: Direction = (1, 0, 0),
     rate: Rate | None = None,
     continued: bool = False,
+    control: AnyTarget | None = None,
 ) -> str:
     """Push a target to and fro: each amplitude A is a cycle from 0 to +A, to -A and back to 0.
 
     :param amplitudes: [mm], a list
     :param repeats: how often each of them
-    :param continued: as in :meth:`push`
+    :param continued: and other parameters: as in :meth:`push`
     """
     text = ",".join(f"{scene.share * a:g}x{repeats}" for a in amplitudes)
     aims = dict(history=text)
-    return _drive(scene, "cycle", target, aims, direction, rate, continued)
+    return _drive(scene, "cycle", target, aims, direction, rate, continued, control)
 
 
 @stage(bounded=True, farther=("path",), options=OPTIONS, answers=peaks)
 @validated
 def follow(
     scene: Any,
-    target: Loaded,
+    target: Pushed,
     path: FilePath,
     direction: Direction = (1, 0, 0),
     rate: Rate | None = None,
     continued: bool = False,
+    control: AnyTarget | None = None,
 ) -> str:
     """Push a target through the displacements of a CSV file, which has a column ``displacement_mm``.
 
-    :param continued: as in :meth:`push`
+    :param continued: and other parameters: as in :meth:`push`
     """
     aims = dict(history=str(path))
-    return _drive(scene, "follow", target, aims, direction, rate, continued)
+    return _drive(scene, "follow", target, aims, direction, rate, continued, control)
 
 
-def _drive(scene, name, target, aims, direction, rate, continued):
+def _drive(scene, name, target, aims, direction, rate, continued, control):
     args = _argumentsOf(scene, name, aims)
     if rate is not None and args.accuracy:
         raise NotAccurate(
@@ -122,15 +137,17 @@ def _drive(scene, name, target, aims, direction, rate, continued):
     args.rate = args.rate if rate is None else rate
     model = scene.model
     direction = vector(direction, f"{name}: direction").normalized()
-    model.loading.pushTo(target, direction, name)
+    control = controlOf(scene, target, control)
+    pushed = patternOf(scene, target, direction, args)
+    pushTo(model.loading, pushed, control, direction, name)
     scene.pushed = args
-    began = f"{target.name} {[round(v, 9) for v in direction]}"
+    began = f"{pushed.name} {[round(v, 9) for v in direction]}"
     if continued and began not in scene.running.at.origins:
         raise ValueError(
-            f"{name}: continued: {target.name} has not been pushed along {tuple(direction)} before"
+            f"{name}: continued: {pushed.name} has not been pushed along {tuple(direction)} before"
         )
-    findBound(scene, "push", target, direction, bool(args.history))
-    names = [nameOfPush(target, sign * direction) for sign in (1, -1)]
+    findBound(scene, "push", pushed, direction, bool(args.history))
+    names = [nameOfPush(pushed, sign * direction) for sign in (1, -1)]
     scene.running.note("push", *names)
     if not scene.only:
         drivePush(scene, name, args, began, continued)

@@ -70,6 +70,8 @@ def letGo(scene, target, axes, force):
     ]
     if force is not None and not any(drives.values()):
         problems.append("release: only in place of a drive a force can stay")
+    if force is not None and any(drive and drive.others for drive in drives.values()):
+        problems.append("release: force: a drive in a pattern moves several blocks")
     if problems:
         raise ValueError("\n".join(problems))
     for axis, drive in drives.items():

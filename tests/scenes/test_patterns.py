@@ -1,0 +1,116 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Pushes in a pattern: forces on several blocks in a fixed proportion."""
+
+from hosted import *
+from masonry.assembly.drives import pushTo
+from masonry.assembly.period import firstMode
+from masonry.scene.stages.pattern import patternOf
+
+#: A dry pier of stiff joints [m], that turns about its toe.
+WIDTH, HEIGHT = 0.6, 3.0
+STONE = materials.dry(friction=2.0, normalStiffness=2e10, density=2400)
+
+
+def pier(tmp_path, name, *words, stone=STONE):
+    """A pier that stands on its base, with a handle at its top and in its middle."""
+    blocks = bricks.stack(6, (WIDTH, 0.4, HEIGHT / 6))
+    words = ["--out", str(tmp_path / name), "--lean", "--points", "9", *words]
+    scene = Scene(name, blocks, stone, rate=20, arguments=words)
+    scene.platen("bottom")
+    handles = scene.handle(-1, "top"), scene.handle(2, "middle")
+    scene.settle()
+    return scene, *handles
+
+
+@pytest.mark.parametrize("pattern", ["masses", "triangle", "place"])
+def test_a_pier_turns_about_its_toe_at_the_force_by_hand(tmp_path, pattern):
+    scene, top, middle = pier(tmp_path, "pier")
+    heights = [(n + 0.5) * HEIGHT / 6 for n in range(6)]
+    forces = {
+        "masses": [1] * 6,
+        "triangle": heights,
+        "place": [z**2 for z in heights],
+    }
+    shape = pattern if pattern != "place" else lambda x, y, z: z**2
+    lever = np.dot(heights, forces[pattern]) / np.sum(forces[pattern])
+    weight = WIDTH * 0.4 * HEIGHT * 2400 * 9.81
+    expected = 1e-3 * weight * WIDTH / 2 / lever  # [kN]
+    bound = scene.bound(shape)
+    scene.push(shape, 1.5, rate=3, control=top)
+    scene.finish()
+    run, curve = readRun(tmp_path / "pier"), readCurve(tmp_path / "pier")
+    assert bound["factor"] == pytest.approx(expected, rel=1e-4)
+    assert curve["base_shear_kN"][-1] == pytest.approx(expected, rel=0.02)
+    print(expected, run["peak_at_both_ends_kN"], curve["base_shear_kN"][-5:])
+    moment, shear = curve["base_M_y_kNm"][-1], curve["base_V_x_kN"][-1]
+    assert moment / shear == pytest.approx(lever, rel=0.01)
+
+
+def test_forces_on_targets_keep_their_shares_and_do_the_work_of_the_push(tmp_path):
+    scene, top, middle = pier(tmp_path, "pier")
+    scene.push({top: 1, middle: 3}, 1, control=middle)
+    scene.finish()
+    curve = readCurve(tmp_path / "pier")
+    above, below = (np.array(curve[f"{n}_force_x_kN"]) for n in ("top", "middle"))
+    assert np.allclose(below, 3 * above, rtol=1e-9) and abs(above[-1]) > 0.1
+    assert np.allclose(-above - below, curve["top_shear_kN"], rtol=1e-9)
+    assert curve["displacement_mm"][-1] == pytest.approx(1, abs=0.02)
+    moved = curve["middle_x_mm"][-1] - curve["middle_x_mm"][1]
+    assert curve["displacement_mm"][-1] == pytest.approx(moved, abs=1e-3)
+    assert max(map(abs, curve["balance_error"])) < 1e-8
+
+
+def test_the_first_mode_of_a_slender_pier_is_that_of_a_cantilever(tmp_path):
+    blocks = bricks.stack(20, (0.1, 0.4, 0.05))
+    words = ["--out", str(tmp_path / "beam"), "--lean"]
+    scene = Scene("beam", blocks, materials.calciumSilicate(), arguments=words)
+    scene.platen("bottom")
+    scene.watch(-1)
+    scene.settle()
+    shape = firstMode(scene.model, Vector3.UnitX, 1.0)
+    found = [shape[body] for body in scene.model.ids]
+    k = 1.8751  # of the first mode, over the length
+    ratio = (math.sinh(k) - math.sin(k)) / (math.cosh(k) + math.cos(k))
+
+    def bent(x):
+        return math.cosh(k * x) - math.cos(k * x) - ratio * (math.sinh(k * x) - math.sin(k * x))  # fmt: skip
+
+    expected = [bent((n + 0.5) / 20) / bent(19.5 / 20) for n in range(20)]
+    assert np.allclose(np.array(found) / found[-1], expected, atol=0.02)
+    scene.finish()
+
+
+def test_a_drive_in_a_pattern_is_let_go_before_another_one_begins(tmp_path):
+    scene, top, middle = pier(tmp_path, "pier")
+    scene.push("masses", 0.2, control=top)
+    with scene:
+        with pytest.raises(ValueError, match="a drive holds triangle or some"):
+            pushTo(
+                scene.model.loading,
+                patternOf(scene, "triangle", Vector3.UnitX, scene.args),
+                top,
+                Vector3.UnitX,
+            )
+        with pytest.raises(ValueError, match="a drive holds top or some"):
+            pushTo(scene.model.loading, top, top, Vector3.UnitX)
+        assert "holds the structure" in scene.bound(towards=(1, 0, 0))["note"]
+        scene.release(middle, "x")
+        assert "factor" in scene.bound(towards=(-1, 0, 0))
+        scene.push("triangle", 0.2, control=top)
+
+
+@pytest.mark.parametrize(
+    "pattern, sentence",
+    [
+        ("triangel", "did you mean|must be a platen"),
+        (lambda x, y, z: "much", "must be a number"),
+        (lambda x, y, z: -1.0, "must be above 0"),
+        ({}, "must be a platen"),
+    ],
+)
+def test_patterns_that_are_none_are_refused(tmp_path, pattern, sentence):
+    scene, top, _ = pier(tmp_path, "pier")
+    with pytest.raises((Refused, SystemExit)) as error:
+        scene.push(pattern, 1, control=top)
+    if not isinstance(error.value, SystemExit):
+        assert re.search(sentence, str(error.value))
