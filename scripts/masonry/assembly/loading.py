@@ -5,7 +5,6 @@ from yade import O, Vector3
 from yade.wrapper import MasonryLoad
 
 from .._masonry import loadScene, saveScene
-from ..basics import Refused
 from .drives import PATTERN, bodiesOf, isAlong
 
 
@@ -42,16 +41,11 @@ class Loading:
         self._lines = {}  # points of the presses, as they were built [m]
 
     def _made(self):
-        """A dead load for every target that has one, and a drive for every one that can be pushed. Raises Refused."""
-        loads, deformable = [], self.description.deformable
+        """A dead load for every target that has one, and a drive for every one that can be pushed."""
+        loads = []
         for target in self.description.targets.values():
             if not target.loaded:
                 continue
-            if deformable and target.brick not in {None, *self.structure.rigid} and not target.freedom:  # fmt: skip
-                raise Refused(
-                    f"handle: {target.name} is a deformable brick, and loads and drives act on rigid ones: load a platen, "
-                    "or choose --blocks rigid"
-                )
             # a brick keeps its numerical damping until it is driven
             brick = target.brick is not None
             on = dict(body=target.body, point=target.point, damped=brick)

@@ -51,7 +51,7 @@ class Structure:
         self.zones = self.contacts = None
         self._stiff = masonry.stiff  # kinds of blocks that are rigid in themselves
         #: Indices of blocks that are rigid also where bricks are deformable.
-        self.rigid = description.connectedBricks() | {
+        self.rigid = description.pointLoaded() | {
             n for n, b in enumerate(description.bricks) if b.kind in self._stiff
         }
         self.atRest = None  # the last state at rest, as saveScene gave it
@@ -125,7 +125,7 @@ class Structure:
         rigid = [t.body for t in description.targets.values() if t.freedom]
         for body in (*rigid, *(self.ids[index] for index in self.rigid)):
             self.bricks.pop(body, None)
-        held = [n for n in description.connectedBricks() if description.bricks[n].kind not in self._stiff]  # fmt: skip
+        held = [n for n in description.pointLoaded() if description.bricks[n].kind not in self._stiff]  # fmt: skip
         if held:
             say(f"note: {len(held)} of {len(description.bricks)} bricks are rigid, because ties, springs or fibre layers end at them")  # fmt: skip
         if args.mass_scaling and "crack" in self.joints:

@@ -78,15 +78,22 @@ class Supports:
 
     def forceFrom(self, target):
         """Force of what loads, drives and holds a target on it [N]."""
-        total, blocked = Vector3(0, 0, 0), O.bodies[target.body].state.blockedDOFs
-        for label, load in self.structure.loading.loads.items():
-            if label != "push":
-                total += forceOn(load, target.body)
+        total, blocked = self._loadsOn(target), O.bodies[target.body].state.blockedDOFs
         on = self.forceOn(target)
         for i, axis in enumerate("xyz"):
             if axis in blocked:
-                total[i] = -on[i]
+                total[i] -= on[i]
         return total
+
+    def _loadsOn(self, target):
+        """Force of what loads and drives a target on it [N]."""
+        loads = self.structure.loading.loads.items()
+        ours = (forceOn(load, target.body) for label, load in loads if label != "push")
+        return sum(ours, Vector3.Zero)
+
+    def jointsOn(self, target):
+        """Force of the joints of a target on it [N]."""
+        return self.forceOn(target) - self._loadsOn(target)
 
     def moved(self, target):
         """Displacement of a target's recorded point since the scene was built [m], and its rotation, about y in a plane,

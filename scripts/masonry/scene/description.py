@@ -103,10 +103,12 @@ class Description:
         contact = [self.contact] if self.contact else []
         return {one.name: one for one in (*own, *self.overlays, *contact)}
 
-    def connectedBricks(self):
-        """Indices of the bricks at the ends of ties and springs."""
-        ends = [end for one in self.connectors for end in one.ends]
-        return {end.brick for end in ends if end.brick is not None}
+    def pointLoaded(self):
+        """Indices of the bricks at the ends of ties and springs, and of those on which loads and drives act: a point of a brick that
+        deforms would give way without bound where the mesh is fine."""
+        ends = [end.brick for one in self.connectors for end in one.ends]
+        handles = [t.brick for t in self.targets.values() if t.loaded]
+        return {*ends, *handles} - {None}
 
     def ground(self):
         """The target on which blocks fall in a scene whose collapse is followed, or None."""

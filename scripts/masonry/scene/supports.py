@@ -200,7 +200,8 @@ def watch(description: Any, where: BrickAt, name: Name | None = None) -> Target:
 @describes
 @validated
 def handle(description: Any, where: BrickAt, name: Name | None = None) -> Target:
-    """A brick that loads act on, at its centre or at the point that is given. Parameters as in :meth:`hold`."""
+    """A brick that loads act on, at its centre or at the point that is given. It is rigid, also where bricks are deformable. Parameters
+    as in :meth:`hold`."""
     return _brick(description, where, name, fixed=False)
 
 

@@ -64,6 +64,9 @@ class Target:
             for i, axis in axes:
                 on = f"what loads, drives or holds {name}"
                 yield forceAlong(i, axis, on, force)
+        elif self.box and not self.fixed and "z" not in self.drives + (self.freedom or ""):  # fmt: skip
+            force = lambda r: 1e-3 * r.structure.supports.jointsOn(self)
+            yield forceAlong(2, "z", name, force)
         for axis in self.drives:
             own = lambda r, a=axis: -1e-3 * r.structure.loading.driveForce(self, a)
             yield forceAlong("xyz".index(axis), axis, f"the drive of {name}", own)

@@ -241,13 +241,22 @@ def hold(scene: Any, target: AnyTarget, axes: Freedoms = "xyzXYZ") -> str:
 
     Before the first stage :meth:`hold` describes a brick that is held from the beginning.
 
-    :param target: a :meth:`handle`, or a brick or platen that was held and released: what has columns for its reaction
+    A platen that is pressed and then held along z keeps its height, and one held about Y does not turn: so does the top of many
+    test rigs.
+
+    :param target: a platen or a :meth:`handle`, or a brick that was held and released: what has columns for its reaction
     :param axes: along which it is held, xyz, and about which it cannot turn, XYZ
     """
-    if not (target.fixed or target.loaded and target.brick is not None):
+    if not (target.fixed or target.loaded):
         raise ValueError(
-            f"hold: after the first stage only a handle(), or what was held and released, can be held: curve.csv has no "
+            f"hold: only a platen, a handle(), or what was held and released, can be held after the first stage: curve.csv has no "
             f"columns for the reaction of {target.name}"
+        )
+    across = [a for a in axes if a in "xy"] if target.box and not target.fixed else []
+    if across:
+        raise ValueError(
+            f"hold: {target.name} is a platen, which can be held along z and about X, Y and Z after the first stage: curve.csv has no column for its "
+            f"reaction along {', '.join(across)}; push() it and let the drive hold it there"
         )
     zones = scene.model.zones
     if zones and target.body in zones.bodies:

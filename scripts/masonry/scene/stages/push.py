@@ -6,7 +6,7 @@ from __future__ import annotations
 from types import SimpleNamespace
 from typing import Annotated, Any
 
-from ...arguments import Direction, FilePath, Numbers, listOf, number, validated, whole
+from ...arguments import Direction, FilePath, Numbers, listOf, number, oneOf, validated, whole  # fmt: skip
 from ...assembly.blocks import vector
 from ...assembly.drives import pushTo
 from ...basics import NotAccurate, Refused, say
@@ -91,20 +91,25 @@ def push(
 def cycle(
     scene: Any,
     target: Pushed,
-    amplitudes: Annotated[Numbers, listOf(number("mm", history.LEAST, history.MOST))],
+    amplitudes: Annotated[Numbers, listOf(number("mm or %", 1e-6, history.MOST))],
     repeats: Annotated[int, whole(1, history.CYCLES)] = 1,
     direction: Direction = (1, 0, 0),
     rate: Rate | None = None,
     continued: bool = False,
     control: AnyTarget | None = None,
+    unit: Annotated[str, oneOf("mm", "%")] = "mm",
 ) -> str:
     """Push a target to and fro: each amplitude A is a cycle from 0 to +A, to -A and back to 0.
 
-    :param amplitudes: [mm], a list
+    :param amplitudes: a list of displacements [mm], or of drifts [%]
     :param repeats: how often each of them
+    :param unit: of the amplitudes; a drift is the displacement that the curve counts over the height of its point above the lowest brick,
+        and on a platen that cannot turn over the height of the bricks below it
     :param continued: and other parameters: as in :meth:`push`
     """
-    text = ",".join(f"{scene.share * a:g}x{repeats}" for a in amplitudes)
+    height = _driftHeight(scene, controlOf(scene, target, control))
+    share = scene.share * (10 * height if unit == "%" else 1)
+    text = ",".join(f"{share * a:g}x{repeats}" for a in amplitudes)
     aims = dict(history=text)
     return _drive(scene, "cycle", target, aims, direction, rate, continued, control)
 
@@ -154,6 +159,12 @@ def _drive(scene, name, target, aims, direction, rate, continued, control):
         model.loading.loads["push"].velocity = model.loading.loads["push"].ramp = 0
     scene.ended = DONE
     return DONE
+
+
+def _driftHeight(scene, target):
+    """Height over which the displacements of a target are drifts [m]."""
+    turns = not target.box or "Y" not in target.freedom
+    return (target.recorded[2] if turns else target.box[0][2]) - scene.description.low[2]  # fmt: skip
 
 
 def _argumentsOf(scene, name, aims):
