@@ -240,21 +240,25 @@ def checkColumns(scene):
     reading = model.read()
     values = {c.head: c.value(reading) for c in scene.columns}
     held = {t.body for t in model.supports.held if not set("xyz") - set(O.bodies[t.body].state.blockedDOFs)}  # fmt: skip
-    free = [n for n, body in enumerate(_owners(model)) if body not in held]
     gravity = np.array(model.scheme.now)
-    need = sum(before[n][0] * (gravity - (after[n][2] - before[n][2]) / O.dt) for n in free)  # fmt: skip
-    size = np.abs(need).max()
     named = {t.body: t for t in scene.targets.values()}
+    # the vertical column of a platen that no drive holds along z is the force of its joints, so its weight and loads are not missing
+    pressed = {b for b, t in named.items() if t.box and not t.fixed and "z" not in t.drives and f"{t.name}_force_z_kN" in values}  # fmt: skip
+    counts = lambda body: np.array([1, 1, body not in pressed])
+    bodies = [*_owners(model)]
+    free = [n for n, body in enumerate(bodies) if body not in held]
+    need = sum(counts(bodies[n]) * before[n][0] * (gravity - (after[n][2] - before[n][2]) / O.dt) for n in free)  # fmt: skip
+    size = np.abs(need).max()
     handles = {t.body for t in named.values() if t.brick is not None and t.loaded and not t.fixed}  # fmt: skip
     for label, load in model.loading.loads.items():
         if label == "push":
             continue
         size = max(size, load.force.norm(), abs(load.reaction))
         if load.body not in handles:
-            need = need + np.array(load.force)
+            need = need + counts(load.body) * np.array(load.force)
             recorded = named[load.body].drives if load.body in named else ""
             if load.driven and not any(abs(load.direction["xyz".index(a)]) > 0.5 for a in recorded):  # fmt: skip
-                need = need + load.reaction * np.array(load.direction.normalized())
+                need = need + counts(load.body) * load.reaction * np.array(load.direction.normalized())  # fmt: skip
     for i, axis in enumerate("xyz"):
         if plane and axis == "y":
             continue
