@@ -5,7 +5,8 @@ A fixed block holds the lower brick, a driven one that does not turn the upper. 
 yade_plugin/law/README.md (yield surfaces, softening tables, compression).
 """
 
-from masonry import Scene, arguments, bricks, materials
+from masonry import Scene, bricks, materials
+from masonry.common import arguments
 from masonry.scene import options
 from yade import O
 

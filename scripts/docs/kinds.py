@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What a word takes, in words, as the word itself says it: a kind of argument is asked to refuse something that fits none.
 
-So the unit and the bounds that the site shows are those that the check has (:mod:`masonry.arguments`).
+So the unit and the bounds that the site shows are those that the check has (:mod:`masonry.common.arguments`).
 """
 
 import inspect

@@ -22,19 +22,19 @@ A scene of one's own is bricks, materials and stages::
 - :mod:`masonry.capacity`: bilinear curves, the demand of an earthquake, N-V domains
 - :mod:`masonry.run`: a run: checkpoints, results, presets, rows of a table
 - :mod:`masonry.assembly`: ``addBlock``, ``engines``, ``connect``, for scenes that are built body by body; the 3-D view
-- :mod:`masonry.folders`: what is written in folders that others may have packed, and how
-- :mod:`masonry.background`: tasks in other processes, and programs, several at a time
-- :mod:`masonry.memory`: what numerical libraries take of the memory
-- :mod:`masonry.packages`: libraries that come when they are first needed, and the Debian packages that have them
-- :mod:`masonry.host`: how YADE is found and started in plain Python
-- :mod:`masonry.notebook`: what is different in a notebook
-- :mod:`masonry.arguments`: how every word checks what it is given
+- :mod:`masonry.common.folders`: what is written in folders that others may have packed, and how
+- :mod:`masonry.common.background`: tasks in other processes, and programs, several at a time
+- :mod:`masonry.common.memory`: what numerical libraries take of the memory
+- :mod:`masonry.common.packages`: libraries that come when they are first needed, and the Debian packages that have them
+- :mod:`masonry.common.host`: how YADE is found and started in plain Python
+- :mod:`masonry.common.notebook`: what is different in a notebook
+- :mod:`masonry.common.arguments`: how every word checks what it is given
 - :mod:`masonry.basics`: gravity, how a run can end before its time, what is said on the terminal
 
 ``masonry.read``, ``masonry.capacity``, ``masonry.study``, ``masonry.bricks`` and what they import work without YADE.
 
 Import it from a script of ``yade``, of plain Python or from a notebook: where YADE does not run yet, it starts when
-something is first used that needs it (:mod:`masonry.host`). The classes that are then registered in YADE
+something is first used that needs it (:mod:`masonry.common.host`). The classes that are then registered in YADE
 (``masonry.classes``) are also in ``yade.wrapper``; their manual is ``help(masonry.MasonryJoint)``,
 ``help(masonry.MasonryMat)`` and so on.
 """
@@ -178,7 +178,7 @@ def _start():
 
 def _register():
     """Register the classes of the plugin in the YADE of this process. Raises ImportError."""
-    from . import memory
+    from .common import memory
     from .basics import say
 
     def end(text):
@@ -228,6 +228,6 @@ def _started():
 if "yade" in sys.modules:
     _register()
 else:
-    from . import host
+    from .common import host
 
     host.install(_started)

@@ -2,8 +2,8 @@
 """Work that a copy of the process does beside a run."""
 
 from usual import *
-from masonry import background
-from masonry.background import Failed, Task
+from masonry.common import background
+from masonry.common.background import Failed, Task
 from masonry.basics import Unwritable
 
 

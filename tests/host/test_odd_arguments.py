@@ -13,7 +13,8 @@ from fractions import Fraction
 
 import masonry
 from hosted import *
-from masonry import arguments, capacity, fields
+from masonry import capacity, fields
+from masonry.common import arguments
 from masonry.scene import options
 from masonry.read import frames, measure, report
 from masonry.study import Study, variables

@@ -15,7 +15,7 @@ import kinds
 import notebooks
 import staging
 import tree
-from masonry import arguments
+from masonry.common import arguments
 from pages import Page
 from yade import wrapper
 

@@ -8,7 +8,7 @@ import ast
 PACKAGE = os.path.join(ROOT, "scripts", "masonry")
 
 #: The rooms of the package. Each imports only those above it, and itself.
-LAYERS = ["basics", "host", "notebook", "packages", "memory", "background", "folders", "arguments", "bricks", "read", "capacity", "assembly", "run", "limit", "scene", "study"]  # fmt: skip
+LAYERS = ["basics", "common", "bricks", "read", "capacity", "assembly", "run", "limit", "scene", "study"]  # fmt: skip
 #: Rooms and modules that work where YADE is not installed, with all that they import.
 WITHOUT_YADE = LAYERS[: LAYERS.index("assembly")] + ["study"]
 NAMES = "accuracy batch presets progress lock results"

@@ -2,7 +2,7 @@
 """What is said and left out where a package that only a part of the project needs is not installed."""
 
 from usual import *
-from masonry import packages
+from masonry.common import packages
 
 #: Modules named in MISSING cannot be imported, as if they were not installed.
 HIDES = """

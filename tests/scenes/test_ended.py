@@ -5,7 +5,7 @@ from hosted import *
 import threading
 import yade
 from masonry.limit import solver
-from masonry.memory import FULL
+from masonry.common.memory import FULL
 from masonry.run.run import Run
 from masonry.scene import outcome
 from masonry.scene.bounds import GIVEN_UP

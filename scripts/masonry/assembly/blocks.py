@@ -9,8 +9,8 @@ from typing import Annotated, Any, Sequence
 from yade import Body, O, Vector3
 from yade.wrapper import MasonryBlock, MasonryMat
 
-from ..arguments import Numbers, isA, listOf, shown, validated
-from ..arguments import vector as coordinates
+from ..common.arguments import Numbers, isA, listOf, shown, validated
+from ..common.arguments import vector as coordinates
 from ..basics import firstOf
 
 #: The colour of a block in YADE's 3-D view: red, green and blue [-].

@@ -13,7 +13,7 @@ from yade.wrapper import NewtonIntegrator
 
 from .. import _masonry
 from .._masonry import connected, dropFaces, gather, neighbours, timeStepLimit
-from ..arguments import number, validated
+from ..common.arguments import number, validated
 from ..basics import say
 from .blocks import properties, refuse
 from .engines import LAWS, functorLoop

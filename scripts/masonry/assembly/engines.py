@@ -12,7 +12,7 @@ from yade.wrapper import Ip2_MasonryMat_MasonryMat_MasonryJointPhys, MasonryEner
 from yade.wrapper import MasonryIntegrator, MasonryJoint, MasonryJointLoop, MasonryLoad
 from yade.wrapper import MasonrySprings, MasonryTies, MasonryZones, NewtonIntegrator
 
-from ..arguments import Numbers, isA, listOf, number, oneOf, shown, validated, vector, whole  # fmt: skip
+from ..common.arguments import Numbers, isA, listOf, number, oneOf, shown, validated, vector, whole  # fmt: skip
 
 MOST_STEPS = 10**15  # that no run has time for
 

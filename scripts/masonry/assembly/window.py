@@ -19,7 +19,7 @@ from yade import O, Vector3
 from yade.wrapper import Gl1_MasonryBlock, Gl1_MasonryJointPhys, GlExtra_MasonryLegend
 from yade.wrapper import PyRunner
 
-from ..arguments import FilePath
+from ..common.arguments import FilePath
 
 #: Label of the engine that keeps the view alive.
 _LABEL = "masonryWindow"

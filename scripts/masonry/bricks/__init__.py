@@ -25,7 +25,7 @@ Lengths are in m and angles in degrees. Every length of a unit contains its join
 with ``joint``, the thickness of the mortar, ``unit`` is the brick without it.
 """
 
-from ..packages import promised
+from ..common.packages import promised
 
 promised("scipy")  # it is imported for convex solids that are no boxes
 

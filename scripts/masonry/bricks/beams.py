@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from ..arguments import Numbers, number, oneOf, validated, vector, whole
+from ..common.arguments import Numbers, number, oneOf, validated, vector, whole
 from .blocks import Block, Bricks
 from .geometry import boxCorners
 

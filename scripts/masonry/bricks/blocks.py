@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 from numbers import Integral
 from typing import Annotated, Any, Callable, Iterable, Iterator
 
-from ..arguments import Direction, Numbers, isA, items, isNumber, number, oneOf, shown, text, validated, vector, whole  # fmt: skip
+from ..common.arguments import Direction, Numbers, isA, items, isNumber, number, oneOf, shown, text, validated, vector, whole  # fmt: skip
 from ..basics import firstOf
 from . import checks
 from .geometry import COINCIDENT, Solids, cutCorners, joinedCorners

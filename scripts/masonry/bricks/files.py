@@ -16,8 +16,8 @@ import numpy as np
 
 from typing import Annotated
 
-from ..arguments import FilePath, number, validated
-from ..packages import needed
+from ..common.arguments import FilePath, number, validated
+from ..common.packages import needed
 from .blocks import FARTHEST, Block, Bricks, refuse
 from .checks import components, where
 from .geometry import FLAT

@@ -6,7 +6,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import Annotated
 
-from ..arguments import isA, validated
+from ..common.arguments import isA, validated
 from ..basics import withoutCollector
 from .blocks import Block, Bricks, Gap, Length, refuse
 from .checks import components, where

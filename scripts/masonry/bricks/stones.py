@@ -9,7 +9,7 @@ from typing import Annotated, Any
 
 import numpy as np
 
-from ..arguments import isA, number, oneOf, validated, whole
+from ..common.arguments import isA, number, oneOf, validated, whole
 from ..basics import say
 from .blocks import Block, Bricks, Length, Sides, refuse
 

@@ -7,7 +7,7 @@ import math
 
 from typing import Annotated
 
-from ..arguments import number, validated, whole
+from ..common.arguments import number, validated, whole
 from .blocks import Block, Bricks, Length, refuse
 
 #: No arch, vault or dome has more stones.

@@ -12,7 +12,7 @@ import math
 from dataclasses import replace
 from typing import Annotated, Iterable, Sequence
 
-from ..arguments import isA, listOf, number, oneOf, validated, whole
+from ..common.arguments import isA, listOf, number, oneOf, validated, whole
 from .blocks import FARTHEST, Block, Bricks, Gap, Length, Point, Sides, refuse
 from .bonds import layout
 from .geometry import FLAT, boxCorners

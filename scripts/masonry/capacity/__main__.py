@@ -8,7 +8,7 @@ import re
 import sys
 from typing import Sequence
 
-from .. import memory
+from ..common import memory
 from ..basics import Refused, say
 from ..read.bilinear import RULES, lines
 from ..read.quantities import Number

@@ -15,7 +15,7 @@ from typing import Annotated, Any, Sequence
 
 import numpy as np
 
-from ..arguments import FilePath, isNumber, listOf, path, validated
+from ..common.arguments import FilePath, isNumber, listOf, path, validated
 from ..basics import GRAVITY, Refused
 from ..read.bilinear import pushover
 from ..read.files import filesOf, readRun

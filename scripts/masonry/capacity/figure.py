@@ -7,7 +7,7 @@ import math
 
 import numpy as np
 
-from ..arguments import FilePath
+from ..common.arguments import FilePath
 from ..read import drawing
 from ..read.bilinear import Bilinear, Pushover
 from .n2 import Demand

@@ -10,7 +10,7 @@ import math
 from dataclasses import dataclass, replace
 from typing import Annotated, Any
 
-from ..arguments import Numbers, isA, isNumber, listOf, number, validated
+from ..common.arguments import Numbers, isA, isNumber, listOf, number, validated
 from ..basics import Refused
 from ..read.bilinear import Bilinear, Pushover
 from ..read.bilinear import ofRun as bilinearOf

@@ -9,10 +9,10 @@ import os
 import sys
 from typing import Annotated, Any, Sequence
 
-from .. import folders
-from ..arguments import FilePath, isA, listOf, number, path, validated
+from ..common import folders
+from ..common.arguments import FilePath, isA, listOf, number, path, validated
 from ..basics import Refused, say
-from ..packages import Missing
+from ..common.packages import Missing
 from ..read import bilinear
 from . import figure, n2
 from .domains import Domain, domain

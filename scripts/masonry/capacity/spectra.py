@@ -10,7 +10,7 @@ from typing import Annotated, Any
 
 import numpy as np
 
-from ..arguments import FilePath, Numbers, number, oneOf, validated, whole
+from ..common.arguments import FilePath, Numbers, number, oneOf, validated, whole
 from ..basics import ACCELERATION_UNITS, GRAVITY, Refused
 from ..read.files import readText
 

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from ..arguments import Numbers
+from ..common.arguments import Numbers
 from ..basics import Refused, refuse
 from . import slipping
 from .bound import Bound

@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from ..arguments import FilePath
-from ..packages import needed
+from ..common.arguments import FilePath
+from ..common.packages import needed
 from ..read import drawing
 from ..read.elevation import Structure, figureOf
 from .programme import FACETS

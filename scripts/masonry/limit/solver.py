@@ -12,7 +12,7 @@ import ctypes
 
 import numpy as np
 
-from ..background import Failed, Task
+from ..common.background import Failed, Task
 from ..basics import Refused
 
 LIBRARY = "libClp.so.1"

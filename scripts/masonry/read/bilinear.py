@@ -33,7 +33,7 @@ from typing import Annotated, Any, Sequence, Union
 
 import numpy as np
 
-from ..arguments import FilePath, Numbers, Series, number, oneOf, path, validated
+from ..common.arguments import FilePath, Numbers, Series, number, oneOf, path, validated
 from ..basics import Refused, say
 from . import curves, loops, quantities
 from .files import filesOf, onFolder

@@ -12,7 +12,7 @@ from typing import Any, Sequence
 
 import numpy as np
 
-from ..arguments import FilePath
+from ..common.arguments import FilePath
 from ..basics import Refused, say
 from . import drawing
 from .files import readCurve, readRun

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from ..arguments import FilePath
+from ..common.arguments import FilePath
 from ..basics import Refused
 from . import drawing, loops
 from .files import readCurve, readRun

@@ -8,7 +8,7 @@ from typing import Any, Callable
 
 import numpy as np
 
-from ..arguments import Numbers
+from ..common.arguments import Numbers
 from . import loops
 
 #: Of the elastic energy: what joints dissipate up to it is no crack [-]. Where mortar bonds, nothing is dissipated before

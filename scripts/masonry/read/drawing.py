@@ -5,8 +5,8 @@ import contextlib
 import io
 import os
 
-from ..folders import replaced
-from ..packages import needed
+from ..common.folders import replaced
+from ..common.packages import needed
 
 
 def empty(width, height):

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from ..arguments import FilePath
+from ..common.arguments import FilePath
 from ..basics import Refused
 from ..bricks.geometry import Alike, Solids, boxCorners
 from . import drawing

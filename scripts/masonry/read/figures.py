@@ -15,8 +15,8 @@ import glob
 import os
 import sys
 
-from .. import folders, memory
-from ..arguments import FilePath
+from ..common import folders, memory
+from ..common.arguments import FilePath
 from .elevation import cracks
 from .curve_figure import curve
 from .files import filesOf, onFolder

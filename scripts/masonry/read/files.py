@@ -10,10 +10,10 @@ import os
 import sys
 from typing import Any, Callable, Iterator, Sequence
 
-from .. import memory
-from ..arguments import FilePath
+from ..common import memory
+from ..common.arguments import FilePath
 from ..basics import Refused, say
-from ..folders import fromJson, inside
+from ..common.folders import fromJson, inside
 
 
 def readWhole(path: FilePath) -> bytes:

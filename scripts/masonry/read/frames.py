@@ -19,7 +19,7 @@ from typing import Annotated, Any, Sequence
 
 import numpy as np
 
-from ..arguments import FilePath, number, oneOf, validated, whole
+from ..common.arguments import FilePath, number, oneOf, validated, whole
 from ..basics import Refused
 
 #: A kind of files.

@@ -10,7 +10,7 @@ import struct
 import numpy as np
 
 from ..basics import Refused, plain
-from ..folders import replaced
+from ..common.folders import replaced
 from . import painting
 from .model import CRUSHED_TOO, LOOKS, OPEN, SLID, Model
 

@@ -20,7 +20,7 @@ from typing import Any
 
 import numpy as np
 
-from ..arguments import Numbers
+from ..common.arguments import Numbers
 
 #: An excursion to one side. ``start`` and ``end`` are its places in the curve; ``extreme`` is the row of its largest
 #: displacement, the first of equal ones; ``side`` is 1 or -1; ``complete`` says whether it both begins and ends at zero.

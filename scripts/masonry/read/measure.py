@@ -17,7 +17,7 @@ from typing import Annotated, Any, Iterator
 
 import numpy as np
 
-from ..arguments import FilePath, label, validated
+from ..common.arguments import FilePath, label, validated
 from ..basics import Refused, say
 from . import cracks, loops, quantities
 from .files import filesOf, onFolder, readCurve, readRun

@@ -7,10 +7,10 @@ from __future__ import annotations
 import os
 from typing import Any
 
-from ..arguments import FilePath
+from ..common.arguments import FilePath
 from ..basics import plain
-from ..folders import replaced
-from ..packages import needed
+from ..common.folders import replaced
+from ..common.packages import needed
 
 #: What a whole page may do: run what stands in it. The browser refuses every request to a network.
 POLICY = "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data:"

@@ -16,11 +16,11 @@ import math
 import os
 import sys
 
-from .. import memory
-from ..background import Failed, Task
+from ..common import memory
+from ..common.background import Failed, Task
 from ..basics import say
-from ..folders import check
-from ..packages import Missing, needed
+from ..common.folders import check
+from ..common.packages import Missing, needed
 from . import figures, report
 from .files import onFolder, readWhole
 

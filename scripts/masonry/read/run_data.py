@@ -10,7 +10,7 @@ from typing import Any, Callable, Sequence
 
 import numpy as np
 
-from ..arguments import FilePath
+from ..common.arguments import FilePath
 from ..basics import Refused
 from . import cracks, curves, loops
 from .files import readCurve, readRun

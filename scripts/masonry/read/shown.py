@@ -18,8 +18,8 @@ import re
 
 import numpy as np
 
-from .. import notebook
-from ..arguments import nearest, validated
+from ..common import notebook
+from ..common.arguments import nearest, validated
 from ..basics import Refused
 from . import curve_figure, drawing, elevation, quantities
 from .files import filesOf, readCurve, readRun

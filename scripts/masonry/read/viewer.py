@@ -19,8 +19,8 @@ from typing import Any, Sequence
 
 import numpy as np
 
-from .. import folders, memory
-from ..arguments import FilePath
+from ..common import folders, memory
+from ..common.arguments import FilePath
 from ..basics import Refused, say
 from . import gltf, page, painting
 from .cracks import CRACK, DAMAGED

@@ -23,9 +23,9 @@ import shutil
 import sys
 from typing import Any
 
-from .. import background
+from ..common import background
 from ..basics import NotAccurate, Refused, say
-from ..folders import check, inside, replaced
+from ..common.folders import check, inside, replaced
 from ..read.files import readRun
 from . import batch
 from .options import asOption

@@ -13,8 +13,8 @@ import os
 from typing import Any
 
 from .._masonry import loadScene, saveScene, savedText
-from ..arguments import FilePath, shown, validated
-from ..folders import fromJson, replaced
+from ..common.arguments import FilePath, shown, validated
+from ..common.folders import fromJson, replaced
 from ..read.files import readWhole
 
 NAME = "run.checkpoint"  # in the folder of a run

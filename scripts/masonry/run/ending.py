@@ -12,9 +12,9 @@ import yade.config
 from .._masonry import commit, version
 from ..assembly import threads
 from ..assembly.columns import meanings
-from ..background import reportRefusal
+from ..common.background import reportRefusal
 from ..basics import Collapsed, Interrupted, Refused, Unwritable, say
-from ..memory import FULL
+from ..common.memory import FULL
 from .checkpoints import NAME
 from .presets import presetNote
 

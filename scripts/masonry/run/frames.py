@@ -6,7 +6,7 @@ import time
 from yade import O
 from yade.wrapper import MasonryVtkRecorder
 
-from ..background import Failed, Task
+from ..common.background import Failed, Task
 from ..basics import Unwritable
 
 #: A frame that takes longer is written beside the run [s]; the copy of the process that does it takes some milliseconds.

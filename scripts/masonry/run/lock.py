@@ -9,7 +9,7 @@ import os
 import re
 import socket
 
-from .. import folders
+from ..common import folders
 from ..basics import Held
 from ..read.files import readWhole
 

@@ -10,7 +10,7 @@ import contextlib
 from dataclasses import dataclass
 from typing import Annotated, Any
 
-from ..arguments import Kind, flag, number, oneOf, text, whole
+from ..common.arguments import Kind, flag, number, oneOf, text, whole
 
 
 @dataclass(frozen=True)
@@ -19,7 +19,7 @@ class Option:
 
     :param name: as Python has it: ``dt_fraction`` is ``--dt-fraction``
     :param meaning: what ``--help`` says
-    :param kind: of its values, as in :mod:`masonry.arguments`
+    :param kind: of its values, as in :mod:`masonry.common.arguments`
     :param default: None: the scene says it, or there is none
     :param value: what stands for its value in ``--help``
     :param several: whether it can be given several times

@@ -5,7 +5,7 @@ import contextlib
 import sys
 import time
 
-from .. import notebook
+from ..common import notebook
 
 
 class Progress:

@@ -118,7 +118,7 @@ import re
 import shutil
 import time
 
-from .. import folders
+from ..common import folders
 from ..basics import Refused, say
 from ..read import quantities
 from ..read.files import readWhole

@@ -4,7 +4,7 @@
 import contextlib
 import signal
 
-from .. import notebook
+from ..common import notebook
 from ..basics import Interrupted
 
 

@@ -26,7 +26,7 @@ from typing import Any
 
 import numpy as np
 
-from ..arguments import FilePath, Numbers, shown
+from ..common.arguments import FilePath, Numbers, shown
 from ..basics import ACCELERATION_UNITS as UNITS
 from ..basics import Refused
 from ..read.files import readWhole

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from typing import Annotated, Any
 
-from ..arguments import Direction, Level, Numbers, listOf, number, validated
+from ..common.arguments import Direction, Level, Numbers, listOf, number, validated
 from ..assembly.blocks import vector
 from ..basics import Interrupted
 from .bounds import EVERY, SMALL, findBy, nameInDomain, nameOfLean, nameOfPush

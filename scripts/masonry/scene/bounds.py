@@ -18,12 +18,12 @@ from typing import Callable
 import numpy as np
 
 from .. import limit
-from ..background import Failed, Task
+from ..common.background import Failed, Task
 from ..basics import GRAVITY, Interrupted, Refused, say
 from ..limit.assembly import Endless
-from ..memory import FULL
-from ..packages import Missing
-from ..folders import replaced
+from ..common.memory import FULL
+from ..common.packages import Missing
+from ..common.folders import replaced
 from . import limit_loads
 
 #: Largest number of joints for which ``--preset bound`` and domains also look for a collapse without dilatancy, which takes many

@@ -7,8 +7,8 @@ from typing import Annotated, Any, Union
 
 import numpy as np
 
-from ..arguments import Direction, Name, Numbers, number, oneOf, validated
-from ..arguments import vector as numbers
+from ..common.arguments import Direction, Name, Numbers, number, oneOf, validated
+from ..common.arguments import vector as numbers
 from ..assembly.blocks import vector
 from ..basics import Refused, refuse
 from ..bricks import Block, Bricks

@@ -6,7 +6,7 @@ from __future__ import annotations
 import itertools
 from typing import Any
 
-from ..arguments import Name, validated
+from ..common.arguments import Name, validated
 from .supports import Coordinate
 from ..basics import Refused
 from .settings import Factor, Property, Settable

@@ -10,7 +10,7 @@ from numbers import Integral
 
 import numpy as np
 
-from ..arguments import shown, vector
+from ..common.arguments import shown, vector
 from ..assembly import columns
 from ..basics import GRAVITY, Refused
 from ..bricks.blocks import KINDS
@@ -192,7 +192,7 @@ class Description:
 
     def find(self, where):
         """Index of a brick, and the point by which it is named, or None. Raises ValueError with a sentence like that of a kind of
-        :mod:`masonry.arguments`."""
+        :mod:`masonry.common.arguments`."""
         count, point = len(self.bricks), None
         if isinstance(where, Integral) and not isinstance(where, bool):
             if not -count <= where < count:

@@ -17,7 +17,7 @@ from typing import Annotated, Any, Callable
 
 import numpy as np
 
-from ..arguments import number, shown, validated, whole
+from ..common.arguments import number, shown, validated, whole
 
 WAVES = 512  # cosines of a field: its moments are off by some 1/sqrt(WAVES) at most
 

@@ -9,7 +9,7 @@ from typing import Annotated, Any
 
 import numpy as np
 
-from ..arguments import listOf, number, path, validated
+from ..common.arguments import listOf, number, path, validated
 from ..basics import Refused
 from . import accelerograms
 from .accelerograms import UNEVEN, UNITS

@@ -5,7 +5,7 @@ import argparse
 import difflib
 import os
 
-from ..arguments import flag, isNumber, oneOf, plain, shown
+from ..common.arguments import flag, isNumber, oneOf, plain, shown
 from ..basics import Refused, refuse, say
 from ..run.options import OPTIONS, asOption, those
 from ..run.presets import PRESETS

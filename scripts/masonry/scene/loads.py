@@ -5,8 +5,8 @@ from __future__ import annotations
 
 from typing import Annotated, Any
 
-from ..arguments import Level, Numbers, number, validated
-from ..arguments import vector as numbers
+from ..common.arguments import Level, Numbers, number, validated
+from ..common.arguments import vector as numbers
 from ..assembly.blocks import vector
 from ..basics import Refused, say
 from ..bricks import Bricks

@@ -6,11 +6,11 @@ import os
 import sys
 from dataclasses import replace
 
-from .. import notebook
+from ..common import notebook
 from .._masonry import commit, version
-from ..arguments import oneOf, shown
+from ..common.arguments import oneOf, shown
 from ..assembly.engines import LAWS
-from ..background import reportRefusal
+from ..common.background import reportRefusal
 from ..basics import Interrupted, Refused, refuse, say
 from ..run import accuracy, batch, options
 from ..run.options import USUAL, reading

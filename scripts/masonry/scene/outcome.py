@@ -9,13 +9,13 @@ import sys
 from yade import O
 from yade.wrapper import MasonryVtkRecorder
 
-from ..arguments import isNumber
+from ..common.arguments import isNumber
 from ..assembly import blocks
 from ..assembly.blocks import units
 from ..assembly.engines import LAWS
 from ..basics import say, withoutCollector
-from ..memory import FULL
-from ..packages import Missing
+from ..common.memory import FULL
+from ..common.packages import Missing
 from ..read import cracks, curves, quantities
 from ..read.frames import asFrame
 from ..read.run_data import RunData

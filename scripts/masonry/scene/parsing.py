@@ -4,7 +4,7 @@
 import argparse
 import re
 
-from ..background import reportRefusal
+from ..common.background import reportRefusal
 from ..basics import NotResumed, Refused, plain
 from ..run import batch
 from ..run.run_state import Saved

@@ -6,8 +6,8 @@ from __future__ import annotations
 import itertools
 from typing import Annotated, Any, Callable
 
-from ..arguments import Direction, Name, shown, validated
-from ..arguments import name as nameOf
+from ..common.arguments import Direction, Name, shown, validated
+from ..common.arguments import name as nameOf
 from ..assembly.blocks import vector
 from ..assembly.columns import Column
 from .sections import BASE, ENDS, Section

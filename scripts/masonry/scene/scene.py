@@ -28,9 +28,9 @@ import functools
 import math
 from typing import Annotated, Any, Callable, Iterable, Iterator, Sequence
 
-from ..arguments import LONGEST_NAME
-from ..arguments import isA, listOf, number, oneOf, shown, text, validated
-from .. import notebook
+from ..common.arguments import LONGEST_NAME
+from ..common.arguments import isA, listOf, number, oneOf, shown, text, validated
+from ..common import notebook
 from ..assembly.structure import Structure
 from ..basics import GRAVITY, Interrupted, say, withoutCollector
 from ..bricks import Bricks

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from typing import Any, Callable, NamedTuple
 
-from ..arguments import nearest, number
+from ..common.arguments import nearest, number
 from ..basics import refuse
 
 
@@ -26,7 +26,7 @@ class Property(NamedTuple):
 
     @property
     def kind(self) -> Callable[..., Any]:
-        """The kind of its values, as in :mod:`masonry.arguments`."""
+        """The kind of its values, as in :mod:`masonry.common.arguments`."""
         return number(self.unit, self.low, self.high, above=self.above)
 
 

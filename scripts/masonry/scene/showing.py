@@ -6,8 +6,8 @@ import tempfile
 import numpy as np
 from yade.wrapper import MasonryVtkRecorder
 
-from .. import notebook
-from ..arguments import validated
+from ..common import notebook
+from ..common.arguments import validated
 from ..assembly import columns
 from ..assembly.blocks import units
 from ..basics import Refused

@@ -20,7 +20,7 @@ from typing import Annotated
 
 import numpy as np
 
-from ..arguments import Numbers, listOf, number, validated
+from ..common.arguments import Numbers, listOf, number, validated
 
 DAMPING = 0.05  # share of critical damping of the usual spectra [-]
 #: Points of a period at least at which the displacement is looked at: its largest is missed by less than 1 - cos(π/100).

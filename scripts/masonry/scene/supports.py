@@ -5,8 +5,8 @@ from __future__ import annotations
 
 from typing import Annotated, Any
 
-from ..arguments import Axes, Freedoms, Name, Numbers, axes, byName, number, oneOf, shown, validated  # fmt: skip
-from ..arguments import vector as numbers
+from ..common.arguments import Axes, Freedoms, Name, Numbers, axes, byName, number, oneOf, shown, validated  # fmt: skip
+from ..common.arguments import vector as numbers
 from ..assembly.blocks import vector
 from ..basics import refuse
 from .targets import BrickAt, Part, Target

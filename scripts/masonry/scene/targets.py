@@ -7,7 +7,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated, Any, Iterator, Union
 
-from ..arguments import Numbers, oneOf, shown
+from ..common.arguments import Numbers, oneOf, shown
 from ..assembly.columns import Column
 from ..bricks import Block
 
@@ -169,7 +169,7 @@ OF_JOINTS = (
 )  # fmt: skip
 
 
-# -- kinds of arguments, as in masonry.arguments ----------------------------------------------------------------------
+# -- kinds of arguments, as in masonry.common.arguments ----------------------------------------------------------------------
 
 
 def _descriptionOf(first):

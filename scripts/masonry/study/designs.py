@@ -9,7 +9,7 @@ import contextlib
 import itertools
 
 from ..basics import Refused
-from ..packages import needed
+from ..common.packages import needed
 from .variables import Distribution
 
 EDGE = 1e-12  # probabilities closer to 0 or 1 are moved here, where all quantiles are finite

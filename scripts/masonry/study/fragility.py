@@ -34,7 +34,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import optimize, special, stats
 
-from ..arguments import Numbers
+from ..common.arguments import Numbers
 from ..basics import Refused
 from .statistics import CONFIDENCE, Interval
 

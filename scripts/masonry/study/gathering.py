@@ -12,7 +12,7 @@ import os
 import re
 
 from ..run import batch
-from .. import folders
+from ..common import folders
 from ..basics import Refused
 from ..read.files import filesOf, readWhole
 from ..read.quantities import measures

@@ -17,8 +17,8 @@ import re
 from dataclasses import dataclass
 from typing import Any, Iterable, Sequence
 
-from .. import arguments
-from ..arguments import FilePath, isNumber, listOf, number, shown, validated
+from ..common import arguments
+from ..common.arguments import FilePath, isNumber, listOf, number, shown, validated
 from ..basics import GRAVITY, Refused, refuse
 from ..scene import accelerograms
 from ..scene.ground import UNITS, isThree, readRecord, record

@@ -7,9 +7,9 @@ import shutil
 import sys
 import time
 
-from .. import background
+from ..common import background
 from ..basics import Interrupted, Unwritable, say
-from ..folders import inside
+from ..common.folders import inside
 from ..run import batch
 from ..run.progress import Progress
 

@@ -12,7 +12,7 @@ from typing import Annotated, Any, Sequence
 
 import numpy as np
 
-from ..arguments import FilePath, isA, oneOf, validated, whole
+from ..common.arguments import FilePath, isA, oneOf, validated, whole
 from ..run import batch
 from ..basics import Refused, refuse
 from . import designs, incremental

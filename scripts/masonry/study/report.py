@@ -19,7 +19,7 @@ from collections import Counter
 import numpy as np
 
 from ..basics import Refused, say
-from ..folders import check
+from ..common.folders import check
 from . import estimate, pictures, sensitivity, statistics
 from .demands import QUANTILES, Demands
 from .fragility import nrml as nrmlOf

@@ -20,10 +20,10 @@ import subprocess
 import sys
 import time
 
-from .. import background
+from ..common import background
 from ..run import batch
 from ..basics import Held, NotResumed, Refused, say
-from ..folders import inside
+from ..common.folders import inside
 from ..read.files import readRun, readWhole
 from .continuing import rowsOf
 from .gathering import STUDY, TABLE, Folder, reason

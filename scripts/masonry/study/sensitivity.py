@@ -12,7 +12,7 @@ import numpy as np
 from scipy import special, stats
 
 from ..basics import Refused, refuse
-from ..packages import needed
+from ..common.packages import needed
 from .statistics import CONFIDENCE, Interval
 
 #: What a varied property does. ``change`` of the output, an :class:`Interval`, when the property goes from its 5 % to

@@ -9,7 +9,7 @@ import tempfile
 
 from ..run import batch
 from ..basics import Refused, Unwritable, refuse, say
-from ..folders import fromJson
+from ..common.folders import fromJson
 from ..read.files import readWhole
 from .continuing import checkRows, compareTable, rowsOf
 from .gathering import STUDY, TABLE, Folder, reason, written

@@ -8,11 +8,11 @@ import itertools
 from dataclasses import asdict, dataclass
 from typing import Annotated, Any, Sequence
 
-from ..arguments import FARTHEST, SHORTEST
-from ..arguments import isA, isNumber, listOf, number, shown, validated, text
+from ..common.arguments import FARTHEST, SHORTEST
+from ..common.arguments import isA, isNumber, listOf, number, shown, validated, text
 from ..scene import fields
 from ..basics import Refused
-from ..packages import needed
+from ..common.packages import needed
 
 LEAST_COV = 1e-6  # coefficient of variation below which nothing varies [-]
 

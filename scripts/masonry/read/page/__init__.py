@@ -19,7 +19,7 @@ from __future__ import annotations
 import html
 from typing import Annotated
 
-from ...arguments import FilePath, number, validated, whole
+from ...common.arguments import FilePath, number, validated, whole
 from .. import pages
 from ..frames import FrameNumber
 from ..pages import rendered

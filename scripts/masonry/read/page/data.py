@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from ...arguments import FilePath
+from ...common.arguments import FilePath
 from ...basics import plain
 from .. import painting
 from ..cracks import CRACK, CRUSHED, DAMAGED

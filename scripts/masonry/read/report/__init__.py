@@ -19,7 +19,7 @@ from __future__ import annotations
 
 from typing import Any, Callable, Iterable
 
-from ...arguments import FilePath, validated
+from ...common.arguments import FilePath, validated
 from ...basics import Refused
 from .. import pages
 from ..page.library import three

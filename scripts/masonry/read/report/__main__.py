@@ -8,7 +8,7 @@ import os
 import sys
 from typing import Sequence
 
-from ... import folders, memory
+from ...common import folders, memory
 from ...basics import Refused, say
 from . import NAME, read, write
 

@@ -6,7 +6,7 @@ from __future__ import annotations
 import math
 from typing import Any, Iterable, NamedTuple, Sequence
 
-from ... import arguments
+from ...common import arguments
 from ..quantities import Number
 
 UNKNOWN = "not known"

@@ -12,7 +12,7 @@ from typing import Annotated, Any
 
 from yade.wrapper import MasonryJoint, MasonryMat
 
-from ...arguments import isA, listOf, validated
+from ...common.arguments import isA, listOf, validated
 from ...assembly.blocks import properties
 from ...assembly.engines import LAWS
 

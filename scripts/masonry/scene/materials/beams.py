@@ -8,7 +8,7 @@ from typing import Annotated, Any
 
 from yade.wrapper import MasonryJoint, MasonryMat
 
-from ...arguments import number, shown, validated
+from ...common.arguments import number, shown, validated
 from ...basics import refuse
 from ...bricks import Bricks
 from ..settings import Property, Settable

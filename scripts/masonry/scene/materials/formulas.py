@@ -9,7 +9,7 @@ from typing import Annotated
 
 from yade.wrapper import MasonryJoint, MasonryMat
 
-from ...arguments import number, validated
+from ...common.arguments import number, validated
 from ...basics import refuse, say
 from ...bricks.blocks import Sides
 from .assumptions import state

@@ -11,8 +11,16 @@ from typing import Annotated, Any, Callable, Iterable
 from yade.wrapper import MasonryJoint, MasonryMat
 
 from .. import fields
-from ...arguments import Names, byName as dictOf, isA, isNumber, nearest, number, shown
-from ...arguments import validated
+from ...common.arguments import (
+    Names,
+    byName as dictOf,
+    isA,
+    isNumber,
+    nearest,
+    number,
+    shown,
+)
+from ...common.arguments import validated
 from ...assembly.engines import LAWS
 from ...basics import Refused
 from ..settings import applySettings

@@ -11,7 +11,7 @@ from typing import Annotated, Any
 from yade import Vector3
 from yade.wrapper import MasonryJoint, MasonryMat
 
-from ...arguments import isNumber, number, shown, validated
+from ...common.arguments import isNumber, number, shown, validated
 from .assumptions import state
 from .beams import Poisson
 from .kinds import Masonry, byName

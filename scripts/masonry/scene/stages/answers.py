@@ -8,7 +8,7 @@ import math
 from dataclasses import dataclass
 from typing import Annotated, Any
 
-from ...arguments import Name, number, validated
+from ...common.arguments import Name, number, validated
 from ...read import quantities
 from ..resuming import saidBefore
 from ..words import RESULT, Call

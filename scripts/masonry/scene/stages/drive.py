@@ -8,7 +8,7 @@ from typing import Annotated, Any, Callable, Union
 
 from yade import O
 
-from ...arguments import number, orFunction, validated
+from ...common.arguments import number, orFunction, validated
 from ...basics import Refused
 from ..targets import AnyTarget, RecordedJoint
 from .answers import DONE, Answer

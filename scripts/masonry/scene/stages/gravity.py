@@ -6,7 +6,7 @@ from __future__ import annotations
 import math
 from typing import Annotated, Any, Callable
 
-from ...arguments import Level, number, validated
+from ...common.arguments import Level, number, validated
 from ...assembly.blocks import vector
 from ..bounds import findBound, nameOfLean
 from .acting import Acceleration, Tilting

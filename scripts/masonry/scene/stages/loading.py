@@ -14,7 +14,7 @@ from typing import Any
 
 from yade import O, Vector3
 
-from ...arguments import Freedoms, Level, validated
+from ...common.arguments import Freedoms, Level, validated
 from ...assembly.blocks import vector
 from ...basics import Refused
 from ..bounds import findBound, nameOf

@@ -12,7 +12,7 @@ from typing import Annotated, Any, Callable, Union
 
 from yade import O
 
-from ...arguments import isNumber, plain, shown
+from ...common.arguments import isNumber, plain, shown
 from ...assembly.drives import Pattern, patternOfDrive
 from ...assembly.period import firstMode
 from ...basics import Refused

@@ -6,7 +6,7 @@ from __future__ import annotations
 from types import SimpleNamespace
 from typing import Annotated, Any
 
-from ...arguments import Direction, FilePath, Numbers, listOf, number, oneOf, validated, whole  # fmt: skip
+from ...common.arguments import Direction, FilePath, Numbers, listOf, number, oneOf, validated, whole  # fmt: skip
 from ...assembly.blocks import vector
 from ...assembly.drives import pushTo
 from ...basics import NotAccurate, Refused, say

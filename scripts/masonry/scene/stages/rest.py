@@ -10,7 +10,7 @@ from typing import Annotated, Any
 from yade import O, Vector3
 
 from ..._masonry import loadScene, saveScene
-from ...arguments import number, oneOf, validated
+from ...common.arguments import number, oneOf, validated
 from ...assembly import period
 from ...assembly.motion import FAR, REST
 from ...basics import Collapsed, Refused, say

@@ -9,7 +9,7 @@ from typing import Annotated, Any, Sequence
 
 from yade import O, Vector3
 
-from ...arguments import FilePath, Level, Numbers, number, oneOf, validated
+from ...common.arguments import FilePath, Level, Numbers, number, oneOf, validated
 from ...basics import Refused, say
 from ...run import batch
 from ..accelerograms import components, drift

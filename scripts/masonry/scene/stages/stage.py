@@ -10,7 +10,7 @@ from typing import Any, Callable, Concatenate, ParamSpec
 
 from yade import O
 
-from ... import notebook
+from ...common import notebook
 from ...basics import Collapsed, NotAccurate, say
 from ...run import batch
 from ...run.accuracy import STAGES
@@ -72,7 +72,7 @@ class Traits:
 
 def stage(**traits: Any) -> Callable[[Stage[P]], Stage[P]]:
     """Make a stage of a function of the scene and what the user says, which is
-    :func:`masonry.arguments.validated`; the keywords are those of :class:`Traits`.
+    :func:`masonry.common.arguments.validated`; the keywords are those of :class:`Traits`.
 
     The stage builds the scene if it is the first, is left out after a collapse, and ends the run in order on errors.
     """

@@ -8,7 +8,7 @@ from typing import Annotated, Any
 
 from yade import O, Vector3
 
-from ...arguments import Freedoms, number, validated
+from ...common.arguments import Freedoms, number, validated
 from ...assembly.blocks import vector
 from ...assembly.motion import FAR
 from ..history import MOST

@@ -6,7 +6,7 @@ from typing import Annotated
 
 from yade import O
 
-from ...arguments import number
+from ...common.arguments import number
 from .answers import DONE
 
 ROWS = 500  # of curve.csv in such a stage

@@ -8,7 +8,7 @@ import importlib
 import importlib.util
 import sys
 
-from .basics import Refused
+from ..basics import Refused
 
 #: Module -> (its Debian package, what needs it).
 NEEDED_FOR = {

@@ -28,7 +28,7 @@ from typing import cast, get_args, get_origin, get_type_hints
 
 import numpy as np
 
-from .basics import Refused, refuse
+from ..basics import Refused, refuse
 
 #: What a user gives, as type hints name it: some numbers, some axes.
 Numbers = Union[Sequence[float], np.ndarray[Any, Any]]

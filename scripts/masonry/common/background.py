@@ -23,7 +23,7 @@ import time
 import traceback
 from typing import Any, Callable, Iterable, Iterator
 
-from .basics import Interrupted, Refused
+from ..basics import Interrupted, Refused
 
 LONGEST = 60.0  # [s] that is waited for at once
 LOOK_EVERY = 0.05  # [s] between looks at programs

@@ -23,12 +23,12 @@ import sysconfig
 import types
 import warnings
 
-from .basics import say
+from ..basics import say
 
 YADE = "yade"
 SHELL = "IPython"
 #: The plugin, which is linked to YADE, and the room whose modules registering it needs.
-PLUGIN, ASSEMBLY = f"{__package__}._masonry", f"{__package__}.assembly."
+PLUGIN, ASSEMBLY = "masonry._masonry", "masonry.assembly."
 THREADS = "OMP_NUM_THREADS"
 #: What every build of YADE has in the folder of its modules.
 MARK = os.path.join(YADE, "__init__.py")

@@ -12,7 +12,7 @@ import json
 import os
 import stat
 
-from .basics import Unwritable, refuse
+from ..basics import Unwritable, refuse
 
 MOST = 5  # names that are listed
 
