@@ -48,6 +48,7 @@ class Assembly:
     :param ids: numbers by which messages name the blocks (n), YADE's
     :param polygons: corners of the joints, a list of arrays (k, 3) [m]
     :param corners: corners of the blocks, a list of arrays (k, 3) [m]
+    :param seams: whether a joint is a crack surface in a brick (m); pictures show it where it opens
     :param stood: whether blocks are where they stood when the joints were made
     :param deadline: end of the time that the solver has for all programmes together, as time.monotonic() counts [s]
     :param props: points of blocks that cannot move in a direction, whatever force that takes: a list of (number of the
@@ -72,6 +73,7 @@ class Assembly:
     ids: list
     polygons: list
     corners: list
+    seams: np.ndarray
     props: list = field(default_factory=list)
     links: list = field(default_factory=list)
     stood: bool = True

@@ -248,6 +248,7 @@ class Bound:
             "second_displacement": scale * self.motion(two, corners),
             "cells": np.split(np.arange(len(corners)), np.cumsum(sizes)[:-1]),
             "bodies": np.array(a.ids)[a.pairs],
+            "kind": a.seams.astype(int),
             "normal": a.normals,
             "area": np.bincount(a.joint, a.areas, count),
             "opening": np.where(opens, scale * widest, 0),
@@ -304,6 +305,6 @@ class Bound:
             blocks, joints = self.frames()
             masonry = {body for part in (parts or {}).values() for body in part}
             shades = {int(b): "platen" for b in blocks["body"] if masonry and b not in masonry}  # fmt: skip
-            structure = Structure(blocks, joints, parts or {}, shades, sights=views or {})  # fmt: skip
+            structure = Structure(blocks, joints, parts or {}, shades, sights=views or {}, seams=(1,))  # fmt: skip
             figure = figureOf(structure, title, 1)
             drawing.save(figure, path, 90)

@@ -9,6 +9,7 @@ import numpy as np
 from yade import O
 
 from ..basics import Refused
+from ..read.cracks import CRACK_SURFACE
 from .assembly import Assembly
 
 #: What has moved by less, over the size of a typical block, is taken where it stood when the joints were made [-]. It changes
@@ -73,6 +74,7 @@ def read() -> Assembly:
         corners=[_corners(b, place.stood) for b in blocks],
         stood=place.stood,
         links=_links(numbers, place),
+        seams=np.array([i.phys.joint.name == CRACK_SURFACE for i in joints]),
     )
 
 
