@@ -36,7 +36,7 @@ def test_a_pier_turns_about_its_toe_at_the_force_by_hand(tmp_path, pattern):
     weight = WIDTH * 0.4 * HEIGHT * 2400 * 9.81
     expected = 1e-3 * weight * WIDTH / 2 / lever  # [kN]
     bound = scene.bound(shape)
-    scene.push(shape, 1.5, rate=3, control=top)
+    scene.push(shape, 1.5, rate=1, control=top)
     scene.finish()
     run, curve = readRun(tmp_path / "pier"), readCurve(tmp_path / "pier")
     assert bound["factor"] == pytest.approx(expected, rel=1e-4)

@@ -123,7 +123,7 @@ def drivePush(scene, name, args, began, continued=False):
     """Drive the pushed target to ``--until`` or along ``--history``, with rows and frames.
 
     The drive moves at ``--rate``. When it begins, its velocity grows evenly in time, from rest to ``--rate`` within one
-    first period of the structure, which is measured then, and without damping: a motion that begins so leaves no swing of
+    first period of the structure, which is measured then, and without damping, if not all blocks are driven: a motion that begins so leaves no swing of
     that period. Numerical damping would act as more mass. Where the history turns, the velocity changes within whole
     periods, together :func:`rampTime` at least, because open joints make periods longer. Where no period is found both take
     :func:`rampTime`. The drive brakes by the displacement that curve.csv has, so the wall turns within 0.01 mm of the
@@ -145,6 +145,7 @@ def drivePush(scene, name, args, began, continued=False):
     :raises Collapsed: with what was seen
     """
     run, model = scene.running, scene.model
+    drive = model.loading.loads["push"]
     at = run.stage(name, Pushing())
     goals = _entered(scene, name, args, at, began, continued)
     whole, spacing = pathOf(args, at.start), frameSpacing(args)
@@ -161,7 +162,7 @@ def drivePush(scene, name, args, began, continued=False):
         goal = goals[at.passed]
         model.loading.goal = at.passed + 1, goal.displacement
         growth, start, steps = _pace(at, goal, args, every)
-        free = bool(at.period) and not at.turned and growth < 1
+        free = bool(at.period) and not at.turned and growth < 1 and not drive.damped
         if free != undamped:
             undamped = free
             model.scheme.damp(0.0, "local") if free else model.scheme.dampByOptions()
