@@ -158,6 +158,17 @@ def test_the_line_of_loads_that_were_put_on_goes_from_rest_up_to_the_largest():
 
 
 def test_the_widest_crack_is_the_largest_opening():
-    joints = [("a", [-1.0, 2.0], ["p", "q"]), ("b", [3.0, 2.0], ["r", "s"])]
-    assert cracks.widest(joints) == (3.0, "r", "b")
-    assert cracks.widest([("a", [-1.0, -2.0], ["p", "q"])]) == (0.0, None, None)
+    joints = [
+        ("a", {"bed", "wall"}, [-1.0, 2.0], ["p", "q"]),
+        ("b", {"head"}, [3.0, 2.0], ["r", "s"]),
+        ("c", {"bed"}, [1.0], ["t"]),
+    ]
+    groups = {"bed": 2.0, "wall": 2.0, "head": 3.0}
+    assert cracks.widest(joints) == (3.0, "r", "b", groups)
+    closed = [("a", {"bed"}, [-1.0, -2.0], ["p", "q"])]
+    assert cracks.widest(closed) == (0.0, None, None, {"bed": 0.0})
+
+
+def test_damage_classes_are_those_of_the_table():
+    widths = [0, 0.1, 0.11, 1, 1.1, 5, 5.1, 15, 16, 25, 26]
+    assert [*map(cracks.damageClass, widths)] == [0, 0, 1, 1, 2, 2, 3, 3, 4, 4, 5]

@@ -108,17 +108,19 @@ class Of:
 TOP, LEVEL = Of("top"), (1, 0, 0)
 PUSHES = dict(target=TOP, direction=LEVEL, rate=200.0, continued=False, control=TOP)
 WINDS = dict(pressure=10.0, towards=LEVEL, part=None)
+AGAINST = dict(towards=LEVEL, part=None, normal=True)
 GROWS = dict(over=0.02, within=0.5)
 
 #: What stands before a word of a scene, and its arguments. A word that describes, and is a stage later, has two examples.
 WORDS = {
-    "platen": (bare, dict(where="top", rotation=None, height=0.2, name=None, point=None, guided="", part=None, upTo=None, recorded=None, drive="", springs=None)),
+    "platen": (bare, dict(where="top", rotation=None, height=0.2, name=None, point=None, guided="", part=None, upTo=None, recorded=None, drive="", springs=None, uplift=False)),
     "hold": (bare, dict(where=0, name=None, axes="xyzXYZ")),
     "watch": (bare, dict(where=0, name=None)),
     "handle": (bare, dict(where=0, name=None)),
     "press": (scene, dict(platen=TOP, stress=1e5, riding=True)),
     "load": (scene, dict(target=TOP, force=(0, 0, -1e3))),
     "wind": (space, WINDS),
+    "pressure": (space, dict(value=10.0, **AGAINST)),
     "drift": (scene, dict(lower=Of("base"), upper=TOP, name=None)),
     "column": (scene, dict(name="own_mm", meaning="mine", value=lambda: 1.0)),
     "joint": (scene, dict(one=0, two=1, name=None)),
@@ -140,16 +142,21 @@ WORDS = {
     "accelerate": (settled, dict(most=0.02, towards=LEVEL, rate=1.0, within=0.5)),
     "lean": (settled, dict(factor=0.01, towards=LEVEL, longest=0.05)),
     "shake": (settled, dict(accelerations=[0.0, 2.0, 0.0], every=0.002, direction=LEVEL, scale=1.0, unit=None, after=0.0, damping=0.1, massDamping=0.0, stiffnessDamping=0.0)),
+    "period": (settled, dict(direction=LEVEL)),
+    "shakeAgain": (settled, dict(records=[[0.0, 2.0, 0.0]], every=0.002, direction=LEVEL, scales=None, longest=0.05)),
     "run": (settled, dict(seconds=0.01, damping=0.0)),
     "growLoad": (settled, dict(target=TOP, force=(100.0, 0, 0), **GROWS)),
     "growWind": (lambda: settled(space), {**WINDS, **GROWS}),
     "growPress": (settled, dict(platen=TOP, stress=1e4, **GROWS)),
+    "grow": (lambda: settled(space), dict(loads={}, most=2.0, dead=True, pressure=10.0, **AGAINST, **GROWS)),
+    "travel": (lambda: settled(space), dict(force=100.0, along=[(0.1, 0.1, 1.0)], longest=0.05)),
     "bracket": (settled, dict(carries=lambda f: f < 0.5, low=0.0, high=1.0, within=0.3)),
     "result": (settled, dict(name="mine", value=1.0, unit="-", how="by hand")),
     "bound": (settled, dict(target=TOP, direction=LEVEL, towards=None)),
     "domain": (pressing, dict(target=TOP, normal=[20.0, 40.0], direction=LEVEL)),
     "load, a stage": (settled, dict(target=TOP, force=(100.0, 0, 0), longest=0.05)),
     "wind, a stage": (lambda: settled(space), dict(**WINDS, longest=0.05)),
+    "pressure, a stage": (lambda: settled(space), dict(value=10.0, **AGAINST, longest=0.05)),
     "press, a stage": (settled, dict(platen=TOP, stress=1e4, longest=0.05)),
     "hold, a stage": (holding, dict(target=Of("grip"), axes="xz")),
 }  # fmt: skip
@@ -266,6 +273,7 @@ CALLS = {
     "Bricks.within": (nothing, WALL.within, dict(low=(0, 0, 0), high=(1, 1, 1))),
     "Bricks.cut": (nothing, WALL.cut, dict(point=(0.1, 0, 0), normal=LEVEL, own=False)),
     "Bricks.freeFaces": (nothing, WALL.freeFaces, dict(direction=(0, 1, 0))),
+    "Bricks.freeParts": (nothing, WALL.freeParts, dict(direction=(0, 1, 0), least=0.5)),
     "capacity.assess": (nothing, capacity.assess, dict(directory="run", rule="masonry", mechanism=None, limited=False, iterate=False, height=1.0, out=None, spectrum=SPECTRUM, system=SYSTEM)),
     "capacity.assessDomain": (nothing, capacity.assessDomain, dict(directory="run", runs=(), out=None)),
     "capacity.bilinear": (nothing, capacity.bilinear, dict(**CURVE, **RULE, pulse=0.0)),
@@ -405,7 +413,7 @@ def isNamed(name, argument, message):
 
 
 #: Words that take steps, some tenths of a second each time.
-STEPS = {"accelerate", "bound", "cycle", "domain", "follow", "growLoad", "growPress", "load, a stage", "move", "pressJoint", "push", "result", "shake", "tilt"}  # fmt: skip
+STEPS = {"accelerate", "bound", "cycle", "domain", "follow", "growLoad", "growPress", "grow", "load, a stage", "move", "pressJoint", "push", "result", "shake", "shakeAgain", "tilt", "travel"}  # fmt: skip
 
 
 @pytest.mark.parametrize("name", [pytest.param(n, marks=[pytest.mark.slow] * (n in STEPS)) for n in (*WORDS, *CALLS)])  # fmt: skip

@@ -39,6 +39,18 @@ scene.settle()
 scene.growLoad(top, (4000, 0, 0))
 scene.finish()
 """,
+    "together": """
+stone = materials.dry(friction=0.7, normalStiffness=1e11, density=2600)
+scene = Scene("s", bricks.stack(3, (0.3, 0.3, 0.2)), stone)
+scene.platen("bottom")
+top = scene.handle(2, name="stone")
+scene.pressure(lambda x, y, z: 500 * (0.6 - z), (1, 0, 0))
+scene.settle()
+scene.pressure(lambda x, y, z: 900 * z, (-1, 0, 0))
+scene.travel(500, [(0.1, 0.1, 1), (0.2, 0.1, 1)])
+scene.grow({top: (2000, 0, 0)}, dead=True, pressure=lambda x, y, z: 1e3 * z, most=3)
+scene.finish()
+""",
     "soft": """
 stone = materials.dry(friction=0.6, normalStiffness=1e8, density=2600)
 scene = Scene("s", bricks.stack(3, (1.0, 1.0, 0.5)), stone)
@@ -99,6 +111,7 @@ def resumed(script, whole):
     [
         ("stages", (0.4, 0.6, 0.97)),
         ("search", (0.2, 0.5, 0.8)),
+        ("together", (0.2, 0.3, 0.4, 0.6, 0.8)),
         ("soft", (0.01, 0.13, 0.75)),
         ("line", (0.3, 0.8, 0.9, 0.95)),
         ("fall", (0.5, 0.95)),

@@ -100,6 +100,13 @@ def _energies(names):
     ]
 
 
+CRACKS = Column(
+    "largest_crack",
+    "mm",
+    "largest opening of a point of any joint, without slide, 0 if none is open; looked for every 300 steps or more",
+    lambda r: r.structure.widest,
+)
+
 #: The energy balance, in every run, and what ties and springs add to it.
 BALANCE = [
     *_energies(ENERGIES),

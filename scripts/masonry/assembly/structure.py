@@ -26,6 +26,7 @@ class Structure:
 
     - ``ids``: body ids of the bricks, in their order; ``parts``: those of every part; ``bricks``: number of the brick by
       body id, for all bodies that are bricks or parts of bricks
+    - ``widest``: width of the widest crack when it was looked for last [mm]
     - ``interactions``: the joints between blocks; ``subcontacts``: how many points they have
     - ``loading``, ``connectors``, ``supports``, ``scheme``, ``motion``: loads and drives, ties and springs, what holds it,
       its scheme in time, and how blocks move
@@ -79,6 +80,7 @@ class Structure:
         self.interactions = makeJoints(
             self.masonry.rule(blocks), allowGaps=self.description.allowGaps
         )
+        self.widest = 0.0
         self.subcontacts = sum(len(i.geom.areas) for i in self.interactions)
         for target in self.description.targets.values():
             if not target.joined:  # it is no neighbour of what it touches
@@ -174,6 +176,10 @@ class Structure:
                 )
         for section in self.description.sections:
             section.join(self)
+
+    def widestCrack(self):
+        """The largest opening of a point of any joint now [mm], 0 if none is open."""
+        return 1e3 * max(0.0, *(max(one.phys.opening) for one in self.interactions))
 
     def read(self):
         """What the columns are made of, measured now."""

@@ -217,8 +217,9 @@ class Supports:
         held = {target.body for target in self.held}
         found = [self._sinkingPeriod()]
         free = [body.state for body in O.bodies if body.id not in held]
-        for one in self.description.connectors:
-            if not (one.isSupport and one.ends[0].target and one.ends[0].target.box):
+        springs = [one for one in self.description.connectors if one.WORD == "spring"]
+        for one in [*springs, *self.description.soils]:
+            if not (one.ends[0].target and one.ends[0].target.box):
                 continue
             arms = [(s.mass, s.pos - Vector3(*one.ends[0].point)) for s in free]
             weight = self.structure.gravity * sum(m * r[2] for m, r in arms)  # lever

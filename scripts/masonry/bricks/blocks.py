@@ -390,7 +390,20 @@ class Bricks:
         :param direction: three numbers, of any length
         :returns: list of (number of the block, outward normal, free area [m²], centroid of the free part [m])
         """
-        return checks.freeFaces(self._convex("freeFaces"), self.joints(), direction)
+        return [part[:4] for part in self.freeParts(direction)]
+
+    @validated
+    def freeParts(
+        self,
+        direction: Direction,
+        least: Annotated[float, number("", -1, 1)] = checks.LOOKING,
+    ) -> list[checks.FreePart]:
+        """As :meth:`freeFaces`, with polygons: a list of :class:`masonry.bricks.checks.FreePart`.
+
+        :param least: cosine of the largest angle between direction and normal [-]
+        """
+        solids = self._convex("freeParts")
+        return checks.freeParts(solids, self.joints(), direction, least)
 
     @functools.cached_property
     def _pairs(self):

@@ -16,12 +16,17 @@ SLIVER = 0.25
 #: A joint is of odd size if its width, area through longest extent, is below this share of the thinner block. Assumed.
 NARROW = 0.1
 
-LOOKING = np.cos(np.radians(45))  # of the angle between a face and where it looks
+#: Least cosine of the angle between the normal of a face and where it looks: of 45 degrees.
+LOOKING = float(np.cos(np.radians(45))) - COINCIDENT
 ALONG = 1 - 1e-6  # of the angle between normals of one face of a convex block
 
 #: Joint of two blocks: their numbers in the collection, the unit normal from the first to the second, the polygon
 #: (counter-clockwise about the normal) [m], its area [m²] and its centroid [m].
 Joint = namedtuple("Joint", "first second normal polygon area middle")
+
+#: What no joint covers of a face: number of the block, outward normal, area [m²], centroid [m], the polygon of the face, and those
+#: of the joints in it [m].
+FreePart = namedtuple("FreePart", "block normal area middle face covers")
 
 
 def findJoints(solids):
@@ -114,8 +119,11 @@ def _reaches(solids, n, place):
     return bool(np.all(solids.low[n] <= place) and np.all(place <= solids.high[n]))
 
 
-def freeFaces(solids, joints, direction):
-    """Faces that look in a direction, see :meth:`masonry.bricks.Bricks.freeFaces`."""
+def freeParts(solids, joints, direction, least):
+    """What no joint covers of faces that look in a direction: a list of :class:`FreePart`.
+
+    :param least: cosine of the angle between direction and normal [-]
+    """
     sight = np.array(direction, float)
     sight /= np.linalg.norm(sight)
     covered = {}
@@ -127,16 +135,19 @@ def freeFaces(solids, joints, direction):
     for n in range(solids.count):
         group, row = solids.groups[solids.groupOf[n]], solids.rowOf[n]
         for face, normal in enumerate(group.normals[row]):
-            if normal @ sight < LOOKING - COINCIDENT:
+            if normal @ sight < least:
                 continue
-            area, _, middle = measures([tuple(c) for c in solids.face(n, face)], normal)
-            free, moment = area, area * np.array(middle)
+            whole = [tuple(c) for c in solids.face(n, face)]
+            area, _, middle = measures(whole, normal)
+            free, moment, covers = area, area * np.array(middle), []
             for outward, joint in covered.get(n, ()):
                 if outward @ normal > ALONG:
                     free -= joint.area
                     moment -= joint.area * np.array(joint.middle)
+                    covers.append(joint.polygon)
             if free > COINCIDENT * area:
-                faces.append((n, tuple(normal), float(free), tuple(moment / free)))
+                place = tuple(moment / free)
+                faces.append(FreePart(n, tuple(normal), float(free), place, whole, covers))  # fmt: skip
     return faces
 
 

@@ -8,6 +8,7 @@ needs no YADE.
 
 from __future__ import annotations
 
+import math
 from typing import Any, Sequence
 
 import numpy as np
@@ -33,18 +34,33 @@ def widths(frame: dict[str, Any]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     return np.maximum(frame["opening"], slide), opened, cracked
 
 
-def widest(joints: Any) -> tuple[float, Any, Any]:
+def widest(joints: Any) -> tuple[float, Any, Any, dict[str, float]]:
     """The widest crack: the largest opening of a point of any joint, without its slide.
 
-    :param joints: of each an identifier, the openings of its points [m], negative where it is closed, and the points [m]
-    :returns: opening [m], point and identifier; 0.0, None and None if no joint is open
+    :param joints: of each an identifier, the groups to which it belongs, the openings of its points [m], negative where it is closed,
+        and the points [m]
+    :returns: opening [m], point and identifier, 0.0, None and None if no joint is open; and the largest opening of every group [m]
     """
-    found = 0.0, None, None
-    for name, openings, points in joints:
+    found, groups = (0.0, None, None), {}
+    for name, own, openings, points in joints:
         at = int(np.argmax(openings))
+        groups.update({one: max(groups.get(one, 0.0), openings[at]) for one in own})
         if openings[at] > found[0]:
             found = float(openings[at]), points[at], name
-    return found
+    return *found, groups
+
+
+#: Damage visible on walls by the width of its cracks [mm]: classes 0 to 5 with their names, of Burland, Broms and De Mello (1977) and
+#: BRE Digest 251, which also say how easily each is repaired.
+CLASSES = {0.1: "negligible", 1: "very slight", 5: "slight", 15: "moderate", 25: "severe", math.inf: "very severe"}  # fmt: skip
+
+
+def damageClass(width: float) -> int:
+    """The damage class of a crack, 0 to 5 (:data:`CLASSES`).
+
+    :param width: [mm]
+    """
+    return sum(width > limit for limit in CLASSES)
 
 
 def crushed(frame: dict[str, Any]) -> np.ndarray:

@@ -87,10 +87,14 @@ A run that pushes, leans or tilts has these, if limit analysis (:mod:`masonry.li
   that at the supports
   The process that finds the bound draws its mechanism at its end, so a run that was killed and resumed has no picture of it
 
-A run with a push has these, too:
+Every run but one with --preset bound has these, too:
 
+- ``largest_cracks_mm``: the largest opening at the end by kind of joint, and by part of the bricks
 - ``largest_crack_at_m``, ``largest_crack_bodies``: the point of the widest crack as it was built (x, y, z), and the ids of both bodies
   of its joint; None if none is open
+
+A run with a push has these, too:
+
 - with --accuracy: ``peak_half_width_kN`` and ``work_half_width_J``, half the widths of the intervals of ``peak_at_both_ends_kN`` and of
   ``push_work_J``; and ``accuracy``: ``asked_percent``; ``reached``, whether
   both are within it; ``fidelity``, what was chosen; ``quantities``, a list with ``name``, ``unit``, ``value``, ``half_width``,

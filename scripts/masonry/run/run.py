@@ -16,6 +16,7 @@ from types import SimpleNamespace
 from yade import O
 
 
+from ..assembly.columns import CRACKS
 from ..basics import Collapsed, Interrupted, NotResumed, Unwritable, listen, say
 from ..basics import stopListening
 from . import batch
@@ -31,6 +32,7 @@ from .signals import Signals
 
 SHOW_EVERY = 0.05  # [s] of wall-clock time: what is shown on the terminal is not older
 LOOK_EVERY = 0.5  # [s] of wall-clock time: within slow steps a checkpoint that is due is made no later
+LOOKED = 300  # steps after which the widest crack is looked for again: a hundredth of the time of steps in which joints yield
 
 
 class Run:
@@ -275,7 +277,12 @@ class Run:
 
     def record(self):
         """Read the model for a row of curve.csv. Returns the reading."""
+        at, head = self.at, CRACKS.head
         with self.clock("rows"):
+            due = not at.widest or abs(O.iter - at.widest[0]) >= LOOKED
+            if due and head in self.results.columns:
+                at.widest = [O.iter, self.model.widestCrack()]
+            self.model.widest = at.widest[-1] if at.widest else 0.0
             reading = self.readings.add(self.model)
         if self.readings.isDue():
             self.flush()

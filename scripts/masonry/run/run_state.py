@@ -58,6 +58,8 @@ class RunState:
     answers: dict = _holding(dict, [])  # of the stages, by their number
     notes: list = _holding(list, {})  # what the run said, as in run.json
     supportsMoved: bool = False  # whether a stage has moved supports
+    #: When the widest crack was looked for last, and its width: number of the time step, and [mm].
+    widest: list = _holding(list, 0.0)
     resumed: list = _holding(list, 0.0)  # times at which it was taken up [s]
 
     def hear(self, text, number, time_s):

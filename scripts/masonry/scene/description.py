@@ -59,7 +59,10 @@ class Description:
         self.sections = []
         self.connectors = []  # ties and springs, records of masonry.scene.ties
         self.overlays = []
-        self.winds = []  # brick, force [N] and point [m]
+        self.soils = (
+            []
+        )  # springs that stand for a soil without tension where periods are estimated
+        self.winds = []  # forces on faces: masonry.scene.pressures.FaceForce
         self.views = {}  # direction of sight by part
         self.extra = []  # columns of the user's own
 
@@ -124,7 +127,7 @@ class Description:
     def loaded(self):
         """Names of what has loads that grow in a stage."""
         names = [t.name for t in self.targets.values() if t.pressed or t.force]
-        return names + ["the faces (wind)"] * bool(self.winds)
+        return names + ["the faces (pressure)"] * bool(self.winds)
 
     def add(self, target):
         """Take a target. Its name begins those of its columns. Raises ValueError."""
@@ -171,7 +174,7 @@ class Description:
             found += record.columns(self.plane)
         balance = columns.BALANCE + columns.CONNECTORS * bool(self.connectors)
         balance += (columns.CONTACTS + columns.FALLS) * bool(self.contact)
-        found += [*self.extra, *balance, *columns.HISTORY * looped]
+        found += [columns.CRACKS, *self.extra, *balance, *columns.HISTORY * looped]
         heads = columns.heads(found)
         twice = sorted({n for n in heads if heads.count(n) > 1})
         if twice:

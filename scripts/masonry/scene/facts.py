@@ -84,8 +84,8 @@ def held(description):
             what.append(f"a drive holds it along {', '.join(target.drives)}")
         yield target.name, "; ".join(what)
     if description.winds:
-        force = [sum(w[1][i] for w in description.winds) for i in range(3)]
-        yield "wind", "({:.4g}, {:.4g}, {:.4g}) N in all".format(*force)
+        force = [sum(w.force[i] for w in description.winds) for i in range(3)]
+        yield "pressure on faces", "({:.4g}, {:.4g}, {:.4g}) N in all".format(*force)
     recorded = [thing.name for thing in (*description.joints, *description.drifts, *[one for one in description.sections if not one.isBase])]  # fmt: skip
     if recorded:
         yield "recorded, too", ", ".join(recorded)

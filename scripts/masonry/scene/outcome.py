@@ -183,8 +183,12 @@ class Outcome:
         if math.isfinite(scene.factor):
             run["factor"] = scene.factor
         run.update(self._connections())
-        if self.pushed:
-            data = self.data
+        if not scene.only:
+            run.update(self._cracks())
+        data = self.data
+        if not self.pushed:
+            run.update(quantities.found(data))
+        else:
             run.update(self._ofPush(data))
             if self.args.lean and "wall" in run:
                 with withoutCollector():
@@ -205,11 +209,6 @@ class Outcome:
         target, sways = model.loading.target, abs(model.loading.direction[2]) < 1e-9
         heights = target.recorded[2], model.supports.driftHeight(target)
         recorded, drift = (z - self.description.low[2] for z in heights)
-        joints = (
-            ((i.id1, i.id2), i.phys.opening, i.geom.centres) for i in model.interactions
-        )
-        width, point, bodies = cracks.widest(joints)
-        place = None if point is None else [round(v, 9) + 0.0 for v in point]
         past = self.pushed.history
         return {
             "first_period_s": period or None,
@@ -217,11 +216,24 @@ class Outcome:
             "velocity_grown_at_s": grown,
             "recorded_height_m": recorded if sways and recorded > 0 else None,
             "drift_height_m": drift if sways and drift > 0 else None,
-            "largest_crack_mm": 1e3 * width,
-            "largest_crack_at_m": place,
-            "largest_crack_bodies": None if bodies is None else list(bodies),
             **({"history": history.describe(past)} if past else {}),
         }
+
+    def _cracks(self):
+        """Entries for the widest cracks, of all joints and by kind of joint and part."""
+        bricks = self.description.bricks
+        parts = {body: f"part {b.part}" for body, b in zip(self.model.ids, bricks)}
+        groups = lambda i: {i.phys.joint.name, *(parts[b] for b in (i.id1, i.id2) if b in parts)}  # fmt: skip
+        width, point, bodies, found = cracks.widest(
+            ((i.id1, i.id2), groups(i), i.phys.opening, i.geom.centres)
+            for i in self.model.interactions
+        )
+        return {
+            "largest_crack_mm": 1e3 * width,
+            "largest_crack_at_m": None if point is None else [round(v, 9) + 0.0 for v in point],
+            "largest_crack_bodies": None if bodies is None else list(bodies),
+            "largest_cracks_mm": {name: 1e3 * found[name] for name in sorted(found)},
+        }  # fmt: skip
 
     def _connections(self):
         """Entries for ties and springs, if there are any."""

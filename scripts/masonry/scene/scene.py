@@ -45,7 +45,7 @@ from .description import Description
 from .materials import Masonry, linesOf, loadingBlock
 from .outcome import Outcome
 from .resuming import State, resume
-from .stages import STAGES, gravity, prepare, rest
+from .stages import STAGES, again, gravity, prepare, rest
 from .stages import answers
 from .targets import Target
 from .words import SHAKES, Call, Script, either
@@ -166,6 +166,7 @@ class Scene:
     press = either(loads.press, stages.press)
     load = either(loads.load, stages.load)
     wind = either(loads.wind, stages.wind)
+    pressure = either(loads.pressure, stages.pressure)
 
     @property
     def targets(self) -> dict[str, Target]:
@@ -179,7 +180,9 @@ class Scene:
     drive, pressJoint = stages.drive, stages.pressJoint
     tilt, accelerate, lean = stages.tilt, stages.accelerate, stages.lean
     growLoad, growWind = stages.growLoad, stages.growWind
-    growPress, shake, run = stages.growPress, stages.shake, stages.run
+    growPress, grow, travel = stages.growPress, stages.grow, stages.travel
+    shake, run, period = stages.shake, stages.run, stages.period
+    shakeAgain = again.shakeAgain
     bracket, stepBack, resume = gravity.bracket, rest.stepBack, resume
     bound, domain, result = bounding.bound, bounding.domain, answers.result
 

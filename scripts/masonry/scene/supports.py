@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import itertools
 from typing import Annotated, Any
 
 from ..common.arguments import Axes, Freedoms, Name, Numbers, axes, byName, number, oneOf, shown, validated  # fmt: skip
@@ -10,10 +11,15 @@ from ..common.arguments import vector as numbers
 from ..assembly.blocks import vector
 from ..basics import refuse
 from .targets import BrickAt, Part, Target
-from .ties import MOST, End, Spring
+from .ties import MOST, End, Spring, Tie
 from .words import describes
 
 PLATEN = 0.2  # [m] height of a platen
+BARS = (
+    21,
+    11,
+)  # along each side of a platen on a soil without tension, in a plane and in space
+HIGH = 1e3  # [m] length of these bars
 
 #: A coordinate and a point, not farther from the origin than any masonry.
 Coordinate = Annotated[float, number("m", -1e6, 1e6)]
@@ -44,6 +50,7 @@ def platen(
     recorded: Coordinate | None = None,
     drive: Annotated[Axes, axes("xyz", none=True)] = "",
     springs: Annotated[dict[str, float], stiffnesses] | None = None,
+    uplift: bool = False,
 ) -> Target:
     """A stiff block over the whole lower or upper side of the structure.
 
@@ -67,11 +74,15 @@ def platen(
         stiffness [N/m], [N m/rad], at the middle of its outer side, for example ``{"x": 37e6}``; along and about the others it
         is fixed, and where it is fixed along x or y it turns about its own middle. Its weight counts if it can move along
         z. None: it is fixed along and about all
+    :param uplift: whether the soil carries no tension. Then ``z`` of ``springs`` is spread over the side of the platen, so that it also
+        turns on it, and each part of the soil has compression alone
     """
     bottom = where == "bottom"
     level = description.low[2] if bottom else description.high[2]
     springs = springs or {}
     problems = _problems(description, bottom, rotation, guided, drive, springs)
+    if uplift and ("z" not in springs or {"X", "Y"} & {*springs}):
+        problems.append("platen: uplift needs springs with z, from which X and Y follow, and which have neither")  # fmt: skip
     if upTo is not None and not 0 < (level - upTo if bottom else upTo - level):
         side = "below" if bottom else "above"
         problems.append(
@@ -91,7 +102,8 @@ def platen(
     else:
         freedom = "yXYZ" if plane else "XYZ"
     freedom += "".join(axis for axis in guided if axis not in freedom)
-    freedom = "".join(axis for axis in freedom if axis not in springs)
+    free = {*springs, *(("Y" if plane else "XY") * uplift)}
+    freedom = "".join(axis for axis in freedom if axis not in free)
     point = middle if point is None else point
     point = tuple(vector(point, "platen: point [m]"))
     if recorded is not None and not min(level, outer) <= recorded * (1 + 1e-12):
@@ -110,6 +122,9 @@ def platen(
             drives="".join(drive),
         )
     )
+    if uplift:
+        _standLoose(description, target, springs["z"], (*low, outer), (*high, outer))
+    springs = {axis: k for axis, k in springs.items() if not (uplift and axis == "z")}
     if springs:
         _standOn(description, target, springs, middle)
     return target
@@ -162,6 +177,35 @@ def _standOn(description, target, springs, point):
     ends = End(point, target), End(point)
     name = f"{target.name}_spring"
     description.connectors.append(Spring(name, ends, of("xyz"), of("XYZ")))
+
+
+def _standLoose(description, target, stiffness, low, high):
+    """Let a platen stand on a soil without tension: bars by which it hangs from points so high above that they stay upright.
+
+    :param stiffness: of all together [N/m]
+    :param low: and ``high``: opposite corners of its outer side [m]
+    """
+    counts = (BARS[0], 1) if description.plane else (BARS[1], BARS[1])
+    rows = [_spread(a, b, count) for a, b, count in zip(low, high, counts)]
+    for (x, one), (y, other) in itertools.product(*rows):
+        ends = End((x, y, low[2]), target), End((x, y, low[2] + HIGH))
+        name = f"{target.name}_soil"
+        bar = Tie(name, ends, one * other * stiffness, None, 0.0, 0.0, None, False, overlay=name)  # fmt: skip
+        bar.isSupport = True
+        description.connectors.append(bar)
+    deep, wide = (high[i] - low[i] for i in (1, 0))
+    rotation = tuple(stiffness * side**2 / 12 for side in (deep, wide)) + (0.0,)
+    middle = tuple((a + b) / 2 for a, b in zip(low, high))
+    description.soils.append(Spring(f"{target.name}_soil", (End(middle, target), End(middle)), (0.0, 0.0, stiffness), rotation))  # fmt: skip
+
+
+def _spread(low, high, count):
+    """Places from end to end, and the share of each by Simpson's rule, so that a soil has its stiffness against rotation, too."""
+    if count == 1:
+        return [((low + high) / 2, 1.0)]
+    shares = [1, *([4, 2] * (count // 2))[:-1], 1]
+    step = (high - low) / (count - 1)
+    return [(low + n * step, share / sum(shares)) for n, share in enumerate(shares)]
 
 
 @describes

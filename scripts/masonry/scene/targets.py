@@ -5,14 +5,14 @@ and the kinds of arguments that name them."""
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Annotated, Any, Iterator, Union
+from typing import Annotated, Any, Iterator, Sequence, Union
 
-from ..common.arguments import Numbers, oneOf, shown
+from ..common.arguments import Numbers, isListed, listOf, oneOf, shown
 from ..assembly.columns import Column
 from ..bricks import Block
 
 
-@dataclass(eq=False)
+@dataclass(eq=False)  # what a script holds is this one, also as the key of a dict
 class Target:
     """A platen, or a brick that is held, loaded or watched. ``scene.platen`` and its like make it.
 
@@ -225,8 +225,10 @@ MovingPlaten = Annotated[
     Target,
     _target("a platen of this scene that moves", lambda t: t.box and not t.fixed),
 ]
-HeldTarget = Annotated[
-    Target, _target("a platen or brick of this scene that is held", lambda t: t.fixed)
+_held = _target("a platen or brick of this scene that is held", lambda t: t.fixed)
+HeldTargets = Annotated[
+    Union[Target, Sequence[Target]],
+    lambda value, first: listOf(_held)(value if isListed(value) else [value], first),
 ]
 RecordedJoint = Annotated[JointRecord, recordedJoint]
 Part = Annotated[str, part]

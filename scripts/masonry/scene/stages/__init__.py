@@ -8,11 +8,11 @@ A new stage is such a function (:func:`masonry.scene.stages.stage.stage`) and it
 - :mod:`masonry.scene.stages.drive`: ``drive`` and ``pressJoint``
 - :mod:`masonry.scene.stages.supports`: ``release`` and ``move``
 - :mod:`masonry.scene.stages.gravity`: ``tilt``, ``accelerate``, ``lean`` and ``bracket``
-- :mod:`masonry.scene.stages.loading`: ``load``, ``wind``, ``press`` and ``hold`` after the first stage, and ``growLoad``,
-  ``growWind`` and ``growPress``
+- :mod:`masonry.scene.stages.loading`: ``load``, ``wind``, ``press``, ``pressure`` and ``hold`` after the first stage, and ``grow``
+  with its simple cases ``growLoad``, ``growWind`` and ``growPress``; :mod:`masonry.scene.stages.travelling`: ``travel``
 - :mod:`masonry.scene.stages.growing`: how a load grows, and the search for the one that is held;
   :mod:`masonry.scene.stages.acting`: what acts and can be changed
-- :mod:`masonry.scene.stages.shake`: ``shake`` and ``run``
+- :mod:`masonry.scene.stages.shake`: ``shake`` and ``run``; :mod:`masonry.scene.stages.again`: ``period`` and ``shakeAgain``
 - :mod:`masonry.scene.stages.falling`: ``fall``, which follows a collapse where the scene says so
 - :mod:`masonry.scene.stages.answers`: how stages end, and what they answer
 - :mod:`masonry.scene.stages.stage`: what all share; :mod:`masonry.scene.stages.timed`: what those share that last for a time
@@ -20,15 +20,29 @@ A new stage is such a function (:func:`masonry.scene.stages.stage.stage`) and it
 
 from .drive import drive, pressJoint
 from .gravity import accelerate, lean, tilt
-from .loading import growLoad, growPress, growWind, hold, load, prepare, press, wind
+
+from .loading import grow, growLoad, growPress, growWind, hold, load, prepare, press, pressure, wind  # fmt: skip
 from .push import cycle, follow, push
 from .rest import settle
+from .again import period
 from .shake import run, shake
 from .answers import AT_REST, COLLAPSED, DONE, MOVING
 from .supports import move, release
+from .travelling import travel
 
 #: All stages. Each is a method of :class:`masonry.scene.scene.Scene`.
 STAGES = [settle, push, cycle, follow, drive, pressJoint, release, move, tilt]
-STAGES += [accelerate, lean, shake, run, growLoad, growWind, growPress]
+STAGES += [
+    accelerate,
+    lean,
+    shake,
+    run,
+    growLoad,
+    growWind,
+    growPress,
+    grow,
+    travel,
+    period,
+]
 #: Stages whose names are those of words that describe: they are meant after the first stage.
-LATER = (load, wind, press, hold)
+LATER = (load, wind, press, pressure, hold)

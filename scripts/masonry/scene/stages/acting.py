@@ -108,10 +108,12 @@ class Forces(Acting):
         #: Whether the forces replace those that are there, and are not added to them.
         self.replaces = False
         self.beside = [0, 0, 0]  # a force that stays beside those that replace [N]
+        self.dead = False  # whether what was there grows by the factor, too
 
     def pairs(self):
         """The engines and their forces at a factor of 1."""
-        return list(zip(self.loads, self.forces))
+        pairs = zip(self.loads, self.forces)
+        return [(load, force + self.dead * load.force) for load, force in pairs]
 
     def now(self):
         return [value for load in self.loads for value in load.force]
@@ -125,4 +127,4 @@ class Forces(Acting):
         whole = [factor * value for force in self.forces for value in force]
         if self.replaces:
             return [v + self.beside[n % 3] for n, v in enumerate(whole)]
-        return [was + value for was, value in zip(began, whole)]
+        return [was * (1 + factor * self.dead) + v for was, v in zip(began, whole)]

@@ -61,7 +61,8 @@ def answersText(answers, stages=()):
     loads = quantities.loadsOf(stages)
     searches = lambda one: one["name"] in ("factor_held", "factor_not_held")
     trial = (
-        lambda one: one["stage"] in ("lean", "load", "wind", "press") or one["number"]
+        lambda one: one["stage"] in ("lean", "load", "wind", "press", "pressure")
+        or one["number"]
     )
     alike = (
         lambda one: (one["stage"], trial(one), one["unit"]) if searches(one) else None

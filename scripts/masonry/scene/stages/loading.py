@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Loads after the first stage: ``load``, ``wind`` and ``press`` put them on, ``growLoad``, ``growWind`` and ``growPress`` let them
-grow, and ``hold`` holds what was free.
+"""Loads after the first stage: ``load``, ``wind``, ``press`` and ``pressure`` put them on, ``grow`` lets any of them grow together, as
+``growLoad``, ``growWind`` and ``growPress`` do one alone, and ``hold`` holds what was free.
 
-The first three give a load its new value, whatever it was before, and wait for rest, so that ``bracket`` can search for the
+The first four give a load its new value, whatever it was before, and wait for rest, so that ``bracket`` can search for the
 largest that is held. The others add to what is there until the structure falls, and search by themselves.
 """
 
@@ -10,24 +10,28 @@ from __future__ import annotations
 
 import math
 import re
-from typing import Any
+from typing import Annotated, Any
 
 from yade import O, Vector3
 
-from ...common.arguments import Freedoms, Level, validated
+from ...common.arguments import Direction, Freedoms, Level, isNumber, kindOf, number, shown, validated  # fmt: skip
 from ...assembly.blocks import vector
 from ...basics import Refused
 from ..bounds import findBound, nameOf
-from ..loads import Force, Pressure, Stress, checkedForce, doubtPress, windFaces
+
+from ..loads import Field, Force, Pressure, Stress, checkedForce, doubtPress, doubtWind, windForces  # fmt: skip
+from ..pressures import pressures
 from ..targets import AnyTarget, Loaded, MovingPlaten, Part
 from .acting import Forces
 from .gravity import Width, boundAlone, putOn, putOnAnswers
-from .growing import WITHIN, found, grow
+from .growing import WITHIN, found
+from .growing import grow as growTo
 from .answers import AT_REST
 from .stage import stage
 from .supports import atOnce
 from ..words import PUSHES
 from .timed import Duration
+from .travelling import placed
 
 GROWS = 2.0  # [s] in which a load grows to its whole
 
@@ -78,39 +82,46 @@ def growLoad(
     over: Duration = GROWS,
     within: Width = WITHIN,
 ) -> str:
-    """Let a dead load grow evenly beside what is there, until the structure falls or the force is reached; then search for the
-    load that is held.
+    """Let a dead load grow alone, as in :meth:`grow`; the unit of ``scene.factor`` is kN.
 
     :param force: at the end, three numbers [N]
-    :param over: time in which it grows to that [s]
-    :param within: as in :meth:`tilt`
-    :returns: as in :meth:`tilt`; the unit of ``scene.factor`` is kN
     """
     made, towards = _forceOn(scene, target, force, "growLoad")
     return _grow(scene, "growLoad", made, towards, over, within)
 
 
-# -- wind ---------------------------------------------------------------------------------------------------------
+# -- pressure on faces --------------------------------------------------------------------------------------------
 
 
 def _windOn(scene, pressure, towards, part, name):
     """The load of a wind, in kPa, and its direction. Raises ValueError."""
     towards = vector(towards, f"{name}: direction")
-    calm = name == "wind" and pressure == 0  # the wind of before ends
-    faces = windFaces(scene.description, pressure or float(calm), towards, part, name)
-    # suction has the engines of a pressure on the same faces, so that one replaces the other
-    engines = scene.model.loading.windOf(windLabel(towards.normalized(), part), faces)
-    towards = math.copysign(1, pressure) * towards.normalized()
+    if name == "growWind" or pressure:  # 0 takes a wind away
+        doubtWind(pressure, name)
     sign = math.copysign(1e3, pressure)
-    forces = [-sign * area * Vector3(*normal) for _, normal, area, _ in faces]
-    what = f"wind towards {nameOf(towards)}" + (f" on {part}" if part else "")
-    return Forces(engines, forces, what, "kPa", 1e-3 * abs(pressure)), towards
+    forces = windForces(scene.description, sign, towards, part, name)
+    # suction has the engines of a pressure on the same faces, so that one replaces the other
+    made = _onFaces(scene, forces, "wind", towards, part, "kPa", 1e-3 * abs(pressure))
+    return made, math.copysign(1, pressure) * towards.normalized()
 
 
-def windLabel(towards, part):
-    """How the labels of the engines of a wind begin. YADE makes names of them."""
-    axes = "_".join(f"{v + 0.0:.6g}".replace("-", "minus") for v in towards)
-    return re.sub(r"\W", "_", f"wind_towards_{axes}_{part or 'all'}")
+def _pressureOn(scene, value, towards, part, normal):
+    """The load of a pressure, of which 1 is the whole, and its direction. Raises ValueError."""
+    forces = pressures(scene.description, value, towards, part, normal)
+    towards = vector(towards, "pressure: direction").normalized()
+    kind = "pressure" if normal else "pressure in plan"
+    return _onFaces(scene, forces, kind, towards, part, "-", 1.0), towards
+
+
+def _onFaces(scene, forces, kind, towards, part, unit, most):
+    """The load of forces on faces, by what labels its engines and names it."""
+    axes = "_".join(f"{v + 0.0:.6g}".replace("-", "minus") for v in towards.normalized())  # fmt: skip
+    # YADE makes names of labels
+    label = re.sub(r"\W", "_", f"{kind}_towards_{axes}_{part or 'all'}")
+    places = [(one.brick, one.point) for one in forces]
+    engines = scene.model.loading.onBricks(label, places)
+    what = f"{kind} towards {nameOf(towards)}" + (f" on {part}" if part else "")
+    return Forces(engines, [Vector3(*one.force) for one in forces], what, unit, most)
 
 
 @stage(bounded=True, answers=putOnAnswers)
@@ -146,15 +157,33 @@ def growWind(
     over: Duration = GROWS,
     within: Width = WITHIN,
 ) -> str:
-    """Let a wind grow evenly until the structure falls or the pressure is reached; then search for the one that is held.
+    """Let a wind grow alone, as in :meth:`grow`; the unit of ``scene.factor`` is kPa.
 
     :param pressure: at the end [Pa]; ``towards`` and ``part``: as in :meth:`wind`
-    :param over: time in which it grows to that [s]
-    :param within: as in :meth:`tilt`
-    :returns: as in :meth:`tilt`; the unit of ``scene.factor`` is kPa
     """
     made, towards = _windOn(scene, pressure, towards, part, "growWind")
     return _grow(scene, "growWind", made, towards, over, within)
+
+
+@stage(bounded=True, answers=putOnAnswers)
+@validated
+def pressure(
+    scene: Any,
+    value: Field,
+    towards: Direction,
+    part: Part | None = None,
+    normal: bool = True,
+    longest: Duration | None = None,
+) -> str:
+    """Give faces another pressure, and wait until the structure is at rest or falls. It replaces another :meth:`pressure` of the
+    same direction, part and ``normal`` of a later stage, and is added to those that grew in :meth:`settle`.
+
+    :param value: [Pa], or a function of the place; 0 takes it away; ``towards``, ``part`` and ``normal``: as before the first
+        stage; ``longest``: as in :meth:`load`
+    :returns: ``AT_REST``, ``MOVING`` or ``COLLAPSED``
+    """
+    made, towards = _pressureOn(scene, value, towards, part, normal)
+    return _putOn(scene, "pressure", made, towards, longest)
 
 
 # -- presses ------------------------------------------------------------------------------------------------------
@@ -200,16 +229,82 @@ def growPress(
     over: Duration = GROWS,
     within: Width = WITHIN,
 ) -> str:
-    """Let a press grow evenly beside what presses already, until the structure falls or the stress is reached; then search for
-    the one that is held.
+    """Let a press grow alone, as in :meth:`grow`; the unit of ``scene.factor`` is MPa.
 
     :param stress: what is added at the end [Pa]
-    :param over: time in which it grows to that [s]
-    :param within: as in :meth:`tilt`
-    :returns: as in :meth:`tilt`; the unit of ``scene.factor`` is MPa
     """
     made = _pressOn(scene, platen, stress, "growPress")
     return _grow(scene, "growPress", made, -Vector3.UnitZ, over, within)
+
+
+# -- several loads ------------------------------------------------------------------------------------------------
+
+
+def together(value, first):
+    """The kind of loads that grow together: a dict from targets to forces [N] or, of platens, stresses [Pa]."""
+    if not isinstance(value, dict):
+        raise ValueError(f"{shown(value)} must be a dict from targets to forces [N] or stresses [Pa]")  # fmt: skip
+    kinds = {True: (MovingPlaten, Stress), False: (Loaded, Force)}
+    return {
+        kindOf(target)(one, first): kindOf(load)(amount, first)  # type: ignore[misc]
+        for one, amount in value.items()
+        for target, load in [kinds[isNumber(amount)]]
+    }
+
+
+@stage(bounded=True, answers=found)
+@validated
+def grow(
+    scene: Any,
+    loads: Annotated[dict[Any, Any], together],
+    most: Annotated[float, number("", 0, 1e6, above=True)] = 1.0,
+    dead: bool = False,
+    pressure: Field | None = None,
+    towards: Direction = (1, 0, 0),
+    part: Part | None = None,
+    normal: bool = True,
+    over: Duration = GROWS,
+    within: Width = WITHIN,
+) -> str:
+    """Let several loads grow evenly in a fixed proportion beside what is there, until the structure falls or ``most`` times of them
+    are reached; then search for the factor that is held.
+
+    ``scene.grow({top: 0.1e6, stone: (2e3, 0, 0)}, most=10)`` adds a stress to what presses a platen and a force to a brick.
+
+    :param loads: a dict from targets to three numbers [N], or to a stress of a platen [Pa], at a factor of 1; it may be empty
+    :param most: factor at the end [-]
+    :param dead: whether what acts already grows, too: at a factor of 1 dead loads, presses and pressures are twice what they were.
+        Gravity stays
+    :param pressure: [Pa] at a factor of 1, or a function of the place; ``towards``, ``part`` and ``normal``: of it, as in
+        :meth:`pressure`
+    :param over: time in which they grow to that [s]
+    :param within: as in :meth:`tilt`
+    :returns: as in :meth:`tilt`; ``scene.factor`` has no unit
+    """
+    made = [
+        _pressOn(scene, target, amount, "grow")
+        if isNumber(amount)
+        else _forceOn(scene, target, amount, "grow")[0]
+        for target, amount in loads.items()
+    ]
+    if pressure is not None:
+        made.append(_pressureOn(scene, pressure, towards, part, normal)[0])
+    pairs = [(e, one.most * force) for one in made for e, force in one.pairs()]
+    if dead:
+        pairs += [(load, Vector3.Zero) for load, _ in scene.model.loading.deadLoads()]
+    if not pairs:
+        raise ValueError("grow: loads, pressure or dead must say what grows")
+    forces: dict[str, Any] = {}
+    for engine, force in pairs:
+        forces[engine.label] = forces.get(engine.label, Vector3.Zero) + force
+    engines = [scene.model.loading.loads[label] for label in forces]
+    what = " and ".join([one.name for one in made] + ["the dead loads"] * dead)
+    whole = Forces(engines, [*forces.values()], what, "-", most)
+    whole.dead = dead
+    whole.target = next((one.target for one in made if one.target), None)
+    total = sum(whole.forces, Vector3.Zero)
+    along = total.normalized() if total.norm() > 0 else -Vector3.UnitZ
+    return _grow(scene, "grow", whole, along, over, within)
 
 
 # -- what they share ----------------------------------------------------------------------------------------------
@@ -220,7 +315,7 @@ def _putOn(scene, name, made, towards, longest):
     if scene.only:  # what it replaces is no load beside it
         made.put(made.at(before, 0.0))
     if scene.only or not any(before):
-        findBound(scene, "forces", made.name, made.unit, made.pairs())
+        findBound(scene, "forces", made.name, made.unit.strip("-"), made.pairs())
     if scene.only:
         ended = boundAlone(scene, made)
         if ended != AT_REST:
@@ -230,8 +325,8 @@ def _putOn(scene, name, made, towards, longest):
 
 
 def _grow(scene, name, made, towards, over, within):
-    findBound(scene, "forces", made.name, made.unit, made.pairs())
-    return grow(scene, name, made, over, towards, within)
+    findBound(scene, "forces", made.name, made.unit.strip("-"), made.pairs())
+    return growTo(scene, name, made, over, towards, within)
 
 
 @stage()
@@ -286,15 +381,21 @@ def prepare(scene, word, arguments):
 
     :param word: what the script said; ``arguments``: its arguments as data
     """
-    target = arguments.get("target") or arguments.get("platen")
-    inPattern = isinstance(target, dict) or target not in scene.targets
-    if word in PUSHES and inPattern:
-        scene.model.loading.patternDrive()
+    loading, get = scene.model.loading, arguments.get
+    target = get("target") or get("platen")
+    if word in PUSHES and (isinstance(target, dict) or target not in scene.targets):
+        loading.patternDrive()
         return
-    target = None if inPattern else scene.targets[target]
-    if word in ("load", "growLoad") and target:
-        scene.model.loading.forceOf(target)
-    elif word in ("press", "growPress") and target:
-        scene.model.loading.pressOf(target)
-    elif word in ("wind", "growWind"):
+    loads = {target: 0 if word in ("press", "growPress") else None}
+    single = word in ("load", "growLoad", "press", "growPress")
+    for name, amount in get("loads", loads if single else {}).items():
+        if name in scene.targets:
+            make = loading.pressOf if isNumber(amount) else loading.forceOf
+            make(scene.targets[name])
+    if word in ("wind", "growWind"):
         _windOn(scene, *(arguments[n] for n in ("pressure", "towards", "part")), word)
+    elif word == "pressure" or get("pressure") is not None:
+        # its value, which may be a function, has no part in where its engines are
+        _pressureOn(scene, 0.0, *(arguments[n] for n in ("towards", "part", "normal")))
+    elif word == "travel":
+        placed(scene, arguments["along"])

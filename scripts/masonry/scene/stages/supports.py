@@ -4,24 +4,24 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Annotated, Any
+from typing import Annotated, Any, Callable, Union, cast
 
 from yade import O, Vector3
 
-from ...common.arguments import Freedoms, number, validated
+from ...common.arguments import Freedoms, number, orFunction, validated
 from ...assembly.blocks import vector
 from ...assembly.motion import FAR
 from ..history import MOST
 from ..loads import Force
 from ...run.options import Rate
-from ..targets import AnyTarget, HeldTarget
+from ..targets import AnyTarget, HeldTargets, Target
 from .rest import rampTime
 from .answers import DONE, Answer
 from .stage import stage
 from .timed import Timed, timed
 
 millimetres = number("mm", -MOST, MOST)  # the kind of a displacement
-Millimetres = Annotated[float, millimetres]
+Along = Annotated[Union[float, Callable[[float, float, float], float]], orFunction(millimetres)]  # fmt: skip
 
 
 @stage()
@@ -105,29 +105,26 @@ def displacement(scene, rows):
 @validated
 def move(
     scene: Any,
-    target: HeldTarget,
-    x: Millimetres = 0.0,
-    y: Millimetres = 0.0,
-    z: Millimetres = 0.0,
+    target: HeldTargets,
+    x: Along = 0.0,
+    y: Along = 0.0,
+    z: Along = 0.0,
     rate: Rate | None = None,
 ) -> str:
-    """Move a fixed target by a displacement [mm], in a straight line: settlement or spreading of a support.
+    """Move fixed targets by a displacement [mm], in straight lines at once: settlement or spreading of supports, or a trough under
+    a row of them.
 
-    It starts and stops smoothly.
+    They start and stop smoothly, and none of them turns: ``scene.move(footings, z=lambda x, y, z: -20 * math.exp(-x * x / 18))``.
 
-    :param rate: [mm/s]; None: ``--rate``
+    :param target: one that is held, or a list of them
+    :param x: [mm], or a function of the place (x, y, z) [m] of the recorded point of a target that gives it; ``y`` and ``z``: likewise
+    :param rate: of the one that moves farthest [mm/s]; None: ``--rate``
     """
     at = scene.running.stage("move", Timed())
-    path = scene.share * vector((x, y, z), "move: displacement [mm]")
-    if scene.description.plane and path[1]:
-        raise ValueError(
-            "move: the scene is in the x-z plane; Scene(..., plane=False) is in space"
-        )
-    loose = [a for a, w in zip("xyz", path) if w and a not in target.freedom]
-    if loose:
-        raise ValueError(f"move: {target.name} is not held along {', '.join(loose)}")
+    targets = cast("list[Target]", target)
+    paths = [_path(scene, one, (x, y, z)) for one in targets]
     rate = scene.args.rate if rate is None else rate
-    distance, rate = 1e-3 * path.norm(), 1e-3 * rate
+    distance, rate = 1e-3 * max(path.norm() for path in paths), 1e-3 * rate
     if not distance > 0:
         raise ValueError("move: the displacement must not be zero")
     ramp = min(rampTime(scene.args), distance / rate)
@@ -140,14 +137,30 @@ def move(
             return distance - rate * max(0.0, duration - time) ** 2 / (2 * ramp)
         return rate * (time - ramp / 2)
 
-    state, along = O.bodies[target.body].state, path.normalized()
+    states = [O.bodies[one.body].state for one in targets]
 
     def before(done, beyond):
         began, ends = done * O.dt, min(duration, beyond * O.dt)
         speed = (place(ends) - place(min(began, duration))) / ((beyond - done) * O.dt)
-        state.vel = speed * along
+        for state, path in zip(states, paths):
+            state.vel = speed * (1e-3 / distance * path)
 
     timed(scene, at, duration, before)
     scene.running.at.supportsMoved = True
-    state.vel = Vector3.Zero
+    for state in states:
+        state.vel = Vector3.Zero
     return DONE
+
+
+def _path(scene, target, along):
+    """The displacement of a target in :func:`move` [mm]. Raises ValueError."""
+    values = [millimetres(v(*target.recorded) if callable(v) else v) for v in along]
+    path = scene.share * vector(values, "move: displacement [mm]")
+    if scene.description.plane and path[1]:
+        raise ValueError(
+            "move: the scene is in the x-z plane; Scene(..., plane=False) is in space"
+        )
+    loose = [a for a, w in zip("xyz", path) if w and a not in target.freedom]
+    if loose:
+        raise ValueError(f"move: {target.name} is not held along {', '.join(loose)}")
+    return path

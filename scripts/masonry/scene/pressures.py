@@ -1,0 +1,140 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Pressures on faces of bricks as forces at points of them. This module needs no YADE."""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..common.arguments import number
+from ..basics import Refused
+from ..bricks import Bricks
+from ..bricks.checks import LOOKING
+
+GRAZING = 0.01  # least cosine of the angle between a face and what presses on it [-]
+PARTS = 4  # of each side of a triangle: it is integrated in the square of this number of triangles
+LEAST = 1e-9  # of the largest force: what is less is round-off [-]
+MOST = number("Pa", -1e9, 1e9)
+
+
+class FaceForce(NamedTuple):
+    """A force on a face: the number of its brick, its point [m] and the force [N]."""
+
+    brick: int
+    point: Any
+    force: Any
+
+
+def facesAgainst(description: Any, towards: Any, part: Any, name: str, least: float = LOOKING) -> list[Any]:  # fmt: skip
+    """What joints leave free of the faces that look against a direction: :class:`masonry.bricks.checks.FreePart`.
+
+    :param least: cosine of the largest angle between both [-]
+    :raises ValueError: if there are none, or the scene can have none
+    """
+    if description.plane and towards[1]:
+        raise ValueError(
+            f"{name}: the scene is in the x-z plane; Scene(..., plane=False) is in space"
+        )
+    if description.deformable:
+        raise Refused(f"{name}: it loads rigid bricks; choose --blocks rigid")
+    faces = [
+        face
+        for face in Bricks(description.bricks).freeParts([-v for v in towards], least)
+        if part in (None, description.bricks[face.block].part)
+    ]
+    if not faces:
+        raise ValueError(f"{name}: no free face looks against {tuple(towards)}")
+    return faces
+
+
+def pressures(description: Any, value: Any, towards: Any, part: Any, normal: bool, name: str = "pressure") -> list[FaceForce]:  # fmt: skip
+    """The forces of a pressure: on each face at its middle and at one more point, or at two more of a scene in space, which do not
+    depend on the pressure. Parameters as in :func:`masonry.scene.loads.pressure`. Raises ValueError.
+    """
+    forces, along = [], np.array(towards, float) / np.linalg.norm(towards)
+    for face in facesAgainst(description, towards, part, name, GRAZING):
+        outward, arm = np.array(face.normal), face.area**0.5 / 4
+        # two directions in the face, of which the first is in the plane of a scene in a plane
+        side = np.cross(outward, (0, 1, 0) if abs(outward[1]) < 0.9 else (0, 0, 1))
+        side /= np.linalg.norm(side)
+        axes = arm * np.array([side, np.cross(outward, side)])
+        total, *moments = _integral(face, value, axes[: 1 if description.plane else 2])
+        unit = -outward if normal else -(outward @ along) * along
+        ends = [face.middle, *(face.middle + axis for axis in axes)]
+        for point, size in zip(ends, [total - sum(moments), *moments]):
+            forces.append(FaceForce(face.block, tuple(point), list(size * unit)))
+    return forces
+
+
+def _corners():
+    """The middles of the sides of parts of a triangle, as shares of its corners, and the share of the area that each has: exact for
+    polynomials of degree two."""
+    found: dict[Any, int] = {}
+    for i in range(PARTS):
+        for j in range(PARTS - i):
+            one = [(i, j), (i + 1, j), (i, j + 1)]
+            other = [(i + 1, j + 1), (i, j + 1), (i + 1, j)] if i + j + 1 < PARTS else []  # fmt: skip
+            for corners in filter(None, (one, other)):
+                for (a, b), (c, d) in zip(corners, corners[1:] + corners[:1]):
+                    found[a + c, b + d] = found.get((a + c, b + d), 0) + 1
+    places = np.array([*found]) / (2 * PARTS)
+    shares = np.column_stack([1 - places.sum(axis=1), places])
+    return shares, np.array([*found.values()]) / (3 * PARTS**2)
+
+
+SHARES, WEIGHTS = _corners()
+
+
+def _integral(face, value, axes):
+    """Integrals of a pressure over the free part of a face [N]: of itself, and times the distance from the middle along each axis, over
+    the length of that axis."""
+    total = np.zeros(1 + len(axes))
+    for sign, polygon in ((1, face.face), *((-1, cover) for cover in face.covers)):
+        corners = np.asarray(polygon, float)
+        for second, third in zip(corners[1:], corners[2:]):
+            triangle = np.array([corners[0], second, third])
+            area = 0.5 * np.linalg.norm(np.cross(second - corners[0], third - corners[0]))  # fmt: skip
+            points = SHARES @ triangle
+            forces = sign * area * WEIGHTS * [_at(value, place) for place in points.tolist()]  # fmt: skip
+            arms = [(points - face.middle) @ axis / (axis @ axis) for axis in axes]
+            total += [forces.sum(), *(forces @ arm for arm in arms)]
+    return total.tolist()
+
+
+def _at(value, place):
+    """A pressure at a place [Pa]. Raises ValueError."""
+    if not callable(value):
+        return value
+    try:
+        return MOST(value(*place))
+    except ValueError as error:
+        where = ", ".join(f"{v:.4g}" for v in place)
+        raise ValueError(f"pressure: its value at ({where}) m: {error}") from None
+
+
+def placesBelow(
+    description: Any, points: Any
+) -> list[tuple[int, tuple[float, float, float]]]:
+    """Where loads stand that are let down from some points: pairs of the number of a brick, and the point on the highest of its faces
+    that look up [m].
+
+    :raises ValueError: if nothing is below a point
+    """
+    faces, found = Bricks(description.bricks).freeParts((0, 0, 1), GRAZING), []
+    near = 1e-6 * math.dist(description.low, description.high)
+    for x, y, z in points:
+        below = []
+        for face in faces:
+            corners, normal = np.array(face.face), np.array(face.normal)
+            high = corners[0, 2] - normal[:2] @ ((x, y) - corners[0, :2]) / normal[2]
+            sides = np.roll(corners, -1, axis=0) - corners
+            inward = np.cross(sides, (x, y, high) - corners) @ normal
+            if high <= z + near and min(inward) >= -near * np.abs(sides).max():
+                below.append((float(high), face.block))
+        if not below:
+            raise ValueError(f"travel: no face that looks up is below ({x:g}, {y:g}, {z:g}) m")  # fmt: skip
+        high, brick = max(below)
+        found.append((brick, (float(x), float(y), high)))
+    return found

@@ -1,0 +1,127 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""``travel``: a load that goes over a structure, and stands at one place after the other."""
+
+from __future__ import annotations
+
+import zlib
+from dataclasses import dataclass
+from typing import Annotated, Any, Sequence
+
+from yade import Vector3
+
+from ...common.arguments import listOf, number, validated
+from ...common.arguments import vector as point
+from ..bounds import SMALL, findBound
+from ..pressures import placesBelow
+from .answers import AT_REST, DONE, Answer
+from .rest import Resting, waitForRest
+from .stage import stage
+from .timed import Duration
+
+
+TRAVELS = "load that travels, at "  # how the names of its bounds begin
+
+
+@dataclass
+class Travelling(Resting):
+    """What the stage remembers."""
+
+    place: int = 0  # at which the load arrives, from 0; behind the last place it leaves
+    labels: Sequence = ()  # of the engines at the places
+    began: Sequence = ()  # vertical displacements of all places when the load came [mm]
+    moved: Sequence = ()  # of each place where it stood, since then [mm]
+
+
+def standings(scene, rows):
+    """What a load did that travelled: how many places held it, where the structure gave way most, and the least bound."""
+    at = scene.running.memory
+    if not isinstance(at, Travelling):
+        return []
+    how = "the load stood at so many of its places, one after the other, and the structure came to rest"
+    found = [Answer("places_held", "-", len(at.moved), how)]
+    if at.moved:
+        least = min(at.moved)
+        where = f"of the loaded point, upwards, since the load came, at place {at.moved.index(least) + 1} of {len(at.began)}"
+        found.append(Answer("largest_displacement", "mm", least, where))
+    if at.place > len(at.began):
+        last = "largest amount of the vertical displacement of a place since the load came, when it has left"
+        found.append(Answer("displacement_after", "mm", max(map(abs, _moved(scene, at))), last))  # fmt: skip
+    scene.bounds.take(True)
+    entries = scene.bounds.entries.values()
+    bounds = {e["load"]: e["factor"] for e in entries if e["load"].startswith(TRAVELS) and "factor" in e}  # fmt: skip
+    if bounds:
+        name = min(bounds, key=lambda one: bounds[one])
+        why = (
+            f"limit analysis: the least load, at which an upper bound is found: {name}"
+        )
+        found.append(Answer("least_bound", "kN", bounds[name], why))
+    return found
+
+
+def placed(scene, along):
+    """The engines of a load that travels along some points. Raises ValueError."""
+    places = placesBelow(scene.description, along)
+    label = f"travel_{zlib.crc32(repr(places).encode())}"
+    return scene.model.loading.onBricks(label, places)
+
+
+@stage(bounded=True, answers=standings)
+@validated
+def travel(
+    scene: Any,
+    force: Annotated[float, number("N", 0, 1e15, above=True)],
+    along: Annotated[Sequence[Any], listOf(point("m", 1e6))],
+    longest: Duration | None = None,
+) -> str:
+    """Let a vertical load go over the structure, as an axle goes over an arch bridge: it stands at one place after the other until the
+    structure is at rest, and leaves behind the last one.
+
+    From place to place it grows on the next one as it leaves the one before. Every place has a row of curve.csv, in which
+    ``load_factor`` is the number of the place; the last row is without the load. Joints that have opened, slid or crushed remember
+    it. Of up to 500 joints, and with ``--preset bound``, limit analysis finds the largest load at each place [kN].
+
+    :param force: downwards [N]
+    :param along: points (x, y, z) [m]: the load stands on the highest face of a rigid brick below each of them
+    :param longest: as in :meth:`load`, at each place
+    :returns: ``DONE``; ``MOVING`` if the structure did not come to rest with the load at a place, where the stage ends then;
+        ``COLLAPSED``
+    """
+    engines, loading = placed(scene, along), scene.model.loading
+    down = Vector3(0, 0, -force)
+    if scene.only or len(scene.model.interactions) <= SMALL:
+        for engine in engines:  # before the load comes
+            where = ", ".join(f"{v:.4g}" for v in engine.point)
+            live = [(engine, Vector3(0, 0, -1e3))]
+            findBound(scene, "forces", f"{TRAVELS}({where}) m", "kN", live)
+    if scene.only:
+        scene.ended = DONE
+        return DONE
+    at = scene.running.stage("travel", Travelling())
+    if not at.began:
+        at.labels = [engine.label for engine in engines]
+        at.began = [1e3 * engine.displacement()[2] for engine in engines]
+    while at.place <= len(engines):
+        place = at.place
+
+        def arriving(x):
+            share = x * x * (3 - 2 * x)
+            if place < len(engines):
+                engines[place].force = share * down
+            if place:
+                engines[place - 1].force = (1 - share) * down
+            loading.loadFactor = place + share if place < len(engines) else 0.0
+
+        ended = waitForRest(scene, at, longest, arriving)
+        if ended != AT_REST:
+            return ended
+        if place < len(engines):
+            at.moved = [*at.moved, _moved(scene, at)[place]]
+        at.place, at.done, at.quiet = place + 1, 0, 0
+    scene.ended = DONE
+    return DONE
+
+
+def _moved(scene, at):
+    """Vertical displacements of all places since the load came [mm]."""
+    loads = scene.model.loading.loads
+    return [1e3 * loads[label].displacement()[2] - was for label, was in zip(at.labels, at.began)]  # fmt: skip

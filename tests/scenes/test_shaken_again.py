@@ -1,0 +1,84 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Records one after the other on one structure: what remains after each, by hand, and a run that is stopped within one."""
+
+import csv
+
+from hosted import *
+import stopped
+
+FRICTION, STIFFNESS, DENSITY = 0.3, 1e9, 2000.0  # [-], [Pa/m] along the joint, [kg/m³]
+SIDE, HIGH = 1.0, 0.2  # [m]
+PULSE, LAST = 6.0, 0.1  # [m/s²], [s]
+EVERY = 0.002
+
+
+def pulse():
+    """A ground acceleration that begins and ends at once, before and after which nothing moves."""
+    return [0.0] * 5 + [PULSE] * round(LAST / EVERY) + [0.0] * 75
+
+
+def slip(a):
+    """How far a block slides on its base [mm]: v = (a - μ g) T, which μ g brakes."""
+    braked = FRICTION * G
+    return 1e3 * 0.5 * (a - braked) * LAST**2 * a / braked
+
+
+SCRIPT = f"""
+stone = materials.dry(friction={FRICTION}, normalStiffness=1e11, shearStiffness={STIFFNESS}, density={DENSITY})
+scene = Scene("slab", bricks.block((0, 0, 0), ({SIDE}, {SIDE}, {HIGH})), stone)
+scene.platen("bottom")
+scene.watch(0, name="slab")
+scene.settle()
+scene.shakeAgain([{pulse()}, {pulse()}, {pulse()}], every={EVERY}, scales=[1, 0.5, 1])
+scene.finish()
+"""
+
+
+def table(folder):
+    with open(os.path.join(folder, "shakes.csv")) as file:
+        return [
+            {name: float(value) if name != "ended" else value for name, value in row.items()}
+            for row in csv.DictReader(file)
+        ]  # fmt: skip
+
+
+def test_a_slab_slides_with_every_pulse_and_keeps_its_period(tmp_path, monkeypatch):
+    """Newmark's sliding block. The second pulse, of half the acceleration, is 3 m/s² and just stronger than friction."""
+    monkeypatch.chdir(tmp_path)
+    status, steps, said = stopped.carryOut(stopped.BEGIN + SCRIPT, "--out", "whole")
+    assert status == 0, said
+    rows = table("whole")
+    x = [row["residual_slab_x_mm"] for row in rows]
+    slips = np.cumsum([slip(PULSE), slip(PULSE / 2), slip(PULSE)])
+    assert x == pytest.approx(-slips, rel=0.03)
+    assert x[1] - x[0] == pytest.approx(-slip(PULSE / 2), rel=0.5)
+    # sways on its joint; it hardly turns
+    swings = 2 * math.pi * math.sqrt(DENSITY * HIGH / STIFFNESS)
+    periods = [row["first_period_s"] for row in rows]
+    assert periods == pytest.approx([swings] * 3, rel=0.05)
+    assert [row["peak_m_per_s2"] for row in rows] == [PULSE, PULSE / 2, PULSE]
+    assert {row["ended"] for row in rows} == {"done"}
+    # stopped within the second record, the run goes on and leaves the same
+    stop = stopped.signalled(signal.SIGTERM, round(0.5 * steps))
+    assert stopped.carryOut(stopped.BEGIN + SCRIPT, "--out", "stopped", stop=stop)[0] == 130  # fmt: skip
+    assert stopped.carryOut(stopped.BEGIN + SCRIPT, "--resume", "stopped")[0] == 0
+    assert stopped.differences(stopped.left("whole"), stopped.left("stopped")) == []
+    assert table("stopped") == rows
+
+
+def test_a_sequence_ends_with_the_record_in_which_the_structure_falls(tmp_path):
+    stone = materials.dry(friction=0.7, normalStiffness=1e10, density=DENSITY)
+    words = ["--no-vtk", "--out", str(tmp_path)]
+    scene = Scene("stack", bricks.stack(2, (0.1, 0.1, 0.4)), stone, arguments=words)
+    scene.platen("bottom")
+    scene.watch(1, name="top")
+    scene.settle()
+    records = [pulse(), pulse(), pulse()]
+    ends = scene.shakeAgain(
+        records, every=EVERY, scales=[0.1, 3, 1], after=2.0, unit="m/s²"
+    )
+    assert ends == [DONE, COLLAPSED]
+    scene.finish()
+    assert [row["ended"] for row in csv.DictReader(open(tmp_path / "shakes.csv"))] == ["done", "collapsed"]  # fmt: skip
+    with pytest.raises(ValueError, match="2 scales for 3 records"):
+        scene.shakeAgain(records, scales=[1, 2])
