@@ -4,6 +4,7 @@
 - :mod:`masonry.scene.scene`: ``Scene``
 - :mod:`masonry.scene.description`: what a scene describes, by the words of :mod:`masonry.scene.supports`,
   :mod:`masonry.scene.loads`, :mod:`masonry.scene.connections` and :mod:`masonry.scene.records`;
+  :mod:`masonry.scene.pressures`: pressures as forces on faces;
   :mod:`masonry.scene.targets`, :mod:`masonry.scene.sections`: what is recorded; :mod:`masonry.scene.ties`: ties, springs and
   fibre layers
 - :mod:`masonry.scene.stages`: the stages of a test; :mod:`masonry.scene.contact`: what blocks do that have lost their joints
