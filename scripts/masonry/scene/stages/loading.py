@@ -386,9 +386,9 @@ def prepare(scene, word, arguments):
     if word in PUSHES and (isinstance(target, dict) or target not in scene.targets):
         loading.patternDrive()
         return
-    loads = {target: 0 if word in ("press", "growPress") else None}
-    single = word in ("load", "growLoad", "press", "growPress")
-    for name, amount in get("loads", loads if single else {}).items():
+    loads = {target: None} if word in ("load", "growLoad") else {}
+    loads = {target: 0} if word in ("press", "growPress") else loads
+    for name, amount in get("loads", loads).items():
         if name in scene.targets:
             make = loading.pressOf if isNumber(amount) else loading.forceOf
             make(scene.targets[name])
