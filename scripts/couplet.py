@@ -6,7 +6,7 @@ yade_plugin/law/README.md (yield surfaces, softening tables, compression).
 """
 
 from masonry import Scene, bricks, materials
-from masonry.common import arguments
+from masonry.common.arguments import number
 from masonry.scene import options
 from yade import O
 
@@ -22,14 +22,14 @@ parser.add_argument(
 parser.add_argument(
     "--normal-stress",
     metavar="MPA",
-    type=options.reading(arguments.number("MPa", -1000, 0)),
+    type=options.reading(number("MPa", -1000, 0)),
     default=-0.5,
     help="constant normal stress in shear [MPa], negative if it presses",
 )
 parser.add_argument(
     "--closure",
     metavar="MM",
-    type=options.reading(arguments.number("mm", 0, 1000, above=True)),
+    type=options.reading(number("mm", 0, 1000, above=True)),
     default=1.0,
     help="closure before shear [mm]",
 )
@@ -41,8 +41,7 @@ scene = Scene(
     bricks.stack(2, UNIT),
     materials.calciumSilicate(),
     gravity=0,
-    columns="time_s opening_mm slide_mm normal_stress_MPa shear_stress_MPa "
-    "normal_force_kN shear_force_kN".split(),
+    columns="time_s opening_mm slide_mm normal_stress_MPa shear_stress_MPa normal_force_kN shear_force_kN".split(),
     arguments=args,
 )
 base = scene.platen("bottom", height=HEIGHT)

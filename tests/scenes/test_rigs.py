@@ -50,8 +50,8 @@ def test_the_moment_is_zero_where_the_drive_of_a_free_top_acts(tmp_path, height)
     scene, top = pier(tmp_path, point=point, recorded=HEIGHT)
     scene.push(top, 1)
     scene.finish()
-    moment, shear = columnsOf(tmp_path, "base_M_y_kNm", "base_V_x_kN")
-    steady = np.abs(shear) > 5
+    moment, shear, moved = columnsOf(tmp_path, "base_M_y_kNm", "base_V_x_kN", "displacement_mm")  # fmt: skip
+    steady = moved > 0.3  # the drive has its velocity
     assert steady.sum() > 10
     assert np.allclose((moment / shear)[steady], height * HEIGHT, atol=0.03 * HEIGHT)
 
@@ -87,5 +87,5 @@ def test_a_handle_on_a_wall_of_deformable_bricks_is_a_rigid_brick_that_can_be_pu
 
 def test_a_platen_is_not_held_along_an_axis_without_a_column_for_its_reaction(tmp_path):
     scene, top = pier(tmp_path)
-    with pytest.raises((Refused, SystemExit)), scene:
+    with pytest.raises(ValueError, match="no column for its reaction along x"), scene:
         scene.hold(top, "x")
