@@ -48,7 +48,7 @@ def test_a_top_whose_force_is_kept_rises_when_the_pier_rocks(tmp_path):
 def test_the_moment_is_zero_where_the_drive_of_a_free_top_acts(tmp_path, height):
     point = (LENGTH / 2, THICKNESS / 2, height * HEIGHT)
     scene, top = pier(tmp_path, point=point, recorded=HEIGHT)
-    scene.push(top, 1)
+    scene.push(top, 1, rate=10)
     scene.finish()
     moment, shear, moved = columnsOf(tmp_path, "base_M_y_kNm", "base_V_x_kN", "displacement_mm")  # fmt: skip
     steady = moved > 0.3  # the drive has its velocity
