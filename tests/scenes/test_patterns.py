@@ -4,6 +4,8 @@
 from hosted import *
 from masonry.assembly.drives import pushTo
 from masonry.assembly.period import firstMode
+from masonry.read.bilinear import pushover
+from masonry.read.run_data import MOVED, RunData
 from masonry.scene.stages.pattern import patternOf
 
 #: A dry pier of stiff joints [m], that turns about its toe.
@@ -114,3 +116,45 @@ def test_patterns_that_are_none_are_refused(tmp_path, pattern, sentence):
         scene.push(pattern, 1, control=top)
     if not isinstance(error.value, SystemExit):
         assert re.search(sentence, str(error.value))
+
+
+def test_every_pattern_has_its_own_bound_and_curve(tmp_path):
+    scene, top, middle = pier(tmp_path, "pier")
+    for shares in ({top: 1, middle: 9}, {top: 1, middle: 1e-9}):
+        scene.push(shares, 0.3, rate=3, control=middle)
+        scene.release(top, "x")
+        scene.settle()
+    scene.finish()
+    run = readRun(tmp_path / "pier")
+    heights = np.array([top.point[2], middle.point[2]])
+    weight = WIDTH * 0.4 * HEIGHT * 2400 * 9.81
+    expected = [1e-3 * weight * WIDTH / 2 / (heights @ s) for s in ([0.1, 0.9], [1, 0])]
+    data = RunData.read(tmp_path / "pier")
+    assert len(data.pushes) == 1 and max(data[MOVED]) == pytest.approx(0.3, abs=0.02)
+    # the force works on the mean of both points, not on the displacement of the control
+    assert data.isOfControl and "push_work_J" not in run
+    scene, top, middle = pier(tmp_path, "bound", "--preset", "bound")
+    scene.push({top: 1, middle: 9}, 1)
+    scene.release(top, "x")
+    scene.push({top: 1, middle: 1e-9}, 1)
+    scene.finish()
+    found = [one["factor"] for one in readRun(tmp_path / "bound")["bounds"]]
+    assert found == pytest.approx(expected, rel=1e-4)
+
+
+def test_a_push_ends_where_another_part_gives_way_than_the_control(tmp_path):
+    slippery = materials.dry(friction=0.1, normalStiffness=2e10, density=2400)
+    scene, top, middle = pier(tmp_path, "pier", stone=slippery)
+    scene.push({top: 1, middle: 1}, 0.5, control=middle)
+    scene.finish()
+    run = readRun(tmp_path / "pier")
+    assert run["collapsed"] and "another part gives way" in run["collapse"]
+
+
+def test_a_vertical_column_is_no_displacement_of_a_level_push(tmp_path):
+    scene, top, middle = pier(tmp_path, "pier")
+    scene.push({top: 2, middle: 1}, 0.3)
+    scene.finish()
+    assert pushover(tmp_path / "pier", "middle_x_mm").displacement[-1] < 0.25
+    with pytest.raises(Refused, match="along the push: displacement_mm"):
+        pushover(tmp_path / "pier", "middle_z_mm")

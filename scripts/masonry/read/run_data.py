@@ -50,9 +50,12 @@ class RunData:
         data = cls(readRun(directory), curve.get)
         if moved is None or not data.isPush:
             return data
-        if moved not in curve or not moved.endswith("_mm"):
-            names = ", ".join(name for name in curve if name.endswith("_mm"))
-            raise Refused(f"{directory}: column {moved!r} must be a displacement of curve.csv: {names}")  # fmt: skip
+        pushed = next(load[1] for load, *_ in reversed(data._stages) if load and load[0] == "push")  # fmt: skip
+        upright = "vertical_mm", *(("_z_mm",) if not pushed.endswith("z") else ())
+        fits = lambda name: name.endswith("_mm") and not name.endswith(upright)
+        if moved not in curve or not fits(moved):
+            names = ", ".join(filter(fits, curve))
+            raise Refused(f"{directory}: column {moved!r} must be a displacement of curve.csv along the push: {names}")  # fmt: skip
         values, usual = (np.array(curve[name]) - curve[name][data.rows[0]] for name in (moved, MOVED))  # fmt: skip
         along = math.copysign(1, values[data.rows] @ usual[data.rows])
         unknown = {"drift_height_m": None, "recorded_height_m": None}  # of that point
@@ -216,8 +219,23 @@ class RunData:
 
     @functools.cached_property
     def sudden(self) -> tuple[float, float]:
-        """As of :func:`masonry.read.curves.suddenLoss`."""
-        return curves.suddenLoss(self[MOVED], self[TOP], self[BASE])
+        """As of :func:`masonry.read.curves.suddenLoss`: that of the push with the largest."""
+        columns = [self.whole(name) for name in (MOVED, TOP, BASE)]
+        return max(curves.suddenLoss(*(values[slice(*push)] for values in columns)) for push in self.pushes)  # fmt: skip
+
+    @property
+    def isOfControl(self) -> bool:
+        """Whether the displacements of the push are those of a control, on which its force does no work."""
+        return bool(self.pushes) and any(len(load) > 3 for load, *_ in self._stages if load and load[0] == "push")  # fmt: skip
+
+    def work(self, workOf: Callable[[Any, Any], float]) -> float:
+        """A work of the base shear over the displacements of the push [J]. Raises LookupError if it does none on these.
+
+        :param workOf: function of displacements [mm] and forces [kN]
+        """
+        if self.isOfControl:
+            raise LookupError("the force of the push works on other displacements")
+        return workOf(self[MOVED], self[BASE])
 
     @functools.cached_property
     def stillGrows(self) -> bool:
@@ -251,6 +269,8 @@ class RunData:
         found = curves.cycleNumbers(self.__getitem__, self.run["history"]["noise_mm"])
         for one in found:
             one["rows"] = [self.rows[n] for n in one["rows"]]
+            if self.isOfControl:
+                one.update(work_J=None, top_work_J=None, damping=None)
         return found
 
     @functools.cached_property

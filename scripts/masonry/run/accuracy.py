@@ -182,7 +182,7 @@ class AuxiliaryRuns:
         missing = [key for _, key, _ in QUANTITIES if not run.get(key)]
         if missing:
             raise Refused(
-                "--accuracy: it is about the peak and the work of a push, and this scene has no push that takes force"
+                "--accuracy: it is about the peak and the work of a push, and this scene has no push of one target that takes force"
             )
         found = {what: run[key] for what, key, _ in QUANTITIES}
         found.update(seconds=run["wall_clock_s"], collapsed=run["collapsed"])

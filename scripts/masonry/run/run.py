@@ -148,9 +148,10 @@ class Run:
         # before the first stage, another scene may stand in YADE
         self.at.hear(text, self.entered, O.time if self.entered else 0.0)
 
-    def note(self, kind, name, opposite=""):
+    def note(self, kind, name, opposite="", control=""):
         """Note what the next stage loads, as in :class:`masonry.run.run_state.RunState`."""
-        self.at.loads = {**self.at.loads, str(self.entered + 1): [kind, name, opposite]}
+        load = [kind, name, opposite] + [control] * bool(control)
+        self.at.loads = {**self.at.loads, str(self.entered + 1): load}
 
     @property
     def takesUp(self):

@@ -45,8 +45,8 @@ class RunState:
     #: Load factors under which the structure came to rest, by the names of their bounds.
     held: dict = _holding(dict, 0.0)
     #: What stages pushed or put on, by their numbers: the kind, "push", "lean" or "growth", the name of the load
-    #: and that of the opposite one.
-    loads: dict = _holding(dict, ["", "", ""])
+    #: and that of the opposite one; and the target whose displacement is counted, where it is not what is pushed.
+    loads: dict = _holding(dict, [])
     #: How stages ended, by their numbers, and the number of the last stage then: a stage may consist of several.
     ended: dict = _holding(dict, ["", 0])
     fall: str = ""  # what has fallen, as in Run.fall

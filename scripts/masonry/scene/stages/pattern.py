@@ -8,6 +8,8 @@ target, its control.
 
 from __future__ import annotations
 
+import zlib
+from dataclasses import replace
 from typing import Annotated, Any, Callable, Union
 
 from yade import O
@@ -87,14 +89,16 @@ def patternOf(scene: Any, value: Any, direction: Any, args: Any) -> Any:
     if isinstance(value, Target):
         return value
     if isinstance(value, dict):
-        name, forces = " and ".join(t.name for t in value), [(t.body, t.point, plain(share)) for t, share in value.items()]  # fmt: skip
-        return Pattern(name, _shared(name, forces))
+        whole = sum(map(plain, value.values()))
+        name = " and ".join(f"{plain(share) / whole:.4g} {target.name}" for target, share in value.items())  # fmt: skip
+        parts = ((t.body, t.point, plain(share) / whole) for t, share in value.items())
+        return Pattern(name, tuple(parts))
     name = value if isinstance(value, str) else "a pattern"
     running, loading = scene.running, scene.model.loading
     if (
         running.redoes and running.takesUp
     ):  # its drive has the pattern, which was found when the push began
-        return patternOfDrive(loading, name)
+        return _named(patternOfDrive(loading, name))
     if scene.model.zones:
         raise Refused("push: forces on all blocks act on rigid ones: name platens and handles with their shares, or choose --blocks rigid")  # fmt: skip
     of = OVER_ALL[value](scene.model, direction, args) if isinstance(value, str) else _ofPlace(value)  # fmt: skip
@@ -104,22 +108,29 @@ def patternOf(scene: Any, value: Any, direction: Any, args: Any) -> Any:
         for body in O.bodies
         if not held(body)
     ]
-    return Pattern(name, _shared(name, forces), damped=True)
-
-
-def _shared(name, forces):
-    """The parts of a pattern from bodies, points and forces of any size. Raises Refused."""
     whole = sum(force for *_, force in forces)
     if not whole > 0:
         raise Refused(f"push: the forces of {name} have the sum {whole:g}, and it must be above 0")  # fmt: skip
-    return tuple((b, p, force / whole) for b, p, force in forces if abs(force) > FREE * whole)  # fmt: skip
+    parts = ((b, p, force / whole) for b, p, force in forces if abs(force) > FREE * whole)  # fmt: skip
+    return _named(Pattern(name, tuple(parts), damped=True))
+
+
+def _named(pattern):
+    """A pattern whose name tells it from others: what a mode or a function gives is known by its numbers alone."""
+    if pattern.name in ("masses", "triangle"):
+        return pattern
+    numbers = [(body, f"{share:.6g}") for body, _, share in pattern.parts]
+    return replace(pattern, name=f"{pattern.name} {zlib.crc32(repr(numbers).encode()):08x}")  # fmt: skip
 
 
 def _ofPlace(shape):
     """A function of a body by one of the place of its centre [m]. It raises Refused."""
 
     def of(body):
-        found = shape(*body.state.refPos)
+        try:
+            found = shape(*body.state.refPos)
+        except Exception as error:  # of the user's own
+            found = f"{type(error).__name__}: {error}"
         if not isNumber(found) or not abs(plain(found)) < 1e9:
             raise Refused(f"push: the pattern at {tuple(body.state.refPos)} m is {shown(found)}, and must be a number")  # fmt: skip
         return plain(found)

@@ -146,14 +146,15 @@ def _drive(scene, name, target, aims, direction, rate, continued, control):
     pushed = patternOf(scene, target, direction, args)
     pushTo(model.loading, pushed, control, direction, name)
     scene.pushed = args
-    began = f"{pushed.name} {[round(v, 9) for v in direction]}"
+    counted = "" if pushed is control else control.name
+    began = f"{pushed.name} {[round(v, 9) for v in direction]}" + f" {counted}" * bool(counted)  # fmt: skip
     if continued and began not in scene.running.at.origins:
         raise ValueError(
-            f"{name}: continued: {pushed.name} has not been pushed along {tuple(direction)} before"
+            f"{name}: continued: {pushed.name} has not been pushed along {tuple(direction)} before, with this control"
         )
     findBound(scene, "push", pushed, direction, bool(args.history))
     names = [nameOfPush(pushed, sign * direction) for sign in (1, -1)]
-    scene.running.note("push", *names)
+    scene.running.note("push", *names, counted)
     if not scene.only:
         drivePush(scene, name, args, began, continued)
         model.loading.loads["push"].velocity = model.loading.loads["push"].ramp = 0

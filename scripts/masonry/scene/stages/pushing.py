@@ -30,6 +30,8 @@ SUDDEN = 0.1  # of the peak: a larger fall within a tenth of a millimetre is few
 #: A push has collapsed by the mean of its force over so much of it [mm], and over its first period at least. If no period was
 #: found, it is over the longest that was looked for.
 AVERAGED = 1.0
+#: A push is over where the drive has gone so many times the path of the target whose displacement counts [-].
+LEFT = 10
 DAMPED = 0.1  # of what loops lose: a larger share of damping is a warning, because the loops are too fat by it
 
 
@@ -46,6 +48,7 @@ class Pushing:
     #: displacement when it began, if it counts from an earlier push [mm]
     start: float = 0.0
     path: float = 0.0  # length of the path to there [mm]
+    driven: float = 0.0  # what the drive has gone, to and fro [mm]
     period: float = 0.0  # the first one when the push began [s]; 0 if none was found
     slowest: float = 0.0  # that period, or the longest that was looked for [s]
     #: of the blocks then, while the velocity grows [m]
@@ -168,6 +171,7 @@ def drivePush(scene, name, args, began, continued=False):
             model.scheme.damp(0.0, "local") if free else model.scheme.dampByOptions()
         _setVelocity(scene, goal.direction * args.rate * 1e-3, start, growth, steps)
         run.advance(steps)
+        at.driven += 0.5 * args.rate * (abs(start) + abs(growth)) * steps * O.dt
         reading = run.record()
         before = at.moved
         at.now, at.moved = reading.time, 1e3 * reading.along
@@ -205,7 +209,7 @@ def _entered(scene, name, args, at, began, continued):
             at.moved = at.last = at.start = 1e3 * (here[0] - origin[0])
     if not args.history and not args.until > at.moved:
         raise Refused(
-            f"--until {args.until:g}: the run is at {at.moved:.2f} mm already"
+            f"{name}: until {args.until:g} mm (--until {args.until:g}): the run is at {at.moved:.2f} mm already"
         )
     goals = aim(args, at.start)
     if at.passed >= len(goals):
@@ -250,6 +254,8 @@ def _lost(model, at, reading, direction, mean, whole):
     sunk = reading.sunk + min(0.0, reading.along * model.loading.direction[2])
     if model.loading.hasSunk(sunk):
         return "the pushed point has come down by half a course"
+    if at.driven > LEFT * whole:
+        return f"another part gives way: the drive has gone {at.driven:.0f} mm, and {model.loading.target.name} has not followed"
     return "it moves against its push" if at.retreats(direction, whole) else None
 
 

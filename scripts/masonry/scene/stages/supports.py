@@ -24,7 +24,7 @@ millimetres = number("mm", -MOST, MOST)  # the kind of a displacement
 Along = Annotated[Union[float, Callable[[float, float, float], float]], orFunction(millimetres)]  # fmt: skip
 
 
-@stage()
+@stage(bounded=True)
 @validated
 def release(
     scene: Any, target: AnyTarget, axes: Freedoms, force: Force | None = None
