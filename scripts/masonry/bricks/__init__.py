@@ -10,7 +10,8 @@ one, and raise ValueError with all problems of what they are given at once:
 - :func:`Arch`, :func:`BarrelVault` and :func:`Dome`, from voussoirs;
 - :func:`Beam` and :func:`Floor`: beams that bend and floors that shear, in pieces (:mod:`masonry.bricks.beams`);
 - :func:`stack` and :func:`block`: boxes;
-- :func:`fromFile`: one block for each convex solid of a file.
+- :func:`fromFile`: one block for each convex solid of a file;
+- :func:`fromOutlines`: stones of a drawing, with mortar between them.
 
 Collections are added with ``+``, moved, turned, named, cut by planes, and chosen from; see :class:`Bricks`. Its
 ``problems()`` tells gaps, overlaps, slivers, loose parts and joints of odd size, with the bricks and the place::
@@ -35,6 +36,7 @@ from .checks import Joint
 from .files import fromFile
 from .geometry import boxCorners
 from .openings import Lintel, Opening
+from .outlines import DrawnWall, fromOutlines
 from .stones import StoneWall, leastTrace
 from .vaults import Arch, BarrelVault, Dome
 from .walls import Corner, Room, Tee, Wall, block, stack
@@ -47,6 +49,7 @@ __all__ = [
     "Bricks",
     "Corner",
     "Dome",
+    "DrawnWall",
     "Floor",
     "Joint",
     "Lintel",
@@ -58,6 +61,7 @@ __all__ = [
     "block",
     "boxCorners",
     "fromFile",
+    "fromOutlines",
     "leastTrace",
     "stack",
     "summary",
