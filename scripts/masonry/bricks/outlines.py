@@ -41,13 +41,21 @@ class DrawnWall(Bricks):
         self.mortar, self.unit, self._measured = mortar, unit, measured
 
     def thickness(self, x: float, y: float, z: float) -> float:
-        """Thickness of the mortar at a place of a joint [m]; a quarter of the tolerance at least."""
+        """Thickness of the mortar at a place of a joint [m]; where stones touch, a quarter of the tolerance."""
         return self._measured.thickness((x, z))
 
-    def thinner(self, x: float, y: float, z: float) -> float:
-        """Mean thickness of the mortar over that at a place [-]: a factor on the stiffness of joints, for ``vary`` of a
-        :class:`masonry.scene.materials.Masonry`."""
-        return self.mortar / self.thickness(x, y, z)
+    def withMortar(self, masonry: Any) -> Any:
+        """Let the joints of a :class:`masonry.scene.materials.Masonry` be as stiff as the mortar is thin. Returns the same masonry.
+
+        Its properties are those of a joint of the mean thickness. At another one, t, the stiffness has the factor mean/t; strengths
+        are the same, and so are strains, so the compressive fracture energy has the factor t/mean.
+        """
+        thinner = lambda *place: self.mortar / self.thickness(*place)
+        for name in (n for n in ("bed", "head") if n in masonry.joints):
+            masonry.vary([f"{name}.normalStiffness", f"{name}.shearStiffness"], thinner)
+            if masonry.joints[name].cap:
+                masonry.vary(f"{name}.compressiveFractureEnergy", lambda *place: 1 / thinner(*place))  # fmt: skip
+        return masonry
 
 
 @validated
