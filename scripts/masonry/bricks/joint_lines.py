@@ -61,41 +61,25 @@ def _shallow(rings, places, between, fine):
 
 def _contracted(cells, fine):
     """The sides with nodes nearer to each other than two tolerances made one, and the places. A node moves by one at most."""
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
-
-    ends, places = cells.ends.copy(), cells.places.copy()
-    air = np.unique(ends[(cells.labels < 0).any(axis=1)])
-    short = []
-    for line in _lines(ends, places):
-        if line[0] != line[-1] and _length(places[line]) < 2 * fine:
-            short += list(zip(line, line[1:]))
-    if not short:
-        return ends, places
-    one, two = np.array(short).T
-    size = len(places)
-    _, groups = connected_components(coo_array((np.ones(len(one)), (one, two)), (size, size)), directed=False)  # fmt: skip
-    touched = np.unique(np.concatenate([one, two]))
-    first = np.arange(size)
-    nodes = _nodes(ends)
-    for group in np.unique(groups[touched]):
-        members = touched[groups[touched] == group]
-        first[members] = members[0]
-        chosen = np.intersect1d(members, nodes)
-        outer = np.intersect1d(chosen, air)  # at the air they stay on the face
-        places[members[0]] = places[outer if len(outer) else chosen].mean(axis=0)
-    return first[ends], places
+    places, first = cells.places.copy(), np.arange(len(cells.places))
+    air = set(cells.ends[(cells.labels < 0).any(axis=1)].ravel().tolist())
+    done = set()
+    lines = _lines(cells.ends, places)
+    for line in sorted(lines, key=lambda line: _length(places[line])):
+        if _length(places[line]) >= 2 * fine:
+            break
+        ends = {line[0], line[-1]}
+        if len(ends) < 2 or ends & done:
+            continue
+        done |= ends
+        first[line] = line[0]
+        outer = [n for n in ends if n in air]  # at the air they stay on the face
+        places[line[0]] = places[outer or list(ends)].mean(axis=0)
+    return first[cells.ends], places
 
 
 def _length(points):
     return np.linalg.norm(np.diff(points, axis=0), axis=1).sum()
-
-
-def _nodes(ends):
-    """Places at which other than two sides meet."""
-    pairs = np.unique(np.sort(ends[ends[:, 0] != ends[:, 1]], axis=1), axis=0)
-    numbers, counts = np.unique(pairs, return_counts=True)
-    return numbers[counts != 2]
 
 
 def _rings(ends, labels, places):
@@ -157,8 +141,8 @@ def _joined(lines, places, fine):
     starts = {}
     for k, line in enumerate(lines):
         for side in (0, 1):
-            way = line[::-1] if side else line
-            starts.setdefault(way[0], []).append((k, side, _direction(places[way], fine)))  # fmt: skip
+            points = line[::-1] if side else line
+            starts.setdefault(points[0], []).append((k, side, _direction(places[points], fine)))  # fmt: skip
     mates = {}
     for here in starts.values():
         pairs = [(float(u @ v), a, i, b, j) for n, (a, i, u) in enumerate(here) for b, j, v in here[:n] if a != b]  # fmt: skip

@@ -8,6 +8,7 @@ keep the same line.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Annotated, Any
 
@@ -80,7 +81,8 @@ def fromOutlines(
     :param thickness: of the wall [m]
     :param mortar: largest thickness of a joint [m]
     :param scale: metres in one unit of the file
-    :param tolerance: largest distance by which joints are straightened [m]; None: a quarter of ``mortar``
+    :param tolerance: largest distance by which a joint moves when short ones are closed, again when lines are straightened, and
+        again when stones become convex [m]; None: a quarter of ``mortar``
     :param layer: layer of a DXF file, or id or label of a group of an SVG file; None: all
     :param mend: whether to close open outlines, to leave out stones thinner than two tolerances, and to share overlaps in
         halves. Each is named in a note
@@ -153,7 +155,8 @@ def _checked(path, drawn, fine, mend):
 def _overlapping(stone, others, fine, found):
     """Add sentences on what a stone shares with others; returns whether it lies within one, which swallows it."""
     ring = stone.ring
-    points, _ = _along(ring, fine)
+    points, normals = _along(ring, fine)
+    points = points - fine / 2 * normals  # two equal outlines lie within each other
     for other in others:
         if other is stone or (ring.min(0) > other.ring.max(0)).any() or (ring.max(0) < other.ring.min(0)).any():  # fmt: skip
             continue
@@ -161,7 +164,9 @@ def _overlapping(stone, others, fine, found):
         if not len(shared):
             continue
         edge, _ = _along(other.ring, fine)
-        depths = np.min(np.linalg.norm(shared[:, None] - edge, axis=2), axis=1)
+        depths = fine / 2 + np.min(
+            np.linalg.norm(shared[:, None] - edge, axis=2), axis=1
+        )
         first = others.index(stone) < others.index(other)
         both = f"{stone.name} and {other.name}"
         # of two equal ones the second goes
@@ -192,15 +197,24 @@ class _Measured:
     def __init__(self, points):
         from scipy.spatial import cKDTree
 
-        self.trees = [cKDTree(points.places[points.stones == n]) for n in range(points.stones.max() + 1)]  # fmt: skip
+        own = [points.stones == n for n in range(points.stones.max() + 1)]
+        self.trees = [cKDTree(points.places[n]) for n in own]
+        self.normals = [points.normals[n] for n in own]
         self.boxes = np.array([(t.mins, t.maxes) for t in self.trees])
-        self.least = points.step
+        self.step = points.step
 
     def thickness(self, place):
         beyond = np.maximum(self.boxes[:, 0] - place, place - self.boxes[:, 1])
         near = np.argsort(np.linalg.norm(np.maximum(beyond, 0), axis=1))[:8]
-        both = sorted(self.trees[n].query(place)[0] for n in near)[:2]
-        return max(float(sum(both)), self.least)
+        both = sorted(self._distance(n, place) for n in near)[:2]
+        return max(sum(both), self.step)
+
+    def _distance(self, stone, place):
+        """Distance from an outline, a piece of which lies along each of its points."""
+        k = self.trees[stone].query(place)[1]
+        arm, normal = place - self.trees[stone].data[k], self.normals[stone][k]
+        beside = abs(float(np.cross(normal, arm)))
+        return math.hypot(float(arm @ normal), max(beside - self.step / 2, 0.0))
 
 
 @dataclass

@@ -22,12 +22,12 @@ def inside(points, ring):
 
 
 def crossing(ring):
-    """A place where a polygon crosses itself, or None."""
+    """A place near where a polygon crosses itself, or None."""
     a, b = ring, np.roll(ring, -1, axis=0)
     side = lambda p, q, r: np.cross(q - p, r - p)
     one = side(a[:, None], b[:, None], a) * side(a[:, None], b[:, None], b) < 0
     found = np.argwhere(one & one.T)
-    return ring[found[0]].mean(axis=0) if len(found) else None
+    return (a + b)[found[0]].mean(axis=0) / 2 if len(found) else None
 
 
 def area(ring):
