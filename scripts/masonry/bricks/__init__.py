@@ -6,6 +6,7 @@ one, and raise ValueError with all problems of what they are given at once:
 
 - :func:`Wall`: running, stack, header, English and Flemish bond, with :class:`Opening` and :class:`Lintel`;
 - :func:`Corner`, :func:`Tee` and :func:`Room`: walls that meet, with interlocking courses;
+- :class:`House`: storeys of four walls with their floors and ring beams, from :class:`Storey`;
 - :func:`StoneWall`: squared or irregular stones, with the interlocking that :func:`leastTrace` measures;
 - :func:`Arch`, :func:`BarrelVault` and :func:`Dome`, from voussoirs;
 - :func:`Beam` and :func:`Floor`: beams that bend and floors that shear, in pieces (:mod:`masonry.bricks.beams`);
@@ -35,6 +36,7 @@ from .blocks import Block, Bricks, summary
 from .checks import Joint
 from .files import fromFile
 from .geometry import boxCorners
+from .houses import House, Storey
 from .openings import Lintel, Opening
 from .outlines import DrawnWall, fromOutlines
 from .stones import StoneWall, leastTrace
@@ -51,11 +53,13 @@ __all__ = [
     "Dome",
     "DrawnWall",
     "Floor",
+    "House",
     "Joint",
     "Lintel",
     "Opening",
     "Room",
     "StoneWall",
+    "Storey",
     "Tee",
     "Wall",
     "block",
