@@ -131,6 +131,8 @@ class House(Bricks):
         for axis, share in enumerate(self.eccentricity):
             if share:
                 low, high = [thick, thick, z], [a - thick for a in self.size] + [z + thick]  # fmt: skip
+                if axis:  # both strips have space
+                    low[0], high[0] = 2 * thick, self.size[0] - 2 * thick
                 if share < 0:
                     high[axis] = 2 * thick
                 else:
