@@ -38,7 +38,7 @@ from .files import fromFile
 from .geometry import boxCorners
 from .houses import House, Storey
 from .openings import Lintel, Opening
-from .outlines import DrawnWall, fromOutlines
+from .outlines import fromOutlines
 from .stones import StoneWall, leastTrace
 from .vaults import Arch, BarrelVault, Dome
 from .walls import Corner, Room, Tee, Wall, block, stack
@@ -51,7 +51,6 @@ __all__ = [
     "Bricks",
     "Corner",
     "Dome",
-    "DrawnWall",
     "Floor",
     "House",
     "Joint",

@@ -145,7 +145,7 @@ def _checked(path, drawn, fine, mend):
         kept.append(outline)
     stones = [s for s in kept if not _overlapping(s, kept, fine, found)]
     if not stones:
-        fatal.append("no stones")
+        fatal.append(f"no stones are left at a tolerance of {fine:g} m")
     refuse(path, fatal + ([] if mend else [*found, *["mend=True does so"] * bool(found)]))  # fmt: skip
     for one in found:
         say(f"note: fromOutlines: {one}")
