@@ -41,7 +41,7 @@ def push(side, off):
 table, rows = {}, ["towards  mass off   in the run    bound"]
 for side in TOWARDS:
     push(side, 0)
-weakest = min(table, key=table.get)[0]
+weakest = min(table, key=lambda case: table[case])[0]
 for off in (0.05, -0.05):
     push(weakest, off)
 print("\n".join(rows))

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Houses fit together, and the weight that is found by hand is all of it, where it stands."""
 
-from usual import *
+from hosted import *
 from masonry import bricks, materials
 
 UNIT = 0.8, 0.4, 0.4

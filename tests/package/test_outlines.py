@@ -3,7 +3,7 @@
 
 from collections import Counter
 
-from usual import *
+from hosted import *
 from masonry import bricks, materials
 from masonry.bricks import polygons
 import ezdxf

@@ -89,7 +89,7 @@ def fromOutlines(
     :raises ValueError: for a file that cannot be read, and with everything that is wrong with an outline, with its place
     """
     fine = mortar / 4 if tolerance is None else tolerance
-    drawn = read(path, layer)
+    drawn = read(str(path), layer)
     corner = np.min([o.ring.min(axis=0) for o in drawn], axis=0)
     for outline in drawn:
         outline.ring = (outline.ring - corner) * scale
