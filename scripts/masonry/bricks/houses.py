@@ -8,9 +8,8 @@ from typing import Annotated, Any, Sequence
 
 from ..arguments import isA, listOf, number, oneOf, validated
 from .beams import Beam, Floor
-from .blocks import Bricks, Gap, Length, Sides, refuse
+from .blocks import Block, Bricks, Gap, Length, Sides, refuse
 from .geometry import boxCorners
-from .blocks import Block
 from .openings import WHOLE
 from .walls import UNIT, Openings, Room
 
