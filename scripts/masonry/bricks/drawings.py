@@ -13,7 +13,7 @@ from xml.etree import ElementTree
 
 import numpy as np
 
-from ..packages import needed
+from ..common.packages import needed
 
 #: Sagitta of the chords that stand for the curves of a DXF file, over the size of the curve [-].
 FLATTENED = 1e-3

@@ -6,7 +6,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import Annotated, Any, Sequence
 
-from ..arguments import isA, listOf, number, oneOf, validated
+from ..common.arguments import isA, listOf, number, oneOf, validated
 from .beams import Beam, Floor
 from .blocks import Block, Bricks, Gap, Length, Sides, refuse
 from .geometry import boxCorners

@@ -14,7 +14,7 @@ from typing import Annotated, Any
 
 import numpy as np
 
-from ..arguments import FilePath, number, validated
+from ..common.arguments import FilePath, number, validated
 from ..basics import say
 from .blocks import Block, Bricks, Length, refuse
 from .checks import where
