@@ -27,7 +27,7 @@ case "${1:-}" in
     "") ;;
     --tests)
         tests=ON target=all
-        packages+=(python3-pytest python3-hypothesis python3-openturns python3-vtk9 doctest-dev git "${@:2}")
+        packages+=(python3-pytest python3-hypothesis python3-openturns python3-ezdxf python3-vtk9 doctest-dev git "${@:2}")
         ;;
     --with) packages+=("${@:2}") ;;
     --no-build) packages=("${runs[@]}") ;;

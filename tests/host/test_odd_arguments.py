@@ -262,7 +262,10 @@ CALLS = {
     "bricks.leastTrace": (nothing, bricks.leastTrace, dict(bricks=WALL)),
     "bricks.boxCorners": (nothing, bricks.boxCorners, dict(low=(0, 0, 0), high=(1, 1, 1))),
     "bricks.summary": (nothing, bricks.summary, dict(bricks=WALL)),
-    "bricks.fromFile": (nothing, bricks.fromFile, dict(path="cube.obj", scale=1.0, kind="block")),
+    "bricks.fromFile": (nothing, bricks.fromFile, dict(path="cube.obj", scale=1.0, kind="block", mortar=0.0)),
+    "bricks.fromOutlines": (nothing, bricks.fromOutlines, dict(path="stones.csv", thickness=0.2, mortar=0.02, scale=1.0, tolerance=0.005, layer=None, mend=True, part="p")),
+    "bricks.Storey": (nothing, bricks.Storey, dict(height=0.81, front=(), right=(), back=(), left=(), span="x", ring=0.1)),
+    "bricks.House": (nothing, bricks.House, dict(length=0.88, width=0.88, storeys=[bricks.Storey(0.81)], unit=(0.22, 0.102, 0.081), thickness=0.1, eccentricity=(0.0, 0.05))),
     "bricks.Opening": (nothing, opening, dict(x=0.22, z=0.081, width=0.22, height=0.162, lintel=None)),
     "bricks.Lintel": (nothing, lintel, dict(bearing=0.11, height=0.081)),
     "Bricks.moved": (nothing, WALL.moved, dict(dx=1.0, dy=0.0, dz=0.0)),
@@ -333,6 +336,7 @@ def folder(tmp_path, monkeypatch, pushed):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "path.csv").write_text("displacement_mm\n0.05\n-0.05\n0\n")
     (tmp_path / "cube.obj").write_text(CUBE_FILE)
+    (tmp_path / "stones.csv").write_text("a,0,0\na,1,0\na,1,1\na,0,1\n")
     (tmp_path / "spectrum.csv").write_text("0 0.1\n0.1 0.3\n0.5 0.3\n4 0.04\n")
     shutil.copytree(pushed, tmp_path / "run")
     joined()

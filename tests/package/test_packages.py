@@ -28,6 +28,7 @@ def sentence(module):
 
 
 @pytest.mark.parametrize("module, use", [
+    ("ezdxf", "open('a.dxf', 'w').write(''); from masonry import bricks; bricks.fromOutlines('a.dxf', 1, 0.1)"),
     ("jinja2", "from masonry.read import pages; pages.rendered('page/page.html')"),
     ("matplotlib", "from masonry.read import drawing; drawing.empty(1, 1)"),
     ("meshio", "open('a.ply', 'w').write('ply'); from masonry import bricks; bricks.fromFile('a.ply')"),
@@ -61,5 +62,5 @@ def test_the_setup_of_a_run_and_of_tests_installs_every_package_that_is_named():
     setup = open(os.path.join(ROOT, "scripts", "setup.sh")).read()
     run, tests = setup.split("    --tests)\n")
     for package, _ in packages.NEEDED_FOR.values():
-        listed = tests if package == "python3-openturns" else run
+        listed = tests if package in ("python3-openturns", "python3-ezdxf") else run
         assert re.search(rf"\b{package}\b", listed), package

@@ -6,11 +6,13 @@ one, and raise ValueError with all problems of what they are given at once:
 
 - :func:`Wall`: running, stack, header, English and Flemish bond, with :class:`Opening` and :class:`Lintel`;
 - :func:`Corner`, :func:`Tee` and :func:`Room`: walls that meet, with interlocking courses;
+- :class:`House`: storeys of four walls with their floors and ring beams, from :class:`Storey`;
 - :func:`StoneWall`: squared or irregular stones, with the interlocking that :func:`leastTrace` measures;
 - :func:`Arch`, :func:`BarrelVault` and :func:`Dome`, from voussoirs;
 - :func:`Beam` and :func:`Floor`: beams that bend and floors that shear, in pieces (:mod:`masonry.bricks.beams`);
 - :func:`stack` and :func:`block`: boxes;
-- :func:`fromFile`: one block for each convex solid of a file.
+- :func:`fromFile`: one block for each convex solid of a file;
+- :func:`fromOutlines`: stones of a drawing, with mortar between them.
 
 Collections are added with ``+``, moved, turned, named, cut by planes, and chosen from; see :class:`Bricks`. Its
 ``problems()`` tells gaps, overlaps, slivers, loose parts and joints of odd size, with the bricks and the place::
@@ -34,7 +36,9 @@ from .blocks import Block, Bricks, summary
 from .checks import Joint
 from .files import fromFile
 from .geometry import boxCorners
+from .houses import House, Storey
 from .openings import Lintel, Opening
+from .outlines import fromOutlines
 from .stones import StoneWall, leastTrace
 from .vaults import Arch, BarrelVault, Dome
 from .walls import Corner, Room, Tee, Wall, block, stack
@@ -48,16 +52,19 @@ __all__ = [
     "Corner",
     "Dome",
     "Floor",
+    "House",
     "Joint",
     "Lintel",
     "Opening",
     "Room",
     "StoneWall",
+    "Storey",
     "Tee",
     "Wall",
     "block",
     "boxCorners",
     "fromFile",
+    "fromOutlines",
     "leastTrace",
     "stack",
     "summary",

@@ -21,6 +21,7 @@ from ..common.packages import needed
 from .blocks import FARTHEST, Block, Bricks, refuse
 from .checks import components, where
 from .geometry import FLAT
+from .mortar import closed
 
 #: Points of one solid are the same if they are no further apart than this share of its size; STL as bytes, and text of
 #: six digits, round by less.
@@ -39,6 +40,7 @@ def fromFile(
     path: FilePath,
     scale: Annotated[float, number("m", 0, 1e6, above=True)] = 1.0,
     kind: str = "block",
+    mortar: Annotated[float, number("m", 0, 1)] = 0.0,
 ) -> Bricks:
     """Blocks from a file, one for each closed convex surface in it: a :class:`Bricks`, each block a brick of its own.
 
@@ -49,6 +51,8 @@ def fromFile(
 
     :param scale: metres in one unit of the file; 0.001 if it is in millimetres
     :param kind: kind of the blocks
+    :param mortar: largest thickness of the mortar between two faces that look at each other within 20° [m]: they move to its
+        middle, with all faces in line with them; 0: solids meet as they are
     :raises ValueError: for a file that cannot be read, and with every solid that is open, not convex or has a bent face;
         each is named by its group and its number there, with the face and its place
     """
@@ -70,13 +74,16 @@ def fromFile(
         surfaces = readers[ending](path)
     except (OSError, ValueError, IndexError, KeyError, TypeError) as error:
         raise ValueError(f"{path}: cannot be read: {error}") from None
+    solids = [(surface.name, corners) for surface in surfaces for corners in _solids(surface, scale, problems)]  # fmt: skip
+    names, bodies = zip(*solids) if solids else ((), ())
+    if mortar and not problems:
+        bodies = closed(bodies, mortar, problems)
     blocks = []
-    for surface in surfaces:
-        for corners in _solids(surface, scale, problems):
-            try:
-                blocks.append(Block(corners, len(blocks), surface.name, -1, kind))
-            except ValueError as error:  # of its name
-                problems.append(str(error))
+    for name, corners in zip(names, bodies):
+        try:
+            blocks.append(Block(corners, len(blocks), name, -1, kind))
+        except ValueError as error:  # of its name
+            problems.append(str(error))
     if not blocks and not problems:
         problems.append("no faces, so no solids")
     refuse(os.fspath(path), problems)

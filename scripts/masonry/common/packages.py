@@ -12,6 +12,7 @@ from ..basics import Refused
 
 #: Module -> (its Debian package, what needs it).
 NEEDED_FOR = {
+    "ezdxf": ("python3-ezdxf", "DXF files need"),
     "jinja2": ("python3-jinja2", "reports and pages need"),
     "matplotlib": ("python3-matplotlib", "figures need"),
     "meshio": (

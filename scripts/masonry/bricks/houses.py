@@ -1,0 +1,200 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Houses of several storeys, with floors and ring beams. Nothing here needs YADE."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Annotated, Any, Sequence
+
+from ..common.arguments import isA, listOf, number, oneOf, validated
+from .beams import Beam, Floor
+from .blocks import Block, Bricks, Gap, Length, Sides, refuse
+from .geometry import boxCorners
+from .openings import WHOLE
+from .walls import UNIT, Openings, Room
+
+SIDES = "front", "right", "back", "left"
+GRAVITY = 9.81  # [m/s²]
+
+
+@validated
+@dataclass(frozen=True)
+class Storey:
+    """A storey of a :func:`House`: four walls, what is on top of them, and the floor that covers them.
+
+    :param height: of the walls, without ring beam and floor [m]; whole courses
+    :param front: openings of this wall, and likewise ``right``, ``back`` and ``left``, as for :func:`Room`
+    :param span: direction of the span of its floor, ``"x"`` or ``"y"``
+    :param ring: height of a ring beam on the walls [m]; 0: none
+    """
+
+    height: Length
+    front: Openings = ()
+    right: Openings = ()
+    back: Openings = ()
+    left: Openings = ()
+    span: Annotated[str, oneOf("x", "y")] = "x"
+    ring: Gap = 0.0
+
+
+class House(Bricks):
+    """A house of one room on each storey: walls with interlocking corners, ring beams, floors: a :class:`Bricks`.
+
+    ::
+
+        ground = bricks.Storey(2.4, front=[bricks.Opening(1.8, 0, 1.2, 1.8, bricks.Lintel(0.3, 0.3))])
+        house = bricks.House(4.8, 3.6, [ground, bricks.Storey(2.4, span="y", ring=0.3)], unit=(0.6, 0.3, 0.3))
+        house.withFloors(stones, shear=1e6, mass=300)
+
+    Storeys are counted from 1. Parts are ``front 1`` and so on. What stands between the openings of a wall, at the heights at
+    which all of them are open, is a part of its own: ``front 1 pier 1`` and so on, from the origin. Floors are ``floor 1`` and
+    ring beams ``ring 1``. Floors lie on the walls or ring beams, and carry the next storey.
+
+    :param length: along x, measured outside [m]; ``width``: along y. Both are whole units
+    :param storeys: :class:`Storey` records, from below
+    :param unit: length, thickness and height of a unit, joints included [m]
+    :param thickness: of the floors [m]
+    :param eccentricity: how far the mass of each floor is off its middle, over length and width [-]: the accidental
+        eccentricity of EN 1998-1 is 0.05. The share of the mass that it takes stands as a strip on the floor, along the wall
+    :ivar heights: for each storey the height of the section through its piers [m]
+    :ivar piers: for each storey a dict from the part to (wall, from where, to where along it [m])
+    """
+
+    @validated
+    def __init__(
+        self,
+        length: Length,
+        width: Length,
+        storeys: Annotated[Sequence[Storey], listOf(isA(Storey, "bricks.Storey"))],
+        unit: Sides = UNIT,
+        thickness: Length = 0.2,
+        eccentricity: Annotated[Any, listOf(number("", -0.2, 0.2), 2)] = (0.0, 0.0),
+    ) -> None:
+        self.size, self.thick = (length, width), unit[1]
+        self.heights, self.piers, self.eccentricity = [], [], tuple(eccentricity)
+        blocks, z = Bricks(), 0.0
+        for n, storey in enumerate(storeys, 1):
+            openings = {side: getattr(storey, side) for side in SIDES}
+            walls = Room(length, width, storey.height, unit, halves=False, **openings)
+            blocks += self._named(walls.moved(0, 0, z), storey, n, z)
+            z += storey.height
+            if storey.ring:
+                blocks += self._ring(n, z, storey.ring, unit)
+                z += storey.ring
+            across = width if storey.span == "x" else length
+            span = length + width - across
+            blocks += Floor((0, 0, z), span, across, thickness, storey.span, max(2, round(across / unit[1])), f"floor {n}")  # fmt: skip
+            z += thickness
+            blocks += self._ballast(n, z)
+        super().__init__(blocks)
+
+    def _named(self, walls, storey, n, z):
+        """The walls of a storey with the names of their piers."""
+        openings = [o for side in SIDES for o in getattr(storey, side)]
+        low = max((o.z for o in openings), default=0.0) + z
+        high = min((o.z + o.height for o in openings), default=storey.height) + z
+        if not low < high:
+            refuse("House", [f"storey {n}: no height is common to all its openings, so it has no piers there"])  # fmt: skip
+        courses = {b.middle[2] for b in walls if low < b.middle[2] < high}
+        self.heights.append(min(courses, key=lambda at: abs(at - (low + high) / 2)) - walls[0].high[2] / 2 + walls[0].low[2] / 2)  # fmt: skip
+        piers = {}
+        for side in SIDES:
+            axis = SIDES.index(side) % 2
+            cut = sorted((b.low[axis], b.high[axis]) for b in walls if b.part == side and low < b.middle[2] < high)  # fmt: skip
+            found = []
+            for a, b in cut:
+                if found and a <= found[-1][1] + WHOLE:
+                    found[-1][1] = max(b, found[-1][1])
+                else:
+                    found.append([a, b])
+            for k, (a, b) in enumerate(found, 1):
+                piers[f"{side} {n} pier {k}" if len(found) > 1 else f"{side} {n}"] = side, a, b  # fmt: skip
+        self.piers.append(piers)
+
+        def part(block):
+            axis = SIDES.index(block.part) % 2
+            if low < block.middle[2] < high:
+                return next(name for name, (side, a, b) in piers.items() if side == block.part and a <= block.middle[axis] <= b)  # fmt: skip
+            return f"{block.part} {n}"
+
+        return Bricks(replace(block, part=part(block)) for block in walls)
+
+    def _ring(self, n, z, height, unit):
+        (length, width), thick, name = self.size, self.thick, f"ring {n}"
+        beam = lambda x, y, long, along: Beam((x, y, z), long, thick, height, along, max(2, round(long / unit[0])), name)  # fmt: skip
+        return sum((beam(0, y, length, "x") for y in (0, width - thick)), Bricks()) + sum((beam(x, thick, width - 2 * thick, "y") for x in (0, length - thick)), Bricks())  # fmt: skip
+
+    def _ballast(self, n, z):
+        """A strip along the wall to which the mass of a floor is moved."""
+        found, thick = Bricks(), self.thick
+        for axis, share in enumerate(self.eccentricity):
+            if share:
+                low, high = [thick, thick, z], [a - thick for a in self.size] + [z + thick]  # fmt: skip
+                if axis:  # both strips have space
+                    low[0], high[0] = 2 * thick, self.size[0] - 2 * thick
+                if share < 0:
+                    high[axis] = 2 * thick
+                else:
+                    low[axis] = high[axis] - thick
+                name = f"ballast {n}{'xy'[axis]}"
+                found += Bricks([Block(boxCorners(low, high), 0, name, -1, name)])
+        return found
+
+    def part(self, name: str) -> Bricks:
+        """The blocks of a part."""
+        return self.where(lambda block: block.part == name)
+
+    def withFloors(self, masonry: Any, shear: float, mass: Any, bearing: Any = "fixed", ring: float = 30e9) -> Any:  # fmt: skip
+        """Say what floors and ring beams are made of, by ``withFloor`` and ``withBeam`` of the masonry. Returns it.
+
+        :param masonry: :class:`masonry.scene.materials.Masonry`
+        :param shear: shear stiffness G t of the floors [N/m]
+        :param mass: with what lies on it [kg/m²], of every floor from below, the last one is the roof; or one for all
+        :param bearing: of the floors, as for ``withFloor``
+        :param ring: Young's modulus of ring beams [Pa]; their density is 2400 kg/m³
+        """
+        masses = [mass] * len(self.piers) if isinstance(mass, (int, float)) else mass
+        for n, own in enumerate(masses, 1):
+            if len(self.part(f"ring {n}")):
+                masonry.withBeam(self.part(f"ring {n}"), young=ring, density=2400, bearing="fixed")  # fmt: skip
+            moved = 0.0
+            for axis, share in enumerate(self.eccentricity):
+                if share:
+                    ballast = self.part(f"ballast {n}{'xy'[axis]}")
+                    lever = abs(ballast[0].middle[axis] - self.size[axis] / 2)
+                    part = abs(share) * self.size[axis] / lever
+                    moved += part
+                    unit = type(masonry.unit)(label=ballast[0].kind, young=masonry.unit.young, density=part * own * self.size[0] * self.size[1] / ballast.volume)  # fmt: skip
+                    masonry.units[ballast[0].kind] = unit
+            masonry.withFloor(self.part(f"floor {n}"), shear=shear, mass=own * (1 - moved), bearing=bearing)  # fmt: skip
+        return masonry
+
+    def weights(self, masonry: Any, storey: int = 1) -> dict[str, float]:
+        """Weight on each pier of a storey as by hand [kN]: of all above the section through the piers.
+
+        What is above a pier or nearer to it than to the next one of its wall goes to it, and half of each strip of a floor to
+        the wall at either end.
+        """
+        piers, z = self.piers[storey - 1], self.heights[storey - 1]
+        found = dict.fromkeys(piers, 0.0)
+
+        def carry(side, at, weight):
+            off = lambda name: max(piers[name][1] - at, at - piers[name][2])
+            found[min((name for name in piers if piers[name][0] == side), key=off)] += weight  # fmt: skip
+
+        for block, volume in zip(self, self._solids.volumes()):
+            if block.middle[2] < z:
+                continue
+            weight = float(masonry.units.get(block.kind, masonry.unit).density * volume * GRAVITY / 1e3)  # fmt: skip
+            x, y, _ = block.middle
+            if block.part.startswith(("floor", "ballast")):
+                along = block.high[0] - block.low[0] > block.high[1] - block.low[1]
+                for side in ("left", "right") if along else ("front", "back"):
+                    carry(side, y if along else x, weight / 2)
+                continue
+            side = block.part.split()[0]
+            if side not in SIDES:  # a ring beam
+                away = {"front": y, "right": self.size[0] - x, "back": self.size[1] - y, "left": x}  # fmt: skip
+                side = min(away, key=away.get)
+            carry(side, (x, y)[SIDES.index(side) % 2], weight)
+        return found
