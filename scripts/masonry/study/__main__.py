@@ -55,16 +55,16 @@ def parser():
     return p
 
 
-def load(path):
-    """The study that a file makes. Raises Refused if it makes none or several."""
+def load(path, kind=Study):
+    """The study, or the one of another class, that a file makes. Raises Refused if it makes none or several."""
     if not os.path.isfile(path):
         raise Refused(f"no file {path}")
     with interrupts.watched(NOTHING):
         made = runpy.run_path(path)
-    studies = {id(v): v for v in made.values() if isinstance(v, Study)}
+    studies = {id(v): v for v in made.values() if isinstance(v, kind)}
     if len(studies) != 1:
         raise Refused(
-            f"{path} must make one masonry.study.Study, it makes {len(studies)}"
+            f"{path} must make one masonry.study.{kind.__name__}, it makes {len(studies)}"
         )
     return studies.popitem()[1]
 
