@@ -27,7 +27,6 @@ PROGRAMS = (
     ("python3 -m masonry.capacity", ["-m", "masonry.capacity"]),
     ("python3 -m masonry.study", ["-m", "masonry.study"]),
     ("python3 -m masonry.study.report", ["-m", "masonry.study.report"]),
-    ("python3 -m masonry.study.calibrate", ["-m", "masonry.study.calibrate"]),
 )
 
 

@@ -2,8 +2,8 @@
 """Properties from tests: closed forms of linear tests, how often intervals have the truth, rounds, accurate runs, a couplet."""
 
 from usual import *
-from masonry.study import Calibration, Specimen, Study, calibrate, calibration, normal
-from masonry.study.calibration import ENDS, Surrogate, posterior
+from masonry.study import Calibration, Specimen, Study, calibrate, normal
+from masonry.study.calibrate import ENDS, Surrogate, posterior
 from masonry.study.designs import points
 
 ot = pytest.importorskip("openturns", reason="python3-openturns is not installed")
@@ -81,7 +81,7 @@ def test_the_same_number_in_all_rows_tells_nothing():
 
 
 def test_intervals_have_the_truth_as_often_as_they_say(monkeypatch):
-    monkeypatch.setattr(calibration, "DRAWS", 1000)
+    monkeypatch.setattr(calibrate, "DRAWS", 1000)
     model, generator, inside = (
         designed(bent, [(0, 1)] * 2, 30),
         np.random.default_rng(3),
@@ -152,7 +152,7 @@ def test_few_accurate_runs_move_the_answer_by_what_fast_ones_are_off(
 def test_what_is_printed_for_studies_is_a_study(tmp_path):
     found = direct([0.33, 0.58]).find(tmp_path)
     of = {"normal": normal}
-    exec("\n".join([*calibrate.forStudies(found)][1:]), of)
+    exec("\n".join([*found.forStudies()]), of)
     drawn = Study(
         "any", runs=400, vary=of["vary"], correlation=of["correlation"]
     ).rows()
@@ -203,7 +203,7 @@ def test_couplets_give_their_cohesion_and_friction_back(tmp_path):
     (tmp_path / "test.csv").write_text("\n".join(["slide,stress", *lines]))
     (tmp_path / "file.py").write_text(FILE)
     words = [str(tmp_path / "file.py"), "--out", str(tmp_path / "out"), "--jobs", "2"]
-    command = [sys.executable, "-m", "masonry.study.calibrate", *words]
+    command = [sys.executable, "-m", "masonry.study", *words]
     done = subprocess.run(command, capture_output=True, text=True)
     assert done.returncode == 0, done.stdout + done.stderr
     out = tmp_path / "out"

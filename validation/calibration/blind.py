@@ -19,7 +19,6 @@ from masonry.study import Calibration, Specimen, Study, uniform
 from masonry.study.continuing import rowsOf
 from masonry.study.gathering import gather
 from masonry.study.local import Local
-from masonry.study.pictures import calibration as draw
 from masonry.study.pictures import increasing
 from masonry.study.records import Record
 from masonry.study.start import begin
@@ -113,7 +112,9 @@ def main():
         follows = not any("does not follow" in doubt for doubt in one.doubts())
         lines.append([case, *cells, "yes" if follows else "no"])
         if case == 1:
-            draw(os.path.join(HERE, "case1.png"), one)
+            shutil.copy(
+                os.path.join(PLACE, "calibration.png"), os.path.join(HERE, "case1.png")
+            )
     heads = [
         "case",
         *(f"{name.removeprefix('bed.')}" for name in RANGES),

@@ -323,7 +323,7 @@ def fan(path, curves, xLabel, yLabel):
 def calibration(path, found):
     """Measured curves with the band of what the draws of the properties say, and a run with their means.
 
-    :param found: :class:`masonry.study.calibration.Found`
+    :param found: :class:`masonry.study.calibrate.Found`
     """
     of, (low, high), at = found.calibration.specimens, found.bands(), 0
     curves = [one for one in of if one.grid is not None]
