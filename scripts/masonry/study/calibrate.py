@@ -84,14 +84,14 @@ class Specimen:
         self.scene, self.measured, self.options = scene, measured, dict(options or {})
         self.columns, self.count, self.error = columns, count, error
         problems, curve = [], isinstance(measured, str)
-        if not curve and not (isinstance(measured, dict) and measured):
-            problems.append("measured must be 'FILE:X:Y' or a dict of columns")
-        elif not curve:
+        if isinstance(measured, dict):
             problems += [
                 f"measured {name!r}: {pair!r} must be a value and a standard deviation above 0"
                 for name, pair in measured.items()
                 if not (isinstance(pair, (tuple, list)) and len(pair) == 2 and pair[1] > 0)
             ]  # fmt: skip
+        if not measured or not isinstance(measured, (str, dict)):
+            problems.append("measured must be 'FILE:X:Y' or a dict of columns")
         if curve != (error is not None):
             problems.append("error goes with a curve, and a curve needs it")
         refuse(problems, "specimen: ")
@@ -185,38 +185,38 @@ class Calibration:
         """
         for one in self.specimens:
             one.read(near)
-        test = [np.hstack([vars(s)[n] for s in self.specimens]) for n in ("values", "errors")]  # fmt: skip
+        values, errors = (np.hstack([vars(s)[n] for s in self.specimens]) for n in ("values", "errors"))  # fmt: skip
         where = place, near, jobs
-        model, sample = self._fitted(test, where)
+        model, sample = self._fitted(values, errors, where)
         if self.accurate is not None:
             ends = np.quantile(sample, ENDS, axis=0)
-            few = lambda s: self._study(s, *ends, self.few, self.seed, self.accurate)
+            few = lambda s: self._study(s, ends[0], ends[1], self.few, self.seed, self.accurate)  # fmt: skip
             x, y = self._rows(where, "accurate", few, 3)
             off = y - model(x)
             model.offset = model.offset + off.mean(axis=0)
             model.errors = off.std(axis=0, ddof=1) * math.sqrt(1 + 1 / len(off))
-            sample = posterior(model, *test, self.seed)
+            sample = posterior(model, values, errors, self.seed)
         means = dict(zip(self.keys, sample.mean(axis=0).tolist()))
         best = lambda s: Study(s.scene, {**s.options, **(self.accurate or {})}, vary=means, design="grid")  # fmt: skip
         _, run = self._rows(where, "best", best, 0)
-        found = Found(self, sample, model, *test, run)
+        found = Found(self, sample, model, values, errors, run)
         written(os.path.join(place, RESULT), json.dumps(found.describe(), indent=1) + "\n")  # fmt: skip
         if any(one.grid is not None for one in self.specimens):
             pictures.calibration(os.path.join(place, PICTURE), found)
         return found
 
-    def _fitted(self, test, where):
+    def _fitted(self, values, errors, where):
         """The surrogate of the last round, and draws of the properties."""
         low, high = self.low, self.high
-        x, y = np.empty((0, len(low))), np.empty((0, len(test[0])))
+        x, y = np.empty((0, len(low))), np.empty((0, len(values)))
         for turn in range(self.rounds):
             study = lambda s: self._study(s, low, high, self.runs, self.seed + turn)
             more = self._rows(where, f"round{turn + 1}", study, 3 * len(low))
             x, y = np.vstack([x, more[0]]), np.vstack([y, more[1]])
             inside = ((x >= low) & (x <= high)).all(axis=1)
             model = Surrogate(x[inside], y[inside], low, high)
-            sample = posterior(model, *test, self.seed)
-            off = (model.errors / test[1]).max()
+            sample = posterior(model, values, errors, self.seed)
+            off = (model.errors / errors).max()
             say(
                 f"round {turn + 1}: the error of the surrogate is at most {off:.2g} of that of the test"
             )
@@ -269,7 +269,7 @@ class Surrogate:
         u, scale = (x - low) / (high - low), np.where(np.ptp(y, axis=0) > 0, y.std(axis=0), 1.0)  # fmt: skip
         found = [_kriging(u, column) for column in ((y - self.offset) / scale).T]
         slopes, lengths, factors, missed = map(np.array, zip(*found))
-        self.weights, self.factors = 0.5 / lengths**2, scale[:, None] * factors
+        self.weights, self.factors = 0.5 / np.square(lengths), scale[:, None] * factors
         self.slopes, self.errors = scale * slopes.T, scale * missed
         self.cross = 2 * np.einsum("jd,nd->djn", self.weights, u).reshape(len(low), -1)
         self.own = np.einsum("jd,nd->jn", self.weights, u**2)

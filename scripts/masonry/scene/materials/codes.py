@@ -16,14 +16,14 @@ import re
 from typing import Annotated, Any, NamedTuple
 
 from ...common.arguments import number, oneOf, validated, whole
-from ...basics import Refused
+from ...basics import refuse
 
 #: Mean over characteristic compressive strength (EN 1052-1), characteristic over mean cohesion and friction (EN 1052-3) [-].
 MEAN, SHEAR = 1.2, 0.8
 
 #: K of EN 1996-1-1:2005, table 3.3 [-], by unit and mortar for groups 1, 2, ...
 GENERAL, THIN = "general purpose", "thin layer"
-K = {
+K: dict[str, dict[str, tuple[float, ...]]] = {
     "clay": {GENERAL: (0.55, 0.45, 0.35, 0.35), THIN: (0.75, 0.70, 0.50, 0.35)},
     "calcium silicate": {GENERAL: (0.55, 0.45), THIN: (0.80, 0.65)},
     "aggregate concrete": {GENERAL: (0.55, 0.45, 0.40, 0.35), THIN: (0.80, 0.65, 0.50)},
@@ -114,19 +114,14 @@ def en1996(
     :raises Refused: if the standard has no K for it, or the units or the mortar are too strong for its equations
     """
     fm, code = float(mortar), "EN 1996-1-1:2005"
-    factors = K[unit].get(joints, ())
+    factors, problems = K[unit].get(joints, ()), []
     if group > len(factors):
-        raise Refused(
-            f"en1996: table 3.3 has no K for {unit} of group {group} in {joints} mortar"
-        )
+        problems.append(f"table 3.3 has no K for {unit} of group {group} in {joints} mortar")  # fmt: skip
     if fb > STRONGEST[joints]:
-        raise Refused(
-            f"en1996: fb {fb:g} Pa must be at most {STRONGEST[joints]:g} Pa in {joints} mortar: 3.6.1.2"
-        )
+        problems.append(f"fb {fb:g} Pa must be at most {STRONGEST[joints]:g} Pa in {joints} mortar: 3.6.1.2")  # fmt: skip
     if joints == GENERAL and fm > 2e-6 * fb:
-        raise Refused(
-            f"en1996: mortar M{fm:g} must be at most twice as strong as the units, fb {fb:g} Pa: equation (3.2)"
-        )
+        problems.append(f"mortar M{fm:g} must be at most twice as strong as the units, fb {fb:g} Pa: equation (3.2)")  # fmt: skip
+    refuse(problems, "en1996: ")
     factor = factors[group - 1]
     if joints == GENERAL:
         fk, by = factor * (1e-6 * fb) ** 0.7 * fm**0.3, "(3.2)"
@@ -135,10 +130,8 @@ def en1996(
     else:
         fk, by = factor * (1e-6 * fb) ** 0.85, "(3.3)"
     ofMortar, thin = FVK0.get(unit, (OTHERS, 0.30e6))
-    fvk0 = (
-        next(v for least, v in ofMortar if fm >= least) if joints == GENERAL else thin
-    )
-    fvk0 = min(fvk0, MOST_SHEAR * fb)
+    general = next(v for least, v in ofMortar if fm >= least)
+    fvk0 = min(general if joints == GENERAL else thin, MOST_SHEAR * fb)
     strength, shear, over = (MEAN, SHEAR, True) if value == "mean" else (1, 1, False)
     mean = lambda what: f" {what}" if over else ""
     E = 1e6 * STIFFNESS * fk
@@ -171,10 +164,7 @@ def ntc2018(
     ft is 1.5 tau0, which the code means of diagonal cracks. Rubble, roughly cut and split stone and irregular soft stone have no
     fv0 in the table: ft/0.7 of Lourenço and Rots (1997) stands for it.
     """
-    row, factor = (
-        TABLE[masonry],
-        CONFIDENCE[knowledge] if confidence is None else confidence,
-    )
+    row, factor = TABLE[masonry], confidence or CONFIDENCE[knowledge]
     middle = lambda ends: (ends[0] + ends[1]) / 2
     strength = lambda ends: (min(ends) if knowledge == "LC1" else middle(ends)) / factor
     which = "least" if knowledge == "LC1" else "middle"

@@ -264,13 +264,12 @@ def masonry(
     nu = _poisson(values)
     brick = MasonryMat(label="brick", young=unit_E, poisson=nu, density=density)
     assumed = {"poisson": "usual for masonry units"} if poisson is None else {}
-    course = unit[2] + joint
     state(
         joints["bed"],
         **{**joints["bed"].assumed(), **_stated(clauses, given, OF_CLAUSES)},
     )
     assumed |= _stated(clauses, given, {"density": "density"})
-    return Masonry(state(brick, **assumed), joints, course=course)
+    return Masonry(state(brick, **assumed), joints, course=unit[2] + joint)
 
 
 def _stated(clauses, given, names):
