@@ -140,6 +140,21 @@ def test_a_second_round_fills_what_the_first_keeps_of_the_ranges(tmp_path, monke
     assert (found.model.errors < 0.05).all()
 
 
+def test_a_run_with_the_means_is_added_where_the_surrogate_is_off(
+    tmp_path, monkeypatch
+):
+    """A step between the rows: the first surrogate is smooth there, and its interval has not the truth."""
+    step = lambda x: np.column_stack([x[:, 0] + 0.4 * (x[:, 0] > 0.93), x[:, 1]])
+    monkeypatch.setattr(Direct, "act", staticmethod(step))
+    one = direct(
+        [1.36, 0.5], error=0.02, names={"bed.a": (0, 1), "bed.b": (0, 1)}, runs=12
+    )
+    found = one.find(tmp_path)
+    assert "check2" in one.seen and "check6" not in one.seen
+    low, high = found.intervals
+    assert low[0] < 0.96 < high[0]
+
+
 def test_few_accurate_runs_move_the_answer_by_what_fast_ones_are_off(
     tmp_path, monkeypatch
 ):
@@ -212,7 +227,7 @@ def test_couplets_give_their_cohesion_and_friction_back(tmp_path):
     assert cohesion["low"] < 0.11e6 < cohesion["high"]
     assert friction["low"] < 0.43 < friction["high"]
     assert (out / "calibration.png").stat().st_size > 10000
-    shutil.rmtree(out / "specimen1_best")
+    shutil.rmtree(out / "specimen1_check1")
     again = subprocess.run(command, capture_output=True, text=True)
     assert again.returncode == 0 and "shear_stress_MPa at" in again.stdout
     assert (out / "calibration.json").read_bytes() == kept

@@ -5,7 +5,7 @@ Rows of a study fill the ranges of what is unknown. A surrogate, kriging by Open
 Metropolis-Hastings chain of OpenTURNS draws properties with the probability that the test gives them, all values within their
 ranges being alike beforehand. Errors are normal and independent: those of the test, and those of the surrogate, which is what
 it misses of each row if that is left out. While these are more than half of the others, another round of rows fills what the
-draws keep of the ranges.
+draws keep of the ranges. A run with the means of the draws is compared with the surrogate, and added to its rows while it differs.
 
 A few accurate runs say how far the scene as it is run is off: their mean difference is added, and its scatter is another error.
 
@@ -42,16 +42,14 @@ DRAWS, THINNING = 4000, 5  # of a chain
 BEGIN = 0.1  # steps of the first chain over the ranges [-]
 STEP = 2.38  # of a chain over the deviation of a draw, over the root of the dimension: Gelman, Roberts and Gilks (1996)
 STARTS = 2000  # points of which the most likely one begins the first chain
-FINE = 0.5  # error of the surrogate over that of the test that needs no other round [-]
-SMALLER = (
-    0.5  # volume of the next round over the last one from which it does not pay [-]
-)
-TAIL, MARGIN = (
-    0.005,
-    0.25,
-)  # what a next round leaves out on either side, and its margin over the width [-]
+#: Error of the surrogate over that of the test that needs no other round or check [-].
+FINE = 0.5
+CHECKS = 4  # runs with the means of the draws that may be added to the rows
+SMALLER = 0.5  # volume of another round over the last one, above which it does not pay
+TAIL, MARGIN = 0.005, 0.25  # what a next round has outside, and its margin over width
 ENDS = 0.025, 0.975  # quantiles of an interval and of a band
-UNKNOWN = 0.8  # deviation of the draws over that of the range from which the test does not tell a property [-]
+#: Deviation of the draws over that of the range from which the test does not tell a property [-].
+UNKNOWN = 0.8
 DOUBT = 0.01  # probability from which the difference of scene and test is no chance
 NEAR = 0.01  # distance of an interval to the end of a range, over the range [-]
 TOGETHER = 0.9  # correlation from which two properties are known only together [-]
@@ -188,6 +186,7 @@ class Calibration:
         values, errors = (np.hstack([vars(s)[n] for s in self.specimens]) for n in ("values", "errors"))  # fmt: skip
         where = place, near, jobs
         model, sample = self._fitted(values, errors, where)
+        model, sample, run = self._checked(model, sample, values, errors, where)
         if self.accurate is not None:
             ends = np.quantile(sample, ENDS, axis=0)
             few = lambda s: self._study(s, ends[0], ends[1], self.few, self.seed, self.accurate)  # fmt: skip
@@ -196,9 +195,7 @@ class Calibration:
             model.offset = model.offset + off.mean(axis=0)
             model.errors = off.std(axis=0, ddof=1) * math.sqrt(1 + 1 / len(off))
             sample = posterior(model, values, errors, self.seed)
-        means = dict(zip(self.keys, sample.mean(axis=0).tolist()))
-        best = lambda s: Study(s.scene, {**s.options, **(self.accurate or {})}, vary=means, design="grid")  # fmt: skip
-        _, run = self._rows(where, "best", best, 0)
+            _, run = self._best(where, "best", sample, self.accurate)
         found = Found(self, sample, model, values, errors, run)
         written(os.path.join(place, RESULT), json.dumps(found.describe(), indent=1) + "\n")  # fmt: skip
         if any(one.grid is not None for one in self.specimens):
@@ -227,6 +224,27 @@ class Calibration:
                 break
             low, high = ends if turn + 1 < self.rounds else (low, high)
         return model, sample
+
+    def _checked(self, model, sample, values, errors, where):
+        """Surrogate and draws after runs with the means of the draws, and what the last one of these says."""
+        for turn in range(1, CHECKS + 2):
+            x, run = self._best(where, f"check{turn}", sample)
+            off = np.max(np.abs(run - model(x)) / errors, initial=0)
+            if off <= FINE or turn > CHECKS:
+                break
+            say(
+                f"check {turn}: at the means of the draws the surrogate is off by {off:.2g} of the error of the test"
+            )
+            rows = np.vstack([model.x, x]), np.vstack([model.y, run])
+            model = Surrogate(*rows, model.low, model.high, turn)
+            sample = posterior(model, values, errors, self.seed)
+        return model, sample, run
+
+    def _best(self, where, name, sample, options=None):
+        """What a run with the means of the draws says, as in :meth:`_rows`."""
+        means = dict(zip(self.keys, sample.mean(axis=0).tolist()))
+        study = lambda s: Study(s.scene, {**s.options, **(options or {})}, vary=means, design="grid")  # fmt: skip
+        return self._rows(where, name, study, 0)
 
     def _rows(self, where, name, studyOf, least):
         """Run a study of every specimen: the unknown properties of the rows, and what all specimens say of them.
@@ -262,15 +280,20 @@ class Surrogate:
     :param x: of every row the unknown properties
     :param y: of every row what it says
     :param low: ends of the ranges, and ``high``
+    :param checks: how many rows at the end are where the properties are likely: the error is not below that of these
     """
 
-    def __init__(self, x: np.ndarray, y: np.ndarray, low: np.ndarray, high: np.ndarray) -> None:  # fmt: skip
+    def __init__(self, x: np.ndarray, y: np.ndarray, low: np.ndarray, high: np.ndarray, checks: int = 0) -> None:  # fmt: skip
+        self.x, self.y = x, y
         self.low, self.high, self.offset = low, high, y.mean(axis=0)
         u, scale = (x - low) / (high - low), np.where(np.ptp(y, axis=0) > 0, y.std(axis=0), 1.0)  # fmt: skip
         found = [_kriging(u, column) for column in ((y - self.offset) / scale).T]
         slopes, lengths, factors, missed = map(np.array, zip(*found))
         self.weights, self.factors = 0.5 / np.square(lengths), scale[:, None] * factors
-        self.slopes, self.errors = scale * slopes.T, scale * missed
+        squares = missed.T**2
+        near = squares[len(x) - checks :] if checks else squares
+        self.slopes = scale * slopes.T
+        self.errors = scale * np.sqrt(np.maximum(squares.mean(axis=0), near.mean(axis=0)))  # fmt: skip
         self.cross = 2 * np.einsum("jd,nd->djn", self.weights, u).reshape(len(low), -1)
         self.own = np.einsum("jd,nd->jn", self.weights, u**2)
 
@@ -286,10 +309,10 @@ class Surrogate:
 
 
 def _kriging(u, column):
-    """Slopes of the trend, lengths of the covariance, factors of the rows, and the error of a row that is left out."""
+    """Slopes of the trend, lengths of the covariance, factors of the rows, and what is missed of each if it is left out."""
     ot, size = needed("openturns"), u.shape[1]
     if not column.any():  # the same in all rows
-        return np.zeros(size + 1), np.ones(size), np.zeros(len(u)), 0.0
+        return np.zeros(size + 1), np.ones(size), np.zeros(len(u)), np.zeros(len(u))
     rows, values = ot.Sample(u), ot.Sample(column[:, None])
     smooth, flags = ot.SquaredExponential([1.0] * size, [1.0]), ot.Log.Flags()
     ot.Log.Show(flags & ~ot.Log.WARN)  # of the bounds of its search
@@ -303,7 +326,7 @@ def _kriging(u, column):
     missed = factors / np.linalg.inv(np.array(covariance.discretize(rows))).diagonal()
     slopes = np.array(result.getTrendCoefficients()).ravel()
     power = covariance.getAmplitude()[0] ** 2
-    return slopes, np.array(covariance.getScale()), power * factors, math.sqrt((missed**2).mean())  # fmt: skip
+    return slopes, np.array(covariance.getScale()), power * factors, missed
 
 
 def posterior(model: Surrogate, values: np.ndarray, errors: np.ndarray, seed: int) -> np.ndarray:  # fmt: skip
@@ -377,8 +400,13 @@ class Found:
         of, found, matrix = self.calibration, [], self.correlation
         off = (self.run - self.values) / np.hypot(self.errors, self.model.errors)
         if not len(off) or stats.chi2.sf((off**2).sum(), off.size) < DOUBT:
+            found.append("a run with these values does not follow the test within its errors: do not use them")  # fmt: skip
+        elif (
+            np.abs(self.run - self.model(self.sample.mean(axis=0)[None]))
+            > FINE * self.errors
+        ).any():
             found.append(
-                "a run with these values does not follow the test within its errors: do not use them"
+                "the surrogate differs from a run with these values: more runs are needed"
             )
         for n, (name, low, high) in enumerate(zip(of.names, *self.intervals)):
             near = NEAR * (of.high[n] - of.low[n])
