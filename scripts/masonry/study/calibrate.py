@@ -23,7 +23,7 @@ from typing import Annotated, Any, Iterator, Sequence
 import numpy as np
 from scipy import stats
 
-from ..common.arguments import FilePath, isA, number, validated, whole
+from ..common.arguments import FilePath, isA, listOf, number, text, validated, whole
 from ..basics import Refused, refuse, say
 from ..common.packages import needed
 from ..read.comparison import readMeasured
@@ -75,7 +75,10 @@ class Specimen:
         scene: FilePath,
         measured: str | dict[str, tuple[float, float]],
         error: Annotated[float, number("", 0, above=True)] | None = None,
-        columns: tuple[str, str] = ("displacement_mm", "base_shear_kN"),
+        columns: Annotated[tuple[str, str], listOf(text, 2)] = (
+            "displacement_mm",
+            "base_shear_kN",
+        ),
         count: Annotated[int, whole(2, 200)] = 12,
         options: Annotated[dict[str, Any], isA(dict)] | None = None,
     ) -> None:
@@ -290,7 +293,7 @@ class Surrogate:
         found = [_kriging(u, column) for column in ((y - self.offset) / scale).T]
         slopes, lengths, factors, missed = map(np.array, zip(*found))
         self.weights, self.factors = 0.5 / np.square(lengths), scale[:, None] * factors
-        squares = missed.T**2
+        squares = np.square(missed.T)
         near = squares[len(x) - checks :] if checks else squares
         self.slopes = scale * slopes.T
         self.errors = scale * np.sqrt(np.maximum(squares.mean(axis=0), near.mean(axis=0)))  # fmt: skip
