@@ -28,11 +28,11 @@ from ..basics import Refused, refuse, say
 from ..common.packages import needed
 from ..read.comparison import readMeasured
 from ..read.files import readCurve
+from . import pictures
 from .continuing import checkRows, rowsOf
 from .designs import points, seeded
 from .gathering import Folder, gather, written
 from .local import Local
-from . import pictures
 from .plan import Study
 from .records import Record
 from .start import begin
@@ -165,9 +165,7 @@ class Calibration:
             raise Refused(f"calibration: {len(self.keys)} unknown properties need {3 * len(self.keys)} runs or more")  # fmt: skip
         ranges = [dict(uniform(*ends).parameters) for ends in unknown.values()]
         self.low, self.high = (np.array([r[e] for r in ranges]) for e in ("low", "high"))  # fmt: skip
-        for (
-            one
-        ) in self.specimens:  # a study names all that is wrong with names and options
+        for one in self.specimens:  # a study names all that is wrong
             self.names = [*self._study(one, self.low, self.high, runs, seed).vary]
 
     def _study(self, specimen, low, high, runs, seed, options=None):
@@ -217,15 +215,13 @@ class Calibration:
             model = Surrogate(x[inside], y[inside], low, high)
             sample = posterior(model, values, errors, self.seed)
             off = (model.errors / errors).max()
-            say(
-                f"round {turn + 1}: the error of the surrogate is at most {off:.2g} of that of the test"
-            )
+            say(f"round {turn + 1}: the error of the surrogate is at most {off:.2g} of that of the test")  # fmt: skip
             ends = np.quantile(sample, (TAIL, 1 - TAIL), axis=0)
             margin = MARGIN * (ends[1] - ends[0])
             ends = np.maximum(ends[0] - margin, low), np.minimum(ends[1] + margin, high)
             if off <= FINE or np.prod((ends[1] - ends[0]) / (high - low)) > SMALLER:
                 break
-            low, high = ends if turn + 1 < self.rounds else (low, high)
+            low, high = ends
         return model, sample
 
     def _checked(self, model, sample, values, errors, where):
@@ -235,9 +231,7 @@ class Calibration:
             off = np.max(np.abs(run - model(x)) / errors, initial=0)
             if off <= FINE or turn > CHECKS:
                 break
-            say(
-                f"check {turn}: at the means of the draws the surrogate is off by {off:.2g} of the error of the test"
-            )
+            say(f"check {turn}: at the means of the draws the surrogate is off by {off:.2g} of the error of the test")  # fmt: skip
             rows = np.vstack([model.x, x]), np.vstack([model.y, run])
             model = Surrogate(*rows, model.low, model.high, turn)
             sample = posterior(model, values, errors, self.seed)
@@ -269,9 +263,7 @@ class Calibration:
         y = np.hstack(found)
         have = np.isfinite(y).all(axis=1)
         if not have.all():
-            say(
-                f"{name}: {(~have).sum()} of {len(y)} rows failed or ended before the end of the curve, and are left out"
-            )
+            say(f"{name}: {(~have).sum()} of {len(y)} rows failed or ended before the end of the curve, and are left out")  # fmt: skip
         if have.sum() < least:
             raise Refused(f"{name}: {have.sum()} rows have all that is compared, and {least} are needed")  # fmt: skip
         return x[have], y[have]
@@ -404,21 +396,15 @@ class Found:
         off = (self.run - self.values) / np.hypot(self.errors, self.model.errors)
         if not len(off) or stats.chi2.sf((off**2).sum(), off.size) < DOUBT:
             found.append("a run with these values does not follow the test within its errors: do not use them")  # fmt: skip
-        elif (
-            np.abs(self.run - self.model(self.sample.mean(axis=0)[None]))
-            > FINE * self.errors
-        ).any():
-            found.append(
-                "the surrogate differs from a run with these values: more runs are needed"
-            )
+        missed = np.abs(self.run - self.model(self.sample.mean(axis=0)[None]))
+        if (missed > FINE * self.errors).any():
+            found.append("the surrogate differs from a run with these values: give more runs")  # fmt: skip
         for n, (name, low, high) in enumerate(zip(of.names, *self.intervals)):
             near = NEAR * (of.high[n] - of.low[n])
             if self.spread[n] >= UNKNOWN:
                 found.append(f"{name}: the test does not tell it")
             elif low < of.low[n] + near or high > of.high[n] - near:
-                found.append(
-                    f"{name}: its interval reaches an end of its range, which may be too narrow"
-                )
+                found.append(f"{name}: its interval reaches an end of its range, which may be too narrow")  # fmt: skip
             found += [
                 f"{of.names[m]} and {name}: the test tells them only together, with a correlation of {matrix[n, m]:.2f}"
                 for m in range(n)
