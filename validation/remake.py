@@ -166,6 +166,7 @@ def ofStudies():
                ("stone_walls/predictions.csv", "stone_walls/table.md", "stone_walls/peaks.png"), (*own("stone_walls"), *RIGID, *CYCLIC), 70, ("validation/stone_walls/push", "validation/stone_walls/cycles")),
         Result("stone_walls/cracks", (*(inYade("stone_walls/wall.py", "--wall", wall, "--out", f"results/validation/stone_walls/cracks/{wall}") for wall in CRACKED), program("stone_walls/figures.py", "cracks", *(f"results/validation/stone_walls/cracks/{wall}" for wall in CRACKED))),
                ("stone_walls/cracks.png",), (*own("stone_walls"), *RIGID, *CYCLIC), 1, ("validation/stone_walls/cracks",)),
+        Result("calibration", (program("calibration/blind.py"),), ("calibration/table.md", "calibration/case1.png"), (*own("calibration"), "scripts/couplet.py", "scripts/masonry/study/calibrate.py", *RIGID), 10, ("validation/calibration",), limits=True),
         Result("multifidelity", (program("multifidelity/multifidelity.py", "--jobs", "2"),), ("multifidelity/multifidelity.png",), (*own("multifidelity"), *RIGID, *DEFORMABLE), 120, ("validation/multifidelity",)),
     ]  # fmt: skip
 

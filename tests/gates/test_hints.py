@@ -22,8 +22,8 @@ PUBLIC = """
     run.checkpoints
     scene.accelerograms scene.connections scene.fields scene.ground scene.loads scene.records scene.scene scene.spectrum scene.supports
     scene.targets
-    scene.materials.assumptions scene.materials.formulas scene.materials.kinds scene.materials.published
-    study.incremental study.plan study.variables
+    scene.materials.assumptions scene.materials.codes scene.materials.formulas scene.materials.kinds scene.materials.published
+    study.calibrate study.incremental study.plan study.variables
 """.split()
 #: Stages are words of a scene, in modules that hold more.
 STAGES = [

@@ -172,7 +172,7 @@ CLAY = dict(
     E=4e9, unit_E=9e9, fc=12e6, fv0=0.2e6, friction=0.6, unit=(0.25, 0.12, 0.065), joint=0.01, density=1800, ft=None,
     bond_wrench=0.3e6, bond_ratio=1.5, G=1.2e9, head_E=3e9, poisson=0.2, GfI=20.0, GfII=200.0, Gc=2e4, peak_strain=4e-3,
     residual_friction=0.5, dilatancy=0.1, head_share=0.5, unit_ft=1.5e6, unit_GfI=60.0, unit_fv0=3e6, unit_friction=0.75,
-    unit_GfII=500.0,
+    unit_GfII=500.0, clauses={},
 )  # fmt: skip
 
 
@@ -229,6 +229,8 @@ CALLS = {
     "Scene": (nothing, Scene, dict(name="odd", bricks=WALL, materials=materials.calciumSilicate(), title=None, plane=None, gravity=9.81, columns=None, functors=False, arguments=SCENE_OPTIONS, allowGaps=False, **sceneOptions())),
     "materials.dry": (nothing, materials.dry, dict(friction=0.5, normalStiffness=5e9, shearStiffness=2e9, density=2000, young=2e10, poisson=0.2)),
     "materials.masonry": (nothing, materials.masonry, CLAY),
+    "materials.en1996": (nothing, materials.en1996, dict(unit="clay", fb=15e6, mortar="M5", group=1, joints="thin layer", value="mean")),
+    "materials.ntc2018": (nothing, materials.ntc2018, dict(masonry="rubble", knowledge="LC1", confidence=1.0)),
     "materials.Masonry": (nothing, materials.Masonry, dict(unit=MasonryMat(), joints={"bed": MasonryJoint()}, units={}, choose=None, varied=[], brief=False, course=None)),
     "materials.calciumSilicateJoints": (nothing, materials.calciumSilicateJoints, dict(brittle=False)),
     "materials.dryGranite": (nothing, materials.dryGranite, dict(level=100, height=0.15)),

@@ -45,7 +45,7 @@ REPLACED = (
 BLOCKS = {
     "README.md": ["my_scene.py"],
     "scripts/FILES.md": ["checkpoint.py"],
-    "scripts/STUDIES.md": ["study.py", "ida.py"],
+    "scripts/STUDIES.md": ["study.py", "ida.py", "couplets.py"],
     "scripts/WALL.md": ["my_wall.py"],
     "yade_plugin/FOR_YADE_USERS.md": ["joints.py"],
 }
@@ -125,6 +125,13 @@ def folder(tmp_path_factory):
     short = shaken.replace("levels=[0.2, 0.4, 0.6, 0.9, 1.3, 1.8]", "levels=[0.2, 0.4]")
     assert short != shaken
     (path / "ida.py").write_text(short.replace('"parapet",', '"parapet", options={"quick": True},'))  # fmt: skip
+    couplets = PYTHON["scripts/STUDIES.md"][2]
+    fewer = couplets.replace("unknown=", "runs=9,\n    unknown=")
+    assert fewer != couplets
+    (path / "couplets.py").write_text(fewer)
+    for name, residual in (("low", 0.1), ("high", 0.35)):
+        rows = [f"{0.1 * n},{residual + 0.2 * math.exp(-n / 3)}" for n in range(10)]
+        (path / f"{name}.csv").write_text("\n".join(["slide,stress", *rows]))
     (path / "records").mkdir()
     for hertz in (2, 3, 4):
         wave = [math.sin(0.005 * n * math.pi) ** 4 * math.sin(0.01 * n * math.pi * hertz) for n in range(201)]  # fmt: skip
@@ -166,3 +173,4 @@ def test_every_command_that_has_no_reason_runs(folder):
     assert (folder / "results" / "wall_comp4" / "curve.png").exists()
     assert (folder / "study" / "study.csv").exists()
     assert (folder / "IDA" / "study.csv").exists()
+    assert (folder / "COUPLETS" / "calibration.png").exists()

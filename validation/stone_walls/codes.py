@@ -17,30 +17,25 @@ import math
 import os
 from dataclasses import dataclass
 
+from masonry.scene.materials.codes import LOCAL_FRICTION, MOST_SHEAR
+from masonry.scene.materials.codes import TABLE as SAID
+from rules import ROWS
+
 HERE = os.path.dirname(os.path.abspath(__file__))
 WALLS = os.path.join(HERE, "reference", "walls.csv")
 LAST_INPUT = "LMTvert [mm]"
 
-#: Middle of the ranges of mean values of tau0 and fv0 [MPa] by typology: Circolare 21 January 2019 n. 7, Table C8.5.I, rows
-#: 1 (A), 2 (B), 3 (C), 5 (D) and 6 (E). E1 is E without mortar.
+#: Middle of the ranges of mean values of tau0 and fv0 [MPa] by typology: Circolare 21 January 2019 n. 7, Table C8.5.I. E1 is E
+#: without mortar.
 TABLE = {
-    "A": (0.025, None),
-    "B": (0.043, None),
-    "C": (0.065, None),
-    "D": (0.060, 0.145),
-    "E": (0.105, 0.230),
-    "E1": (0.0, 0.0),
-}
+    kind: tuple(ends and sum(ends) / 2e6 for ends in (SAID[row].tau0, SAID[row].fv0))
+    for kind, row in ROWS.items()
+} | {"E1": (0.0, 0.0)}
 
-LOCAL_FRICTION = 0.577  # of a joint: Circolare 7/2019, C8.7.1.3.1.1
 CODE_FRICTION = 0.4  # of a bed joint: EN 1998-3:2005, C.4.3.1; NTC 2018, 7.8.2.2.2
 UNIT_TENSION = (
     0.1  # over the compressive strength of the unit: Circolare 7/2019, C8.7.1.3.1.1
 )
-UNIT_SHEAR = (
-    0.065  # the same of the bound of the shear strength: EN 1996-1-1:2005, 3.6.2
-)
-
 #: Height of a unit over the overlap where the row has no units: the one at which the equivalent friction is 0.4, which the
 #: Circolare gives for good bond.
 GOOD_BOND = 1 / 0.4 - 1 / LOCAL_FRICTION
@@ -188,7 +183,7 @@ def eurocode(wall: Wall) -> Prediction:
     """
     cohesion = wall.tau0 if wall.fv0 is None else wall.fv0
     strengths = {"flexure": flexure(wall, 1.15)} | sliding(
-        wall, cohesion, CODE_FRICTION, UNIT_SHEAR
+        wall, cohesion, CODE_FRICTION, MOST_SHEAR
     )
     shear = 4 / 3 * 0.004
     drifts = {
@@ -210,7 +205,7 @@ def eurocodeDraft(wall: Wall) -> Prediction:
     if wall.fv0 is None:
         strengths["shear"] = diagonal(wall, 1.5 * wall.tau0)
     else:
-        strengths |= sliding(wall, wall.fv0, LOCAL_FRICTION, UNIT_SHEAR)
+        strengths |= sliding(wall, wall.fv0, LOCAL_FRICTION, MOST_SHEAR)
         strengths["shear"] = min(
             strengths.get("shear", math.inf), stepped(wall, wall.fv0)
         )
@@ -238,7 +233,7 @@ def italian(wall: Wall) -> Prediction:
     if wall.fv0 is None:
         strengths["shear"] = diagonal(wall, 1.5 * wall.tau0)
     else:
-        strengths |= sliding(wall, wall.fv0, CODE_FRICTION, UNIT_SHEAR / 0.7)
+        strengths |= sliding(wall, wall.fv0, CODE_FRICTION, MOST_SHEAR / 0.7)
         strengths["shear"] = min(
             strengths.get("shear", math.inf), stepped(wall, wall.fv0)
         )

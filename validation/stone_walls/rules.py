@@ -11,6 +11,9 @@ from dataclasses import dataclass, replace
 from random import Random
 from statistics import NormalDist
 
+from masonry.scene.materials.codes import BOND, FRICTION, LOCAL_FRICTION
+from masonry.scene.materials.codes import OTHERS, SHEAR, ntc2018
+
 HERE = os.path.dirname(os.path.abspath(__file__))
 WALLS = os.path.join(HERE, "reference", "walls.csv")
 
@@ -22,25 +25,13 @@ POINTS = ("8", "5", "12")  # along a joint, by turns
 #: Drifts of the cycles [%].
 DRIFTS = (0.1, 0.2, 0.4, 0.6, 1.0, 1.5, 2.0)
 
-#: Mean values of table C8.5.I of Circolare 2019 by typology: tau0, and for regular bond fv0, of which the table has none for
-#: rubble and uncut stone [Pa]; Young's modulus [Pa].
-TABLE = {
-    "A": dict(tau0=0.025e6, fv0=None, E=870e6),
-    "B": dict(tau0=0.043e6, fv0=None, E=1230e6),
-    "C": dict(tau0=0.065e6, fv0=None, E=1740e6),
-    "D": dict(tau0=0.060e6, fv0=0.145e6, E=1410e6),
-    "E": dict(tau0=0.105e6, fv0=0.23e6, E=2850e6),
-    "E1": dict(tau0=0.0, fv0=0.0, E=2850e6),
-}
+#: Rows of table C8.5.I of Circolare 2019 by typology, and what their mean values say; E1 is E without mortar.
+ROWS = dict(A="rubble", B="roughly cut stone", C="split stone", D="squared soft stone", E="squared stone")  # fmt: skip
+TABLE = {kind: ntc2018(row, "LC2", confidence=1) for kind, row in ROWS.items()}
+TABLE["E1"] = {**TABLE["E"], "fv0": 0.0}
 
-#: Initial shear strength of EN 1996-1-1:2005, table 3.4, natural stone in general purpose mortar: characteristic values [Pa] from
-#: a strength of the mortar [MPa] on. Mortar without a known strength: as air lime.
-EN1996 = ((10.0, 0.20e6), (2.5, 0.15e6), (0.0, 0.10e6))
 #: Mean cohesion of general purpose mortar, JCSS Probabilistic Model Code, part 3.2: from a strength [MPa] on [Pa].
 JCSS = ((20.0, 0.42e6), (10.0, 0.37e6), (5.0, 0.28e6), (2.5, 0.14e6), (0.0, 0.04e6))
-MEAN = 0.8  # characteristic over mean value, EN 1052-3 [-]
-
-BOND = 0.7  # direct tensile strength over cohesion of a joint, Lourenço and Rots (1997) [-]
 #: Dry joints of sawn granite: their stiffness where they begin to close [Pa/m] and the most that they close [m], fitted to the
 #: moduli of walls at three stresses (validation/dry_joint_walls/README.md, What was fixed beforehand). Poisson's ratio of stone [-].
 CLOSING_STIFFNESS, CLOSURE, POISSON = 17.8e9, 0.136e-3, 0.2
@@ -63,17 +54,12 @@ def _byMortar(row, table):
     return 0.0 if row.dry else next(c for least, c in table if (row.mortar or 0.0) >= least)  # fmt: skip
 
 
-def _ofTypology(row):
-    """Cohesion of table C8.5.I [Pa]. Of irregular masonry it has tau0 alone, whose 1.5-fold is a tensile strength."""
-    of = TABLE[row.typology]
-    return 1.5 * of["tau0"] / BOND if of["fv0"] is None else of["fv0"]
-
-
-#: Cohesion [Pa] and friction [-] of joints, functions of a row by the name of a rule.
+#: Cohesion [Pa] and friction [-] of joints, functions of a row by the name of a rule: OTHERS is of natural stone in general
+#: purpose mortar, and mortar without a known strength counts as air lime.
 BONDS = {
-    "en1996": lambda row: (_byMortar(row, EN1996) / MEAN, 0.4 / MEAN),
-    "ntc2018": lambda row: (_ofTypology(row), 0.577),
-    "stone": lambda row: (_byMortar(row, EN1996) / MEAN, 0.65),
+    "en1996": lambda row: (_byMortar(row, OTHERS) / SHEAR, FRICTION / SHEAR),
+    "ntc2018": lambda row: (TABLE[row.typology]["fv0"], LOCAL_FRICTION),
+    "stone": lambda row: (_byMortar(row, OTHERS) / SHEAR, 0.65),
     "jcss": lambda row: (_byMortar(row, JCSS), 0.8),
 }
 #: Young's modulus over that of a compression test, by the name of a rule [-].

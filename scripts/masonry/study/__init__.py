@@ -25,11 +25,12 @@ from typing import TYPE_CHECKING
 
 _VARIABLES = "Distribution", "Field", "choice", "field", "lognormal", "normal", "uniform"  # fmt: skip
 #: Public names with the module that has them. They are loaded when they are used first, because a row needs none of them.
-_NAMES = {"Study": "plan", "Sa": "incremental", **dict.fromkeys(_VARIABLES, "variables")}  # fmt: skip
+_NAMES = {"Study": "plan", "Sa": "incremental", "Calibration": "calibrate", "Specimen": "calibrate", **dict.fromkeys(_VARIABLES, "variables")}  # fmt: skip
 __all__ = [*_NAMES]
 
 
 if TYPE_CHECKING:
+    from .calibrate import Calibration, Specimen
     from .incremental import Sa
     from .plan import Study
     from .variables import Distribution, Field, choice, field

@@ -13,6 +13,7 @@ if __name__ == "__main__":
 
 from ..basics import Interrupted, Refused, Unwritable, say
 from . import slurm
+from .calibrate import Calibration
 from .continuing import checkRows, rowsOf
 from .gathering import CSV, Folder, gather
 from .local import Local
@@ -40,7 +41,7 @@ def parser():
         "file",
         metavar="FILE",
         nargs="?",
-        help="Python file that makes one masonry.study.Study; not needed to --gather",
+        help="Python file that makes one masonry.study.Study or Calibration; not needed to --gather",
     )
     p.add_argument("--out", metavar="DIR", required=True, help="folder of the study")
     p.add_argument(
@@ -56,15 +57,15 @@ def parser():
 
 
 def load(path):
-    """The study that a file makes. Raises Refused if it makes none or several."""
+    """The study or calibration that a file makes. Raises Refused if it makes none or several."""
     if not os.path.isfile(path):
         raise Refused(f"no file {path}")
     with interrupts.watched(NOTHING):
         made = runpy.run_path(path)
-    studies = {id(v): v for v in made.values() if isinstance(v, Study)}
+    studies = {id(v): v for v in made.values() if isinstance(v, (Study, Calibration))}
     if len(studies) != 1:
         raise Refused(
-            f"{path} must make one masonry.study.Study, it makes {len(studies)}"
+            f"{path} must make one masonry.study.Study or Calibration, it makes {len(studies)}"
         )
     return studies.popitem()[1]
 
@@ -95,7 +96,16 @@ def main(words):
         if args.slurm:
             slurm.check()
         study = load(args.file)
-        folder = begin(study, args.out, os.path.dirname(os.path.abspath(args.file)))
+        near = os.path.dirname(os.path.abspath(args.file))
+        if isinstance(study, Calibration):
+            if args.slurm or args.prepare:
+                raise Refused(
+                    "a calibration runs here: --slurm and --prepare are of studies"
+                )
+            for line in study.find(args.out, near, args.jobs).lines():
+                say(line)
+            return 0
+        folder = begin(study, args.out, near)
         if args.slurm:
             return slurm.submit(folder, study.runs, more)
         if args.prepare:

@@ -17,7 +17,7 @@ DESIGNS = ("random", "latin", "sobol", "grid", "ida")
 
 
 @contextlib.contextmanager
-def _seeded(ot, seed):
+def seeded(ot, seed):
     """Random numbers of OpenTURNS from a seed; those of the caller go on afterwards as if nothing had been."""
     before = ot.RandomGenerator.GetState()
     ot.RandomGenerator.SetSeed(seed)
@@ -34,7 +34,7 @@ def points(design, count, dimension, seed):
     ot = needed("openturns")
     cube = ot.IndependentCopula(dimension)
     inside = lambda u: min(max(u, EDGE), 1 - EDGE)
-    with _seeded(ot, seed):
+    with seeded(ot, seed):
         if design == "random":
             # one after the other, so that more rows begin with the same ones
             return [[*map(inside, cube.getRealization())] for _ in range(count)]

@@ -299,7 +299,7 @@ def fan(path, curves, xLabel, yLabel):
     """
     from matplotlib.collections import LineCollection
 
-    curves = [_increasing(*curve) for curve in curves]
+    curves = [increasing(*curve) for curve in curves]
     end = np.median([x[-1] for x, _ in curves])
     grid = np.linspace(min(x[0] for x, _ in curves), end, POINTS)
     outside = dict(left=np.nan, right=np.nan)
@@ -320,7 +320,29 @@ def fan(path, curves, xLabel, yLabel):
         drawing.finish(axis, xLabel, yLabel, loc="lower right")
 
 
-def _increasing(x, y):
+def calibration(path, found):
+    """Measured curves with the band of what the draws of the properties say, and a run with their means.
+
+    :param found: :class:`masonry.study.calibrate.Found`
+    """
+    of, (low, high), at = found.calibration.specimens, found.bands(), 0
+    curves = [one for one in of if one.grid is not None]
+    with _picture(path, 6.0, 3.2 * len(curves)) as figure:
+        axes = iter(figure.subplots(len(curves), 1, squeeze=False)[:, 0])
+        for one in of:
+            here, at = slice(at, at + len(one.names)), at + len(one.names)
+            if one.grid is None:
+                continue
+            axis = next(axes)
+            axis.fill_between(one.grid, low[here], high[here], **BAND_STYLE, label="95 % of the draws")  # fmt: skip
+            if len(found.run):
+                axis.plot(one.grid, found.run[0, here], color=LINE, lw=1.4, label="run with their means")  # fmt: skip
+            axis.plot(*one.curve, color="black", lw=0.8, alpha=0.5, label="measured")
+            axis.errorbar(one.grid, one.values, 2 * one.errors, color="black", fmt=".", lw=0.8, label="compared, ± 2 standard deviations")  # fmt: skip
+            drawing.finish(axis, *(name.replace("_", " ") for name in one.columns), loc="best")  # fmt: skip
+
+
+def increasing(x, y):
     """A curve without the rows that go back, thinned to no more than twice POINTS rows."""
     x, y = np.asarray(x, float), np.asarray(y, float)
     rows = np.flatnonzero(x > np.append(-np.inf, np.maximum.accumulate(x)[:-1]))

@@ -3,6 +3,7 @@
 
 - :class:`Masonry`: bricks and joints of one's own, property by property
 - :func:`masonry`: the same from what a data sheet and a test of the masonry say
+- :func:`en1996`, :func:`ntc2018`: arguments for it from classes of units and mortar, by a code
 - :func:`dry`: stones with dry joints that do not crush
 - :func:`calciumSilicate`, :func:`dryGranite`: published parameter sets. Each names its source, and what is assumed
 
@@ -14,6 +15,7 @@ The paper: see yade_plugin/law/README.md.
 from yade.wrapper import MasonryJoint, MasonryMat
 
 from .assumptions import linesOf
+from .codes import en1996, ntc2018
 from .formulas import compressiveFractureEnergy, leastEnergy, masonry
 from .kinds import Masonry, withResidual
 from .published import DRY_GRANITE_MASONRY, calciumSilicate, calciumSilicateJoints
@@ -32,10 +34,12 @@ __all__ = [
     "dry",
     "dryGranite",
     "dryGraniteJoints",
+    "en1996",
     "graniteUnit",
     "leastEnergy",
     "linesOf",
     "loadingBlock",
     "masonry",
+    "ntc2018",
     "withResidual",
 ]

@@ -5,14 +5,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from types import SimpleNamespace
-from typing import Annotated
+from typing import Annotated, Any
 
 from yade.wrapper import MasonryJoint, MasonryMat
 
-from ...common.arguments import number, validated
+from ...common.arguments import isA, number, validated
 from ...basics import refuse, say
 from ...bricks.blocks import Sides
 from .assumptions import state
+from .codes import MEAN
 from .kinds import Masonry
 
 #: Flexural strength of a bond over its direct tensile strength [-]: van der Pluijm, Out-of-plane bending of masonry
@@ -29,11 +30,8 @@ INDEX_SOURCE = "ductility index of Lourenço (2008)"
 MODEL_CODE = 12e6, 80e6
 BELOW_RANGE, ABOVE_RANGE = 1.6e-3, 0.33e-3
 
-#: Mean over characteristic compressive strength of masonry [-], EN 1052-1.
-MEAN = 1.2
-#: K of EN 1996-1-1:2005, table 3.3, for clay and calcium silicate units of group 1 in general purpose mortar [-]. Equation (3.2),
-#: to which it belongs, is for units and mortars of at most these strengths [Pa].
-GROUP_1, STRONGEST = 0.55, {"unit_fb": 75e6, "mortar_fm": 20e6}
+#: What a clause of a code says of the bed joint, by the argument of :func:`masonry`.
+OF_CLAUSES = dict(E="normalStiffness", G="shearStiffness", fc="compressiveStrength", fv0="cohesion", friction="friction", ft="tensileStrength")  # fmt: skip
 
 #: By how much an assumed fracture energy is above the least that the law can follow [-].
 MARGIN = 1.1
@@ -52,8 +50,8 @@ Mortar = Annotated[float, number("m", 0, 0.1)]
 def _ofMortar(value, first=None):
     """The kind of an argument that is never right."""
     raise ValueError(
-        "is the strength of the mortar in EN 1996 and on data sheets: give fc, the mean strength of the masonry, or fk, or mortar_fm "
-        "with unit_fb"
+        "is the strength of the mortar in EN 1996 and on data sheets: give fc, the mean strength of the masonry, or fk; "
+        "materials.en1996 finds it from unit and mortar"
     )
 
 
@@ -153,9 +151,6 @@ def masonry(
     density: Annotated[float, number("kg/m³", 100, 1e4)],
     fc: Crushing | None = None,
     fk: Crushing | None = None,
-    unit_fb: Crushing | None = None,
-    mortar_fm: Crushing | None = None,
-    K: Annotated[float, number("", 0.1, 1)] | None = None,
     fm: Annotated[None, _ofMortar] = None,
     ft: OfBond | None = None,
     bond_wrench: OfBond | None = None,
@@ -175,6 +170,7 @@ def masonry(
     unit_fv0: OfBrick | None = None,
     unit_friction: Friction | None = None,
     unit_GfII: EnergyOfBrick | None = None,
+    clauses: Annotated[dict[str, Any], isA(dict)] | None = None,
 ) -> Masonry:
     """Masonry of one's own, from what a data sheet and tests of the masonry say. Returns a :class:`Masonry`.
 
@@ -185,14 +181,12 @@ def masonry(
             unit=(0.25, 0.12, 0.065), joint=0.010, density=1800)
 
     What is not given is assumed by the formulas below; a scene prints it once, and run.json has it under ``assumed``.
-    These must be given:
+    These must be given, by hand or by a code (:func:`en1996`, :func:`ntc2018`):
 
     :param E: Young's modulus of the masonry under compression across its bed joints [Pa]
     :param unit_E: Young's modulus of the bricks [Pa], above E
-    :param fc: mean compressive strength of the masonry [Pa]; give this, ``fk``, or ``unit_fb`` with ``mortar_fm``
+    :param fc: mean compressive strength of the masonry [Pa]; give this or ``fk``
     :param fk: characteristic compressive strength of the masonry [Pa]; fc is 1.2 fk, as in EN 1052-1
-    :param unit_fb: normalised mean compressive strength of the bricks [Pa], and ``mortar_fm`` that of the mortar [Pa]:
-        fk = K fb^0.7 fm^0.3 with all in MPa, EN 1996-1-1:2005, equation (3.2), for general purpose mortar
     :param fv0: initial shear strength of the bed joints (EN 1052-3) [Pa], the cohesion
     :param friction: coefficient of friction of the bed joints [-]
     :param ft: **direct** tensile strength of the bed joints [Pa]; give this or ``bond_wrench``
@@ -206,8 +200,6 @@ def masonry(
 
     These can be given:
 
-    :param K: of the equation of ``unit_fb`` [-], from table 3.3 of EN 1996-1-1:2005; default 0.55, of clay and calcium silicate
-        units of group 1
     :param fm: never: in EN 1996 it is the strength of the mortar
     :param bond_ratio: flexural over direct tensile strength of the bond [-]; default 1.5, after van der Pluijm (1999)
     :param G: shear modulus of the masonry [Pa]: 1/ks = s (1/G - 1/Gu), where s = height + joint, Gu = unit_E/(2 (1 + nu)).
@@ -229,6 +221,7 @@ def masonry(
     :param unit_fv0: cohesion of the bricks [Pa]; default 2 unit_ft, as in the crack joints of :func:`calciumSilicate`
     :param unit_friction: coefficient of friction of cracks in bricks [-]; default 0.75, as in these
     :param unit_GfII: mode II fracture energy of the bricks [J/m²]; default 0.093 mm times unit_fv0, Lourenço (2008)
+    :param clauses: of a code: by the name of an argument its value and what says it
     :raises Refused: with all problems at once
 
     Stiffness: bricks and joints in series have the modulus of the masonry, E of bed joints, head_E of head joints:
@@ -246,10 +239,11 @@ def masonry(
     """
     values = SimpleNamespace(**locals())
     given = {n: v for n, v in vars(values).items() if v is not None}
-    problems = _strengthProblems(given)
-    if not problems:
-        values.fc, values.ofStrength = _compressiveStrength(values)
-        given["fc"] = values.fc
+    problems = []
+    if ("fc" in given) == ("fk" in given):
+        problems.append("give fc, the mean compressive strength of the masonry, or fk, the characteristic one")  # fmt: skip
+    elif fk is not None:
+        values.fc = given["fc"] = MEAN * fk
     problems += _problems(given)
     refuse([f"materials.masonry: {one}" for one in problems])
     joints = {}
@@ -270,38 +264,21 @@ def masonry(
     nu = _poisson(values)
     brick = MasonryMat(label="brick", young=unit_E, poisson=nu, density=density)
     assumed = {"poisson": "usual for masonry units"} if poisson is None else {}
-    course = unit[2] + joint
-    return Masonry(state(brick, **assumed), joints, course=course)
+    state(
+        joints["bed"],
+        **{**joints["bed"].assumed(), **_stated(clauses, given, OF_CLAUSES)},
+    )
+    assumed |= _stated(clauses, given, {"density": "density"})
+    return Masonry(state(brick, **assumed), joints, course=unit[2] + joint)
 
 
-def _strengthProblems(given):
-    """Sentences on what is given of the compressive strength."""
-    of = {"unit_fb", "mortar_fm"}
-    ways = [*({"fc", "fk"} & given.keys()), *([of] if of & given.keys() else [])]
-    if len(ways) != 1 or (of in ways and not of <= given.keys()):
-        return ["give fc, the mean compressive strength of the masonry, or fk, the characteristic one, or unit_fb with mortar_fm"]  # fmt: skip
-    if of not in ways:
-        return ["K goes with unit_fb and mortar_fm"] if "K" in given else []
-    found = [
-        f"{name} {given[name]:g} Pa must be at most {most:g} Pa: equation (3.2) of EN 1996-1-1"
-        for name, most in STRONGEST.items()
-        if given[name] > most
-    ]
-    if given["mortar_fm"] > 2 * given["unit_fb"]:
-        found.append(f"mortar_fm {given['mortar_fm']:g} Pa must be at most twice unit_fb: equation (3.2) of EN 1996-1-1")  # fmt: skip
-    return found
+def _stated(clauses, given, names):
+    """Sources of properties of which a clause says the value that is given.
 
-
-def _compressiveStrength(v):
-    """Mean compressive strength of the masonry [Pa], and where it comes from; empty if it is given."""
-    if v.fc is not None:
-        return v.fc, ""
-    if v.fk is not None:
-        return MEAN * v.fk, f"{MEAN:g} fk, EN 1052-1"
-    K = GROUP_1 if v.K is None else v.K
-    fk = 1e6 * K * (v.unit_fb / 1e6) ** 0.7 * (v.mortar_fm / 1e6) ** 0.3
-    group = "" if v.K else f" with K = {K:g} of units of group 1"
-    return MEAN * fk, f"{MEAN:g} fk, EN 1052-1; fk {fk:.4g} Pa by equation (3.2) of EN 1996-1-1:2005{group}"  # fmt: skip
+    :param names: of the properties by the arguments
+    """
+    of = {n: clauses[n] for n in names if clauses and n in clauses}
+    return {names[n]: why for n, (value, why) in of.items() if given.get(n) == value}
 
 
 def _poisson(v):
@@ -392,8 +369,8 @@ def _crushing(v, bed, head):
     # without a modulus of its own the head joint is that of the bed
     along = (v.E, height) if v.head_E is None else (v.head_E, length)
     for kind, (modulus, spacing) in ((bed, (v.E, height)), (head, along)):
-        isGiven, origin = kind is bed and not v.ofStrength, v.ofStrength
-        kind.take("compressiveStrength", v.fc, isGiven, origin if kind is bed else "like the bed joint")  # fmt: skip
+        isGiven = kind is bed and v.fk is None
+        kind.take("compressiveStrength", v.fc, isGiven, f"{MEAN:g} fk, EN 1052-1" if kind is bed else "like the bed joint")  # fmt: skip
         kind.take("compressiveFractureEnergy", energy, v.Gc is not None, source)
         strain = 2 * v.fc / modulus if v.peak_strain is None else v.peak_strain
         closure = spacing * (strain - v.fc / v.unit_E)
