@@ -58,8 +58,8 @@ class Loading:
                 loads.append(MasonryLoad(label=label, **on))
             if not target.drives:
                 loads.append(MasonryLoad(label=f"{target.name}_drive", **on))
-        for n, one in enumerate(self.description.winds):
-            on = dict(body=self.ids[one.brick], point=one.point)
+        for n, (brick, _, point) in enumerate(self.description.winds):
+            on = dict(body=self.ids[brick], point=point)
             loads.append(MasonryLoad(label=f"wind_{n}", damped=True, **on))
         return loads
 
@@ -87,8 +87,8 @@ class Loading:
                 load.point = (middle[0], middle[1], target.point[2])
                 self._lines[target.name] = Vector3(*load.point)
             self._grown[f"{target.name}_force"] = force
-        for n, one in enumerate(self.description.winds):
-            self._grown[f"wind_{n}"] = Vector3(*one.force)
+        for n, (_, force, _) in enumerate(self.description.winds):
+            self._grown[f"wind_{n}"] = Vector3(*force)
 
     def grow(self, x):
         """Let presses and dead loads grow smoothly: 0 to 1 is from nothing to their whole."""
@@ -120,11 +120,11 @@ class Loading:
             load.point = (middle[0], middle[1], target.point[2])
         return load, area
 
-    def onBricks(self, label, places):
-        """The engines of forces at points of bricks, pairs of number and point [m]; they are made if they are missing."""
+    def windOf(self, label, faces):
+        """The engines of a wind on faces, as in :meth:`masonry.bricks.Bricks.freeFaces`; they are made if they are missing."""
         return [
-            self._added(f"{label}_{n}", self.ids[brick], point, damped=True)
-            for n, (brick, point) in enumerate(places)
+            self._added(f"{label}_{n}", self.ids[brick], middle, damped=True)
+            for n, (brick, _, _, middle) in enumerate(faces)
         ]
 
     def _added(self, label, body, point, damped=False):

@@ -52,8 +52,8 @@ def windForces(
     """The forces of a wind, one on each face. Raises ValueError."""
     return [
         FaceForce(
-            face.block, face.middle, [-pressure * face.area * n for n in face.normal]
-        )  # fmt: skip
+            face.block, [-pressure * face.area * n for n in face.normal], face.middle
+        )
         for face in facesAgainst(description, towards, part, name)
     ]
 

@@ -20,11 +20,11 @@ MOST = number("Pa", -1e9, 1e9)
 
 
 class FaceForce(NamedTuple):
-    """A force on a face: the number of its brick, its point [m] and the force [N]."""
+    """A force on a face: the number of its brick, the force [N] and its point [m]."""
 
     brick: int
-    point: Any
     force: Any
+    point: Any
 
 
 def facesAgainst(description: Any, towards: Any, part: Any, name: str, least: float = LOOKING) -> list[Any]:  # fmt: skip
@@ -64,7 +64,7 @@ def pressures(description: Any, value: Any, towards: Any, part: Any, normal: boo
         unit = -outward if normal else -(outward @ along) * along
         ends = [face.middle, *(face.middle + axis for axis in axes)]
         for point, size in zip(ends, [total - sum(moments), *moments]):
-            forces.append(FaceForce(face.block, tuple(point), list(size * unit)))
+            forces.append(FaceForce(face.block, list(size * unit), tuple(point)))
     return forces
 
 
