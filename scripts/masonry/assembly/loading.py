@@ -120,13 +120,6 @@ class Loading:
             load.point = (middle[0], middle[1], target.point[2])
         return load, area
 
-    def windOf(self, label, faces):
-        """The engines of a wind on faces, as in :meth:`masonry.bricks.Bricks.freeFaces`; they are made if they are missing."""
-        return [
-            self._added(f"{label}_{n}", self.ids[brick], middle, damped=True)
-            for n, (brick, _, _, middle) in enumerate(faces)
-        ]
-
     def _added(self, label, body, point, damped=False):
         """A load that a stage adds: an engine before that of the energy balance."""
         if label not in self.loads:
