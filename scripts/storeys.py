@@ -2,7 +2,7 @@
 """A house of two storeys of dry stone: weights on its piers by hand and in a run, then the acceleration that it carries along ± x and
 ± y, and along the weakest of these also with floors whose mass is 5 % off their middle.
 
-It ends with a table of runs beside bounds of limit analysis. It takes two to four minutes.
+It ends with a table of runs beside bounds of limit analysis. It takes about two minutes.
 """
 
 from masonry import Scene, bricks, materials

@@ -22,13 +22,7 @@ A scene of one's own is bricks, materials and stages::
 - :mod:`masonry.capacity`: bilinear curves, the demand of an earthquake, N-V domains
 - :mod:`masonry.run`: a run: checkpoints, results, presets, rows of a table
 - :mod:`masonry.assembly`: ``addBlock``, ``engines``, ``connect``, for scenes that are built body by body; the 3-D view
-- :mod:`masonry.common.folders`: what is written in folders that others may have packed, and how
-- :mod:`masonry.common.background`: tasks in other processes, and programs, several at a time
-- :mod:`masonry.common.memory`: what numerical libraries take of the memory
-- :mod:`masonry.common.packages`: libraries that come when they are first needed, and the Debian packages that have them
-- :mod:`masonry.common.host`: how YADE is found and started in plain Python
-- :mod:`masonry.common.notebook`: what is different in a notebook
-- :mod:`masonry.common.arguments`: how every word checks what it is given
+- :mod:`masonry.common`: checks of arguments, and what the package needs of the machine
 - :mod:`masonry.basics`: gravity, how a run can end before its time, what is said on the terminal
 
 ``masonry.read``, ``masonry.capacity``, ``masonry.study``, ``masonry.bricks`` and what they import work without YADE.

@@ -4,7 +4,8 @@
 A new stage is such a function (:func:`masonry.scene.stages.stage.stage`) and its place in :data:`STAGES`.
 
 - :mod:`masonry.scene.stages.rest`: ``settle``
-- :mod:`masonry.scene.stages.push`: ``push``, ``cycle`` and ``follow``, whose drive is in :mod:`masonry.scene.stages.pushing`
+- :mod:`masonry.scene.stages.push`: ``push``, ``cycle`` and ``follow``, whose drive is in :mod:`masonry.scene.stages.pushing`;
+  :mod:`masonry.scene.stages.pattern`: forces in a fixed proportion
 - :mod:`masonry.scene.stages.drive`: ``drive`` and ``pressJoint``
 - :mod:`masonry.scene.stages.supports`: ``release`` and ``move``
 - :mod:`masonry.scene.stages.gravity`: ``tilt``, ``accelerate``, ``lean`` and ``bracket``

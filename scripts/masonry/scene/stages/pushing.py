@@ -31,7 +31,7 @@ SUDDEN = 0.1  # of the peak: a larger fall within a tenth of a millimetre is few
 #: found, it is over the longest that was looked for.
 AVERAGED = 1.0
 #: A push is over where the drive has gone so many times the path of the target whose displacement counts [-].
-LEFT = 10
+UNFOLLOWED = 10
 DAMPED = 0.1  # of what loops lose: a larger share of damping is a warning, because the loops are too fat by it
 
 
@@ -254,7 +254,7 @@ def _lost(model, at, reading, direction, mean, whole):
     sunk = reading.sunk + min(0.0, reading.along * model.loading.direction[2])
     if model.loading.hasSunk(sunk):
         return "the pushed point has come down by half a course"
-    if at.driven > LEFT * whole:
+    if at.driven > UNFOLLOWED * whole:
         return f"another part gives way: the drive has gone {at.driven:.0f} mm, and {model.loading.target.name} has not followed"
     return "it moves against its push" if at.retreats(direction, whole) else None
 
