@@ -98,8 +98,20 @@ bool SceneStore::sameJoints() const {
     return seenChanges_ == changes && seenInteractions_ == scene_.interactions->currSize;
 }
 
-bool SceneStore::isOpenFor(const yade::Engine& engine) const {
-    return openedStep_ == scene_.iter && first != &engine && sameEngines() && sameJoints();
+bool SceneStore::isOpenFor(const yade::Engine& engine) {
+    if (openedStep_ != scene_.iter || first == &engine) return false;
+    // Behind another engine of ours nothing has run since that could have changed the list, which may be long.
+    const auto& present = scene_.engines;
+    ++place_;
+    const bool follows = place_ < present.size() && present.size() == engines_.size() &&
+                         present[place_].get() == &engine && engines_[place_].first == &engine;
+    if (!follows) {
+        if (!sameEngines()) return false;
+        place_ = 0;
+        while (engines_[place_].first != &engine)
+            ++place_;
+    }
+    return sameJoints();
 }
 
 void SceneStore::readEngines() {

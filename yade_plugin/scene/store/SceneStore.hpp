@@ -58,9 +58,10 @@ public:
 
     // Whether an engine finds the store as it must be in the present step: another engine has opened the step by
     // update() and checkBeforeStep(), and neither engines nor joints have changed since.
-    bool isOpenFor(const yade::Engine&) const;
+    bool isOpenFor(const yade::Engine&);
     void opened() {
         openedStep_ = scene_.iter;
+        place_ = engines_.size();
         endsWith.clear();
         readForeignForces();
     }
@@ -91,6 +92,7 @@ private:
     std::vector<std::pair<const yade::Engine*, bool>> engines_; // all engines, and whether each is dead
     CollapseWatch collapse_;
     long openedStep_ = -1;                     // step that was opened last
+    std::size_t place_ = 0;                    // in the list of engines, of ours that found it open last
     std::vector<const yade::Body*> connected_; // the bodies at connected()
 };
 
