@@ -108,12 +108,14 @@ def test_free_faces_are_what_no_joint_covers():
     wall = Wall(0.88, 0.81, halves=False)
     front = wall.freeFaces((0, -1, 0))
     assert len(front) == len(wall)
-    assert sum(area for _, _, area, _ in front) == pytest.approx(0.88 * 0.81)
-    for n, normal, area, middle in front:
-        assert normal == pytest.approx((0, -1, 0)) and middle[1] == pytest.approx(0)
+    assert sum(face.area for face in front) == pytest.approx(0.88 * 0.81)
+    for face in front:
+        assert face.normal == pytest.approx((0, -1, 0)) and face.middle[
+            1
+        ] == pytest.approx(0)
     # the end of the wall alone, and of a corner what the return leaves free
     side = wall.freeFaces((1, 0, 0))
-    assert sum(area for _, _, area, _ in side) == pytest.approx(T * 0.81)
+    assert sum(face.area for face in side) == pytest.approx(T * 0.81)
     corner = Corner(0.88, 0.66, 0.81, halves=False)
     inner = corner.freeFaces((0, 1, 0))
     # and the return's end

@@ -383,26 +383,16 @@ class Bricks:
 
     @validated
     def freeFaces(
-        self, direction: Direction
-    ) -> list[tuple[int, tuple[float, ...], float, tuple[float, ...]]]:
-        """Faces that look in a direction, within 45 degrees, with what no joint covers of them.
-
-        :param direction: three numbers, of any length
-        :returns: list of (number of the block, outward normal, free area [m²], centroid of the free part [m])
-        """
-        return [part[:4] for part in self.freeParts(direction)]
-
-    @validated
-    def freeParts(
         self,
         direction: Direction,
         least: Annotated[float, number("", -1, 1)] = checks.LOOKING,
     ) -> list[checks.FreePart]:
-        """As :meth:`freeFaces`, with polygons: a list of :class:`masonry.bricks.checks.FreePart`.
+        """Faces that look in a direction, with what no joint covers of them: a list of :class:`masonry.bricks.checks.FreePart`.
 
-        :param least: cosine of the largest angle between direction and normal [-]
+        :param direction: three numbers, of any length
+        :param least: cosine of the largest angle between direction and normal [-]; by default that of 45 degrees
         """
-        solids = self._convex("freeParts")
+        solids = self._convex("freeFaces")
         return checks.freeParts(solids, self.joints(), direction, least)
 
     @functools.cached_property

@@ -141,7 +141,7 @@ class Elevation:
             if abs(farthest) > 0.5 * np.linalg.norm(moved @ self.to, axis=1).max():
                 self.across = abs(farthest)
                 sense = "towards" if farthest > 0 else "away from"
-                self.note += f" (moved up to {1e3 * self.across:.3g} mm {sense} the viewer)"  # fmt: skip
+                self.note += f"\n(moved up to {1e3 * self.across:.3g} mm {sense} the viewer)"  # fmt: skip
 
     def flat(self, points):
         return (points - self.view.start) @ self.to

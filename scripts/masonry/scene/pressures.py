@@ -41,7 +41,7 @@ def facesAgainst(description: Any, towards: Any, part: Any, name: str, least: fl
         raise Refused(f"{name}: it loads rigid bricks; choose --blocks rigid")
     faces = [
         face
-        for face in Bricks(description.bricks).freeParts([-v for v in towards], least)
+        for face in Bricks(description.bricks).freeFaces([-v for v in towards], least)
         if part in (None, description.bricks[face.block].part)
     ]
     if not faces:
@@ -122,7 +122,7 @@ def placesBelow(
 
     :raises ValueError: if nothing is below a point
     """
-    faces, found = Bricks(description.bricks).freeParts((0, 0, 1), GRAZING), []
+    faces, found = Bricks(description.bricks).freeFaces((0, 0, 1), GRAZING), []
     near = 1e-6 * math.dist(description.low, description.high)
     for x, y, z in points:
         below = []
