@@ -65,3 +65,24 @@ def test_openings_without_a_common_height_are_refused():
     low, high = bricks.Opening(1.0, 0, 1.2, 0.8), bricks.Opening(1.0, 1.2, 1.2, 0.8)
     with pytest.raises(ValueError, match="storey 1: no height is common"):
         bricks.House(4.0, 3.2, [bricks.Storey(2.4, front=[low], back=[high])], unit=UNIT)  # fmt: skip
+
+
+@pytest.mark.parametrize("off", [0.05, -0.05])
+def test_the_mass_that_is_off_the_middle_goes_to_the_nearer_wall(off):
+    moved, plain = (built([{}], eccentricity=(e, 0))[0] for e in (off, 0))
+    with_, without = (
+        house.weights(house.withFloors(materials.dry(friction=0.6, density=2000), shear=1e6, mass=400))
+        for house in (moved, plain)
+    )  # fmt: skip
+    floor = 400 * 4.0 * 3.2 * 9.81e-3  # [kN], which spans along x
+    for side, share in (("right 1", off), ("left 1", -off), ("front 1", 0), ("back 1", 0)):  # fmt: skip
+        assert with_[side] - without[side] == pytest.approx(share * floor, abs=1e-6)
+
+
+@pytest.mark.parametrize("mass, what", [([300], "one for each of the 2"), ("300", "must be a number, or one")])  # fmt: skip
+def test_masses_that_do_not_fit_the_floors_are_refused(mass, what):
+    house, stones = built([{}, {}])
+    with pytest.raises(ValueError, match=what):
+        house.withFloors(stones, shear=1e6, mass=mass)
+    with pytest.raises(ValueError, match="storey 3 must be at most 2"):
+        house.weights(stones, 3)

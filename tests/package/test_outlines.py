@@ -103,6 +103,12 @@ def test_joints_of_bricks_lie_in_the_middle_of_the_mortar(tmp_path):
     assert back.unit == pytest.approx(((5 - 17 * 0.012) / 22, 0.2, 0.1 - (14 + 8 / 2) * 0.012 / 22))  # fmt: skip
 
 
+def test_stones_that_touch_are_two_blocks(tmp_path):
+    rings = [[(x, 0), (x + 1, 0), (x + 1, 0.5), (x, 0.5)] for x in (0.0, 1.0)]
+    back = read(tmp_path, rings)
+    assert len(back) == 2 and back.volume == pytest.approx(1.0 * 0.2)
+
+
 def test_mortar_of_two_thicknesses_and_the_stiffness_of_its_joints(tmp_path):
     back = read(tmp_path, [box(0, 0, 1, 0.2), box(0, 0.21, 1, 0.2), box(0, 0.44, 1, 0.2)], 0.04)  # fmt: skip
     assert back.mortar == pytest.approx(0.02, rel=0.02)

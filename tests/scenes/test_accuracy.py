@@ -126,7 +126,7 @@ def test_wrong_values_and_options_are_one_sentence(pier, words, sentence):
 @pytest.mark.parametrize("stage, sentence", [
     ("scene.lean(0.01)", "this scene has the stage lean"),
     ("scene.run(0.01)", "this scene has the stage run"),
-    ("pass", "this scene has no push that takes force"),
+    ("pass", "this scene has no push of one target that takes force"),
     ("scene.push(top, rate=5)", "push() has one of its own: rate=5 mm/s"),
 ])  # fmt: skip
 def test_scenes_of_which_it_says_nothing_are_refused_and_leave_nothing(pier, stage, sentence):  # fmt: skip

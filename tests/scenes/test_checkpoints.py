@@ -358,7 +358,7 @@ def refused(out, *words, wall=SMALL):
         (["--blocks", "deformable", "--divisions", "2"], "is rigid, --divisions is 1"),
         (["--set", "bed.cohesion=1e5"], "--set is [('bed', 'cohesion', '2e5')]"),
         (["--out", "elsewhere"], "--out is "),
-        (["--until", "0.001"], "--until 0.001: the run is at 0."),
+        (["--until", "0.001"], "(--until 0.001): the run is at 0."),
     ],
 )
 def test_options_that_would_change_the_run_are_refused(broken, capsys, words, message):

@@ -203,6 +203,9 @@ def test_pressures_that_are_no_numbers_and_loads_that_are_none_are_refused(tmp_p
     scene = made(tmp_path, bricks.stack(2, (0.3, 0.3, 0.2)))
     with pytest.raises(ValueError, match=r"pressure: its value at \(0, .*must be a number"):  # fmt: skip
         scene.pressure(lambda x, y, z: "deep", (1, 0, 0))
+    for wrong, what in ((lambda x: x, "positional argument"), (lambda x, y, z: 1 / 0, "division"), (0.0, "0 on all faces")):  # fmt: skip
+        with pytest.raises(ValueError, match=what):
+            scene.pressure(wrong, (1, 0, 0))
     with pytest.raises(ValueError, match="'roof' must be one of stack"):
         scene.pressure(1.0, (1, 0, 0), part="roof")
     with pytest.raises(ValueError, match="the scene is in the x-z plane"):

@@ -82,3 +82,12 @@ def test_a_sequence_ends_with_the_record_in_which_the_structure_falls(tmp_path):
     assert [row["ended"] for row in csv.DictReader(open(tmp_path / "shakes.csv"))] == ["done", "collapsed"]  # fmt: skip
     with pytest.raises(ValueError, match="2 scales for 3 records"):
         scene.shakeAgain(records, scales=[1, 2])
+
+
+def test_options_for_the_record_of_one_shake_are_refused(tmp_path):
+    words = ["--out", str(tmp_path), "--lean", "--scale", "2"]
+    scene = Scene("slab", bricks.stack(1, (SIDE, SIDE, HIGH)), materials.dry(friction=FRICTION), arguments=words)  # fmt: skip
+    scene.platen("bottom")
+    scene.settle()
+    with pytest.raises(ValueError, match="give records and scales here"):
+        scene.shakeAgain([pulse()], every=EVERY)

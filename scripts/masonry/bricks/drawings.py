@@ -21,7 +21,7 @@ FLATTENED = 1e-3
 _NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
 
 
-@dataclass
+@dataclass(eq=False)
 class Outline:
     """An outline as it is drawn.
 
@@ -47,7 +47,7 @@ def read(path: str, layer: str | None) -> list[Outline]:
         raise ValueError(f"{path}: files that end with {ending} have no layers")
     try:
         found = list(readers[ending](path, layer))
-    except (OSError, ValueError, IndexError, KeyError, TypeError, ElementTree.ParseError) as error:  # fmt: skip
+    except (OSError, ValueError, IndexError, KeyError, TypeError, AttributeError, ElementTree.ParseError) as error:  # fmt: skip
         raise ValueError(f"{path}: cannot be read: {error}") from None
     if not found:
         raise ValueError(f"{path}: no outlines" + (f" in layer {layer!r}" if layer else ""))  # fmt: skip

@@ -6,7 +6,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import Annotated, Any, Sequence
 
-from ..common.arguments import isA, listOf, number, oneOf, validated
+from ..common.arguments import isA, isNumber, items, listOf, number, oneOf, shown, validated, whole  # fmt: skip
 from .beams import Beam, Floor
 from .blocks import Block, Bricks, Gap, Length, Sides, refuse
 from .geometry import boxCorners
@@ -153,7 +153,9 @@ class House(Bricks):
         :param bearing: of the floors, as for ``withFloor``
         :param ring: Young's modulus of ring beams [Pa]; their density is 2400 kg/m³
         """
-        masses = [mass] * len(self.piers) if isinstance(mass, (int, float)) else mass
+        masses = [mass] * len(self.piers) if isNumber(mass) else items(mass)
+        if masses is None or len(masses) != len(self.piers):
+            refuse("withFloors", [f"mass {shown(mass)} must be a number, or one for each of the {len(self.piers)} floors"])  # fmt: skip
         for n, own in enumerate(masses, 1):
             if len(self.part(f"ring {n}")):
                 masonry.withBeam(self.part(f"ring {n}"), young=ring, density=2400, bearing="fixed")  # fmt: skip
@@ -169,12 +171,15 @@ class House(Bricks):
             masonry.withFloor(self.part(f"floor {n}"), shear=shear, mass=own * (1 - moved), bearing=bearing)  # fmt: skip
         return masonry
 
-    def weights(self, masonry: Any, storey: int = 1) -> dict[str, float]:
+    @validated
+    def weights(self, masonry: Any, storey: Annotated[int, whole(1)] = 1) -> dict[str, float]:  # fmt: skip
         """Weight on each pier of a storey as by hand [kN]: of all above the section through the piers.
 
         What is above a pier or nearer to it than to the next one of its wall goes to it, and half of each strip of a floor to
-        the wall at either end.
+        the wall at either end; what makes a floor eccentric is carried by its strips, as by beams.
         """
+        if storey > len(self.piers):
+            refuse("weights", [f"storey {storey} must be at most {len(self.piers)}"])
         piers, z = self.piers[storey - 1], self.heights[storey - 1]
         found = dict.fromkeys(piers, 0.0)
 
@@ -188,9 +193,14 @@ class House(Bricks):
             weight = float(masonry.units.get(block.kind, masonry.unit).density * volume * GRAVITY / 1e3)  # fmt: skip
             x, y, _ = block.middle
             if block.part.startswith(("floor", "ballast")):
-                along = block.high[0] - block.low[0] > block.high[1] - block.low[1]
-                for side in ("left", "right") if along else ("front", "back"):
-                    carry(side, y if along else x, weight / 2)
+                strips = self.part(f"floor {block.part.split()[1].strip('xy')}")
+                axis = int(strips[0].high[0] - strips[0].low[0] < strips[0].high[1] - strips[0].low[1])  # fmt: skip
+                share = block.middle[axis] / self.size[axis]
+                ends = [s.middle[1 - axis] for s in strips]
+                over = [at for at in ends if block.low[1 - axis] < at < block.high[1 - axis]]  # fmt: skip
+                for at in over or [block.middle[1 - axis]]:
+                    for side, part in zip((("left", "right"), ("front", "back"))[axis], (1 - share, share)):  # fmt: skip
+                        carry(side, at, weight * part / max(1, len(over)))
                 continue
             side = block.part.split()[0]
             if side not in SIDES:  # a ring beam

@@ -76,7 +76,7 @@ def fromOutlines(
     (polygons), and ``.csv`` with rows of name, x, z. The plane of the drawing is that of the wall. Stones meet in the
     middle of the mortar between them, and reach to the sides of the box around all of them where they are no farther from
     it than twice ``mortar``. Where a ball of the radius ``mortar`` has space there is no mortar, but a window, a door, or the air
-    around the wall. Stones that are not convex are several blocks of one brick, whose joint is ``crack``.
+    around the wall. At a step of the box, as of a gable, stones get tongues of up to ``mortar``. Stones that are not convex are several blocks of one brick, whose joint is ``crack``.
 
     :param thickness: of the wall [m]
     :param mortar: largest thickness of a joint [m]
@@ -247,6 +247,12 @@ def _sampled(stones, step):
     return _Points(*map(np.concatenate, zip(*found)), numbers, step)
 
 
+def _within(places, ring):
+    """Numbers of the places that lie inside a polygon."""
+    near = np.flatnonzero(((places >= ring.min(0)) & (places <= ring.max(0))).all(1))
+    return near[inside(places[near], ring)]
+
+
 def _grown(points, stones, radius):
     """Cells of the stones. Where a ball of a radius that rolls along the outlines touches them, they are at the air."""
     from scipy.spatial import Voronoi, cKDTree
@@ -260,8 +266,9 @@ def _grown(points, stones, radius):
     sites = places - inset * normals
     good, alone = np.zeros(len(sites), bool), np.ones(len(sites), bool)
     for n, stone in enumerate(stones):
-        near = np.flatnonzero(((sites >= stone.ring.min(0)) & (sites <= stone.ring.max(0))).all(1))  # fmt: skip
-        within = near[inside(sites[near], stone.ring)]
+        # in a stone that touches another one a ball would roll along its own inside
+        free[_within(ball, stone.ring)] = False
+        within = _within(sites, stone.ring)
         own = points.stones[within] == n
         good[within[own]] = True
         alone[within[~own]] = False  # in an overlap

@@ -119,6 +119,10 @@ def pressure(
     """
     forces = pressures(description, value, towards, part, normal)
     largest = max(math.hypot(*one.force) for one in forces)
+    if not largest > 0:
+        raise ValueError(
+            "pressure: it is 0 on all faces that look against it; places are in m"
+        )
     description.winds.extend(f for f in forces if math.hypot(*f.force) > LEAST * largest)  # fmt: skip
     x, y, z = (math.fsum(one.force[i] for one in forces) for i in range(3))
     return x, y, z

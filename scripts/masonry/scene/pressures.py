@@ -107,11 +107,16 @@ def _at(value, place):
     """A pressure at a place [Pa]. Raises ValueError."""
     if not callable(value):
         return value
+    return atPlace(value, place, MOST, "pressure")
+
+
+def atPlace(value: Any, place: Any, kind: Any, name: str) -> float:
+    """What a function of the place gives there, by its kind. Raises ValueError, whatever goes wrong in it."""
     try:
-        return MOST(value(*place))
-    except ValueError as error:
+        return kind(value(*place))
+    except Exception as error:  # of the user's own
         where = ", ".join(f"{v:.4g}" for v in place)
-        raise ValueError(f"pressure: its value at ({where}) m: {error}") from None
+        raise ValueError(f"{name}: its value at ({where}) m: {error}") from None
 
 
 def placesBelow(

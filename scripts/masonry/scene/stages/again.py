@@ -84,6 +84,8 @@ def shakeAgain(
     :returns: how each shake ended; a collapse ends the sequence
     :raises ValueError: if there are not as many scales as records
     """
+    if scene.args.record is not None or scene.args.scale != 1:
+        raise ValueError("shakeAgain: --record and --scale are for the one record of shake(); give records and scales here")  # fmt: skip
     scales = [1.0] * len(records) if scales is None else scales
     if len(scales) != len(records):
         raise ValueError(f"shakeAgain: {len(scales)} scales for {len(records)} records")

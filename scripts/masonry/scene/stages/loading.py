@@ -273,8 +273,8 @@ def grow(
 
     :param loads: a dict from targets to three numbers [N], or to a stress of a platen [Pa], at a factor of 1; it may be empty
     :param most: factor at the end [-]
-    :param dead: whether what acts already grows, too: at a factor of 1 dead loads, presses and pressures are twice what they were.
-        Gravity stays
+    :param dead: whether what acts already grows, too: at a factor of 1 dead loads, presses without the weight of their platens, and
+        pressures are twice what they were. Gravity stays
     :param pressure: [Pa] at a factor of 1, or a function of the place; ``towards``, ``part`` and ``normal``: of it, as in
         :meth:`pressure`
     :param over: time in which they grow to that [s]

@@ -13,6 +13,7 @@ from ...assembly.blocks import vector
 from ...assembly.motion import FAR
 from ..history import MOST
 from ..loads import Force
+from ..pressures import atPlace
 from ...run.options import Rate
 from ..targets import AnyTarget, HeldTargets, Target
 from .rest import rampTime
@@ -154,7 +155,7 @@ def move(
 
 def _path(scene, target, along):
     """The displacement of a target in :func:`move` [mm]. Raises ValueError."""
-    values = [millimetres(v(*target.recorded) if callable(v) else v) for v in along]
+    values = [atPlace(v, target.recorded, millimetres, "move") if callable(v) else v for v in along]  # fmt: skip
     path = scene.share * vector(values, "move: displacement [mm]")
     if scene.description.plane and path[1]:
         raise ValueError(
