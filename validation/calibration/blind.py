@@ -32,10 +32,7 @@ PLACE = os.path.join(RESULTS, "validation", "calibration")
 STRESSES = 0.2, 0.8  # normal stress of the two couplets of a case [MPa]
 OPTIONS = {"until": 1.0, "rate": 10}  # slide [mm] and its rate [mm/s]
 CURVE = "slide_mm", "shear_stress_MPa"
-END, POINTS = (
-    0.9,
-    12,
-)  # slide up to which a curve is compared [mm], and at how many points
+END, POINTS = 0.9, 12  # slide [mm] up to which a curve is compared, and its points
 ERROR = 0.02  # standard deviation of a measured shear stress [MPa], some 5 % of a peak
 CASES, HIDDEN = 20, 20261127  # and the seed of the hidden properties and of the errors
 RUNS = 48  # of the scene, for each couplet, the same in all cases
@@ -45,10 +42,8 @@ RANGES = {
     "bed.friction": (0.5, 0.9),
     "bed.residualFriction": (0.3, 0.5),
     "bed.modeIIFractureEnergy": (20.0, 150.0),
-    "bed.tensileStrength": (
-        0.02e6,
-        0.08e6,
-    ),  # which sliding under pressure does not tell
+    # which sliding under pressure does not tell
+    "bed.tensileStrength": (0.02e6, 0.08e6),
 }
 
 

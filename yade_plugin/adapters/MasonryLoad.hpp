@@ -15,9 +15,8 @@ public:
         "velocity of that point in one direction. The block remains free to rotate and to move in other directions. "
         "Stands after the loop of the joints and before the integrator. It switches off the damping of the block, so "
         "that the velocity is exact, unless damped keeps it; two driven loads on one block are exact only if the block "
-        "cannot rotate. A drive can move several blocks with forces in a fixed proportion; the velocity is then that "
-        "of "
-        "their points in the mean by the shares of the force.";
+        "cannot rotate. A drive can move several blocks with forces in a fixed proportion; the velocity is then the "
+        "mean of their points by the shares of the force.";
 
     template <class Visit> static void attributes(Visit&& visit) {
         using L = MasonryLoad;

@@ -19,11 +19,12 @@ class Pattern:
     :param name: in bounds and messages
     :param parts: of each block its body, the point on which its force acts in the structure as built [m], and its share of the whole
         force [-]
+    :param damped: whether the blocks keep their numerical damping. Where all blocks are driven nothing else would be damped
     """
 
     name: str
     parts: tuple[tuple[int, Any, float], ...]
-    damped: bool = False  #: whether the blocks keep their numerical damping, as they must if nothing else is left to be damped
+    damped: bool = False
 
 
 def pushTo(loading, pushed, control, direction, name="push"):
@@ -54,9 +55,8 @@ def pushTo(loading, pushed, control, direction, name="push"):
 
 def _driveOf(loading, target, direction, name):
     """The drive that pushes a target. Raises ValueError."""
-    load, pattern = loading.loads.get(f"{target.name}_drive"), loading.loads.get(
-        PATTERN
-    )
+    load = loading.loads.get(f"{target.name}_drive")
+    pattern = loading.loads.get(PATTERN)
     if pattern and pattern.driven and target.body in bodiesOf(pattern):
         _refuseHeld(name, target, pattern)
     if target.drives:
@@ -99,6 +99,7 @@ def _drivePattern(loading, pattern, direction, name):
 
 
 def _refuseHeld(name, pushed, drive):
+    """Refuse to push what another drive holds. Raises ValueError."""
     raise ValueError(
         f"{name}: a drive holds {pushed.name} or some of it along {tuple(drive.direction)} already; release() lets it go"
     )

@@ -120,14 +120,33 @@ class Loading:
             load.point = (middle[0], middle[1], target.point[2])
         return load, area
 
+    def onBricks(self, label, places):
+        """The engines of forces at points of bricks; they are made if they are missing.
+
+        :param label: with which their labels begin
+        :param places: pairs of the number of a brick and a point [m]
+        """
+        made = {
+            f"{label}_{n}": dict(body=self.ids[brick], point=point, damped=True)
+            for n, (brick, point) in enumerate(places)
+        }
+        return self._loadsOf(made)
+
     def _added(self, label, body, point, damped=False):
-        """A load that a stage adds: an engine before that of the energy balance."""
-        if label not in self.loads:
-            load = MasonryLoad(label=label, body=body, point=point, damped=damped)
+        """A load that a stage adds, or has added."""
+        return self._loadsOf({label: dict(body=body, point=point, damped=damped)})[0]
+
+    def _loadsOf(self, made):
+        """Loads by their labels; those that are missing are made all at once, as engines before that of the energy balance.
+
+        :param made: dict from the label to the attributes of a load that may be missing
+        """
+        new = {n: MasonryLoad(label=n, **of) for n, of in made.items() if n not in self.loads}  # fmt: skip
+        if new:
             before = list(O.engines)
             at = next(n for n, one in enumerate(before) if one.label == "energy")
-            engines = [*before[:at], load, *before[at:]]
-            # the state at rest gets the engine, too
+            engines = [*before[:at], *new.values(), *before[at:]]
+            # the state at rest gets the engines, too
             if self.structure.atRest is not None:
                 now = saveScene("null")
                 loadScene(self.structure.atRest)
@@ -136,8 +155,8 @@ class Loading:
                 O.engines = before
                 loadScene(now)
             O.engines = engines
-            self.loads[label] = load
-        return self.loads[label]
+            self.loads.update(new)
+        return [self.loads[label] for label in made]
 
     def isDriven(self, target, axis):
         """Whether a drive holds or moves a target along an axis."""

@@ -221,9 +221,8 @@ class Structure:
         for label, load in self.loading.loads.items():
             if "_drive" in label:
                 load.velocity = load.ramp = 0
-                load.driven = (
-                    load.driven and not load.others
-                )  # forces in a pattern end, for they are loads
+                if load.others:  # forces in a pattern are loads, and end
+                    load.driven = False
         self.contacts.dampsLoose = False
 
     def refinedJoints(self):

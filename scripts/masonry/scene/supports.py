@@ -15,10 +15,8 @@ from .ties import MOST, End, Spring, Tie
 from .words import describes
 
 PLATEN = 0.2  # [m] height of a platen
-BARS = (
-    21,
-    11,
-)  # along each side of a platen on a soil without tension, in a plane and in space
+#: Bars along each side of a platen on a soil without tension, in a plane and in space.
+BARS = 21, 11
 HIGH = 1e3  # [m] length of these bars
 
 #: A coordinate and a point, not farther from the origin than any masonry.

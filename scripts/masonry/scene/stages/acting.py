@@ -6,10 +6,8 @@ An :class:`Acting` gives its present values as a list of numbers, takes others, 
 
 import math
 
-from yade import O, Vector3
-from yade.wrapper import MasonryLoad
+from yade import Vector3
 
-from ..._masonry import loadScene, saveScene
 
 from ...basics import GRAVITY
 
@@ -131,32 +129,3 @@ class Forces(Acting):
         if self.replaces:
             return [v + self.beside[n % 3] for n, v in enumerate(whole)]
         return [was * (1 + factor * self.dead) + v for was, v in zip(began, whole)]
-
-
-def onBricks(model, label, places):
-    """The engines of forces at points of bricks, which are made at once if they are missing.
-
-    :param model: :class:`masonry.assembly.structure.Structure`
-    :param label: with which their labels begin
-    :param places: pairs of the number of a brick and a point [m]
-    """
-    loads, labels = model.loading.loads, [f"{label}_{n}" for n in range(len(places))]
-    new = {
-        name: MasonryLoad(label=name, body=model.ids[brick], point=point, damped=True)
-        for name, (brick, point) in zip(labels, places)
-        if name not in loads
-    }
-    if new:
-        before = list(O.engines)
-        at = next(n for n, one in enumerate(before) if one.label == "energy")
-        engines = [*before[:at], *new.values(), *before[at:]]
-        if model.atRest is not None:  # the state at rest gets the engines, too
-            now = saveScene("null")
-            loadScene(model.atRest)
-            O.engines = engines
-            model.atRest = saveScene("null")
-            O.engines = before
-            loadScene(now)
-        O.engines = engines
-        loads.update(new)
-    return [loads[name] for name in labels]

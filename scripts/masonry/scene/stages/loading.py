@@ -22,7 +22,7 @@ from ..bounds import findBound, nameOf
 from ..loads import Field, Force, Pressure, Stress, checkedForce, doubtPress, doubtWind, windForces  # fmt: skip
 from ..pressures import pressures
 from ..targets import AnyTarget, Loaded, MovingPlaten, Part
-from .acting import Forces, onBricks
+from .acting import Forces
 from .gravity import Width, boundAlone, putOn, putOnAnswers
 from .growing import WITHIN, found
 from .growing import grow as growTo
@@ -119,7 +119,7 @@ def _onFaces(scene, forces, kind, towards, part, unit, most):
     # YADE makes names of labels
     label = re.sub(r"\W", "_", f"{kind}_towards_{axes}_{part or 'all'}")
     places = [(one.brick, one.point) for one in forces]
-    engines = onBricks(scene.model, label, places)
+    engines = scene.model.loading.onBricks(label, places)
     what = f"{kind} towards {nameOf(towards)}" + (f" on {part}" if part else "")
     return Forces(engines, [Vector3(*one.force) for one in forces], what, unit, most)
 

@@ -126,8 +126,8 @@ def drivePush(scene, name, args, began, continued=False):
     """Drive the pushed target to ``--until`` or along ``--history``, with rows and frames.
 
     The drive moves at ``--rate``. When it begins, its velocity grows evenly in time, from rest to ``--rate`` within one
-    first period of the structure, which is measured then, and without damping, if not all blocks are driven: a motion that begins so leaves no swing of
-    that period. Numerical damping would act as more mass. Where the history turns, the velocity changes within whole
+    first period of the structure, which is measured then: a motion that begins so leaves no swing of that period. If not all
+    blocks are driven, nothing is damped while it grows. Numerical damping would act as more mass. Where the history turns, the velocity changes within whole
     periods, together :func:`rampTime` at least, because open joints make periods longer. Where no period is found both take
     :func:`rampTime`. The drive brakes by the displacement that curve.csv has, so the wall turns within 0.01 mm of the
     history's turning points. Points at which the history does not turn are passed at full speed, and so is the end, unless

@@ -13,7 +13,6 @@ from ...common.arguments import listOf, number, validated
 from ...common.arguments import vector as point
 from ..bounds import SMALL, findBound
 from ..pressures import placesBelow
-from .acting import onBricks
 from .answers import AT_REST, DONE, Answer
 from .rest import Resting, waitForRest
 from .stage import stage
@@ -63,7 +62,7 @@ def placed(scene, along):
     """The engines of a load that travels along some points. Raises ValueError."""
     places = placesBelow(scene.description, along)
     label = f"travel_{zlib.crc32(repr(places).encode())}"
-    return onBricks(scene.model, label, places)
+    return scene.model.loading.onBricks(label, places)
 
 
 @stage(bounded=True, answers=standings)
