@@ -100,11 +100,11 @@ class Description:
         """Connectors of one class of records, in the order in which they were named."""
         return [one for one in self.connectors if type(one) is kind]
 
-    def settable(self):
-        """Ties, springs, fibre layers and the contact by name, which ``--set`` and ``--field`` can change."""
-        own = [one for one in self.connectors if not one.overlay]
-        contact = [self.contact] if self.contact else []
-        return {one.name: one for one in (*own, *self.overlays, *contact)}
+    def settable(self, copies=False):
+        """Ties, springs, fibre layers and the contact by name, which ``--set`` and ``--field`` can change, or copies of them."""
+        own = [one for one in self.connectors if not one.overlay] + self.overlays
+        own += [self.contact] * bool(self.contact)
+        return {one.name: one.copied() if copies else one for one in own}
 
     def pointLoaded(self):
         """Indices of the bricks at the ends of ties and springs, and of those on which loads and drives act: a point of a brick that

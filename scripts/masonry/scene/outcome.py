@@ -163,7 +163,7 @@ class Outcome:
         ground, engine = self.description.ground(), self.model.contacts
         if not (ground and engine):
             return {}
-        names = self.description.contact.known()
+        names = self.description.contact.known
         return {"ground_body": ground.body, "contact": {n: getattr(engine, n) for n in names}}  # fmt: skip
 
     @property

@@ -15,7 +15,7 @@ from ..basics import Refused, firstOf, say
 from .materials import withResidual
 from .options import check
 from .parsing import Parser
-from .settings import copiedAll, valuesOf
+from .settings import valuesOf
 from ..assembly.blocks import properties
 
 #: How far a random field is looked at to either side, in standard deviations of its normal: beyond lies one joint in a
@@ -102,7 +102,7 @@ def _ofConnectors(scene):
     """Bounds of the properties of ties, springs and fibre layers, by name and property."""
     of = lambda p: {"low": p.low, "high": p.high, "unit": p.unit}
     connectors = scene.description.settable()
-    return {name: {n: of(p) for n, p in one.known().items()} for name, one in connectors.items()}  # fmt: skip
+    return {name: {n: of(p) for n, p in one.known.items()} for name, one in connectors.items()}  # fmt: skip
 
 
 def _bounds(p):
@@ -136,7 +136,7 @@ def _refused(scene, parser, words):
     if refusals:
         return refusals
     try:
-        connectors = copiedAll(scene.description.settable())
+        connectors = scene.description.settable(copies=True)
         masonry = scene.description.materials.variant(args, [*connectors])
         check(args, masonry, connectors=connectors)
         for text in args.field:

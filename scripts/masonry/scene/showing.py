@@ -17,7 +17,6 @@ from ..read.elevation import Structure, figureOf
 from ..read.frames import readFrame
 from ..read.shown import DPI, RunFolder, Curve, cracksOf, curveOf, resultsOf
 from .facts import held, sizes
-from .settings import copiedAll
 
 MOST_COUNTED = 20_000  # blocks whose joints are counted before the scene is built
 #: Properties of joints and units that the table shows.
@@ -146,7 +145,7 @@ def _counted(description):
 
 def _materials(scene):
     """Tables of the joints and units, with the options of this run."""
-    connectors = copiedAll(scene.description.settable())
+    connectors = scene.description.settable(copies=True)
     masonry = scene.description.materials.variant(scene.args, [*connectors])
     try:
         masonry.apply(scene.args.set, connectors)

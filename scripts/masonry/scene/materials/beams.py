@@ -137,21 +137,19 @@ class OfBeam(Settable):
     """What ``--set`` changes of a beam: its material. The stiffness of its joints follows."""
 
     WORD = "beam"
+    known = {
+        "young": Property("Pa", 0, RIGID, True),
+        "density": Property("kg/m³", 0, 1e6, True),
+    }
 
     def __init__(self, name, masonry):
         self.name = name
         self.unit, self.joint = masonry.units[name], masonry.joints[name]
 
-    def known(self) -> dict[str, Property]:
-        return {
-            "young": Property("Pa", 0, RIGID, True),
-            "density": Property("kg/m³", 0, 1e6, True),
-        }
+    def values(self):
+        return {name: getattr(self.unit, name) for name in self.known}
 
-    def values(self) -> dict[str, float | None]:
-        return {name: getattr(self.unit, name) for name in self.known()}
-
-    def take(self, values: dict[str, float]) -> None:
+    def take(self, values):
         share = values.get("young", self.unit.young) / self.unit.young
         names = ("normalStiffness", "shearStiffness")
         self.joint.updateAttrs({n: share * getattr(self.joint, n) for n in names})
