@@ -13,19 +13,18 @@ from ..assembly.blocks import vector
 from ..basics import Refused, refuse
 from ..bricks import Block, Bricks
 from .supports import Point
-from .targets import Part, Target, brick
+from .targets import Part, Target, brick, isOwn
 from .ties import MOST, OF_OVERLAY, OF_TIE, End, Overlay, Spring, Tie
 from .words import describes
 
 
 def end(value: Any, first: Any) -> Any:
     """The kind of an end: a target of the scene, or a brick as in :func:`masonry.scene.targets.brick`."""
-    if isinstance(value, Target):
-        description = getattr(first, "description", first)
-        if description.targets.get(value.name) is not value:
-            raise ValueError(f"{value.name!r}, which is of another scene, must be of this one")  # fmt: skip
-        return value
-    return brick(value, first)
+    if not isinstance(value, Target):
+        return brick(value, first)
+    if not isOwn(value, first):
+        raise ValueError(f"{value.name!r}, which is of another scene, must be of this one")  # fmt: skip
+    return value
 
 
 EndAt = Annotated[Union[Target, Numbers, int, Block], end]

@@ -5,7 +5,6 @@ The words that describe are functions of a :class:`Description`: :mod:`masonry.s
 and :mod:`masonry.scene.records`. :class:`masonry.assembly.structure.Structure` builds what they say in YADE.
 """
 
-import math
 from numbers import Integral
 
 import numpy as np
@@ -15,6 +14,7 @@ from ..assembly import columns
 from ..basics import GRAVITY, Refused
 from ..bricks.blocks import KINDS
 from .contact import Contact
+from .contact import problems as problemsOfContact
 
 
 class Description:
@@ -34,7 +34,6 @@ class Description:
         gravity=GRAVITY,
         choice=None,
         functors=False,
-        deformable=False,
         allowGaps=False,
         collapse="end",
     ):
@@ -42,7 +41,7 @@ class Description:
         self.name, self.title = name, title or name
         self.materials, self.gravity = materials, gravity  # [m/s²], downwards
         self.functors = functors  # as in masonry.assembly.engines.engines
-        self.deformable = deformable  # whether bricks are
+        self.deformable = False  # whether bricks are
         self.allowGaps = allowGaps  # as in masonry.assembly.connecting.connect
         #: Contact of blocks that have lost their joints, if a collapse is followed, else None.
         self.contact = Contact() if collapse == "follow" else None
@@ -50,18 +49,14 @@ class Description:
         #: corners of the box around all bricks [m]
         self.low, self.high = ([*map(f, zip(*points))] for f in (min, max))
         self.plane = self._inPlane() if plane is None else plane
-        # heads of columns, None: all
-        self.choice = None if choice is None else list(choice)
+        self.choice = choice  # heads of columns, None: all
         self.targets = {}  # by name
-        self.joints = []  # whose means are recorded
-        self.drifts = []
-        self._boxes = None  # bricks, and their lower and upper corners and middles, for _nearest()
-        self.sections = []
+        self._boxes = None, None  # bricks, and what _nearest() knows of them
+        self.joints, self.drifts, self.sections = [], [], []  # that are recorded
         self.connectors = []  # ties and springs, records of masonry.scene.ties
         self.overlays = []
-        self.soils = (
-            []
-        )  # springs that stand for a soil without tension where periods are estimated
+        #: springs that stand for a soil without tension where periods are estimated
+        self.soils = []
         self.winds = []  # forces on faces: masonry.scene.pressures.FaceForce
         self.views = {}  # direction of sight by part
         self.extra = []  # columns of the user's own
@@ -72,17 +67,17 @@ class Description:
         return len({b.brick for b in self.bricks}) < len(self.bricks)
 
     def _inPlane(self):
-        sides = {
-            tuple(round(f(p[1] for p in b.corners), 9) for f in (min, max))
-            for b in self.bricks
-        }
-        return len(sides) == 1
+        y = [[round(p[1], 9) for p in b.corners] for b in self.bricks]
+        return len({(min(one), max(one)) for one in y}) == 1
 
-    def problems(self, materials):
-        """What does not go together, with the joints that the options choose: a list of sentences."""
-        found = []
+    def problems(self, materials, args):
+        """What does not go together, with the joints that the options choose: sentences."""
+        if args.points and self.functors:
+            yield f"--points {args.points}: with functors joints keep three points; leave functors=False"
+        if self.contact:
+            yield from problemsOfContact(self, args)
         if self.halves and "crack" not in materials.joints:
-            found.append(
+            yield (
                 "--crack-surfaces on: the bricks are in pieces, and these materials have no joint 'crack' between them; "
                 "make whole bricks with halves=False, or choose --crack-surfaces off"
             )
@@ -90,11 +85,10 @@ class Description:
         strange = {block.kind for block in self.bricks} - known
         if strange and not materials.choose:
             named = ", ".join(map(repr, sorted(strange)))
-            found.append(
+            yield (
                 f"the materials have nothing for blocks of the kind {named}: materials.withBeam(...) or withFloor(...) says what a beam "
                 "or a floor is made of, and units={kind: ...} what other blocks are made of"
             )
-        return found
 
     def connectorsOf(self, kind):
         """Connectors of one class of records, in the order in which they were named."""
@@ -131,10 +125,6 @@ class Description:
 
     def add(self, target):
         """Take a target. Its name begins those of its columns. Raises ValueError."""
-        if not (isinstance(target.name, str) and target.name.isidentifier()):
-            raise ValueError(
-                f"the name of a target must be letters, digits and underscores, got {target.name!r}"
-            )
         if target.name in self.targets:
             raise ValueError(
                 f"there are two targets of the name {target.name!r}; give one of them another name"
@@ -164,14 +154,12 @@ class Description:
         found = [*columns.PUSH, *accelerations(structure, self.plane)]
         if any(target.box and not target.fixed for target in self.targets.values()):
             found += columns.OF_PLATEN
-        for target in self.targets.values():
-            found += target.columns(self.plane)
-        for drift in self.drifts:
-            found += drift.columns(self.plane)
+        for one in (*self.targets.values(), *self.drifts):
+            found += one.columns(self.plane)
         for joint in self.joints:
             found += joint.columns()
-        for record in (*self.sections, *self.connectors, *self.overlays):
-            found += record.columns(self.plane)
+        for one in (*self.sections, *self.connectors, *self.overlays):
+            found += one.columns(self.plane)
         balance = columns.BALANCE + columns.CONNECTORS * bool(self.connectors)
         balance += (columns.CONTACTS + columns.FALLS) * bool(self.contact)
         found += [columns.CRACKS, *self.extra, *balance, *columns.HISTORY * looped]
@@ -183,9 +171,7 @@ class Description:
             return found
         unknown = [n for n in self.choice if n not in heads]
         if unknown:
-            raise Refused(
-                f"no column {', '.join(unknown)}; there are {', '.join(heads)}"
-            )
+            raise Refused(f"no column {', '.join(unknown)}; there are {', '.join(heads)}")  # fmt: skip
         ofBase = [c for one in self.sections if one.isBase for c in one.columns(self.plane)]  # fmt: skip
         always = columns.heads(ofBase + balance + columns.HISTORY)
         chosen = [found[heads.index(n)] for n in self.choice if n not in always]
@@ -196,26 +182,25 @@ class Description:
     def find(self, where):
         """Index of a brick, and the point by which it is named, or None. Raises ValueError with a sentence like that of a kind of
         :mod:`masonry.common.arguments`."""
-        count, point = len(self.bricks), None
+        count = len(self.bricks)
         if isinstance(where, Integral) and not isinstance(where, bool):
             if not -count <= where < count:
                 raise ValueError(f"{shown(where)}: there are {count} bricks, from 0")
-            index = int(where) % count
-        elif any(where is block for block in self.bricks):
-            index = next(i for i, block in enumerate(self.bricks) if block is where)
-        else:
-            try:
-                point = tuple(float(v) for v in vector()(where))
-            except ValueError:
-                raise ValueError(
-                    f"{shown(where)} must be a brick: its index, a point (x, y, z) [m], or the block itself"
-                ) from None
-            index = self._nearest(point)
-            away, size = self._distance(index, point), self.size(index)
-            if away > size:
-                raise ValueError(
-                    f"{point} m: no brick is near it, the nearest is {away:g} m away"
-                )
+            return int(where) % count, None
+        for index, block in enumerate(self.bricks):
+            if block is where:
+                return index, None
+        try:
+            point = tuple(float(v) for v in vector()(where))
+        except ValueError:
+            raise ValueError(
+                f"{shown(where)} must be a brick: its index, a point (x, y, z) [m], or the block itself"
+            ) from None
+        index, away = self._nearest(point)
+        if away > self.size(index):
+            raise ValueError(
+                f"{point} m: no brick is near it, the nearest is {away:g} m away"
+            )
         return index, point
 
     def middle(self, index):
@@ -229,37 +214,24 @@ class Description:
         return max(max(values) - min(values) for values in zip(*corners))
 
     def _nearest(self, point):
-        if self._boxes is None or self._boxes[0] is not self.bricks:
+        """The brick whose box is nearest to a point, and how far that is, with a little of the way to its middle to break ties [m]."""
+        if self._boxes[0] is not self.bricks:
             corners = [np.asarray(block.corners, float) for block in self.bricks]
-            of = lambda f: np.array([f(c, axis=0) for c in corners])
-            self._boxes = self.bricks, of(np.min), of(np.max), of(np.mean)
-        _, low, high, middle = self._boxes
+            boxes = [np.array([f(c, axis=0) for c in corners]) for f in (np.min, np.max, np.mean)]  # fmt: skip
+            self._boxes = self.bricks, boxes
+        low, high, middle = self._boxes[1]
         away = np.maximum(0, np.maximum(low - point, point - high).max(axis=1))
-        return int((away + 1e-6 * np.linalg.norm(middle - point, axis=1)).argmin())
+        away += 1e-6 * np.linalg.norm(middle - point, axis=1)
+        return int(away.argmin()), away.min()
 
-    def _distance(self, index, point):
-        """How far a point is from the box around a brick, with a little of the way to its middle to break ties [m]."""
-        corners = self.bricks[index].corners
-        away = 0.0
-        for i in range(3):
-            low, high = min(p[i] for p in corners), max(p[i] for p in corners)
-            away = max(away, low - point[i], point[i] - high)
-        return away + 1e-6 * math.dist(self.middle(index), point)
 
 
 def accelerations(structure, plane):
-    """Columns of the horizontal acceleration that acts on the blocks."""
+    """Columns of the horizontal acceleration that acts on the blocks, and of the load factor."""
     scaling = structure.args.density_scaling
     for i, axis in enumerate("x" if plane else "xy"):
-        yield columns.Column(
-            f"acceleration_{axis}",
-            "g",
-            f"horizontal acceleration along {axis} that acts on the blocks",
-            lambda r, i=i: structure.scheme.now[i] * scaling / GRAVITY,
-        )
-    yield columns.Column(
-        "load_factor",
-        "-",
-        "factor of the load that a stage put on or let grow last",
-        lambda r: structure.loading.loadFactor,
-    )
+        value = lambda r, i=i: structure.scheme.now[i] * scaling / GRAVITY
+        meaning = f"horizontal acceleration along {axis} that acts on the blocks"
+        yield columns.Column(f"acceleration_{axis}", "g", meaning, value)
+    meaning = "factor of the load that a stage put on or let grow last"
+    yield columns.Column("load_factor", "-", meaning, lambda r: structure.loading.loadFactor)  # fmt: skip

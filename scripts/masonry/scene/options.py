@@ -103,15 +103,14 @@ def ofScene(name, arguments, sceneOptions):
     return arguments
 
 
-def check(args, masonry, more=(), plane=False, connectors=None):
+def check(args, masonry, connectors, more=()):
     """Apply ``--set`` to what is in a scene, and ``--field`` to ties, springs and fibre layers. Refuse options that do not go
     together, and materials that lack something.
 
     :param args: the parsed options
     :param masonry: :class:`masonry.scene.materials.Masonry` for these options
-    :param plane: whether blocks move in the x-z plane only
-    :param more: problems that the caller has found, to be named with the others
     :param connectors: ties, springs and fibre layers by name
+    :param more: problems that the caller has found, to be named with the others
     :raises Refused: with all problems at once
     """
     problems = list(more)
@@ -123,23 +122,19 @@ def check(args, masonry, more=(), plane=False, connectors=None):
         problems.append(
             f"--points {args.points}: joints of deformable units have the points of their cells; --divisions makes more of them"
         )
-    connectors = connectors or {}
-    try:
-        masonry.apply(args.set, connectors)
-    except Refused as refused:
-        problems.append(str(refused))
-    if args.record is not None:
+
+    def attempt(before, act, *arguments):
         try:
-            readRecord(batch.beside(args.record), None, args.scale)
-        except Refused as refused:
-            problems.append(f"--record: {refused}")
-    for text in args.field:
-        try:
-            scatterAll(connectors, *fields.read(text))
+            act(*arguments)
         except ValueError as error:
-            problems.append(f"--field {text}: {error}")
-    problems += masonry.missing()
-    refuse(problems)
+            problems.append(f"{before}{error}")
+
+    attempt("", masonry.apply, args.set, connectors)
+    if args.record is not None:
+        attempt("--record: ", readRecord, batch.beside(args.record), None, args.scale)
+    for text in args.field:
+        attempt(f"--field {text}: ", scatterAll, connectors, *fields.read(text))
+    refuse(problems + masonry.missing())
 
 
 def askAccuracy(name, args):

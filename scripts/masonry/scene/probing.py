@@ -138,7 +138,7 @@ def _refused(scene, parser, words):
     try:
         connectors = scene.description.settable(copies=True)
         masonry = scene.description.materials.variant(args, [*connectors])
-        check(args, masonry, connectors=connectors)
+        check(args, masonry, connectors)
         for text in args.field:
             _far(text, masonry.joints, connectors)
     except ValueError as refused:

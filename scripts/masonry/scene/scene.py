@@ -244,12 +244,8 @@ class Scene:
         """The materials for the options of this run: :class:`masonry.scene.materials.Masonry`. Raises Refused."""
         connectors = self.description.settable()
         masonry = self.description.materials.variant(self.args, [*connectors])
-        problems = self.description.problems(masonry)
-        if self.args.points and self.description.functors:
-            problems.append(f"--points {self.args.points}: with functors joints keep three points; leave functors=False")  # fmt: skip
-        if self.description.contact:
-            problems += contact.problems(self.description, self.args)
-        options.check(self.args, masonry, problems, self.description.plane, connectors)
+        problems = self.description.problems(masonry, self.args)
+        options.check(self.args, masonry, connectors, problems)
         self.assumed = masonry.assumed()
         return masonry
 
