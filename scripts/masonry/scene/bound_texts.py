@@ -38,10 +38,8 @@ def linesOfPush(entries, pushes):
 
 def linesOfGrowth(entry):
     """Horizontal lines of curve.png, for a load that grows, from the entry of its bound."""
-    for key, text in (
-        ("factor", "at most"),
-        ("without_dilatancy", "without dilatancy"),
-    ):
+    words = {"factor": "at most", "without_dilatancy": "without dilatancy"}
+    for key, text in words.items():
         if key in entry:
             what = f"limit analysis: {entry[key]:.4g} {entry['unit']} {text}"
             yield {"y": entry[key], "text": " ".join(what.split())}
@@ -53,20 +51,17 @@ def over(entries, held, run):
     :param held: load factors under which the structure came to rest, by the name of the load
     :param run: the entries of run.json
     """
-    pairs = [
-        (abs(run[reached]), abs(run[bound]), "kN", "the largest force of the push")
-        for reached, bound in (
-            ("peak_base_shear_kN", "bound_base_shear_kN"),
-            ("negative_peak_base_shear_kN", "negative_bound_base_shear_kN"),
-        )
-        if reached in run and bound in run
-    ]
+    found = []
+    for side in ("", "negative_"):
+        pair = [run.get(f"{side}{of}_base_shear_kN") for of in ("peak", "bound")]
+        if None not in pair:
+            found.append((*map(abs, pair), "kN", "the largest force of the push"))
     for what, factor in held.items():
         entry = entries.get(what, {})
         if "factor" in entry:
             name = f"{what}: the load that was held"
-            pairs.append((factor, entry["factor"], entry["unit"], name))
-    for reached, bound, unit, what in pairs:
+            found.append((factor, entry["factor"], entry["unit"], name))
+    for reached, bound, unit, what in found:
         if reached > (1 + TOLERANCE) * bound:
             yield (
                 f"{what}, {reached:.4g} {unit}, is {100 * (reached / bound - 1):.1f} % above the upper bound of "

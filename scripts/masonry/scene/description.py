@@ -225,7 +225,6 @@ class Description:
         return int(away.argmin()), away.min()
 
 
-
 def accelerations(structure, plane):
     """Columns of the horizontal acceleration that acts on the blocks, and of the load factor."""
     scaling = structure.args.density_scaling

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What a scene is, in words: what is built, and what is held, loaded and watched. Notebooks show it, and run.json has it."""
+"""What a scene is: what is built, and what is held, loaded and watched, in words, which notebooks show and run.json has; whether it
+is a wall in running bond."""
 
 import collections
 import statistics
@@ -12,14 +13,13 @@ MOST_SIZES = 4  # of blocks that are listed
 
 def sizes(description):
     """What is built: pairs of texts, what and how much."""
-    bricks = Bricks(description.bricks)
-    found = summary(bricks)
+    found = summary(Bricks(description.bricks))
     kinds = ", ".join(f"{count} {kind}" for kind, count in found["kinds"].items())
-    size = " × ".join(f"{b - a:.4g}" for a, b in zip(found["low_m"], found["high_m"]))
-    blocks = collections.Counter(_size(block) for block in description.bricks)
+    by = lambda low, high, unit: " × ".join(f"{unit * (b - a):.4g}" for a, b in zip(low, high))  # fmt: skip
+    blocks = collections.Counter(by(b.low, b.high, 1e3) for b in description.bricks)
     most = blocks.most_common(MOST_SIZES)
     sizes = "; ".join(f"{count} of {text} mm" for text, count in most)
-    sizes += "; and others" * (len(blocks) > len(most))
+    size = by(found["low_m"], found["high_m"], 1)
     yield "blocks", f"{found['blocks']:,} in {found['bricks']:,} bricks ({kinds})"
     if len(found["parts"]) > 1:
         parts = found["parts"].items()
@@ -27,14 +27,9 @@ def sizes(description):
     if found["courses"]:
         yield "courses", f"{found['courses']}"
     yield "size", f"{size} m (x × y × z), {found['volume_m3']:.4g} m³"
-    yield "sizes of blocks", sizes
+    yield "sizes of blocks", sizes + "; and others" * (len(blocks) > len(most))
     yield "moves", "in the x-z plane" if description.plane else "in space"
-    model = "deformable" if description.deformable else "rigid"
-    yield "block model", model
-
-
-def _size(block):
-    return " × ".join(f"{1e3 * (b - a):.4g}" for a, b in zip(block.low, block.high))
+    yield "block model", "deformable" if description.deformable else "rigid"
 
 
 def properties(description, masonry):
@@ -68,14 +63,9 @@ def properties(description, masonry):
 def held(description):
     """What is held, loaded and watched before the first stage: pairs of texts, its name and what is done to it."""
     for target in description.targets.values():
-        where = (
-            "the ground"
-            if not target.joined
-            else "platen"
-            if target.box
-            else f"brick {target.brick}"
-        )
-        what = [f"{where}, {_freedom(target)}"]
+        where = "platen" if target.box else f"brick {target.brick}"
+        where = where if target.joined else "the ground"
+        what = [f"{where}, {_freedom(target.freedom or '')}"]
         if target.pressed:
             what.append(f"pressed by {1e-6 * target.pressed:.4g} MPa")
         if target.force:
@@ -86,20 +76,19 @@ def held(description):
     if description.winds:
         force = [sum(w.force[i] for w in description.winds) for i in range(3)]
         yield "pressure on faces", "({:.4g}, {:.4g}, {:.4g}) N in all".format(*force)
-    recorded = [thing.name for thing in (*description.joints, *description.drifts, *[one for one in description.sections if not one.isBase])]  # fmt: skip
+    sections = [one for one in description.sections if not one.isBase]
+    recorded = [*description.joints, *description.drifts, *sections]
     if recorded:
-        yield "recorded, too", ", ".join(recorded)
+        yield "recorded, too", ", ".join(one.name for one in recorded)
 
 
-def _freedom(target):
+def _freedom(freedom):
     """What a target can do, in words."""
-    freedom = target.freedom or ""
-    along = [axis for axis in "xyz" if axis in freedom]
-    about = [axis.lower() for axis in "XYZ" if axis in freedom]
-    if len(along + about) == 6:
+    ways = {"along": "xyz", "about": "XYZ"}
+    axes = {way: [a for a in every if a in freedom] for way, every in ways.items()}
+    held = [f"{way} {', '.join(of).lower()}" for way, of in axes.items() if of]
+    if set(freedom) >= {*"xyzXYZ"}:
         return "held"
-    held = [f"along {', '.join(along)}"] * bool(along)
-    held += [f"about {', '.join(about)}"] * bool(about)
     return f"held {' and '.join(held)}" if held else "free"
 
 
@@ -113,3 +102,44 @@ def noteCourse(description):
             f"note: the joints are for courses of {1e3 * course:.4g} mm, mortar included, and the bricks have {sizes} mm: "
             "give bricks the same unit= and joint= as the materials"
         )
+
+
+def wallOf(description, loading):
+    """The entry ``wall`` of run.json, or None if the structure is no whole wall in running bond in the x-z plane, of which crack
+    patterns are measured, or if no platen pushes it.
+
+    :param loading: :class:`masonry.assembly.loading.Loading`, which knows what is pushed, and where to
+    """
+    target, bricks = loading.target, description.bricks
+    (left, front, bottom), (right, back, top) = description.low, description.high
+    boxes = [[(min(c), max(c)) for c in zip(*block.corners)] for block in bricks]
+    sizes = [[high - low for low, high in box] for box in boxes]
+    height, half = sizes[0][2], min(size[0] for size in sizes)
+    courses, columns = round((top - bottom) / height), round((right - left) / half)
+    steps = [round(size[0] / half) for size in sizes]
+    if (
+        not description.plane
+        or not (description.halves or {1, 2} == set(steps))
+        or target.brick is not None
+        or loading.loads["push"].others
+        or max(steps) > 2
+        or any(abs(size[0] - n * half) > 1e-6 * half for size, n in zip(sizes, steps))
+        or any(abs(size[2] - height) > 1e-6 * height for size in sizes)
+        or sum(steps) != courses * columns
+        or any(len(block.corners) != 8 for block in bricks)
+    ):
+        return None
+    return {
+        "corner_m": [left, bottom],
+        "length_m": right - left,
+        "height_m": top - bottom,
+        "thickness_m": back - front,
+        "courses": courses,
+        "half_units": columns,
+        "unit_m": [2 * half, back - front, height],
+        "precompression_Pa": target.pressed or 0.0,
+        "load_height_m": None if "Y" in target.freedom else target.point[2] - bottom,
+        "measure_height_m": target.recorded[2] - bottom,
+        "pushed_towards": -1 if loading.direction[0] < 0 else 1,
+        "load_line_fixed": not target.riding,
+    }

@@ -46,11 +46,11 @@ def forces(model, assembly, pushed=None, pressed=None):
 
 def push(assembly, pushed, direction):
     """The live load of a push of a target, or in a pattern: 1 kN along a direction."""
-    found = np.zeros_like(assembly.held, float)
+    found, direction = np.zeros_like(assembly.held, float), np.array(direction)
     for body, point, share in pushed.parts:
         at = np.array(point if assembly.stood else placeOf(body, point))
-        force = 1e3 * share * np.array(direction)
-        found += assembly.force(assembly.ids.index(body), force, at)
+        number = assembly.ids.index(body)
+        found += assembly.force(number, 1e3 * share * direction, at)
     return found
 
 
@@ -75,6 +75,5 @@ def pointOf(load, assembly):
 
 
 def carriedBy(assembly, dead):
-    """Vertical force of dead loads on all blocks that are free to move down, compression is positive [kN]: the supports carry
-    it."""
+    """Vertical force of dead loads on all blocks that are free to move down: the supports carry it, compression is positive [kN]."""
     return -1e-3 * float(dead[~assembly.held[:, 2], 2].sum())

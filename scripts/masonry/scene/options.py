@@ -15,9 +15,9 @@ from ..basics import Interrupted, Refused, refuse, say
 from ..run import accuracy, batch, options
 from ..run.options import USUAL, reading
 from ..run.presets import BOUND, PRESETS
-from . import fields, history, keywords
+from . import fields, history
 from .ground import readRecord
-from .parsing import Parser
+from .parsing import Parser, checked, keep
 from .settings import scatterAll, setting
 
 #: The options of a scene: those of the table, with the laws of the plugin and the presets.
@@ -80,26 +80,24 @@ def ofScene(name, arguments, sceneOptions):
     """The options of a scene: those of its own parser, or of the common one.
 
     :param arguments: what a parser found; a list of words; or None: those of the command line
-    :param sceneOptions: what the script says, which holds unless the command line gives the same option: :mod:`.keywords`
+    :param sceneOptions: what the script says, which holds unless the command line gives the same option:
+        :func:`masonry.scene.parsing.keep`
     :raises Refused: with all problems
     """
     if arguments is None and (not sys.argv or notebook.isHere()):
         arguments = []  # words of a kernel, or of YADE's importer, are not the scene's
-    if isinstance(arguments, str):
-        raise Refused(
-            f"scene {name}: arguments must be a list of words, such as {arguments.split()!r}, got {arguments!r}"
-        )
-    if not isinstance(arguments, (argparse.Namespace, type(None))):
-        words = arguments if isinstance(arguments, (list, tuple)) else [arguments]
-        wrong = [one for one in words if not isinstance(one, str)]
-        if wrong:
-            raise Refused(f"scene {name}: arguments must be a list of words, got {shown(wrong[0])}")  # fmt: skip
-    if arguments is None or isinstance(arguments, (list, tuple)):
+    if not isinstance(arguments, argparse.Namespace):
+        words = arguments if isinstance(arguments, (list, tuple, type(None))) else [arguments]  # fmt: skip
+        must = f"scene {name}: arguments must be a list of words"
+        if isinstance(arguments, str):
+            raise Refused(f"{must}, such as {arguments.split()!r}, got {arguments!r}")
+        for wrong in (one for one in words or () if not isinstance(one, str)):
+            raise Refused(f"{must}, got {shown(wrong)}")
         main = sys.modules.get("__main__")
         own = parser(getattr(main, "__doc__", None), until=None)
-        own.set_defaults(**keywords.checked(own, name, sceneOptions))
-        arguments = own.parse_args(arguments)
-    keywords.keep(arguments, name, sceneOptions)
+        own.set_defaults(**checked(own, name, sceneOptions))
+        arguments = own.parse_args(words)
+    keep(arguments, name, sceneOptions)
     return arguments
 
 

@@ -11,7 +11,6 @@ from yade.wrapper import MasonryVtkRecorder
 
 from ..common.arguments import isNumber
 from ..assembly import blocks
-from ..assembly.blocks import units
 from ..assembly.engines import LAWS
 from ..basics import say, withoutCollector
 from ..common.memory import FULL
@@ -26,7 +25,6 @@ from .figure import figureOf
 from ..run.options import UNITS
 from .stages import pushing
 from .stages.answers import answersText
-from .wall import wallOf
 
 FRAMES = 20  # for ParaView in a stage that is no push
 REPORT = 2e6  # [bytes] of report.html, of which three.js takes nearly half
@@ -44,14 +42,11 @@ class Outcome:
         self.description, self.args = scene.description, scene.args
         self.results = scene.running.results
         self.drawing = DrawingProgram()
-        self._facts = self._inWords()
-
-    def _inWords(self):
-        """Entries of run.json that say in words what is built and held, as it is before the first stage."""
-        if self.args.lean:
-            return {}
-        built, held = facts.sizes(self.description), facts.held(self.description)
-        return {"built": [*map(list, built)], "held_and_loaded": [*map(list, held)]}
+        #: entries of run.json that say in words what is built and held, as it is before the first stage
+        self._facts = {}
+        if not self.args.lean:
+            of = {"built": facts.sizes, "held_and_loaded": facts.held}
+            self._facts = {n: [*map(list, f(self.description))] for n, f in of.items()}  # fmt: skip
 
     @property
     def pushed(self):
@@ -73,47 +68,48 @@ class Outcome:
     def _freeVibration(self):
         """Of the first of the pushes that count, as in :class:`masonry.run.run_state.RunState`: the first period, the weight of the base in
         the shear force, and when the velocity of the drive had grown."""
-        at = self.scene.running.at
-        first = self.data.rows[0] if self.data.rows else math.inf
+        at, rows = self.scene.running.at, self.data.rows
         for number in sorted(map(int, at.freeVibrations)):
-            if at.stages[number - 1][3] >= first:
+            if rows and at.stages[number - 1][3] >= rows[0]:
                 return at.freeVibrations[str(number)]
         return 0.0, 0.0, 0.0
 
     def space(self):
         """Bytes that a run writes at least, and those that it will probably write."""
         model, args, frames, rows = self.model, self.args, FRAMES, 0
-        nodes = len(model.zones.displacements) if model.zones else 0
-        frame = 50 * model.subcontacts + 150 * len(O.bodies) + 100 * nodes
+        frame = 50 * model.subcontacts + 150 * len(O.bodies) + 100 * self._nodes
         if args.history or args.until:
             frames = pushing.pathOf(args) / pushing.frameSpacing(args) + 2
             rows = pushing.rowCount(args)
-        frames = 0 if args.no_vtk or args.lean else frames
-        figures = 50e3 if args.lean else 400e3
-        least = figures + frame * min(frames, 2)  # and the first and last frame
-        report = 0 if args.lean else REPORT
-        return least, least + report + frame * frames + 250 * rows
+        frames *= not (args.no_vtk or args.lean)
+        # and the first and last frame
+        least = (50e3 if args.lean else 400e3) + frame * min(frames, 2)
+        return least, least + REPORT * (not args.lean) + frame * frames + 250 * rows
+
+    @property
+    def _nodes(self):
+        zones = self.model.zones
+        return len(zones.displacements) if zones else 0
 
     # -- run.json -------------------------------------------------------------------------------------------------
 
     def describe(self):
         """Entries of run.json that say what is built, and how it is held and drawn."""
-        model, scene = self.model, self.scene
-        kinds = {}
-        for interaction in model.interactions:
-            name = interaction.phys.joint.name
-            kinds[name] = kinds.get(name, 0) + 1
+        model, scene, description = self.model, self.scene, self.description
+        kinds = collections.Counter(i.phys.joint.name for i in model.interactions)
         joints = {name: joint.dict() for name, joint in model.joints.items()}
         for properties in joints.values():
             properties["direction"] = list(properties["direction"])
+        known = blocks.properties(type(next(iter(model.joints.values()))))
+        targets = description.targets.values()
         entries = dict(
-            title=self.description.title,
+            title=description.title,
             option_units=UNITS,
             joints=joints,
-            joint_units=units(type(next(iter(model.joints.values())))),
-            joint_meanings=_meanings(type(next(iter(model.joints.values())))),
+            joint_units={p["name"]: p["unit"] for p in known if p["unit"]},
+            joint_meanings={p["name"]: p["meaning"] for p in known},
             properties_of_laws={
-                name: sorted(law["properties"]) for name, law in LAWS.items()
+                n: sorted(law["properties"]) for n, law in LAWS.items()
             },  # fmt: skip
             unit_material={
                 "young_Pa": model.unit.young,
@@ -124,33 +120,32 @@ class Outcome:
             time_step_s=O.dt,
             time_step_limit_s=model.scheme.limit,
             units=len(model.bricks),
-            nodes=len(model.zones.displacements) if model.zones else 0,
+            nodes=self._nodes,
             joint_count=len(model.interactions),
-            joints_by_kind=kinds,
+            joints_by_kind=dict(kinds),
             subcontacts=model.subcontacts,
             parts=model.parts,
             figure=figureOf(self),
-            held=sorted(t.name for t in self.description.targets.values() if t.fixed),
+            held=sorted(t.name for t in targets if t.fixed),
             targets=[
-                {"name": t.name, "body": t.body, "held": t.fixed}
-                for t in self.description.targets.values()
-            ],
+                {"name": t.name, "body": t.body, "held": t.fixed} for t in targets
+            ],  # fmt: skip
             **self._ground(),
-            recorded_joints=[joint.name for joint in self.description.joints],
-            recorded_drifts=self._columnsOf(self.description.drifts, "mrad"),
-            recorded_sections=self._columnsOf(self.description.sections, "kN", "kNm"),
+            recorded_joints=[joint.name for joint in description.joints],
+            recorded_drifts=self._columnsOf(description.drifts, "mrad"),
+            recorded_sections=self._columnsOf(description.sections, "kN", "kNm"),
             **self._connections(),
             script=shortened(scene.script.words),
             **self._facts,
             **bound_texts.describe(scene.bounds.entries, self.pushes),
         )
-        if self.description.views:
-            entries["views"] = self.description.views
+        if description.views:
+            entries["views"] = description.views
         return {**entries, **self._wall()}
 
     def _wall(self):
         """The entry ``wall``, if a whole wall in running bond is pushed."""
-        wall = self.pushed and wallOf(self.description, self.model.loading)
+        wall = self.pushed and facts.wallOf(self.description, self.model.loading)
         return {"wall": wall} if wall else {}
 
     def _columnsOf(self, records, *units):
@@ -186,20 +181,18 @@ class Outcome:
         if not scene.only:
             run.update(self._cracks())
         data = self.data
-        if not self.pushed:
-            run.update(quantities.found(data))
-        else:
+        if self.pushed:
             run.update(self._ofPush(data))
             if self.args.lean and "wall" in run:
                 with withoutCollector():
                     data.joints = asFrame(MasonryVtkRecorder().joints(), cracks.NEEDED)
             data.run = run
-            run.update(quantities.found(data))
-            if data.isLooped:
-                run["cycles"] = data.cycles
-            if scene.accuracy and not scene.running.interrupted:
-                # a push that is not over is shorter than those of its companions
-                self._addAccuracy(run)
+        run.update(quantities.found(data))
+        if self.pushed and data.isLooped:
+            run["cycles"] = data.cycles
+        if self.pushed and scene.accuracy and not scene.running.interrupted:
+            # a push that is not over is shorter than those of its companions
+            self._addAccuracy(run)
         run["answers"] = scene.answers
 
     def _ofPush(self, data):
@@ -221,8 +214,7 @@ class Outcome:
 
     def _cracks(self):
         """Entries for the widest cracks, of all joints and by kind of joint and part."""
-        bricks = self.description.bricks
-        parts = {body: f"part {b.part}" for body, b in zip(self.model.ids, bricks)}
+        parts = {body: f"part {b.part}" for body, b in zip(self.model.ids, self.description.bricks)}  # fmt: skip
         groups = lambda i: {i.phys.joint.name, *(parts[b] for b in (i.id1, i.id2) if b in parts)}  # fmt: skip
         width, point, bodies, found = cracks.widest(
             ((i.id1, i.id2), groups(i), i.phys.opening, i.geom.centres)
@@ -230,10 +222,10 @@ class Outcome:
         )
         return {
             "largest_crack_mm": 1e3 * width,
-            "largest_crack_at_m": None if point is None else [round(v, 9) + 0.0 for v in point],
-            "largest_crack_bodies": None if bodies is None else list(bodies),
+            "largest_crack_at_m": point and [round(v, 9) + 0.0 for v in point],
+            "largest_crack_bodies": bodies and list(bodies),
             "largest_cracks_mm": {name: 1e3 * found[name] for name in sorted(found)},
-        }  # fmt: skip
+        }
 
     def _connections(self):
         """Entries for ties and springs, if there are any."""
@@ -266,11 +258,9 @@ class Outcome:
     def write(self, directory, draws=True):
         """Write what the scene has beside rows and frames: the mechanism of limit analysis, with its picture if it is to be
         drawn."""
-        description = self.description
+        title, views = self.description.title, self.description.views
         try:
-            self.scene.bounds.write(
-                directory, description.title, self.model.parts, description.views, draws
-            )
+            self.scene.bounds.write(directory, title, self.model.parts, views, draws)
         except Missing as missing:
             say(f"mechanism.png is left out: {missing}", sys.stderr)
         except (OSError, MemoryError, ImportError) as error:
@@ -300,10 +290,6 @@ class Outcome:
             yield pushing.tooDamped(self.pushed, run["damped_share"])
         if run.get("sudden_loss", 0) > pushing.SUDDEN:
             yield pushing.tooSudden(self.pushed, run)
-
-
-def _meanings(cls):
-    return {p["name"]: p["meaning"] for p in blocks.properties(cls)}
 
 
 def shortened(entry):

@@ -101,8 +101,6 @@ def _integral(face, value, axes):
     return total.tolist()
 
 
-
-
 def atPlace(value, place, kind, name):
     """What a function of the place gives there, by its kind. Raises ValueError, whatever goes wrong in it."""
     try:

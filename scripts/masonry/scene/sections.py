@@ -95,9 +95,6 @@ class Section:
                 force, moment = force + sign * on, moment + sign * (arm.cross(on) + turning)  # fmt: skip
         return force, moment
 
-
-
-
     def columns(self, plane):
         """What is recorded of it; see :meth:`masonry.scene.scene.Scene.section` for the signs.
 
@@ -107,7 +104,9 @@ class Section:
         about = "({})".format(", ".join(f"{v:g}" for v in self.middle))
         yield self._column(0, 2, "N", "kN", f"normal force on {at}, positive in tension")  # fmt: skip
         for i, axis in enumerate("x" if plane else "xy"):
-            meaning = f"shear force on {at}: of what is above on what is below, along {axis}"
+            meaning = (
+                f"shear force on {at}: of what is above on what is below, along {axis}"
+            )
             yield self._column(0, i, f"V_{axis}", "kN", meaning)
         for axis, side in (("y", "large x"), ("x", "small y"))[: 1 if plane else 2]:
             meaning = (

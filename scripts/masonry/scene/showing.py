@@ -35,20 +35,16 @@ def curve(scene):
             f"curve: scene {scene.name} has no rows before its first stage"
         )
     results = scene.results
-    if scene.finished:
-        run = results.run
-    else:
+    run = results.run
+    if not scene.finished:
         scene.running.flush()
-        run = {"columns": columns.meanings(scene.columns), **_figure(scene)}
+        run = {"columns": columns.meanings(scene.columns)}
+        if results.rows:
+            run.update(scene.outcome.figure())
     values = {head: results.column(head) for head in results.columns}
     if not results.rows or "figure" not in run:
         return Curve(values, run["columns"])
     return curveOf(values, run, results.directory)
-
-
-def _figure(scene):
-    """Entries of run.json that say what curve.png shows of a scene between its stages."""
-    return scene.outcome.figure() if scene.results.rows else {}
 
 
 def asHtml(scene):
@@ -72,35 +68,31 @@ def _state(scene):
 
 def _standing(scene):
     """A scene between its stages, as it stands in YADE."""
-    title, run = scene.description.title, {"parts": scene.model.parts, "views": scene.description.views}  # fmt: skip
-    run = {**run, "title": title, "answers": scene.answers}
+    title, views, at = scene.description.title, scene.description.views, scene.running.at  # fmt: skip
+    run = {"parts": scene.model.parts, "views": views, "title": title, "answers": scene.answers}  # fmt: skip
     with tempfile.TemporaryDirectory() as folder:
         MasonryVtkRecorder(directory=folder)()
         blocks, joints = (readFrame(folder, kind) for kind in ("blocks", "joints"))
-    when = f"after {scene.running.at.stage}" if scene.running.at.stage else "as built"
-    rows = resultsOf(run) + [("so far", _state(scene), "")]
+    when = f"after {at.stage}" if at.stage else "as built"
     return notebook.titled(
         f"{title}: {_state(scene)}",
         cracksOf(run, blocks, joints, when, scene.name),
         curve(scene).picture(),
-        notebook.table(rows),
+        notebook.table(resultsOf(run) + [("so far", _state(scene), "")]),
     )
 
 
-# -- before the first stage -------------------------------------------------------------------------------------------
-
-
 def _built(scene):
+    """A scene before its first stage."""
     description = scene.description
     with drawing.style():
         figure = figureOf(_structure(description), description.title, 0)
         drawn = notebook.picture(figure, DPI)
-    materials = notebook.folded("materials", _materials(scene))
     return notebook.titled(
         f"{description.title}: before its first stage",
         drawn,
         notebook.table([*_counted(description), *held(description)]),
-        materials,
+        notebook.folded("materials", _materials(scene)),
     )
 
 
@@ -138,9 +130,8 @@ def _counted(description):
     yield from sizes(description)
     bricks = Bricks(description.bricks)
     if len(bricks) <= MOST_COUNTED:
-        platens = "platens are not counted" if any(t.box for t in description.targets.values()) else ""  # fmt: skip
-        count = f"{len(bricks.joints()):,} between blocks"
-        yield "joints", f"{count}; {platens}" if platens else count
+        platens = any(target.box for target in description.targets.values())
+        yield "joints", f"{len(bricks.joints()):,} between blocks" + "; platens are not counted" * platens  # fmt: skip
 
 
 def _materials(scene):

@@ -93,8 +93,6 @@ class Drift:
             yield Column(name, "mrad", f"{what}, over the height between them", turned)
 
 
-
-
 @dataclass
 class JointRecord:
     """A joint between two bricks whose means are recorded. ``scene.joint`` makes it; it can be read between stages."""

@@ -26,7 +26,9 @@ def _bearing(value, first=None):
     """The kind of what is between a beam or a floor and the masonry below."""
     if isinstance(value, str) and value != "fixed":
         raise ValueError(f"{shown(value)} must be 'fixed', a friction [-] or None")
-    return value if value is None or value == "fixed" else number("", 0, 5)(value)
+    if value is None or isinstance(value, str):
+        return value
+    return number("", 0, 5)(value)
 
 
 Modulus = Annotated[float, number("Pa", 0, 1e15, above=True)]
@@ -87,13 +89,9 @@ def withFloor(
     low, high = floor[0].low, floor[0].high
     height = high[2] - low[2]
     # strips are nearly rigid, so their joints have all of the stiffness: forces are G t / pitch times the slip
-    glue = MasonryJoint(
-        name=name,
-        elastic=True,
-        normalStiffness=(10 * shear if across is None else across)
-        / (pitch * height),  # fmt: skip
-        shearStiffness=shear / (pitch * height),
-    )
+    area = pitch * height
+    stiff = dict(normalStiffness=(across or 10 * shear) / area, shearStiffness=shear / area)  # fmt: skip
+    glue = MasonryJoint(name=name, elastic=True, **stiff)
     if across is None:
         state(glue, normalStiffness="assumed by withFloor(): across its strips a floor is ten times as stiff as in shear")  # fmt: skip
     unit = MasonryMat(label=name, young=RIGID, poisson=0.0, density=mass / height)
@@ -102,15 +100,15 @@ def withFloor(
 
 def _newKind(masonry, word, pieces):
     """The kind of the pieces of a beam or a floor, and the distance of their middles [m]. Raises Refused."""
-    kinds, problems = {block.kind for block in pieces}, []
-    name = min(kinds)
+    kinds, problems = sorted({block.kind for block in pieces}), []
+    name = kinds[0]
     if len(kinds) > 1:
-        problems.append(f"{word}: the pieces are of the kinds {', '.join(sorted(kinds))}: give those of one beam or floor")  # fmt: skip
+        problems.append(f"the pieces are of the kinds {', '.join(kinds)}: give those of one beam or floor")  # fmt: skip
     if name in masonry.units or name in masonry.joints:
-        problems.append(f"{word}: this masonry has {name!r} already; give the beam or floor another name")  # fmt: skip
+        problems.append(f"this masonry has {name!r} already; give the beam or floor another name")  # fmt: skip
     if len(pieces) < 2:
-        problems.append(f"{word}: {name} is one piece, which is rigid: bricks.Beam(..., pieces=8) bends")  # fmt: skip
-    refuse(problems)
+        problems.append(f"{name} is one piece, which is rigid: bricks.Beam(..., pieces=8) bends")  # fmt: skip
+    refuse([f"{word}: {one}" for one in problems])
     return name, math.dist(pieces[0].middle, pieces[1].middle)
 
 
@@ -118,14 +116,16 @@ def _take(masonry, name, unit, glue, bearing):
     masonry.units[name], masonry.joints[name] = unit, glue
     masonry.stiff = masonry.stiff | {name}
     if bearing is not None:
-        bed = masonry.joints["bed"]
-        values = dict(name=f"{name}_bearing", normalStiffness=bed.normalStiffness, shearStiffness=bed.shearStiffness)  # fmt: skip
-        if bearing == "fixed":
-            values["elastic"] = True
-        else:
-            values.update(tensileStrength=0, cohesion=0, friction=bearing, residualFriction=bearing, cap=False)  # fmt: skip
-        masonry.joints[f"{name}_bearing"] = MasonryJoint(**values)
+        bed, name = masonry.joints["bed"], f"{name}_bearing"
+        own = {"elastic": True} if bearing == "fixed" else slipping(bearing)
+        joint = masonry.joints[name] = MasonryJoint(name=name, **own)
+        joint.set(normalStiffness=bed.normalStiffness, shearStiffness=bed.shearStiffness)  # fmt: skip
     return masonry
+
+
+def slipping(friction: float) -> dict[str, Any]:
+    """Properties of a joint that has friction alone."""
+    return dict(tensileStrength=0, cohesion=0, friction=friction, residualFriction=friction, cap=False)  # fmt: skip
 
 
 def isBeam(masonry: Any, name: str) -> bool:

@@ -11,16 +11,8 @@ from typing import Annotated, Any, Callable, Iterable
 from yade.wrapper import MasonryJoint, MasonryMat
 
 from .. import fields
-from ...common.arguments import (
-    Names,
-    byName as dictOf,
-    isA,
-    isNumber,
-    nearest,
-    number,
-    shown,
-)
-from ...common.arguments import validated
+from ...common.arguments import Names, isA, isNumber, nearest, number, shown, validated
+from ...common.arguments import byName as dictOf
 from ...assembly.engines import LAWS
 from ...basics import Refused
 from ..settings import applySettings
@@ -80,9 +72,9 @@ class Masonry:
     of a structure, such as the wythes of a wall, get ``collar`` if there is one. Without ``head`` all are bed joints.
 
     Properties that were not given have the default of their class. A scene prints them once, and run.json has them under
-    ``assumed``; :mod:`masonry.scene.materials.assumptions` says what counts as given. What has no default that fits any masonry must be
-    given: the density of units, and strengths (tensileStrength, cohesion, friction, and compressiveStrength unless
-    cap=False) of joints that are not elastic.
+    ``assumed``; :mod:`masonry.scene.materials.assumptions` says what counts as given. These must be given: the density of
+    units, and strengths (tensileStrength, cohesion, friction, and compressiveStrength unless cap=False) of joints that are
+    not elastic.
 
     :param unit: MasonryMat of the bricks
     :param joints: dict of MasonryJoint by these names; ``bed`` must be there. ``support`` takes the bed joint if it is
@@ -121,10 +113,8 @@ class Masonry:
         """Give a support joint that takes the bed joint what the bed joint has now."""
         support, bed = self.joints["support"], self.joints["bed"]
         sources = support.assumed()
-        values = {n: getattr(bed, n) for n, s in sources.items() if s == AS_BED}
-        if values:
-            support.updateAttrs(values)
-            state(support, **sources)
+        support.updateAttrs({n: getattr(bed, n) for n, s in sources.items() if s == AS_BED})  # fmt: skip
+        state(support, **sources)
 
     def apply(
         self, settings: Iterable[tuple[str, str, str]], connectors: Any = None
@@ -169,30 +159,23 @@ class Masonry:
         found, problems = [], []
         for one in [name] if isinstance(name, str) else name:
             joint, _, attribute = one.partition(".")
-            numbers = self._numbersOf(joint)
+            if isBeam(self, joint):  # its stiffness is that of its pieces
+                problems.append(f"vary: {one!r}: a beam has its young and its density all over, which --set {joint}.young=... changes")  # fmt: skip
+                continue
+            values = self.joints[joint].dict() if joint in self.joints else {}
+            numbers = [n for n, v in values.items() if isNumber(v)]
             if attribute in numbers:
                 found.append((joint, attribute, value, step))
-            else:
-                if isBeam(self, joint):
-                    problems.append(f"vary: {one!r}: a beam has its young and its density all over, which --set {joint}.young=... changes")  # fmt: skip
-                    continue
-                close = nearest(one, [f"{joint}.{n}" for n in numbers])
-                problems.append(
-                    f"vary: no property {one!r}; joints are {', '.join(self.joints)}, help(masonry.MasonryJoint) lists "
-                    f"properties{close}"
-                )
+                continue
+            close = nearest(one, [f"{joint}.{n}" for n in numbers])
+            problems.append(
+                f"vary: no property {one!r}; joints are {', '.join(self.joints)}, help(masonry.MasonryJoint) lists "
+                f"properties{close}"
+            )
         if problems:
             raise ValueError("\n".join(problems))
         self.varied += found
         return self
-
-    def _numbersOf(self, joint):
-        """Names of the properties of a joint that are numbers, or none if there is no such joint, or if it is that of a beam,
-        whose stiffness is that of its pieces."""
-        if isBeam(self, joint):
-            return []
-        values = self.joints[joint].dict() if joint in self.joints else {}
-        return [n for n, v in values.items() if isNumber(v)]
 
     withBeam, withFloor = withBeam, withFloor
 
@@ -204,23 +187,22 @@ class Masonry:
 
         :param connectors: names of ties, springs and fibre layers of the scene, whose fields are none of the joints, or None
         """
-        copies = {name: copied(joint) for name, joint in self.joints.items()}
+        joints = {name: copied(joint) for name, joint in self.joints.items()}
         if args.joints == "brittle":
-            copies = {name: _brittle(joint) for name, joint in copies.items()}
+            joints = {name: _brittle(joint) for name, joint in joints.items()}
         elif args.joints != next(iter(LAWS)):
-            for joint in copies.values():
+            for joint in joints.values():
                 joint.law = args.joints
         units = {kind: copied(mat) for kind, mat in self.units.items()}
-        made = dict(unit=copied(self.unit), joints=copies, units=units)
-        own = replace(self, **made, varied=[*self.varied])
+        own = replace(self, unit=copied(self.unit), joints=joints, units=units, varied=[*self.varied])  # fmt: skip
         own._follow()
+        known = list(connectors or ())
         for text in args.field:
             names, function = fields.read(text)
-            known = list(connectors or ())
             names = [n for n in names if n.partition(".")[0] not in known]
             try:
                 if names:
-                    own.vary(withResidual(names, copies), function)
+                    own.vary(withResidual(names, joints), function)
             except ValueError as error:
                 also = f"; ties, springs and fibre layers are {', '.join(known)}" if known else ""  # fmt: skip
                 raise Refused(f"--field {text}: {error}{also}") from None
@@ -248,18 +230,18 @@ class Masonry:
                 joint = self._at(name, joint, geom)
             halves = first and second and first.brick == second.brick and pieces[first.brick] == 2  # fmt: skip
             if joint.monolithic and not halves:
-                joint = self._inPieces(joint)
+                joint = self._changed(id(joint), joint, {"monolithic": False})
             return joint
 
         return rule
 
-    def _inPieces(self, joint):
-        """The same joint that is not monolithic."""
-        if id(joint) not in self._made:
+    def _changed(self, key, joint, values):
+        """A copy of a joint with other values, made once."""
+        if key not in self._made:
             own = copied(joint)
-            own.monolithic = False
-            self._made[id(joint)] = own
-        return self._made[id(joint)]
+            own.updateAttrs(values)
+            self._made[key] = own
+        return self._made[key]
 
     def _kind(self, first, second, normal):
         if first is None or second is None:
@@ -278,34 +260,24 @@ class Masonry:
 
     def _at(self, name, joint, geom):
         """The joint of a kind with the properties that it has at a place."""
-        changes, centres = {}, geom.centres
+        steps, values, centres = {}, {}, geom.centres
         centre = [sum(c[i] for c in centres) / len(centres) for i in range(3)]
         for kind, attribute, value, step in self.varied:
-            if kind == name:
-                try:
-                    factor = FACTOR(value(*centre))
-                except ValueError as error:
-                    raise ValueError(
-                        f"vary {kind}.{attribute}: the factor at {centre} m: {error}"
-                    ) from None
-                wide = math.log1p(step)
-                changes[attribute] = round(math.log(factor) / wide)
-        if not any(changes.values()):
-            return joint
-        key = name, tuple(sorted(changes.items()))
-        if key not in self._made:
-            steps = {a: s for k, a, _, s in self.varied if k == name}
-            own = copied(joint)
-            values = {
-                a: getattr(joint, a) * (1 + steps[a]) ** n for a, n in changes.items()
-            }
+            if kind != name:
+                continue
             try:
-                own.updateAttrs(values)
+                factor = FACTOR(value(*centre))
             except ValueError as error:
-                place = ", ".join(f"{v:.3g}" for v in centre)
-                raise ValueError(f"vary: at ({place}) m: {error}") from None
-            self._made[key] = own
-        return self._made[key]
+                raise ValueError(f"vary {kind}.{attribute}: the factor at {centre} m: {error}") from None  # fmt: skip
+            n = steps[attribute] = round(math.log(factor) / math.log1p(step))
+            values[attribute] = getattr(joint, attribute) * (1 + step) ** n
+        if not any(steps.values()):
+            return joint
+        try:
+            return self._changed((name, *sorted(steps.items())), joint, values)
+        except ValueError as error:
+            place = ", ".join(f"{v:.3g}" for v in centre)
+            raise ValueError(f"vary: at ({place}) m: {error}") from None
 
     _made = property(lambda self: self.__dict__.setdefault("_kept", {}))
 
