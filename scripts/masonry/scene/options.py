@@ -33,16 +33,10 @@ OPTIONS = {
 }
 
 
-def ofField(text):
-    """The text of ``--field``, if it can be read. Raises ValueError."""
-    fields.read(text)
-    return text
-
-
 #: What is made of the text of an option where it is used.
 READ = {
     "history": reading(history.parse),
-    "field": reading(ofField),
+    "field": reading(lambda text: fields.read(text) and text),
     "set": reading(setting),
 }
 

@@ -26,6 +26,7 @@ import atexit
 import contextlib
 import functools
 import math
+import os
 from typing import Annotated, Any, Callable, Iterable, Iterator, Sequence
 
 from ..common.arguments import LONGEST_NAME
@@ -34,6 +35,7 @@ from ..common import notebook
 from ..assembly.structure import Structure
 from ..basics import GRAVITY, Interrupted, say, withoutCollector
 from ..bricks import Bricks
+from ..run import batch
 from ..run.ending import end
 from ..run.presets import BOUND
 from ..run.results import Results
@@ -51,7 +53,7 @@ from .targets import Target
 from .words import SHAKES, Call, Script, either
 
 
-def ofFolder(value: Any, first: Any = None) -> str:
+def _ofFolder(value, first=None):
     """The kind of a name of a scene, which names a folder, too."""
     fine = isinstance(value, str) and value.strip(". ") and value.isprintable()
     if not fine or "/" in value or len(value.encode()) > LONGEST_NAME:
@@ -59,7 +61,7 @@ def ofFolder(value: Any, first: Any = None) -> str:
     return value
 
 
-def blocksOf(value: Any, first: Any = None) -> list[Any]:
+def _blocksOf(value, first=None):
     """The kind of the bricks of a scene."""
     try:
         found = list(value)
@@ -105,8 +107,8 @@ class Scene:
     @validated
     def __init__(
         self,
-        name: Annotated[str, ofFolder],
-        bricks: Annotated[Iterable[Any], blocksOf],
+        name: Annotated[str, _ofFolder],
+        bricks: Annotated[Iterable[Any], _blocksOf],
         materials: Annotated[Masonry, isA(Masonry, "masonry.materials.Masonry")],
         title: str | None = None,
         plane: bool | None = None,
@@ -135,8 +137,7 @@ class Scene:
         # whether bracket() looks for a load, so that no collapse is followed
         self.bracketing = False
         self.running = Run(name, arguments, self.script.words)
-        # when it is built
-        self.model: Any = None
+        self.model: Any = None  # when it is built, and so are the next two
         self.bounds: Any = None
         self.outcome: Any = None
         self.columns: list[Any] = []  # of curve.csv
@@ -185,8 +186,7 @@ class Scene:
     shakeAgain = again.shakeAgain
     bracket, stepBack, resume = gravity.bracket, rest.stepBack, resume
     bound, domain, result = bounding.bound, bounding.domain, answers.result
-
-    curve = showing.curve
+    curve, probe = showing.curve, probing.probe
 
     def _repr_html_(self) -> str:
         """The scene in a notebook: what is built before the first stage, else cracks, curve and results."""
@@ -235,8 +235,7 @@ class Scene:
             raise ValueError(f"{name}: the scene is finished")
         if self.model and self.isGone:
             raise ValueError(
-                f"{name}: scene {self.name} is gone, because another one was built since; finish one scene before "
-                "the next begins"
+                f"{name}: scene {self.name} is gone, because another one was built since; finish one scene before the next begins"
             )
 
     @functools.cached_property
@@ -269,31 +268,24 @@ class Scene:
         self.outcome = Outcome(self)
         with self.running.clock("setup"), self.running.breakable(), withoutCollector():
             model.build(loadingBlock())
-            self._prepare()
+            # the engines that stages had made before the checkpoint of a run that is resumed
+            names, begun = {stage.__name__ for stage in STAGES}, False
+            for word, arguments in self.running.scriptBefore:
+                begun = begun or word in names
+                if begun:
+                    prepare(self, word, arguments)
         facts.noteCourse(description)
         self.running.start(model, self.outcome.space(), State(self))
         Scene.present = self
         atexit.unregister(self._remind)  # of a run that goes on
         atexit.register(self._remind)
 
-    def _prepare(self):
-        """Make the engines that stages had made before the checkpoint of a run that is resumed."""
-        names, begun = {stage.__name__ for stage in STAGES}, False
-        for word, arguments in self.running.scriptBefore:
-            begun = begun or word in names
-            if begun:
-                prepare(self, word, arguments)
-
-    def probe(self, stage: str, traits: Any, arguments: Any) -> Any:
-        """Say what a study must know of the scene, and end; see :func:`masonry.scene.probing.probe`."""
-        return probing.probe(self, stage, traits, arguments)
-
     # -- the end --------------------------------------------------------------------------------------------------
 
     def finish(self) -> None:
         """End the run: the last frame, run.json, the figures. A run that was not in order exits with its status."""
-        if probing.asked() and self.model:
-            probing.probe(self, "finish", None, {})
+        if batch.PROBE in os.environ and self.model:
+            self.probe("finish", None, {})
         if not (self.finished or self._entered):
             self.__exit__(None, None, None)
 
@@ -308,9 +300,9 @@ class Scene:
         if not error and not self.model:
             return False
         if not (error or self.only or any(word in SHAKES for word, _ in self.script.words)):  # fmt: skip
-            given = [o for o, default in (("record", None), ("scale", 1)) if getattr(self.args, o, default) != default]  # fmt: skip
-            for option in given:
-                say(f"warning: --{option} was not used: the scene was not shaken")
+            for option, default in (("record", None), ("scale", 1)):
+                if getattr(self.args, option, default) != default:
+                    say(f"warning: --{option} was not used: the scene was not shaken")
         with self.running.listening():
             done = end(self.running, self, error)
         if self.status and (done or not error):

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import functools
 import inspect
 import math
@@ -100,9 +101,8 @@ def either(
         word: Any = stage if scene.model else describes
         return word(scene, *args, **settings)
 
-    command.__doc__ = (
-        f"{describes.__doc__}\n\n    After the first stage: {stage.__doc__}"
-    )
+    doc = f"{describes.__doc__}\n\n    After the first stage: {stage.__doc__}"
+    command.__doc__ = doc
     said: Any = command
     return said
 
@@ -126,10 +126,8 @@ def asData(value):
         return {str(asData(key)): asData(one) for key, one in value.items()}
     if isinstance(getattr(value, "name", None), str):
         return value.name
-    try:
+    with contextlib.suppress(TypeError):
         return [asData(one) for one in value]
-    except TypeError:
-        pass
     try:
         return asData(float(value))
     except (TypeError, ValueError):
@@ -178,13 +176,12 @@ class Script:
             changed = {n for n in {**old, **new} if old.get(n) != new.get(n)}
             if name != other or not changed <= may:
                 raise NotResumed(
-                    f"--resume: a run goes on as it began: the script said {spoken(was)}, now it says {spoken(now)}"
+                    f"--resume: a run goes on as it began: the script said {_spoken(*was)}, now it says {_spoken(*now)}"
                 )
             farther = True
         return farther
 
 
-def spoken(word):
+def _spoken(name, arguments):
     """A word as a script writes it."""
-    name, arguments = word
     return f"{name}({', '.join(f'{n}={v!r}' for n, v in arguments.items())})"
