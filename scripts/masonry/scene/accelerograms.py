@@ -77,8 +77,6 @@ def read(path: FilePath) -> Accelerogram:
 
 
 class _File:
-    """A file that is read: its path and its lines."""
-
     def __init__(self, path, lines):
         self.path, self.lines = os.fspath(path), lines
 

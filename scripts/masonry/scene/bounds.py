@@ -100,8 +100,7 @@ class Bounds:
         """Find the bound of a push [kN], without what acts beside it. Returns its entry of run.json, the last one if there are two.
 
         :param target: what is pushed, or a :class:`masonry.assembly.drives.Pattern`
-        :param direction: unit vector of the push
-        :param both: whether it goes there and back
+        :param direction: unit vector of the push; ``both``: whether it goes back, too
         :param how: as in :meth:`find`
         """
         for along in (direction, -1 * direction) if both else (direction,):
@@ -259,11 +258,8 @@ class Bounds:
         yield files
 
     def take(self, wait, givesUp=lambda: False):
-        """Take the bound that is found beside the run, if it is there.
-
-        :param wait: whether to wait for it
-        :param givesUp: function that says while it is waited for whether to do without it
-        """
+        """Take the bound that is found beside the run, if it is there; ``wait`` says whether to wait for it, and ``givesUp`` while it is
+        waited for whether to do without it."""
         task, what = self._task, self._looksFor
         if not what or not (wait or task.ready()):
             return

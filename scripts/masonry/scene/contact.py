@@ -55,7 +55,11 @@ class Contact(Settable):
 
 
 def problems(description, args):
-    """What does not go together with ``collapse="follow"``: sentences."""
+    """What does not go together with ``collapse="follow"``, or with functors: sentences."""
+    if args.points and description.functors:
+        yield f"--points {args.points}: with functors joints keep three points; leave functors=False"
+    if not description.contact:
+        return
     if description.functors:
         yield "collapse='follow': the functors go on with joints whose blocks have come apart; leave functors=False"
     if args.blocks == "deformable":
@@ -84,7 +88,7 @@ def addGround(description, level=None, name=None):
     """Add the ground on which blocks fall.
 
     :param level: as in :func:`ground`; None: just below everything else
-    :param name: in curve.csv; None: ground, or another one if a target has that name
+    :param name: None: ground, or another one if a target has that name
     """
     targets = description.targets
     names = itertools.chain(["ground"], (f"ground{k}" for k in itertools.count(2)))

@@ -14,7 +14,6 @@ from ..assembly import columns
 from ..basics import GRAVITY, Refused
 from ..bricks.blocks import KINDS
 from .contact import Contact
-from .contact import problems as problemsOfContact
 
 
 class Description:
@@ -70,14 +69,11 @@ class Description:
         y = [[round(p[1], 9) for p in b.corners] for b in self.bricks]
         return len({(min(one), max(one)) for one in y}) == 1
 
-    def problems(self, materials, args):
-        """What does not go together, with the joints that the options choose: sentences."""
-        if args.points and self.functors:
-            yield f"--points {args.points}: with functors joints keep three points; leave functors=False"
-        if self.contact:
-            yield from problemsOfContact(self, args)
+    def problems(self, materials):
+        """What does not go together, with the joints that the options choose: a list of sentences."""
+        found = []
         if self.halves and "crack" not in materials.joints:
-            yield (
+            found.append(
                 "--crack-surfaces on: the bricks are in pieces, and these materials have no joint 'crack' between them; "
                 "make whole bricks with halves=False, or choose --crack-surfaces off"
             )
@@ -85,10 +81,11 @@ class Description:
         strange = {block.kind for block in self.bricks} - known
         if strange and not materials.choose:
             named = ", ".join(map(repr, sorted(strange)))
-            yield (
+            found.append(
                 f"the materials have nothing for blocks of the kind {named}: materials.withBeam(...) or withFloor(...) says what a beam "
                 "or a floor is made of, and units={kind: ...} what other blocks are made of"
             )
+        return found
 
     def connectorsOf(self, kind):
         """Connectors of one class of records, in the order in which they were named."""
@@ -101,8 +98,8 @@ class Description:
         return {one.name: one.copied() if copies else one for one in own}
 
     def pointLoaded(self):
-        """Indices of the bricks at the ends of ties and springs, and of those on which loads and drives act: a point of a brick that
-        deforms would give way without bound where the mesh is fine."""
+        """Indices of the bricks on which ties, springs, loads and drives act: a point of a brick that deforms would give way without
+        bound where the mesh is fine."""
         ends = [end.brick for one in self.connectors for end in one.ends]
         handles = [t.brick for t in self.targets.values() if t.loaded]
         return {*ends, *handles} - {None}
@@ -112,8 +109,8 @@ class Description:
         return next((t for t in self.targets.values() if not t.joined), None)
 
     def followed(self, loaded=None):
-        """The target whose displacement is drawn under a load that grows: the first that is watched, else the one on which the load
-        is, else the first that moves, or None."""
+        """The target whose displacement is drawn under a load that grows: the first that is watched, else that with the load, else the first
+        that moves, or None."""
         moving = [t for t in self.targets.values() if not t.fixed]
         watched = [t for t in moving if not t.loaded]
         return next(iter(watched + [loaded] * bool(loaded) + moving), None)
@@ -133,8 +130,8 @@ class Description:
         return target
 
     def replace(self, one, other):
-        """Let a record that a script holds stand for one that was made by the same word again: a target, a recorded joint, a
-        section, a tie or springs. Its values become those of the new one."""
+        """Let a record that a script holds stand for one that was made by the same word again, whose values it gets: a target, a recorded
+        joint, a section, a tie or springs."""
         if not hasattr(one, "__dict__"):
             return
         vars(other).clear()
@@ -148,7 +145,6 @@ class Description:
     def columns(self, structure, looped):
         """The columns of curve.csv: those of the scene's choice, or all. Raises Refused.
 
-        :param structure: that is read
         :param looped: whether the drive follows a history
         """
         found = [*columns.PUSH, *accelerations(structure, self.plane)]
@@ -180,8 +176,7 @@ class Description:
     # -- where bricks are -----------------------------------------------------------------------------------------
 
     def find(self, where):
-        """Index of a brick, and the point by which it is named, or None. Raises ValueError with a sentence like that of a kind of
-        :mod:`masonry.common.arguments`."""
+        """Index of a brick, and the point by which it is named, or None. Raises ValueError with a sentence like a kind's."""
         count = len(self.bricks)
         if isinstance(where, Integral) and not isinstance(where, bool):
             if not -count <= where < count:

@@ -35,8 +35,6 @@ def sizes(description):
 def properties(description, masonry):
     """What decides whether a scene is like the walls on which a preset was measured: values by the names in
     :data:`masonry.run.presets.RANGE`; None for a scene in space.
-
-    :param masonry: its materials
     """
     if not description.plane:
         return None
@@ -83,7 +81,6 @@ def held(description):
 
 
 def _freedom(freedom):
-    """What a target can do, in words."""
     ways = {"along": "xyz", "about": "XYZ"}
     axes = {way: [a for a in every if a in freedom] for way, every in ways.items()}
     held = [f"{way} {', '.join(of).lower()}" for way, of in axes.items() if of]

@@ -129,9 +129,7 @@ def _column(lines, path):
 
 
 def targets(points, stops=False, start=0.0):
-    """The points of a history as the drive sees them: a list of :class:`Target`.
-
-    A point that repeats the one before lies in the same direction.
+    """The points of a history as the drive sees them: a list of :class:`Target`. One that repeats the one before lies in the same direction.
 
     :param points: displacements [mm]
     :param stops: whether the drive brakes for the last point
@@ -158,8 +156,8 @@ def pathLength(points, start=0.0):
 def aim(args, start=0.0):
     """The targets of a run: those of ``--history``, or one at ``--until``.
 
-    The drive stops at the end of a file. At the end of a list of amplitudes and of a push it does not brake, because
-    both go on in the same direction if the run is resumed and extended.
+    The drive stops at the end of a file. At the end of amplitudes and of a push it does not brake, because both go on in the same
+    direction if the run is resumed and extended.
 
     :param args: the options of :func:`masonry.scene.options.parser`
     :param start: where the path begins [mm]
@@ -188,7 +186,7 @@ def extends(new, old):
 
 
 def describe(history):
-    """What run.json says of a history: the dict without its points, but with their number and the length of the path."""
+    """What run.json says of a history: the dict with number of points and length of the path in place of the points."""
     points = history["points_mm"]
     found = {name: value for name, value in history.items() if name != "points_mm"}
     more = dict(points=len(points), turning_points=turns(points))

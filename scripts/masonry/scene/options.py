@@ -71,12 +71,11 @@ def parser(description, until, rate=USUAL["rate"], loops=True):
 
 
 def ofScene(name, arguments, sceneOptions):
-    """The options of a scene: those of its own parser, or of the common one.
+    """The options of a scene. Raises Refused with all problems.
 
     :param arguments: what a parser found; a list of words; or None: those of the command line
     :param sceneOptions: what the script says, which holds unless the command line gives the same option:
         :func:`masonry.scene.parsing.keep`
-    :raises Refused: with all problems
     """
     if arguments is None and (not sys.argv or notebook.isHere()):
         arguments = []  # words of a kernel, or of YADE's importer, are not the scene's
@@ -96,8 +95,7 @@ def ofScene(name, arguments, sceneOptions):
 
 
 def check(args, masonry, connectors, more=()):
-    """Apply ``--set`` to what is in a scene, and ``--field`` to ties, springs and fibre layers. Refuse options that do not go
-    together, and materials that lack something.
+    """Apply ``--set`` and ``--field`` to what is in a scene. Refuse options that do not go together, and materials that lack something.
 
     :param args: the parsed options
     :param masonry: :class:`masonry.scene.materials.Masonry` for these options
@@ -105,7 +103,7 @@ def check(args, masonry, connectors, more=()):
     :param more: problems that the caller has found, to be named with the others
     :raises Refused: with all problems at once
     """
-    problems = list(more)
+    problems = [*more]
     if args.blocks == "rigid" and args.divisions > 1:
         problems.append("--divisions: rigid units are not divided")
     if args.mass_scaling not in (0, "auto") and args.blocks == "rigid":

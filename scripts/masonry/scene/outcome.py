@@ -32,10 +32,7 @@ MOST_NUMBERS = 24  # of a list that the script said, as run.json has it
 
 
 class Outcome:
-    """What comes out of a scene that stands in YADE.
-
-    :param scene: :class:`masonry.scene.scene.Scene`
-    """
+    """What comes out of a :class:`masonry.scene.scene.Scene` that stands in YADE."""
 
     def __init__(self, scene):
         self.scene, self.model = scene, scene.model
@@ -66,8 +63,8 @@ class Outcome:
         return pushes[-1] if pushes else []
 
     def _freeVibration(self):
-        """Of the first of the pushes that count, as in :class:`masonry.run.run_state.RunState`: the first period, the weight of the base in
-        the shear force, and when the velocity of the drive had grown."""
+        """The first period, the weight of the base in the shear force, and when the velocity of the drive had grown, of the first of the
+        pushes that count."""
         at, rows = self.scene.running.at, self.data.rows
         for number in sorted(map(int, at.freeVibrations)):
             if rows and at.stages[number - 1][3] >= rows[0]:
@@ -144,7 +141,6 @@ class Outcome:
         return {**entries, **self._wall()}
 
     def _wall(self):
-        """The entry ``wall``, if a whole wall in running bond is pushed."""
         wall = self.pushed and facts.wallOf(self.description, self.model.loading)
         return {"wall": wall} if wall else {}
 
@@ -228,7 +224,6 @@ class Outcome:
         }
 
     def _connections(self):
-        """Entries for ties and springs, if there are any."""
         description = self.description
         kinds = collections.defaultdict(list, overlays=description.overlays)
         for one in description.connectors:
@@ -256,8 +251,7 @@ class Outcome:
         return {**found, **self._wall()}
 
     def write(self, directory, draws=True):
-        """Write what the scene has beside rows and frames: the mechanism of limit analysis, with its picture if it is to be
-        drawn."""
+        """Write what the scene has beside rows and frames: the mechanism of limit analysis, with its picture if ``draws``."""
         title, views = self.description.title, self.description.views
         try:
             self.scene.bounds.write(directory, title, self.model.parts, views, draws)
@@ -293,7 +287,7 @@ class Outcome:
 
 
 def shortened(entry):
-    """What a script said, with long lists, as a record of an earthquake, as a text that says how long they are."""
+    """What a script said; long lists, as a record of an earthquake, as a text that says how long they are."""
     if isinstance(entry, dict):
         return {name: shortened(value) for name, value in entry.items()}
     if isinstance(entry, (list, tuple)):
@@ -365,8 +359,7 @@ def _rowsOf(outcome, rows):
 
 
 def _ofLoad(outcome, number, load):
-    """What is drawn of a load that grew, or that was put on step by step: its factor over the displacement of what is
-    watched."""
+    """What is drawn of a load that grew, or was put on step by step: its factor over the displacement of what is watched."""
     kind, name, _ = load
     at, entry = outcome.scene.running.at, outcome.scene.bounds.entries.get(name, {})
     rows = range(at.stages[number - 1][3], len(outcome.results.rows))
@@ -403,7 +396,6 @@ def restsUnder(outcome, name):
 
 
 def _ofJoint(outcome, joint):
-    """What is drawn of a joint that is recorded: the stress along which it moved farther, and the other one."""
     column = lambda head: outcome.results.column(joint.prefixed(head))
     reach = lambda head: max(map(abs, column(head)), default=0)
     what = "slide" if reach("slide_mm") > reach("opening_mm") else "opening"

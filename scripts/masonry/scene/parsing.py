@@ -27,9 +27,8 @@ class Options(argparse.Namespace):
     """The options that a :class:`Parser` has read.
 
     Beside the options there are, and no part of what ``vars`` gives: ``parser``, which has read them; ``given``, those of the
-    command line, as a dict, or None in a run that is resumed; ``defaults``, those of the parser; ``replaced``, what
-    :func:`keep` has changed.
-    """
+    command line, or None in a run that is resumed; ``defaults``, those of the parser; ``replaced``, what :func:`keep` has
+    changed."""
 
     __slots__ = ("parser", "given", "defaults", "replaced")
 
@@ -202,11 +201,9 @@ def _overrides(given, expected):
 
 
 def checked(parser, name, options):
-    """The values of keywords, of the kind that the command line would give. Raises Refused with all problems.
+    """The values of keywords of a scene of this name, of the kind that the command line would give. Raises Refused with all problems.
 
-    :param parser: :class:`Parser` whose options they are
-    :param name: of the scene
-    :param options: dict of option -> value
+    :param parser: :class:`Parser` whose options they are; ``options``: values by option
     """
     actions = {a.dest: a for a in parser._actions if a.dest not in OF_THE_RUN}
     found, problems = {}, []
@@ -246,7 +243,6 @@ def _value(action, value):
 
 
 def _typed(action, value):
-    """A value as the type of an option makes it of a text."""
     if isNumber(value):
         value = str(plainNumber(value))
     elif isinstance(value, os.PathLike):
@@ -259,12 +255,11 @@ def _typed(action, value):
 def keep(args, name, options):
     """Let options have the values that a script gives as keywords, but for those that the command line gives.
 
-    A line on the terminal names the others. A preset wins over what the script says of the options that it chooses, and says so. Options of a
-    run that is resumed are those with which it began, and stay.
+    A line on the terminal names the others. A preset wins over what the script says of the options that it chooses, and says so.
+    Options of a run that is resumed are those with which it began, and stay.
 
     :param args: :class:`Options`, which are changed
-    :param name: of the scene
-    :param options: dict of option -> value
+    :param name: of the scene; ``options``: values by option
     :raises Refused: with all problems
     """
     if not isinstance(args, Options):

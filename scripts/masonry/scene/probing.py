@@ -92,7 +92,6 @@ def _bounds(low, high, unit, **more):
 
 
 def _rows(scene, parser):
-    """Sentences on the rows of the table that cannot be run, as the scene itself tells them."""
     path, _ = batch.place(os.environ[batch.VARIABLE])
     problems = {}
     known = {action.dest for action in parser._actions}

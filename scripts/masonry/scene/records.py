@@ -117,7 +117,7 @@ def section(
 
 
 def _middleAt(description, z, part, name):
-    """The middle of the box around the bricks that reach a height [m]. Raises ValueError if there is none."""
+    """The middle of the box around the bricks that reach a height [m]. Raises ValueError."""
     boxes = [
         [[*map(f, zip(*b.corners))] for f in (min, max)]
         for b in description.bricks

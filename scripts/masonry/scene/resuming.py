@@ -45,10 +45,7 @@ def _alike(state, like):
 
 
 class State:
-    """What a checkpoint keeps of a scene beside its state in YADE.
-
-    :param scene: :class:`masonry.scene.scene.Scene`, when it is built
-    """
+    """What a checkpoint keeps of a scene that is built, beside its state in YADE."""
 
     def __init__(self, scene):
         self._scene, self._model = scene, scene.model
@@ -69,10 +66,7 @@ class State:
         self.restored = True
 
     def takeRest(self, at):
-        """Take the last state at rest from a checkpoint.
-
-        :param at: :class:`masonry.run.run_state.RunState`
-        """
+        """Take the last state at rest from a checkpoint: :class:`masonry.run.run_state.RunState`."""
         if at.atRest:
             self._model.atRest = base64.b64decode(at.atRest)
         self._model.motion.places, self._model.motion.far = at.places, at.far

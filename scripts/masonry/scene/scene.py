@@ -47,8 +47,7 @@ from .description import Description
 from .materials import Masonry, linesOf, loadingBlock
 from .outcome import Outcome
 from .resuming import State, resume
-from .stages import STAGES, again, gravity, prepare, rest
-from .stages import answers
+from .stages import STAGES, again, answers, gravity, prepare, rest
 from .targets import Target
 from .words import SHAKES, Call, Script, either
 
@@ -159,9 +158,8 @@ class Scene:
     platen, watch, handle = supports.platen, supports.watch, supports.handle
     drift, column = records.drift, records.column
     joint, section, view = records.joint, records.section, records.view
-    tie, spring = connections.tie, connections.spring
+    tie, spring, overlay = connections.tie, connections.spring, connections.overlay
     ground = contact.ground
-    overlay = connections.overlay
     # Their names are those of stages, too, which are meant after the first stage.
     hold = either(supports.hold, stages.hold)
     press = either(loads.press, stages.press)
@@ -186,11 +184,7 @@ class Scene:
     shakeAgain = again.shakeAgain
     bracket, stepBack, resume = gravity.bracket, rest.stepBack, resume
     bound, domain, result = bounding.bound, bounding.domain, answers.result
-    curve, probe = showing.curve, probing.probe
-
-    def _repr_html_(self) -> str:
-        """The scene in a notebook: what is built before the first stage, else cracks, curve and results."""
-        return showing.asHtml(self)
+    curve, probe, _repr_html_ = showing.curve, probing.probe, showing.asHtml
 
     @property
     def isGone(self) -> bool:
@@ -243,7 +237,8 @@ class Scene:
         """The materials for the options of this run: :class:`masonry.scene.materials.Masonry`. Raises Refused."""
         connectors = self.description.settable()
         masonry = self.description.materials.variant(self.args, [*connectors])
-        problems = self.description.problems(masonry, self.args)
+        problems = self.description.problems(masonry)
+        problems += contact.problems(self.description, self.args)
         options.check(self.args, masonry, connectors, problems)
         self.assumed = masonry.assumed()
         return masonry

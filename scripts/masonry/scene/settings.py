@@ -4,7 +4,7 @@
 import copy
 from typing import Any, Callable, NamedTuple
 
-from ..common.arguments import nearest, number
+from ..common.arguments import nearest, number, shown
 from ..basics import refuse
 
 #: A function of x, y and z [m] that gives a factor [-].
@@ -78,6 +78,17 @@ class Settable:
         self.updateAttrs({name: self.values()[name] * factor(*self.place())})
 
 
+def such(fits, what):
+    """The kind of what fits a function, and is called so where it must be."""
+
+    def take(value, first=None):
+        if not fits(value):
+            raise ValueError(f"{shown(value)} must be {what}")
+        return value
+
+    return take
+
+
 def valuesOf(thing):
     """The properties of a joint, or of what is :class:`Settable`, with their values."""
     return thing.values() if isinstance(thing, Settable) else thing.dict()
@@ -107,7 +118,6 @@ def scatterAll(connectors, names, factor):
 
 
 def _noSuch(what, thing, attribute):
-    """A sentence on a property that a tie, springs, a layer or a beam does not have."""
     return f"{what}: a {thing.WORD} has no such property, there are {', '.join(thing.known)}{nearest(attribute, thing.known)}"  # fmt: skip
 
 
@@ -125,7 +135,7 @@ def setting(text):
 def applySettings(joints, settings):
     """Give joints, and what is settable beside them, the values of ``--set``. Raises Refused with all problems at once.
 
-    :param joints: dict of MasonryJoint and :class:`Settable` by name
+    :param joints: MasonryJoint and :class:`Settable` by name
     :param settings: list of (joint, property, text of the value)
     """
     problems, changes = [], {}

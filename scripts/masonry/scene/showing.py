@@ -67,7 +67,6 @@ def _state(scene):
 
 
 def _standing(scene):
-    """A scene between its stages, as it stands in YADE."""
     title, views, at = scene.description.title, scene.description.views, scene.running.at  # fmt: skip
     run = {"parts": scene.model.parts, "views": views, "title": title, "answers": scene.answers}  # fmt: skip
     with tempfile.TemporaryDirectory() as folder:
@@ -83,7 +82,6 @@ def _standing(scene):
 
 
 def _built(scene):
-    """A scene before its first stage."""
     description = scene.description
     with drawing.style():
         figure = figureOf(_structure(description), description.title, 0)
@@ -135,7 +133,6 @@ def _counted(description):
 
 
 def _materials(scene):
-    """Tables of the joints and units, with the options of this run."""
     connectors = scene.description.settable(copies=True)
     masonry = scene.description.materials.variant(scene.args, [*connectors])
     try:

@@ -121,7 +121,6 @@ def platen(
 
 
 def _problems(plane, bottom, rotation, guided, drive, springs):
-    """Sentences on what a platen at the bottom, at the top or in the plane cannot have."""
     if bottom and rotation == "free":
         yield "the one at the bottom is fixed and cannot turn"
     for name, value in {"guided": guided, "drive": drive}.items():

@@ -344,7 +344,6 @@ class Overlay(Settable):
             yield Column(f"{self.name}_{what}", "-", meaning, lambda r, what=what: self._count(what))  # fmt: skip
 
     def _count(self, what):
-        """How many bundles have yielded, or broken."""
         steps = list(getattr(self.ties[0].engine, f"{what}At"))
         return sum(steps[one.number] >= 0 for one in self.ties) if steps else 0
 

@@ -51,8 +51,7 @@ def describes(
 ) -> Callable[Concatenate[Any, P], R]:
     """A word that describes a scene: it comes before the first stage, and is noted.
 
-    :param act: function of a :class:`masonry.scene.description.Description` and what the user says. As a method of the scene
-        it takes what the user says
+    :param act: function of a :class:`masonry.scene.description.Description` and what the user says
     """
 
     @functools.wraps(act)
@@ -115,7 +114,7 @@ def argumentsOf(act, first, args, settings):
 
 
 def asData(value):
-    """A value as JSON can hold it: numbers, texts and lists as they are, targets and recorded joints by their names."""
+    """A value as JSON can hold it: targets and recorded joints by their names."""
     if value is None or isinstance(value, (bool, str, int)):
         return value
     if isinstance(value, float):
@@ -160,11 +159,10 @@ class Script:
         return last in words and not any(word in words for word, _ in before)
 
     def compare(self, before):
-        """Refuse a script that says something else than that of the run that is resumed.
+        """Refuse a script that says something else than that of the run that is resumed. Returns whether it goes farther.
 
-        :param before: ``words`` of that run, up to its checkpoint. The last of them, but for results, is the stage in which
-            that was made, which may go farther now
-        :returns: whether it does
+        :param before: ``words`` of that run, up to its checkpoint. The last of them, but for results, is the stage in which that was
+            made, which may go farther now
         """
         last = max((n for n, (word, _) in enumerate(before) if word != RESULT), default=-1)  # fmt: skip
         farther = False
@@ -183,5 +181,4 @@ class Script:
 
 
 def _spoken(name, arguments):
-    """A word as a script writes it."""
     return f"{name}({', '.join(f'{n}={v!r}' for n, v in arguments.items())})"

@@ -86,7 +86,6 @@ def acts(joint: Any, name: str) -> bool:
 
 
 def _things(masonry):
-    """Joints and units of a masonry by name."""
     yield from masonry.joints.items()
     yield "unit", masonry.unit
     yield from masonry.units.items()

@@ -11,15 +11,12 @@ from yade.wrapper import MasonryJoint, MasonryMat
 from ...common.arguments import number, shown, validated
 from ...basics import refuse
 from ...bricks import Bricks
-from ..settings import Property, Settable
+from ..settings import Property, Settable, such
 from .assumptions import state
 
 
-def _pieces(value, first=None):
-    """The kind of the pieces of a beam or a floor."""
-    if not (isinstance(value, Bricks) and len(value)):
-        raise ValueError(f"{shown(value)} must be what bricks.Beam or bricks.Floor gives")  # fmt: skip
-    return value
+_fits = lambda value: isinstance(value, Bricks) and len(value)
+_pieces = such(_fits, "what bricks.Beam or bricks.Floor gives")
 
 
 def _bearing(value, first=None):

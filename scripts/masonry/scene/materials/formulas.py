@@ -303,7 +303,6 @@ def _stiffnesses(v, bed, head):
 
 
 def _bond(v, bed, head):
-    """Strength and energy of bed and head joints in tension and in shear."""
     ft = v.ft
     if ft is None:
         factor = WRENCH if v.bond_ratio is None else v.bond_ratio
@@ -330,7 +329,6 @@ def _bond(v, bed, head):
 
 
 def _crushing(v, bed, head):
-    """Strength, energy and peak ratio of bed and head joints in compression."""
     energy, source = (v.Gc, "") if v.Gc is not None else compressiveFractureEnergy(v.fc)
     if v.Gc is None and not MODEL_CODE[0] <= v.fc <= MODEL_CODE[1]:
         say(
@@ -373,7 +371,6 @@ def _crackJoint(v):
 
 
 def _problems(v, given):
-    """Sentences on what does not go together."""
     if (v.ft is None) == (v.bond_wrench is None):
         yield "give either ft, the direct tensile strength of bed joints, or bond_wrench, that of a bond wrench test"
     if max(v.unit) > 5:

@@ -11,11 +11,11 @@ from typing import Annotated, Any, Callable, Iterable
 from yade.wrapper import MasonryJoint, MasonryMat
 
 from .. import fields
-from ...common.arguments import Names, isA, isNumber, nearest, number, shown, validated
+from ...common.arguments import Names, isA, isNumber, nearest, number, validated
 from ...common.arguments import byName as dictOf
 from ...assembly.engines import LAWS
 from ...basics import Refused
-from ..settings import applySettings
+from ..settings import Factor, applySettings, such
 from .assumptions import AS_BED, copied, entriesOf, isDefault, missing, state
 from .beams import OfBeam, isBeam, withBeam, withFloor
 
@@ -25,11 +25,10 @@ FACTOR = number("", 0, above=True)  # the kind of what a variation gives
 STEEP = math.cos(math.radians(45))
 
 
-def _slides(value, first=None):
-    """The kind of a joint that has friction."""
-    if not (hasattr(value, "friction") and hasattr(value, "residualFriction")):
-        raise ValueError(f"{shown(value)} must be a MasonryJoint")
-    return value
+_slides = such(lambda v: hasattr(v, "residualFriction"), "a MasonryJoint")
+_options = such(lambda v: hasattr(v, "joints"), "the options of a scene")
+_isVaried = lambda v: isinstance(v, tuple) and len(v) == 4
+_varied = such(lambda v: isinstance(v, list) and all(map(_isVaried, v)), "a list that vary() has made")  # fmt: skip
 
 
 @validated
@@ -45,20 +44,6 @@ def withResidual(
     alike = lambda n: n in joints and joints[n].friction == joints[n].residualFriction
     one = [n for n in one if alike(n)]
     return [*dict.fromkeys([*names, *(n + ".residualFriction" for n in one)])]
-
-
-def _options(value, first=None):
-    """The kind of the options of a scene."""
-    if not hasattr(value, "joints"):
-        raise ValueError(f"{shown(value)} must be the options of a scene")
-    return value
-
-
-def _varied(value, first=None):
-    """The kind of what :meth:`Masonry.vary` keeps."""
-    if not isinstance(value, list) or not all(isinstance(v, tuple) and len(v) == 4 for v in value):  # fmt: skip
-        raise ValueError(f"{shown(value)} must be a list that vary() has made")
-    return value
 
 
 @validated
@@ -131,19 +116,11 @@ class Masonry:
         except ValueError as error:
             raise Refused(str(error)) from None
 
-    def assumed(self) -> list[dict[str, Any]]:
-        """What was not given: a list of dicts, as in ``assumed`` of :mod:`masonry.run.results`."""
-        return entriesOf(self)
-
-    def missing(self) -> list[str]:
-        """Sentences on what must be given, and is not."""
-        return missing(self)
-
     @validated
     def vary(
         self,
         name: Names,
-        value: Callable[[float, float, float], float],
+        value: Factor,
         step: Annotated[float, number("", 1e-6, 1, below=True)] = 0.01,
     ) -> Masonry:
         """Let a property change from place to place. Returns the same masonry.
@@ -178,6 +155,7 @@ class Masonry:
         return self
 
     withBeam, withFloor = withBeam, withFloor
+    assumed, missing = entriesOf, missing
 
     @validated
     def variant(
