@@ -64,10 +64,10 @@ class Accelerogram:
 def read(path: FilePath) -> Accelerogram:
     """Read a file of accelerations. Raises Refused with the file, the line and the value that is wrong."""
     try:
-        text = readWhole(path)
+        data = readWhole(path)
     except OSError as error:
         raise Refused(f"cannot read {path}: {error.strerror}") from None
-    lines = text.decode("utf-8-sig", errors="replace").splitlines()
+    lines = data.decode("utf-8-sig", errors="replace").splitlines()
     file = _File(path, lines)
     for line, text in enumerate(lines[:HEADER], 1):
         if re.search(r"\bNPTS\b", text, re.I) and not text.strip().startswith("#"):
@@ -255,9 +255,6 @@ def written(values: Any, every: float, title: str) -> str:
     columns = components(values).tolist()
     head += "# components: x y z\n" if len(columns) == 3 else ""
     return head + "".join(" ".join(map(repr, row)) + "\n" for row in zip(*columns))
-
-
-# -- drift --------------------------------------------------------------------------------------------------------------
 
 
 @dataclass(frozen=True)

@@ -12,7 +12,6 @@ import sys
 import tempfile
 import time
 from dataclasses import dataclass
-from functools import partial
 from typing import Callable
 
 import numpy as np
@@ -104,8 +103,7 @@ class Bounds:
         :param how: as in :meth:`find`
         """
         for along in (direction, -1 * direction) if both else (direction,):
-            live = partial(limit_loads.push, pushed=target, direction=along)
-            load = Load(nameOfPush(target, along), "kN", live, pushed=(target, direction))  # fmt: skip
+            load = Load(nameOfPush(target, along), "kN", _pushOf(target, along), pushed=(target, direction))  # fmt: skip
             entry = self.find(load, **how)
         return entry
 
@@ -117,8 +115,8 @@ class Bounds:
         :param direction: unit vector of the push, horizontal
         :param how: as in :meth:`find`
         """
-        live = partial(limit_loads.push, pushed=target, direction=direction)
         names = [nameInDomain(target, direction, normal) for normal in normals]
+        live = _pushOf(target, direction)
         of = dict(unit="kN", live=live, pushed=(target, direction))
         loads = [Load(n, pressed=(target, k), **of) for n, k in zip(names, normals)]
         return [self.find(load, **how) for load in loads]
@@ -146,7 +144,9 @@ class Bounds:
         :param loads: pairs of a MasonryLoad and its force at a factor of 1 [N]
         :param how: as in :meth:`find`
         """
-        return self.find(Load(what, unit, partial(limit_loads.sumOf, loads=loads)), **how)  # fmt: skip
+        acting = [(load.body, load.point, force) for load, force in loads]
+        live = lambda a: limit_loads.sumOf(a, acting)
+        return self.find(Load(what, unit, live), **how)
 
     def find(self, load, lowerUpTo=0, background=False):
         """Find the bound of a :class:`Load`. Returns its entry of run.json.
@@ -323,6 +323,13 @@ class Bounds:
             if draws or name != FIGURE:
                 with replaced(os.path.join(directory, name), "wb") as file:
                     file.write(data)
+
+
+def _pushOf(target, direction):
+    """The live load of a push of a target, or in a pattern: 1 kN along a direction."""
+    along = np.array(direction)
+    acting = [(body, at, 1e3 * share * along) for body, at, share in target.parts]
+    return lambda assembly: limit_loads.sumOf(assembly, acting)
 
 
 def _tilted(find, first):

@@ -18,7 +18,7 @@ from .ties import MOST, OF_OVERLAY, OF_TIE, End, Overlay, Spring, Tie
 from .words import describes
 
 
-def end(value: Any, first: Any) -> Any:
+def _end(value, first):
     """The kind of an end: a target of the scene, or a brick as in :func:`masonry.scene.targets.brick`."""
     if not isinstance(value, Target):
         return brick(value, first)
@@ -27,7 +27,7 @@ def end(value: Any, first: Any) -> Any:
     return value
 
 
-EndAt = Annotated[Union[Target, Numbers, int, Block], end]
+EndAt = Annotated[Union[Target, Numbers, int, Block], _end]
 
 
 def _endOf(description, where):
@@ -35,16 +35,6 @@ def _endOf(description, where):
         return End(tuple(where.point), where, where.brick)
     index, point = description.find(where)
     return End(tuple(point or description.middle(index)), None, index)
-
-
-def _inPlane(description, ends):
-    """In a scene in the x-z plane the ends stand in the plane of the first one's middle."""
-    if description.plane:
-        level = ends[0].point[1]
-        if ends[0].brick is not None:
-            level = description.middle(ends[0].brick)[1]
-        for one in ends:
-            one.point = (one.point[0], level, one.point[2])
 
 
 @describes
@@ -87,7 +77,12 @@ def tie(
         raise Refused("tie: give either other or anchor")
     at = None if anchor is None else tuple(vector(anchor, "tie: anchor [m]"))
     ends = _endOf(description, one), End(at) if at else _endOf(description, other)
-    _inPlane(description, ends)
+    if description.plane:  # both ends are in the plane of the first one's middle
+        level = ends[0].point[1]
+        if ends[0].brick is not None:
+            level = description.middle(ends[0].brick)[1]
+        for end in ends:
+            end.point = (end.point[0], level, end.point[2])
     name = name or f"tie{len(description.connectorsOf(Tie))}"
     made = Tie(name, ends, stiffness, strength, prestress, slack, breaking, compression)
     problems = [*_onOneBrick(*ends), *made.problems()]

@@ -28,13 +28,13 @@ class Description:
         name,
         bricks,
         materials,
-        title=None,
-        plane=None,
-        gravity=GRAVITY,
-        choice=None,
-        functors=False,
-        allowGaps=False,
-        collapse="end",
+        title,
+        plane,
+        gravity,
+        choice,
+        functors,
+        allowGaps,
+        collapse,
     ):
         self.bricks = bricks
         self.name, self.title = name, title or name
@@ -47,7 +47,9 @@ class Description:
         points = [p for block in self.bricks for p in block.corners]
         #: corners of the box around all bricks [m]
         self.low, self.high = ([*map(f, zip(*points))] for f in (min, max))
-        self.plane = self._inPlane() if plane is None else plane
+        y = [[round(p[1], 9) for p in block.corners] for block in bricks]
+        inPlane = len({(min(one), max(one)) for one in y}) == 1
+        self.plane = inPlane if plane is None else plane
         self.choice = choice  # heads of columns, None: all
         self.targets = {}  # by name
         self._boxes = None, None  # bricks, and what _nearest() knows of them
@@ -64,10 +66,6 @@ class Description:
     def halves(self):
         """Whether some of the bricks are in pieces."""
         return len({b.brick for b in self.bricks}) < len(self.bricks)
-
-    def _inPlane(self):
-        y = [[round(p[1], 9) for p in b.corners] for b in self.bricks]
-        return len({(min(one), max(one)) for one in y}) == 1
 
     def problems(self, materials):
         """What does not go together, with the joints that the options choose: a list of sentences."""
@@ -172,8 +170,6 @@ class Description:
         always = columns.heads(ofBase + balance + columns.HISTORY)
         chosen = [found[heads.index(n)] for n in self.choice if n not in always]
         return chosen + [c for c in found if c.head in always]
-
-    # -- where bricks are -----------------------------------------------------------------------------------------
 
     def find(self, where):
         """Index of a brick, and the point by which it is named, or None. Raises ValueError with a sentence like a kind's."""

@@ -121,7 +121,7 @@ class Parser(argparse.ArgumentParser):
         nothing = argparse.Namespace(**{action.dest: None for action in self._actions})
         given = vars(super().parse_args(args, nothing))
         given = {name: value for name, value in given.items() if value is not None}
-        defaults = self._withoutWords()
+        defaults = {**vars(found), **{name: self.get_default(name) for name in given}}
         presetOptions = {**defaults, **PRESETS.get(found.preset, {})}
         vars(found).update(presetOptions, **given)
         if isinstance(found, Options):
@@ -130,17 +130,6 @@ class Parser(argparse.ArgumentParser):
             found.until = None
         found.overrides = _overrides(given, presetOptions)
         return found
-
-    def _withoutWords(self):
-        """The values of all options that are not given; of those that a scene requires None."""
-        required = [action for action in self._actions if action.required]
-        for action in required:
-            action.required = False
-        try:
-            return vars(super().parse_args([]))
-        finally:
-            for action in required:
-                action.required = True
 
     def _checkKnown(self, known, folder):
         """Refuse options of a checkpoint that this scene could not have had."""

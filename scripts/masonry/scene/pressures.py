@@ -49,7 +49,8 @@ def facesAgainst(description, towards, part, name, least=LOOKING):
 
 def pressures(description, value, towards, part, normal):
     """The forces of a pressure: on each face at its middle and at one more point, or at two more of a scene in space, which do not depend
-    on the pressure. Parameters as in :func:`masonry.scene.loads.pressure`. Raises ValueError."""
+    on the pressure. Parameters as in :func:`masonry.scene.loads.pressure`. Raises ValueError.
+    """
     forces, along = [], np.array(towards, float) / np.linalg.norm(towards)
     for face in facesAgainst(description, towards, part, "pressure", GRAZING):
         outward, arm = np.array(face.normal), face.area**0.5 / 4

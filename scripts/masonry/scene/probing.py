@@ -23,6 +23,7 @@ from ..assembly.blocks import properties
 #: million.
 FAR = 4.75
 MOST = 20  # problems that are named of rows
+PLAIN = bool, int, float, str  # values of properties that are written
 
 
 def probe(scene, stage, traits, arguments):
@@ -57,7 +58,10 @@ def probe(scene, stage, traits, arguments):
         "options": sorted(options - {"help", "out", "resume", "set", "field"}),
         "unused": {},
         "doubtful": dict.fromkeys(doubtful, f"its first stage is {stage}()"),
-        "joints": {name: _plain(joint.dict()) for name, joint in joints.items()},
+        "joints": {
+            name: {n: v for n, v in joint.dict().items() if isinstance(v, PLAIN)}
+            for name, joint in joints.items()
+        },
         "counts": {kind: counts.get(one.name, 0) for kind, one in joints.items()},
         "bounds": {p["name"]: _bounds(**p) for p in properties(MasonryJoint)},
         "connectors": {
@@ -79,10 +83,6 @@ def probe(scene, stage, traits, arguments):
         say(f"cannot write {path}: {error.strerror}", sys.stderr)
         raise SystemExit(batch.UNWRITTEN) from None
     raise SystemExit(0)
-
-
-def _plain(values):
-    return {n: v for n, v in values.items() if isinstance(v, (bool, int, float, str))}
 
 
 def _bounds(low, high, unit, **more):

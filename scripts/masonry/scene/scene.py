@@ -153,8 +153,6 @@ class Scene:
         self.only = arguments.preset == BOUND
         self._entered = False  # whether a ``with`` block ends it
 
-    # -- what describes it ----------------------------------------------------------------------------------------
-
     platen, watch, handle = supports.platen, supports.watch, supports.handle
     drift, column = records.drift, records.column
     joint, section, view = records.joint, records.section, records.view
@@ -171,8 +169,6 @@ class Scene:
     def targets(self) -> dict[str, Target]:
         """Platens and bricks that are held, loaded or watched, by their names."""
         return self.description.targets
-
-    # -- how it goes ----------------------------------------------------------------------------------------------
 
     settle, release, move = stages.settle, stages.release, stages.move
     push, cycle, follow = stages.push, stages.cycle, stages.follow
@@ -274,8 +270,6 @@ class Scene:
         Scene.present = self
         atexit.unregister(self._remind)  # of a run that goes on
         atexit.register(self._remind)
-
-    # -- the end --------------------------------------------------------------------------------------------------
 
     def finish(self) -> None:
         """End the run: the last frame, run.json, the figures. A run that was not in order exits with its status."""

@@ -89,8 +89,8 @@ def platen(
     outer = level + (-height if bottom else height) if upTo is None else upTo
     begins, ends = sorted((level, outer))
     middle = ((low[0] + high[0]) / 2, (low[1] + high[1]) / 2, outer)
-    held = "xyzXYZ" if bottom else "" if rotation == "free" else "XYZ"
-    held = {*held, *guided, *("yXZ" * plane)}
+    held = {*guided, *("yXZ" * plane)}
+    held |= {*("xyzXYZ" if bottom else "" if rotation == "free" else "XYZ")}
     held -= {*springs, *(("Y" if plane else "XY") * uplift)}
     point = middle if point is None else tuple(vector(point, "platen: point [m]"))
     if recorded is not None and not begins <= recorded * (1 + 1e-12):
@@ -106,7 +106,7 @@ def platen(
             box=((*low, begins), (*high, ends)),
             freedom="".join(axis for axis in "xyzXYZ" if axis in held),
             loaded=not bottom,
-            drives=drive,
+            drives="".join(drive),
         )
     )
     if uplift:

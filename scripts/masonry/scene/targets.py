@@ -157,9 +157,6 @@ OF_JOINTS = (
 )  # fmt: skip
 
 
-# -- kinds of arguments, as in masonry.common.arguments ----------------------------------------------------------------------
-
-
 def _descriptionOf(first):
     """The description of a scene, which is the first argument of a word, or belongs to it."""
     return getattr(first, "description", first)
