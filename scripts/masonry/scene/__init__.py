@@ -18,8 +18,7 @@
 - :mod:`masonry.scene.bounds`: limit analysis beside a run, with :mod:`masonry.scene.limit_loads`;
   :mod:`masonry.scene.bounding`: the commands that ask for it
 - :mod:`masonry.scene.outcome`: what comes out, and what curve.png shows; :mod:`masonry.scene.drawing_program`: the program that
-  draws it; :mod:`masonry.scene.facts`: what a scene is, in words
-- :mod:`masonry.scene.showing`: a scene in a notebook, and its curve as arrays
+  draws it; :mod:`masonry.scene.facts`: what a scene is, in words and in a notebook, and its curve as arrays
 - :mod:`masonry.scene.words`: the words of a script, as data; :mod:`masonry.scene.resuming`: what a resumed run finds in place
   of the stages that were over
 - :mod:`masonry.scene.probing`: what a study must know of a scene

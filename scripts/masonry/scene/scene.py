@@ -41,7 +41,7 @@ from ..run.presets import BOUND
 from ..run.results import Results
 from ..run.run import Run
 from . import bounding, connections, contact, facts, loads, options, probing, records
-from . import showing, stages, supports
+from . import stages, supports
 from .bounds import Bounds, takeFound
 from .description import Description
 from .materials import Masonry, linesOf, loadingBlock
@@ -180,7 +180,7 @@ class Scene:
     shakeAgain = again.shakeAgain
     bracket, stepBack, resume = gravity.bracket, rest.stepBack, resume
     bound, domain, result = bounding.bound, bounding.domain, answers.result
-    curve, probe, _repr_html_ = showing.curve, probing.probe, showing.asHtml
+    curve, probe, _repr_html_ = facts.curve, probing.probe, facts.asHtml
 
     @property
     def isGone(self) -> bool:

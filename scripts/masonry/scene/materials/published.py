@@ -13,8 +13,7 @@ from yade.wrapper import MasonryJoint, MasonryMat
 
 from ...common.arguments import isNumber, number, shown, validated
 from .assumptions import state
-from .beams import Poisson, slipping
-from .kinds import Masonry, byName
+from .kinds import Masonry, Poisson, byName, slipping
 
 
 def calciumSilicate() -> Masonry:
