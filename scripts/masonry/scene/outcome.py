@@ -107,7 +107,7 @@ class Outcome:
             joint_meanings={p["name"]: p["meaning"] for p in known},
             properties_of_laws={
                 n: sorted(law["properties"]) for n, law in LAWS.items()
-            },  # fmt: skip
+            },
             unit_material={
                 "young_Pa": model.unit.young,
                 "poisson": model.unit.poisson,
@@ -126,7 +126,7 @@ class Outcome:
             held=sorted(t.name for t in targets if t.fixed),
             targets=[
                 {"name": t.name, "body": t.body, "held": t.fixed} for t in targets
-            ],  # fmt: skip
+            ],
             **self._ground(),
             recorded_joints=[joint.name for joint in description.joints],
             recorded_drifts=self._columnsOf(description.drifts, "mrad"),
