@@ -50,8 +50,7 @@ def sizes(description):
 
 def properties(description, masonry):
     """What decides whether a scene is like the walls on which a preset was measured: values by the names in
-    :data:`masonry.run.presets.RANGE`; None for a scene in space.
-    """
+    :data:`masonry.run.presets.RANGE`; None for a scene in space."""
     if not description.plane:
         return None
     length, _, height = (b - a for a, b in zip(description.low, description.high))

@@ -112,8 +112,7 @@ def atPlace(value, place, kind, name):
 
 def placesBelow(description, points):
     """Where loads stand that are let down from some points: pairs of the number of a brick, and the point on the highest of its faces
-    that look up [m]. Raises ValueError if nothing is below a point.
-    """
+    that look up [m]. Raises ValueError if nothing is below a point."""
     faces, found = Bricks(description.bricks).freeFaces((0, 0, 1), GRAZING), []
     near = 1e-6 * math.dist(description.low, description.high)
     for x, y, z in points:
