@@ -96,9 +96,9 @@ def held(description):
 
 
 def _freedom(freedom):
-    ways = {"along": "xyz", "about": "XYZ"}
-    axes = {way: [a for a in every if a in freedom] for way, every in ways.items()}
-    held = [f"{way} {', '.join(of).lower()}" for way, of in axes.items() if of]
+    every = {"along": "xyz", "about": "XYZ"}
+    axes = {how: [a for a in of if a in freedom] for how, of in every.items()}
+    held = [f"{how} {', '.join(of).lower()}" for how, of in axes.items() if of]
     if set(freedom) >= {*"xyzXYZ"}:
         return "held"
     return f"held {' and '.join(held)}" if held else "free"
