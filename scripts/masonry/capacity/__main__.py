@@ -11,6 +11,7 @@ from typing import Sequence
 from ..common import memory
 from ..basics import Refused, say
 from ..read.bilinear import RULES, lines
+from ..read.files import program
 from ..read.quantities import Number
 from . import n2
 from .domains import Domain
@@ -137,35 +138,28 @@ def _showDomain(folder, found: Domain, out):
     say(f"written: {', '.join(DOMAIN)} in {out or folder}")
 
 
+@program
 def main(words: Sequence[str] | None = None) -> int:
     """The program. Returns its exit status."""
-    p = parser()
-    args = p.parse_args(words)
-    try:
-        memory.reserve()
-        if args.domain is not None:
-            _showDomain(args.domain, assessDomain(args.domain, args.result, args.out), args.out)  # fmt: skip
-            return 0
-        if not args.result:
-            raise Refused("name one folder of results at least, for example results/wall_comp4")  # fmt: skip
-        if args.out and len(args.result) > 1:
-            raise Refused(f"--out {args.out}: it is for one folder, not {len(args.result)}")  # fmt: skip
-        spectrum, system, status = spectrumOf(args), systemOf(args), 0
-        for folder in args.result:
-            try:
-                found = assess(folder, spectrum, system, args.rule, args.mechanism, args.limited, args.iterate, args.height, args.out, args.column)  # fmt: skip
-            except Refused as problem:
-                say(problem, sys.stderr)
-                status = 2
-            else:
-                _show(folder, found, args.out)
-        return status
-    except Refused as problem:
-        say(problem, sys.stderr)
-        return 2
-    except MemoryError:
-        say(memory.FULL, sys.stderr)
-        return 1
+    args = parser().parse_args(words)
+    memory.reserve()
+    if args.domain is not None:
+        _showDomain(args.domain, assessDomain(args.domain, args.result, args.out), args.out)  # fmt: skip
+        return 0
+    if not args.result:
+        raise Refused("name one folder of results at least, for example results/wall_comp4")  # fmt: skip
+    if args.out and len(args.result) > 1:
+        raise Refused(f"--out {args.out}: it is for one folder, not {len(args.result)}")  # fmt: skip
+    spectrum, system, status = spectrumOf(args), systemOf(args), 0
+    for folder in args.result:
+        try:
+            found = assess(folder, spectrum, system, args.rule, args.mechanism, args.limited, args.iterate, args.height, args.out, args.column)  # fmt: skip
+        except Refused as problem:
+            say(problem, sys.stderr)
+            status = 2
+        else:
+            _show(folder, found, args.out)
+    return status
 
 
 if __name__ == "__main__":

@@ -127,15 +127,9 @@ def centresOf(points: np.ndarray, cells: Sequence[np.ndarray]) -> np.ndarray:
     :param points: corners (n, 3) [m]
     :param cells: the numbers of the corners of each
     """
-    # cells with as many corners are looked at together
     counts = np.fromiter(map(len, cells), int, len(cells))
-    corners, starts = np.concatenate(cells), np.cumsum(counts) - counts
-    centres = np.empty((len(cells), 3))
-    for count in np.unique(counts):
-        alike = counts == count
-        members = corners[starts[alike, None] + np.arange(count)]
-        centres[alike] = points[members].mean(axis=1)
-    return centres
+    sums = np.add.reduceat(points[np.concatenate(cells)], np.cumsum(counts) - counts)
+    return sums / counts[:, None]
 
 
 def diagonalReach(bed: np.ndarray, upright: np.ndarray) -> int:

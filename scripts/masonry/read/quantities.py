@@ -16,7 +16,6 @@ import math
 from dataclasses import dataclass
 from typing import Any, Callable, NamedTuple
 
-
 from . import cracks, curves, loops
 from .run_data import BASE, MASONRY, MOVED, TOP, RunData
 
@@ -68,39 +67,25 @@ class Number(NamedTuple):
 
 @dataclass(frozen=True)
 class Quantity:
-    """A number of a run.
+    """A number of a run."""
 
-    :param key: its entry in run.json
-    :param name: in words; empty: only run.json has it
-    :param unit: ``"-"`` if it has none
-    :param meaning: what it is, a sentence
-    :param source: columns of curve.csv, an equation or a function
-    :param of: function of :class:`RunData`, or of a function that gives the columns of a joint; None: the run itself writes it
-    :param group: one of :data:`GROUPS`, which says in which runs it is
-    :param brief: whether it is among the few that a notebook shows, and that stand first in study.csv
-    :param share: whether it is shown in per cent
-    """
-
-    key: str
-    name: str
-    unit: str
-    meaning: str
-    source: str
+    key: str  #: its entry in run.json
+    name: str  #: in words; empty: only run.json has it
+    unit: str  #: ``"-"`` if it has none
+    meaning: str  #: what it is, a sentence
+    source: str  #: columns of curve.csv, an equation or a function
+    #: function of :class:`RunData`, or of a function that gives the columns of a joint; None: the run itself writes it
     of: Callable[[Any], Any] | None = None
-    group: str = "push"
+    group: str = "push"  #: one of :data:`GROUPS`, which says in which runs it is
+    #: whether it is among the few that a notebook shows, and that stand first in study.csv
     brief: bool = False
-    share: bool = False
+    share: bool = False  #: whether it is shown in per cent
 
     def shown(self, value: Any) -> Number:
         """The number as it is shown."""
-        percent = self.share and isinstance(value, (int, float))
-        return Number(
-            self.name,
-            100 * value if percent else value,
-            "%" if self.share else self.unit,
-            self.meaning,
-            f"run.json: {self.key}",
-        )
+        unit = "%" if self.share else self.unit
+        value = 100 * value if self.share else value
+        return Number(self.name, value, unit, self.meaning, f"run.json: {self.key}")
 
 
 class State(NamedTuple):
