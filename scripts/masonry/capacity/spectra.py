@@ -91,10 +91,9 @@ def elastic(
     :param parameters: S [-], TB, TC and TD [s] of a National Annex; None: the recommended values of tables 3.2 and 3.3
     :raises Refused: with what is wrong
     """
-    factor = UNITS[unit]
     soil, tb, tc, td = PARAMETERS[type][ground] if parameters is None else _four(parameters)  # fmt: skip
     correction = max(math.sqrt(10 / (5 + damping)), LEAST_CORRECTION)
-    peak = ag * factor * importance
+    peak = ag * UNITS[unit] * importance
     if peak > 3 * GRAVITY:
         raise Refused(
             f"elastic: a ground acceleration of {peak:.4g} m/s² is more than 3 g: is ag {ag:g} {unit} in another unit?"
@@ -153,7 +152,6 @@ def readSpectrum(
     :param corner: TC, the upper limit of the periods with constant acceleration, which the target displacement needs [s]
     :raises Refused: if the file cannot be read, is no such table, or if the corner is missing
     """
-    factor = UNITS[unit]
     rows: list[list[float]] = []
     names = False
     text = readText(path).removeprefix("\ufeff")  # which some editors write
@@ -177,8 +175,7 @@ def readSpectrum(
         rows.append(row)
     if len(rows) < 2:
         raise Refused(f"{path}: there must be two rows at least")
-    periods, accelerations = np.array(rows).T
-    accelerations = factor * accelerations
+    periods, accelerations = np.array(rows).T * [[1], [UNITS[unit]]]
     if not 0 < accelerations.max() < 100 * GRAVITY:
         raise Refused(
             f"{path}: the largest acceleration is {accelerations.max():.4g} m/s², which must be above 0 and below 100 g: is the unit "
