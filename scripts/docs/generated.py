@@ -55,9 +55,6 @@ def summary(thing):
     return re.split(r"(?<=[.:])\s(?=[A-Z])", about)[0].rstrip(":").removesuffix(".")
 
 
-# -- commands of a scene -------------------------------------------------------------------------------------------------
-
-
 #: Methods of a scene that its stages call, and no script.
 FOR_STAGES = {"begin", "checkOpen", "failed", "masonry", "present", "probe"}
 
@@ -114,9 +111,6 @@ def commands():
     return text + methods(own, "How it goes, and what it says")
 
 
-# -- options ----------------------------------------------------------------------------------------------------------
-
-
 def _usage(action):
     value = "" if action.nargs == 0 else " " + (action.metavar or "|".join(map(str, action.choices or ())) or action.dest.upper())  # fmt: skip
     return ", ".join(f"``{name}{value}``" for name in action.option_strings)
@@ -145,8 +139,6 @@ def optionsOfScenes():
         text += heading(f"``{name}``", "~") + f".. code-block:: text\n\n{shown}\n\n"
     return text
 
-
-# -- the plugin's classes ---------------------------------------------------------------------------------------------
 
 _PROPERTY = re.compile(r"^(?P<meaning>.*?)(?: :ydefault:`(?P<usual>.*?)`)?$", re.S)
 
@@ -182,8 +174,6 @@ def classes():
     text += ".. py:function:: masonry.criticalTimeStep() -> tuple\n\n   "
     return text + escaped(" ".join(about)) + "\n"
 
-
-# -- modules ----------------------------------------------------------------------------------------------------------
 
 #: Packages with a page of their own beside those directly in ``masonry``: their modules are many.
 LARGE = ("masonry.scene.materials", "masonry.scene.stages")
@@ -230,9 +220,6 @@ def api():
         if page == "masonry":
             text += ".. toctree::\n   :maxdepth: 1\n\n" + "".join(f"   {n}\n" for n in pages if n != page)  # fmt: skip
         yield f"api/{page}.rst", text
-
-
-# -- how to cite ------------------------------------------------------------------------------------------------------
 
 
 def cite():

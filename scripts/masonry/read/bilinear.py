@@ -325,9 +325,6 @@ def _equalArea(stiffness, end, area):
     return stiffness * (end - math.sqrt(max(rest, 0.0)))
 
 
-# -- of a run ---------------------------------------------------------------------------------------------------------
-
-
 @dataclass(frozen=True)
 class Pushover:
     """The curve of one push of a run: what :func:`pushover` read."""

@@ -20,16 +20,8 @@ from .files import readCurve, readRun
 from .frames import frameAt, frameTimes, readFrame
 
 from .painting import GHOST, MORTAR, SHADES, TIES, Painting, fromBackToFront  # fmt: skip
-from .views import (
-    FROM_ABOVE,
-    IN_SPACE,
-    REACH,
-    courseOf,
-    magnificationOf,
-    scaleText,
-    spaceViewOf,
-    viewOf,
-)
+from .views import FROM_ABOVE, IN_SPACE, REACH, courseOf, magnificationOf, scaleText
+from .views import spaceViewOf, viewOf
 
 #: A block of a part is in an elevation if it reaches into the depth of the façade by this share of its own depth or of the
 #: façade's; what belongs to no part, as a platen, if it touches this depth.
@@ -40,28 +32,21 @@ LONGEST = 80  # of the scale on paper [1/72 inch]
 
 @dataclass
 class Structure:
-    """Blocks and joints at one moment.
+    """Blocks and joints at one moment."""
 
-    - ``blocks``, ``joints``: as :func:`masonry.read.frames.readFrame` gives them; ``joints`` is None where there are none to show
-    - ``parts``: name -> ids of bodies, the façades first of all; all blocks are one part if it is empty
-    - ``shades``: key of :data:`SHADES` by the id of a body; others are bricks
-    - ``names``: texts that stand on bodies, by their ids
-    - ``sights``: directions of sight by part; ``ground``: the body on which blocks fall, or None: it is drawn as far as needed
-    - ``seams``: numbers of the kinds of joints inside units, which are not drawn unless they crack
-    - ``still``: displacement that is taken off all others [m]
-    - ``ties``: entries of run.json
-    """
-
-    blocks: dict[str, Any]
-    joints: dict[str, Any] | None
+    blocks: dict[str, Any]  #: as :func:`masonry.read.frames.readFrame` gives them
+    joints: dict[str, Any] | None  #: likewise; None where there are none to show
+    #: name -> ids of bodies, the façades first of all; all blocks are one part if it is empty
     parts: dict[str, list[int]] = field(default_factory=dict)
+    #: key of :data:`SHADES` by the id of a body; others are bricks
     shades: dict[int, str] = field(default_factory=dict)
-    names: dict[int, str] = field(default_factory=dict)
-    sights: dict[str, Any] = field(default_factory=dict)
-    ground: int | None = None
+    names: dict[int, str] = field(default_factory=dict)  #: texts that stand on bodies
+    sights: dict[str, Any] = field(default_factory=dict)  #: directions by part
+    ground: int | None = None  #: on which blocks fall; it is drawn as far as needed
+    #: numbers of the kinds of joints inside units, which are not drawn unless they crack
     seams: tuple[int, ...] = ()
-    still: Any = 0.0
-    ties: list[dict[str, Any]] = field(default_factory=list)
+    still: Any = 0.0  #: displacement that is taken off all others [m]
+    ties: list[dict[str, Any]] = field(default_factory=list)  #: entries of run.json
 
     def __post_init__(self):
         cells: dict[int, list[Any]] = {}
@@ -182,13 +167,10 @@ class Elevation:
             painting.block(g.corners[row], g.faces, g.normals[row], colour)
             planes = before.normals[row], before.offsets[row]
             near = 1e-4 * built.diagonal[n]
-            painting.cracks(
-                s.cracks(body), planes, g.normals[row], near, magnification, colour
-            )
+            cracks = s.cracks(body)
+            painting.cracks(cracks, planes, g.normals[row], near, magnification, colour)
         painting.finish(axes, self.flat, s.joints is not None)
-        for shade in sorted(
-            {s.shades[body] for body in self.bodies if body in s.shades}
-        ):
+        for shade in sorted({s.shades[b] for b in self.bodies if b in s.shades}):
             axes.add_collection(PolyCollection([], facecolor=SHADES[shade], edgecolor=MORTAR, label=shade))  # fmt: skip
         for body in set(s.names) & set(self.bodies):
             middle = self.flat(s.blocks["points"][s.corners[body]]).mean(axis=0)
@@ -221,8 +203,7 @@ class Elevation:
     def _tie(self, tie, magnification):
         s, ends = self.structure, []
         for body, end in zip(tie["bodies"], np.array(tie["ends_m"])):
-            moved = np.zeros(3)
-            # it moves with its corners; without one it is held by the ground
+            moved = np.zeros(3)  # it is held by the ground, or moves with its corners
             if body in s.corners:
                 nodes = s.corners[body]
                 arms = s.blocks["points"][nodes] - end
@@ -236,15 +217,12 @@ def elevationsOf(structure: Structure) -> list[Elevation]:
     """One elevation for each façade: the largest parts first, and none for a part that is seen in another one's or is held."""
     stands = lambda part: any(structure.shades.get(body) != "held" for body in part)
     parts = {n: part for n, part in structure.parts.items() if stands(part)} or {"": list(structure.corners)}  # fmt: skip
-    found: list[Elevation] = []
-    seen: set[int] = set()
+    found, seen = {}, set()
     for name, members in sorted(parts.items(), key=lambda part: -len(part[1])):
-        if len(seen & set(members)) > 0.5 * len(members):
-            continue
-        found.append(_facade(structure, name, members))
-        seen |= set(found[-1].bodies)
-    order = list(parts)
-    return sorted(found, key=lambda one: order.index(one.name))
+        if len(seen.intersection(members)) <= 0.5 * len(members):
+            found[name] = _facade(structure, name, members)
+            seen.update(found[name].bodies)
+    return [found[name] for name in parts if name in found]
 
 
 def _facade(structure, name, members):
@@ -259,13 +237,13 @@ def _facade(structure, name, members):
     depth = points @ view.towards
     near, far = depth[nodes].max(), depth[nodes].min()
     parted = {body for part in structure.parts.values() for body in part}
-    bodies = []
-    for body, own in structure.corners.items():
+
+    def reaches(body, own):
         high, low = depth[own].max(), depth[own].min()
-        common = min(high, near) - max(low, far)
         inside = INSIDE if body in parted else -1e-6
-        if common >= inside * min(high - low, near - far):
-            bodies.append(body)
+        return min(high, near) - max(low, far) >= inside * min(high - low, near - far)
+
+    bodies = [body for body, own in structure.corners.items() if reaches(body, own)]
     return Elevation(structure, name, view, bodies, members)
 
 
@@ -287,10 +265,10 @@ def figureOf(structure: Structure, title: str, magnification: float | None = Non
     front = max(elevations, key=lambda one: (one.across, len(one.bodies))).view.towards
     names = {one.view.name for one in elevations}
     across = FROM_ABOVE in names or any(one.across for one in elevations)
-    inSpace = (
-        [("", structure, magnification)] if across and IN_SPACE not in names else []
-    )
-    for moment, one, m in [*inSpace, *([(*later, 1)] if later else [])]:
+    moments = [(*later, 1)] if later else []
+    if across and IN_SPACE not in names:
+        moments.insert(0, ("", structure, magnification))
+    for moment, one, m in moments:
         nodes = one.points(one.corners)
         view = spaceViewOf(front, one.blocks["points"][nodes], one.moved[nodes])
         elevations.append(Elevation(one, "", view, list(one.corners), moment=moment))
@@ -335,9 +313,6 @@ def _scale(sizes, columns):
     return min((10.0 - 0.85 * columns) / wide, (9.5 - 0.75 * rows) / high, 7.2 / wide if len(sizes) == 1 else np.inf)  # fmt: skip
 
 
-# -- of a run ---------------------------------------------------------------------------------------------------------
-
-
 def structureOf(run: dict[str, Any], blocks: dict[str, Any], joints: dict[str, Any] | None, directory: FilePath) -> Structure:  # fmt: skip
     """The blocks and joints of a frame with what run.json says of them. Raises Refused.
 
@@ -346,7 +321,8 @@ def structureOf(run: dict[str, Any], blocks: dict[str, Any], joints: dict[str, A
     """
     bodies = set(map(int, blocks["body"]))
     parts, reference = run.get("parts") or {}, run.get("reference_body")
-    wrong = {body for part in parts.values() for body in part} - bodies
+    members = {body for part in parts.values() for body in part}
+    wrong, ground = members - bodies, run.get("ground_body")
     still = np.zeros(3)
     if reference is not None:
         nodes = [c for b, c in zip(blocks["body"], blocks["cells"]) if b == reference]
@@ -356,27 +332,15 @@ def structureOf(run: dict[str, Any], blocks: dict[str, Any], joints: dict[str, A
             wrong.add(reference)
     if wrong:
         raise Refused(f"{directory}: run.json names bodies {sorted(wrong)[:10]}, which are not in the ParaView files")  # fmt: skip
-    for name, members in parts.items():
-        if not members:
+    for name, part in parts.items():
+        if not part:
             raise Refused(f"{directory}: parts: {name} has no bodies")
-    masonry = {body for part in parts.values() for body in part} or bodies
-    held = {one["body"]: "held" for one in run.get("targets") or [] if one.get("held")}
-    return Structure(
-        blocks,
-        joints,
-        parts,
-        {
-            **held,
-            **dict.fromkeys(bodies - masonry - {run.get("ground_body")}, "platen"),
-        },
-        sights=run.get("views") or {},
-        ground=run.get("ground_body"),
-        seams=tuple(
-            n for n, kind in enumerate(run.get("kinds") or []) if kind == CRACK_SURFACE
-        ),  # fmt: skip
-        still=still,
-        ties=run.get("ties") or [],
-    )
+    targets, kinds = run.get("targets") or [], run.get("kinds") or []
+    shades = {one["body"]: "held" for one in targets if one.get("held")}
+    shades.update(dict.fromkeys(bodies - (members or bodies) - {ground}, "platen"))
+    seams = tuple(n for n, kind in enumerate(kinds) if kind == CRACK_SURFACE)
+    more = dict(sights=run.get("views") or {}, ties=run.get("ties") or [], still=still)
+    return Structure(blocks, joints, parts, shades, ground=ground, seams=seams, **more)
 
 
 def cracksOf(run: dict[str, Any], blocks: dict[str, Any], joints: dict[str, Any], when: str, directory: FilePath, later: Any = None) -> Any:  # fmt: skip
@@ -385,10 +349,8 @@ def cracksOf(run: dict[str, Any], blocks: dict[str, Any], joints: dict[str, Any]
     :param when: text that names the moment of the frame; ``later`` is as in :func:`figureOf`; the others are those of
         :func:`structureOf`
     """
-    title = (
-        f"{run['title']}\n{when}\n{{}}; "
-        f"open or slid more than {1e3 * CRACK:g} mm, crushed more than {1e3 * CRUSHED:g} mm"
-    )
+    limits = f"open or slid more than {1e3 * CRACK:g} mm, crushed more than {1e3 * CRUSHED:g} mm"
+    title = f"{run['title']}\n{when}\n{{}}; {limits}"
     return figureOf(structureOf(run, blocks, joints, directory), title, later=later)
 
 

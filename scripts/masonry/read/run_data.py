@@ -62,8 +62,6 @@ class RunData:
         columns: dict[str, Any] = {**curve, MOVED: along * values, MASONRY: None}
         return cls({**data.run, **unknown}, columns.get)
 
-    # -- which rows
-
     @functools.cached_property
     def _stages(self):
         """Loads of the stages, and their rows: lists of the load, the first row and the row after the last."""
@@ -106,8 +104,6 @@ class RunData:
         values = self.whole(name)
         return [values[n] for n in self.rows]
 
-    # -- what kind of run it is
-
     @property
     def isPush(self) -> bool:
         """Whether the run has a push with rows."""
@@ -117,8 +113,6 @@ class RunData:
     def isLooped(self) -> bool:
         """Whether the push goes there and back."""
         return "history" in self.run
-
-    # -- force, peak and drift: each is found here and nowhere else
 
     def carried(self, side: int = 1) -> np.ndarray:
         """The force of the push [kN]: what both ends carry at once, in every row the one that is less along the side. A wave that
@@ -183,8 +177,6 @@ class RunData:
         moved = self.at(self.ofDrift, place)
         return moved / self.height if moved is not None and self.height else None
 
-    # -- states of a push: places in its rows, or None
-
     @functools.cached_property
     def firstCrack(self) -> int | None:
         """Where the first crack of the push is seen."""
@@ -214,8 +206,6 @@ class RunData:
         load = self._stages[-1][0] if self._stages else None
         fell = self.run.get("collapsed") and load and load[0] == "push"
         return len(self.rows) - 1 if fell else None
-
-    # -- what several numbers share
 
     @functools.cached_property
     def sudden(self) -> tuple[float, float]:

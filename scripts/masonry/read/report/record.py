@@ -18,7 +18,7 @@ from ...basics import Refused
 from .. import bilinear, quantities
 from ..cracks import CRACK_SURFACE
 from ..curve_figure import plan
-from ..files import filesOf, readCurve, readRun, readWhole
+from ..files import filesOf, readRun, readText, readWhole
 from .. import drawing, elevation
 from ..frames import readFrame
 from ..model import Model, chosenFrames
@@ -31,65 +31,50 @@ LARGEST_PICTURE = 600e3  # [bytes] of a figure that goes into a report
 
 
 class Record:
-    """The files of a run.
-
-    - ``directory``; ``run``: entries of run.json; ``title``: its title, or the name of the folder
-    - ``columns``: arrays of curve.csv by name; what is no finite number there is NaN. Empty without rows
-    - ``problems``: sentences on what is damaged or missing in the files
-    - ``spec``: the entry ``figure`` of run.json as :func:`masonry.read.curve_figure.plan` completes it, or None
-    - ``rows``: numbers of the rows that it shows
-    - ``picture``: head and numbers of the 3-D picture, or None; ``missing``: why there is none
-    - ``elevation``: the drawing of what was built as SVG and a sentence about it, or None
-    - ``whenCracked``: the moment that cracks.png shows
-    """
+    """The files of a run."""
 
     def __init__(self, directory: FilePath):
-        """Read a folder of results.
-
-        :raises Refused: if it has no run.json
-        """
+        """Read a folder of results. Raises Refused if it has no run.json."""
         self.directory = os.fspath(directory)
-        self.run = readRun(directory)
+        self.run = readRun(directory)  #: its entries
         name = os.path.basename(os.path.abspath(self.directory))
         self.title = str(self.run.get("title") or self.run.get("scene") or name)
+        #: sentences on what is damaged or missing in the files
         self.problems: list[str] = []
+        #: arrays of curve.csv by name; what is no finite number there is NaN. Empty without rows
         self.columns = self._columns()
+        #: the entry ``figure`` of run.json as :func:`masonry.read.curve_figure.plan` completes it, or None, and the rows that it shows
         self.spec, self.rows = None, np.zeros(0, int)
         self._plan()
-        self.picture: Any = None
-        self.missing, self.whenCracked = "", "of the run"
+        self.picture: Any = None  #: head and numbers of the 3-D picture, or None
+        self.missing = ""  #: why there is none
+        self.whenCracked = "of the run"  #: the moment that cracks.png shows
+        #: the drawing of what was built as SVG and a sentence about it, or None
         self.elevation: Any = None
         self.frameTimes: list[float] = []
         self.frameCount = 0
         self._frames()
 
-    # -- curve.csv
-
     def _columns(self):
+        """The columns of curve.csv without lines that are torn; what is left out is a problem."""
         try:
-            found = readCurve(self.directory)
+            text = readText(os.path.join(self.directory, "curve.csv"))
         except Refused as refused:
-            found = self._damaged(str(refused))
-        return {name: np.array(values, float) for name, values in found.items()}
-
-    def _damaged(self, why):
-        """The columns of a curve.csv with numbers that are not finite, or with lines that are torn; else no column."""
-        try:
-            text = readWhole(os.path.join(self.directory, "curve.csv")).decode()
-        except (OSError, UnicodeDecodeError):
-            self.problems.append(why)
+            self.problems.append(str(refused))
             return {}
         heads, *lines = [*csv.reader(text.splitlines())] or [[]]
         rows = [[*map(_finite, line)] for line in lines if len(line) == len(heads)]
         torn = len(lines) - len(rows)
         if torn:
             self.problems.append(f"curve.csv: {torn:,} lines do not have a number for every column, and are left out of this report")  # fmt: skip
-        found = {name: [row[n] for row in rows] for n, name in enumerate(heads)}
+        if not rows:
+            return {}
+        found = dict(zip(heads, np.array(rows, float).T))
         for name, values in found.items():
-            bad = sum(map(math.isnan, values))
+            bad = np.isnan(values).sum()
             if bad:
                 self.problems.append(f"curve.csv: {bad:,} of {len(values):,} values of {name} are no finite numbers, and are left out of this report")  # fmt: skip
-        return found if rows else {}
+        return found
 
     def _plan(self):
         if not self.columns:
@@ -113,8 +98,6 @@ class Record:
         """A column in the rows that the figure shows, or None."""
         values = self.columns.get(name)
         return None if values is None else values[self.rows]
-
-    # -- frames
 
     def _frames(self):
         try:
@@ -164,8 +147,6 @@ class Record:
         structure.parts = {n: [b for b in part if b in structure.corners] for n, part in structure.parts.items()}  # fmt: skip
         return structure
 
-    # -- figures, date
-
     def image(self, name: str) -> str | None:
         """A figure of the folder as an address that holds it all, or None if it is not there."""
         try:
@@ -188,8 +169,6 @@ class Record:
         when = datetime.datetime.fromtimestamp(seconds, datetime.timezone.utc)
         return when.strftime("%Y-%m-%d %H:%M:%S UTC"), "time of the file run.json"
 
-    # -- what kind of run it is
-
     @property
     def stages(self) -> list[dict[str, Any]]:
         """Entries of the stages that can be used."""
@@ -199,10 +178,12 @@ class Record:
     @functools.cached_property
     def data(self) -> RunData:
         """What the numbers of the run are found from: rows whose forces are no finite numbers are left out."""
-        data = RunData(self.run, lambda name: self.columns.get(name))
-        heads = (MOVED, BASE, TOP)
+        data = RunData(self.run, self.columns.get)
+        known = [
+            self.columns[head] for head in (MOVED, BASE, TOP) if head in self.columns
+        ]
         with filesOf(self.directory):
-            rows = [n for n in data.rows if all(math.isfinite(self.columns[head][n]) for head in heads if head in self.columns)]  # fmt: skip
+            rows = [n for n in data.rows if all(math.isfinite(v[n]) for v in known)]
         data.rows = rows  # type: ignore[misc]
         return data
 
@@ -230,15 +211,11 @@ class Record:
     @functools.cached_property
     def ideals(self) -> dict[str, Any]:
         """The bilinear curve of the push by every rule of :mod:`masonry.read.bilinear`, or a text that says why there is none."""
-        try:
-            with filesOf(self.directory):
-                push = bilinear.pushover(self.directory)
-        except Refused as refused:
-            return dict.fromkeys(bilinear.RULES, self._bare(refused))
-        found: dict[str, Any] = {}
+        push, found = None, {}
         for rule in bilinear.RULES:
             try:
                 with filesOf(self.directory):
+                    push = push or bilinear.pushover(self.directory)
                     found[rule] = bilinear.ofRun(push, rule)
             except Refused as refused:
                 found[rule] = self._bare(refused)

@@ -118,9 +118,6 @@ def _places(record, x, y):
     return [(float(x[n]), float(y[n])) for n in rows]
 
 
-# -- what the run found -----------------------------------------------------------------------------------------------
-
-
 def found(record: Record) -> Iterator[Any]:
     """Drifts and other numbers of a push, drifts that were recorded, and what the stages were run for."""
     if record.isPush:
@@ -187,9 +184,6 @@ def _answers(run):
     yield folded(f"All {len(every)} numbers of the stages", table(heads, every, caption, "answers"))  # fmt: skip
 
 
-# -- the bound --------------------------------------------------------------------------------------------------------
-
-
 WHAT_JOINTS_DO = {"opens": "open", "slides": "slide", "crushes": "crush"}
 
 
@@ -228,9 +222,6 @@ def bound(record: Record) -> Iterator[Any]:
     picture = record.image("mechanism.png")
     if picture:
         yield figure(picture, "How the structure gives way in limit analysis. Source: mechanism.png.")  # fmt: skip
-
-
-# -- energies ---------------------------------------------------------------------------------------------------------
 
 
 def energy(record: Record) -> Iterator[Any]:
@@ -281,9 +272,6 @@ def energy(record: Record) -> Iterator[Any]:
     yield figure(svg, f"{about} Source: curve.csv.")
 
 
-# -- cycles -----------------------------------------------------------------------------------------------------------
-
-
 ABOUT_CYCLES = (
     "W is the integral of the base shear over the displacement, K the secant stiffness from peak to peak, A half of the "
     "displacement from peak to peak, and ξ = W/(4π·½·K·A²), the ratio of the viscous damping that takes as much work in a cycle "
@@ -306,9 +294,6 @@ def cycles(record: Record) -> Iterator[Any]:
         lines.append((n, *(written(v) for v in cells)))
     yield table(("cycle", *heads), lines, "Cycles. Source: run.json: cycles", "cycles")
     yield note(ABOUT_CYCLES)
-
-
-# -- forces at the base -----------------------------------------------------------------------------------------------
 
 
 def base(record: Record) -> Iterator[Any]:

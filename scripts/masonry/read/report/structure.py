@@ -113,9 +113,6 @@ def sought(run: dict[str, Any]) -> list[tuple[dict[str, Any], str]]:
     return found
 
 
-# -- what was built ---------------------------------------------------------------------------------------------------
-
-
 def built(record: Record) -> Iterator[Any]:
     """What was built: a drawing, counts, and materials with what was assumed."""
     run = record.run
@@ -239,9 +236,6 @@ def _assumed(run):
             found.append(" ".join(filter(None, (name, str(value or "")))))
     lines = [(kind, ", ".join(found), source) for (kind, source), found in groups.items()]  # fmt: skip
     yield table(("of", "property and value", "where it is from"), lines, "What was not given, and is ASSUMED. Source: run.json: assumed")  # fmt: skip
-
-
-# -- how it was held and loaded ---------------------------------------------------------------------------------------
 
 
 def loaded(record: Record) -> Iterator[Any]:
