@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Bilinear curve, capacity and demand of runs: ``/usr/bin/python3 -m masonry.capacity results/WALL ...``. This program needs no YADE."""
+"""Bilinear curve, capacity and demand of runs: ``/usr/bin/python3 -m masonry.capacity results/WALL ...``."""
 
 from __future__ import annotations
 

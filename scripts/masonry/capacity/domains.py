@@ -3,7 +3,7 @@
 
 A scene says ``scene.domain(top, normal=[50, 100, 200])`` after its presses are described; with ``--preset bound`` that takes no run.
 Limit analysis of the scene is then in run.json, for each of these normal forces, and :func:`domain` reads it, with the peaks of other
-runs beside it. This module needs no YADE.
+runs beside it.
 """
 
 from __future__ import annotations

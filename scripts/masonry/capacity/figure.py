@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Pictures of capacity and demand, and of an N-V domain, by matplotlib without a window. This module needs no YADE."""
+"""Pictures of capacity and demand, and of an N-V domain, by matplotlib without a window."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ DPI = 110
 CURVE, IDEAL, SPECTRUM, TARGET = "0.45", "tab:blue", "tab:green", "tab:red"
 
 
-def _corners(curve, one=1.0):
-    """Displacements and forces of a bilinear curve, over a factor."""
-    moved = np.array([0, curve.yieldDisplacement, curve.ultimateDisplacement]) / one
-    return moved, np.array([0, curve.yieldForce, curve.yieldForce]) / one
+def _corners(curve):
+    """Displacements and forces of a bilinear curve."""
+    moved = [0, curve.yieldDisplacement, curve.ultimateDisplacement]
+    return np.array(moved), np.array([0, curve.yieldForce, curve.yieldForce])
 
 
 def forces(push: Pushover, curve: Bilinear, path: FilePath) -> None:

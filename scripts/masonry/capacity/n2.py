@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The target displacement of a structure by the N2 method, EN 1998-1:2004, annex B. This module needs no YADE.
+"""The target displacement of a structure by the N2 method, EN 1998-1:2004, annex B.
 
 Equations have the numbers of the annex. Units are those of curve.csv: mm, kN, and accelerations in m/s².
 """

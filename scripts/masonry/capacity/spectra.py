@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Elastic response spectra: those of EN 1998-1:2004, and any that a file has. This module needs no YADE."""
+"""Elastic response spectra: those of EN 1998-1:2004, and any that a file has."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Curves of several runs and of measured CSV files over each other, in one picture. This module needs no YADE."""
+"""Curves of several runs and of measured CSV files over each other, in one picture."""
 
 from __future__ import annotations
 

@@ -2,8 +2,7 @@
 """Where joints are cracked, open, slid or crushed, and how a wall gave way: numbers of its joints at one moment.
 
 Joints are given as a frame, a dict of arrays: of a file for ParaView (:func:`masonry.read.frames.readFrame`), or of a scene
-that stands in YADE (``MasonryVtkRecorder().joints()``). Figures and numbers have their thresholds from here. This module
-needs no YADE.
+that stands in YADE (``MasonryVtkRecorder().joints()``). Figures and numbers have their thresholds from here.
 """
 
 from __future__ import annotations

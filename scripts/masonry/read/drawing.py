@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Pictures by matplotlib without a window, written whole or not at all. This module needs no YADE."""
+"""Pictures by matplotlib without a window, written whole or not at all."""
 
 import contextlib
 import io

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Elevations of a structure: what is built, cracks.png, and the mechanism of limit analysis. This module needs no YADE."""
+"""Elevations of a structure: what is built, cracks.png, and the mechanism of limit analysis."""
 
 from __future__ import annotations
 
 import copy
+import functools
 import os
 from dataclasses import dataclass, field
 from typing import Any
@@ -57,7 +58,6 @@ class Structure:
         self.moved = self.blocks["displacement"] - self.still
         if self.ground in self.corners:
             self._lay()
-        self._cracks: dict[int, list[Any]] | None = None
 
     def _lay(self):
         """Let the ground be a slab that is as large as what stands and lies on it."""
@@ -86,23 +86,24 @@ class Structure:
 
         return own[np.sort(ConvexHull(self.blocks["points"][own]).vertices)]
 
-    def cracks(self, body):
-        """What is cracked or crushed on a block, or is a seam, with each point of its joints: the kind of crack, "seam" or None;
-        the crushing, or None [m]; the corners as built [m]; and their displacements with this block [m].
+    @functools.cached_property
+    def cracks(self):
+        """What is cracked or crushed on each block, or is a seam, by the id of its body, with each point of its joints: the kind of
+        crack, "seam" or None; the crushing, or None [m]; the corners as built [m]; and their displacements with this block [m].
         """
-        j = self.joints
-        if self._cracks is None:
-            self._cracks = {}
-            _, opened, cracked = widths(j) if j else ((), (), np.zeros(0, bool))
-            spoilt = crushed(j) if j else cracked
-            seam = np.isin(j["kind"], self.seams) & ~cracked if j and self.seams else spoilt & False  # fmt: skip
-            for i in np.flatnonzero(cracked | spoilt | seam):
-                kind = ("slid", "open")[int(opened[i])] if cracked[i] else "seam" if seam[i] else None  # fmt: skip
-                cell, closure = j["cells"][i], j["crushing"][i] if spoilt[i] else None
-                for own, name in zip(j["bodies"][i], ("displacement", "second_displacement")):  # fmt: skip
-                    crack = kind, closure, j["points"][cell], j[name][cell] - self.still
-                    self._cracks.setdefault(int(own), []).append(crack)
-        return self._cracks.get(body, [])
+        j, found = self.joints, {}
+        if not j:
+            return found
+        _, opened, cracked = widths(j)
+        spoilt = crushed(j)
+        seam = np.isin(j["kind"], self.seams) & ~cracked if self.seams else spoilt & False  # fmt: skip
+        for i in np.flatnonzero(cracked | spoilt | seam):
+            kind = ("slid", "open")[int(opened[i])] if cracked[i] else "seam" if seam[i] else None  # fmt: skip
+            cell, closure = j["cells"][i], j["crushing"][i] if spoilt[i] else None
+            for own, name in zip(j["bodies"][i], ("displacement", "second_displacement")):  # fmt: skip
+                crack = kind, closure, j["points"][cell], j[name][cell] - self.still
+                found.setdefault(int(own), []).append(crack)
+        return found
 
 
 class Elevation:
@@ -167,7 +168,7 @@ class Elevation:
             painting.block(g.corners[row], g.faces, g.normals[row], colour)
             planes = before.normals[row], before.offsets[row]
             near = 1e-4 * built.diagonal[n]
-            cracks = s.cracks(body)
+            cracks = s.cracks.get(body, ())
             painting.cracks(cracks, planes, g.normals[row], near, magnification, colour)
         painting.finish(axes, self.flat, s.joints is not None)
         for shade in sorted({s.shades[b] for b in self.bodies if b in s.shades}):

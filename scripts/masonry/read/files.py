@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""curve.csv and run.json of a run, read again; :mod:`masonry.run.results` lists what is in them. This module needs no YADE."""
+"""curve.csv and run.json of a run, read again; :mod:`masonry.run.results` lists what is in them."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Numbers of loops of force over displacement, simulated or measured. This module needs no YADE.
+"""Numbers of loops of force over displacement, simulated or measured.
 
 Displacements are in mm and forces in kN, so that their products are in J. Both are given as one-dimensional sequences of
 the same length, in the order of time. Rows may be any distance apart and may repeat. Wrong input raises ValueError.

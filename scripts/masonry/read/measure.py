@@ -5,7 +5,6 @@
 right: the compressed corners are the toe at the bottom right and the top left, and a diagonal crack falls to the right.
 Of a wall that follows a history the numbers of cracks and crushing are those of the way to the right, and once more, with
 ``_mirrored`` at the end of the name, those of the way to the left. It has a table of its cycles, too.
-This module needs no YADE.
 """
 
 from __future__ import annotations

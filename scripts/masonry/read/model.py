@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The model of the 3-D picture of a run: its blocks, how they move, and what its joints do. This module needs no YADE.
+"""The model of the 3-D picture of a run: its blocks, how they move, and what its joints do.
 
 The page (:mod:`masonry.read.page`), glTF files (:mod:`masonry.read.gltf`), the report and ParaView's pictures show this.
 """

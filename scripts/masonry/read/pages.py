@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Pages from templates of jinja2. Texts of files of a run are text in them: none becomes a tag or a script. This module needs
-no YADE."""
+"""Pages from templates of jinja2. Texts of files of a run are text in them: none becomes a tag or a script."""
 
 from __future__ import annotations
 

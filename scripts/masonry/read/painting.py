@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The one style of all pictures of blocks: its colours, which pages, models and ParaView have, too, and how matplotlib draws faces,
-light and cracks. This module needs no YADE."""
+light and cracks."""
 
 from __future__ import annotations
 

@@ -6,7 +6,7 @@
 A run starts it early: it loads what it needs while the run goes on. Then it reads the folder from the standard input, up to a zero
 byte, when the files of the run are there. It draws curve.png and cracks.png in a copy of the process, and reads the frames for
 the report meanwhile. When the standard input ends, all figures that the run itself writes are there, too, and it writes
-report.html. It ends without a word if it is given no folder. This module needs no YADE.
+report.html. It ends without a word if it is given no folder.
 """
 
 from __future__ import annotations

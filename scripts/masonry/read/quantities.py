@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The numbers that a run answers with: one list, which run.json and its documentation, the terminal, the report, notebooks, studies
-and capacity read. This module needs no YADE.
+and capacity read.
 
 To add a number is to add a :class:`Quantity` to :data:`QUANTITIES`: its entry in run.json, its name, its unit, what it is, where it
 comes from, and the function that finds it from a :class:`RunData`. That is what a run has at its end, and what its folder has later, so
@@ -16,8 +16,9 @@ import math
 from dataclasses import dataclass
 from typing import Any, Callable, NamedTuple
 
+from ..common.arguments import isNumber
 from . import cracks, curves, loops
-from .run_data import BASE, MASONRY, MOVED, TOP, RunData
+from .run_data import BASE, FALL, MASONRY, MOVED, TOP, RunData
 
 IMBALANCE = 0.1  # a push with a larger dynamic imbalance is too fast: its peak is off by 1 to 5 % and more
 
@@ -106,7 +107,7 @@ STATES = (
           "The first row at which the joints have dissipated, in tension and shear since the push began, more than 1e-5 of the elastic energy; of dry joints it is where slip begins to count.",
           "no crack was seen in the push"),
     State("peak", "displacement_at_peak_mm", "drift_at_peak_mrad", lambda d: d.peak(), "The largest force that both ends carry at once."),
-    State("0.8 of the peak", "displacement_at_fall_mm", "drift_at_fall_mrad", lambda d: d.fallen,
+    State("0.8 of the peak", "displacement_at_fall_mm", "drift_at_fall_mrad", lambda d: d.fallenTo(FALL),
           "Where the force that both ends carry at once has fallen to 0.8 of its peak, after it, for longer than a first period; of cycles on the envelope.",
           "the force never falls to 0.8 of its peak", True),
     State("collapse", "collapse_displacement_mm", "drift_at_collapse_mrad", lambda d: d.collapse, "The last row of a push that ended in a collapse.",
@@ -137,10 +138,6 @@ GROUPS: dict[str, tuple[str, Callable[[RunData], bool]]] = {
     "joint": ("A run that records the means of a joint has these, with its name before them if it has one", lambda d: False),
     "bound": ("A run that pushes, leans or tilts has these, if limit analysis (masonry.limit) applies", lambda d: False),
 }  # fmt: skip
-
-
-def _ofPattern(key: str) -> Callable[[RunData], Any]:
-    return lambda data: data.pattern[key]
 
 
 Q = Quantity
@@ -181,7 +178,7 @@ QUANTITIES: tuple[Quantity, ...] = (
     Q("bound_base_shear_kN", "limit analysis of the push", "kN", "Bound of the force of the first push.", "masonry.limit", group="bound", brief=True),
     Q("negative_bound_base_shear_kN", "limit analysis of the way back", "kN", "Likewise of the way back.", "masonry.limit", group="bound"),
     Q("bound_acceleration", "limit analysis of the acceleration", "g", "Bound of the first lean or tilt, horizontal over vertical.", "masonry.limit", group="bound", brief=True),
-    *(Q(key, "", "-", f"As of {where}.", where, _ofPattern(key), "wall") for key, where in cracks.MEASURED.items()),
+    *(Q(key, "", "-", f"As of {where}.", where, lambda d, key=key: d.pattern[key], "wall") for key, where in cracks.MEASURED.items()),
     Q("peak_normal_stress_MPa", "largest normal stress", "MPa", "Largest mean normal stress of the joint, positive in tension.", "curve.csv: normal_stress_MPa", lambda c: max(c("normal_stress_MPa")), "joint", True),
     Q("peak_compressive_stress_MPa", "largest compression", "MPa", "Largest mean compression of the joint, as a positive number.", "curve.csv: normal_stress_MPa", lambda c: -min(c("normal_stress_MPa")), "joint", True),
     Q("peak_shear_stress_MPa", "largest shear stress", "MPa", "Largest mean shear stress of the joint.", "curve.csv: shear_stress_MPa", lambda c: max(c("shear_stress_MPa")), "joint", True),
@@ -241,11 +238,8 @@ def ofJoint(column: Callable[[str], Any], prefixed: Callable[[str], str], brief:
     :param brief: whether only those are wanted that the terminal shows
     """
     own = lambda head: column(prefixed(head))
-    return {
-        prefixed(one.key): one.of(own)  # type: ignore[arg-type]
-        for one in QUANTITIES
-        if one.group == "joint" and one.of and (one.brief or not brief)
-    }
+    ones = [q for q in QUANTITIES if q.group == "joint" and q.brief >= brief]
+    return {prefixed(one.key): one.of(own) for one in ones if one.of}
 
 
 def known(data: RunData) -> dict[str, Any]:
@@ -259,12 +253,10 @@ def shown(entries: dict[str, Any], *groups: str, brief: bool = False) -> list[Nu
     :param entries: of :func:`known`, or of run.json
     :param brief: whether only those are wanted that a notebook shows
     """
-    fine = lambda v: isinstance(v, (int, float)) and not isinstance(v, bool) and math.isfinite(v)  # fmt: skip
-    return [
-        one.shown(entries[one.key])
-        for one in QUANTITIES
-        if one.name and (not groups or one.group in groups) and (one.brief or not brief) and fine(entries.get(one.key))
-    ]  # fmt: skip
+    fine = lambda v: isNumber(v) and math.isfinite(v)
+    named = [q for q in QUANTITIES if q.name and q.brief >= brief]
+    named = [q for q in named if not groups or q.group in groups]
+    return [q.shown(entries[q.key]) for q in named if fine(entries.get(q.key))]
 
 
 def measures(run: dict[str, Any]) -> dict[str, Any]:
@@ -306,8 +298,7 @@ def described() -> str:
     """What run.json has of these, for its documentation: a list of reStructuredText for every group."""
     text = ""
     for group, (title, _) in GROUPS.items():
-        ones = [one for one in QUANTITIES if one.group == group]
-        lines = (f"- ``{one.key}``: {one.meaning} Source: {one.source} [{one.unit}]" for one in ones)  # fmt: skip
+        lines = (f"- ``{q.key}``: {q.meaning} Source: {q.source} [{q.unit}]" for q in QUANTITIES if q.group == group)  # fmt: skip
         text += "\n".join(["", f"{title}:", "", *lines, ""])
     return text
 

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What the numbers of a run are found from: its rows, its force, its peak, its drift and the states of its push. This module needs no
-YADE."""
+"""What the numbers of a run are found from: its rows, its force, its peak, its drift and the states of its push."""
 
 from __future__ import annotations
 
@@ -66,13 +65,10 @@ class RunData:
     def _stages(self):
         """Loads of the stages, and their rows: lists of the load, the first row and the row after the last."""
         found = self.run.get("stages") or []
-        ends = [*(one["first_row"] for one in found[1:]), self._count]
-        return [(one.get("load"), one["first_row"], end) for one, end in zip(found, ends)]  # fmt: skip
-
-    @functools.cached_property
-    def _count(self):
         columns = (self.column(name) for name in (MOVED, "time_s"))
-        return len(next((values for values in columns if values is not None), ()))
+        count = len(next((values for values in columns if values is not None), ()))
+        ends = [*(one["first_row"] for one in found[1:]), count]
+        return [(one.get("load"), one["first_row"], end) for one, end in zip(found, ends)]  # fmt: skip
 
     @functools.cached_property
     def pushes(self) -> list[tuple[int, int]]:
@@ -158,9 +154,8 @@ class RunData:
 
     def at(self, values: Sequence[float], place: float | None) -> float | None:
         """A value between rows, along a straight line. ``place``: a number of a row with a fraction, or None."""
-        if place is None:
-            return None
-        return float(np.interp(place, np.arange(len(values)), values))
+        rows = np.arange(len(values))
+        return None if place is None else float(np.interp(place, rows, values))
 
     def place(self, find: Callable[[RunData], float | None]) -> float | None:
         """Where a state is in the rows of the push, None if it is not reached or curve.csv does not have its columns.
@@ -181,16 +176,10 @@ class RunData:
     def firstCrack(self) -> int | None:
         """Where the first crack of the push is seen."""
         found = (curves.firstCrack(self.whole, slice(*push)) for push in self.pushes)
-        row = next((row for row in found if row is not None), None)
-        return None if row is None else self.rows.index(row)
-
-    @functools.cached_property
-    def fallen(self) -> float | None:
-        """Where the force has fallen to :data:`FALL` of its peak, after it."""
-        return self.fallenTo(FALL)
+        return next((self.rows.index(row) for row in found if row is not None), None)
 
     def fallenTo(self, share: float) -> float | None:
-        """As :attr:`fallen`, of another share; in loops on the envelope of the positive side."""
+        """Where the force has fallen to a share of its peak, after it; in loops on the envelope of the positive side."""
         moved, force = np.array(self[MOVED]), self.carried(1)
         rows = loops.envelope(moved)[0] if self.isLooped else np.arange(len(moved))
         if not len(rows) or force[rows].max() <= 0:

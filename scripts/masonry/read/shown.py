@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The curve and the folder of a run as objects that show themselves in a notebook. This module needs no YADE.
+"""The curve and the folder of a run as objects that show themselves in a notebook.
 
     from masonry.read.shown import RunFolder
 
@@ -37,6 +37,11 @@ def unitOf(head, meaning):
         return found[1]
     last = head.rpartition("_")[2]
     return last if last in UNITS else "-"
+
+
+def bare(meaning):
+    """The meaning of a column without its unit."""
+    return re.sub(r" *\[[^\[\]]+\]$", "", str(meaning))
 
 
 #: Units at the end of names of columns that a script adds, whose meaning need not have them.
@@ -101,7 +106,7 @@ class Curve:
 
     def _repr_html_(self):
         title = f"{len(self)} rows, {len(self._columns)} columns"
-        rows = [(n, self.units[n], *self._ends(n), self._about(n)) for n in self]
+        rows = [(n, self.units[n], *self._ends(n), bare(self.meanings[n])) for n in self]  # fmt: skip
         heads = "column", "unit", "first", "last", "smallest", "largest", "meaning"
         table = notebook.table(rows, heads)
         return notebook.titled(title, self.picture(), notebook.folded("columns", table))  # fmt: skip
@@ -115,9 +120,6 @@ class Curve:
         if not len(values):
             return [""] * 4
         return [f"{v:.4g}" for v in (values[0], values[-1], values.min(), values.max())]
-
-    def _about(self, name):
-        return re.sub(r" *\[[^\[\]]+\]$", "", self.meanings[name])
 
 
 def _drawn(draws):
@@ -136,10 +138,8 @@ def curveOf(columns, run, directory):
     :param run: entries of run.json: ``columns``, and ``figure`` and ``title`` if it is to be drawn
     :param directory: folder, for messages
     """
-    draws = None
-    if "figure" in run:
-        draws = lambda: curve_figure.figureOf(run, columns, directory)
-    return Curve(columns, run.get("columns", {}), draws)
+    draws = lambda: curve_figure.figureOf(run, columns, directory)
+    return Curve(columns, run.get("columns", {}), draws if "figure" in run else None)
 
 
 def cracksOf(run, blocks, joints, when, directory):

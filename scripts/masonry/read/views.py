@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""From where a structure is seen in a picture, and how much its displacements are magnified. This module needs no YADE."""
+"""From where a structure is seen in a picture, and how much its displacements are magnified."""
 
 from __future__ import annotations
 
@@ -57,15 +57,13 @@ def viewOf(points, normals, areas, sight=None):
     if second > 1.05 * first or second > first / 1.05 and towardsX:
         first, second, along, across = second, first, across, along
     if sight is not None:
-        away = -np.array(sight, float) / np.linalg.norm(sight)
-    else:
-        away = np.array([0, 0, 1.0])
-        total = areas.sum()
-        stands = lambda side: areas @ (normals[:, :2] @ side) ** 2 < 1e-6 * total
-        standing = [side for side in (across, along) if total and stands(side)]
-        if standing or second <= height:
-            away = np.append(standing[0] if standing else across, 0)
-    return _viewFrom(away, points, sight is None)
+        return _viewFrom(-np.array(sight, float) / np.linalg.norm(sight), points, False)
+    total = areas.sum()
+    stands = lambda side: areas @ (normals[:, :2] @ side) ** 2 < 1e-6 * total
+    standing = [side for side in (across, along) if total and stands(side)]
+    if standing or second <= height:
+        return _viewFrom(np.append([*standing, across][0], 0), points, True)
+    return _viewFrom(np.array([0, 0, 1.0]), points, True)
 
 
 def spaceViewOf(front, points, moved):
@@ -93,8 +91,7 @@ def spaceViewOf(front, points, moved):
 def _viewFrom(away, points, either):
     """The view of points by a viewer in this direction; ``either``: or opposite, if that turns x or y to the right."""
     if abs(away[2]) > 1 - 1e-6:
-        right, up = np.eye(3)[:2]
-        name = FROM_ABOVE
+        (right, up), name = np.eye(3)[:2], FROM_ABOVE
     else:
         up = np.array([0, 0, 1]) - away[2] * away
         up /= np.linalg.norm(up)
@@ -128,11 +125,9 @@ def magnificationOf(joints: Any, moved: Any, blocks: Any) -> int:
         return 1
     size = np.ptp(np.concatenate(blocks), axis=0).max()
     far = np.linalg.norm(moved, axis=1).max()
-    closed = max(-joints["opening"].min(), 0)
-    fits = lambda m: m * far <= FARTHEST * size and m * closed <= OVERLAP * courseOf(
-        blocks
-    )
-    return next((m for m in MAGNIFICATIONS if fits(m)), 1)
+    closed, most = max(-joints["opening"].min(), 0), OVERLAP * courseOf(blocks)
+    fits = lambda m: m * far <= FARTHEST * size and m * closed <= most
+    return next(filter(fits, MAGNIFICATIONS), 1)
 
 
 def courseOf(blocks: Any) -> float:

@@ -2,7 +2,7 @@
 """The numbers of a run for ``viewer.js``: a JSON head, and arrays that are rounded, compressed and written in base64.
 
 A displacement is a whole number of steps of 1/32,767 of the largest, other values are whole numbers of 1/4,000 of the largest
-in the frames, and damage is in steps of 1/255. This module needs no YADE.
+in the frames, and damage is in steps of 1/255.
 """
 
 from __future__ import annotations

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""three.js, as the Debian package libjs-three has it, and its licence. This module needs no YADE."""
+"""three.js, as the Debian package libjs-three has it, and its licence."""
 
 import os
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Pieces of a report, which its template turns into HTML, and numbers as a person writes them. This module needs no YADE."""
+"""Pieces of a report, which its template turns into HTML, and numbers as a person writes them."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What a report is made of: the files of a run, as far as they can be read. This module needs no YADE."""
+"""What a report is made of: the files of a run, as far as they can be read."""
 
 from __future__ import annotations
 
@@ -169,12 +169,6 @@ class Record:
         when = datetime.datetime.fromtimestamp(seconds, datetime.timezone.utc)
         return when.strftime("%Y-%m-%d %H:%M:%S UTC"), "time of the file run.json"
 
-    @property
-    def stages(self) -> list[dict[str, Any]]:
-        """Entries of the stages that can be used."""
-        found = self.run.get("stages")
-        return [s for s in found if isinstance(s, dict)] if isinstance(found, list) else []  # fmt: skip
-
     @functools.cached_property
     def data(self) -> RunData:
         """What the numbers of the run are found from: rows whose forces are no finite numbers are left out."""
@@ -195,7 +189,7 @@ class Record:
     @property
     def pushes(self) -> list[int]:
         """Numbers of the stages that push, from 1."""
-        loads = [stage.get("load") for stage in self.stages]
+        loads = [stage.get("load") for stage in entriesOf(self.run, "stages")]
         return [n for n, load in enumerate(loads, 1) if isinstance(load, list) and load[:1] == ["push"]]  # fmt: skip
 
     @property
@@ -224,6 +218,12 @@ class Record:
     def _bare(self, refused):
         """The text of a refusal without the folder at its beginning."""
         return str(refused).removeprefix(f"{self.directory}: ")
+
+
+def entriesOf(run: dict[str, Any], key: str) -> list[dict[str, Any]]:
+    """Those entries of a list of run.json that can be used."""
+    found = run.get(key)
+    return [one for one in found if isinstance(one, dict)] if isinstance(found, list) else []  # fmt: skip
 
 
 def _finite(text):

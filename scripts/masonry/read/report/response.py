@@ -1,20 +1,19 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Parts of a report on what the structure did: its curve, drifts, bound, energies, cycles and forces at the base. This module
-needs no YADE."""
+"""Parts of a report on what the structure did: its curve, drifts, bound, energies, cycles and forces at the base."""
 
 from __future__ import annotations
 
-import re
 from typing import Any, Iterator
 
 import numpy as np
 
 from .. import bilinear, curve_figure, drawing, quantities
 from ..curve_figure import energies, unitOf
+from ..shown import bare
 
 from .pieces import Badged, Number, figure, folded, isNumber, missing, note, numbers, share, table, withUnit, written  # fmt: skip
-from .record import Record
-from .structure import answersOf, nameOf, sought, valueOf
+from .record import Record, entriesOf
+from .structure import firstUpper, nameOf, sought, valueOf
 
 MOST_ANSWERS = 12  # in the table of what stages found; all are in a folded one
 NOISE = 1e-6  # of the largest force of a column: what is below is round-off
@@ -72,11 +71,8 @@ def _ideal(record):
     if all(isinstance(one, str) for one in ideals.values()):
         yield missing(f"There is no bilinear curve: {ideals['masonry']}.")
         return
-    known = {
-        rule: {n.name: n for n in one.numbers()}
-        for rule, one in ideals.items()
-        if not isinstance(one, str)
-    }
+    good = {rule: one for rule, one in ideals.items() if not isinstance(one, str)}
+    known = {rule: {n.name: n for n in one.numbers()} for rule, one in good.items()}
     lines = []
     for name, what in OF_IDEAL.items():
         values = [_idealOf(known.get(rule, {}).get(name)) for rule in ideals]
@@ -85,10 +81,10 @@ def _ideal(record):
     heads = ("quantity", *(bilinear.RULES[rule] for rule in ideals), "what it is")
     caption = "Bilinear idealisation of the force that both ends carry at once. Source: curve.csv: displacement_mm, base_shear_kN, top_shear_kN"
     yield table(heads, lines, caption, "ideal")
-    notes = dict.fromkeys(n for one in ideals.values() if not isinstance(one, str) for n in one.notes)  # fmt: skip
-    notes.update((f"{bilinear.RULES[rule]}: none, because {one}", None) for rule, one in ideals.items() if isinstance(one, str))  # fmt: skip
-    for text in notes:
-        yield note(f"{text[:1].upper()}{text[1:]}.")
+    notes = [n for one in good.values() for n in one.notes]
+    notes += [f"{bilinear.RULES[rule]}: none, because {ideals[rule]}" for rule in ideals if rule not in good]  # fmt: skip
+    for text in dict.fromkeys(notes):
+        yield note(f"{firstUpper(text)}.")
 
 
 def _idealOf(number):
@@ -104,7 +100,7 @@ def _aboutCurve(spec, y):
     label = str(spec["y_label"])
     unit = unitOf({"label": label, "column": spec["y"][0]["column"]})
     return (
-        f"{label[:1].upper() + label[1:]}, {spec['y'][0]['label']}, over {spec['x']['label']}: {len(y):,} rows, from {withUnit(float(y.min()), unit)} to "
+        f"{firstUpper(label)}, {spec['y'][0]['label']}, over {spec['x']['label']}: {len(y):,} rows, from {withUnit(float(y.min()), unit)} to "
         f"{withUnit(float(y.max()), unit)}."
     )
 
@@ -133,13 +129,14 @@ def _states(record):
     """First crack, peak, loss of force and collapse: displacement, drift and force."""
     data, entries, lines = record.data, record.numbers, []
     for state in quantities.STATES:
-        moved, drift = entries.get(state.displacement), entries.get(state.drift)
-        source = f"run.json: {state.displacement}"
-        if not isNumber(moved):
-            lines.append((state.name, "none", "none", "none", f"{state.meaning} Here: {state.missing}.", source))  # fmt: skip
-            continue
-        carried = data.at(data.carried(), data.place(state.find))
-        lines.append((state.name, withUnit(moved, "mm"), withUnit(drift, "mrad"), withUnit(carried, "kN"), state.meaning, source))  # fmt: skip
+        moved, meaning = entries.get(state.displacement), state.meaning
+        found = ["none"] * 3
+        if isNumber(moved):
+            carried = data.at(data.carried(), data.place(state.find))
+            found = [withUnit(moved, "mm"), withUnit(entries.get(state.drift), "mrad"), withUnit(carried, "kN")]  # fmt: skip
+        else:
+            meaning += f" Here: {state.missing}."
+        lines.append((state.name, *found, meaning, f"run.json: {state.displacement}"))
     heads = ("state", "displacement", "drift", "force at both ends", "what it is", "source")  # fmt: skip
     yield table(heads, lines, "Drifts of the push", "states")
     if data.height:
@@ -156,18 +153,13 @@ def _drifts(record):
         values = values[np.isfinite(values)]
         if len(values):
             at = int(np.abs(values).argmax())
-            rows.append(Number(f"largest {name.removesuffix('_mrad')}", float(values[at]), "mrad", f"Of all rows the one with the largest size: {_bare(meanings.get(name))}.", f"curve.csv: {name}"))  # fmt: skip
+            rows.append(Number(f"largest {name.removesuffix('_mrad')}", float(values[at]), "mrad", f"Of all rows the one with the largest size: {bare(meanings.get(name))}.", f"curve.csv: {name}"))  # fmt: skip
     if rows:
         yield numbers(rows, "Drifts that were recorded")
 
 
-def _bare(meaning):
-    """The meaning of a column without its unit."""
-    return re.sub(r" *\[[^\[\]]+\]$", "", str(meaning))
-
-
 def _answers(run):
-    answers = answersOf(run)
+    answers = entriesOf(run, "answers")
     if not answers:
         yield note("No stage was run for a number. Source: run.json: answers.")
         return
@@ -175,13 +167,14 @@ def _answers(run):
     heads = ("stage and number", "value", "how it was found")
     caption = "What the stages were run for. Source: run.json: answers"
     every = [line(a, nameOf(a)) for a in answers]
+    whole = table(heads, every, caption, "answers")
     if len(every) <= MOST_ANSWERS:
-        yield table(heads, every, caption, "answers")
+        yield whole
         return
     found = [line(a, what) for a, what in sought(run)]
     if found:
         yield table(heads, found, caption, "answers")
-    yield folded(f"All {len(every)} numbers of the stages", table(heads, every, caption, "answers"))  # fmt: skip
+    yield folded(f"All {len(every)} numbers of the stages", whole)
 
 
 WHAT_JOINTS_DO = {"opens": "open", "slides": "slide", "crushes": "crush"}
@@ -189,7 +182,7 @@ WHAT_JOINTS_DO = {"opens": "open", "slides": "slide", "crushes": "crush"}
 
 def bound(record: Record) -> Iterator[Any]:
     """The bound by limit analysis."""
-    entries = [b for b in record.run.get("bounds") or [] if isinstance(b, dict)]
+    entries = entriesOf(record.run, "bounds")
     if not entries:
         yield missing("There is no bound: limit analysis is made where a structure is pushed, leans or tilts, of up to 3,000 joints, and not with --lean. Source: run.json: bounds.")  # fmt: skip
         return
@@ -209,12 +202,9 @@ def bound(record: Record) -> Iterator[Any]:
         lines.append((one.get("load", "?"), withUnit(one["factor"], unit), joints or "–", "; ".join([kind, *further])))  # fmt: skip
     heads = ("load", "factor", "joints of the mechanism", "what it is")
     yield table(heads, lines, "Limit analysis of the same blocks, rigid and with small displacements. Source: run.json: bounds")  # fmt: skip
-    pairs = (
-        ("peak_at_both_ends_kN", "bound_base_shear_kN", "peak over bound"),
-        ("negative_peak_at_both_ends_kN", "negative_bound_base_shear_kN", "peak of the other side over its bound"),
-    )  # fmt: skip
     run, rows = record.numbers, []
-    for peak, limit, what in pairs:
+    for side, what in (("", "peak over bound"), ("negative_", "peak of the other side over its bound")):  # fmt: skip
+        peak, limit = f"{side}peak_at_both_ends_kN", f"{side}bound_base_shear_kN"
         if isNumber(run.get(peak)) and isNumber(run.get(limit)) and run[limit]:
             rows.append(Number(what, abs(run[peak] / run[limit]), "-", "Of an upper bound it cannot be much above 1; a run warns where it is.", f"run.json: {peak}, {limit}"))  # fmt: skip
     if rows:
@@ -303,8 +293,8 @@ def base(record: Record) -> Iterator[Any]:
     if names:
         yield _forces(record, names, "Forces of the sections that were recorded")
         return
-    names = [f"{held}_force_{axis}_kN" for held in record.run.get("held") or [] for axis in "xyz"]  # fmt: skip
-    reactions = [name for name in names if name in record.columns]
+    held = record.run.get("held") or []
+    reactions = [n for one in held for axis in "xyz" if (n := f"{one}_force_{axis}_kN") in record.columns]  # fmt: skip
     yield missing("The moment at the base is not known: no section was recorded. scene.section(z) in the script records the normal force, the shear force and the moment of a horizontal section.")  # fmt: skip
     if not reactions and "base_shear_kN" in record.columns and record.isPush:
         reactions = ["base_shear_kN"]
@@ -314,21 +304,19 @@ def base(record: Record) -> Iterator[Any]:
 
 def _forces(record, names, caption):
     meanings = record.run.get("columns") or {}
-    places = {"first row": record.rows[0], "last row": record.rows[-1]}
+    places = {"first row": record.rows[0]}
     if record.isPush and record.data.rows:
-        at = record.data.rows[record.data.peak()]
-        places = {"first row": record.rows[0], "at the peak": at, "last row": record.rows[-1]}  # fmt: skip
+        places["at the peak"] = record.data.rows[record.data.peak()]
+    places["last row"] = record.rows[-1]
     lines = []
     for name in names:
         values, unit = record.columns[name], name.rpartition("_")[2]
         shown = values[record.rows]
         finite = shown[np.isfinite(shown)]
         ends = [finite.min(), finite.max()] if len(finite) else [np.nan] * 2
-        most = max(map(abs, ends))
-        texts = [
-            "≈ 0" if abs(v) < NOISE * most else withUnit(float(v), unit)
-            for v in [*(values[n] for n in places.values()), *ends]
-        ]
-        lines.append((name.removesuffix("_" + unit), *texts, _bare(meanings.get(name)), f"curve.csv: {name}"))  # fmt: skip
+        least = NOISE * max(map(abs, ends))
+        every = [*values[list(places.values())], *ends]
+        texts = ["≈ 0" if abs(v) < least else withUnit(float(v), unit) for v in every]
+        lines.append((name.removesuffix("_" + unit), *texts, bare(meanings.get(name)), f"curve.csv: {name}"))  # fmt: skip
     heads = ("force", *places, "smallest", "largest", "what it is", "source")
     return table(heads, lines, caption, "forces")

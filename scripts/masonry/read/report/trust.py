@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Parts of a report on the pictures, and on how far to trust the numbers. This module needs no YADE."""
+"""Parts of a report on the pictures, and on how far to trust the numbers."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any, Iterator
 from .. import quantities
 
 from .pieces import UNKNOWN, Number, Piece, figure, isNumber, listed, missing, note, numbers, table, withUnit, written  # fmt: skip
-from .record import Record
+from .record import Record, entriesOf
 
 
 def pictures(record: Record) -> Iterator[Any]:
@@ -64,11 +64,9 @@ def trust(record: Record) -> Iterator[Any]:
 
 
 def _said(run):
-    notes = run.get("notes")
-    lines = [one for one in notes if isinstance(one, dict)] if isinstance(notes, list) else []  # fmt: skip
-    if lines:
-        when = lambda one: (str(one.get("stage") or "before the first stage"), withUnit(one["time_s"], "s") if isNumber(one.get("time_s")) else UNKNOWN)  # fmt: skip
-        rows = [(*when(one), str(one.get("text", UNKNOWN))) for one in lines]
+    when = lambda one: (str(one.get("stage") or "before the first stage"), withUnit(one.get("time_s"), "s"))  # fmt: skip
+    rows = [(*when(one), str(one.get("text", UNKNOWN))) for one in entriesOf(run, "notes")]  # fmt: skip
+    if rows:
         yield table(("stage", "time in the scene", "text"), rows, "What the run said. Source: run.json: notes", "notes")  # fmt: skip
 
 
