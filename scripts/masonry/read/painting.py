@@ -66,9 +66,8 @@ def fromBackToFront(solids: Any, sight: np.ndarray) -> list[int]:
             nearer = _nearer(of[a], of[b], sight[2], slack)
             if nearer:
                 after[a if nearer > 0 else b].append(b if nearer > 0 else a)
-    pending = np.bincount(
-        [n for fronts in after for n in fronts], minlength=solids.count
-    )
+    hidden = [n for fronts in after for n in fronts]
+    pending = np.bincount(hidden, minlength=solids.count)
     depth, left, order = (low + high)[:, 2], set(range(solids.count)), []
     ready = [(depth[n], n) for n in np.flatnonzero(pending == 0).tolist()]
     heapq.heapify(ready)
@@ -153,9 +152,8 @@ class Painting:
                     edge = CRACKS.get(kind) or self.lit(colour, side)
                     self.add(ends, "none", edge, self.bold if kind in CRACKS else 2 * self.thin)  # fmt: skip
                 if closure is not None:
-                    self.spots.append(
-                        (ends.mean(axis=0), 12 + 8e3 * min(closure, MOST))
-                    )
+                    size = 12 + 8e3 * min(closure, MOST)
+                    self.spots.append((ends.mean(axis=0), size))
 
     def finish(self, axes, flat, legend):
         """Put it into axes, with names for the legend.

@@ -30,12 +30,6 @@ END = b"\0"  # of the name of the folder
 NO_REPORT = 3
 
 
-def _load() -> None:
-    with contextlib.suppress(ImportError):  # it is said when something is drawn
-        import matplotlib.backends.backend_agg  # noqa: F401
-        import matplotlib.style  # noqa: F401
-
-
 def _folder() -> str:
     """The folder from the standard input, or an empty text if it ends before."""
     name = b""
@@ -62,7 +56,9 @@ def _draw(folder: str) -> int:
 
 def main() -> int:
     """The program. Returns its exit status."""
-    _load()
+    with contextlib.suppress(ImportError):  # it is said when something is drawn
+        import matplotlib.backends.backend_agg  # noqa: F401
+        import matplotlib.style  # noqa: F401
     folder = _folder()
     if not folder:
         return 0

@@ -32,11 +32,8 @@ def unitOf(head, meaning):
 
     :param head: its name in curve.csv; ``meaning``: its line in the entry ``columns`` of run.json
     """
-    found = re.search(r"\[([^\[\]]+)\]$", meaning)
-    if found:
-        return found[1]
-    last = head.rpartition("_")[2]
-    return last if last in UNITS else "-"
+    found, last = re.search(r"\[([^\[\]]+)\]$", meaning), head.rpartition("_")[2]
+    return found[1] if found else last if last in UNITS else "-"
 
 
 def bare(meaning):
@@ -72,9 +69,6 @@ class Curve:
 
     def __iter__(self):
         return iter(self._columns)
-
-    def __contains__(self, name):
-        return name in self._columns
 
     def __len__(self):
         """How many rows there are."""

@@ -27,7 +27,7 @@ class _Arrays:
     """Arrays on their way to a page one after the other, and what the page must know to read them."""
 
     def __init__(self):
-        self.known, self._bytes = {}, b""
+        self.known, self.bytes = {}, b""
 
     def add(self, name, values, kind, step=1.0, frames=False):
         """Append an array.
@@ -38,8 +38,8 @@ class _Arrays:
         """
         values = np.ascontiguousarray(values, "<" + kind)
         row = values[0].size if frames else 1
-        self.known[name] = {"kind": kind, "at": len(self._bytes), "count": values.size, "row": row, "step": float(step)}  # fmt: skip
-        self._bytes += values.tobytes() + bytes(-values.nbytes % 4)
+        self.known[name] = {"kind": kind, "at": len(self.bytes), "count": values.size, "row": row, "step": float(step)}  # fmt: skip
+        self.bytes += values.tobytes() + bytes(-values.nbytes % 4)
 
     def addRounded(self, name, values, kind, levels):
         """Append numbers of frames, rounded to so many steps up to the largest."""
@@ -49,9 +49,6 @@ class _Arrays:
     def addMotion(self, name, values):
         """Append displacements or rotations of frames."""
         self.addRounded(name, values, "i2", 32767)
-
-    def text(self):
-        return base64.b64encode(zlib.compress(self._bytes, 9)).decode()
 
 
 def dataOf(directory: FilePath, number: int | None = None, magnification: float | None = None) -> tuple[dict[str, Any], str]:  # fmt: skip
@@ -102,7 +99,7 @@ def dataOfModel(model: Model, number: int | None = None, magnification: float | 
         keptPoints=len(joints.between),
         arrays=arrays.known,
     )
-    return head, arrays.text()
+    return head, base64.b64encode(zlib.compress(arrays.bytes, 9)).decode()
 
 
 def _head(model, magnification, curve):

@@ -46,11 +46,6 @@ def withUnit(value: Any, unit: str, digits: int = DIGITS) -> str:
     return text if unit == "-" or text == UNKNOWN else f"{text}\u00a0{unit}"
 
 
-def share(value: Any, digits: int = 2) -> str:
-    """A share as a percentage."""
-    return withUnit(100 * value if isNumber(value) else None, "%", digits)
-
-
 class Badged(NamedTuple):
     """A text in a table with a word beside it in a frame, as "assumed"."""
 

@@ -11,7 +11,7 @@ from .. import bilinear, curve_figure, drawing, quantities
 from ..curve_figure import energies, unitOf
 from ..shown import bare
 
-from .pieces import Badged, Number, figure, folded, isNumber, missing, note, numbers, share, table, withUnit, written  # fmt: skip
+from .pieces import Badged, Number, figure, folded, isNumber, missing, note, numbers, table, withUnit, written  # fmt: skip
 from .record import Record, entriesOf
 from .structure import firstUpper, nameOf, sought, valueOf
 
@@ -230,13 +230,12 @@ def energy(record: Record) -> Iterator[Any]:
     stack, work = energies(columns)
     change = lambda name: float(columns[name][-1] - columns[name][0])
     known = {**quantities.ENERGIES, **quantities.OF_CONNECTORS, **quantities.OF_CONTACTS}  # fmt: skip
-    kinds = {f"{name}_J": kind for name, (_, kind) in known.items()}
     rare = ("refining_J", "handing_J")  # where joints get points, or turn into contacts
     columns = {n: v for n, v in columns.items() if n not in rare or v.any()}
-    of = lambda kind: [n for n in kinds if n in columns and kinds[n] == kind]
+    of = lambda kind: [f"{n}_J" for n in known if f"{n}_J" in columns and known[n][1] == kind]  # fmt: skip
     inputs, elastic, spent = of("in"), of("stored"), of("spent")
     total = sum(map(change, inputs))
-    part = lambda value: share(value / total) if total > 0 else written(None)
+    part = lambda value: withUnit(100 * value / total if total > 0 else None, "%", 2)
     line = lambda what, value, source: (what, withUnit(value, "J"), part(value), source)
     own = lambda n: line(known[n[:-2]][0], change(n), f"curve.csv: {n}")
     stored = sum(map(change, elastic))

@@ -59,15 +59,12 @@ def head(record: Record) -> Iterator[Any]:
     else:
         yield note("The run has no rows: it took no time steps, or ended before there was one.")  # fmt: skip
     lead = quantities.headline({**run, **record.numbers})
+    lead = lead or "; ".join(f"{what} {valueOf(one)}" for one, what in sought(run))
+    if not lead:
+        answers = [a for a in entriesOf(run, "answers") if isNumber(a.get("value"))]
+        lead = "; ".join(f"{nameOf(a)} {valueOf(a)}" for a in answers[-MOST_LEADING:])
     if lead:
         yield note(f"{firstUpper(lead)}.", "lead")
-    else:
-        found = [f"{what} {valueOf(one)}" for one, what in sought(run)]
-        if not found:
-            answers = [a for a in entriesOf(run, "answers") if isNumber(a.get("value"))]
-            found = [f"{nameOf(a)} {valueOf(a)}" for a in answers[-MOST_LEADING:]]
-        if found:
-            yield note(firstUpper("; ".join(found)) + ".", "lead")
     warnings = [str(w) for w in run.get("warnings") or []] + record.problems
     if warnings:
         more = f", and {len(warnings) - 1} more" if len(warnings) > 1 else ""
@@ -134,15 +131,15 @@ def _units(run):
         return
     assumed = _namesOf(run)
     rows = (
-        ("Young's modulus of the units", "young", "young_Pa", 1e-6, "MPa", "Elastic modulus of the material of the bricks; rigid units have theirs in the stiffness of their joints."),
-        ("Poisson's ratio of the units", "poisson", "poisson", 1, "-", "Lateral over longitudinal strain of the material of the bricks."),
-        ("density of the units", "density", "density_kg_per_m3", 1, "kg/m³", "Mass of a brick over its volume."),
+        ("Young's modulus of the units", "young_Pa", 1e-6, "MPa", "Elastic modulus of the material of the bricks; rigid units have theirs in the stiffness of their joints."),
+        ("Poisson's ratio of the units", "poisson", 1, "-", "Lateral over longitudinal strain of the material of the bricks."),
+        ("density of the units", "density_kg_per_m3", 1, "kg/m³", "Mass of a brick over its volume."),
     )  # fmt: skip
     found = []
-    for what, name, key, factor, shown, meaning in rows:
+    for what, key, factor, shown, meaning in rows:
         value = factor * unit[key] if isNumber(unit.get(key)) else None
-        named, source = _marked(what, f"unit.{name}" in assumed), f"run.json: unit_material.{key}"  # fmt: skip
-        found.append(Number(named, value, shown, meaning, source))
+        named = _marked(what, f"unit.{key.partition('_')[0]}" in assumed)
+        found.append(Number(named, value, shown, meaning, f"run.json: unit_material.{key}"))  # fmt: skip
     yield numbers(found, "Units")
 
 
