@@ -72,9 +72,7 @@ def _commands():
         family = sys.modules[_inner(stage).__module__]
         stages.setdefault(summary(family).partition(":")[0], []).append(stage.__name__)
     said = {name for names in (*described.values(), *stages.values()) for name in names}
-    documented = [
-        n for n, thing in vars(Scene).items() if inspect.getdoc(_inner(thing))
-    ]
+    documented = [n for n, f in vars(Scene).items() if inspect.getdoc(_inner(f))]
     own = [n for n in documented if n not in said | FOR_STAGES and n[0] != "_"]
     return described, stages, own
 

@@ -363,12 +363,12 @@ def cracksOfFrame(run: dict[str, Any], directory: FilePath, number: int | None =
     """
     last = len(frameTimes(directory)) - 1
     chosen = frameOfCracks(run, directory) if number is None else number % (last + 1)
-    later, of = None, lambda kind, frame: readFrame(directory, kind, frame)
+    later, frames = None, lambda n: [readFrame(directory, k, n) for k in ("blocks", "joints")]  # fmt: skip
     if number is None and chosen != last:
-        end = structureOf(run, of("blocks", last), of("joints", last), directory)
+        end = structureOf(run, *frames(last), directory)
         later = f"{whenOf(run, directory, last)}, true to scale", end
     when = whenOf(run, directory, chosen)
-    return cracksOf(run, of("blocks", chosen), of("joints", chosen), when, directory, later)  # fmt: skip
+    return cracksOf(run, *frames(chosen), when, directory, later)
 
 
 def cracks(directory: FilePath, number: int | None = None) -> None:

@@ -77,9 +77,6 @@ def turningPoints(displacement: Numbers, threshold: float = 0.0) -> np.ndarray:
     more. The first row of the array is where the first swing begins: row 0, or one that is not more than the threshold
     away from it. The last one is where the last swing ends: the last row of the curve, or one from which the curve has
     turned back by no more than the threshold. A curve without such a swing has row 0 alone.
-
-    :param displacement: [mm]
-    :param threshold: [mm], 0 or more
     """
     moved = _row(displacement)
     _noise(threshold)
@@ -111,8 +108,6 @@ def halfCycles(
     last one is complete if the curve ends within the threshold of zero; it then ends at the last passage through zero,
     or at the last row if there is none.
 
-    :param displacement: [mm]
-    :param threshold: [mm], 0 or more
     :param zero: the displacement from which excursions are counted [mm]
     """
     moved = _row(displacement) - zero
@@ -129,9 +124,8 @@ def halfCycles(
         begins = start is not None or abs(moved[0]) <= threshold
         complete = bool(begins and (end is not None or ends))
         start, end = start or 0.0, passage if end is None else end
-        rows, side = slice(math.ceil(start), math.floor(end) + 1), int(
-            np.sign(moved[row])
-        )
+        rows = slice(math.ceil(start), math.floor(end) + 1)
+        side = int(np.sign(moved[row]))
         extreme = rows.start + int(np.argmax(side * moved[rows]))
         found.append(HalfCycle(start, end, extreme, side, complete))
     return found
@@ -230,10 +224,7 @@ def cycles(
 
     Complete half cycles are joined in pairs from the first one on. One that is left over at the end is no cycle.
 
-    :param displacement: [mm]
-    :param force: [kN]
-    :param threshold: [mm], 0 or more
-    :param zero: the displacement from which excursions are counted [mm]
+    :param zero: as in :func:`halfCycles`
     """
     moved, force = _curve(displacement, force)
     halves = [h for h in halfCycles(moved, threshold, zero) if h.complete]

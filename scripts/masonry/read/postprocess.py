@@ -33,12 +33,11 @@ NO_REPORT = 3
 def _folder() -> str:
     """The folder from the standard input, or an empty text if it ends before."""
     name = b""
-    while not name.endswith(END):
-        byte = os.read(STDIN, 1)
-        if not byte:
-            return ""
+    for byte in iter(lambda: os.read(STDIN, 1), b""):
+        if byte == END:
+            return os.fsdecode(name)
         name += byte
-    return os.fsdecode(name[:-1])
+    return ""
 
 
 def _draw(folder: str) -> int:

@@ -100,7 +100,8 @@ class Curve:
 
     def _repr_html_(self):
         title = f"{len(self)} rows, {len(self._columns)} columns"
-        rows = [(n, self.units[n], *self._ends(n), bare(self.meanings[n])) for n in self]  # fmt: skip
+        ends = lambda v: [f"{x:.4g}" for x in (v[0], v[-1], v.min(), v.max())] if len(v) else [""] * 4  # fmt: skip
+        rows = [(n, self.units[n], *ends(v), bare(self.meanings[n])) for n, v in self._columns.items()]  # fmt: skip
         heads = "column", "unit", "first", "last", "smallest", "largest", "meaning"
         table = notebook.table(rows, heads)
         return notebook.titled(title, self.picture(), notebook.folded("columns", table))  # fmt: skip
@@ -108,12 +109,6 @@ class Curve:
     def picture(self):
         """What curve.png shows as HTML; nothing where there are less than two rows, or no figure."""
         return _drawn(self._draws) if len(self) > 1 else ""
-
-    def _ends(self, name):
-        values = self._columns[name]
-        if not len(values):
-            return [""] * 4
-        return [f"{v:.4g}" for v in (values[0], values[-1], values.min(), values.max())]
 
 
 def _drawn(draws):

@@ -2,7 +2,7 @@
 """three.js, as the Debian package libjs-three has it, and its licence."""
 
 import os
-import pathlib
+from pathlib import Path
 
 from ...basics import Refused
 
@@ -27,9 +27,7 @@ def three():
     paths = [*(HERE + name for name in CODE), COPYRIGHT]
     for place in PLACES:
         try:
-            *code, copyright = (
-                pathlib.Path(place, p).read_text("utf-8") for p in paths
-            )
+            *code, copyright = [Path(place, p).read_text("utf-8") for p in paths]
         except OSError:
             continue
         return code, copyright

@@ -129,11 +129,10 @@ class Record:
             if len(targets) <= MOST_NAMES:
                 structure.names[one["body"]] = str(one["name"])
         size = " × ".join(written(float(v), 3) for v in high - low)
-        about = (
-            f"The {len(bricks):,} units of the masonry as built, {size} m (x × y × z)."
-        )
+        about = f"The {len(bricks):,} units of the masonry as built, {size} m"
         with drawing.style():
-            return drawing.svg(elevation.figureOf(structure, "", 0), "built"), about
+            drawn = drawing.svg(elevation.figureOf(structure, "", 0), "built")
+        return drawn, f"{about} (x × y × z)."
 
     def _whole(self, structure, joints):
         """A structure whose bricks are whole that the model has in halves: those on both sides of a crack surface."""
@@ -173,9 +172,7 @@ class Record:
     def data(self) -> RunData:
         """What the numbers of the run are found from: rows whose forces are no finite numbers are left out."""
         data = RunData(self.run, self.columns.get)
-        known = [
-            self.columns[head] for head in (MOVED, BASE, TOP) if head in self.columns
-        ]
+        known = [self.columns[h] for h in (MOVED, BASE, TOP) if h in self.columns]
         with filesOf(self.directory):
             rows = [n for n in data.rows if all(math.isfinite(v[n]) for v in known)]
         data.rows = rows  # type: ignore[misc]
@@ -185,12 +182,6 @@ class Record:
     def numbers(self) -> dict[str, Any]:
         """All numbers of the run, by their entries in run.json."""
         return quantities.known(self.data)
-
-    @property
-    def pushes(self) -> list[int]:
-        """Numbers of the stages that push, from 1."""
-        loads = [stage.get("load") for stage in entriesOf(self.run, "stages")]
-        return [n for n, load in enumerate(loads, 1) if isinstance(load, list) and load[:1] == ["push"]]  # fmt: skip
 
     @property
     def isPush(self) -> bool:

@@ -7,6 +7,7 @@ from typing import Any, Iterator
 
 import numpy as np
 
+from ...basics import Refused
 from .. import bilinear, curve_figure, drawing, quantities
 from ..curve_figure import energies, unitOf
 from ..shown import bare
@@ -25,8 +26,7 @@ def curve(record: Record) -> Iterator[Any]:
     spec = record.spec
     if spec is None or not len(record.rows):
         why = "; ".join(p for p in record.problems if "curve" in p)
-        yield missing(f"There is no curve: {why or 'the run has no rows'}.")  # fmt: skip
-        return
+        raise Refused(f"There is no curve: {why or 'the run has no rows'}.")
     x = record.column(spec["x"]["column"])
     data = {name: values[record.rows] for name, values in record.columns.items()}
     ideal, line = record.ideals["masonry"], None
@@ -48,7 +48,8 @@ def curve(record: Record) -> Iterator[Any]:
     picture = record.image("capacity.png")
     if picture:
         yield figure(picture, "Capacity curve and demand of a spectrum, as masonry.capacity drew them. Source: capacity.png.")  # fmt: skip
-    pushes = record.pushes
+    loads = [stage.get("load") for stage in entriesOf(record.run, "stages")]
+    pushes = [n for n, load in enumerate(loads, 1) if isinstance(load, list) and load[:1] == ["push"]]  # fmt: skip
     if len(pushes) > 1:
         numbered = ", ".join(map(str, pushes))
         yield note(f"The run has {len(pushes)} pushes, the stages {numbered}. The curve and the numbers of the push are those of the last one, and of those before it along the same line.")  # fmt: skip
@@ -184,8 +185,7 @@ def bound(record: Record) -> Iterator[Any]:
     """The bound by limit analysis."""
     entries = entriesOf(record.run, "bounds")
     if not entries:
-        yield missing("There is no bound: limit analysis is made where a structure is pushed, leans or tilts, of up to 3,000 joints, and not with --lean. Source: run.json: bounds.")  # fmt: skip
-        return
+        raise Refused("There is no bound: limit analysis is made where a structure is pushed, leans or tilts, of up to 3,000 joints, and not with --lean. Source: run.json: bounds.")  # fmt: skip
     lines = []
     for one in entries:
         if not isNumber(one.get("factor")):
@@ -220,13 +220,11 @@ def energy(record: Record) -> Iterator[Any]:
     rows = np.arange(record.rows.min(), record.rows.max() + 1) if len(record.rows) else record.rows  # fmt: skip
     columns = {n: v[rows] for n, v in record.columns.items() if n.endswith("_J")}
     if not columns or not len(record.rows):
-        yield missing("There is no energy balance: curve.csv has no rows with energies.")  # fmt: skip
-        return
+        raise Refused("There is no energy balance: curve.csv has no rows with energies.")  # fmt: skip
     finite = np.isfinite(list(columns.values())).all(axis=0)
     columns = {n: v[finite] for n, v in columns.items()}
     if finite.sum() < 2:
-        yield missing("There is no energy balance: less than two rows have all energies.")  # fmt: skip
-        return
+        raise Refused("There is no energy balance: less than two rows have all energies.")  # fmt: skip
     stack, work = energies(columns)
     change = lambda name: float(columns[name][-1] - columns[name][0])
     known = {**quantities.ENERGIES, **quantities.OF_CONNECTORS, **quantities.OF_CONTACTS}  # fmt: skip
@@ -273,8 +271,7 @@ def cycles(record: Record) -> Iterator[Any]:
     """Equivalent damping of cycles."""
     entries = record.run.get("cycles")
     if not entries:
-        yield missing("The run has no whole cycles, so there is no equivalent damping.")  # fmt: skip
-        return
+        raise Refused("The run has no whole cycles, so there is no equivalent damping.")
     columns = [one for one in quantities.OF_CYCLES if one[-1]]
     heads = [f"{name} [{'%' if key == 'damping' else unit}]" for key, name, unit, *_ in columns]  # fmt: skip
     lines = []

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from typing import Any, Iterator
 
+from ...basics import Refused
 from .. import quantities
 
 from .pieces import Badged, Number, figure, folded, isNumber, listed, missing, note, numbers, table, withUnit, written  # fmt: skip
@@ -208,8 +209,7 @@ def _cell(joint, name, factor, isAssumed):
 def _assumed(run):
     entries = run.get("assumed")
     if entries is None:
-        yield missing(OLDER)
-        return
+        raise Refused(OLDER)
     if not entries:
         yield note("Nothing was assumed: every property of the materials was given. Source: run.json: assumed.")  # fmt: skip
         return
