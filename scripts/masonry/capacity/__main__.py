@@ -1,12 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Bilinear curve, capacity and demand of runs: ``/usr/bin/python3 -m masonry.capacity results/WALL ...``."""
 
-from __future__ import annotations
-
 import argparse
 import re
 import sys
-from typing import Sequence
 
 from ..common import memory
 from ..basics import Refused, say
@@ -14,15 +11,14 @@ from ..read.bilinear import RULES, lines
 from ..read.files import program
 from ..read.quantities import Number
 from . import n2
-from .domains import Domain
 from .report import CAPACITY, DOMAIN, assess, assessDomain
-from .spectra import PARAMETERS, UNITS, Spectrum, elastic, readSpectrum
+from .spectra import PARAMETERS, UNITS, elastic, readSpectrum
 
 #: Options that belong to the spectrum of EN 1998-1, and to one from a file.
 OF_CODE, OF_FILE = ("type", "ground", "ag"), ("unit", "corner")
 
 
-def parser() -> argparse.ArgumentParser:
+def parser():
     """The options of the program."""
     p = argparse.ArgumentParser(
         prog="python3 -m masonry.capacity",
@@ -58,7 +54,7 @@ def parser() -> argparse.ArgumentParser:
     return p
 
 
-def numbers(text: str, option: str) -> list[float]:
+def numbers(text, option):
     """The numbers of an option, apart by commas. Raises Refused."""
     try:
         return [float(one) for one in text.split(",")]
@@ -66,7 +62,7 @@ def numbers(text: str, option: str) -> list[float]:
         raise Refused(f"{option} {text!r} must be numbers with commas between them, as 20e3,15e3") from None  # fmt: skip
 
 
-def systemOf(args: argparse.Namespace) -> n2.Equivalent | None:
+def systemOf(args):
     """The equivalent system of the options, or None if they do not give one. Raises Refused."""
     pairs = ("mass", "gamma"), ("masses", "shape")
     given = [[name for name in pair if getattr(args, name) is not None] for pair in pairs]  # fmt: skip
@@ -83,7 +79,7 @@ def systemOf(args: argparse.Namespace) -> n2.Equivalent | None:
     return None
 
 
-def spectrumOf(args: argparse.Namespace) -> Spectrum | None:
+def spectrumOf(args):
     """The spectrum of the options, or None if they do not give one. Raises Refused."""
     code = [name for name in OF_CODE if getattr(args, name) is not None]
     if args.spectrum is not None:
@@ -120,7 +116,7 @@ def _show(folder, found, out):
     say(f"written: {', '.join(CAPACITY)} in {out or folder}")
 
 
-def _showDomain(folder, found: Domain, out):
+def _showDomain(folder, found, out):
     say(f"{'normal kN':>12}{'at most kN':>14}{'without dilatancy kN':>24}  exact")
     for one in found.bounds:
         other = "-" if one.withoutDilatancy is None else f"{one.withoutDilatancy:.4g}"
@@ -139,7 +135,7 @@ def _showDomain(folder, found: Domain, out):
 
 
 @program
-def main(words: Sequence[str] | None = None) -> int:
+def main(words=None):
     """The program. Returns its exit status."""
     args = parser().parse_args(words)
     memory.reserve()

@@ -162,7 +162,7 @@ def firstCrack(
     :param column: function of the name of a column of curve.csv that gives its values
     :param rows: those of the push, a slice
     """
-    of = lambda *names: np.sum([column(f"{name}_J")[rows] for name in names], axis=0)
+    of = lambda *names: np.array([column(f"{n}_J")[rows] for n in names]).sum(axis=0)
     lost = of("dissipated_tension", "dissipated_shear")
     parts = "tension", "shear", "compression", "units"
     elastic = of(*(f"elastic_{part}" for part in parts))

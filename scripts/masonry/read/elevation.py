@@ -11,7 +11,6 @@ from typing import Any
 
 import numpy as np
 
-from ..common.arguments import FilePath
 from ..basics import Refused
 from ..bricks.geometry import Alike, Solids, boxCorners
 from . import drawing
@@ -50,7 +49,7 @@ class Structure:
     ties: list[dict[str, Any]] = field(default_factory=list)  #: entries of run.json
 
     def __post_init__(self):
-        cells: dict[int, list[Any]] = {}
+        cells = {}
         for body, cell in zip(self.blocks["body"], self.blocks["cells"]):
             cells.setdefault(int(body), []).append(cell)
         #: numbers of the points of every block, by the id of its body
@@ -214,7 +213,7 @@ class Elevation:
         return ends
 
 
-def elevationsOf(structure: Structure) -> list[Elevation]:
+def elevationsOf(structure):
     """One elevation for each façade: the largest parts first, and none for a part that is seen in another one's or is held."""
     stands = lambda part: any(structure.shades.get(body) != "held" for body in part)
     parts = {n: part for n, part in structure.parts.items() if stands(part)} or {"": list(structure.corners)}  # fmt: skip
@@ -248,7 +247,7 @@ def _facade(structure, name, members):
     return Elevation(structure, name, view, bodies, members)
 
 
-def figureOf(structure: Structure, title: str, magnification: float | None = None, later: Any = None) -> Any:  # fmt: skip
+def figureOf(structure, title, magnification=None, later=None):
     """A figure of all façades in one scale, to be drawn and saved in :func:`masonry.read.drawing.style`: the deformed structure,
     magnified, over the undeformed one, with its cracks. What moves across a façade, is seen from above or falls is seen in space,
     too.
@@ -314,7 +313,7 @@ def _scale(sizes, columns):
     return min((10.0 - 0.85 * columns) / wide, (9.5 - 0.75 * rows) / high, 7.2 / wide if len(sizes) == 1 else np.inf)  # fmt: skip
 
 
-def structureOf(run: dict[str, Any], blocks: dict[str, Any], joints: dict[str, Any] | None, directory: FilePath) -> Structure:  # fmt: skip
+def structureOf(run, blocks, joints, directory):
     """The blocks and joints of a frame with what run.json says of them. Raises Refused.
 
     :param run: entries of run.json: ``parts``, ``views``, ``targets``, ``ties``, ``reference_body`` and ``ground_body``
@@ -344,7 +343,7 @@ def structureOf(run: dict[str, Any], blocks: dict[str, Any], joints: dict[str, A
     return Structure(blocks, joints, parts, shades, ground=ground, seams=seams, **more)
 
 
-def cracksOf(run: dict[str, Any], blocks: dict[str, Any], joints: dict[str, Any], when: str, directory: FilePath, later: Any = None) -> Any:  # fmt: skip
+def cracksOf(run, blocks, joints, when, directory, later=None):
     """The figure of cracks.png. Cracks are red, joints that slid are blue, and crushed spots are black. Raises Refused.
 
     :param when: text that names the moment of the frame; ``later`` is as in :func:`figureOf`; the others are those of
@@ -355,7 +354,7 @@ def cracksOf(run: dict[str, Any], blocks: dict[str, Any], joints: dict[str, Any]
     return figureOf(structureOf(run, blocks, joints, directory), title, later=later)
 
 
-def cracksOfFrame(run: dict[str, Any], directory: FilePath, number: int | None = None) -> Any:  # fmt: skip
+def cracksOfFrame(run, directory, number=None):
     """The figure of cracks.png of a frame that a run has left; of a run that followed a collapse, with its end beside it.
 
     :param run: entries of run.json
@@ -371,7 +370,7 @@ def cracksOfFrame(run: dict[str, Any], directory: FilePath, number: int | None =
     return cracksOf(run, *frames(chosen), when, directory, later)
 
 
-def cracks(directory: FilePath, number: int | None = None) -> None:
+def cracks(directory, number=None):
     """Draw cracks.png; ``number`` is as in :func:`cracksOfFrame`."""
     with drawing.style():
         figure = cracksOfFrame(readRun(directory), directory, number)
@@ -392,7 +391,7 @@ def _moments(run, directory):
     return [(frameAt(directory, time), text) for time, text in found]
 
 
-def frameOfCracks(run: dict[str, Any], directory: FilePath) -> int:
+def frameOfCracks(run, directory):
     """Number of the frame whose cracks are drawn, from 0: the last one, or, of a run that followed a collapse to the ground, that
     when the collapse was noticed or the first block had fallen.
 
@@ -402,7 +401,7 @@ def frameOfCracks(run: dict[str, Any], directory: FilePath) -> int:
     return moments[0][0] if moments else len(frameTimes(directory)) - 1
 
 
-def whenOf(run: dict[str, Any], directory: FilePath, number: int) -> str:
+def whenOf(run, directory, number):
     """Which moment a frame shows: what it is, its time, and the x of curve.png."""
     times = frameTimes(directory)
     names = {len(times) - 1: "at the end", **dict(reversed(_moments(run, directory)))}

@@ -4,10 +4,8 @@
 The page (:mod:`masonry.read.page`), glTF files (:mod:`masonry.read.gltf`), the report and ParaView's pictures show this.
 """
 
-from __future__ import annotations
-
 import os
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -251,10 +249,10 @@ class Joints:
 
     def __init__(self, model):
         self._model = model
-        self._numbers: dict[Any, int] = {}  # of points of joints, by bodies and corners
-        self._known: list[Any] = []  # of each its bodies and corners
-        self._frames: list[Any] = []  # numbers, values and displacements of every frame
-        self._last: Any = None
+        self._numbers = {}  # of points of joints, by bodies and corners
+        self._known = []  # of each its bodies and corners
+        self._frames = []  # numbers, values and displacements of every frame
+        self._last = None
 
     def add(self, frame, still):
         """Add the joints of the next frame.
@@ -355,7 +353,7 @@ MOST_PLACES = 80_000  # frames times blocks; reading them takes seconds, and the
 FEWEST = 10  # frames that are shown all the same, if there are as many
 
 
-def chosenFrames(count: int, blocks: int) -> list[int]:
+def chosenFrames(count, blocks):
     """Numbers of the frames of a long or large run that are shown, the first and the last among them, evenly spaced."""
     many = max(FEWEST, MOST_PLACES // max(blocks, 1))
     return sorted({round(n) for n in np.linspace(0, count - 1, min(count, many))})

@@ -9,8 +9,6 @@ the report meanwhile. When the standard input ends, all figures that the run its
 report.html. It ends without a word if it is given no folder.
 """
 
-from __future__ import annotations
-
 import contextlib
 import math
 import os
@@ -30,7 +28,7 @@ END = b"\0"  # of the name of the folder
 NO_REPORT = 3
 
 
-def _folder() -> str:
+def _folder():
     """The folder from the standard input, or an empty text if it ends before."""
     name = b""
     for byte in iter(lambda: os.read(STDIN, 1), b""):
@@ -40,7 +38,7 @@ def _folder() -> str:
     return ""
 
 
-def _draw(folder: str) -> int:
+def _draw(folder):
     """Draw the figures. Returns the exit status."""
     with contextlib.suppress(OSError):  # it is said when it is drawn
         if len(readWhole(os.path.join(folder, "curve.csv")).splitlines()) < 2:
@@ -53,7 +51,7 @@ def _draw(folder: str) -> int:
     return onFolder(figures.draw, [folder])
 
 
-def main() -> int:
+def main():
     """The program. Returns its exit status."""
     with contextlib.suppress(ImportError):  # it is said when something is drawn
         import matplotlib.backends.backend_agg  # noqa: F401
@@ -64,7 +62,7 @@ def main() -> int:
     drawing = Task(lambda: [_draw(folder)])
     written = NO_REPORT
 
-    def write(directory: str) -> None:
+    def write(directory):
         memory.reserve()
         check(directory)
         record = report.read(directory)

@@ -1,11 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """From where a structure is seen in a picture, and how much its displacements are magnified."""
 
-from __future__ import annotations
-
 from collections import namedtuple
-from typing import Any
-
 import numpy as np
 
 from .cracks import widths
@@ -113,7 +109,7 @@ def _viewFrom(away, points, either):
     return View(right, up, towards, start, labels, name)
 
 
-def magnificationOf(joints: Any, moved: Any, blocks: Any) -> int:
+def magnificationOf(joints, moved, blocks):
     """How much displacements are magnified: as usual, or less where blocks would be drawn far away or over each other, and not
     at all where no joint is cracked, as rigid motion and elastic shortening alone would then be drawn.
 
@@ -130,12 +126,12 @@ def magnificationOf(joints: Any, moved: Any, blocks: Any) -> int:
     return next(filter(fits, MAGNIFICATIONS), 1)
 
 
-def courseOf(blocks: Any) -> float:
+def courseOf(blocks):
     """The usual height of a block [m]: the median of their shortest sides, of arrays of their corners (n, 3) [m]."""
     return float(np.median([np.ptp(corners, axis=0).min() for corners in blocks]))
 
 
-def scaleText(joints: Any, magnification: float) -> str:
+def scaleText(joints, magnification):
     """What a picture says of its magnification and, where no joint of a frame is cracked, of that."""
     parted = "" if widths(joints)[2].any() else "no joint is cracked, "
     return parted + ("true to scale" if magnification == 1 else f"displacements × {magnification:g}")  # fmt: skip

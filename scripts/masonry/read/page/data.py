@@ -5,15 +5,11 @@ A displacement is a whole number of steps of 1/32,767 of the largest, other valu
 in the frames, and damage is in steps of 1/255.
 """
 
-from __future__ import annotations
-
 import base64
 import zlib
-from typing import Any
 
 import numpy as np
 
-from ...common.arguments import FilePath
 from ...basics import plain
 from .. import painting
 from ..cracks import CRACK, CRUSHED, DAMAGED
@@ -51,7 +47,7 @@ class _Arrays:
         self.addRounded(name, values, "i2", 32767)
 
 
-def dataOf(directory: FilePath, number: int | None = None, magnification: float | None = None) -> tuple[dict[str, Any], str]:  # fmt: skip
+def dataOf(directory, number=None, magnification=None):
     """The head, a dict that can be written as JSON, and the arrays as a text in base64.
 
     :param directory: folder of results
@@ -64,7 +60,7 @@ def dataOf(directory: FilePath, number: int | None = None, magnification: float 
     return dataOfModel(Model(directory), number, magnification)
 
 
-def dataOfModel(model: Model, number: int | None = None, magnification: float | None = None, curve: Any = None) -> tuple[dict[str, Any], str]:  # fmt: skip
+def dataOfModel(model, number=None, magnification=None, curve=None):
     """As :func:`dataOf`, of a run whose frames have been read.
 
     :param number: of the frame that is shown first among those that were read, from 0
@@ -138,7 +134,7 @@ def _addTies(arrays, model):
     arrays.add("tieCondition", np.array([one["condition"][bars] for one in frames]), "u1", frames=True)  # fmt: skip
 
 
-def nice(value: float) -> float:
+def nice(value):
     """The smallest number, of two digits at most and a power of ten, that is not below a value and has round quarters."""
     power = 10.0 ** np.floor(np.log10(value))
     steps = (1, 1.2, 1.6, 2, 2.4, 2.8, 3.2, 4, 5, 6, 8, 10)

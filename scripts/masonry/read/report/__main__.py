@@ -1,12 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The program ``python3 -m masonry.read.report``."""
 
-from __future__ import annotations
-
 import argparse
 import os
 import sys
-from typing import Sequence
 
 from ...common import folders, memory
 from ...basics import Refused, say
@@ -15,7 +12,7 @@ from . import NAME, read, write
 
 
 @program
-def main(words: Sequence[str] | None = None) -> None:
+def main(words=None):
     """Write the report of a run."""
     parser = argparse.ArgumentParser(
         prog="masonry.read.report",

@@ -1,19 +1,15 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What a report is made of: the files of a run, as far as they can be read."""
 
-from __future__ import annotations
-
 import base64
 import csv
 import datetime
 import functools
 import math
 import os
-from typing import Any
 
 import numpy as np
 
-from ...common.arguments import FilePath
 from ...basics import Refused
 from .. import bilinear, quantities
 from ..cracks import CRACK_SURFACE
@@ -33,26 +29,25 @@ LARGEST_PICTURE = 600e3  # [bytes] of a figure that goes into a report
 class Record:
     """The files of a run."""
 
-    def __init__(self, directory: FilePath):
+    def __init__(self, directory):
         """Read a folder of results. Raises Refused if it has no run.json."""
         self.directory = os.fspath(directory)
         self.run = readRun(directory)  #: its entries
         name = os.path.basename(os.path.abspath(self.directory))
         self.title = str(self.run.get("title") or self.run.get("scene") or name)
         #: sentences on what is damaged or missing in the files
-        self.problems: list[str] = []
+        self.problems = []
         #: arrays of curve.csv by name; what is no finite number there is NaN. Empty without rows
         self.columns = self._columns()
         #: the entry ``figure`` of run.json as :func:`masonry.read.curve_figure.plan` completes it, or None, and the rows that it shows
         self.spec, self.rows = None, np.zeros(0, int)
         self._plan()
-        self.picture: Any = None  #: head and numbers of the 3-D picture, or None
+        self.picture = None  #: head and numbers of the 3-D picture, or None
         self.missing = ""  #: why there is none
         self.whenCracked = "of the run"  #: the moment that cracks.png shows
         #: the drawing of what was built as SVG and a sentence about it, or None
-        self.elevation: Any = None
-        self.frameTimes: list[float] = []
-        self.frameCount = 0
+        self.elevation = None
+        self.frameTimes, self.frameCount = [], 0
         self._frames()
 
     def _columns(self):
@@ -94,7 +89,7 @@ class Record:
         good = np.isfinite([self.columns[name][rows] for name in shown[:2]]).all(axis=0)
         self.spec, self.rows = spec, rows[good]
 
-    def column(self, name: str) -> np.ndarray | None:
+    def column(self, name):
         """A column in the rows that the figure shows, or None."""
         values = self.columns.get(name)
         return None if values is None else values[self.rows]
@@ -146,7 +141,7 @@ class Record:
         structure.parts = {n: [b for b in part if b in structure.corners] for n, part in structure.parts.items()}  # fmt: skip
         return structure
 
-    def image(self, name: str) -> str | None:
+    def image(self, name):
         """A figure of the folder as an address that holds it all, or None if it is not there."""
         try:
             data = readWhole(os.path.join(self.directory, name))
@@ -156,7 +151,7 @@ class Record:
             return None
         return "data:image/png;base64," + base64.b64encode(data).decode()
 
-    def date(self) -> tuple[str, str]:
+    def date(self):
         """When the run ended, and where that is from."""
         date = self.run.get("date")
         if isinstance(date, str):
@@ -169,7 +164,7 @@ class Record:
         return when.strftime("%Y-%m-%d %H:%M:%S UTC"), "time of the file run.json"
 
     @functools.cached_property
-    def data(self) -> RunData:
+    def data(self):
         """What the numbers of the run are found from: rows whose forces are no finite numbers are left out."""
         data = RunData(self.run, self.columns.get)
         known = [self.columns[h] for h in (MOVED, BASE, TOP) if h in self.columns]
@@ -179,22 +174,22 @@ class Record:
         return data
 
     @functools.cached_property
-    def numbers(self) -> dict[str, Any]:
+    def numbers(self):
         """All numbers of the run, by their entries in run.json."""
         return quantities.known(self.data)
 
     @property
-    def isPush(self) -> bool:
+    def isPush(self):
         """Whether the numbers of a push are there."""
         return bool(self.data.pushes)
 
     @property
-    def isLooped(self) -> bool:
+    def isLooped(self):
         """Whether the push goes there and back."""
         return bool(self.spec and self.spec["looped"])
 
     @functools.cached_property
-    def ideals(self) -> dict[str, Any]:
+    def ideals(self):
         """The bilinear curve of the push by every rule of :mod:`masonry.read.bilinear`, or a text that says why there is none."""
         push, found = None, {}
         for rule in bilinear.RULES:
@@ -211,7 +206,7 @@ class Record:
         return str(refused).removeprefix(f"{self.directory}: ")
 
 
-def entriesOf(run: dict[str, Any], key: str) -> list[dict[str, Any]]:
+def entriesOf(run, key):
     """Those entries of a list of run.json that can be used."""
     found = run.get(key)
     return [one for one in found if isinstance(one, dict)] if isinstance(found, list) else []  # fmt: skip

@@ -1,10 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Parts of a report on what the structure did: its curve, drifts, bound, energies, cycles and forces at the base."""
 
-from __future__ import annotations
-
-from typing import Any, Iterator
-
 import numpy as np
 
 from ...basics import Refused
@@ -12,8 +8,8 @@ from .. import bilinear, curve_figure, drawing, quantities
 from ..curve_figure import energies, unitOf
 from ..shown import bare
 
-from .pieces import Badged, Number, figure, folded, isNumber, missing, note, numbers, table, withUnit, written  # fmt: skip
-from .record import Record, entriesOf
+from .pieces import Badged, figure, folded, isNumber, missing, note, numbers, table, withUnit, written  # fmt: skip
+from .record import entriesOf
 from .structure import firstUpper, nameOf, sought, valueOf
 
 MOST_ANSWERS = 12  # in the table of what stages found; all are in a folded one
@@ -21,7 +17,7 @@ NOISE = 1e-6  # of the largest force of a column: what is below is round-off
 NO_PUSH = "The run has no push"
 
 
-def curve(record: Record) -> Iterator[Any]:
+def curve(record):
     """The curve of the run with its marks and bounds."""
     spec = record.spec
     if spec is None or not len(record.rows):
@@ -115,7 +111,7 @@ def _places(record, x, y):
     return [(float(x[n]), float(y[n])) for n in rows]
 
 
-def found(record: Record) -> Iterator[Any]:
+def found(record):
     """Drifts and other numbers of a push, drifts that were recorded, and what the stages were run for."""
     if record.isPush:
         yield from _states(record)
@@ -154,7 +150,7 @@ def _drifts(record):
         values = values[np.isfinite(values)]
         if len(values):
             at = int(np.abs(values).argmax())
-            rows.append(Number(f"largest {name.removesuffix('_mrad')}", float(values[at]), "mrad", f"Of all rows the one with the largest size: {bare(meanings.get(name))}.", f"curve.csv: {name}"))  # fmt: skip
+            rows.append(quantities.Number(f"largest {name.removesuffix('_mrad')}", float(values[at]), "mrad", f"Of all rows the one with the largest size: {bare(meanings.get(name))}.", f"curve.csv: {name}"))  # fmt: skip
     if rows:
         yield numbers(rows, "Drifts that were recorded")
 
@@ -181,7 +177,7 @@ def _answers(run):
 WHAT_JOINTS_DO = {"opens": "open", "slides": "slide", "crushes": "crush"}
 
 
-def bound(record: Record) -> Iterator[Any]:
+def bound(record):
     """The bound by limit analysis."""
     entries = entriesOf(record.run, "bounds")
     if not entries:
@@ -206,7 +202,7 @@ def bound(record: Record) -> Iterator[Any]:
     for side, what in (("", "peak over bound"), ("negative_", "peak of the other side over its bound")):  # fmt: skip
         peak, limit = f"{side}peak_at_both_ends_kN", f"{side}bound_base_shear_kN"
         if isNumber(run.get(peak)) and isNumber(run.get(limit)) and run[limit]:
-            rows.append(Number(what, abs(run[peak] / run[limit]), "-", "Of an upper bound it cannot be much above 1; a run warns where it is.", f"run.json: {peak}, {limit}"))  # fmt: skip
+            rows.append(quantities.Number(what, abs(run[peak] / run[limit]), "-", "Of an upper bound it cannot be much above 1; a run warns where it is.", f"run.json: {peak}, {limit}"))  # fmt: skip
     if rows:
         yield numbers(rows, "The run beside its bound")
     picture = record.image("mechanism.png")
@@ -214,7 +210,7 @@ def bound(record: Record) -> Iterator[Any]:
         yield figure(picture, "How the structure gives way in limit analysis. Source: mechanism.png.")  # fmt: skip
 
 
-def energy(record: Record) -> Iterator[Any]:
+def energy(record):
     """Where the work went: a table, a bar and a chart."""
     # a figure may show its rows in another order
     rows = np.arange(record.rows.min(), record.rows.max() + 1) if len(record.rows) else record.rows  # fmt: skip
@@ -267,7 +263,7 @@ ABOUT_CYCLES = (
 )
 
 
-def cycles(record: Record) -> Iterator[Any]:
+def cycles(record):
     """Equivalent damping of cycles."""
     entries = record.run.get("cycles")
     if not entries:
@@ -282,7 +278,7 @@ def cycles(record: Record) -> Iterator[Any]:
     yield note(ABOUT_CYCLES)
 
 
-def base(record: Record) -> Iterator[Any]:
+def base(record):
     """Normal force, shear force and moment: of the sections that were recorded, else forces on what is held."""
     sections = record.run.get("recorded_sections") or []
     names = [n for n in sections if n in record.columns]

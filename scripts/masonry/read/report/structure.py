@@ -1,15 +1,11 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Parts of a report on what was built, and how it was held and loaded."""
 
-from __future__ import annotations
-
-from typing import Any, Iterator
-
 from ...basics import Refused
 from .. import quantities
 
-from .pieces import Badged, Number, figure, folded, isNumber, listed, missing, note, numbers, table, withUnit, written  # fmt: skip
-from .record import Record, entriesOf
+from .pieces import Badged, figure, folded, isNumber, listed, missing, note, numbers, table, withUnit, written  # fmt: skip
+from .record import entriesOf
 
 #: Units in which properties are shown, and the factor from SI units.
 SHOWN = {"Pa": ("MPa", 1e-6), "Pa/m": ("N/mm³", 1e-9), "J/m²": ("N/mm", 1e-3), "m": ("mm", 1e3), "1/m": ("1/mm", 1e-3)}  # fmt: skip
@@ -31,7 +27,7 @@ MOST_LEADING = 3  # answers at the head of a report
 OLDER = "The run was made by an older version of the plugin, whose run.json does not say this."
 
 
-def facts(record: Record) -> list[tuple[str, str, str]]:
+def facts(record):
     """Name, value and source of what stands below the title."""
     run = record.run
     when, whence = record.date()
@@ -46,7 +42,7 @@ def facts(record: Record) -> list[tuple[str, str, str]]:
     ]
 
 
-def head(record: Record) -> Iterator[Any]:
+def head(record):
     """How the run ended, and the numbers that it was run for."""
     run = record.run
     if run.get("error"):
@@ -76,12 +72,12 @@ def firstUpper(text):
     return text[:1].upper() + text[1:]
 
 
-def nameOf(answer: dict[str, Any]) -> str:
+def nameOf(answer):
     """The name of an answer in words."""
     return str(answer.get("name")).replace("_", " ")
 
 
-def valueOf(answer: dict[str, Any]) -> str:
+def valueOf(answer):
     """An answer with its uncertainty and unit."""
     if not isNumber(answer.get("value")):
         return "not found"
@@ -91,7 +87,7 @@ def valueOf(answer: dict[str, Any]) -> str:
     return text if unit == "-" else f"{text}\u00a0{unit}"
 
 
-def sought(run: dict[str, Any]) -> list[tuple[dict[str, Any], str]]:
+def sought(run):
     """The largest load that was held and the smallest that was not, as answers, of a run that looked for one load."""
     loads, found = quantities.loadsOf(run.get("stages") or []), []
     ones = [a for a in entriesOf(run, "answers") if a.get("name") in ("factor_held", "factor_not_held") and isNumber(a.get("value"))]  # fmt: skip
@@ -104,7 +100,7 @@ def sought(run: dict[str, Any]) -> list[tuple[dict[str, Any], str]]:
     return found
 
 
-def built(record: Record) -> Iterator[Any]:
+def built(record):
     """What was built: a drawing, counts, and materials with what was assumed."""
     run = record.run
     if record.elevation:
@@ -140,7 +136,7 @@ def _units(run):
     for what, key, factor, shown, meaning in rows:
         value = factor * unit[key] if isNumber(unit.get(key)) else None
         named = _marked(what, f"unit.{key.partition('_')[0]}" in assumed)
-        found.append(Number(named, value, shown, meaning, f"run.json: unit_material.{key}"))  # fmt: skip
+        found.append(quantities.Number(named, value, shown, meaning, f"run.json: unit_material.{key}"))  # fmt: skip
     yield numbers(found, "Units")
 
 
@@ -227,7 +223,7 @@ def _assumed(run):
     yield table(("of", "property and value", "where it is from"), lines, "What was not given, and is ASSUMED. Source: run.json: assumed")  # fmt: skip
 
 
-def loaded(record: Record) -> Iterator[Any]:
+def loaded(record):
     """How it was held and loaded: targets, stages, the words of the script, and the options."""
     run = record.run
     pairs = run.get("held_and_loaded")
@@ -295,7 +291,7 @@ def _said(value):
     return written(value, 6) if isNumber(value) else str(value)
 
 
-def spoken(word: Any, arguments: Any) -> str:
+def spoken(word, arguments):
     """A word of a script as it was said, without the arguments that are nothing."""
     if not isinstance(arguments, dict):
         return f"{word}({arguments})"
