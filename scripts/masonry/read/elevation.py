@@ -230,8 +230,8 @@ def _facade(structure, name, members):
     points, joints = structure.blocks["points"], structure.joints
     normals, areas = np.zeros((0, 3)), np.zeros(0)
     if joints:
-        inside = np.isin(joints["bodies"], members).all(axis=1)
-        normals, areas = joints["normal"][inside], joints["area"][inside]
+        own = np.isin(joints["bodies"], members).all(axis=1)
+        normals, areas = joints["normal"][own], joints["area"][own]
     nodes = structure.points(members)
     view = viewOf(points[nodes], normals, areas, structure.sights.get(name))
     depth = points @ view.towards
@@ -277,25 +277,22 @@ def figureOf(structure, title, magnification=None, later=None):
     sizes = np.array([high - low for low, high in boxes])
     columns = max(range(1, len(sizes) + 1), key=lambda n: _scale(sizes, n))
     scale = _scale(sizes, columns)
-    rows = [range(n, min(n + columns, len(sizes))) for n in range(0, len(sizes), columns)]  # fmt: skip
     wides = [scale * max(sizes[c::columns, 0]) for c in range(columns)]
-    highs = [scale * max(sizes[n, 1] for n in row) for row in rows]
+    highs = [scale * max(sizes[n : n + columns, 1]) for n in range(0, len(sizes), columns)]  # fmt: skip
     # inches for labels beside and below each, for the legend at the right, and for the title
     above = 0.85 if title else 0.3
-    width, height = max(sum(wides) + 0.85 * columns + 1.6, 7.0), sum(highs) + 0.75 * len(rows) + above  # fmt: skip
-    figure = drawing.empty(width, height)
-    y, handles = height - above, {}
-    for row, high in zip(rows, highs):
-        x, y = 0.7, y - high
-        for n, wide in zip(row, wides):
-            w, h = scale * sizes[n]
-            axes = figure.add_axes([x / width, y / height, w / width, h / height])
-            elevations[n].draw(axes, scales[n], 72 * scale)
-            head = f"{elevations[n].name if len(sizes) > 1 else ''} {elevations[n].note}"  # fmt: skip
-            axes.set_title(head.strip(), fontsize=9, pad=3)
-            handles.update((label, handle) for handle, label in zip(*axes.get_legend_handles_labels()))  # fmt: skip
-            x += wide + 0.85
-        y -= 0.75
+    width, height = max(sum(wides) + 0.85 * columns + 1.6, 7.0), sum(highs) + 0.75 * len(highs) + above  # fmt: skip
+    figure, handles = drawing.empty(width, height), {}
+    for n, one in enumerate(elevations):
+        row, column = divmod(n, columns)
+        x = 0.7 + sum(wides[:column]) + 0.85 * column
+        y = height - above - sum(highs[: row + 1]) - 0.75 * row
+        w, h = scale * sizes[n]
+        axes = figure.add_axes([x / width, y / height, w / width, h / height])
+        one.draw(axes, scales[n], 72 * scale)
+        head = f"{one.name if len(sizes) > 1 else ''} {one.note}".strip()
+        axes.set_title(head, fontsize=9, pad=3)
+        handles.update((label, handle) for handle, label in zip(*axes.get_legend_handles_labels()))  # fmt: skip
     if title:
         if structure.joints is not None:  # else nothing has moved
             title = title.replace("{}", scaleText(structure.joints, magnification))

@@ -140,6 +140,10 @@ GROUPS: dict[str, tuple[str, Callable[[RunData], bool]]] = {
 }  # fmt: skip
 
 
+def _ofPattern(key):
+    return lambda data: data.pattern[key]
+
+
 Q = Quantity
 QUANTITIES: tuple[Quantity, ...] = (
     Q("peak_at_both_ends_kN", "peak", "kN", "Largest force along the push that the loaded point and the supports carry at once, so without waves that pass through; of loops where the displacement is positive.", _BOTH, lambda d: d.peakForce(), brief=True),
@@ -178,7 +182,7 @@ QUANTITIES: tuple[Quantity, ...] = (
     Q("bound_base_shear_kN", "limit analysis of the push", "kN", "Bound of the force of the first push.", "masonry.limit", group="bound", brief=True),
     Q("negative_bound_base_shear_kN", "limit analysis of the way back", "kN", "Likewise of the way back.", "masonry.limit", group="bound"),
     Q("bound_acceleration", "limit analysis of the acceleration", "g", "Bound of the first lean or tilt, horizontal over vertical.", "masonry.limit", group="bound", brief=True),
-    *(Q(key, "", "-", f"As of {where}.", where, lambda d, key=key: d.pattern[key], "wall") for key, where in cracks.MEASURED.items()),
+    *(Q(key, "", "-", f"As of {where}.", where, _ofPattern(key), "wall") for key, where in cracks.MEASURED.items()),
     Q("peak_normal_stress_MPa", "largest normal stress", "MPa", "Largest mean normal stress of the joint, positive in tension.", "curve.csv: normal_stress_MPa", lambda c: max(c("normal_stress_MPa")), "joint", True),
     Q("peak_compressive_stress_MPa", "largest compression", "MPa", "Largest mean compression of the joint, as a positive number.", "curve.csv: normal_stress_MPa", lambda c: -min(c("normal_stress_MPa")), "joint", True),
     Q("peak_shear_stress_MPa", "largest shear stress", "MPa", "Largest mean shear stress of the joint.", "curve.csv: shear_stress_MPa", lambda c: max(c("shear_stress_MPa")), "joint", True),

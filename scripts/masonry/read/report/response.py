@@ -14,7 +14,6 @@ from .structure import firstUpper, nameOf, sought, valueOf
 
 MOST_ANSWERS = 12  # in the table of what stages found; all are in a folded one
 NOISE = 1e-6  # of the largest force of a column: what is below is round-off
-NO_PUSH = "The run has no push"
 
 
 def curve(record):
@@ -72,9 +71,14 @@ def _ideal(record):
     known = {rule: {n.name: n for n in one.numbers()} for rule, one in good.items()}
     lines = []
     for name, what in OF_IDEAL.items():
-        values = [_idealOf(known.get(rule, {}).get(name)) for rule in ideals]
-        meanings = dict.fromkeys(known[rule][name].meaning for rule in known)
-        lines.append((what, *values, " Or: ".join(meanings)))
+        values, meanings = dict.fromkeys(ideals, "none"), {}
+        for rule in known:
+            one = known[rule][name]
+            value = withUnit(one.value, one.unit)
+            # its curve ends before the force has fallen
+            values[rule] = Badged(value, "not reached") if one.note else value
+            meanings[one.meaning] = None
+        lines.append((what, *values.values(), " Or: ".join(meanings)))
     heads = ("quantity", *(bilinear.RULES[rule] for rule in ideals), "what it is")
     caption = "Bilinear idealisation of the force that both ends carry at once. Source: curve.csv: displacement_mm, base_shear_kN, top_shear_kN"
     yield table(heads, lines, caption, "ideal")
@@ -82,14 +86,6 @@ def _ideal(record):
     notes += [f"{bilinear.RULES[rule]}: none, because {ideals[rule]}" for rule in ideals if rule not in good]  # fmt: skip
     for text in dict.fromkeys(notes):
         yield note(f"{firstUpper(text)}.")
-
-
-def _idealOf(number):
-    """A number of a bilinear curve; one that ends before the force has fallen is marked."""
-    if number is None:
-        return "none"
-    value = withUnit(number.value, number.unit)
-    return Badged(value, "not reached") if number.note else value
 
 
 def _aboutCurve(spec, y):
@@ -117,7 +113,7 @@ def found(record):
         yield from _states(record)
         yield numbers(quantities.shown(record.numbers, "push", "loops", "one way"), "Numbers of the push")  # fmt: skip
     else:
-        yield missing(f"{NO_PUSH}, so there are no drifts at a peak or at a first crack.")  # fmt: skip
+        yield missing("The run has no push, so there are no drifts at a peak or at a first crack.")  # fmt: skip
     yield from _drifts(record)
     yield from _answers(record.run)
 
@@ -149,8 +145,8 @@ def _drifts(record):
         values = record.columns.get(name, np.zeros(0))
         values = values[np.isfinite(values)]
         if len(values):
-            at = int(np.abs(values).argmax())
-            rows.append(quantities.Number(f"largest {name.removesuffix('_mrad')}", float(values[at]), "mrad", f"Of all rows the one with the largest size: {bare(meanings.get(name))}.", f"curve.csv: {name}"))  # fmt: skip
+            largest = float(max(values, key=abs))
+            rows.append(quantities.Number(f"largest {name.removesuffix('_mrad')}", largest, "mrad", f"Of all rows the one with the largest size: {bare(meanings.get(name))}.", f"curve.csv: {name}"))  # fmt: skip
     if rows:
         yield numbers(rows, "Drifts that were recorded")
 
