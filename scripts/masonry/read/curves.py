@@ -100,23 +100,16 @@ def fallen(displacement: Any, force: Any, at: int, level: float, pulse: float) -
     :param at: number of the row
     :param pulse: a displacement
     """
-    below, row = force < level, at
-    while True:
-        under = np.flatnonzero(below[row:])
-        if not len(under):
-            return None
-        first = row + int(under[0])
-        back = np.flatnonzero(~below[first:])
-        last = first + int(back[0]) if len(back) else len(force) - 1
-        place = float(first)
+    below = (np.arange(len(force)) >= at) & (force < level)
+    changes = np.flatnonzero(np.diff(below, prepend=False, append=False))
+    for first, back in changes.reshape(-1, 2):
+        last, place = min(back, len(force) - 1), float(first)
         if first and force[first] != force[first - 1]:
             place += (level - force[first]) / (force[first] - force[first - 1])
         down = np.interp(place, np.arange(len(force)), displacement)
         if pulse == 0 or displacement[last] - down > pulse:
-            return place
-        if not len(back):
-            return None
-        row = last
+            return float(place)
+    return None
 
 
 def stillGrows(displacement: Numbers, force: Numbers) -> bool:

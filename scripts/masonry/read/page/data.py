@@ -37,14 +37,10 @@ class _Arrays:
         self.known[name] = {"kind": kind, "at": len(self.bytes), "count": values.size, "row": row, "step": float(step)}  # fmt: skip
         self.bytes += values.tobytes() + bytes(-values.nbytes % 4)
 
-    def addRounded(self, name, values, kind, levels):
-        """Append numbers of frames, rounded to so many steps up to the largest."""
+    def addRounded(self, name, values, kind="i2", levels=32767):
+        """Append numbers of frames, as displacements and rotations, rounded to so many steps up to the largest."""
         step = float(np.abs(values).max(initial=0.0)) / levels or 1.0
         self.add(name, np.rint(values / step), kind, step, frames=True)
-
-    def addMotion(self, name, values):
-        """Append displacements or rotations of frames."""
-        self.addRounded(name, values, "i2", 32767)
 
 
 def dataOf(directory, number=None, magnification=None):
@@ -73,13 +69,13 @@ def dataOfModel(model, number=None, magnification=None, curve=None):
     for name, kind in (("points", "f4"), ("owner", "u4"), ("triangles", "u4"), ("edges", "u4"), ("bodies", "u4"), ("looks", "u1"), ("centres", "f4"), ("free", "u4")):  # fmt: skip
         arrays.add(name, getattr(model, name), kind)
     for name in ("shift", "turn", "moved"):
-        arrays.addMotion(name, getattr(model, name))
+        arrays.addRounded(name, getattr(model, name))
     arrays.add("jointPoints", joints.corners, "f4")
     arrays.add("jointOwner", joints.owner, "u4")
     arrays.add("jointBlocks", joints.between, "u4")
     arrays.add("kind", joints.kind, "u1", frames=True)
     if joints.moved is not None:
-        arrays.addMotion("jointMoved", np.moveaxis(joints.moved, 0, 1))
+        arrays.addRounded("jointMoved", np.moveaxis(joints.moved, 0, 1))
     head["values"] = {}
     for name, least in LEAST.items():
         values = np.clip(getattr(joints, name), 0, None)
@@ -130,7 +126,7 @@ def _addTies(arrays, model):
     bars = [n for n, cell in enumerate(frames[0]["cells"]) if len(cell) == 2]
     ends = np.concatenate([frames[0]["cells"][n] for n in bars])
     arrays.add("tiePoints", frames[0]["points"][ends], "f4")
-    arrays.addMotion("tieMoved", np.array([one["displacement"][ends] for one in frames]))  # fmt: skip
+    arrays.addRounded("tieMoved", np.array([one["displacement"][ends] for one in frames]))  # fmt: skip
     arrays.add("tieCondition", np.array([one["condition"][bars] for one in frames]), "u1", frames=True)  # fmt: skip
 
 
