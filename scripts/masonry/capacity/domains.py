@@ -6,8 +6,6 @@ Limit analysis of the scene is then in run.json, for each of these normal forces
 runs beside it.
 """
 
-from __future__ import annotations
-
 import math
 import os
 from dataclasses import asdict, dataclass

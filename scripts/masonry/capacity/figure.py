@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Pictures of capacity and demand, and of an N-V domain, by matplotlib without a window."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

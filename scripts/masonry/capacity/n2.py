@@ -4,8 +4,6 @@
 Equations have the numbers of the annex. Units are those of curve.csv: mm, kN, and accelerations in m/s².
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, replace
 from typing import Annotated, Any

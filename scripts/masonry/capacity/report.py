@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Capacity and demand of a run, as files in its folder: capacity.json and capacity.png, or domain.json and domain.png."""
 
-from __future__ import annotations
-
 import json
 import os
 import sys

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Elastic response spectra: those of EN 1998-1:2004, and any that a file has."""
 
-from __future__ import annotations
-
 import math
 import re
 from dataclasses import dataclass

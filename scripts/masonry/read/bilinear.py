@@ -23,8 +23,6 @@ The curve of a run is the force that both ends carry at once: in every row of cu
 that at the loaded point, so its peak is ``peak_at_both_ends_kN`` of run.json.
 """
 
-from __future__ import annotations
-
 import math
 import os
 import sys

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Curves of several runs and of measured CSV files over each other, in one picture."""
 
-from __future__ import annotations
-
 import argparse
 import csv
 import math

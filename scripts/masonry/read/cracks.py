@@ -5,8 +5,6 @@ Joints are given as a frame, a dict of arrays: of a file for ParaView (:func:`ma
 that stands in YADE (``MasonryVtkRecorder().joints()``). Figures and numbers have their thresholds from here.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any, Sequence
 

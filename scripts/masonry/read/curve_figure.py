@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """curve.png: what the entry ``figure`` of run.json says, and the energies. This module needs no YADE."""
 
-from __future__ import annotations
-
 import os
 import re
 from typing import Any

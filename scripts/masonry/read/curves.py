@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Numbers of a curve of force over displacement."""
 
-from __future__ import annotations
-
 import math
 from typing import Any, Callable
 

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Elevations of a structure: what is built, cracks.png, and the mechanism of limit analysis."""
 
-from __future__ import annotations
-
 import copy
 import functools
 import os

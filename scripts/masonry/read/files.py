@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """curve.csv and run.json of a run, read again; :mod:`masonry.run.results` lists what is in them."""
 
-from __future__ import annotations
-
 import contextlib
 import csv
 import functools

@@ -6,8 +6,6 @@ either can end a process in which YADE runs with a VTK of its own. MasonryVtkRec
 numbers appended in base64 and compressed by zlib, and that kind is read here.
 """
 
-from __future__ import annotations
-
 import base64
 import glob
 import os

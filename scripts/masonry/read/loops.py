@@ -12,8 +12,6 @@ cycles in a row, one to either side. A place in a curve is given as a row number
 the way from row 7 to row 8, with straight lines between rows.
 """
 
-from __future__ import annotations
-
 import math
 from collections import namedtuple
 from typing import Any, NamedTuple

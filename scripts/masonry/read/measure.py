@@ -7,8 +7,6 @@ Of a wall that follows a history the numbers of cracks and crushing are those of
 ``_mirrored`` at the end of the name, those of the way to the left. It has a table of its cycles, too.
 """
 
-from __future__ import annotations
-
 import glob
 import os
 import sys

@@ -10,8 +10,6 @@ A *push* below is the last one of the run, with those before it along the same l
 all supports (``base_shear_kN``) and that of the drive (``top_shear_kN``).
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import Any, Callable, NamedTuple

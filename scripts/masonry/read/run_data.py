@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What the numbers of a run are found from: its rows, its force, its peak, its drift and the states of its push."""
 
-from __future__ import annotations
-
 import functools
 import math
 from typing import Any, Callable, Sequence
@@ -39,7 +37,7 @@ class RunData:
         self.run, self.column, self.joints, self._height = run, column, joints, height
 
     @classmethod
-    def read(cls, directory: FilePath, moved: str | None = None) -> RunData:
+    def read(cls, directory: FilePath, moved: str | None = None) -> "RunData":
         """That of a folder of results. Raises Refused.
 
         :param moved: name of a column of curve.csv whose displacements are those of the push, from where it began; None: those of the
@@ -157,7 +155,7 @@ class RunData:
         rows = np.arange(len(values))
         return None if place is None else float(np.interp(place, rows, values))
 
-    def place(self, find: Callable[[RunData], float | None]) -> float | None:
+    def place(self, find: Callable[..., float | None]) -> float | None:
         """Where a state is in the rows of the push, None if it is not reached or curve.csv does not have its columns.
 
         :param find: function that finds it

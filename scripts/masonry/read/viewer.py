@@ -5,8 +5,6 @@ ParaView. No YADE is needed.
 ``scripts/view.py`` is the program. In ParaView's own Python works :mod:`masonry.read.paraview_macro`.
 """
 
-from __future__ import annotations
-
 import argparse
 import json
 import os

@@ -15,8 +15,6 @@ has its unit, what it is, and its source. What the files do not have is said to 
 that of :mod:`masonry.read.page`, and needs the Debian package libjs-three; without it the report has a sentence in its place.
 """
 
-from __future__ import annotations
-
 from ...common.arguments import FilePath, validated
 from ...basics import Refused
 from .. import pages
