@@ -20,11 +20,7 @@ author = "The maintainers of Masonry for YADE"
 copyright = "the maintainers of Masonry for YADE, GPL-2.0-or-later"
 version = release = masonry.__version__
 
-extensions = [
-    "myst_parser",
-    "sphinx.ext.autodoc",
-    "sphinx.ext.mathjax",
-]
+extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.mathjax"]
 myst_enable_extensions = ["dollarmath", "html_image", "colon_fence"]
 myst_heading_anchors = 4
 root_doc = "index"

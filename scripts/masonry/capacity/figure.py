@@ -34,9 +34,8 @@ def forces(push: Pushover, curve: Bilinear, path: FilePath) -> None:
         axes.plot(*_corners(curve), color=IDEAL, lw=1.8, label=label)
         axes.set_ylim(bottom=min(0, 1.1 * float(push.force.min())))
         axes.set_title(str(push.run.get("title", "")))
-        drawing.finish(
-            axes, "displacement [mm]", "force carried at both ends [kN]", fontsize=9
-        )
+        labels = "displacement [mm]", "force carried at both ends [kN]"
+        drawing.finish(axes, *labels, fontsize=9)
 
 
 def capacity(push: Pushover, found: Demand, path: FilePath) -> None:

@@ -107,17 +107,15 @@ class Bilinear:
         """K, Vy, dy, du, mu, and the peak, each with its unit, its meaning and its source."""
         source = RULES[self.rule]
         if self.rule == "masonry":
-            stiff = (
-                f"Secant stiffness at {self.secant:g} of the peak, on the way to it."
-            )
+            line = f"Secant stiffness at {self.secant:g} of the peak, on the way to it."
             force = "Force of the plateau for which both curves have the same area up to the ultimate displacement."
         else:
-            stiff = "Yield force over yield displacement."
+            line = "Yield force over yield displacement."
             force = f"Force at which the plastic mechanism forms, at {self.mechanism:.4g} mm."
         ultimate = f"Displacement after the peak at which the force has fallen to {self.fall:g} of it."
         missing = self.unreached
         return [
-            Number("bilinear_stiffness_kN_per_mm", self.stiffness, "kN/mm", stiff, source),
+            Number("bilinear_stiffness_kN_per_mm", self.stiffness, "kN/mm", line, source),
             Number("yield_force_kN", self.yieldForce, "kN", force, source),
             Number("yield_displacement_mm", self.yieldDisplacement, "mm", "Displacement at which the elastic line reaches the yield force.", source),
             Number("ultimate_displacement_mm", self.ultimateDisplacement, "mm", ultimate, CONVENTION, missing),
