@@ -81,10 +81,10 @@ def contents(documents, first=()):
     """
     named = {page for pages in SECTIONS.values() for page in pages}
     rest = [d.removesuffix(".md") for d in documents if d != "README.md"]
-    rest = [d for d in rest if d not in named]
-    cases = [d for d in rest if d.startswith("validation/")]
-    if set(rest) - set(cases):
-        raise ValueError(f"no section of build.py has {', '.join(sorted(set(rest) - set(cases)))}")  # fmt: skip
+    cases = [d for d in rest if d.startswith("validation/") and d not in named]
+    others = sorted({*rest} - {*cases} - named)
+    if others:
+        raise ValueError(f"no section of build.py has {', '.join(others)}")
     gone = sorted(p for p in named - GENERATED if p + ".md" not in documents)
     if gone:
         raise ValueError(f"build.py names {', '.join(gone)}, which the repository does not have")  # fmt: skip
@@ -134,8 +134,7 @@ def sphinx(out, builder, target, *more):
     from sphinx.cmd.build import main
 
     words = ["-b", builder, "-c", HERE, "-d", os.path.join(out, "doctrees-" + builder), "-W", "--keep-going", "-q", *more]  # fmt: skip
-    failed = main([*words, os.path.join(out, "source"), target])
-    if failed:
+    if main([*words, os.path.join(out, "source"), target]):
         raise SystemExit(f"Sphinx failed ({builder}): see above")
 
 

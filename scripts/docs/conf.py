@@ -57,11 +57,9 @@ else:
 
 def _kindsOf(word):
     """The kinds of the arguments of a word, also under its decorators."""
-    while word is not None:
-        if hasattr(word, "kinds"):
-            return word.kinds()
+    while word and not hasattr(word, "kinds"):
         word = getattr(word, "__wrapped__", None)
-    return {}
+    return word.kinds() if word else {}
 
 
 def _withTypes(lines, checks):

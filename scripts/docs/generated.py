@@ -224,11 +224,10 @@ def cite():
     """The page on how to cite the software and its papers, from CITATION.cff."""
     known = yaml.safe_load(read("CITATION.cff"))
     text = f"# How to cite\n\n{known['message']}\n\n"
-    people = ", ".join(one.get("name") or f"{one['given-names']} {one['family-names']}" for one in known["authors"])  # fmt: skip
-    text += f"> {people}: *{known['title']}*, version {known['version']}. {known['license']}.\n\n"
+    people = lambda work: ", ".join(a.get("name") or f"{a['given-names']} {a['family-names']}" for a in work["authors"])  # fmt: skip
+    text += f"> {people(known)}: *{known['title']}*, version {known['version']}. {known['license']}.\n\n"
     for paper in known.get("references", []):
-        people = ", ".join(f"{a['given-names']} {a['family-names']}" for a in paper["authors"])  # fmt: skip
-        text += f"{paper['scope']}:\n\n> {people}: *{paper['title']}*"
+        text += f"{paper['scope']}:\n\n> {people(paper)}: *{paper['title']}*"
         text += f", {paper['notes']}" if "notes" in paper else ""
         text += f", doi [{paper['doi']}](https://doi.org/{paper['doi']})" if "doi" in paper else ""  # fmt: skip
         text += ".\n\n"

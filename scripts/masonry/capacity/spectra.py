@@ -188,7 +188,7 @@ def readSpectrum(
             f"{path}: the corner, {corner:g} s, must be within the periods, {periods[0]:g} to {periods[-1]:g} s"
         )
     return Spectrum(
-        name=f"{path}",
+        name=str(path),
         source=f"the file {path}, accelerations in {unit}",
         periods=periods,
         accelerations=accelerations,
