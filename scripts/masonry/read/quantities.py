@@ -80,7 +80,7 @@ class Quantity:
     brief: bool = False
     share: bool = False  #: whether it is shown in per cent
 
-    def shown(self, value: Any) -> Number:
+    def shown(self, value):
         """The number as it is shown."""
         unit = "%" if self.share else self.unit
         value = 100 * value if self.share else value
@@ -219,7 +219,7 @@ def _damping(data):
     return [one["damping"] for one in data.cycles if one["damping"] is not None]
 
 
-def found(data: RunData) -> dict[str, Any]:
+def found(data):
     """All numbers that can be found from what a run has, by their entries in run.json. What needs a column that curve.csv does not
     have, or a cycle of a run without one, is left out."""
     entries = {}
@@ -232,7 +232,7 @@ def found(data: RunData) -> dict[str, Any]:
     return entries
 
 
-def ofJoint(column: Callable[[str], Any], prefixed: Callable[[str], str], brief: bool = False) -> dict[str, Any]:  # fmt: skip
+def ofJoint(column, prefixed, brief=False):
     """Numbers of a joint whose means are recorded, by their entries in run.json.
 
     :param column: function of the name of a column of curve.csv that gives its values
@@ -244,12 +244,12 @@ def ofJoint(column: Callable[[str], Any], prefixed: Callable[[str], str], brief:
     return {prefixed(one.key): one.of(own) for one in ones if one.of}
 
 
-def known(data: RunData) -> dict[str, Any]:
+def known(data):
     """All numbers of a run: those of run.json and, where it does not have them, those that can be found."""
     return {**found(data), **{k: v for k, v in data.run.items() if k in BY_KEY}}
 
 
-def shown(entries: dict[str, Any], *groups: str, brief: bool = False) -> list[Number]:
+def shown(entries, *groups, brief=False):
     """Those of some groups that have a name and a value, as they are shown.
 
     :param entries: of :func:`known`, or of run.json
@@ -261,7 +261,7 @@ def shown(entries: dict[str, Any], *groups: str, brief: bool = False) -> list[Nu
     return [q.shown(entries[q.key]) for q in named if fine(entries.get(q.key))]
 
 
-def measures(run: dict[str, Any]) -> dict[str, Any]:
+def measures(run):
     """Entries of run.json that measure the structure, for a row of study.csv: how it ended, and the numbers of this list, those
     first that a notebook shows."""
     names = ["failure_mode", "collapsed", "ended"]
@@ -274,7 +274,7 @@ def measures(run: dict[str, Any]) -> dict[str, Any]:
     return {name: run[name] for name in names if name in run}
 
 
-def headline(run: dict[str, Any], end: bool = False) -> str:
+def headline(run, end=False):
     """The peak of a push and its bound in a line, from the entries of run.json; empty if there was no push.
 
     :param end: whether the force at the end stands there, too, and how many cycles there were
@@ -296,7 +296,7 @@ def headline(run: dict[str, Any], end: bool = False) -> str:
     return text
 
 
-def described() -> str:
+def described():
     """What run.json has of these, for its documentation: a list of reStructuredText for every group."""
     text = ""
     for group, (title, _) in GROUPS.items():
@@ -305,7 +305,7 @@ def described() -> str:
     return text
 
 
-def loadsOf(stages: Any) -> dict[int, str]:
+def loadsOf(stages):
     """The name of its load, by the number of a stage that has one, from the entries ``stages`` of run.json."""
     named = ((number, one.get("load")) for number, one in enumerate(stages, 1))
     return {number: load[1] for number, load in named if load}

@@ -27,13 +27,7 @@ class RunData:
     :param height: of the recorded point above the base [m], in place of what run.json says
     """
 
-    def __init__(
-        self,
-        run: dict[str, Any],
-        column: Callable[[str], Any],
-        joints: dict[str, Any] | None = None,
-        height: float | None = None,
-    ) -> None:
+    def __init__(self, run, column, joints=None, height=None):
         self.run, self.column, self.joints, self._height = run, column, joints, height
 
     @classmethod
