@@ -148,9 +148,8 @@ def findProblems(blocks, solids, joints, misfits):
     found = []
     thickness = solids.thicknesses().tolist()
     nameOf = lambda n: f"block {n} of brick {blocks[n].brick}"
-    middles = solids.middles()
-    for n in sorted(solids.problems):
-        found.append(f"{nameOf(n)} ({blocks[n].part}): {solids.problems[n]}")
+    for n, problem in sorted(solids.problems.items()):
+        found.append(f"{nameOf(n)} ({blocks[n].part}): {problem}")
     neighbours = defaultdict(set)
     for one, two, *_ in joints:
         neighbours[one].add(two)
@@ -174,7 +173,7 @@ def findProblems(blocks, solids, joints, misfits):
         for n in members:
             if thickness[n] < least * (1 - 1e-9):
                 found.append(
-                    f"{nameOf(n)} near {where(middles[n])} is a sliver: {thickness[n]:.3g} m thin, less than {least:.3g} m, "
+                    f"{nameOf(n)} near {where(blocks[n].middle)} is a sliver: {thickness[n]:.3g} m thin, less than {least:.3g} m, "
                     f"a quarter of what is usual for a {kind} here"
                 )
     for joint in joints:
@@ -195,7 +194,7 @@ def findProblems(blocks, solids, joints, misfits):
             what = nameOf(members[0])
             what = f"{len(members)} blocks from {what} on" if len(members) > 1 else what
             found.append(
-                f"{what}, near {where(middles[members[0]])}: no joint with the other {len(good) - len(members)} blocks"
+                f"{what}, near {where(blocks[members[0]].middle)}: no joint with the other {len(good) - len(members)} blocks"
             )
     return found
 

@@ -129,18 +129,6 @@ class Alike:
         arms = self._centres - middle[:, None]
         return np.einsum("nfk,nfk->n", self._areaVectors, arms) / 3
 
-    def middles(self):
-        """Centroids of the solids, (n, 3) [m], from the tetrahedra between a middle and the triangles of the surface."""
-        middle = self.corners.mean(axis=1)
-        moment, volume = np.zeros_like(middle), np.zeros(len(middle))
-        for face in self.faces:
-            for a, b in zip(face[1:], face[2:]):
-                arms = [self.corners[:, c] - middle for c in (face[0], a, b)]
-                six = np.einsum("nk,nk->n", arms[0], np.cross(arms[1], arms[2]))
-                moment += six[:, None] * sum(arms) / 4
-                volume += six
-        return middle + moment / volume[:, None]
-
 
 class Solids:
     """Faces, joints, gaps and overlaps of convex solids.
@@ -193,12 +181,8 @@ class Solids:
         """Smallest extent along the normal of a face [m], (n,); NaN for a solid with problems."""
         return self._each(lambda group: group.thickness)
 
-    def middles(self):
-        """Centroids [m], (n, 3)."""
-        return self._each(Alike.middles, 3)
-
-    def _each(self, measure, *shape):
-        found = np.full((self.count, *shape), np.nan)
+    def _each(self, measure):
+        found = np.full(self.count, np.nan)
         for group in self.groups:
             found[group.index] = measure(group)
         return found
@@ -293,6 +277,13 @@ def _parted(a, i, b, j):
     return beyond[np.arange(len(i)), face], face
 
 
+def cosSin(quarters, angle):
+    """Cosine and sine of an angle [rad], exact if it is a whole number of quarter turns."""
+    if quarters == round(quarters):
+        return [(1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0)][round(quarters) % 4]
+    return math.cos(angle), math.sin(angle)
+
+
 def clip(polygon, other, normal):
     """What two convex polygons in one plane have in common, as a list of points.
 
@@ -377,6 +368,11 @@ def joinedCorners(pieces):
     if abs(found.volume - volume) < COINCIDENT * volume:
         return tuple(points[n] for n in sorted(found.vertices))
     return None
+
+
+def prism(section, low, high):
+    """Corners of a section (x, z) that is stretched along y [m]."""
+    return tuple((x, y, z) for y in (low, high) for x, z in section)
 
 
 def boxCorners(low: Numbers, high: Numbers) -> tuple[tuple[float, float, float], ...]:

@@ -12,6 +12,7 @@ import numpy as np
 from ..common.arguments import isA, number, oneOf, validated, whole
 from ..basics import say
 from .blocks import Block, Bricks, Length, Sides, refuse
+from .geometry import prism
 
 #: Walls that are drawn until one has the trace that is asked for, and how near it must come [-].
 DRAWS, NEAR = 30, 0.03
@@ -69,7 +70,6 @@ def StoneWall(
         walls are drawn, those of squared stones after the running bond itself with overlaps from none to half a stone: the
         first within 3 % of it is taken, else the nearest, and a note says how near it is
     :param seed: of the draws; another one is another wall of the same kind
-    :raises ValueError: with all problems
     """
     problems = []
     for what, stone, wall in (("length", unit[0], length), ("height", unit[2], height)):
@@ -91,7 +91,12 @@ def StoneWall(
             # the running bond itself comes first
             own, overlap = (own, 0.5 * draw.random()) if n else (0.0, 0.5)
         stones = lay(counts, overlap, own, draw)
-        bricks = _bricks(stones, (length / counts[0], height / counts[1]), unit[1], part)  # fmt: skip
+        wide, high = length / counts[0], height / counts[1]  # of a stone
+        faces = ((n, [(float(x) * wide, float(z) * high) for x, z in ring]) for n, ring in stones)  # fmt: skip
+        bricks = Bricks(
+            Block(prism(face, 0.0, float(unit[1])), n, part, course)
+            for n, (course, face) in enumerate(faces)
+        )
         if trace is None:
             return bricks
         miss = abs(leastTrace(bricks) / trace - 1)
@@ -227,13 +232,3 @@ def _convex(ring):
     along = ring - np.roll(ring, 1, axis=0)
     turns = np.cross(along, np.roll(along, -1, axis=0))
     return len(turns) > 2 and (np.all(turns > 1e-6) or np.all(turns < -1e-6))
-
-
-def _bricks(stones, scale, thickness, part):
-    """Blocks of stones that are given by the corners of their faces, in lengths and heights of a stone."""
-    blocks = []
-    for n, (course, ring) in enumerate(stones):
-        face = [(float(x) * scale[0], float(z) * scale[1]) for x, z in ring]
-        corners = [(x, y, z) for y in (0.0, float(thickness)) for x, z in face]
-        blocks.append(Block(tuple(corners), n, part, course))
-    return Bricks(blocks)

@@ -46,7 +46,8 @@ class Finder:
         """As of :class:`importlib.abc.MetaPathFinder`. Raises ModuleNotFoundError with a sentence if there is no YADE."""
         if name == YADE:
             found = self._byOthers() or _installed()
-            found.loader = Loader(found.loader, self._started)
+            found.loader = Loader(YADE, found.origin)
+            found.loader.started = self._started
             return found
         needs = name == PLUGIN or name.startswith(ASSEMBLY)
         if needs and YADE not in sys.modules:
@@ -65,17 +66,8 @@ class Finder:
         return None
 
 
-class Loader:
+class Loader(importlib.machinery.SourceFileLoader):
     """Imports YADE quietly, with one thread unless the user wants more."""
-
-    def __init__(self, loader, started):
-        self._loader, self._started = loader, started
-
-    def __getattr__(self, name):
-        return getattr(self._loader, name)
-
-    def create_module(self, spec):
-        return self._loader.create_module(spec)
 
     def exec_module(self, module):
         """Run the module. Raises ImportError with a sentence if this Python lacks what YADE needs."""
@@ -88,7 +80,7 @@ class Loader:
                 printed
             ), _withoutShell():
                 warnings.simplefilter("ignore", DeprecationWarning)
-                self._loader.exec_module(module)
+                super().exec_module(module)
         except ModuleNotFoundError as error:
             if error.name and error.name.split(".")[0] != YADE:
                 raise _misses(error) from error
@@ -100,7 +92,7 @@ class Loader:
             if found:
                 say(found)
         _putLast(os.path.dirname(module.__file__))
-        self._started()
+        self.started()
 
 
 @contextlib.contextmanager
@@ -153,11 +145,9 @@ def folders():
 
 def _program():
     """The text of the program ``yade``, or an empty one."""
-    path = shutil.which(YADE)
-    if path:
-        with contextlib.suppress(OSError, UnicodeDecodeError):
-            with open(path, encoding="utf-8") as file:
-                return file.read(1 << 20)
+    with contextlib.suppress(OSError, UnicodeDecodeError, TypeError):
+        with open(shutil.which(YADE), encoding="utf-8") as file:
+            return file.read(1 << 20)
     return ""
 
 
@@ -210,10 +200,8 @@ def _misses(error):
 def _putLast(folder):
     """Let the folder of YADE's own modules be the last of ``sys.path``: YADE puts it before the standard library, where its
     ``config.py``, ``log.py`` or ``plot.py`` would hide modules of these names."""
-    same = [one for one in sys.path if os.path.realpath(one or ".") == os.path.realpath(folder)]  # fmt: skip
-    for one in same:
-        sys.path.remove(one)
-    sys.path.extend(same[:1])
+    isSame = lambda one: os.path.realpath(one or ".") == os.path.realpath(folder)
+    sys.path.sort(key=isSame)
 
 
 def install(started):
