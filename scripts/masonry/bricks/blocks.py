@@ -19,12 +19,11 @@ from .geometry import COINCIDENT, Solids, cosSin, cutCorners, joinedCorners
 #: No corner of masonry is farther from the origin [m].
 FARTHEST = 1e6
 
-#: A length, one that may be 0, a coordinate, a point [m], and a number of things.
+#: A length, one that may be 0, a coordinate, and a point [m].
 Length = Annotated[float, number("m", 0, FARTHEST, above=True)]
 Gap = Annotated[float, number("m", 0, FARTHEST)]
 Coordinate = Annotated[float, number("m", -FARTHEST, FARTHEST)]
 Point = Annotated[Numbers, vector("m", FARTHEST)]
-Count = Annotated[int, whole(1, 10**9)]
 
 
 def sides(value: Any, first: Any = None) -> tuple[float, ...]:
