@@ -313,15 +313,12 @@ class Bricks:
         solids = self._convex("cut")
         blocks, beyond = [], []
         for n, block in enumerate(self._blocks):
-            faces = solids.groups[solids.groupOf[n]].faces
-            width = COINCIDENT * solids.diagonal[n]
+            faces, width = solids.of(n)[0].faces, COINCIDENT * solids.diagonal[n]
             above, below = cutCorners(block.corners, faces, point, normal, width)
-            if above is None or below is None:
-                beyond.append(below is None)
-                blocks.append(block)
-            else:
-                beyond += [False, True]
-                blocks += [replace(block, corners=c) for c in (below, above)]
+            for corners, far in ((below, False), (above, True)):
+                if corners:
+                    blocks.append(replace(block, corners=corners))
+                    beyond.append(far)
         if own:
             here = {b.brick for b, far in zip(blocks, beyond) if not far}
             numbers, first = {}, self._nextBrick()

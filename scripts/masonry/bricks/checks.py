@@ -36,9 +36,7 @@ def findJoints(solids):
         block, of the second, gap [m] (negative for an overlap), place [m])
     """
     thickness = solids.thicknesses()
-    with np.errstate(invalid="ignore"):
-        reach = np.where(np.isfinite(thickness), REACH * thickness, 0)
-    one, two = solids.nearPairs(reach / 2)
+    one, two = solids.nearPairs(REACH / 2 * thickness)
     apart, faces, cosine = solids.compare(one, two)
     width = COINCIDENT * np.minimum(solids.diagonal[one], solids.diagonal[two])
     # A face that two blocks share is as long as wide: their bounding boxes overlap along two axes at least.

@@ -96,9 +96,9 @@ class House(Bricks):
         if not low < high:
             refuse("House", [f"storey {n}: no height is common to all its openings, so it has no piers there"])  # fmt: skip
         between = walls.where(lambda block: low < block.middle[2] < high)
-        course = min(between, key=lambda b: abs(b.middle[2] - (low + high) / 2))
-        half = walls[0].high[2] / 2 - walls[0].low[2] / 2
-        self.heights.append(course.middle[2] - half)
+        courses = {block.middle[2] for block in between}
+        course = min(courses, key=lambda at: abs(at - (low + high) / 2))
+        self.heights.append(course - walls[0].high[2] / 2 + walls[0].low[2] / 2)
         piers = {}
         for side in SIDES:
             axis = SIDES.index(side) % 2

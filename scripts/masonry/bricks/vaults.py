@@ -154,9 +154,7 @@ def Dome(
 
     def corner(turn, polarAngle, r):
         out = r * math.sin(polarAngle)
-        foot = r == radius and polarAngle == lowest
-        up = 0.0 if foot else r * math.cos(polarAngle) - level
-        return out * turn[0], out * turn[1], up
+        return out * turn[0], out * turn[1], r * math.cos(polarAngle) - level
 
     radii = radius, radius + thickness
     blocks, brick = [], 0

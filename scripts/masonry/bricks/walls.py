@@ -151,8 +151,8 @@ def Corner(
     (one, two), levels = _counted("corner", unit, height, courses, [], 1, **sizes)
     lay = functools.partial(_leaf, levels, unit, halves, ys=(0.0, unit[1]))
     return _joined(
-        lay(one, "wall", openings, start=0),
-        _along(lay(two, "return", openings2, start=1)),
+        lay(one, "wall", openings, meets=(0, None)),
+        _along(lay(two, "return", openings2, meets=(1, None))),
     )
 
 
@@ -202,7 +202,7 @@ def Tee(
     lay = functools.partial(_leaf, levels, unit, halves)
     return _joined(
         lay(one, "wall", openings, (0.0, unit[1]), crossed=across),
-        _along(lay(two, "stem", openings2, across, start=1)),
+        _along(lay(two, "stem", openings2, across, meets=(1, None))),
     )
 
 
@@ -243,10 +243,10 @@ def Room(
     far = [(end - unit[1], end) for end in (one * unit[0] / 4, two * unit[0] / 4)]
     lay = functools.partial(_leaf, levels, unit, halves)
     return _joined(
-        lay(one, "front", front, near, start=0, end=0),
-        _along(lay(two, "right", right, far[0], start=1, end=1)),
-        lay(one, "back", back, far[1], start=0, end=0),
-        _along(lay(two, "left", left, near, start=1, end=1)),
+        lay(one, "front", front, near, meets=(0, 0)),
+        _along(lay(two, "right", right, far[0], meets=(1, 1))),
+        lay(one, "back", back, far[1], meets=(0, 0)),
+        _along(lay(two, "left", left, near, meets=(1, 1))),
     )
 
 
@@ -361,30 +361,19 @@ def _levels(height, courses, unit, problems):
 
 
 def _leaf(
-    levels,
-    unit,
-    halves,
-    quarters,
-    part,
-    openings,
-    ys,
-    start=None,
-    end=None,
-    crossed=None,
+    levels, unit, halves, quarters, part, openings, ys, meets=(None, None), crossed=None
 ):
     """A leaf in running bond, as (bricks, lintels), along x between the two ``ys``.
 
-    :param start: remainder by 2 of the courses that go through to x = 0, where another wall meets this one; the other
-        courses start beside that wall. None: no wall there
-    :param end: likewise at the other end
+    :param meets: for both ends, where another wall may meet this one, the remainder by 2 of the courses that go through to
+        the end; the other courses begin beside that wall. None: no wall there
     :param crossed: from where to where another wall goes through the odd courses [m]
     """
-    joined = start is not None, end is not None
-    length = quarters * unit[0] / 4
-    free = unit[1] * joined[0], length - unit[1] * joined[1]
+    joined = [end is not None for end in meets]
+    free = unit[1] * joined[0], quarters * unit[0] / 4 - unit[1] * joined[1]
     bricks = []
     for course, (z0, z1) in enumerate(zip(levels, levels[1:])):
-        shifted = course % 2 != (start or 0)
+        shifted = course % 2 != (meets[0] or 0)
         for x0, x1, at in _course(quarters, unit, shifted, free, joined):
             pieces = [(x0, x1)]
             if crossed and course % 2 and x0 < crossed[1] and x1 > crossed[0]:
