@@ -79,14 +79,13 @@ def Wall(
     :param part: name of the part
     """
     problems = []
-    unit = _laid("wall", unit, joint)
     through = bond in ("header", "english", "flemish")
     if through and wythes != 2:
         problems.append(
             f"{bond} bond has headers that go through the wall and needs wythes=2, got {wythes}"
         )
     size = length, 1 if bond == "stack" else 0.5, 1
-    (quarters,), levels = _counted("wall", unit, height, courses, problems, wythes, length=size)  # fmt: skip
+    unit, (quarters,), levels = _counted("wall", unit, joint, height, courses, problems, wythes, length=size)  # fmt: skip
     thickness, deep = unit[1], unit[0] - joint  # of the wall, where headers go through
     if through:
         fitting = deep - 2 * thickness
@@ -146,9 +145,10 @@ def Corner(
     :param openings2: of the return; x is measured along it from the corner's outer edge
     :param height: as for :func:`Wall`, like ``unit``, ``courses``, ``halves`` and ``joint``
     """
-    unit = _laid("corner", unit, joint)
     sizes = dict(length=(length, 0.5, 1.5), length2=(length2, 0.5, 1.5))
-    (one, two), levels = _counted("corner", unit, height, courses, [], 1, **sizes)
+    unit, (one, two), levels = _counted(
+        "corner", unit, joint, height, courses, [], 1, **sizes
+    )
     lay = functools.partial(_leaf, levels, unit, halves, ys=(0.0, unit[1]))
     return _joined(
         lay(one, "wall", openings, meets=(0, None)),
@@ -181,14 +181,15 @@ def Tee(
     :param openings2: of the stem; x is measured along it from the outer face of the wall
     :param height: as for :func:`Wall`, like ``unit``, ``courses``, ``halves`` and ``joint``
     """
-    problems = []
-    unit = _laid("tee", unit, joint)
-    if unit[1] > 0.75 * unit[0]:
+    problems, long = [], unit[0] + joint
+    if unit[1] > 0.75 * long:
         problems.append(
-            f"a junction needs a unit no thicker than 0.75 of its length, got {unit[1]:g} m and {unit[0]:g} m"
+            f"a junction needs a unit no thicker than 0.75 of its length, got {unit[1]:g} m and {long:g} m"
         )
     sizes = dict(length=(length, 0.5, 2), length2=(length2, 0.5, 1.5))
-    (one, two), levels = _counted("tee", unit, height, courses, problems, 1, **sizes)
+    unit, (one, two), levels = _counted(
+        "tee", unit, joint, height, courses, problems, 1, **sizes
+    )
     middle, most = at / unit[0] - 0.5, one // 4 - 1
     nearest = round(middle)
     nearest = min(max(nearest, 1), most - 1) if most > 1 else nearest
@@ -231,14 +232,15 @@ def Room(
         the outer edge of the corner nearer to the origin
     :param height: as for :func:`Wall`, like ``unit``, ``courses``, ``halves`` and ``joint``
     """
-    problems = []
-    unit = _laid("room", unit, joint)
-    if unit[1] > unit[0]:
+    problems, long = [], unit[0] + joint
+    if unit[1] > long:
         problems.append(
-            f"a room needs a unit no thicker than its length, got {unit[1]:g} m and {unit[0]:g} m"
+            f"a room needs a unit no thicker than its length, got {unit[1]:g} m and {long:g} m"
         )
     sizes = dict(length=(length, 1, 3), width=(width, 1, 3))
-    (one, two), levels = _counted("room", unit, height, courses, problems, 2, **sizes)
+    unit, (one, two), levels = _counted(
+        "room", unit, joint, height, courses, problems, 2, **sizes
+    )
     near = (0.0, unit[1])
     far = [(end - unit[1], end) for end in (one * unit[0] / 4, two * unit[0] / 4)]
     lay = functools.partial(_leaf, levels, unit, halves)
@@ -268,11 +270,8 @@ def stack(
 def block(low: Point, high: Point, part: str = "block", kind: str = "block") -> Bricks:
     """One block, a box between two opposite corners [m]: a :class:`Bricks`. It can be a platen, a pier or a beam."""
     if not all(a < b for a, b in zip(low, high)):
-        refuse(
-            "block",
-            [
-                f"low corner {tuple(low)} m must lie below high corner {tuple(high)} m on every axis"
-            ],
+        raise ValueError(
+            f"block: low corner {tuple(low)} m must lie below high corner {tuple(high)} m on every axis"
         )
     return Bricks([Block(boxCorners(low, high), 0, part, -1, kind)])
 
@@ -280,33 +279,27 @@ def block(low: Point, high: Point, part: str = "block", kind: str = "block") -> 
 # -- checks of what a user gives --------------------------------------------------------------------------------------
 
 
-def _laid(name, unit, joint):
-    """The sides of a unit with its joints. Raises ValueError."""
-    if joint == 0:
-        return unit
-    if joint >= min(unit[0], unit[2]):
-        raise ValueError(
-            f"{name}: joint {joint:g} m must be below length and height of the unit {unit} m"
-        )
-    return unit[0] + joint, unit[1], unit[2] + joint
-
-
-def _counted(name, unit, height, courses, problems, times, **sizes):
-    """Lengths in quarter units, and heights of bed joints. Raises ValueError, with problems that are known before, too.
+def _counted(name, unit, joint, height, courses, problems, times, **sizes):
+    """Sides of a unit with its joints, lengths in quarter units, and heights of bed joints. Raises ValueError, with problems
+    that are known before, too.
 
     :param times: walls of all these lengths
     :param sizes: of each length its value [m], the multiple of units that it must be, and how many units it needs
     """
+    if joint >= min(unit[0], unit[2]):
+        raise ValueError(
+            f"{name}: joint {joint:g} m must be below length and height of the unit {unit} m"
+        )
+    unit = unit[0] + joint, unit[1], unit[2] + joint
     units = [_multiple(what, size, unit[0], "units", *bounds, problems) for what, (size, *bounds) in sizes.items()]  # fmt: skip
     levels = _levels(height, courses, unit, problems)
     refuse(name, problems)
     bricks = times * sum(units) * (len(levels) - 1)
     if bricks > MOST_BRICKS:
-        refuse(
-            name,
-            [f"{bricks:.3g} bricks are more than {MOST_BRICKS}: are all lengths in m?"],
+        raise ValueError(
+            f"{name}: {bricks:.3g} bricks are more than {MOST_BRICKS}: are all lengths in m?"
         )
-    return [round(4 * n) for n in units], levels
+    return unit, [round(4 * n) for n in units], levels
 
 
 def _multiple(what, size, one, word, share, least, problems):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What a script says to a command is checked here: every argument, before the command does anything. This module needs no YADE.
+"""What a script says to a command is checked here: every argument, before the command does anything.
 
 Type hints say what a parameter takes::
 
@@ -351,13 +351,6 @@ def kindOf(hint: Any) -> Kind | None:
     return PLAIN.get(hint)
 
 
-def kindsOf(act: Callable[..., Any]) -> dict[str, Kind]:
-    """The kinds of the parameters of a function by their names."""
-    hints = get_type_hints(act, include_extras=True)
-    hints.pop("return", None)
-    return {n: kind for n, hint in hints.items() if (kind := kindOf(hint))}
-
-
 def validated(act: F) -> F:
     """Let a function, or a class, check its arguments by the kinds of its hints.
 
@@ -371,8 +364,12 @@ def validated(act: F) -> F:
         return cast(F, act)
     signature = inspect.signature(act)
     called = act.__qualname__.removesuffix(".__init__").rpartition(".")[2]
-    # its hints name classes that are made later
-    kinds = functools.cache(lambda: kindsOf(act))
+
+    @functools.cache  # its hints name classes that are made later
+    def kinds() -> dict[str, Kind]:
+        hints = get_type_hints(act, include_extras=True)
+        hints.pop("return", None)
+        return {n: kind for n, hint in hints.items() if (kind := kindOf(hint))}
 
     def checked(args, settings):
         return _checked(called, signature, kinds(), args, settings)

@@ -4,8 +4,6 @@
 A :class:`Task` begins with the scene as it is at that moment, so nothing need be packed for it, and what the run does then does
 not change what the copy sees. It takes no steps and ends without any clean-up. Where the system gives no process the work is
 done at once instead. :func:`carryOut` is the pool: it runs programs beside each other. Both end when this process does.
-
-This module needs no YADE.
 """
 
 from __future__ import annotations

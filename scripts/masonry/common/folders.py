@@ -3,7 +3,7 @@
 
 Results, studies and checkpoints are handed on as folders, and an archive keeps symbolic links. A file in such a folder is
 opened by :func:`inside` or :func:`replaced` alone, which write through no link, and :func:`check` names all links of a
-folder before anything is written there. ``scripts/README.md`` says what may be shared. This module needs no YADE.
+folder before anything is written there. ``scripts/README.md`` says what may be shared.
 """
 
 import contextlib

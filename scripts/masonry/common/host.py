@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Finds the YADE of this machine in plain Python, and starts it when it is first needed. This module needs no YADE itself.
+"""Finds the YADE of this machine in plain Python, and starts it when it is first needed.
 
 The program ``yade`` puts the folder of YADE's modules on ``sys.path`` before it runs a script; ``/usr/bin/python3`` does not.
 After ``import masonry`` this module does it instead, as soon as anything imports ``yade``: a scene, a module of this

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What is different in a notebook: lines that are kept up to date, pictures and tables, and how a run that ends is shown.
 
-This module needs no YADE, and loads nothing of Jupyter: it uses what the kernel of a notebook has loaded.
+This module loads nothing of Jupyter: it uses what the kernel of a notebook has loaded.
 """
 
 import base64
