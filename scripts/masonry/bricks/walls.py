@@ -139,10 +139,8 @@ def Corner(
     the return go through to the corner. The bricks beside the corner are cut or stretched by what the thickness of the
     unit differs from half its length, so that the bond goes on.
 
-    :param length: of the wall, measured outside [m]; whole half units, at least 1.5 units
-    :param length2: of the return, likewise
-    :param openings: of the wall; x is measured from the corner's outer edge
-    :param openings2: of the return; x is measured along it from the corner's outer edge
+    :param length: of the wall, measured outside [m]; whole half units, at least 1.5 units. ``length2``: of the return
+    :param openings: of the wall, ``openings2``: of the return; x is measured along each from the corner's outer edge
     :param height: as for :func:`Wall`, like ``unit``, ``courses``, ``halves`` and ``joint``
     """
     sizes = dict(length=(length, 0.5, 1.5), length2=(length2, 0.5, 1.5))
@@ -177,8 +175,7 @@ def Tee(
     :param length2: of the stem along y, measured from the outer face of the wall [m]; whole half units, at least 1.5 units
     :param at: distance of the stem's axis from the start of the wall [m]: half a unit more than whole units, so that it
         stands over the middle of a brick
-    :param openings: of the wall
-    :param openings2: of the stem; x is measured along it from the outer face of the wall
+    :param openings: of the wall, ``openings2``: of the stem; there x is measured from the outer face of the wall
     :param height: as for :func:`Wall`, like ``unit``, ``courses``, ``halves`` and ``joint``
     """
     problems, long = [], unit[0] + joint
@@ -226,8 +223,7 @@ def Room(
     The parts "front" and "back" run along x, "left" and "right" along y. Even courses of front and back, and odd ones of
     left and right, go through to the corners.
 
-    :param length: along x, measured outside [m]; whole units, at least 3
-    :param width: along y, likewise
+    :param length: along x, measured outside [m]; whole units, at least 3. ``width``: along y, likewise
     :param front: openings of this wall, and likewise ``right``, ``back`` and ``left``; x is measured along x or y from
         the outer edge of the corner nearer to the origin
     :param height: as for :func:`Wall`, like ``unit``, ``courses``, ``halves`` and ``joint``
