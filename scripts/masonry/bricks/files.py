@@ -12,7 +12,7 @@ import math
 import os
 from collections import defaultdict, namedtuple
 
-from typing import Annotated
+from typing import Annotated, Any
 
 import numpy as np
 
@@ -81,7 +81,7 @@ MISREAD = OSError, SyntaxError, ValueError, LookupError, TypeError, AttributeErr
 # -- formats ----------------------------------------------------------------------------------------------------------
 
 
-def readBy(readers, path, *more):
+def readBy(readers: dict[str, Any], path: str, *more: Any) -> list[Any]:
     """A list of what the reader for the ending of a file finds in it. Raises ValueError."""
     ending = os.path.splitext(path)[1].lower()
     if ending not in readers:
