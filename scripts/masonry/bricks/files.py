@@ -81,7 +81,7 @@ MISREAD = OSError, SyntaxError, ValueError, LookupError, TypeError, AttributeErr
 # -- formats ----------------------------------------------------------------------------------------------------------
 
 
-def readBy(readers: dict[str, Any], path: str, *more: Any) -> list[Any]:
+def readBy(readers: dict[str, Any], path: FilePath, *more: Any) -> list[Any]:
     """A list of what the reader for the ending of a file finds in it. Raises ValueError."""
     ending = os.path.splitext(path)[1].lower()
     if ending not in readers:
