@@ -15,7 +15,7 @@ from ..common.arguments import Numbers
 from ..basics import Refused, refuse
 from . import slipping
 from .bound import Bound
-from .programme import FACETS, Programme, solve
+from .programme import FACETS, Programme
 from .solver import Late, Unsolved
 
 TURNS = 6  # how often the facets of friction are turned at most
@@ -221,14 +221,11 @@ class Assembly:
         scale = np.array([1, 1, 1, 1 / size, 1 / size, 1 / size]) / force
         growing, still = (live * scale)[free], (dead * scale)[free]
         step = np.abs(growing).max()
-        last = programme.factor(sense * growing / step, most and most * step)
-        cost = np.zeros(programme.columns)
-        cost[last] = -1
+        programme.factor(sense * growing / step, most and most * step)
         try:
-            loads = np.append(-still, np.zeros(programme.links))
             left = self.deadline - time.monotonic()
-            values, dual = solve(programme, cost, loads, left)
-            if most is None and values[last] / step > self._endless(live, dead):
+            factor, values, dual = programme.solve(still, left)
+            if most is None and factor / step > self._endless(live, dead):
                 raise Unsolved(
                     "no largest load was found; is a joint so strong that it never fails?"
                 )
@@ -240,10 +237,10 @@ class Assembly:
             raise self._why(live, dead, sense, turn, unsolved) from None
         speed = np.zeros(self.held.shape)
         # The dual of equilibrium, with which the live load has the power of its unit.
-        speed[free] = -dual[: len(still)] / step
+        speed[free] = -dual / step
         speed *= scale * sense
         solution = programme.read(values)
-        return Bound(self, values[last] / step, speed, live, dead, *solution)
+        return Bound(self, factor / step, speed, live, dead, *solution)
 
     def _endless(self, live, dead):
         """A factor that no strength explains: a million times all strengths and loads over the live load."""
