@@ -279,7 +279,7 @@ def fitted(path, fit, counts, xLabel, yLabel):
     bands = np.array([fit.probability(v) for v in x])
     with _picture(path, 6.0, 3.8) as figure:
         axis = figure.subplots()
-        axis.fill_between(x, bands[:, 1], bands[:, 2], **BAND_STYLE, label=f"{100 * fit.confidence:g} % confidence")  # fmt: skip
+        axis.fill_between(x, bands[:, 1], bands[:, 2], **BAND_STYLE, label=f"{100 * statistics.CONFIDENCE:g} % confidence")  # fmt: skip
         axis.plot(x, bands[:, 0], color="black", lw=1.2, label=f"lognormal: median {fit.median.value:.3g}, dispersion {fit.dispersion.value:.3g}")  # fmt: skip
         axis.plot([v for v, _, _ in known], [k / n for _, k, n in known], ls="", marker="o", ms=4, color=LINE, label=f"share of {fit.records} records")  # fmt: skip
         axis.set_ylim(-0.02, 1.02)

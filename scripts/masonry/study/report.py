@@ -189,7 +189,7 @@ def incremental(demands, limit, intensities):
     yield line(f"median {measure.partition('[')[2] and '[g]'}", fit.median)
     yield line("dispersion [-]", fit.dispersion)
     yield (
-        f"  maximum likelihood of the levels between which each record reaches the limit; {100 * fit.confidence:g} % intervals "
+        f"  maximum likelihood of the levels between which each record reaches the limit; {100 * statistics.CONFIDENCE:g} % intervals "
         "of the profile likelihood, records being independent"
     )
     if intensities:
