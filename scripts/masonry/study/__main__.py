@@ -14,7 +14,6 @@ if __name__ == "__main__":
 from ..basics import Interrupted, Refused, Unwritable, say
 from . import slurm
 from .calibrate import Calibration
-from .continuing import checkRows, rowsOf
 from .gathering import CSV, Folder, gather
 from .local import Local
 from .plan import Study
@@ -73,9 +72,7 @@ def load(path):
 def tell(folder):
     """Gather, and say what is there. Returns the exit status: 0 if all rows are ended."""
     folder.check()
-    table = rowsOf(folder)
-    checkRows(folder, table)
-    counts = gather(folder, table)
+    counts = gather(folder)
     summary = ", ".join(f"{n} {status}" for status, n in sorted(counts.items()))
     say(f"{summary}; see {folder.of(CSV)}")
     return 0 if set(counts) <= {"ended", "above collapse"} else 1

@@ -285,7 +285,8 @@ def _rows(expensive, cheap):
         )
     for what, values in (("expensive", y), ("cheap", x)):
         problems += [f"{what} {why}" for why in notFinite(values)]
-        if len(set(values[: len(y)])) == 1 < len(y):
+        shared = values[: len(y)]
+        if len(set(shared)) == 1 < len(shared):
             problems.append(
                 f"the {what} numbers of all shared rows are {values[0]:g}: there is nothing to learn from them"
             )

@@ -30,6 +30,10 @@ def _table(path):
     return {name: [line[i] for line in lines[1:]] for i, name in enumerate(head)}
 
 
+CURVE = (
+    "displacement_mm",
+    "base_shear_kN",
+)  # columns of the curves that are usually compared
 #: Measures of every run, which nobody studies.
 IN_EVERY_RUN = {"collapsed", "ended", "energy_balance_error", "energy_made"}
 

@@ -24,10 +24,9 @@ from . import estimate, pictures, sensitivity, statistics
 from .demands import QUANTILES, Demands
 from .fragility import nrml as nrmlOf
 from .gathering import Folder, written
-from .records import Record, paired
+from .records import CURVE, Record, paired
 
 MEASURE = "peak_base_shear_kN"
-CURVE = "displacement_mm", "base_shear_kN"
 MODE = "failure_mode"
 
 

@@ -25,8 +25,7 @@ from ..run import batch
 from ..basics import Held, NotResumed, Refused, say
 from ..common.folders import inside
 from ..read.files import readRun, readWhole
-from .continuing import rowsOf
-from .gathering import STUDY, TABLE, Folder, reason
+from .gathering import STUDY, TABLE, Folder, reason, rowsOf
 from .incremental import FOLDER
 
 REFUSED = 2  # exit status of a scene that refuses its input

@@ -11,8 +11,7 @@ from ..run import batch
 from ..basics import Refused, Unwritable, refuse, say
 from ..common.folders import fromJson
 from ..read.files import readWhole
-from .continuing import checkRows, compareTable, rowsOf
-from .gathering import STUDY, TABLE, Folder, reason, written
+from .gathering import STUDY, TABLE, Folder, checkedRows, compareTable, reason, written
 from .incremental import FOLDER
 from .interrupts import watched
 from .variables import NEVER, Distribution, Field
@@ -48,7 +47,7 @@ def begin(study, path, near):
         else:
             written(folder.of(TABLE), table)
         _putRecords(folder, study)
-        checkRows(folder, rowsOf(folder))
+        checkedRows(folder)
     else:
         _checkEmpty(folder, study)
         problems, needed = _look(study, script, table)
