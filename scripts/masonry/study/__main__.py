@@ -21,8 +21,6 @@ from .start import NOTHING, begin
 
 
 KEPT = "what was computed is kept, and the same command goes on when there is space"
-
-
 SWITCHES = {
     "--slurm": "run the rows on a cluster: one job array",
     "--prepare": "check the study and make its folder; run nothing",
@@ -60,8 +58,8 @@ def load(path):
     if not os.path.isfile(path):
         raise Refused(f"no file {path}")
     with interrupts.watched(NOTHING):
-        made = runpy.run_path(path)
-    studies = {id(v): v for v in made.values() if isinstance(v, (Study, Calibration))}
+        made = runpy.run_path(path).values()
+    studies = {id(v): v for v in made if isinstance(v, (Study, Calibration))}
     if len(studies) != 1:
         raise Refused(
             f"{path} must make one masonry.study.Study or Calibration, it makes {len(studies)}"

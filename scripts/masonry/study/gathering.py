@@ -53,6 +53,9 @@ class Folder:
         """The folder of the results of a row."""
         return self.of(batch.ROWS, batch.named(number))
 
+    def checkpoint(self, number):
+        return os.path.join(self.row(number), "run.checkpoint")
+
     def job(self, number):
         """The file that says how the last attempt at a row ended."""
         return self.row(number) + ".job"
@@ -137,9 +140,8 @@ def _isStudy(record):
 def _isJob(record):
     """Whether a record of an attempt is of the form that :mod:`masonry.study.row` gives it."""
     kinds = {"host": str, "status": int, "seconds": (int, float), "told": str}
-    return isinstance(record, dict) and all(
-        isinstance(record.get(name), kind) for name, kind in kinds.items()
-    )
+    fits = lambda name: isinstance(record.get(name), kinds[name])
+    return isinstance(record, dict) and all(map(fits, kinds))
 
 
 def written(path, text):

@@ -121,7 +121,7 @@ class Study:
         values = what.values if isinstance(what, Choice) else [0]
         problems += [p for n in names for v in values for p in _wrongOption(n, v)]
         alike = [c for c, w in self.vary.items() if isinstance(w, Field) == isField]
-        given = {*self.options, *(n for column in alike for n in _namesOf(column))}
+        given = {*self.options, *(n for column in alike for n in namesOf(column))}
         if given.intersection(names):
             twice = ", ".join(n for n in names if n in given)
             problems.append(f"{twice}: given twice")
@@ -172,7 +172,7 @@ class Study:
         if what:
             return f"{name} is a choice; only distributions have a correlation"
         for column, what in self.vary.items():
-            names = tuple(_namesOf(column))
+            names = tuple(namesOf(column))
             if name in names and isinstance(what, Field):
                 return f"{name} is a field; only distributions have a correlation"
             if name in names:
@@ -270,7 +270,8 @@ class Study:
             return path, hashlib.sha256(f.read()).hexdigest()
 
 
-def _namesOf(column):
+def namesOf(column):
+    """The names that a column stands for."""
     return column.removeprefix(batch.FIELD).split("+")
 
 
