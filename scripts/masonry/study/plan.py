@@ -95,35 +95,31 @@ class Study:
         if not isinstance(names, tuple) or not names or not all(isinstance(n, str) for n in names):  # fmt: skip
             problems.append(f"vary: {key!r} must be a name or a tuple of names")
             return
-        if isinstance(what, (bool, int, float, str)):
-            what = [what]
+        what = [what] if isinstance(what, (bool, int, float, str)) else what
         try:
             what = choice(*what) if isinstance(what, (list, tuple)) else what
+            if not isinstance(what, (Choice, Distribution, Field)):
+                raise Refused(f"{what!r} is no number, list, distribution or field")
         except Refused as refused:
             problems.append(f"vary {key!r}: {refused}")
             return
-        if not isinstance(what, (Choice, Distribution, Field)):
-            problems.append(
-                f"vary {key!r}: {what!r} is no number, list, distribution or field"
-            )
-            return
-        isField, properties = isinstance(what, Field), all("." in n for n in names)
+        isField, several = isinstance(what, Field), len(names) > 1
         wrong = []
-        if isField and not properties:
-            wrong.append("only a property of joints can be a field")
-        if isField and what.mean is not None and len(names) > 1:
+        if not all("." in n for n in names):
+            if isField:
+                wrong.append("only a property of joints can be a field")
+            elif several:
+                wrong.append("only properties of joints can be tied in a tuple")
+        if isField and what.mean is not None and several:
             wrong.append(
                 "a field of several properties is about their own values: field(cov=..., length=...)"
             )
-        if not isField and len(names) > 1 and not properties:
-            wrong.append("only properties of joints can be tied in a tuple")
         problems += [f"vary {key!r}: {why}" for why in wrong]
         values = what.values if isinstance(what, Choice) else [0]
         problems += [p for n in names for v in values for p in _wrongOption(n, v)]
         alike = [c for c, w in self.vary.items() if isinstance(w, Field) == isField]
         given = {*self.options, *(n for column in alike for n in namesOf(column))}
-        if given.intersection(names):
-            twice = ", ".join(n for n in names if n in given)
+        if twice := ", ".join(n for n in names if n in given):
             problems.append(f"{twice}: given twice")
         self.vary[batch.FIELD * isField + "+".join(names)] = what
 
@@ -138,7 +134,7 @@ class Study:
                 problems.append(
                     f"design 'grid': {', '.join(odd)} must be a list of values"
                 )
-            choices = [w for w in self.vary.values() if isinstance(w, Choice)]
+            choices = (w for w in self.vary.values() if isinstance(w, Choice))
             size = math.prod(len(w.values) for w in choices)
             if self.runs not in (None, size):
                 problems.append(f"runs {self.runs}: the grid has {size} points")
@@ -212,32 +208,28 @@ class Study:
 
         The records of an incremental analysis must have been read: :meth:`read`.
         """
-        if self.ida:
-            shaken = self.ida.rows()
-            drawn = self._drawn("random", len(shaken) // self.ida.steps)
-            return [
-                {
-                    **drawn[n // self.ida.steps],
-                    "record": f"{incremental.FOLDER}/{motion.name}.txt",
-                    "scale": scale,
-                }
-                for n, (motion, scale) in enumerate(shaken)
-            ]
-        return self._drawn(self.design, self.runs)
+        if not self.ida:
+            return self._drawn(self.design, self.runs)
+        shaken, rows = self.ida.rows(), []
+        drawn = self._drawn("random", len(shaken) // self.ida.steps)
+        for n, (motion, scale) in enumerate(shaken):
+            record = f"{incremental.FOLDER}/{motion.name}.txt"
+            rows.append(
+                {**drawn[n // self.ida.steps], "record": record, "scale": scale}
+            )
+        return rows
 
     def _drawn(self, design, count):
         """What is drawn for some rows, with the options that all have: a list of dicts."""
         fields = {n: w for n, w in self.vary.items() if isinstance(w, Field)}
         drawn = {n: w for n, w in self.vary.items() if n not in fields}
-        found = designs.values(design, count, self.seed, drawn, self.correlation)
+        rows = designs.values(design, count, self.seed, drawn, self.correlation)
         means = {n[len(batch.FIELD) :]: w.mean for n, w in fields.items() if w.mean is not None}  # fmt: skip
-        rows = []
-        for number, values in enumerate(found, 1):
-            seeds = {}
+        rows = [{"lean": True, **self.options, **means, **values} for values in rows]
+        for number, row in enumerate(rows, 1):
             for k, (name, what) in enumerate(fields.items()):
                 sequence = np.random.SeedSequence([self.seed, k, number])
-                seeds[name] = what.written(int(sequence.generate_state(1)[0]))
-            rows.append({"lean": True, **self.options, **means, **values, **seeds})
+                row[name] = what.written(int(sequence.generate_state(1)[0]))
         return rows
 
     def table(self) -> str:
@@ -253,21 +245,20 @@ class Study:
 
         :param near: folder of the study's file
         """
+        here = pathlib.Path(near)
         if self.scene.endswith(".py"):
-            places = [os.path.join(near, self.scene)]
+            places = [here / self.scene]
         else:
-            above = [near, *map(str, pathlib.Path(near).parents), os.getcwd()]
-            scripts = [os.path.join(folder, "scripts") for folder in above]
-            folders = [near, os.getcwd(), *scripts]
-            places = [os.path.join(f, self.scene + ".py") for f in folders]
-        path = next((os.path.abspath(p) for p in places if os.path.isfile(p)), None)
+            scripts = [f / "scripts" for f in (here, *here.parents, pathlib.Path.cwd())]
+            folders = [here, pathlib.Path.cwd(), *scripts]
+            places = [folder / (self.scene + ".py") for folder in folders]
+        path = next((os.path.abspath(p) for p in places if p.is_file()), None)
         if path is None:
             looked = dict.fromkeys(os.path.dirname(os.path.abspath(p)) for p in places)
             raise Refused(
                 f"study: no scene {self.scene}; looked in {', '.join(looked)}"
             )
-        with open(path, "rb") as f:
-            return path, hashlib.sha256(f.read()).hexdigest()
+        return path, hashlib.sha256(pathlib.Path(path).read_bytes()).hexdigest()
 
 
 def namesOf(column):
