@@ -222,14 +222,12 @@ def _options(run):
 def _warnings(run, scene):
     """Sentences on what the numbers of a run suffer from, for run.json and the terminal."""
     entries = run.results.run
-    off, made = entries.get("energy_balance_error", 0), entries.get("energy_made", 0)
-    wrong = []
-    if off > OFF:
-        wrong.append(f"the energy balance is off by {100 * off:.1f} % of the work done")
-    if made > OFF:
-        wrong.append(
-            f"joints that open or close within a step made {100 * made:.1f} % of the work done"
-        )
+    shares = {
+        "energy_balance_error": "the energy balance is off by",
+        "energy_made": "joints that open or close within a step made",
+    }
+    found = [(what, entries.get(name, 0)) for name, what in shares.items()]
+    wrong = [f"{what} {100 * n:.1f} % of the work done" for what, n in found if n > OFF]
     if wrong:
         yield f"{', and '.join(wrong)}: a smaller --dt-fraction or --rate or more --damping helps"
     if run.results.rows:

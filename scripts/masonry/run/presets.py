@@ -109,11 +109,8 @@ class Fidelity:
 #: The run itself among those of a :class:`Source`. Before it has been made, the source counts as in the fidelity before.
 MAIN = "this run"
 
-_ONE: dict[str, Any]
-_TWO: dict[str, Any]
-_THREE: dict[str, Any]
 _ONE, _TWO, _THREE = (
-    {"blocks": "deformable", "divisions": n, "mass_scaling": "auto"} for n in (1, 2, 3)
+    dict(blocks="deformable", divisions=n, mass_scaling="auto") for n in (1, 2, 3)
 )
 
 #: Runs beside a run, by name: options that replace those without options. They are cheap beside the run that they judge.
@@ -228,7 +225,7 @@ def presetOf(args, scene, properties):
     known, promise, outside = PROMISES.get(args.preset, {}), None, []
     if scene in known.get("walls", {}):
         until, seconds = known["walls"][scene]
-        promise = {name: known[name] for name in ("peak_error", "work_error", "stiffness_error")}  # fmt: skip
+        promise = {name: error for name, error in known.items() if "error" in name}
         promise.update(until_mm=until, seconds=seconds)
     elif "elsewhere" in known:
         promise, outside = known["elsewhere"], outsideOf(properties)
@@ -244,26 +241,26 @@ def presetOf(args, scene, properties):
 
 def presetNote(preset):
     """What :func:`presetOf` returned, as a line to read."""
-    name, promise = preset["name"], preset["promise"]
-    if promise and "walls" in promise:
+    name, promise = preset["name"], preset["promise"] or {}
+    percent = {what: f"{100 * v:g} %" for what, v in promise.items() if "error" in what}
+    if "walls" in promise:
         return (
             f"preset {name}: of {promise['walls']} walls whose properties are like these, pushed once, all but "
-            f"{promise['missed']} had their peak within {100 * promise['peak_error']:g} % and their work within "
-            f"{100 * promise['work_error']:g} % of a fine and slow run"
+            f"{promise['missed']} had their peak within {percent['peak_error']} and their work within "
+            f"{percent['work_error']} of a fine and slow run"
         )
     if promise:
         return (
-            f"preset {name}: promises the peak within {100 * promise['peak_error']:g} %, the work over "
-            f"{promise['until_mm']:g} mm within {100 * promise['work_error']:g} % and the initial stiffness within "
-            f"{100 * promise['stiffness_error']:g} % of a fine and slow run, in about {promise['seconds']:g} s"
+            f"preset {name}: promises the peak within {percent['peak_error']}, the work over {promise['until_mm']:g} mm within "
+            f"{percent['work_error']} and the initial stiffness within {percent['stiffness_error']} of a fine and slow run, in "
+            f"about {promise['seconds']:g} s"
         )
     if name == BOUND:
         return "preset bound: limit analysis of rigid blocks alone; there is no run"
+    reason = "; ".join(preset["outside"])
     if preset["overrides"]:
         reason = ", ".join(map(asOption, preset["overrides"])) + " beside it"
-        return f"preset {name} without its promise: {reason}"
-    others, reason = PROMISES[name].get("elsewhere"), "; ".join(preset["outside"])
-    if others:
+    elif others := PROMISES[name].get("elsewhere"):
         reason = (
             f"unlike the {others['walls']} walls on which it was measured: {reason}"
         )
