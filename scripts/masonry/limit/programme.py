@@ -140,7 +140,6 @@ class Programme:
         """The largest factor, the values of all variables, and the multipliers of equilibrium.
 
         :param still: what stays, entries of equilibrium
-        :param seconds: time that the solver may take
         :raises Unsolved:
         """
         from scipy.sparse import csc_matrix

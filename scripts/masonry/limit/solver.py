@@ -37,7 +37,6 @@ def solve(whole, limits, seconds):
 
     :param whole: its matrix (csc)
     :param limits: least and largest value of each variable, what is made as small as possible, and the same two of each row
-    :param seconds: time that it may take
     :returns: the variables, and the multipliers of the rows
     :raises Unsolved:
     :raises Refused: if Clp is missing, or its process has failed

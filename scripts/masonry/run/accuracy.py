@@ -58,7 +58,6 @@ STAGES = ("settle", "push", "hold", "release", "move")
 def shown(source, values, scale):
     """What a source of error changes, over a scale [-]; None if a run of it is missing.
 
-    :param source: :class:`masonry.run.presets.Source`
     :param values: of the runs that are there, by name
     :param scale: the value of the run that is judged
     """
@@ -79,7 +78,6 @@ def halfWidth(number, quantity, values, scale):
 
     :param number: of the fidelity in :data:`masonry.run.presets.FIDELITIES`
     :param values: of the runs that are there by name; the run itself is :data:`masonry.run.presets.MAIN`
-    :param scale: of the values
     """
     fidelity = FIDELITIES[number]
     parts = {"not shown by companions": fidelity.error[quantity]}
@@ -106,7 +104,6 @@ def needed(number):
 class AuxiliaryRuns:
     """Runs of a scene beside the run itself, in the folder ``accuracy`` of its results.
 
-    :param folder: of the results of the run
     :param command: words that run the scene with the options of the user
     """
 
@@ -188,7 +185,6 @@ class AuxiliaryRuns:
         """Run companions that are not over yet, as many at a time as there are cores.
 
         :raises Refused: with what a companion said, if it could not be run
-        :raises Interrupted: after Ctrl-C and SIGTERM, when all of them have ended
         """
         due = [name for name in names if name not in self.numbers]
         background.carryOut(due, self._start, self._ended, len(os.sched_getaffinity(0)))
@@ -253,21 +249,13 @@ def choose(companions, percent):
 
 
 class AccuracyResult:
-    """What ``--accuracy`` found for a run: its fidelity and the companions beside it.
-
-    :param percent: that was asked for [%]
-    :param fidelity: :class:`masonry.run.presets.Fidelity`
-    :param companions: :class:`AuxiliaryRuns`, which have run
-    """
+    """What ``--accuracy`` found for a run: its fidelity and the companions beside it."""
 
     def __init__(self, percent, fidelity, companions):
         self.percent, self.fidelity, self.companions = percent, fidelity, companions
 
     def report(self, run):
-        """The entries of run.json for the numbers of a run: ``accuracy`` and the half-widths beside the values.
-
-        :param run: entries of run.json, with those of :data:`QUANTITIES`
-        """
+        """The entries of run.json for the numbers of a run: ``accuracy`` and the half-widths beside the values."""
         number = FIDELITIES.index(self.fidelity)
         found, entries = [], {}
         for quantity, key, unit in QUANTITIES:
@@ -332,13 +320,10 @@ def lines(entry):
 def ask(name, args, script, words):
     """Carry out ``--accuracy``: run companions, and give the options the values of the fidelity that was chosen.
 
-    :param name: of the scene
     :param args: the options of the run, which are changed
     :param script: path of the script of the scene, if it takes its options from the command line; else None
-    :param words: of the command line
     :returns: None for a companion, a probe, and runs without ``--accuracy``
     :raises Refused: if it means nothing here
-    :raises Interrupted: after Ctrl-C and SIGTERM
     """
     if not args.accuracy or _isCompanion or batch.PROBE in os.environ:
         return None

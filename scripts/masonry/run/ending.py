@@ -29,9 +29,7 @@ def end(run, scene, error):
     small, or if the structure has fallen while its dead loads grew, before its test began; 2 for refused input; 130 after
     Ctrl-C or SIGTERM. Another error is for the caller when the results are finished.
 
-    :param run: :class:`masonry.run.run.Run`
     :param scene: gives ``model``, ``columns`` and ``outcome``
-    :param error: an exception, or None
     """
     try:
         return _end(run, scene, error)

@@ -23,10 +23,7 @@ def hostNow():
 
 
 class Checkpoints:
-    """Notes what a checkpoint keeps beside the scene, and writes it.
-
-    :param run: :class:`masonry.run.run.Run`
-    """
+    """Notes what a checkpoint keeps beside the scene, and writes it."""
 
     def __init__(self, run):
         self._run = run

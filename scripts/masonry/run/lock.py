@@ -35,8 +35,6 @@ class Lock:
     The file ``run.lock`` says who holds it. It stays after a kill, and then says that the files beside it are those of a
     run. Where the file system has no locks, its text alone counts.
 
-    :param directory: folder, which must be there
-    :param scene: name of the scene that runs
     :raises Held: if another run holds the folder; the message names its host and process
     :raises OSError: if the folder cannot be written
     """

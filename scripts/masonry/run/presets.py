@@ -215,10 +215,6 @@ def presetOf(args, scene, properties):
     ``promise`` is None if there are any of both. Else it holds ``peak_error`` and ``work_error`` [-]; of a wall on which
     it was measured also ``stiffness_error`` [-], ``until_mm`` and ``seconds``; of another one that is like these
     ``walls``, how many these are, and ``missed``, how many of them had larger errors.
-
-    :param args: the parsed options
-    :param scene: name of the scene
-    :param properties: of the scene, as :func:`outsideOf` takes them
     """
     if not args.preset:
         return None

@@ -139,7 +139,6 @@ class Results:
     names that no run has left are refused.
 
     :param directory: folder, made if it is missing
-    :param columns: names of the columns of curve.csv
     :param resumed: whether to leave everything as it is, until :meth:`takeUp`
     :param scene: name of the scene, for others that want the folder
     """

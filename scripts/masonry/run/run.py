@@ -73,7 +73,6 @@ class Run:
     def open(self, columns, properties):
         """Open the folder, and read the checkpoint of a run that is resumed. No file is written yet.
 
-        :param columns: :class:`masonry.assembly.columns.Column` objects
         :param properties: of the scene, as :func:`masonry.scene.facts.properties` gives them
         """
         args, heads = self.args, [column.head for column in columns]
@@ -102,7 +101,6 @@ class Run:
     def start(self, model, space, state):
         """Take up the model that now stands in YADE, in the state of the checkpoint if the run is resumed.
 
-        :param model: :class:`masonry.assembly.structure.Structure`
         :param space: bytes that the run writes at least, and those that it will probably write
         :param state: what a checkpoint keeps of the scene beside its state in YADE:
             :class:`masonry.scene.resuming.State`
@@ -218,7 +216,6 @@ class Run:
 
         Raises Interrupted after Ctrl-C and SIGTERM, and Collapsed if a block has fallen (help(masonry.MasonryEnergy)).
 
-        :param steps: how many
         :param one: function that makes one step, of its number in this call, from 0; None: YADE makes it
         """
         at = self.at
@@ -293,12 +290,7 @@ class Run:
                 self.frames.add(final)
 
     def show(self, fraction, detail, final=False):
-        """Show on the terminal how far the present stage has come, if it is time to.
-
-        :param fraction: how much of the stage is done, 0 to 1 [-]
-        :param detail: function without arguments that gives the text to show
-        :param final: whether the stage ends here; this is always shown
-        """
+        """Show on the terminal how far the present stage has come, if it is time to: :meth:`masonry.run.progress.Progress.show`."""
         if final or self._now - self._shown > SHOW_EVERY:
             at = self.at
             rate = at.steps / at.seconds["steps"] if at.steps else 0.0

@@ -113,7 +113,6 @@ class Saved:
     - ``seconds`` of wall-clock time; ``host``: what it was made with, as in
       :func:`masonry.run.keeping.hostNow`
 
-    :param directory: folder of the run
     :raises Refused: if no run can be taken up there
     """
 

@@ -28,9 +28,7 @@ QUANTILES = (0.16, 0.5, 0.84)
 class Demands:
     """The rows of an incremental dynamic analysis.
 
-    :param record: :class:`masonry.study.records.Record` of its folder
     :param measure: the column whose amount is the demand; None: the usual one
-    :raises Refused: if there is no such column
     """
 
     def __init__(self, record, measure=None):

@@ -49,8 +49,6 @@ def points(design, count, dimension, seed):
 def root(names, correlation):
     """The Cholesky factor of the normal copula of numbers with these rank correlations, or None if there are none.
 
-    :param names: of the numbers, in their order
-    :param correlation: dict of pairs of names -> rank correlation [-]
     :raises Refused: if no numbers have all these correlations at once
     """
     if not correlation:

@@ -227,7 +227,6 @@ def allocate(pilot, prices, variance=None, budget=None):
 def saved(found, prices):
     """What an estimate cost, and what expensive runs alone would have cost for the same variance: an :class:`Allocation`.
 
-    :param found: an :class:`Estimate`
     :param prices: of an expensive and of a cheap run, in any one unit
     """
     c, d = prices
@@ -240,7 +239,6 @@ def sentence(found, prices, unit="", names=("expensive", "cheap")):
     """An estimate and what it saved, in words.
 
     :param prices: of an expensive and of a cheap run [s]
-    :param unit: of the numbers
     :param names: of the expensive and of the cheap fidelity
     """
     paid = saved(found, prices)

@@ -166,11 +166,7 @@ def reason(log):
 
 
 def compareTable(folder, drawn):
-    """Refuse a table that is not what the study draws.
-
-    :param folder: :class:`masonry.study.gathering.Folder`
-    :param drawn: the text of the table
-    """
+    """Refuse a table that is not ``drawn``, the text that the study draws."""
     path = folder.of(TABLE)
     texts = (text.split("\n") for text in (readText(path), drawn))
     for number, (was, now) in enumerate(zip_longest(*texts, fillvalue="nothing"), 1):
@@ -227,10 +223,7 @@ def checkedRows(folder):
 
 
 def _otherOptions(row, options):
-    """What a row was run with and what the table says, pairs of texts, where they differ.
-
-    :param options: of run.json
-    """
+    """What a row was run with and what the table says, pairs of texts, where they differ."""
     if not isinstance(options, dict):
         return [("options that run.json does not name", "its own")]
     words = batch.optionWords(row)

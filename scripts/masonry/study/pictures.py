@@ -88,10 +88,7 @@ def scatter(path, inputs, output, label):
 
 
 def tornado(path, effects, label):
-    """Change of the output by every property, largest on top, with its interval, and the correlations of ranks.
-
-    :param effects: what :func:`masonry.study.sensitivity.effects` returns
-    """
+    """Change of the output by every property, largest on top, with its interval, and the correlations of ranks."""
     effects = dict(reversed(effects.items()))
     with _picture(path, 6.8, 1.1 + 0.3 * len(effects)) as figure:
         left, right = figure.subplots(1, 2, sharey=True, width_ratios=[3, 2])
@@ -107,10 +104,7 @@ def tornado(path, effects, label):
 
 
 def sobol(path, found, label):
-    """First and total Sobol indices with their intervals, largest on top.
-
-    :param found: what :func:`masonry.study.sensitivity.sobol` returns
-    """
+    """First and total Sobol indices with their intervals, largest on top."""
     indices = dict(reversed(found.indices.items()))
     first, total = zip(*indices.values())
     with _picture(path, 6.0, 1.3 + 0.38 * len(first)) as figure:
@@ -263,7 +257,6 @@ def _standing(intensities, demands):
 def fitted(path, fit, counts, xLabel, yLabel):
     """A fitted fragility with its band, and the shares of the records at every level.
 
-    :param fit: :class:`masonry.study.fragility.Fit`
     :param counts: list of (intensity, how many records have reached the limit, of how many)
     """
     known = [(x, k / n) for x, k, n in counts if n]
@@ -312,10 +305,7 @@ def fan(path, curves, xLabel, yLabel):
 
 
 def calibration(path, found):
-    """Measured curves with the band of what the draws of the properties say, and a run with their means.
-
-    :param found: :class:`masonry.study.calibrate.Found`
-    """
+    """Measured curves with the band of what the draws of the properties say, and a run with their means."""
     of, (low, high), at = found.calibration.specimens, found.bands(), 0
     curves = [one for one in of if one.grid is not None]
     with _picture(path, 6.0, 3.2 * len(curves)) as figure:

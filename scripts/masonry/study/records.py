@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The rows of a study, read from its folder as :mod:`masonry.study.gathering` leaves it. This module needs no YADE."""
 
+import contextlib
 import csv
 import os
 
@@ -14,20 +15,19 @@ from .gathering import CSV, TIMES, Folder
 
 def _table(path):
     """A CSV file as a dict of column -> texts. Raises Refused."""
-    lines = list(csv.reader(readText(path).splitlines()))
-    head = lines[0] if lines else []
+    head, *lines = [*csv.reader(readText(path).splitlines())] or [[]]
     if head[:1] != ["run"] or "status" not in head:
         raise Refused(
             f"{path}: this is no table of a study: it needs the columns run and status"
         )
-    wrong = [str(i) for i, line in enumerate(lines[1:], 2) if len(line) != len(head)]
+    wrong = [str(i) for i, line in enumerate(lines, 2) if len(line) != len(head)]
     if wrong:
         raise Refused(
             f"{path}: lines {', '.join(wrong[:10])} do not have {len(head)} cells, as the first has"
         )
-    if len(lines) < 2:
+    if not lines:
         raise Refused(f"{path}: there is no row yet")
-    return {name: [line[i] for line in lines[1:]] for i, name in enumerate(head)}
+    return dict(zip(head, map(list, zip(*lines))))
 
 
 CURVE = (
@@ -41,7 +41,6 @@ IN_EVERY_RUN = {"collapsed", "ended", "energy_balance_error", "energy_made"}
 class Record:
     """The rows of a study.
 
-    :param directory: folder of the study
     :raises Refused: if there is no such table in it, or it is damaged
     """
 
@@ -61,9 +60,8 @@ class Record:
         """The measure that is reported if none is named: the usual one, or else the first answer of a stage or script."""
         if default in self.cells:
             return default
-        own = [m for m in self.measures if m not in IN_EVERY_RUN]
-        found = [m for m in own if np.isfinite(self.numbers(m)).any()]
-        return found[0] if found else default
+        own = (m for m in self.measures if m not in IN_EVERY_RUN)
+        return next((m for m in own if np.isfinite(self.numbers(m)).any()), default)
 
     def numbers(self, name):
         """A column as numbers, NaN where a cell has none. Raises Refused if there is no such column."""
@@ -84,7 +82,7 @@ class Record:
         rows = np.flatnonzero(np.isfinite(values))
         if not len(rows):
             raise Refused(f"{self.directory}: no row has a {measure}")
-        drawn = [name for name in self.varied if not name.startswith(batch.FIELD)]
+        drawn = (name for name in self.varied if not name.startswith(batch.FIELD))
         inputs = {name: self.numbers(name)[rows] for name in drawn}
         numbers = {k: v for k, v in inputs.items() if np.isfinite(v).all()}
         return rows, numbers, values[rows]
@@ -93,19 +91,15 @@ class Record:
         """Columns x and y of the curves of rows: a list of pairs. Rows without a curve are left out."""
         folder, found = Folder(self.directory), []
         for row in rows:
-            try:
+            with contextlib.suppress(Refused, KeyError):
                 curve = readCurve(folder.row(int(self.cells["run"][row])))
-            except Refused:
-                continue
-            if x in curve and y in curve:
                 found.append((curve[x], curve[y]))
         return found
 
     def price(self, rows):
         """Mean time of the jobs of rows [s], from times.csv; NaN if none tells."""
         times = _table(os.path.join(self.directory, TIMES))["job_seconds"]
-        known = [_number(times[row]) for row in rows]
-        known = [seconds for seconds in known if seconds > 0]
+        known = [t for t in (_number(times[row]) for row in rows) if t > 0]
         return float(np.mean(known)) if known else np.nan
 
 
@@ -152,8 +146,7 @@ FIDELITY = {"preset", "density_scaling", "units", *presets.USUAL}
 def _unlike(one, two):
     """What two studies differ in beside FIDELITY: name and both values, as far as their study.json tells."""
     try:
-        folders = (Folder(study.directory) for study in (one, two))
-        studies = [folder.description()["study"] for folder in folders]
+        studies = [Folder(s.directory).description()["study"] for s in (one, two)]
     except Refused:
         return
     first, second = ({"scene": study["scene"], **study["options"]} for study in studies)

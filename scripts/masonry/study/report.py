@@ -159,12 +159,8 @@ def compare(expensive, cheap, measure, other, method, prices=None):
 
 
 def incremental(demands, limit, intensities):
-    """Lines of what an incremental dynamic analysis says: demands at every level, and the fragility.
-
-    :param demands: :class:`masonry.study.demands.Demands`
-    :param limit: of the demand; None: collapse
-    :param intensities: those at which the probability is printed, or an empty list
-    """
+    """Lines of what an incremental dynamic analysis says: demands at every level, and the fragility of a limit of the demand
+    (None: collapse), with its probability at some intensities."""
     measure, reaches = label(demands.intensityName), reached(demands, limit)
     yield f"incremental dynamic analysis of {len(demands.names)} records; the intensity is {measure}"
     if demands.measure:

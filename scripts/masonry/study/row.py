@@ -37,7 +37,6 @@ TAIL = 4000  # bytes at the end of a log in which the reason of a failure stands
 class RowRunner:
     """Runs rows, and stops in order when it is asked to.
 
-    :param path: folder of the study
     :param scene: its file, as the user has named it; None: that of study.json, if it is in the folder
     :raises Refused: if the folder is not as a study leaves it, or the scene is another one
     """

@@ -26,10 +26,7 @@ PROBING = 600  # [s] after which a scene that should only be built is given up
 def begin(study, path, near):
     """The folder of a study: made if it is not there, else checked to be of the same study.
 
-    :param study: :class:`masonry.study.Study`
-    :param path: of the folder
     :param near: folder of the study's file, where its scene is looked for
-    :returns: :class:`masonry.study.gathering.Folder`
     :raises Refused: with all problems at once. Nothing is written then
     """
     folder = Folder(path)

@@ -2,7 +2,8 @@
 """Statistics of the rows of a study, each with its confidence interval. This module needs no YADE.
 
 All intervals are those of independent rows. Rows of a Latin hypercube or of a Sobol sequence cover the space more
-evenly than independent ones, so that a mean is then better known than its interval says.
+evenly than independent ones, so that a mean is then better known than its interval says. Values that are too few or
+not finite are refused.
 """
 
 import math
@@ -27,7 +28,6 @@ def mean(values):
     """The mean, with the interval of Student's t.
 
     :param values: two numbers or more
-    :raises Refused: if there are fewer, or one is not finite
     """
     values = _numbers(values, 2, "a mean with its interval")
     t = stats.t.ppf((1 + CONFIDENCE) / 2, len(values) - 1)
@@ -43,7 +43,6 @@ def deviation(values):
     the variance (kurtosis - (n - 3)/n)/(n - 1), where the kurtosis counts from a trimmed mean.
 
     :param values: ten numbers or more
-    :raises Refused: if there are fewer, or one is not finite
     """
     values = _numbers(values, 10, "a standard deviation with its interval")
     n, spread = len(values), values.std(ddof=1)
@@ -67,7 +66,6 @@ def quantile(values, share):
 
     :param values: two numbers or more
     :param share: between 0 and 1
-    :raises Refused: if there are fewer, or one is not finite, or the share is not between 0 and 1
     """
     values = np.sort(_numbers(values, 2, "a quantile"))
     if not 0 < share < 1:
@@ -107,7 +105,6 @@ def lognormal(values):
     """The lognormal distribution with the mean and standard deviation of the logarithms: a :class:`Lognormal`.
 
     :param values: three numbers or more, all above 0
-    :raises Refused: if there are fewer, or one is 0 or less, or all are the same
     """
     values = _numbers(values, 3, "a lognormal distribution")
     if values.min() <= 0:
