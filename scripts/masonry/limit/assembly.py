@@ -251,11 +251,10 @@ class Assembly:
 
     def _why(self, live, dead, sense, turn, unsolved):
         """Why the programme could not be solved, as the error to raise."""
-        nothing = np.zeros_like(dead)
         message = "limit analysis: "
         try:
             if np.abs(dead[~self.held]).max(initial=0) > 0:
-                carried = self._solve(dead, nothing, 1, turn, most=1.0)
+                carried = self._solve(dead, 0 * dead, 1, turn, most=1.0)
                 if carried.value < 1 - 1e-6:
                     fast = carried.fastest()
                     at = ", ".join(f"{v:.3g}" for v in self.centres[fast])
@@ -278,8 +277,7 @@ class Assembly:
     def _tangents(self):
         """Two unit vectors in the plane of every joint (m, 2, 3); in the x-z plane the first lies in it."""
         first = np.cross(self.normals, [0, 1, 0])
-        length = np.linalg.norm(first, axis=1)
-        flat = length < 0.1
+        flat = np.linalg.norm(first, axis=1) < 0.1
         first[flat] = np.cross(self.normals[flat], [1, 0, 0])
         first /= np.linalg.norm(first, axis=1)[:, None]
         return np.stack([first, np.cross(self.normals, first)], axis=1)
@@ -298,11 +296,10 @@ class Assembly:
     def _contacts(self):
         """The points on which forces act: corners of dry joints, else the points of the engine."""
         at, area, joint = [np.zeros((0, 3))], [np.zeros(0)], []
-        starts = np.searchsorted(self.joint, np.arange(1, len(self.pairs)))
-        parts = (np.split(values, starts) for values in (self.points, self.areas))
-        for j, (points, areas) in enumerate(zip(*parts)):
-            if self.elastic[j]:
-                continue
+        starts = np.searchsorted(self.joint, np.arange(len(self.pairs) + 1))
+        for j in np.flatnonzero(~self.elastic):
+            own = slice(*starts[j : j + 2])
+            points, areas = self.points[own], self.areas[own]
             if self.dry[j]:
                 points = np.asarray(self.polygons[j])
                 if self.plane:

@@ -322,8 +322,7 @@ _ROWS = (
     ),
 )
 
-#: All options by their names.
-OPTIONS = {one.name: one for one in _ROWS}
+OPTIONS = {one.name: one for one in _ROWS}  # all options by their names
 
 
 def those(trait: str) -> set[str]:

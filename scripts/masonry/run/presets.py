@@ -20,8 +20,7 @@ PRESETS: dict[str, dict[str, Any]] = {
 for _preset in PRESETS.values():
     _preset.update(damping=0.8, damping_kind="combined", dt_fraction=0.8)
 
-#: The preset of limit analysis alone, without a run: see masonry.limit.
-BOUND = "bound"
+BOUND = "bound"  # the preset of limit analysis alone, without a run: see masonry.limit
 
 #: What a preset promises. ``peak_error``, ``work_error`` and ``stiffness_error`` are the most that the peak, the work over the
 #: push and the initial stiffness differ from those of a fine and slow run [-]. ``walls`` has how far each wall was pushed for
@@ -181,8 +180,7 @@ FIDELITIES = (
     ),
 )
 
-#: Options that --accuracy chooses, as they are without any.
-CHOSEN = USUAL
+CHOSEN = USUAL  # options that --accuracy chooses, as they are without any
 
 
 def fidelityOf(args):

@@ -41,8 +41,7 @@ DRAWS, THINNING = 4000, 5  # of a chain
 BEGIN = 0.1  # steps of the first chain over the ranges [-]
 STEP = 2.38  # of a chain over the deviation of a draw, over the root of the dimension: Gelman, Roberts and Gilks (1996)
 STARTS = 2000  # points of which the most likely one begins the first chain
-#: Error of the surrogate over that of the test that needs no other round or check [-].
-FINE = 0.5
+FINE = 0.5  # error of the surrogate over that of the test that needs no other round or check [-]
 CHECKS = 4  # runs with the means of the draws that may be added to the rows
 SMALLER = 0.5  # volume of another round over the last one, above which it does not pay
 TAIL, MARGIN = 0.005, 0.25  # what a next round has outside, and its margin over width

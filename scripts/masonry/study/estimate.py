@@ -38,19 +38,10 @@ from .statistics import CONFIDENCE, notFinite
 
 #: Fewest shared rows. With fewer, the slope, the residuals and their scatter are not known well enough for an interval.
 SHARED = 10
-
-#: Shared rows that must be expected on either side of a quantile that is found by an indicator.
-SIDE = 5
-
-#: The quantiles that :func:`estimate` gives [-].
-QUANTILES = (0.05, 0.5, 0.95)
-
-#: A doubt about the bridge is reported if its p-value is below this.
-DOUBT = 0.01
-
-#: A correlation that is as near to 1 leaves nothing to doubt [-].
-ROUNDING = 1e-9
-
+SIDE = 5  # shared rows that must be expected on either side of a quantile that is found by an indicator
+QUANTILES = (0.05, 0.5, 0.95)  # the quantiles that :func:`estimate` gives [-]
+DOUBT = 0.01  # a doubt about the bridge is reported if its p-value is below this
+ROUNDING = 1e-9  # a correlation that is as near to 1 leaves nothing to doubt [-]
 #: An estimate. ``name`` says of what, ``value``, ``low`` and ``high`` are in the unit of the numbers. ``expensive`` and
 #: ``cheap`` are A and B, and ``alone`` is the variance of one expensive row without any cheap ones; the three have one
 #: scale, which is that of probability for a quantile. ``shared`` and ``rows`` are N and M.
