@@ -15,7 +15,7 @@ import numpy as np
 from ..basics import Refused
 
 LOOSENED = 8  # rounds in which joints without pressure lose their friction, at most
-UNPRESSED = 1e-6  # force on a joint, over the largest, below which nothing presses it [-]
+UNPRESSED = 1e-6  # force on a joint over the largest, below which it is open [-]
 UPRIGHT = 0.5  # cosine between the dead loads and the normal below which a joint is a head joint
 MISSED = 0.02  # share of a mechanism's power that the friction it misses may have [-]
 

@@ -111,6 +111,7 @@ class AuxiliaryRuns:
         self.folder, self.command = os.path.join(folder, FOLDER), command
         self.numbers = {}  # of the runs that are over
         self.failed = False  # whether a run was not refused, but failed
+        self.percent = self.fidelity = None  # what was asked for [%], what was chosen
 
     def folderOf(self, name):
         """The folder of results of a companion."""
@@ -162,11 +163,8 @@ class AuxiliaryRuns:
 
     def _take(self, name):
         """Read the numbers of a companion. Returns whether it is over."""
-        try:
-            run = readRun(self.folderOf(name))
-        except Refused:
-            return False
-        if run.get("interrupted") or "error" in run:
+        run = batch.ended(self.folderOf(name))
+        if run is None:
             return False
         if not all(run.get(key) for _, key, _ in QUANTITIES):
             raise Refused(
@@ -223,36 +221,27 @@ class AuxiliaryRuns:
         fell = ", collapsed" if found["collapsed"] else ""
         say(f"accuracy: {name}: peak {found['peak']:.4g} kN, work {found['work']:.4g} J, {found['seconds']:.0f} s{fell}")  # fmt: skip
 
+    def choose(self, percent):
+        """Run companions until a fidelity is good enough, or until there is no better one.
 
-# -- what is chosen and reported --------------------------------------------------------------------------------------
-
-
-def choose(companions, percent):
-    """Run companions until a fidelity is good enough, or until there is no better one. Returns the :class:`Fidelity`.
-
-    :param percent: the half-width that is wanted [%]
-    """
-    for number, fidelity in enumerate(FIDELITIES):
-        companions.run(needed(number))
-        widths = {}
-        for quantity, _, _ in QUANTITIES:
-            values = companions.valuesOf(quantity)
-            scale = max(map(abs, values.values()))
-            widths[quantity] = 100 * halfWidth(number, quantity, values, scale)[0]
-        enough, last = max(widths.values()) <= percent, fidelity is FIDELITIES[-1]
-        about = ", ".join(f"{name} ± {width:.2g} %" for name, width in widths.items())
-        verdict = "chosen" if enough else "the finest there is" if last else "not enough"  # fmt: skip
-        say(f"accuracy: {fidelity.name}: {about} expected: {verdict}")
-        if enough:
-            break
-    return fidelity
-
-
-class AccuracyResult:
-    """What ``--accuracy`` found for a run: its fidelity and the companions beside it."""
-
-    def __init__(self, percent, fidelity, companions):
-        self.percent, self.fidelity, self.companions = percent, fidelity, companions
+        :param percent: the half-width that is wanted [%]
+        """
+        for number, fidelity in enumerate(FIDELITIES):
+            self.run(needed(number))
+            widths = {}
+            for quantity, _, _ in QUANTITIES:
+                values = self.valuesOf(quantity)
+                scale = max(map(abs, values.values()))
+                widths[quantity] = 100 * halfWidth(number, quantity, values, scale)[0]
+            enough, last = max(widths.values()) <= percent, fidelity is FIDELITIES[-1]
+            about = ", ".join(
+                f"{name} ± {width:.2g} %" for name, width in widths.items()
+            )
+            verdict = "chosen" if enough else "the finest there is" if last else "not enough"  # fmt: skip
+            say(f"accuracy: {fidelity.name}: {about} expected: {verdict}")
+            if enough:
+                break
+        self.percent, self.fidelity = percent, fidelity
 
     def report(self, run):
         """The entries of run.json for the numbers of a run: ``accuracy`` and the half-widths beside the values."""
@@ -260,16 +249,16 @@ class AccuracyResult:
         found, entries = [], {}
         for quantity, key, unit in QUANTITIES:
             value = run[key]
-            values = {**self.companions.valuesOf(quantity), MAIN: value}
+            values = {**self.valuesOf(quantity), MAIN: value}
             share, parts = halfWidth(number, quantity, values, abs(value) or 1.0)
             parts = {name: 100 * part for name, part in parts.items()}
             how = ", ".join(f"{name} {part:.2g} %" for name, part in parts.items())
+            how = f"the sum of what companions of this run differ by and of what they do not show: {how}"
             entries[f"{quantity}_half_width_{unit}"] = share * abs(value)
-            one = dict(name=quantity, unit=unit, value=value, parts_percent=parts)
+            one = dict(
+                name=quantity, unit=unit, value=value, parts_percent=parts, how=how
+            )
             one.update(half_width=share * abs(value), half_width_percent=100 * share)
-            one[
-                "how"
-            ] = f"the sum of what companions of this run differ by and of what they do not show: {how}"
             found.append(one)
         entries["accuracy"] = {
             "asked_percent": self.percent,
@@ -278,11 +267,14 @@ class AccuracyResult:
             "quantities": found,
             "not_covered": NOT_COVERED,
             "companions": [
-                {"name": n, "options": COMPANIONS[n], **numbers, "folder": self.companions.folderOf(n)}
-                for n, numbers in self.companions.numbers.items()
+                {"name": n, "options": COMPANIONS[n], **numbers, "folder": self.folderOf(n)}
+                for n, numbers in self.numbers.items()
             ],
         }  # fmt: skip
         return entries
+
+
+# -- what is reported and asked ---------------------------------------------------------------------------------------
 
 
 def answers(entry):
@@ -301,20 +293,15 @@ def lines(entry):
         f"{q['name']} {q['value']:.4g} ± {q['half_width']:.2g} {q['unit']} ({q['half_width_percent']:.2g} %)"
         for q in entry["quantities"]
     )
-    sentences = [f"accuracy: {values}, by {entry['fidelity']} and {len(entry['companions'])} runs beside it"]  # fmt: skip
+    yield f"accuracy: {values}, by {entry['fidelity']} and {len(entry['companions'])} runs beside it"
     fell = [one["name"] for one in entry["companions"] if one["collapsed"]]
     if fell:
-        sentences.append(
-            f"accuracy: collapsed: {'; '.join(fell)}; the work of a run that collapses ends there"
-        )
+        yield f"accuracy: collapsed: {'; '.join(fell)}; the work of a run that collapses ends there"
     if not entry["reached"]:
         finest = entry["fidelity"] == FIDELITIES[-1].name
         which = "finest fidelity there is" if finest else "fidelity that was chosen"
-        sentences.append(
-            f"accuracy: {entry['asked_percent']:g} % is not reached by the {which}: the ± is what was found"
-        )
-    sentences.append(f"accuracy: the ± does not cover {entry['not_covered']}")
-    return sentences
+        yield f"accuracy: {entry['asked_percent']:g} % is not reached by the {which}: the ± is what was found"
+    yield f"accuracy: the ± does not cover {entry['not_covered']}"
 
 
 def ask(name, args, script, words):
@@ -322,7 +309,7 @@ def ask(name, args, script, words):
 
     :param args: the options of the run, which are changed
     :param script: path of the script of the scene, if it takes its options from the command line; else None
-    :returns: None for a companion, a probe, and runs without ``--accuracy``
+    :returns: :class:`AuxiliaryRuns`; None for a companion, a probe, and runs without ``--accuracy``
     :raises Refused: if it means nothing here
     """
     if not args.accuracy or _isCompanion or batch.PROBE in os.environ:
@@ -347,17 +334,18 @@ def ask(name, args, script, words):
     text = pathlib.Path(script).read_bytes() + command.encode()
     companions.begin(hashlib.sha256(text).hexdigest())
     try:
-        fidelity = choose(companions, args.accuracy)
+        companions.choose(args.accuracy)
     except Refused:
         companions.clear()
         raise
-    vars(args).update({**CHOSEN, **fidelity.options})
-    return AccuracyResult(args.accuracy, fidelity, companions)
+    vars(args).update({**CHOSEN, **companions.fidelity.options})
+    return companions
 
 
 def _resumed(args):
     """As :func:`ask`, of a run that is resumed: its companions are those of its beginning."""
     companions, fidelity = AuxiliaryRuns(args.resume, []), fidelityOf(args)
+    companions.percent, companions.fidelity = args.accuracy, fidelity
     companions.read()
     number = FIDELITIES.index(fidelity) if fidelity else 0
     due = [name for k in range(number + 1) for name in needed(k)]
@@ -367,4 +355,4 @@ def _resumed(args):
     if any(readRun(companions.folderOf(n))["options"]["until"] != args.until for n in due):  # fmt: skip
         say("note: --accuracy: the run goes on to a longer push than its companions: there will be no ±")  # fmt: skip
         return None
-    return AccuracyResult(args.accuracy, fidelity, companions)
+    return companions

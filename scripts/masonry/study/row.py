@@ -29,7 +29,7 @@ from .gathering import STUDY, TABLE, Folder, reason, rowsOf
 from .incremental import FOLDER
 
 REFUSED = 2  # exit status of a scene that refuses its input
-ATTEMPTS = 20  # of a row at most, while its folder is still held or its checkpoint is refused
+ATTEMPTS = 20  # of a row at most, while its folder is held or its checkpoint refused
 TAIL = 4000  # bytes at the end of a log in which the reason of a failure stands
 
 
