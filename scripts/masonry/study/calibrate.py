@@ -117,9 +117,8 @@ class Specimen:
             curve = readCurve(path)
         except Refused:
             return np.full(self.count, np.nan)
-        missing = [name for name in self.columns if name not in curve]
-        if missing:
-            raise Refused(f"{path}: curve.csv has no column {', '.join(missing)}; there are {', '.join(curve)}")  # fmt: skip
+        if missing := ", ".join(name for name in self.columns if name not in curve):
+            raise Refused(f"{path}: curve.csv has no column {missing}; there are {', '.join(curve)}")  # fmt: skip
         x, y = pictures.increasing(*(curve[name] for name in self.columns))
         reached = self.grid <= x[-1] + 0.01 * (x[-1] - x[0])
         return np.where(reached, np.interp(self.grid, x, y), np.nan)

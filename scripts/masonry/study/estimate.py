@@ -107,12 +107,10 @@ def quantile(expensive, cheap, share, method="bridge"):
     :raises Refused: as :func:`mean`; or if the share is not between 0 and 1, or the method is another, or an indicator
         would have fewer than SIDE shared rows to expect on one side
     """
-    problems = []
     if not 0 < share < 1:
-        problems.append(f"a quantile of {share:g}: it must be between 0 and 1")
+        raise Refused(f"a quantile of {share:g}: it must be between 0 and 1")
     if method not in ("bridge", "indicator"):
-        problems.append(f"method '{method}' must be 'bridge' or 'indicator'")
-    refuse(problems)
+        raise Refused(f"method '{method}' must be 'bridge' or 'indicator'")
     return _quantile(_Bridge(*_rows(expensive, cheap)), share, method)
 
 
@@ -232,8 +230,7 @@ def sentence(found, prices, unit="", names=("expensive", "cheap")):
     :param prices: of an expensive and of a cheap run [s]
     :param names: of the expensive and of the cheap fidelity
     """
-    paid = saved(found, prices)
-    unit = f" {unit}" if unit else ""
+    paid, unit = saved(found, prices), unit and f" {unit}"
     end = lambda v: f"{v:.4g}{unit}" if math.isfinite(v) else "an unknown end"
     message = (
         f"{found.name} {found.value:.4g}{unit}, with {100 * CONFIDENCE:g} % confidence between {end(found.low)} and {end(found.high)}, "
