@@ -15,31 +15,19 @@ from ..common.arguments import Kind, flag, number, oneOf, text, whole
 
 @dataclass(frozen=True)
 class Option:
-    """An option of all scenes.
+    """An option of all scenes."""
 
-    :param name: as Python has it: ``dt_fraction`` is ``--dt-fraction``
-    :param kind: of its values, as in :mod:`masonry.common.arguments`
-    :param default: None: the scene says it, or there is none
-    :param value: what stands for its value in ``--help``
-    :param several: whether it can be given several times
-    :param chosen: whether presets and ``--accuracy`` choose it
-    :param harmless: whether it leaves the promise of a preset alone
-    :param free: whether a run that is resumed may have another value
-    :param ofStudy: whether a row of a study may have it: others are about files, or the study's own
-    :param ofScript: whether a script can say it as a keyword of ``Scene``: others are about the run at hand
-    """
-
-    name: str
-    kind: Kind = text
-    default: Any = None
-    value: str | None = None
-    several: bool = False
-    chosen: bool = False
-    harmless: bool = False
-    free: bool = False
-    ofStudy: bool = True
-    ofScript: bool = True
-    meaning: str = ""
+    name: str  # as Python has it: dt_fraction is --dt-fraction
+    kind: Kind = text  # of its values, as in masonry.common.arguments
+    default: Any = None  # None: the scene says it, or there is none
+    value: str | None = None  # what stands for its value in --help
+    several: bool = False  # whether it can be given several times
+    chosen: bool = False  # whether presets and --accuracy choose it
+    harmless: bool = False  # whether it leaves the promise of a preset alone
+    free: bool = False  # whether a run that is resumed may have another value
+    ofStudy: bool = True  # whether a row of a study may have it: others are about files, or the study's own
+    ofScript: bool = True  # whether Scene has it as a keyword; others are of one run
+    meaning: str = ""  # what --help says
 
     def means(self, meaning: str) -> "Option":
         """The same with what ``--help`` says."""

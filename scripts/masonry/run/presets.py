@@ -9,13 +9,8 @@ from .options import USUAL, asOption
 
 #: Options by preset, the same for all walls. A scene of one's own may take them from here.
 PRESETS: dict[str, dict[str, Any]] = {
-    "fast": {"blocks": "rigid", "divisions": 1, "rate": 100.0},
-    "accurate": {
-        "blocks": "deformable",
-        "divisions": 2,
-        "rate": 50.0,
-        "mass_scaling": "auto",
-    },
+    "fast": dict(blocks="rigid", divisions=1, rate=100.0),
+    "accurate": dict(blocks="deformable", divisions=2, rate=50.0, mass_scaling="auto"),
 }
 for _preset in PRESETS.values():
     _preset.update(damping=0.8, damping_kind="combined", dt_fraction=0.8)
@@ -27,29 +22,16 @@ BOUND = "bound"  # the preset of limit analysis alone, without a run: see masonr
 #: that [mm], and the time that it takes with ``yade -j2`` on two idle server cores [s]. validation/trade measures all of them.
 #: ``elsewhere`` has the errors of peak and work of these four and the forty walls of validation/accuracy, of which all but
 #: ``missed`` lay within them. Any wall in their :data:`RANGE` gets this promise.
+_WALLS = "wall_comp0a", "wall_comp1", "wall_comp4", "wall_comp6"
 PROMISES: dict[str, dict[str, Any]] = {
     "fast": {
-        "peak_error": 0.02,
-        "work_error": 0.02,
-        "stiffness_error": 0.1,
-        "walls": {
-            "wall_comp0a": (30, 8),
-            "wall_comp1": (30, 8),
-            "wall_comp4": (12, 8),
-            "wall_comp6": (16, 9),
-        },
-        "elsewhere": {"peak_error": 0.06, "work_error": 0.07, "walls": 44, "missed": 1},
+        **dict(peak_error=0.02, work_error=0.02, stiffness_error=0.1),
+        "walls": dict(zip(_WALLS, ((30, 8), (30, 8), (12, 8), (16, 9)))),
+        "elsewhere": dict(peak_error=0.06, work_error=0.07, walls=44, missed=1),
     },
     "accurate": {
-        "peak_error": 0.02,
-        "work_error": 0.02,
-        "stiffness_error": 0.05,
-        "walls": {
-            "wall_comp0a": (30, 30),
-            "wall_comp1": (30, 25),
-            "wall_comp4": (12, 30),
-            "wall_comp6": (16, 40),
-        },
+        **dict(peak_error=0.02, work_error=0.02, stiffness_error=0.05),
+        "walls": dict(zip(_WALLS, ((30, 30), (30, 25), (12, 30), (16, 40)))),
     },
 }
 
@@ -72,37 +54,28 @@ RANGE: dict[str, tuple[float, float]] = {
 class Source:
     """A source of error of a fidelity, and the runs that show how large it is.
 
-    :param name: of the source
-    :param runs: names in :data:`COMPANIONS`, from the coarsest to the finest, or :data:`MAIN`, the run itself. The difference
-        of the last two counts. Of three, each with half the step of the one before, it counts less if their differences
-        shrink as those of a method of an order do (Richardson)
-    :param share: what counts of the difference of two [-]
-    :param chance: whether the runs differ in nothing that matters, so that their spread is chance
+    The difference of the last two runs counts. Of three, each with half the step of the one before, it counts less if their
+    differences shrink as those of a method of an order do (Richardson).
     """
 
     name: str
-    runs: tuple
-    share: float = 1.0
-    chance: bool = False
+    runs: tuple  # names in COMPANIONS, from the coarsest to the finest, or MAIN, the run itself
+    share: float = 1.0  # what counts of the difference of two [-]
+    chance: bool = False  # whether they differ in nothing that matters, so that their spread is chance
 
 
 @dataclass(frozen=True)
 class Fidelity:
     """Options of a run, and what is known of their error.
 
-    :param name: as the terminal says it
-    :param options: option -> value; those of :data:`CHOSEN` that are not named are as without options
-    :param cost: wall-clock time of a run over that of the first fidelity, about [-]
-    :param error: by quantity, the error against a fine and slow run that no companion shows [-]; validation/trade has the
-        runs from which it was taken, and validation/accuracy measures what it is worth
-    :param sources: what companions show, a tuple of :class:`Source`
+    validation/trade has the runs from which ``error`` was taken, and validation/accuracy measures what it is worth.
     """
 
-    name: str
-    options: dict
-    cost: float
-    error: dict
-    sources: tuple
+    name: str  # as the terminal says it
+    options: dict  # those of CHOSEN that are not named are as without options
+    cost: float  # wall-clock time of a run over that of the first fidelity, about [-]
+    error: dict  # by quantity, against a fine and slow run, what no companion shows [-]
+    sources: tuple  # what companions show
 
 
 #: The run itself among those of a :class:`Source`. Before it has been made, the source counts as in the fidelity before.
