@@ -17,12 +17,12 @@ for _preset in PRESETS.values():
 
 BOUND = "bound"  # the preset of limit analysis alone, without a run: see masonry.limit
 
+_WALLS = "wall_comp0a", "wall_comp1", "wall_comp4", "wall_comp6"
 #: What a preset promises. ``peak_error``, ``work_error`` and ``stiffness_error`` are the most that the peak, the work over the
 #: push and the initial stiffness differ from those of a fine and slow run [-]. ``walls`` has how far each wall was pushed for
 #: that [mm], and the time that it takes with ``yade -j2`` on two idle server cores [s]. validation/trade measures all of them.
 #: ``elsewhere`` has the errors of peak and work of these four and the forty walls of validation/accuracy, of which all but
 #: ``missed`` lay within them. Any wall in their :data:`RANGE` gets this promise.
-_WALLS = "wall_comp0a", "wall_comp1", "wall_comp4", "wall_comp6"
 PROMISES: dict[str, dict[str, Any]] = {
     "fast": {
         **dict(peak_error=0.02, work_error=0.02, stiffness_error=0.1),
