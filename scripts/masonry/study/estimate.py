@@ -260,24 +260,20 @@ _Found = namedtuple("_Found", "value expensive cheap shared rows")
 def _rows(expensive, cheap):
     """Both as arrays. Refuses what no interval can be made of, with all problems at once."""
     y, x = np.asarray(expensive, float).ravel(), np.asarray(cheap, float).ravel()
-    problems = []
+    refuse([*_unfit(y, x)])
+    return y, x
+
+
+def _unfit(y, x):
     if len(y) < SHARED:
-        problems.append(
-            f"{len(y)} shared rows are too few: run {SHARED} or more with both fidelities"
-        )
+        yield f"{len(y)} shared rows are too few: run {SHARED} or more with both fidelities"
     if len(x) < len(y):
-        problems.append(
-            f"{len(x)} cheap rows for {len(y)} expensive ones: every expensive row needs its cheap one"
-        )
+        yield f"{len(x)} cheap rows for {len(y)} expensive ones: every expensive row needs its cheap one"
     for what, values in (("expensive", y), ("cheap", x)):
-        problems += [f"{what} {why}" for why in notFinite(values)]
+        yield from (f"{what} {why}" for why in notFinite(values))
         shared = values[: len(y)]
         if len(set(shared)) == 1 < len(shared):
-            problems.append(
-                f"the {what} numbers of all shared rows are {values[0]:g}: there is nothing to learn from them"
-            )
-    refuse(problems)
-    return y, x
+            yield f"the {what} numbers of all shared rows are {values[0]:g}: there is nothing to learn from them"
 
 
 def _controlled(g, z):

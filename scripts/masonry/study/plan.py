@@ -86,7 +86,7 @@ class Study:
             problems += [f'{name}: only a study with design="ida" has it' for name in given]  # fmt: skip
             if not self.vary:
                 problems.append("vary: nothing varies")
-        self._count(problems)
+        problems += self._count()
         self._correlate(dict(correlation or {}), problems)
         refuse(problems, "study: ", "\n  ")
 
@@ -103,18 +103,8 @@ class Study:
         except Refused as refused:
             problems.append(f"vary {key!r}: {refused}")
             return
-        isField, several = isinstance(what, Field), len(names) > 1
-        wrong = []
-        if not all("." in n for n in names):
-            if isField:
-                wrong.append("only a property of joints can be a field")
-            elif several:
-                wrong.append("only properties of joints can be tied in a tuple")
-        if isField and what.mean is not None and several:
-            wrong.append(
-                "a field of several properties is about their own values: field(cov=..., length=...)"
-            )
-        problems += [f"vary {key!r}: {why}" for why in wrong]
+        isField = isinstance(what, Field)
+        problems += [f"vary {key!r}: {why}" for why in _unfit(what, names)]
         values = what.values if isinstance(what, Choice) else [0]
         problems += [p for n in names for v in values for p in _wrongOption(n, v)]
         alike = [c for c, w in self.vary.items() if isinstance(w, Field) == isField]
@@ -123,24 +113,23 @@ class Study:
             problems.append(f"{twice}: given twice")
         self.vary[batch.FIELD * isField + "+".join(names)] = what
 
-    def _count(self, problems):
+    def _count(self):
+        """Find how many rows there are. Yields what is wrong with the number."""
         if self.ida:
             if self.runs is not None:
-                problems.append(f"runs {self.runs!r}: there are as many as records times levels; leave it out")  # fmt: skip
+                yield f"runs {self.runs!r}: there are as many as records times levels; leave it out"
             return
         if self.design == "grid":
             odd = [c for c, w in self.vary.items() if isinstance(w, Distribution)]
             if odd:
-                problems.append(
-                    f"design 'grid': {', '.join(odd)} must be a list of values"
-                )
+                yield f"design 'grid': {', '.join(odd)} must be a list of values"
             choices = (w for w in self.vary.values() if isinstance(w, Choice))
             size = math.prod(len(w.values) for w in choices)
             if self.runs not in (None, size):
-                problems.append(f"runs {self.runs}: the grid has {size} points")
+                yield f"runs {self.runs}: the grid has {size} points"
             self.runs = size
         if self.runs is None or self.runs > MOST:
-            problems.append(f"runs {self.runs} must be a whole number from 1 to {MOST}")
+            yield f"runs {self.runs} must be a whole number from 1 to {MOST}"
 
     def _correlate(self, correlation, problems):
         joined = lambda key: "+".join(key) if isinstance(key, tuple) else key
@@ -259,6 +248,18 @@ class Study:
                 f"study: no scene {self.scene}; looked in {', '.join(looked)}"
             )
         return path, hashlib.sha256(pathlib.Path(path).read_bytes()).hexdigest()
+
+
+def _unfit(what, names):
+    """Why names cannot vary by that, sentences."""
+    isField, several = isinstance(what, Field), len(names) > 1
+    properties = all("." in name for name in names)
+    if isField and not properties:
+        yield "only a property of joints can be a field"
+    if isField and what.mean is not None and several:
+        yield "a field of several properties is about their own values: field(cov=..., length=...)"
+    if several and not (isField or properties):
+        yield "only properties of joints can be tied in a tuple"
 
 
 def namesOf(column):

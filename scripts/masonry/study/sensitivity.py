@@ -90,21 +90,8 @@ def sobol(inputs, output, seed=1):
     :raises Refused: if there are fewer than ten rows a property, or a number is not finite, or properties are dependent
     """
     inputs, x, y = _numbers(inputs, output)
-    n, k = x.shape
-    problems = []
-    if n < 10 * k:
-        problems.append(
-            f"Sobol indices of {k} properties need {10 * k} rows or more, there are {n}"
-        )
-    for (one, first), (two, second) in itertools.combinations(zip(inputs, x.T), 2):
-        found = stats.spearmanr(first, second)
-        if found.pvalue < 2 * DEPENDENT / (k * (k - 1)):
-            problems.append(
-                f"Sobol indices need independent properties, {one} and {two} have a rank correlation of {found.statistic:.2f}"
-            )
-    if np.ptp(y) == 0:
-        problems.append("Sobol indices: all results are the same")
-    refuse(problems)
+    n = len(x)
+    refuse([*_unfit(inputs, x, y)])
     ranks = lambda rows: (stats.rankdata(x[rows], axis=0) - 0.5) / n
     u = ranks(np.arange(n))
     y = (y - y.mean()) / y.std()
@@ -125,6 +112,19 @@ def sobol(inputs, output, seed=1):
     found = {n: Indices(Interval(*f), Interval(*t)) for n, f, t in zip(inputs, *ends)}
     found = dict(sorted(found.items(), key=lambda item: -item[1].total.value))
     return Sobol(1 - errors @ errors / n, found)
+
+
+def _unfit(names, x, y):
+    """Sentences on why there are no Sobol indices of some rows."""
+    n, k = x.shape
+    if n < 10 * k:
+        yield f"Sobol indices of {k} properties need {10 * k} rows or more, there are {n}"
+    for (one, first), (two, second) in itertools.combinations(zip(names, x.T), 2):
+        found = stats.spearmanr(first, second)
+        if found.pvalue < 2 * DEPENDENT / (k * (k - 1)):
+            yield f"Sobol indices need independent properties, {one} and {two} have a rank correlation of {found.statistic:.2f}"
+    if np.ptp(y) == 0:
+        yield "Sobol indices: all results are the same"
 
 
 def _polynomials(u, y):
