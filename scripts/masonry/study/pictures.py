@@ -110,8 +110,8 @@ def sobol(path, found, label):
     with _picture(path, 6.0, 1.3 + 0.38 * len(first)) as figure:
         axis = figure.subplots()
         for values, shift, colour, text in (
-            (total, 0.18, LINE, "total, with all interactions"),
-            (first, -0.18, POINT, "first, alone"),
+            (total, -0.18, LINE, "total, with all interactions"),
+            (first, 0.18, POINT, "first, alone"),
         ):
             style = dict(color=colour, height=0.34, label=text)
             _bars(axis, indices, values, shift, cap=2, **style)
