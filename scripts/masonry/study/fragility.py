@@ -61,11 +61,10 @@ class Fit:
 
     def probability(self, intensity: float) -> Interval:
         """Probability of reaching the limit at an intensity above 0, with its interval."""
-        place = math.log(intensity)
-        a, b = self._edge
+        place, (a, b) = math.log(intensity), self._edge
         ends = a * place - b
         value = (place - math.log(self.median.value)) / self.dispersion.value
-        return Interval(*(float(special.ndtr(z)) for z in (value, ends.min(), ends.max())))  # fmt: skip
+        return Interval(*special.ndtr([value, ends.min(), ends.max()]).tolist())
 
 
 def fit(low: Numbers, high: Numbers) -> Fit:
@@ -106,19 +105,14 @@ def fit(low: Numbers, high: Numbers) -> Fit:
         )
     t = stats.t.ppf((1 + CONFIDENCE) / 2, n - 1)
     drop = n * math.log1p(t * t / (n - 1))  # the module says why
-    edge = _edge(likelihood, 1 / spread, mean / spread, drop)
-    a, b = edge
+    a, b = edge = _edge(likelihood, 1 / spread, mean / spread, drop)
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         open = a <= NOTHING / spread
         medians = np.exp(np.where(open, np.sign(b) * math.inf, b / a))
         spreads = np.where(open, math.inf, 1 / a)
-    return Fit(
-        Interval(math.exp(mean), float(medians.min()), float(medians.max())),
-        Interval(spread, float(spreads.min()), float(spreads.max())),
-        int(np.isfinite(high).sum()),
-        n,
-        edge,
-    )
+    found = ((math.exp(mean), medians), (spread, spreads))
+    both = (Interval(v, float(ends.min()), float(ends.max())) for v, ends in found)
+    return Fit(*both, int(np.isfinite(high).sum()), n, edge)
 
 
 def nrml(

@@ -45,6 +45,11 @@ class Distribution:
             return made
         return ot.TruncatedDistribution(made, _interval(p.get("low"), p.get("high")))
 
+    def valuesAt(self, probabilities: Sequence[float]) -> list[float]:
+        """The values that are not exceeded with these probabilities."""
+        law = self.law()
+        return [float(law.computeQuantile(u)[0]) for u in probabilities]
+
     def beyond(self, low: float | None, high: float | None) -> float:
         """Probability of a value below ``low`` or above ``high``; None is no bound [-]."""
         law = self.law()
@@ -121,10 +126,10 @@ class Choice:
     values: tuple
     weights: tuple
 
-    def of(self, u: float) -> Any:
-        """The value at a probability from 0 to 1."""
-        place = bisect.bisect_right([*itertools.accumulate(self.weights)], u)
-        return self.values[min(place, len(self.values) - 1)]
+    def valuesAt(self, probabilities: Sequence[float]) -> list[Any]:
+        """The values at probabilities from 0 to 1."""
+        ends = [*itertools.accumulate(self.weights)][:-1]
+        return [self.values[bisect.bisect_right(ends, u)] for u in probabilities]
 
     def describe(self) -> dict[str, Any]:
         return {"kind": "choice", **asdict(self)}
