@@ -34,20 +34,12 @@ def parser():
         description="Run a scene many times with values that vary; go on with a study that was stopped; gather what came out.",
         epilog="With --slurm all other options, for example --partition=long --time=2:00:00, are those of sbatch.",
     )
-    p.add_argument(
-        "file",
-        metavar="FILE",
-        nargs="?",
-        help="Python file that makes one masonry.study.Study or Calibration; not needed to --gather",
-    )
+    file = "Python file that makes one masonry.study.Study or Calibration; not needed to --gather"
+    jobs = "runs at a time (default: %(default)s, all cores)"
+    cores = len(os.sched_getaffinity(0))
+    p.add_argument("file", metavar="FILE", nargs="?", help=file)
     p.add_argument("--out", metavar="DIR", required=True, help="folder of the study")
-    p.add_argument(
-        "--jobs",
-        metavar="N",
-        type=int,
-        default=len(os.sched_getaffinity(0)),
-        help="runs at a time (default: %(default)s, all cores)",
-    )
+    p.add_argument("--jobs", metavar="N", type=int, default=cores, help=jobs)
     for name, what in SWITCHES.items():
         p.add_argument(name, action="store_true", help=what)
     return p

@@ -114,23 +114,9 @@ def paired(expensive, cheap, measure, other=None):
     :returns: two arrays for :mod:`masonry.study.estimate`, and two lists: the rows of ``expensive`` and those of ``cheap``
     :raises Refused: if their scenes or options differ in more than FIDELITY, if something else varies in both, or rows of one study are the same
     """
-    problems = [
-        f"{expensive.directory} has {what} {one!r}, and {cheap.directory} {two!r}"
-        for what, one, two in _unlike(expensive, cheap)
-    ]
-    if sorted(expensive.varied) != sorted(cheap.varied):
-        problems.append(
-            f"{expensive.directory} varies {', '.join(expensive.varied)}, and {cheap.directory} {', '.join(cheap.varied)}"
-        )
-    else:
-        rowsOf = lambda study: [*zip(*(study.cells[n] for n in expensive.varied))]
-        keys = {study: rowsOf(study) for study in (expensive, cheap)}
-        problems += [
-            f"{study.directory}: rows have the same properties, so that it cannot be told which are shared"
-            for study, own in keys.items()
-            if len(set(own)) < len(own)
-        ]
-    refuse(problems)
+    rowsOf = lambda study: [*zip(*(study.cells.get(n, ()) for n in expensive.varied))]
+    keys = {study: rowsOf(study) for study in (expensive, cheap)}
+    refuse([*_unlike(expensive, cheap, keys)])
     y, x = expensive.numbers(measure), cheap.numbers(other or measure)
     place = {key: row for row, key in enumerate(keys[cheap]) if np.isfinite(x[row])}
     shared = [n for n, key in enumerate(keys[expensive]) if key in place and np.isfinite(y[n])]  # fmt: skip
@@ -143,16 +129,20 @@ def paired(expensive, cheap, measure, other=None):
 FIDELITY = {"preset", "density_scaling", "units", *presets.USUAL}
 
 
-def _unlike(one, two):
-    """What two studies differ in beside FIDELITY: name and both values, as far as their study.json tells."""
-    try:
+def _unlike(one, two, keys):
+    """Why two studies share no rows. In what they differ beside FIDELITY their study.json tells, if there is one."""
+    with contextlib.suppress(Refused):
         studies = [Folder(s.directory).description()["study"] for s in (one, two)]
-    except Refused:
+        first, second = ({"scene": s["scene"], **s["options"]} for s in studies)
+        for name in sorted({*first, *second} - FIDELITY):
+            if first.get(name) != second.get(name):
+                yield f"{one.directory} has {name} {first.get(name)!r}, and {two.directory} {second.get(name)!r}"
+    if sorted(one.varied) != sorted(two.varied):
+        yield f"{one.directory} varies {', '.join(one.varied)}, and {two.directory} {', '.join(two.varied)}"
         return
-    first, second = ({"scene": study["scene"], **study["options"]} for study in studies)
-    for name in sorted({*first, *second} - FIDELITY):
-        if first.get(name) != second.get(name):
-            yield name, first.get(name), second.get(name)
+    for study, own in keys.items():
+        if len(set(own)) < len(own):
+            yield f"{study.directory}: rows have the same properties, so that it cannot be told which are shared"
 
 
 def _number(text):

@@ -162,17 +162,12 @@ def _probed(script, place, line=2):
     """
     path = place.of("probe.json")
     row = {batch.VARIABLE: f"{place.of(TABLE)}:{line}", batch.PROBE: path}
+    env = {**os.environ, **row, "OMP_NUM_THREADS": "1"}
+    where = dict(cwd=os.path.dirname(script), env=env, stdin=subprocess.DEVNULL)
+    said = dict(capture_output=True, text=True, errors="replace")
+    command = ["yade", "-n", "--threads=1", "-x", script]
     try:
-        done = subprocess.run(
-            ["yade", "-n", "--threads=1", "-x", script],
-            env={**os.environ, **row, "OMP_NUM_THREADS": "1"},
-            cwd=os.path.dirname(script),
-            stdin=subprocess.DEVNULL,
-            capture_output=True,
-            text=True,
-            errors="replace",
-            timeout=PROBING,
-        )
+        done = subprocess.run(command, **where, **said, timeout=PROBING)
     except subprocess.TimeoutExpired:
         return f"it is not built after {PROBING} s"
     try:
