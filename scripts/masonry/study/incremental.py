@@ -118,44 +118,42 @@ class Incremental:
         every: Any,
         problems: list[str],
     ) -> None:
-        self.files = self._files(records, problems)
         self.levels, self.scales = levels, scales
         self.measure = Measure() if measure in (None, "PGA") else measure
         self.unit, self.every = unit, every
         self._motions: list[Motion] | None = None
-        if not isinstance(self.measure, Measure):
-            problems.append(
-                f'measure {shown(measure)} must be "PGA" or Sa(period), a spectral acceleration, with a period from '
-                f"{SHORTEST:g} to {LONGEST:g} s"
-            )
-        if unit not in (None, *UNITS):
-            problems.append(f"unit {shown(unit)} must be one of {', '.join(UNITS)}")
-        if (levels is None) == (scales is None):
-            problems.append(
-                "give either levels, in g of the measure, or scales, factors on the records"
-            )
-            return
-        name, strengths = ("levels", levels) if scales is None else ("scales", scales)
-        try:
-            strengths = listOf(LEVEL)(strengths)
-        except ValueError as error:
-            problems.append(f"{name}: {error}")
-            return
-        if any(b <= a for a, b in zip(strengths, strengths[1:])):
-            problems.append(f"{name}: {shown(list(strengths))} must grow")
-        setattr(self, name, [float(s) for s in strengths])
+        problems += self._take(records)
 
-    def _files(self, records, problems):
+    def _take(self, records):
+        """Take the files and their strengths. Yields what is wrong with all of it."""
         if isinstance(records, (str, os.PathLike)):
             records = [records]
         if not isinstance(records, (list, tuple)) or not records:
-            problems.append("records: must be a list of files")
-            return []
+            yield "records: must be a list of files"
+            records = []
         try:
-            return [record(one) if isThree(one) else arguments.path(one) for one in records]  # fmt: skip
+            self.files = [record(one) if isThree(one) else arguments.path(one) for one in records]  # fmt: skip
         except ValueError as error:
-            problems.append(f"records: {error}")
-            return []
+            yield f"records: {error}"
+        if not isinstance(self.measure, Measure):
+            yield (
+                f'measure {shown(self.measure)} must be "PGA" or Sa(period), a spectral acceleration, with a period from '
+                f"{SHORTEST:g} to {LONGEST:g} s"
+            )
+        if self.unit not in (None, *UNITS):
+            yield f"unit {shown(self.unit)} must be one of {', '.join(UNITS)}"
+        if (self.levels is None) == (self.scales is None):
+            yield "give either levels, in g of the measure, or scales, factors on the records"
+            return
+        name = "levels" if self.scales is None else "scales"
+        try:
+            strengths = listOf(LEVEL)(getattr(self, name))
+        except ValueError as error:
+            yield f"{name}: {error}"
+            return
+        if any(b <= a for a, b in zip(strengths, strengths[1:])):
+            yield f"{name}: {shown(list(strengths))} must grow"
+        setattr(self, name, [float(s) for s in strengths])
 
     @property
     def steps(self) -> int:

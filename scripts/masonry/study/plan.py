@@ -87,7 +87,7 @@ class Study:
             if not self.vary:
                 problems.append("vary: nothing varies")
         problems += self._count()
-        self._correlate(dict(correlation or {}), problems)
+        problems += self._correlate(dict(correlation or {}))
         refuse(problems, "study: ", "\n  ")
 
     def _take(self, key, what, problems):
@@ -131,11 +131,12 @@ class Study:
         if self.runs is None or self.runs > MOST:
             yield f"runs {self.runs} must be a whole number from 1 to {MOST}"
 
-    def _correlate(self, correlation, problems):
+    def _correlate(self, correlation):
+        """Take correlations. Yields what is wrong with them."""
         joined = lambda key: "+".join(key) if isinstance(key, tuple) else key
         for pair, value in correlation.items():
             if not isinstance(pair, tuple) or len(pair) != 2:
-                problems.append(f"correlation {pair!r}: must be of two names")
+                yield f"correlation {pair!r}: must be of two names"
                 continue
             one, two = map(joined, pair)
             wrong = [reason for n in (one, two) if (reason := self._uncorrelated(n))]
@@ -145,7 +146,7 @@ class Study:
                 wrong.append("it must be above -1 and below 1")
             if (two, one) in self.correlation:
                 wrong.append("given twice")
-            problems += [f"correlation {pair!r} = {value!r}: {why}" for why in wrong]
+            yield from (f"correlation {pair!r} = {value!r}: {why}" for why in wrong)
             if not wrong:
                 self.correlation[one, two] = float(value)
 
@@ -268,14 +269,12 @@ def namesOf(column):
 
 
 def _wrongOption(name, value):
-    """What is wrong with an option or a property, as a list."""
-    why = ""
+    """What is wrong with an option or a property."""
     if not isinstance(name, str) or not re.fullmatch(r"[A-Za-z_]\w*(\.\w+)?", name):
-        why = f"{name!r} must be an option, with underscores for dashes, or JOINT.PROPERTY"
+        yield f"{name!r} must be an option, with underscores for dashes, or JOINT.PROPERTY"
     elif name in batch.OWN:
-        why = f"option {name!r} is the study's own"
+        yield f"option {name!r} is the study's own"
     elif value is not None and not isinstance(value, (bool, int, float, str)):
-        why = f"{name}: {value!r} must be a number, a text, or True or False"
+        yield f"{name}: {value!r} must be a number, a text, or True or False"
     elif isinstance(value, str) and re.search(r"[\s#]|^[=*]?$", value):
-        why = f"{name}: {value!r} cannot stand in a table of YADE: it is empty or has a blank or #"
-    return [why] if why else []
+        yield f"{name}: {value!r} cannot stand in a table of YADE: it is empty or has a blank or #"

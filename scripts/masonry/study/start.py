@@ -122,14 +122,11 @@ def _checkSpace(folder, needed):
     at = folder.path
     while not os.path.isdir(at):
         at = os.path.dirname(at)
-    if not os.access(at, os.W_OK):
-        return [f"--out: {at} cannot be written"]
     free = shutil.disk_usage(at).free
-    if free < needed + SPARE:
-        return [
-            f"--out: {at} has {1e-6 * free:.0f} MB free, the study writes some {1e-6 * needed:.0f} MB and keeps {1e-6 * SPARE:.0f} MB free"
-        ]
-    return []
+    if not os.access(at, os.W_OK):
+        yield f"--out: {at} cannot be written"
+    elif free < needed + SPARE:
+        yield f"--out: {at} has {1e-6 * free:.0f} MB free, the study writes some {1e-6 * needed:.0f} MB and keeps {1e-6 * SPARE:.0f} MB free"
 
 
 def _look(study, script, table):
@@ -146,7 +143,7 @@ def _look(study, script, table):
     if isinstance(found, str):
         return [f"its scene cannot be built: {found}"], 0
     with watched(NOTHING):
-        problems = _names(study, found) + _ranges(study, found) + found["problems"]
+        problems = [*_names(study, found), *_ranges(study, found), *found["problems"]]
     for name, why in found["doubtful"].items():
         if name in study.vary or study.ida and name == "record":
             say(f"warning: {name} varies, and the scene may not use it: {why}")
@@ -184,13 +181,12 @@ def _probed(script, place, line=2):
 def _names(study, found):
     """Names that the scene ignores."""
     if not found["heard"]:
-        return [
-            "its scene takes no options from the command line (arguments=...), and would ignore all that varies"
-        ]
+        yield "its scene takes no options from the command line (arguments=...), and would ignore all that varies"
+        return
     columns = [*study.options, *study.vary] + ["record", "scale"] * bool(study.ida)
-    names = [n for column in columns for n in namesOf(column)]
-    reasons = ((name, _ignored(found, name)) for name in names)
-    return [f"{name}: {why}" for name, why in reasons if why]
+    for name in (name for column in columns for name in namesOf(column)):
+        if why := _ignored(found, name):
+            yield f"{name}: {why}"
 
 
 def _ignored(found, name):
@@ -215,11 +211,10 @@ def _ignored(found, name):
 
 def _ranges(study, found):
     """Distributions that can give what a property cannot be."""
-    problems = []
     for column, what in study.vary.items():
         if isinstance(what, Field):
             if what.kind == "normal" and what.mean is not None and what.mean < 0:
-                problems.append(f"{column}: mean {what.mean:g} must be above 0")
+                yield f"{column}: mean {what.mean:g} must be above 0"
         for name in namesOf(column) if isinstance(what, Distribution) else ():
             of, _, attribute = name.partition(".")
             bounds = found["connectors"].get(of, found["bounds"]).get(attribute)
@@ -232,8 +227,7 @@ def _ranges(study, found):
             share = what.beyond(bounds["low"], bounds["high"])
             if share > NEVER:
                 unit = f" {bounds['unit']}" if bounds["unit"] not in ("", "-") else ""
-                problems.append(
+                yield (
                     f"{name}: {what} gives impossible values in {100 * share:.2g} % of all rows: it must be "
                     f"{' and '.join(ends)}{unit}; low=... or high=... cuts it off"
                 )
-    return problems
