@@ -263,7 +263,7 @@ def _unfit(what, names):
         yield "only properties of joints can be tied in a tuple"
 
 
-def namesOf(column):
+def namesOf(column: str) -> list[str]:
     """The names that a column stands for."""
     return column.removeprefix(batch.FIELD).split("+")
 
