@@ -129,12 +129,14 @@ class Programme:
         limits = len(self.limits) + np.arange(len(first))
         self.limits = np.append(self.limits, strength)
         self._unequal.append((limits[group], columns, -slope[group]))
-        ways = [one[first], -one[first]] if a.plane else _polygon(turn[which], one, two)
-        for way in ways:
+        directions = (
+            [one[first], -one[first]] if a.plane else _polygon(turn[which], one, two)
+        )
+        for direction in directions:
             along = self._new(len(first), 0)
-            self._forces(joint[first], at[first], way, along)
+            self._forces(joint[first], at[first], direction, along)
             self._unequal.append((limits, along, np.ones(len(first))))
-            self._parts.append((which[first], along, 0, way))
+            self._parts.append((which[first], along, 0, direction))
 
     def solve(self, still, seconds):
         """The largest factor, the values of all variables, and the multipliers of equilibrium.
@@ -170,10 +172,10 @@ class Programme:
         """Normal force, positive in compression, (one a contact) and force along the joint (contact, 3) [N]."""
         count = len(self.assembly.contacts.at)
         normal, along = np.zeros(count), np.zeros((count, 3))
-        for which, columns, share, way in self._parts:
+        for which, columns, share, direction in self._parts:
             force = self.force * values[columns]
             normal[which] += share * force
-            along[which] += force[:, None] * way
+            along[which] += force[:, None] * direction
         return normal, along
 
 

@@ -160,8 +160,8 @@ class _Placement:
 
     def moved(self, pairs, points):
         """The mean of points fixed to both blocks of pairs (k, 2), from the reference state (k, 3)."""
-        way = lambda side: self._turn(side, points - self.was[side]) + self.now[side]
-        return 0.5 * (way(pairs[:, 0]) + way(pairs[:, 1]))
+        at = lambda side: self._turn(side, points - self.was[side]) + self.now[side]
+        return 0.5 * (at(pairs[:, 0]) + at(pairs[:, 1]))
 
 
 def _strengths(p):

@@ -215,7 +215,7 @@ class AuxiliaryRuns:
                 f"exit status {program.returncode}",
             )
             with contextlib.suppress(OSError), open(log, errors="replace") as file:
-                *_, last = last, *(line.strip() for line in file if line.strip())
+                last = [line.strip() for line in [last, *file] if line.strip()][-1]
             raise Refused(f"--accuracy: the run {name} did not come to its end: {last}; see {log}")  # fmt: skip
         found = self.numbers[name]
         fell = ", collapsed" if found["collapsed"] else ""

@@ -182,8 +182,8 @@ class Calibration:
         self._place, self._near, self._jobs = place, near, jobs
         model, sample, run = self._checked(*self._fitted())
         if self.accurate is not None:
-            ends = np.quantile(sample, ENDS, axis=0)
-            few = lambda s: self._study(s, *ends, self.few, self.seed, self.accurate)
+            low, high = np.quantile(sample, ENDS, axis=0)
+            few = lambda s: self._study(s, low, high, self.few, self.seed, self.accurate)  # fmt: skip
             x, y = self._rows("accurate", few, 3)
             off = y - model(x)
             model.offset = model.offset + off.mean(axis=0)

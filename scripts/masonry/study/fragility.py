@@ -110,9 +110,9 @@ def fit(low: Numbers, high: Numbers) -> Fit:
         open = a <= NOTHING / spread
         medians = np.exp(np.where(open, np.sign(b) * math.inf, b / a))
         spreads = np.where(open, math.inf, 1 / a)
-    found = ((math.exp(mean), medians), (spread, spreads))
-    both = (Interval(v, float(ends.min()), float(ends.max())) for v, ends in found)
-    return Fit(*both, int(np.isfinite(high).sum()), n, edge)
+    median = Interval(math.exp(mean), float(medians.min()), float(medians.max()))
+    dispersion = Interval(spread, float(spreads.min()), float(spreads.max()))
+    return Fit(median, dispersion, int(np.isfinite(high).sum()), n, edge)
 
 
 def nrml(
