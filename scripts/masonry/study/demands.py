@@ -88,7 +88,7 @@ class Demands:
             last = max((i for i in below if i < first), default=0.0)
             if last or first < math.inf:
                 ends.append((last, first))
-        return np.reshape(ends, (-1, 2)).T
+        return tuple(np.reshape(ends, (-1, 2)).T)
 
     def counts(self, limit=None):
         """Of every level: the intensity, how many records have reached a limit at or below it, and of how many it is known."""
