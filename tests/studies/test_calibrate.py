@@ -35,7 +35,7 @@ class Direct(Calibration):
 
     act, off = staticmethod(pressed), 0.0
 
-    def _rows(self, where, name, studyOf, least):
+    def _rows(self, name, studyOf, least):
         study = studyOf(self.specimens[0])
         x = np.array([[row[n] for n in self.names] for row in study.rows()])
         self.seen = {**getattr(self, "seen", {}), name: x}

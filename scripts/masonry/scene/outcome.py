@@ -241,7 +241,7 @@ class Outcome:
         stage = {"stage": "push", "number": int(number)}
         others = [a for a in at.answers.get(number, []) if a["name"] not in names]
         at.answers = {**at.answers, number: [*({**stage, **one} for one in own), *others]}  # fmt: skip
-        asked.companions.over()
+        asked.over()
 
     # -- files and terminal ---------------------------------------------------------------------------------------
 

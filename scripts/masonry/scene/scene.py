@@ -125,7 +125,7 @@ class Scene:
         self.description = Description(*made, allowGaps=allowGaps, collapse=collapse)
         arguments = options.ofScene(name, arguments, sceneOptions)
         self.name, self.args = name, arguments
-        #: what --accuracy found, :class:`masonry.run.accuracy.AccuracyResult`, or None
+        #: what --accuracy found, :class:`masonry.run.accuracy.AuxiliaryRuns`, or None
         self.accuracy = options.askAccuracy(name, arguments)
         if arguments.crack_surfaces == "off":
             self.description.bricks = list(Bricks(self.description.bricks).whole())
