@@ -115,6 +115,8 @@ def test_run_json_tells_the_history_and_the_cycles(looped):
         at = np.flatnonzero(own)[both[own].argmax()]
         assert text[f"{name}peak_base_shear_kN"] == pytest.approx(shear[at], rel=1e-8)
     assert text["displacement_at_negative_peak_mm"] < 0
+    answers = {one["name"]: one["value"] for one in text["answers"]}
+    assert answers["negative_peak"] == text["negative_peak_at_both_ends_kN"]
     cycles = text["cycles"]
     amplitudes = [cycle["amplitude_mm"] for cycle in cycles]
     assert amplitudes == pytest.approx([0.1, 0.5, 0.5, 2], abs=0.01)
