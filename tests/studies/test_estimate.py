@@ -226,8 +226,3 @@ def test_what_no_estimate_can_be_made_of_is_refused(call, message):
     with pytest.raises(Refused, match=message):
         call()
 
-
-def test_all_problems_are_reported_at_once():
-    with pytest.raises(Refused) as refused:
-        estimate.mean([1, math.inf], [1])
-    assert len(str(refused.value).splitlines()) == 3
