@@ -59,7 +59,9 @@ def box(low=(0, 0, 0), size=UNIT, turn=Quaternion.Identity):
 def lean(folder, blocks, masonry=None, /, *words, **settings):
     """A scene that leaves its rows and run.json alone, in this folder."""
     words = ["--lean", "--checkpoint-every", "0", "--out", str(folder), *words]
-    return Scene("lean", blocks, masonry or materials.dry(), arguments=words, **settings)
+    return Scene(
+        "lean", blocks, masonry or materials.dry(), arguments=words, **settings
+    )
 
 
 def standing(*words, **settings):

@@ -526,7 +526,8 @@ TEST_CASE_TEMPLATE("on random steps no yield surface is passed, nothing heals, a
             State::visitNumbers(s, [&](const char* name, double number, int) {
                 fine &= std::isfinite(number) && (number >= before[n++] || mayFall.count(name));
             });
-            fine &= s.tensionDamage <= 1 && s.shearDamage <= 1 && s.dilation >= 0 && std::isfinite(stress + path.lost());
+            fine &=
+                s.tensionDamage <= 1 && s.shearDamage <= 1 && s.dilation >= 0 && std::isfinite(stress + path.lost());
             if constexpr (cyclic) fine &= s.shearStiffnessLoss <= p.shearStiffnessLoss;
             if (!fine) FAIL("set " << set << ", step " << i);
             ++regimes[int(s.regime)];

@@ -318,7 +318,8 @@ TEST_CASE("a softening branch that would snap back between rigid units is refuse
     };
     for (const auto& kind : ofTheWalls())
         CHECK(refused(kind.joint, kind.distance) == "");
-    const auto says = [&](const JointProperties& p, double distance, const std::string& branch, const std::string& cure) {
+    const auto says = [&](const JointProperties& p, double distance, const std::string& branch,
+                          const std::string& cure) {
         const auto message = refused(p, distance);
         return message.find("softening in " + branch + " would snap back") == 0 &&
                message.find("at most " + cure + " helps, too") != std::string::npos;
@@ -341,8 +342,9 @@ TEST_CASE("a softening branch that would snap back between rigid units is refuse
     CHECK(refused(p, 0.081) == "");
     p = bed;
     p.shearTable = {{1, 0}, {1.5, 0.1}, {50, 1}};
-    CHECK(says(p, 0.081, "shear",
-               "0.07159 m work with these units, a table whose damage grows by less than 0.1767 per unit of the ratio"));
+    CHECK(
+        says(p, 0.081, "shear",
+             "0.07159 m work with these units, a table whose damage grows by less than 0.1767 per unit of the ratio"));
     p.shearTable = {{1, 0}, {1.6, 0.1}, {50, 1}};
     CHECK(refused(p, 0.081) == "");
     p.shearTable = SofteningTable::brittle(); // brittle on purpose: there is no energy to keep

@@ -2,6 +2,7 @@
 """Beams that bend and floors that shear, against their closed forms."""
 
 from hosted import *
+
 LENGTH, WIDTH, HEIGHT, YOUNG = 2.0, 0.1, 0.2, 10e9
 INERTIA, AREA = WIDTH * HEIGHT**3 / 12, WIDTH * HEIGHT
 SHEAR = YOUNG / 2.4

@@ -95,9 +95,7 @@ def start(environment, *words):
     return subprocess.Popen(command, env=environment, stdout=subprocess.DEVNULL)
 
 
-def test_a_wall_of_the_law_runs_and_goes_on_from_a_checkpoint_bit_for_bit(
-    environment, tmp_path
-):
+def test_a_wall_of_the_law_goes_on_from_a_checkpoint(environment, tmp_path):
     words = "--joints coulomb --until 0.3 --rate 4 --vtk-every 0.1".split()
     kinds = ("support", "bed", "head", "crack")
     words += [f"--set={kind}.tensileStrength=0" for kind in kinds]
@@ -142,9 +140,7 @@ def test_the_law_runs_in_a_study(environment, tmp_path):
 
 
 @pytest.mark.parametrize("script", [FUNCTORS, FALLING], ids=["functor", "collapse"])
-def test_the_law_has_a_functor_and_its_joints_are_handed_over(
-    environment, tmp_path, script
-):
+def test_the_law_has_a_functor_and_falls(environment, tmp_path, script):
     (tmp_path / "script.py").write_text(script)
     run = runProgram(str(tmp_path / "script.py"), env=environment, check=False)
     assert "DONE" in run.stdout, run.stdout + run.stderr

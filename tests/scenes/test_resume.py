@@ -118,9 +118,7 @@ def resumed(script, whole):
         ("patterns", (0.3, 0.5, 0.9)),
     ],
 )
-def test_a_run_stopped_again_and_again_leaves_what_an_unbroken_one_does(
-    here, name, shares
-):
+def test_a_run_stopped_again_and_again(here, name, shares):
     script = stopped.BEGIN + KNOWN[name]
     status, steps, said = stopped.carryOut(script, "--out", "whole")
     assert status == 0, said

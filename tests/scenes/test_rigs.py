@@ -49,7 +49,7 @@ def test_the_moment_is_zero_where_the_drive_of_a_free_top_acts(tmp_path, height)
 
 
 @pytest.mark.parametrize("rotation", ["free", "held"])
-def test_drifts_of_cycles_are_over_the_height_of_what_turns_or_of_bricks(tmp_path, rotation):  # fmt: skip
+def test_drifts_are_over_the_height_of_what_turns_or_of_bricks(tmp_path, rotation):
     scene, top = pier(tmp_path, rotation)
     scene.cycle(top, [0.05, 0.1], unit="%")
     scene.finish()

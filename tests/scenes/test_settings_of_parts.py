@@ -22,7 +22,9 @@ def tied(tmp_path, *words):
 
 
 def test_values_of_the_command_line_replace_those_of_the_scene(tmp_path):
-    words = "wire.strength=1e3 wire.stiffness=2e7 wire.prestress=100 soil.stiffness_y=4e6 "
+    words = (
+        "wire.strength=1e3 wire.stiffness=2e7 wire.prestress=100 soil.stiffness_y=4e6 "
+    )
     words += "base_spring.stiffness_x=6e7 textile.stiffness=8e6 textile.strain=0.01"
     words = [f"--set={word}" for word in words.split()]
     scene, _, tie, soil, layer = tied(tmp_path, *words)

@@ -105,7 +105,7 @@ def test_samples_that_steps_pass_over_are_named(tmp_path, capsys):
     assert "between samples" not in capsys.readouterr().out
 
 
-def test_only_the_first_shake_is_replaced_and_without_one_it_is_said(tmp_path, peer, capsys):  # fmt: skip
+def test_only_the_first_shake_is_replaced(tmp_path, peer, capsys):
     scene = block(tmp_path / "a", "--scale", "0")
     scene.shake(RECORD, EVERY)
     scene.shake(RECORD, EVERY)

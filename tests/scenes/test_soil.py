@@ -38,7 +38,7 @@ def test_a_tower_that_its_soil_does_not_hold_upright_is_not_at_rest(tmp_path, ca
 
 @pytest.mark.parametrize("length, height", [(8.0, 1.0), (1.0, 8.0)])
 @pytest.mark.parametrize("place", [(0, 0, 0), (30, 0, -10)])
-def test_the_slowest_period_is_that_of_a_body_that_rocks(tmp_path, length, height, place):  # fmt: skip
+def test_the_slowest_period_is_that_of_rocking(tmp_path, length, height, place):
     """T = 2π √(I / (k - W h/2)), with the inertia I = m (l²/12 + h²/3) about the soil."""
     wall = bricks.Wall(length, height, (0.5, 0.3, 0.25), halves=False).moved(*place)
     scene = lean(tmp_path, wall, materials.dry(density=DENSITY))

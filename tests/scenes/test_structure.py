@@ -60,7 +60,7 @@ def test_a_guided_platen_has_its_share_of_the_force(tmp_path):
     assert last(scene, "base_shear_kN") == pytest.approx(both, rel=1e-6)
 
 
-def test_a_resumed_script_says_the_same_and_has_the_rows_of_its_stages(tmp_path, capsys):  # fmt: skip
+def test_a_resumed_script_has_the_same_words_and_rows(tmp_path, capsys):
     whole, _ = small(tmp_path)
     whole.finish()
     assert 0 < whole.rowsAtRest < len(whole.results.rows)

@@ -115,8 +115,7 @@ def test_without_paraview_the_packages_are_named(wall, monkeypatch):
         (["RUN", "--rate", "0"], "--rate: 0 must be from 1 to 100"),
     ],
 )
-def test_what_cannot_be_shown_is_refused(
-    wall, monkeypatch, tmp_path, capsys, words, message):  # fmt: skip
+def test_what_cannot_be_shown(wall, monkeypatch, tmp_path, capsys, words, message):
     monkeypatch.chdir(tmp_path)
     assert viewer.main([wall if w == "RUN" else w for w in words]) == 2
     assert message in capsys.readouterr().err

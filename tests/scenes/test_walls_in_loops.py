@@ -232,7 +232,7 @@ def test_a_wave_at_the_base_is_no_collapse(side):
 
 
 @pytest.mark.parametrize("whole, most", [(5.0, 1.0), (50.0, 5.0)])
-def test_a_wall_may_move_against_its_push_by_a_tenth_of_the_path_or_a_millimetre(whole, most):  # fmt: skip
+def test_how_far_a_wall_may_move_against_its_push(whole, most):
     """A tenth of a short path would be a vibration, so it is a millimetre at least."""
     for back, retreats in ((0.98 * most, False), (1.02 * most, True)):
         assert pushing.Pushing(moved=-back).retreats(1, whole) == retreats
@@ -289,9 +289,7 @@ def test_a_file_can_be_extended_and_need_not_be_there_to_go_on(tmp_path, at):
         (PUSH, "--history 0.3", "--until is 0.3, without --history"),
     ],
 )
-def test_another_history_is_refused_and_changes_nothing(
-    tmp_path, at, capsys, began, words, message
-):
+def test_another_history_is_refused(tmp_path, at, capsys, began, words, message):
     out = tmp_path / "broken"
     at(35, interrupt)
     assert run(out, *began) == 130

@@ -47,9 +47,7 @@ def direct(measured, error=0.02, names=RANGES, **settings):
     return Direct(Specimen("any", pairs), names, **{"runs": 24, **settings})
 
 
-def test_a_linear_test_has_the_intervals_and_the_correlation_of_the_closed_form(
-    tmp_path,
-):
+def test_a_linear_test_has_intervals_and_correlation_of_the_closed_form(tmp_path):
     found = direct([0.33, 0.58]).find(tmp_path)
     # friction 0.25/0.4, its deviation 0.02 √2/0.4; cohesion 1.5 · 0.33 - 0.5 · 0.58, 0.02 √(1.5² + 0.5²); -5/√(2.5 · 12.5)
     assert found.sample.mean(axis=0) == pytest.approx([0.205, 0.625], abs=0.006)
@@ -140,9 +138,7 @@ def test_a_second_round_fills_what_the_first_keeps_of_the_ranges(tmp_path, monke
     assert (found.model.errors < 0.05).all()
 
 
-def test_a_run_with_the_means_is_added_where_the_surrogate_is_off(
-    tmp_path, monkeypatch
-):
+def test_a_run_is_added_where_the_surrogate_is_off(tmp_path, monkeypatch):
     """A step between the rows: the first surrogate is smooth there, and its interval has not the truth."""
     step = lambda x: np.column_stack([x[:, 0] + 0.4 * (x[:, 0] > 0.93), x[:, 1]])
     monkeypatch.setattr(Direct, "act", staticmethod(step))
@@ -155,9 +151,7 @@ def test_a_run_with_the_means_is_added_where_the_surrogate_is_off(
     assert low[0] < 0.96 < high[0]
 
 
-def test_few_accurate_runs_move_the_answer_by_what_fast_ones_are_off(
-    tmp_path, monkeypatch
-):
+def test_few_accurate_runs_move_the_answer(tmp_path, monkeypatch):
     monkeypatch.setattr(Direct, "off", 0.05)
     found = direct([0.38, 0.63], accurate={"preset": "accurate"}).find(tmp_path)
     assert found.sample.mean(axis=0) == pytest.approx([0.205, 0.625], abs=0.01)

@@ -225,4 +225,3 @@ mean30 = estimate.mean(y30, x30)
 def test_what_no_estimate_can_be_made_of_is_refused(call, message):
     with pytest.raises(Refused, match=message):
         call()
-

@@ -385,7 +385,7 @@ def test_rows_that_failed_make_intervals_wider(tmp_path):
         ({}, "needs 3 records or more, there are 0"),
     ],
 )
-def test_a_report_says_in_a_sentence_what_it_cannot_find(tmp_path, capsys, found, message):  # fmt: skip
+def test_a_report_says_what_it_cannot_find(tmp_path, capsys, found, message):
     out = fake(tmp_path, [0.3, 0.6, 0.9], ["a", "b", "c"], found)
     assert report.main([out]) == 0
     said = capsys.readouterr().out
