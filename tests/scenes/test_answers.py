@@ -26,7 +26,7 @@ def answers(folder):
 
 def test_a_push_answers_with_its_peak_and_where_it_was(tmp_path, capsys):
     assert carryOut(SMALL, parsed("--no-vtk", "--until", "0.4", "--out", str(tmp_path))) == 0  # fmt: skip
-    run, found = readRun(str(tmp_path)), answers(tmp_path)
+    run, found = readRun(tmp_path), answers(tmp_path)
     peak = found["push peak"]
     assert (peak["value"], peak["unit"]) == (run["peak_at_both_ends_kN"], "kN")
     # one run has no measure of its own error, and says so
@@ -45,11 +45,11 @@ def test_a_lean_answers_with_what_was_held_and_with_nothing_if_it_was_not(tmp_pa
     assert scene.lean(0.3) == AT_REST
     assert scene.lean(0.6) == COLLAPSED
     scene.finish()
-    found = readRun(str(tmp_path))["answers"]
+    found = readRun(tmp_path)["answers"]
     assert [a["name"] for a in found] == ["factor_held", "factor_not_held"] * 2
     assert [a["value"] for a in found] == [0.3, None, None, 0.6]
     assert "did not come to rest under 0.6 g" in found[2]["how"]
-    assert scene.factor == readRun(str(tmp_path))["factor"] == 0.3
+    assert scene.factor == readRun(tmp_path)["factor"] == 0.3
 
 
 def brackets(stage, unit, *factors):

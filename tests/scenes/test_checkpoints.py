@@ -229,7 +229,7 @@ def test_a_row_waits_for_a_fifth_of_a_second_at_most(tmp_path, at):
 
     def look(run):
         read = run.readings.count
-        seen.append((read, len(readCurve(str(tmp_path))["time_s"])))
+        seen.append((read, len(readCurve(tmp_path)["time_s"])))
         at(1, slow)
 
     def slow(run):
@@ -251,7 +251,7 @@ def test_rows_that_wait_are_kept(tmp_path, at, monkeypatch, end):
         seen.append(len(run.results.rows) + waiting)
         if end == "checkpoint":
             run.args.checkpoint_every = 1e-9  # due after these steps
-            at(1, lambda run: seen.append(len(readCurve(str(tmp_path))["time_s"])))
+            at(1, lambda run: seen.append(len(readCurve(tmp_path)["time_s"])))
         elif end == "interrupt":
             interrupt(run)
         else:
@@ -262,7 +262,7 @@ def test_rows_that_wait_are_kept(tmp_path, at, monkeypatch, end):
     at(60, act)
     with pytest.raises(OSError) if end == "error" else contextlib.nullcontext():
         run(tmp_path, *PUSH, "--no-vtk")
-    rows = len(readCurve(str(tmp_path))["time_s"])
+    rows = len(readCurve(tmp_path)["time_s"])
     if end == "checkpoint":
         assert seen[1] == seen[0] and rows > seen[0]
     else:

@@ -106,7 +106,7 @@ def test_a_wall_of_the_law_goes_on_from_a_checkpoint(environment, tmp_path):
         assert process.poll() is None
         time.sleep(0.01)
     process.kill()
-    assert process.wait() == -signal.SIGKILL
+    process.wait()
     assert start(environment, "--resume", broken).wait() == 0
     assert len(readRun(broken)["resumed_at_s"]) == 1
     assert files(broken) == files(whole)
@@ -124,18 +124,11 @@ def test_a_wall_of_the_law_goes_on_from_a_checkpoint(environment, tmp_path):
 
 def test_the_law_runs_in_a_study(environment, tmp_path):
     (tmp_path / "study.py").write_text(STUDY)
-    out = tmp_path / "study"
-    command = [
-        sys.executable,
-        "-m",
-        "masonry.study",
-        tmp_path / "study.py",
-        "--out",
-        out,
-    ]
-    run = subprocess.run(command, env=environment, capture_output=True, text=True)
+    command = [sys.executable, "-m", "masonry.study", "study.py", "--out", "study"]
+    settings = dict(cwd=tmp_path, env=environment, capture_output=True, text=True)
+    run = subprocess.run(command, **settings)
     assert run.returncode == 0, run.stdout + run.stderr
-    table = (out / "study.csv").read_text()
+    table = (tmp_path / "study" / "study.csv").read_text()
     assert "coulomb" in table and "softening" in table
 
 

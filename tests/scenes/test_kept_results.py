@@ -187,7 +187,7 @@ def test_odd_names_and_terminals_end_in_order(tmp_path):
 def test_a_wall_that_falls_before_its_push_has_status_1(tmp_path, monkeypatch):
     monkeypatch.setattr(Loading, "hasSunk", lambda self, down=None: True)
     assert run(tmp_path / "r", *SHORT) == 1
-    assert readRun(str(tmp_path / "r"))["collapsed"]
+    assert readRun(tmp_path / "r")["collapsed"]
 
 
 def test_a_wall_that_moves_against_its_push_has_collapsed(tmp_path, capsys):

@@ -34,7 +34,7 @@ def test_notes_stand_in_run_json_with_their_stage(tmp_path):
     assert (warned["stage"], warned["number"], warned["time_s"]) == ("", 0, 0)
     (moving,) = [one for one in notes if UNREST in one["text"]]
     assert (moving["stage"], moving["number"]) == ("load", 3)
-    times = readCurve(str(tmp_path / "one"))["time_s"]
+    times = readCurve(tmp_path / "one")["time_s"]
     assert times[run["stages"][2]["first_row"]] < moving["time_s"] < times[-1]
     assert len({one["text"] for one in notes}) == len(notes)
     page = report.page(report.read(str(tmp_path / "one")))

@@ -147,7 +147,7 @@ def test_a_block_that_is_tilted_beyond_its_diagonal_falls(tmp_path):
     assert scene.lean(0.52) == COLLAPSED
     scene.stepBack()
     scene.finish()
-    assert readRun(str(tmp_path))["collapse"] is None
+    assert readRun(tmp_path)["collapse"] is None
 
 
 def test_a_property_varies_from_place_to_place(tmp_path):
