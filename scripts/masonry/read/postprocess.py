@@ -12,6 +12,7 @@ report.html. It ends without a word if it is given no folder. This module needs 
 from __future__ import annotations
 
 import contextlib
+import io
 import math
 import os
 import sys
@@ -22,6 +23,7 @@ from ..basics import say
 from ..common.folders import check
 from ..common.packages import Missing, needed
 from . import figures, report
+from .drawing import empty, style
 from .files import onFolder, readWhole
 
 STDIN = 0
@@ -31,9 +33,16 @@ NO_REPORT = 3
 
 
 def _load() -> None:
-    with contextlib.suppress(ImportError):  # it is said when something is drawn
-        import matplotlib.backends.backend_agg  # noqa: F401
-        import matplotlib.style  # noqa: F401
+    """Draw a figure that nobody sees: the first one of a process loads most of matplotlib."""
+    with contextlib.suppress(ImportError, Missing):  # it is said when something is drawn
+        import jinja2  # noqa: F401
+
+        with style():
+            figure = empty(1, 1)
+            figure.add_subplot().plot([0, 1], label="line")
+            figure.axes[0].legend()
+            for kind in ("png", "svg"):
+                figure.savefig(io.BytesIO(), format=kind)
 
 
 def _folder() -> str:

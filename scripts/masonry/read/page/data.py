@@ -51,7 +51,7 @@ class _Arrays:
         self.addRounded(name, values, "i2", 32767)
 
     def text(self):
-        return base64.b64encode(zlib.compress(self._bytes, 9)).decode()
+        return base64.b64encode(zlib.compress(self._bytes, 4)).decode()
 
 
 def dataOf(directory: FilePath, number: int | None = None, magnification: float | None = None) -> tuple[dict[str, Any], str]:  # fmt: skip
