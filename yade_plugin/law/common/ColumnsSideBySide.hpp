@@ -144,9 +144,10 @@ void ColumnsSideBySide<LawType>::advance(int point, int from, int count, const d
     for (int n = 0; yielded && n < count; n += lanes)
         yieldFrom(point, from + n);
     std::fill_n(regime, count, Regime::Elastic);
-    Mask left = stayElastic(equations_, yielded ? nullptr : &neverYielded_, columns_, first, count, jumps, normalStress,
-                            pending);
-    if (left != 0 && yielded)
+    const auto waits = stayElastic(equations_, yielded ? nullptr : &neverYielded_, columns_, first, count, jumps,
+                                   normalStress, pending);
+    Mask left = waits.all;
+    if (waits.open != 0)
         left -= slideOpen(equations_, law_->tension(), law_->shear(), columns_.from(first), regime, jumps, pending,
                           count, normalStress);
     if (left == 0) return;

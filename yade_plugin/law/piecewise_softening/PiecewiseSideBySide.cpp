@@ -17,11 +17,11 @@ namespace {
 
 // Advances the subcontacts at which no strength is exceeded, by eqs. (6) and (7), the secant of eq. (11), and the three
 // conditions of eq. (8). A subcontact that needs the whole law keeps its old state, and its entry of `pending` becomes
-// 1. Returns the number of these subcontacts.
+// 1.
 template <bool spatial, bool yielded, bool residual>
-MASONRY_INLINED Mask stayElasticAs(const PiecewiseEquations& given, const PiecewiseDerived& ofAll,
-                                   const Columns& columns, std::size_t at, int count, const Jumps& jumps,
-                                   double* normalStress, Mask* pending) {
+MASONRY_INLINED Waiting stayElasticAs(const PiecewiseEquations& given, const PiecewiseDerived& ofAll,
+                                      const Columns& columns, std::size_t at, int count, const Jumps& jumps,
+                                      double* normalStress, Mask* pending) {
     const PiecewiseEquations e = given;
     const PiecewiseDerived same = ofAll;
     const double limit = e.curve.limit(e.stretch);
@@ -35,7 +35,7 @@ MASONRY_INLINED Mask stayElasticAs(const PiecewiseEquations& given, const Piecew
     const double* secant = columns[Column::Secant] + at;
     const double* reach = columns[Column::Reach] + at;
     const double* capSquared = columns[Column::CapSquared] + at;
-    Mask waiting = 0;
+    Mask waiting = 0, open = 0;
     MASONRY_INDEPENDENT
     for (int i = 0; i < count; ++i) {
         const double bond = yielded ? intact[i] : same.intact;
@@ -69,13 +69,15 @@ MASONRY_INLINED Mask stayElasticAs(const PiecewiseEquations& given, const Piecew
         largestClosure[i] = pick(stays, closure > closest ? closure : closest, closest);
         pending[i] = 1 - stays;
         waiting += 1 - stays;
+        if (yielded) open += (moved.before > 0) & (tensileSecant == 0) ? 1 : 0;
     }
-    return waiting;
+    return {waiting, open};
 }
 
 template <bool spatial, bool yielded>
-MASONRY_INLINED Mask stayElasticAs(const PiecewiseEquations& e, const PiecewiseDerived& ofAll, const Columns& columns,
-                                   std::size_t at, int count, const Jumps& jumps, double* normalStress, Mask* pending) {
+MASONRY_INLINED Waiting stayElasticAs(const PiecewiseEquations& e, const PiecewiseDerived& ofAll,
+                                      const Columns& columns, std::size_t at, int count, const Jumps& jumps,
+                                      double* normalStress, Mask* pending) {
     return e.cr > 0
                ? stayElasticAs<spatial, yielded, true>(e, ofAll, columns, at, count, jumps, normalStress, pending)
                : stayElasticAs<spatial, yielded, false>(e, ofAll, columns, at, count, jumps, normalStress, pending);
@@ -84,8 +86,8 @@ MASONRY_INLINED Mask stayElasticAs(const PiecewiseEquations& e, const PiecewiseD
 } // namespace
 
 MASONRY_VECTORISED
-Mask stayElastic(const PiecewiseEquations& e, const PiecewiseDerived* neverYielded, const Columns& columns,
-                 std::size_t at, int count, const Jumps& jumps, double* normalStress, Mask* pending) {
+Waiting stayElastic(const PiecewiseEquations& e, const PiecewiseDerived* neverYielded, const Columns& columns,
+                    std::size_t at, int count, const Jumps& jumps, double* normalStress, Mask* pending) {
     const bool yielded = neverYielded == nullptr;
     const PiecewiseDerived ofAll = yielded ? PiecewiseDerived{} : *neverYielded;
     if (jumps.plane)
