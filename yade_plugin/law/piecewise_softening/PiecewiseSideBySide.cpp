@@ -148,8 +148,8 @@ Mask slideOpen(const PiecewiseEquations& given, const SofteningTable& tension, c
                double* normalStress) {
     const PiecewiseEquations e = given;
     Open s;
-    const Mask many = findOpen(e, columns, jumps, count, tension.mostDamage(), shear.mostDamage(), pending, s);
-    if (many == 0) return 0;
+    if (!findOpen(e, columns, jumps, count, tension.mostDamage(), shear.mostDamage(), pending, s)) return 0;
+    Mask many = 0;
     double* opening = columns[Column::Opening];
     double* shearStressA = columns[Column::ShearStressA];
     double* shearStressB = columns[Column::ShearStressB];
@@ -169,7 +169,8 @@ Mask slideOpen(const PiecewiseEquations& given, const SofteningTable& tension, c
         const double a = slid.share * s.trialA[i], b = slid.share * s.trialB[i];
         const double mean = PiecewiseEquations::meanShear(oldA, oldB, a, b, s.trialA[i], s.trialB[i], size);
         const double newReach = e.reach(intact[i], s.farthest[i]);
-        const bool here = s.here[i] != 0;
+        const double sigma = 0, crushing = e.capStress(sigma, a * a + b * b);
+        const bool here = (s.here[i] != 0) & (crushing <= e.smallestFcSquared);
         opening[i] = here ? s.total[i] : oldOpening;
         shearStressA[i] = here ? a : oldA;
         shearStressB[i] = here ? b : oldB;
@@ -179,7 +180,8 @@ Mask slideOpen(const PiecewiseEquations& given, const SofteningTable& tension, c
         reach[i] = here ? newReach : oldReach;
         normalStress[i] = here ? 0 : oldStress;
         slides[i] = here & slid.slides ? 1 : 0;
-        pending[i] -= s.here[i];
+        pending[i] -= here ? 1 : 0;
+        many += here ? 1 : 0;
     }
     for (int i = 0; i < count; ++i)
         if (slides[i]) regime[i] = Regime::Slipping;
