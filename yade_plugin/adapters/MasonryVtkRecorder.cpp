@@ -15,6 +15,7 @@
 #include <tuple>
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
+#include <vtkDataCompressor.h>
 #include <vtkDoubleArray.h>
 #include <vtkIdList.h>
 #include <vtkInformation.h>
@@ -177,6 +178,7 @@ template <class Writer, class Data> void write(const std::string& path, Data* da
     vtkNew<Writer> writer;
     writer->SetFileName(path.c_str());
     writer->SetInputData(data);
+    writer->GetCompressor()->SetCompressionLevel(1); // the best takes three times as long and saves little
     const int shown = vtkObject::GetGlobalWarningDisplay();
     vtkObject::GlobalWarningDisplayOff();
     // The process that writes may be a copy of another, which has none of VTK's threads and would wait for them.

@@ -54,10 +54,11 @@ void RigidMotion::move(int n, double dt, const double* __restrict velocity, doub
         position[i] += dt * velocity[i];
 }
 
-// Turns the orientations by the rotation vector dt times spin. For half angles up to a thousandth the series are exact
-// to the last digit. Faster bodies, which are rare, take the functions of the library.
+// Turns the orientations by the rotation vector dt times spin, but for bodies that turn in space. For half angles up to
+// a thousandth the series are exact to the last digit. Faster bodies, which are rare, take the functions of the
+// library.
 MASONRY_VECTORISED
-void RigidMotion::turn(int n, double dt, const double* const* spin, double* const* orientation) {
+void RigidMotion::turn(int n, double dt, const double* const* spin, double* const* orientation) const {
     const double *wx = spin[0], *wy = spin[1], *wz = spin[2];
     double *q0 = orientation[0], *q1 = orientation[1], *q2 = orientation[2], *q3 = orientation[3];
     double cosine[most];    // cosine of half the angle
@@ -65,7 +66,7 @@ void RigidMotion::turn(int n, double dt, const double* const* spin, double* cons
     double angle2[most];    // square of half the angle
     std::int64_t quick = 0; // number of bodies that turn too fast for the series
     for (int i = 0; i < n; ++i) {
-        const double h2 = 0.25 * dt * dt * (wx[i] * wx[i] + wy[i] * wy[i] + wz[i] * wz[i]);
+        const double h2 = (1 - inSpace[i]) * 0.25 * dt * dt * (wx[i] * wx[i] + wy[i] * wy[i] + wz[i] * wz[i]);
         cosine[i] = 1 - h2 * (0.5 - h2 / 24);
         sinc[i] = 1 - h2 * (1 / 6.0 - h2 / 120);
         angle2[i] = h2;
@@ -92,6 +93,121 @@ void RigidMotion::turn(int n, double dt, const double* const* spin, double* cons
     }
 }
 
+// ---- bodies that turn in space ---------------------------------------------------------------------------------
+
+namespace {
+
+struct Vector {
+    double x, y, z;
+};
+
+MASONRY_INLINED Vector operator+(const Vector& a, const Vector& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+MASONRY_INLINED Vector operator-(const Vector& a, const Vector& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+MASONRY_INLINED Vector operator*(double f, const Vector& a) { return {f * a.x, f * a.y, f * a.z}; }
+MASONRY_INLINED Vector operator*(const Vector& a, const Vector& b) { return {a.x * b.x, a.y * b.y, a.z * b.z}; }
+MASONRY_INLINED Vector operator/(const Vector& a, const Vector& b) { return {a.x / b.x, a.y / b.y, a.z / b.z}; }
+MASONRY_INLINED double dot(const Vector& a, const Vector& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+MASONRY_INLINED Vector cross(const Vector& a, const Vector& b) {
+    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
+struct Quaternion {
+    double w;
+    Vector v;
+
+    // A vector turned by this rotation, and by its inverse.
+    MASONRY_INLINED Vector turn(const Vector& a) const {
+        const Vector twice = 2 * cross(v, a);
+        return a + w * twice + cross(v, twice);
+    }
+    MASONRY_INLINED Vector turnBack(const Vector& a) const {
+        const Vector twice = 2 * cross(a, v);
+        return a + w * twice + cross(twice, v);
+    }
+    // This orientation after a time [s], if it changes as fast as the orientation `by` does with a spin [1/s] about its
+    // own axes.
+    MASONRY_INLINED Quaternion after(double time, const Quaternion& by, const Vector& spin) const {
+        const double half = 0.5 * time;
+        return {w - half * dot(by.v, spin), v + half * (by.w * spin + cross(by.v, spin))};
+    }
+};
+
+} // namespace
+
+// Damping acts on the components of the torque about the global axes. The torque that stops a rotation depends on the
+// body's own axes; the smallest inertia gives a torque that never reverses it.
+MASONRY_VECTORISED
+void RigidMotion::pushInSpace(int n, const InSpace& given, const Around& around) {
+    const InSpace c = given;
+    const double dt = around.dt, half = 0.5 * dt, rate = 1 / dt;
+    const double share = dampingShare(around.combined), calms = around.combined ? 1 : 0;
+    MASONRY_INDEPENDENT
+    for (int i = 0; i < n; ++i) {
+        const bool mine = inSpace[i] != 0;
+        const Quaternion own =
+            Quaternion{c.orientation[0][i], {c.orientation[1][i], c.orientation[2][i], c.orientation[3][i]}};
+        const double reach = share * alpha[i], steady = steady_[i];
+        const Vector inertia{c.inertia[0][i], c.inertia[1][i], c.inertia[2][i]};
+        const Vector on{torque[0][i], torque[1][i], torque[2][i]};
+        const Vector before{c.spin[0][i], c.spin[1][i], c.spin[2][i]};
+        const double smaller = inertia.y < inertia.x ? inertia.y : inertia.x;
+        const double least = inertia.z < smaller ? inertia.z : smaller;
+        const Vector undamped = own.turn(own.turnBack(on) / inertia); // angular acceleration
+        const auto take = [&](double inert, double on, double before, double gained, double momentum, double& last)
+            __attribute__((always_inline)) {
+            const double free = on / inert, change = free - last;
+            const double middle = least / inert * (rate * before + 0.5 * gained);
+            const double trend = calms * ((change > 0 ? 1.0 : 0.0) - (change < 0 ? 1.0 : 0.0));
+            const double local = inert * dampingTaken(middle, reach * std::abs(free), trend);
+            last = mine ? free : last;
+            return local + steady * (momentum + half * (on - local));
+        };
+        const Vector taken{take(inertia.x, on.x, before.x, undamped.x, momentum[0][i], c.last[0][i]),
+                           take(inertia.y, on.y, before.y, undamped.y, momentum[1][i], c.last[1][i]),
+                           take(inertia.z, on.z, before.z, undamped.z, momentum[2][i], c.last[2][i])};
+        const Vector left = on - taken;
+        const Vector after = before + dt * own.turn(own.turnBack(left) / inertia);
+        torque[0][i] = left.x;
+        torque[1][i] = left.y;
+        torque[2][i] = left.z;
+        kinetic[i] += mine ? 0.5 * dot(own.turnBack(before), inertia * own.turnBack(after)) : 0;
+        damped[0][i] += mine ? half * dot(taken, before) : 0;
+        damped[1][i] += mine ? half * dot(taken, after) : 0;
+    }
+}
+
+// The leapfrog scheme of the host for aspherical bodies. The angular momentum at the middle of the step before is
+// advanced to the present step; the angular velocity that belongs to it, in the body's axes, gives the orientation at
+// the middle of the step. With that orientation the momentum at the middle of the step turns the body by a whole step.
+MASONRY_VECTORISED
+void RigidMotion::turnInSpace(int n, const InSpace& given, double dt) {
+    const InSpace c = given;
+    MASONRY_INDEPENDENT
+    for (int i = 0; i < n; ++i) {
+        const bool mine = inSpace[i] != 0;
+        const Quaternion old =
+            Quaternion{c.orientation[0][i], {c.orientation[1][i], c.orientation[2][i], c.orientation[3][i]}};
+        const Vector inertia{c.inertia[0][i], c.inertia[1][i], c.inertia[2][i]};
+        const Vector on{torque[0][i], torque[1][i], torque[2][i]};
+        const Vector before{momentum[0][i], momentum[1][i], momentum[2][i]}, after = before + dt * on;
+        const Quaternion middle = old.after(0.5 * dt, old, old.turnBack(before + 0.5 * dt * on) / inertia);
+        const Vector spin = old.turnBack(after) / inertia;
+        const Quaternion now = old.after(dt, middle, spin);
+        const Vector turning = now.turn(spin);
+        const double size = std::sqrt(now.w * now.w + dot(now.v, now.v));
+        momentum[0][i] = after.x;
+        momentum[1][i] = after.y;
+        momentum[2][i] = after.z;
+        c.orientation[0][i] = mine ? now.w / size : old.w;
+        c.orientation[1][i] = mine ? now.v.x / size : old.v.x;
+        c.orientation[2][i] = mine ? now.v.y / size : old.v.y;
+        c.orientation[3][i] = mine ? now.v.z / size : old.v.z;
+        c.spin[0][i] = mine ? turning.x : c.spin[0][i];
+        c.spin[1][i] = mine ? turning.y : c.spin[1][i];
+        c.spin[2][i] = mine ? turning.z : c.spin[2][i];
+    }
+}
+
 void RigidMotion::advance(RigidColumns& bodies, double* const* last, int first, int n, const Around& around,
                           unsigned axes) {
     for (auto* sum : {kinetic, work, damped[0], damped[1]})
@@ -105,11 +221,18 @@ void RigidMotion::advance(RigidColumns& bodies, double* const* last, int first, 
              d < 3 ? around.gravity[d] : 0);
         if (d < 3) move(n, around.dt, &bodies.velocity[d][first], &bodies.position[d][first]);
     }
-    if (!(axes >> 3)) return;
-    const double* const spin[3] = {&bodies.velocity[3][first], &bodies.velocity[4][first], &bodies.velocity[5][first]};
-    double* const orientation[4] = {&bodies.orientation[0][first], &bodies.orientation[1][first],
-                                    &bodies.orientation[2][first], &bodies.orientation[3][first]};
-    turn(n, around.dt, spin, orientation);
+    InSpace rotation;
+    for (int d = 0; d < 3; ++d) {
+        rotation.inertia[d] = &bodies.inertia[d][first];
+        rotation.spin[d] = &bodies.velocity[3 + d][first];
+        rotation.last[d] = last[3 + d];
+    }
+    for (int d = 0; d < 4; ++d)
+        rotation.orientation[d] = &bodies.orientation[d][first];
+    if (axes >> 3) turn(n, around.dt, rotation.spin, rotation.orientation);
+    if (std::all_of(inSpace, inSpace + n, [](double turns) { return turns == 0; })) return;
+    pushInSpace(n, rotation, around);
+    turnInSpace(n, rotation, around.dt);
 }
 
 } // namespace masonry

@@ -10,6 +10,7 @@ report.html. It ends without a word if it is given no folder.
 """
 
 import contextlib
+import io
 import math
 import os
 import sys
@@ -20,12 +21,26 @@ from ..basics import say
 from ..common.folders import check
 from ..common.packages import Missing, needed
 from . import figures, report
+from .drawing import empty, style
 from .files import onFolder, readWhole
 
 STDIN = 0
 END = b"\0"  # of the name of the folder
 #: Exit statuses beside 0 and those of figures: there is no report, and there are figures.
 NO_REPORT = 3
+
+
+def _load():
+    """Draw a figure that nobody sees: the first one of a process loads most of matplotlib."""
+    with contextlib.suppress(ImportError, Missing):  # it is said when something is drawn
+        import jinja2  # noqa: F401
+
+        with style():
+            figure = empty(1, 1)
+            figure.add_subplot().plot([0, 1], label="line")
+            figure.axes[0].legend()
+            for kind in ("png", "svg"):
+                figure.savefig(io.BytesIO(), format=kind)
 
 
 def _folder():
@@ -53,9 +68,7 @@ def _draw(folder):
 
 def main():
     """The program. Returns its exit status."""
-    with contextlib.suppress(ImportError):  # it is said when something is drawn
-        import matplotlib.backends.backend_agg  # noqa: F401
-        import matplotlib.style  # noqa: F401
+    _load()
     folder = _folder()
     if not folder:
         return 0

@@ -10,6 +10,12 @@ namespace masonry {
 
 using Mask = std::int64_t; // a switch as wide as the numbers beside it, for the vector units
 
+// What a law leaves to do after the step of the subcontacts that stay elastic.
+struct Waiting {
+    Mask all;  // how many others there are
+    Mask open; // 0 if none of them has the short step of open ones that carry nothing
+};
+
 // What a column of a law means to those who do not know the law.
 enum class Role {
     BondDamage,     // in tension [-]: 0 as the bond was made, 1 where it is gone

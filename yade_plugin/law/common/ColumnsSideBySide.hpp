@@ -12,7 +12,7 @@
 //   consequences(e, state)                 what the columns that follow from the others hold
 //   keep(consequences, columns, i)         writes that
 //   neverYielded(e, state)                 whether a state is one of a subcontact that has always been elastic
-//   stayElastic, advanceSideBySide, addEnergies   steps and energies of several subcontacts
+//   stayElastic, slideOpen, advanceSideBySide, addEnergies   steps and energies of several subcontacts
 //   isLinear(e), hasConvexDomain(e)        whether stresses are the stiffness times the jumps before anything yields,
 //                                          and whether the elastic domain is convex
 //   markYielding, rememberElastic          what LawColumns asks of intact joints
@@ -141,22 +141,15 @@ void ColumnsSideBySide<LawType>::advance(int point, int from, int count, const d
     for (int n = 0; n < count; n += lanes)
         yielded |= hasYielded(point, from + n);
     Mask pending[most];
-    if (yielded) {
-        int busy = 0; // how many yielded in the last step
-        for (int n = 0; n < count; ++n)
-            busy += regime[n] != Regime::Elastic;
-        for (int n = 0; n < count; n += lanes)
-            yieldFrom(point, from + n);
-        if (4 * busy > 3 * count) { // nearly all need the whole law again: looking for the others costs more
-            std::fill_n(pending, count, 1);
-            advanceSideBySide(equations_, law_->tension(), law_->shear(), columns_.from(first), &rows_[first], regime,
-                              jumps, pending, count, normalStress);
-            return;
-        }
-    }
+    for (int n = 0; yielded && n < count; n += lanes)
+        yieldFrom(point, from + n);
     std::fill_n(regime, count, Regime::Elastic);
-    const Mask left = stayElastic(equations_, yielded ? nullptr : &neverYielded_, columns_, first, count, jumps,
-                                  normalStress, pending);
+    const auto waits = stayElastic(equations_, yielded ? nullptr : &neverYielded_, columns_, first, count, jumps,
+                                   normalStress, pending);
+    Mask left = waits.all;
+    if (waits.open != 0)
+        left -= slideOpen(equations_, law_->tension(), law_->shear(), columns_.from(first), regime, jumps, pending,
+                          count, normalStress);
     if (left == 0) return;
 
     int waiting[most]; // the subcontacts that need the whole law

@@ -66,6 +66,7 @@ public:
     double steepest() const;
 
     const std::vector<TableRow>& rows() const { return rows_; }
+    double mostDamage() const { return rows_.empty() ? 0 : rows_.back().damage; }
     double lastRatio() const { return rows_.empty() ? 1 : rows_.back().ratio; } // beyond which damage stays
 
 private:

@@ -75,15 +75,18 @@ MASONRY_INLINED Mask stayElasticOn(const CyclicEquations& e, const CyclicDerived
 } // namespace
 
 MASONRY_VECTORISED
-Mask stayElastic(const CyclicEquations& e, const CyclicDerived* neverYielded, const Columns& columns, std::size_t at,
-                 int count, const Jumps& jumps, double* normalStress, Mask* pending) {
+Waiting stayElastic(const CyclicEquations& e, const CyclicDerived* neverYielded, const Columns& columns, std::size_t at,
+                    int count, const Jumps& jumps, double* normalStress, Mask* pending) {
     const bool yielded = neverYielded == nullptr;
     const CyclicDerived ofAll = yielded ? CyclicDerived{} : *neverYielded;
+    Mask all;
     if (jumps.plane)
-        return yielded ? stayElasticOn<false, true>(e, ofAll, columns, at, count, jumps, normalStress, pending)
-                       : stayElasticOn<false, false>(e, ofAll, columns, at, count, jumps, normalStress, pending);
-    return yielded ? stayElasticOn<true, true>(e, ofAll, columns, at, count, jumps, normalStress, pending)
-                   : stayElasticOn<true, false>(e, ofAll, columns, at, count, jumps, normalStress, pending);
+        all = yielded ? stayElasticOn<false, true>(e, ofAll, columns, at, count, jumps, normalStress, pending)
+                      : stayElasticOn<false, false>(e, ofAll, columns, at, count, jumps, normalStress, pending);
+    else
+        all = yielded ? stayElasticOn<true, true>(e, ofAll, columns, at, count, jumps, normalStress, pending)
+                      : stayElasticOn<true, false>(e, ofAll, columns, at, count, jumps, normalStress, pending);
+    return {all, 0};
 }
 
 // ---- intact joints --------------------------------------------------------------------------------------------------

@@ -57,8 +57,13 @@ void markYielding(const CyclicEquations& equations, const CyclicDerived& neverYi
                   const double* slideA, const double* slideB, Mask* yielding);
 void rememberElastic(const CyclicEquations& equations, const Columns& columns, std::size_t at, int count,
                      const double* opening);
-Mask stayElastic(const CyclicEquations& equations, const CyclicDerived* neverYielded, const Columns& columns,
-                 std::size_t at, int count, const Jumps& jumps, double* normalStress, Mask* pending);
+Waiting stayElastic(const CyclicEquations& equations, const CyclicDerived* neverYielded, const Columns& columns,
+                    std::size_t at, int count, const Jumps& jumps, double* normalStress, Mask* pending);
+// Open subcontacts have no short step here.
+inline Mask slideOpen(const CyclicEquations&, const SofteningTable&, const SofteningTable&, const Columns&, Regime*,
+                      const Jumps&, Mask*, int, double*) {
+    return 0;
+}
 void advanceSideBySide(const CyclicEquations& equations, const SofteningTable& tension, const SofteningTable& shear,
                        const Columns& columns, TableRows* rows, Regime* regime, const Jumps& jumps, const Mask* pending,
                        int count, double* normalStress);

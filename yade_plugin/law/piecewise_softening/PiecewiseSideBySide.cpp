@@ -17,11 +17,11 @@ namespace {
 
 // Advances the subcontacts at which no strength is exceeded, by eqs. (6) and (7), the secant of eq. (11), and the three
 // conditions of eq. (8). A subcontact that needs the whole law keeps its old state, and its entry of `pending` becomes
-// 1. Returns the number of these subcontacts.
+// 1.
 template <bool spatial, bool yielded, bool residual>
-MASONRY_INLINED Mask stayElasticAs(const PiecewiseEquations& given, const PiecewiseDerived& ofAll,
-                                   const Columns& columns, std::size_t at, int count, const Jumps& jumps,
-                                   double* normalStress, Mask* pending) {
+MASONRY_INLINED Waiting stayElasticAs(const PiecewiseEquations& given, const PiecewiseDerived& ofAll,
+                                      const Columns& columns, std::size_t at, int count, const Jumps& jumps,
+                                      double* normalStress, Mask* pending) {
     const PiecewiseEquations e = given;
     const PiecewiseDerived same = ofAll;
     const double limit = e.curve.limit(e.stretch);
@@ -35,7 +35,7 @@ MASONRY_INLINED Mask stayElasticAs(const PiecewiseEquations& given, const Piecew
     const double* secant = columns[Column::Secant] + at;
     const double* reach = columns[Column::Reach] + at;
     const double* capSquared = columns[Column::CapSquared] + at;
-    Mask waiting = 0;
+    Mask waiting = 0, open = 0;
     MASONRY_INDEPENDENT
     for (int i = 0; i < count; ++i) {
         const double bond = yielded ? intact[i] : same.intact;
@@ -69,13 +69,15 @@ MASONRY_INLINED Mask stayElasticAs(const PiecewiseEquations& given, const Piecew
         largestClosure[i] = pick(stays, closure > closest ? closure : closest, closest);
         pending[i] = 1 - stays;
         waiting += 1 - stays;
+        if (yielded) open += (moved.before > 0) & (tensileSecant == 0) ? 1 : 0;
     }
-    return waiting;
+    return {waiting, open};
 }
 
 template <bool spatial, bool yielded>
-MASONRY_INLINED Mask stayElasticAs(const PiecewiseEquations& e, const PiecewiseDerived& ofAll, const Columns& columns,
-                                   std::size_t at, int count, const Jumps& jumps, double* normalStress, Mask* pending) {
+MASONRY_INLINED Waiting stayElasticAs(const PiecewiseEquations& e, const PiecewiseDerived& ofAll,
+                                      const Columns& columns, std::size_t at, int count, const Jumps& jumps,
+                                      double* normalStress, Mask* pending) {
     return e.cr > 0
                ? stayElasticAs<spatial, yielded, true>(e, ofAll, columns, at, count, jumps, normalStress, pending)
                : stayElasticAs<spatial, yielded, false>(e, ofAll, columns, at, count, jumps, normalStress, pending);
@@ -84,8 +86,8 @@ MASONRY_INLINED Mask stayElasticAs(const PiecewiseEquations& e, const PiecewiseD
 } // namespace
 
 MASONRY_VECTORISED
-Mask stayElastic(const PiecewiseEquations& e, const PiecewiseDerived* neverYielded, const Columns& columns,
-                 std::size_t at, int count, const Jumps& jumps, double* normalStress, Mask* pending) {
+Waiting stayElastic(const PiecewiseEquations& e, const PiecewiseDerived* neverYielded, const Columns& columns,
+                    std::size_t at, int count, const Jumps& jumps, double* normalStress, Mask* pending) {
     const bool yielded = neverYielded == nullptr;
     const PiecewiseDerived ofAll = yielded ? PiecewiseDerived{} : *neverYielded;
     if (jumps.plane)
@@ -93,6 +95,97 @@ Mask stayElastic(const PiecewiseEquations& e, const PiecewiseDerived* neverYield
                        : stayElasticAs<false, false>(e, ofAll, columns, at, count, jumps, normalStress, pending);
     return yielded ? stayElasticAs<true, true>(e, ofAll, columns, at, count, jumps, normalStress, pending)
                    : stayElasticAs<true, false>(e, ofAll, columns, at, count, jumps, normalStress, pending);
+}
+
+// ---- open subcontacts that carry nothing
+// -----------------------------------------------------------------------------
+
+namespace {
+
+struct Open {                                          // scratch of a step
+    double total[most], elastic[most], farthest[most]; // [m] see PiecewiseEquations::Opened
+    double trialA[most], trialB[most];                 // [Pa]
+    Mask here[most];
+};
+
+MASONRY_INLINED Mask findOpen(const PiecewiseEquations& given, const Columns& columns, const Jumps& jumps, int count,
+                              double mostTension, double mostShear, const Mask* pending, Open& s) {
+    const PiecewiseEquations e = given;
+    const double* opening = columns[Column::Opening];
+    const double* shearStressA = columns[Column::ShearStressA];
+    const double* shearStressB = columns[Column::ShearStressB];
+    const double* largestOpening = columns[Column::LargestOpening];
+    const double* irreversible = columns[Column::Irreversible];
+    const double* tensionDamage = columns[Column::TensionDamage];
+    const double* shearDamage = columns[Column::ShearDamage];
+    const double* intact = columns[Column::Intact];
+    const double* secant = columns[Column::Secant];
+    Mask many = 0;
+    MASONRY_INDEPENDENT
+    for (int i = 0; i < count; ++i) {
+        const auto moved = e.open(opening[i], irreversible[i], largestOpening[i], jumps.opening[i]);
+        const double inTension = tensionDamage[i], inShear = shearDamage[i], holds = secant[i];
+        const double bond = intact[i], strength = e.residualCohesion(moved.elastic) + e.cp * bond;
+        const Mask waits = pending[i];
+        const bool carriesNothing = (moved.before > 0) & (moved.elastic > 0) & (holds == 0) & (strength == 0) &
+                                    (inTension >= mostTension) & (inShear >= mostShear);
+        s.total[i] = moved.total;
+        s.elastic[i] = moved.elastic;
+        s.farthest[i] = moved.farthest;
+        s.trialA[i] = shearStressA[i] + e.ks * jumps.slideA[i]; // eq. (7)
+        s.trialB[i] = shearStressB[i] + e.ks * jumps.slideB[i];
+        s.here[i] = carriesNothing ? waits : 0;
+        many += carriesNothing ? waits : 0;
+    }
+    return many;
+}
+
+} // namespace
+
+MASONRY_VECTORISED
+Mask slideOpen(const PiecewiseEquations& given, const SofteningTable& tension, const SofteningTable& shear,
+               const Columns& columns, Regime* regime, const Jumps& jumps, Mask* pending, int count,
+               double* normalStress) {
+    const PiecewiseEquations e = given;
+    Open s;
+    if (!findOpen(e, columns, jumps, count, tension.mostDamage(), shear.mostDamage(), pending, s)) return 0;
+    Mask many = 0;
+    double* opening = columns[Column::Opening];
+    double* shearStressA = columns[Column::ShearStressA];
+    double* shearStressB = columns[Column::ShearStressB];
+    double* largestOpening = columns[Column::LargestOpening];
+    double* slip = columns[Column::Slip];
+    double* lostShear = columns[Column::LostShear];
+    double* reach = columns[Column::Reach];
+    const double* intact = columns[Column::Intact];
+    Mask slides[most];
+    MASONRY_INDEPENDENT
+    for (int i = 0; i < count; ++i) {
+        const double oldA = shearStressA[i], oldB = shearStressB[i];
+        const double oldOpening = opening[i], oldFarthest = largestOpening[i];
+        const double oldSlip = slip[i], oldLost = lostShear[i], oldReach = reach[i], oldStress = normalStress[i];
+        const double size = std::sqrt(s.trialA[i] * s.trialA[i] + s.trialB[i] * s.trialB[i]);
+        const auto slid = e.slide(size, 0, s.elastic[i], intact[i], 0);
+        const double a = slid.share * s.trialA[i], b = slid.share * s.trialB[i];
+        const double mean = PiecewiseEquations::meanShear(oldA, oldB, a, b, s.trialA[i], s.trialB[i], size);
+        const double newReach = e.reach(intact[i], s.farthest[i]);
+        const double sigma = 0, crushing = e.capStress(sigma, a * a + b * b);
+        const bool here = (s.here[i] != 0) & (crushing <= e.smallestFcSquared);
+        opening[i] = here ? s.total[i] : oldOpening;
+        shearStressA[i] = here ? a : oldA;
+        shearStressB[i] = here ? b : oldB;
+        largestOpening[i] = here ? s.farthest[i] : oldFarthest;
+        slip[i] = here ? oldSlip + slid.slip : oldSlip;
+        lostShear[i] = here & (slid.slip > 0) ? oldLost + mean * slid.slip : oldLost;
+        reach[i] = here ? newReach : oldReach;
+        normalStress[i] = here ? 0 : oldStress;
+        slides[i] = here & slid.slides ? 1 : 0;
+        pending[i] -= here ? 1 : 0;
+        many += here ? 1 : 0;
+    }
+    for (int i = 0; i < count; ++i)
+        if (slides[i]) regime[i] = Regime::Slipping;
+    return many;
 }
 
 // ---- intact joints --------------------------------------------------------------------------------------------------

@@ -62,11 +62,18 @@ void markYielding(const PiecewiseEquations& equations, const PiecewiseDerived& n
 void rememberElastic(const PiecewiseEquations& equations, const Columns& columns, std::size_t at, int count,
                      const double* opening);
 
-// One step of the subcontacts that stay elastic in it. The others stay as they were and are marked in `pending`; gives
-// how many they are. If none of all has ever yielded, `neverYielded` is what holds for all of them, and their columns
-// from Crushing on are not read; else it is null.
-Mask stayElastic(const PiecewiseEquations& equations, const PiecewiseDerived* neverYielded, const Columns& columns,
-                 std::size_t at, int count, const Jumps& jumps, double* normalStress, Mask* pending);
+// One step of the subcontacts that stay elastic in it. The others stay as they were and are marked in `pending`. If
+// none of all has ever yielded, `neverYielded` is what holds for all of them, and their columns from Crushing on are
+// not read; else it is null.
+Waiting stayElastic(const PiecewiseEquations& equations, const PiecewiseDerived* neverYielded, const Columns& columns,
+                    std::size_t at, int count, const Jumps& jumps, double* normalStress, Mask* pending);
+
+// One step of those of the subcontacts marked in `pending` that are open before and after it, carry nothing but
+// round-off and take no more damage: most of those that yield where joints are dry. Their steps are the same as by
+// advanceSideBySide() below in a small part of its time. They are taken out of `pending`; gives how many they are.
+Mask slideOpen(const PiecewiseEquations& equations, const SofteningTable& tension, const SofteningTable& shear,
+               const Columns& columns, Regime* regime, const Jumps& jumps, Mask* pending, int count,
+               double* normalStress);
 
 // One step of those of the first `count` subcontacts that are marked in `pending`.
 void advanceSideBySide(const PiecewiseEquations& equations, const SofteningTable& tension, const SofteningTable& shear,

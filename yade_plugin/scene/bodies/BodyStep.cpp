@@ -6,7 +6,6 @@
 namespace masonry {
 
 using yade::Matrix3r;
-using yade::Quaternionr;
 using yade::State;
 using yade::Vector3r;
 
@@ -101,25 +100,6 @@ BodyStep stepOf(const State& s, const BodyForces& on, const Vector3r& gravity, d
     e.damped += 0.5 * dt * taken.dot(s.angVel);
     e.pendingDamped += 0.5 * dt * taken.dot(step.angVel);
     return step;
-}
-
-// The leapfrog scheme of the host for aspherical bodies. The angular momentum at the middle of the step before is
-// advanced to the present step; the angular velocity that belongs to it, in the body's axes, gives the orientation at
-// the middle of the step. With that orientation the momentum at the middle of the step turns the body by a whole step.
-void turnInSpace(State& s, const BodyStep& step, double dt) {
-    const auto spinOf = [&](const Vector3r& momentum) {
-        return Vector3r((s.ori.conjugate() * momentum).cwiseQuotient(s.inertia));
-    };
-    const auto moved = [](const Quaternionr& from, const Quaternionr& by, const Vector3r& spin, double time) {
-        const Quaternionr change = by * Quaternionr(0, spin[0], spin[1], spin[2]);
-        return Quaternionr((from.coeffs() + 0.5 * time * change.coeffs()).eval());
-    };
-    const Quaternionr middle = moved(s.ori, s.ori, spinOf(s.angMom + 0.5 * dt * step.torque), 0.5 * dt);
-    s.angMom += dt * step.torque;
-    const Vector3r spin = spinOf(s.angMom);
-    s.ori = moved(s.ori, middle, spin, dt);
-    s.angVel = s.ori * spin;
-    s.ori.normalize();
 }
 
 } // namespace masonry

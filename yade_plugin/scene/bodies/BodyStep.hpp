@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A step of one rigid body, by the equations of NewtonIntegrator. It is the reference for RigidMotion, and it moves the
-// bodies that are free to turn in space.
+// A step of one rigid body, by the equations of NewtonIntegrator: the energies of bodies that the host moves, and the
+// reference for RigidMotion.
 #pragma once
 #include "host/Yade.hpp"
 #include "motion/EnergyLedger.hpp"
@@ -40,13 +40,10 @@ struct BodyDamping {
 // identity. The joints count their work by the same trapezoidal rule.
 struct BodyStep {
     yade::Vector3r vel;    // after the step [m/s]
-    yade::Vector3r angVel; // after the step [1/s]; of a body that turns in space see turnInSpace()
+    yade::Vector3r angVel; // after the step [1/s]; of a body that turns in space to first order
     yade::Vector3r torque; // without what damping takes [N m]
     EnergyLedger energies;
 };
 BodyStep stepOf(const yade::State&, const BodyForces&, const yade::Vector3r& gravity, double dt, const BodyDamping&);
-
-// Makes the rotation of a step for a body that is free to turn in space, and sets its angular velocity and momentum.
-void turnInSpace(yade::State&, const BodyStep&, double dt);
 
 } // namespace masonry

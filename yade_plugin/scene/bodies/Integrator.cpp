@@ -97,8 +97,8 @@ Integrator::Sums Integrator::advancePiece(const yade::Scene& scene, BodyColumns&
     auto& sum = all.energies;
     RigidMotion motion;
     unsigned axes = 0;
-    int spinning = 0;
-    double earlier = 0; // half of: the work of the last step less what it would be with present velocities [J]
+    bool turning = false; // whether one of the bodies turns in space
+    double earlier = 0;   // half of: the work of the last step less what it would be with present velocities [J]
     std::uint32_t blocked[RigidMotion::most]; // State.blockedDOFs of a body that RigidMotion moves, else all six
     for (int i = 0; i < count; ++i) {
         const int b = first + i;
@@ -111,15 +111,19 @@ Integrator::Sums Integrator::advancePiece(const yade::Scene& scene, BodyColumns&
             earlier += 0.5 * scene.dt * gainedPower(bodies, b, forces[b], torques[b]);
             bodies.forgetEarlier(b);
         }
-        if (bodies.spins(b))
-            ++spinning;
-        else {
-            axes |= bodies.axes(b);
-            blocked[i] = bodies.blockedAxes(b);
-            motion.alpha[i] = bodies.isDamped(b) ? damping : 0;
-            motion.viscous[i] = bodies.isDamped(b) ? massDamping : 0;
-        }
+        axes |= bodies.spins(b) ? 7 : bodies.axes(b);
+        blocked[i] = bodies.blockedAxes(b);
+        motion.alpha[i] = bodies.isDamped(b) ? damping : 0;
+        motion.viscous[i] = bodies.isDamped(b) ? massDamping : 0;
+        motion.inSpace[i] = bodies.spins(b) ? 1 : 0;
+        turning = turning || bodies.spins(b);
     }
+    for (int i = 0; turning && i < count; ++i)
+        for (int d = 0; d < 3; ++d) {
+            const bool mine = motion.inSpace[i] != 0;
+            motion.torque[d][i] = mine ? torques[first + i][d] : 0;
+            motion.momentum[d][i] = mine ? bodies.state(first + i).angMom[d] : 0;
+        }
     findWeights(bodies, first, count, all);
     if (axes != 0) {
         const RigidMotion::Around around{scene.dt, {gravity[0], gravity[1], gravity[2]}, combines_};
@@ -130,27 +134,25 @@ Integrator::Sums Integrator::advancePiece(const yade::Scene& scene, BodyColumns&
             if (!(axes >> d & 1)) continue;
             const double* on = (d < 3 ? forces : torques)[first].data() + d % 3;
             for (int i = 0; i < count; ++i) {
-                motion.force[d][i] = on[3 * i];
-                motion.free[d][i] = blocked[i] >> d & 1 ? 0.0 : 1.0;
+                const bool aside = d >= 3 && motion.inSpace[i] != 0;
+                motion.force[d][i] = aside ? 0 : on[3 * i];
+                motion.free[d][i] = aside || blocked[i] >> d & 1 ? 0.0 : 1.0;
             }
         }
         motion.advance(bodies, last, first, count, around, axes);
         for (int i = 0; i < count; ++i) {
             const int b = first + i;
-            const bool mine = bodies.has(b) && !bodies.isUnit[b] && !bodies.spins(b) && bodies.axes(b) != 0;
+            const bool mine = bodies.has(b) && !bodies.isUnit[b] && (bodies.spins(b) || bodies.axes(b) != 0);
             if (!mine) continue;
-            bodies.give(b, axes);
+            bodies.give(b, bodies.spins(b) ? 63 : axes);
+            for (int d = 0; d < 3 && bodies.spins(b); ++d)
+                bodies.state(b).angMom[d] = motion.momentum[d][i];
             sum.external += motion.work[i];
             sum.damped += motion.damped[0][i];
             sum.pendingDamped += motion.damped[1][i];
             sum.kinetic += motion.kinetic[i];
         }
         sum.pendingExternal = sum.external;
-    }
-    for (int b = first; spinning > 0 && b < beyond; ++b) {
-        if (!bodies.has(b) || bodies.isUnit[b] || !bodies.spins(b)) continue;
-        sum.add(turnFreely(scene.dt, bodies, forces[b], torques[b],
-                           b)); // last, because RigidMotion has written to its columns
     }
     sum.external += earlier;
     return all;
@@ -176,28 +178,6 @@ void Integrator::findWeights(const BodyColumns& bodies, int first, int count, Su
         all.energies.fallen += mass * falls;
     }
     all.moment = {moment[0], moment[1], moment[2]};
-}
-
-// The step is made in the host's State, because only that holds the angular momentum of the body.
-EnergyLedger Integrator::turnFreely(double dt, BodyColumns& bodies, const Vector3r& force, const Vector3r& torque,
-                                    int body) {
-    auto& s = bodies.state(body);
-    BodyForces before{Vector3r::Zero(), Vector3r::Zero()};
-    for (int d = 0; combines_ && d < 3; ++d) {
-        before.force[d] = last_[d][body];
-        before.torque[d] = last_[3 + d][body];
-    }
-    const auto step =
-        stepOf(s, {force, torque}, gravity, dt, {damping, false, combines_ ? &before : nullptr, massDamping});
-    for (int d = 0; combines_ && d < 3; ++d) {
-        last_[d][body] = before.force[d];
-        last_[3 + d][body] = before.torque[d];
-    }
-    s.vel = step.vel;
-    s.pos += dt * s.vel;
-    turnInSpace(s, step, dt);
-    bodies.take(body);
-    return step.energies;
 }
 
 } // namespace masonry

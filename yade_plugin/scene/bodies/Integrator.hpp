@@ -41,8 +41,6 @@ private:
                       int beyond);
     double gainedPower(const BodyColumns&, int body, const Vector3r& force, const Vector3r& torque) const;
     void findWeights(const BodyColumns&, int first, int count, Sums&) const;
-    // Makes a step of a body none of whose rotations is blocked.
-    EnergyLedger turnFreely(double dt, BodyColumns&, const Vector3r& force, const Vector3r& torque, int body);
 
     std::vector<double> last_[6]; // for combined damping: force per mass [m/s²] and torque per inertia [1/s²] of all
                                   // bodies in the last step; empty until then

@@ -91,7 +91,7 @@ def dataOfModel(model, number=None, magnification=None, curve=None):
         keptPoints=len(joints.between),
         arrays=arrays.known,
     )
-    return head, base64.b64encode(zlib.compress(arrays.bytes, 9)).decode()
+    return head, base64.b64encode(zlib.compress(arrays.bytes, 4)).decode()
 
 
 def _head(model, magnification, curve):
