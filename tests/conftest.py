@@ -44,7 +44,6 @@ TOGETHER = [
 LONG = [
     "test_a_quick_case_holds_its_limits_or_says_why_not",
     "test_the_program_of_the_benchmark_prints_its_table",
-    "test_a_block_on_an_incline_does_not_creep_in_a_minute",
     "test_companions_end_with_the_run_and_the_same_command_goes_on",
     "test_a_run_that_is_resumed_has_its_half_widths_too",
     "test_every_command_that_has_no_reason_runs",

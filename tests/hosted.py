@@ -117,8 +117,16 @@ def ofKind(kind):
     return next((e for e in O.engines if isinstance(e, kind)), None)
 
 
+def energy():
+    return ofKind(MasonryEnergy)
+
+
+def loop():
+    return ofKind(MasonryJointLoop)
+
+
 def balance():
-    return ofKind(MasonryEnergy).balance()
+    return energy().balance()
 
 
 def bits():

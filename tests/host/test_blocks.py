@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Blocks of our own beside YADE's Polyhedra: the same numbers, the same runs, saved and loaded."""
+"""Blocks of our own beside YADE's Polyhedra: the same numbers and the same runs."""
 
 import yade.wrapper
 from hosted import *
@@ -57,20 +57,19 @@ def test_a_block_has_every_bit_of_a_polyhedra_of_the_same_points():
         assert own.triangles == host.GetSurfaceTriangulation()
 
 
-def test_a_block_has_the_same_bits_whatever_was_made_before():
-    dice, blocks, made = random.Random(1), list(samples()), {}
-    prisms = range(
-        120, 125
-    )  # over regular polygons: CGAL divides their faces as it likes
+def test_a_block_has_the_same_bits_wherever_its_memory_lies():
+    """Prisms over regular polygons, whose faces CGAL divides as it likes, and clouds of points."""
+    dice, made = random.Random(1), {}
+    several = [*list(samples())[120:125], *(cloud(dice, 40) for _ in range(5))]
     for _ in range(60):
-        for prism in prisms:
+        for n, points in enumerate(several):
             # what is free of the memory decides which of two addresses is the lower
             kept = [bytearray(dice.randint(500, 5000)) for _ in range(40)]
             del kept[:: dice.randint(2, 3)]
-            block = MasonryBlock.around(blocks[prism])[0]
+            block, *place = MasonryBlock.around(points)
             bits = [x.hex() for corner in block.v for x in corner]
-            made.setdefault(prism, set()).add(str((bits, block.triangles)))
-    assert [len(made[prism]) for prism in prisms] == [1] * len(prisms)
+            made.setdefault(n, set()).add(str((bits, block.triangles, place)))
+    assert all(len(found) == 1 for found in made.values())
 
 
 def test_volume_centroid_and_inertia_are_those_of_a_box():
@@ -82,18 +81,6 @@ def test_volume_centroid_and_inertia_are_those_of_a_box():
     assert sorted(block.inertia) == pytest.approx(sorted(expected), rel=1e-9)
     turned = [orientation * v + centroid for v in block.v]
     assert all(min((t - p).norm() for t in turned) < 1e-12 for p in box((1, -2, 3)))
-
-
-def test_a_block_of_many_corners_is_the_same_wherever_its_memory_lies():
-    rng = random.Random(2)
-    kept = []
-    for _ in range(200):
-        points = cloud(rng, 40)
-        first = MasonryBlock.around(points)
-        kept.append(MasonryBlock.around(points[: rng.randint(4, 40)]))
-        second = MasonryBlock.around(points)
-        assert list(first[0].v) == list(second[0].v) and first[1:] == second[1:]
-        assert first[0].triangles == second[0].triangles
 
 
 def test_the_surface_of_a_block_is_closed_and_faces_outward():
@@ -208,26 +195,6 @@ def test_a_scene_with_the_functor_for_polyhedra_goes_on_working():
     O.dt = 0.5 * criticalTimeStep()[0]
     run(200)
     assert O.forces.f(1, True)[2] > 0
-
-
-# -- saving -----------------------------------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize("extension", [".xml", ".yade.gz"])
-def test_a_saved_block_is_the_same_block(tmp_path, extension):
-    stack([addBlock] * 3)
-    path = str(tmp_path / ("run" + extension))
-    looks = lambda s: (list(s.v), s.triangles, s.volume, s.inertia, s.color)
-    shapes = lambda: [looks(b.shape) for b in O.bodies]
-    before = shapes()
-    O.save(path)
-    run(300)
-    later = state()
-    O.load(path)
-    assert shapes() == before
-    assert all(isinstance(b.shape, MasonryBlock) for b in O.bodies)
-    run(300)
-    assert state() == later
 
 
 def test_the_attributes_of_a_block_are_read_only():

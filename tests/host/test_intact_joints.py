@@ -15,10 +15,6 @@ CASES = {
 }
 
 
-def loop():
-    return ofKind(MasonryJointLoop)
-
-
 @pytest.mark.parametrize("case", CASES)
 def test_before_anything_yields_all_is_as_point_by_point(case):
     runs = []

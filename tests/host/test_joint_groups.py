@@ -17,10 +17,6 @@ def couplets(count, joint):
     return made
 
 
-def loop():
-    return ofKind(MasonryJointLoop)
-
-
 def stresses(made):
     return [[tuple(s) for s in i.phys.stress] for i in made]
 

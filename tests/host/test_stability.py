@@ -9,10 +9,6 @@ LIMIT = (
 )
 
 
-def energy():
-    return ofKind(MasonryEnergy)
-
-
 def panel(
     blocks="rigid", functors=False, size=4, young=4.8e9, rigidLast=False, **around
 ):
@@ -109,7 +105,7 @@ def test_velocities_given_by_hand_are_no_motion_out_of_nothing_once_reported():
         if throw == 1:
             energy().given()
         O.run(400, True)
-        assert abs(energy().balance()["error"]) < 1e-3
+        assert abs(balance()["error"]) < 1e-3
 
 
 def test_numbers_that_are_not_finite_stop_the_run_and_are_named():
@@ -149,7 +145,7 @@ def move(distance, direction, steps=4000):
 
 def perArea(**expected):
     """Compare the energies over the joint's area [J/m²] with the expected ones; all that are not given must be zero."""
-    b = energy().balance()
+    b = balance()
     size = max(expected.values())
     # where a prescribed velocity jumps under load, half of a step's work is not counted
     assert abs(b.pop("error")) < 1e-3
@@ -174,7 +170,7 @@ def test_an_elastic_joint_stores_half_the_stiffness_times_the_square_of_its_jump
     move(-4e-6, (0.6, 0.8, 0))
     move(3e-6, (0, 0, 1))
     # the error is relative to the largest work, also where all of it has come back
-    assert abs(energy().balance()["error"]) < 1e-3
+    assert abs(balance()["error"]) < 1e-3
 
 
 def test_round_off_is_no_error_where_no_work_is_done():
@@ -182,7 +178,7 @@ def test_round_off_is_no_error_where_no_work_is_done():
     for n in range(20):
         O.bodies[0].state.vel = Vector3(1, 0, 1) * (-1) ** n * 1e-13
         run(1)
-    assert abs(energy().balance()["error"]) < 1e-6
+    assert abs(balance()["error"]) < 1e-6
 
 
 @FUNCTORS
@@ -244,7 +240,7 @@ def test_a_brick_that_swings_freely_keeps_the_energy_it_was_given(functors):
     O.dt = 0.8 * criticalTimeStep()[0]
     for _ in range(20):
         O.run(997, True)
-        b = energy().balance()
+        b = balance()
         stored = sum(b[k] for k in b if k.startswith("elastic"))
         assert b["external"] == pytest.approx(given, rel=1e-12)
         assert b["kinetic"] + stored == pytest.approx(given, rel=1e-9)

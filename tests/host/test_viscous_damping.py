@@ -91,10 +91,6 @@ def test_rayleigh_damping_has_its_ratio_at_both_frequencies_and_less_between(
     assert share(middle) == pytest.approx(2 * ratio * middle / (low + high), rel=1e-12)
 
 
-def loop():
-    return ofKind(MasonryJointLoop)
-
-
 def swing(fraction, ratio):
     """Largest displacement after many steps over that of the first one."""
     omega = oscillator()
