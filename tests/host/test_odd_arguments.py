@@ -16,6 +16,7 @@ from hosted import *
 from masonry import capacity, fields
 from masonry.common import arguments
 from masonry.scene import options
+from masonry.scene.spectrum import spectralAcceleration
 from masonry.read import frames, measure, report
 from masonry.study import Study, variables
 
@@ -282,6 +283,7 @@ CALLS = {
     "capacity.pushover": (capacity.pushover, dict(directory="run")),
     "capacity.readSpectrum": (capacity.readSpectrum, dict(path="spectrum.csv", unit="g", corner=0.5)),
     "capacity.runPoint": (capacity.runPoint, dict(directory="run")),
+    "spectralAcceleration": (spectralAcceleration, dict(values=[1.0, 2.0], every=0.01, period=1.0)),
     "measure.measure": (measure.measure, dict(directory="run")),
     "report.read": (report.read, dict(directory="run")),
     "frames.frameTimes": (frames.frameTimes, dict(directory="run")),

@@ -230,14 +230,6 @@ def test_a_curve_with_more_area_than_any_bilinear_one_is_refused():
         bilinear.bilinear(moved, force, "en1998", mechanism=9.0)
 
 
-def test_odd_arguments_are_refused_by_name():
-    moved, force = curve((0, 0), (2, 100), (12, 100), (13, 0))
-    with pytest.raises(Refused, match="rule 'en' must be one of masonry, en1998"):
-        bilinear.bilinear(moved, force, "en")
-    with pytest.raises(Refused, match="secant 1.2 - must be above 0 and below 1"):
-        bilinear.bilinear(moved, force, secant=1.2)
-
-
 # -- of a run ---------------------------------------------------------------------------------------------------------
 
 

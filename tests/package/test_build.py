@@ -5,7 +5,6 @@ from usual import *
 import glob
 import pathlib
 
-
 FILES = glob.glob(
     os.path.join(BUILD, "CMakeFiles", "masonry_core.dir", "**", "CyclicOn*.cpp.o"),
     recursive=True,

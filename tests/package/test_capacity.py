@@ -70,13 +70,8 @@ def test_units_and_annexes():
 @pytest.mark.parametrize(
     "words, message",
     [
-        (dict(ag=0.1, unit=None, type=1, ground="A"), "unit None must be one of"),
-        (dict(ag=0.1, unit="g", type=3, ground="A"), "type 3 must be a whole number from 1 to 2"),
-        (dict(ag=0.1, unit="g", type=1, ground="F"), "ground 'F' must be one of A, B, C, D, E"),
         (dict(ag=25, unit="g", type=1, ground="A"), "is ag 25 g in another unit?"),
-        (dict(ag=0.1, unit="g", type=1, ground="A", damping=0), "damping 0 % must be above 0"),
         (dict(ag=0.1, unit="g", type=1, ground="A", parameters=(1, 0.5, 0.2, 2)), "0 < TB <= TC <= TD"),
-
         (dict(ag=0.1, unit="g", ground="A"), "elastic: type must be given"),
     ],
 )  # fmt: skip
@@ -104,14 +99,11 @@ def test_a_spectrum_of_a_file_is_lines_between_its_rows(tmp_path, mark):
 @pytest.mark.parametrize(
     "text, words, message",
     [
-        ("0,1\n1,2\n", dict(unit=None, corner=1), "unit None must be one of"),
         ("0,1\n1,2\n", dict(unit="g"), "give TC in s, corner= in Python or --corner"),
         ("0,1\n1,2\n", dict(unit="g", corner=2), "must be within the periods, 0 to 1 s"),
-
         ("0,1\n1,2,3\n", dict(unit="g", corner=1), "line 2: it must have a period"),
         ("0,1\n0,2\n", dict(unit="g", corner=1), "line 2: periods must grow"),
         ("0,1\n1,-2\n", dict(unit="g", corner=1), "neither below zero"),
-
         ("0,1\n", dict(unit="g", corner=1), "two rows at least"),
         ("0,981\n1,981\n", dict(unit="g", corner=1), "below 100 g: is the unit 'g'?"),
         (None, dict(unit="g", corner=1), "cannot read"),
@@ -142,9 +134,7 @@ def test_two_storeys_have_their_equivalent_mass_and_factor():
     "masses, shape, message",
     [
         ([1e3], [1, 2], "lists of equal length"),
-        (1e3, [1], "masses 1000.0 must be a list"),
         ([0.0], [1], "0.0 kg must be above 0"),
-        ([1e3], [math.nan], "nan must be a finite number"),
         ([1e3, 1e3], [1, -1], "is 0 kg, it must be above 0"),
     ],
 )
@@ -427,10 +417,8 @@ def test_a_folder_that_has_no_curve_does_not_keep_the_others_from_theirs(tmp_pat
     "entries",
     [
         {"answers": [1]},
-
         {"recorded_height_m": math.nan, "displacement_at_first_crack_mm": "x"},
         {"first_period_s": math.inf, "collapse_displacement_mm": math.nan},
-
         {"stages": [{"load": ["push"], "first_row": "a"}]},
         {"wall": 3},
     ],

@@ -2,11 +2,8 @@
 """The comparison of the dry-joint walls' loops says yes to the measured curves themselves, and no to others."""
 
 from usual import *
-
-
-sys.path.insert(0, os.path.join(ROOT, "validation", "dry_joint_walls"))
-import compare_loops  # noqa: E402
-import measured  # noqa: E402
+import compare_loops
+import measured
 
 
 def asMeasured(wall, stiffness=1.0, shift=0.0):

@@ -3,7 +3,6 @@
 
 from usual import *
 
-
 sys.path.insert(0, os.path.join(ROOT, "validation", "cyclic"))
 import figures  # noqa: E402
 import walls  # noqa: E402

@@ -7,7 +7,6 @@ import importlib.util
 import pathlib
 import urllib.parse
 
-
 DOCS = os.path.join(ROOT, "scripts", "docs")
 sys.path[:0] = [DOCS, os.path.join(ROOT, "tests", "gates")]
 

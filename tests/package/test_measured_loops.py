@@ -2,11 +2,8 @@
 """The measured loops of the dry-joint walls are read, put in order and thinned as their README says."""
 
 from usual import *
-
-
-sys.path.insert(0, os.path.join(ROOT, "validation", "dry_joint_walls"))
-import measured  # noqa: E402
-from scipy.integrate import trapezoid  # noqa: E402
+import measured
+from scipy.integrate import trapezoid
 
 
 @pytest.mark.parametrize("wall", measured.walls())

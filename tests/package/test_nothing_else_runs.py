@@ -3,7 +3,6 @@
 
 from usual import *
 
-
 #: Modules of Python and of other libraries that the package reads.
 PLANTED = (
     "csv token json glob struct zlib base64 numpy matplotlib argparse yade".split()

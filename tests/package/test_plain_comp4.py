@@ -2,10 +2,7 @@
 """The plain program of COMP-4, written without the plugin, finds what the plugin finds."""
 
 from usual import *
-
-
-sys.path.insert(0, os.path.join(ROOT, "validation", "benchmark"))
-import plain  # noqa: E402
+import plain
 
 UNTIL, RATE = 1, 20  # [mm], [mm/s]
 

@@ -2,10 +2,7 @@
 """The plain model of the dry-joint wall against statics, and against the closed form of its shear stiffness."""
 
 from usual import *
-
-
-sys.path.insert(0, os.path.join(ROOT, "validation", "dry_joint_walls"))
-import plain_wall  # noqa: E402
+import plain_wall
 
 
 @pytest.fixture(scope="module")

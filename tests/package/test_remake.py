@@ -4,8 +4,7 @@
 from usual import *
 import fnmatch
 
-sys.path.insert(0, os.path.join(ROOT, "validation"))
-import remake  # noqa: E402
+import remake
 
 EVERY = remake.everything()
 

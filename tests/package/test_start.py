@@ -3,7 +3,6 @@
 
 from usual import *
 
-
 #: What only pictures, limit analysis, studies and files of bricks need: each takes a tenth of a second or more.
 NOT_NEEDED = ["matplotlib", "meshio", "openturns", "pandas", "scipy", "masonry.study", "numpy.testing"]  # fmt: skip
 SCRIPT = """

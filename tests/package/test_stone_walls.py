@@ -4,9 +4,6 @@
 import csv
 
 from usual import *
-
-FOLDER = os.path.join(ROOT, "validation", "stone_walls")
-sys.path.insert(0, FOLDER)
 import codes
 import rules
 from masonry import bricks
