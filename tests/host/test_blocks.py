@@ -4,7 +4,7 @@
 import yade.wrapper
 from hosted import *
 
-polyhedra = pytest.mark.skipif(
+polyhedra = mark.skipif(
     not hasattr(yade.wrapper, "Polyhedra"), reason="this YADE has no Polyhedra"
 )
 
@@ -36,7 +36,6 @@ def samples():
 
 
 def cloud(rng, count):
-    """So many points about the origin."""
     return [Vector3(*(rng.gauss(0, 0.2) for _ in range(3))) for _ in range(count)]
 
 
@@ -75,10 +74,10 @@ def test_a_block_has_the_same_bits_wherever_its_memory_lies():
 def test_volume_centroid_and_inertia_are_those_of_a_box():
     a, b, c = UNIT
     block, centroid, orientation = MasonryBlock.around(box((1, -2, 3)))
-    assert block.volume == pytest.approx(a * b * c, rel=1e-12)
+    assert block.volume == approx(a * b * c, rel=1e-12)
     assert (centroid - Vector3(1 + a / 2, -2 + b / 2, 3 + c / 2)).norm() < 1e-12
     expected = [a * b * c * (p * p + q * q) / 12 for p, q in ((b, c), (a, c), (a, b))]
-    assert sorted(block.inertia) == pytest.approx(sorted(expected), rel=1e-9)
+    assert sorted(block.inertia) == approx(sorted(expected), rel=1e-9)
     turned = [orientation * v + centroid for v in block.v]
     assert all(min((t - p).norm() for t in turned) < 1e-12 for p in box((1, -2, 3)))
 
@@ -104,7 +103,7 @@ def test_a_new_block_has_the_looks_of_a_new_shape():
 def test_points_without_volume_are_refused():
     flat = [Vector3(x, y, 0) for x in (0, 1) for y in (0, 1)]
     for points in ([], flat, flat[:2], [Vector3(1, 2, 3)] * 5):
-        with pytest.raises(ValueError, match="the corners of the block have no volume"):
+        with raises(ValueError, match="the corners of the block have no volume"):
             MasonryBlock.around(points)
 
 
@@ -112,7 +111,7 @@ def test_a_body_with_a_block_without_corners_is_refused():
     pile()
     O.bodies[1].shape = MasonryBlock()
     engines([MasonryJoint()])
-    with pytest.raises(ValueError, match="body 1 has a MasonryBlock without corners"):
+    with raises(ValueError, match="body 1 has a MasonryBlock without corners"):
         connect()
 
 
@@ -136,7 +135,7 @@ def stack(kinds, functors=False, zones=False, steps=1500):
     material = MasonryMat(density=1800)
     for course, make in enumerate(kinds):
         make([turn * p for p in box((0.03 * course, 0, UNIT[2] * course))], material)
-    O.bodies[0].state.blockedDOFs = "xyzXYZ"
+    hold(0)
     held = MasonryZones(bodies=[1], divisions=[2, 1, 1]) if zones else None
     driven = dict(driven=True, direction=turn * Vector3(1, 0, 0.25), velocity=0.02)
     load = MasonryLoad(body=2, point=O.bodies[2].state.pos, label="load", **driven)
@@ -155,7 +154,7 @@ def state():
 
 
 @polyhedra
-@pytest.mark.parametrize("how", [{}, {"functors": True}, {"zones": True}])
+@mark.parametrize("how", [{}, {"functors": True}, {"zones": True}])
 def test_runs_of_both_kinds_of_body_are_equal_to_the_bit(how):
     own = stack([addBlock] * 3, **how)
     assert any(d != 0 for joint in own[2] for point in joint[3] for d in point)
@@ -169,7 +168,7 @@ def test_a_joint_may_lie_between_both_kinds_of_body():
     own = stack([addBlock] * 3, steps=50)
     mixed = stack([addPolyhedra, addBlock, addPolyhedra], steps=50)
     assert [(j[0], j[1]) for j in mixed[2]] == [(1, 0), (1, 2)]
-    assert mixed[1] == pytest.approx(own[1], rel=1e-9)
+    assert mixed[1] == approx(own[1], rel=1e-9)
     for one, two in zip(own[3], mixed[3]):
         assert (one[0] - two[0]).norm() < 1e-12
 
@@ -180,7 +179,7 @@ def test_a_scene_with_the_functor_for_polyhedra_goes_on_working():
     material = MasonryMat(density=1800)
     for course in range(2):
         addPolyhedra(box((0, 0, UNIT[2] * course)), material)
-    O.bodies[0].state.blockedDOFs = "xyzXYZ"
+    hold(0)
     geometry = Ig2_Polyhedra_Polyhedra_MasonryJointGeom(subcontacts=4, rows=2)
     physics = Ip2_MasonryMat_MasonryMat_MasonryJointPhys(joints=[MasonryJoint()])
     law = Law2_MasonryJointGeom_MasonryJointPhys_PiecewiseSoftening()
@@ -200,5 +199,5 @@ def test_a_scene_with_the_functor_for_polyhedra_goes_on_working():
 def test_the_attributes_of_a_block_are_read_only():
     block = MasonryBlock.around(box((0, 0, 0)))[0]
     for name in ("v", "triangles", "volume", "inertia"):
-        with pytest.raises(AttributeError):
+        with raises(AttributeError):
             setattr(block, name, getattr(block, name))

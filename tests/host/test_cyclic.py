@@ -5,7 +5,6 @@ from hosted import *
 
 
 def stack(functors=False):
-    """Three bricks on each other; the middle one is free, the top one is driven along x."""
     pile(3, inPlane=True)
     load = MasonryLoad(body=2, point=(0.11, 0.051, 0.243), force=(0, 0, -2e3))
     load.updateAttrs(dict(direction=(1, 0, 0), driven=True, velocity=0.02))
@@ -16,7 +15,7 @@ def stack(functors=False):
 def test_a_functor_of_another_law_is_reported():
     stack(functors=True)
     next(iter(O.interactions)).phys.joint.law = "cyclic"
-    with pytest.raises(Exception, match="follows another law.*CyclicSoftening"):
+    with raises(Exception, match="follows another law.*CyclicSoftening"):
         O.run(5, True)
 
 
@@ -32,7 +31,7 @@ def test_a_joint_can_change_its_law_between_steps():
     assert all(np.isfinite(i.phys.stress).all() for i in O.interactions)
 
 
-@pytest.mark.parametrize(
+@mark.parametrize(
     "properties, message",
     [
         (dict(shearStiffnessLoss=1), "shear stiffness loss 1 must be 0 to 0.99"),
@@ -54,6 +53,6 @@ def test_a_joint_can_change_its_law_between_steps():
     ],
 )
 def test_what_the_law_cannot_follow_is_refused(properties, message):
-    with pytest.raises(ValueError, match=message):
+    with raises(ValueError, match=message):
         MasonryJoint(law="cyclic", **properties)
     MasonryJoint(**{k: v for k, v in properties.items() if k != "shearStiffnessLoss"})

@@ -35,7 +35,7 @@ def included(name):
     return re.findall(r'#include "([^"]+)"', open(name).read())
 
 
-@pytest.mark.parametrize("layer", MAY_INCLUDE)
+@mark.parametrize("layer", MAY_INCLUDE)
 def test_a_layer_includes_only_what_it_may_know(layer):
     files = sources(os.path.join(PLUGIN, layer))
     assert files

@@ -431,7 +431,7 @@ def isNamed(name, argument, message):
 STEPS = {"accelerate", "bound", "cycle", "domain", "follow", "growLoad", "growPress", "grow", "load, a stage", "move", "pressJoint", "push", "result", "shake", "shakeAgain", "tilt", "travel"}  # fmt: skip
 
 
-@pytest.mark.parametrize("name", [pytest.param(n, marks=[pytest.mark.slow] * (n in STEPS)) for n in (*WORDS, *CALLS)])  # fmt: skip
+@mark.parametrize("name", [pytest.param(n, marks=[mark.slow] * (n in STEPS)) for n in (*WORDS, *CALLS)])  # fmt: skip
 def test_odd_values_are_refused_in_a_sentence_or_mean_something(folder, name):
     values = odd()
     assert said(name, {}) is None
@@ -520,7 +520,7 @@ def takenWithinBounds(value, meant):
     if number and all(LIES[what](value, end) for what, end in ends.items()):
         assert kind(value) == value, where
         return
-    with pytest.raises(ValueError) as refused:
+    with raises(ValueError) as refused:
         kind(value)
     said = str(refused.value)
     assert arguments.shown(value) in said and " must be " in said, where
@@ -545,7 +545,7 @@ def test_what_lies_outside_of_its_bounds_is_refused_with_value_and_bound(value):
         takenWithinBounds(value, meant)
 
 
-@pytest.mark.parametrize("name", masonry.classes)
+@mark.parametrize("name", masonry.classes)
 def test_no_property_of_a_class_passes_outside_its_bounds(name):
     cls = getattr(masonry, name)
     for p in cls.properties():
@@ -559,7 +559,7 @@ def test_no_property_of_a_class_passes_outside_its_bounds(name):
         if math.isfinite(p["high"]):
             wrong.append(int(p["high"]) + 1 if whole else p["high"] + 1.0)
         for value in wrong:
-            with pytest.raises(ValueError) as refused:
+            with raises(ValueError) as refused:
                 cls(**{p["name"]: value})
             said = str(refused.value)
             words = "".join(c if c.islower() else " " + c for c in p["name"]).lower()
@@ -574,7 +574,7 @@ def _isReadOnly(cls, name):
 # -- what is refused, in which words ----------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(
+@mark.parametrize(
     "name, change, message",
     [
         ("push", {"untill": 3}, "push: no argument 'untill', did you mean 'until'?"),

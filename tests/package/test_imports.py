@@ -65,7 +65,6 @@ def ownModule(name):
 
 
 def layer(module):
-    """Number of the room of a module; the package itself is above all."""
     folder = module.split(".")[0]
     return LAYERS.index(folder) if folder in LAYERS else len(LAYERS)
 
@@ -80,7 +79,7 @@ def test_every_module_has_its_room():
         assert module == "__init__" or module.split(".")[0] in LAYERS
 
 
-@pytest.mark.parametrize("module", MODULES)
+@mark.parametrize("module", MODULES)
 def test_a_module_imports_only_its_own_room_and_those_above_it(module):
     for own in GRAPH[module] - {"__init__"}:
         assert layer(own) <= layer(module), f"{module} imports {own}"
@@ -92,7 +91,7 @@ def test_no_circle_of_imports():
     graphlib.TopologicalSorter(GRAPH).prepare()  # raises an error that names one
 
 
-@pytest.mark.parametrize("module", MODULES)
+@mark.parametrize("module", MODULES)
 def test_a_module_imports_no_scene_and_breaks_no_circle_in_a_function(module):
     for name, atTop in imports(source(module)):
         assert name not in SCENES
@@ -108,7 +107,7 @@ def needed(module, found=None):
     return found
 
 
-@pytest.mark.parametrize("folder", WITHOUT_YADE)
+@mark.parametrize("folder", WITHOUT_YADE)
 def test_what_reads_results_needs_no_yade(folder):
     modules = [m for m in MODULES if m == folder or m.startswith(folder + ".")]
     assert modules
@@ -119,7 +118,7 @@ def test_what_reads_results_needs_no_yade(folder):
                 assert not host, f"{module} needs {one}, which imports {name}"
 
 
-@pytest.mark.parametrize("scene", SCENES)
+@mark.parametrize("scene", SCENES)
 def test_a_scene_imports_no_scene_and_is_short(scene):
     path = os.path.join(ROOT, "scripts", scene + ".py")
     for name, _ in imports(path):

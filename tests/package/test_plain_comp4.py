@@ -14,5 +14,5 @@ def test_the_plugin_pushes_comp4_as_the_plain_program_does():
     words = ["--points", "3"]  # as the plain program has
     _, _, ownPeak, ownWork = plain.plugin(UNTIL, RATE, words)
     assert peak > 85, "the wall has hardly been pushed"
-    assert ownPeak == pytest.approx(peak, rel=0.01)
-    assert ownWork == pytest.approx(work, rel=0.02)
+    assert ownPeak == approx(peak, rel=0.01)
+    assert ownWork == approx(work, rel=0.02)

@@ -10,12 +10,11 @@ EVERY = remake.everything()
 
 
 def committed():
-    """Files of validation/ that git knows, by their paths there."""
-    done = subprocess.run(["git", "-C", remake.HERE, "ls-files"], capture_output=True, text=True)  # fmt: skip
+    done = ran(["git", "-C", remake.HERE, "ls-files"])
     return done.stdout.splitlines()
 
 
-@pytest.mark.skipif(
+@mark.skipif(
     not os.path.exists(os.path.join(ROOT, ".git")), reason="no repository of git"
 )
 def test_every_figure_and_table_is_made_by_one_result():
@@ -38,7 +37,6 @@ def test_results_come_after_those_that_they_need():
 
 @pytest.fixture
 def tree(tmp_path, monkeypatch):
-    """A place with one result of which everything is known."""
     for folder in ("validation/one", "tests/references", "results/one", "results/other"):  # fmt: skip
         (tmp_path / folder).mkdir(parents=True)
     (tmp_path / "validation/one/run.py").write_text("open('results/one/new', 'w')\n")

@@ -154,12 +154,17 @@ ROWS = {
     "time step": ["20 µs", "80 % of the largest stable one."],
 }  # fmt: skip
 #: Sentences that are somewhere on the page, and texts of its chart.
-SAID = """Peak 100 kN at 1 mm; limit analysis: at most 125 kN.;until 4 mm; rate 20 mm/s; set –; preset –
-The run has no warnings.;one run does not tell;no error of peak or work is promised;the push did not end in a collapse;an upper bound"""
+SAID = """Peak 100 kN at 1 mm; limit analysis: at most 125 kN.
+until 4 mm; rate 20 mm/s; set –; preset –
+The run has no warnings.
+one run does not tell
+no error of peak or work is promised
+the push did not end in a collapse
+an upper bound"""
 CHART = "supports;loaded point;bilinear;100.0 kN at 1.00 mm;limit analysis: 125 kN at most;displacement of top [mm];force along the push [kN]"
 
 
-@pytest.mark.parametrize("head", ROWS)
+@mark.parametrize("head", ROWS)
 def test_each_number_has_its_unit_and_stands_where_it_belongs(pushed, head):
     found = pushed.row(head)[1:]
     assert all(cell in (None, there) for cell, there in zip(ROWS[head], found))
@@ -174,9 +179,7 @@ def test_the_head_the_sentences_and_the_chart(pushed):
     assert pushed.of("code") == ["platen(where='bottom')", "push(target='top')"]
     assert not [r for r in pushed.rows if "refining" in r[-1]]  # no joint got points
     said = pushed.said()
-    assert all(
-        text.strip() in said for text in re.split("; ?(?! rate| limit)|\n", SAID)
-    )
+    assert all(text in said for text in SAID.splitlines())
     assert "is not whole" not in said
     assert set(CHART.split(";")) <= {text.strip() for text in pushed.of("text")}
 
@@ -194,7 +197,7 @@ CHANGED = [
 ]  # fmt: skip
 
 
-@pytest.mark.parametrize("changed, columns, head, cells", CHANGED)
+@mark.parametrize("changed, columns, head, cells", CHANGED)
 def test_what_a_run_has_beside(tmp_path, changed, columns, head, cells):
     changed["columns"] = {**MEANINGS, **{n: meaning for n, (meaning, _) in columns.items()}}  # fmt: skip
     more = {n: values for n, (_, values) in columns.items()}
@@ -250,7 +253,7 @@ def test_the_promise_of_a_preset_and_the_width_of_an_accuracy_are_said(tmp_path)
 NO_PUSH = {k: ... for k in RUN if k.endswith(("_mm", "_kN", "_mrad", "_kN_per_mm")) or k == "bounds"}  # fmt: skip
 
 
-@pytest.mark.parametrize("columns", [{n: [] for n in COLUMNS}, None])
+@mark.parametrize("columns", [{n: [] for n in COLUMNS}, None])
 def test_without_rows_there_is_a_page_of_the_bound(tmp_path, columns):
     found = page(folder(tmp_path, columns=columns, **{**NO_PUSH, "ended": ..., "bounds": RUN["bounds"]}))  # fmt: skip
     said = found.said()
@@ -286,7 +289,7 @@ def test_several_pushes_are_named(tmp_path):
     assert "from 0 kN to 99 kN" in found.said()
 
 
-@pytest.mark.parametrize(
+@mark.parametrize(
     "changed, text",
     [
         ({"collapsed": True, "collapse": "brick 5 falls", "ended": "collapsed", "collapse_displacement_mm": 4.0}, "Collapsed: brick 5 falls"),
@@ -342,7 +345,7 @@ def test_sections_have_normal_force_shear_and_moment(tmp_path):
     run = {**RUN, "columns": {**MEANINGS, **meanings}, "recorded_sections": list(names)}
     found = page(folder(tmp_path, run, {**COLUMNS, **names}))
     assert found.row("foot_N")[1:6] == ["−50 kN"] * 5
-    assert found.row("foot_M_y")[1:6] == ["≈ 0", "200 kNm", "80 kNm", "≈ 0", "200 kNm"]  # fmt: skip
+    assert found.row("foot_M_y")[1:6] == ["≈ 0", "200 kNm", "80 kNm", "≈ 0", "200 kNm"]
     assert "no section was recorded" not in found.said()
 
 
@@ -414,7 +417,7 @@ def test_the_program_writes_a_report_into_the_folder_or_elsewhere(tmp_path, caps
     assert open(other).read() == (tmp_path / "run" / "report.html").read_text()
 
 
-@pytest.mark.parametrize(
+@mark.parametrize(
     "words, message",
     [
         (["nowhere"], "cannot read nowhere/run.json"),
@@ -436,7 +439,7 @@ def test_what_cannot_be_written_is_refused_and_nothing_is(tmp_path, monkeypatch,
     assert "report.html, a symbolic link" in capsys.readouterr().err
 
 
-@pytest.mark.parametrize(
+@mark.parametrize(
     "value, text",
     [(0, "0"), (0.0, "0"), (116.4789, "116.5"), (115.9697, "116.0"), (0.5, "0.5"), (-34.5, "−34.5"), (1224, "1,224"), (4800.0, "4,800"),
      (1.0678e-10, "1.068\u202f·\u202f10⁻¹⁰"), (2.0e11, "2\u202f·\u202f10¹¹"), (9.99996, "10.00"), (math.nan, "not known"), (math.inf, "not known"), (None, "not known"), ("7", "not known"), (True, "not known")],

@@ -15,9 +15,7 @@ def made(folder, blocks, masonry=None, words=(), **settings):
     )
 
 
-def test_stages_left_out_of_a_resumed_run_have_the_rows_of_their_time(
-    tmp_path,
-):
+def test_stages_left_out_of_a_resumed_run_have_the_rows_of_their_time(tmp_path):
     def play(*words):
         scene = made(tmp_path, bricks.stack(3, (0.4, 0.3, 0.2)), words=words)
         scene.platen("bottom")

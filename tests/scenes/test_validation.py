@@ -90,9 +90,7 @@ def test_energy_that_joints_make_is_an_error_of_the_balance():
 
 
 @pytest.mark.parametrize("blocks", observed.BLOCKS)
-def test_a_panel_in_other_units_turned_and_renumbered_gives_the_same_curve(
-    blocks,
-):
+def test_a_panel_in_other_units_turned_and_renumbered_gives_the_same_curve(blocks):
     telling = dict(
         length=1e-3,
         stress=1e6,
