@@ -44,10 +44,10 @@ def test_a_joint_that_yields_is_advanced_by_its_points_from_then_on(case):
     assert counts[0] > counts[-1]
 
 
+CLOSES = dict(law="cyclic", tensileStrength=0, compressionStiffnessLoss=0)
+CLOSES.update(initialClosingStiffness=1e9, closureLimit=1e-3)
 KINDS = {"elastic": dict(elastic=True), "deformable": dict(blocks="deformable")}
-KINDS["closes on a curve"] = dict(law="cyclic", tensileStrength=0)
-CLOSES = dict(initialClosingStiffness=1e9, closureLimit=1e-3)
-KINDS["closes on a curve"].update(compressionStiffnessLoss=0, **CLOSES)
+KINDS["closes on a curve"] = CLOSES
 
 
 @mark.parametrize("kind", KINDS)

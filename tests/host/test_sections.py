@@ -8,7 +8,6 @@ from masonry.basics import GRAVITY
 from masonry.read.frames import asFrame
 from motion_cases import oscillator
 
-DENSITY = 1800.0  # [kg/m³] of calcium silicate
 #: [m]: foot, a bed joint, the middle of a course, and top.
 LEVELS = (0.0, 0.162, 0.2025, 0.486)
 

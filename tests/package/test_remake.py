@@ -41,20 +41,13 @@ def tree(tmp_path, monkeypatch):
         (tmp_path / folder).mkdir(parents=True)
     (tmp_path / "validation/one/run.py").write_text("open('results/one/new', 'w')\n")
     (tmp_path / "tests/references/rigid.json").write_text('{"made by": "a", "x": 1}')
-    result = remake.Result(
-        "one",
-        ((sys.executable, "validation/one/run.py"),),
-        sources=("validation/one/*.py", "tests/references/rigid*.json"),
-        results=("one",),
-    )
-    for name, value in (
-        ("ROOT", tmp_path),
-        ("HERE", tmp_path / "validation"),
-        ("RESULTS", tmp_path / "results"),
-        ("MADE", tmp_path / "validation/made.json"),
-        ("README", tmp_path / "validation/README.md"),
-    ):
-        monkeypatch.setattr(remake, name, str(value))
+    sources = "validation/one/*.py", "tests/references/rigid*.json"
+    programs = ((sys.executable, "validation/one/run.py"),)
+    result = remake.Result("one", programs, sources=sources, results=("one",))
+    places = dict(ROOT=".", HERE="validation", RESULTS="results")
+    places.update(MADE="validation/made.json", README="validation/README.md")
+    for name, path in places.items():
+        monkeypatch.setattr(remake, name, str(tmp_path / path))
     monkeypatch.setattr(remake, "everything", lambda: {"one": result})
     (tmp_path / "validation/README.md").write_text("\n".join(["a", *remake.MARKS, "b"]))
     return tmp_path, result
