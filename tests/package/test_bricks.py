@@ -56,29 +56,7 @@ def straightJoints(wall, axis=0):
     ]
 
 
-# -- running bond -----------------------------------------------------------------------------------------------------
-
-
-def runningBond(courses, halfUnits, unit, halves):
-    brick = -1
-    for course in range(courses):
-        joints = [c for c in range(1, halfUnits) if c % 2 == course % 2] + [halfUnits]
-        for first, beyond in zip([0, *joints], joints):
-            brick += 1
-            ends = range(first, beyond + 1) if halves else (first, beyond)
-            for a, b in zip(ends, ends[1:]):
-                low = (a * (unit[0] / 2), 0.0, course * unit[2])
-                high = (b * (unit[0] / 2), unit[1], (course + 1) * unit[2])
-                yield brick, course, bricks.boxCorners(low, high)
-
-
-@few
-@given(some.integers(1, 9), some.integers(1, 8), units, some.booleans())
-def test_running_bond_is_its_definition_to_the_last_bit(courses, n, unit, halves):
-    wall = Wall(n * unit[0], courses * unit[2], unit, halves=halves)
-    found = [(b.brick, b.course, b.corners) for b in wall]
-    assert found == list(runningBond(courses, 2 * n, unit, halves))
-    assert {(b.part, b.kind) for b in wall} == {("wall", "brick")}
+# -- whole bricks and faces ---------------------------------------------------------------------------------------------
 
 
 @few
