@@ -32,7 +32,9 @@ G = 9.81  # [m/s²]
 #: The brick of the calcium-silicate walls, with its mortar [m].
 UNIT = (0.22, 0.102, 0.081)
 #: Both ways to run the joints.
-FUNCTORS = pytest.mark.parametrize("functors", [False, True], ids=["loop", "functors"])
+FUNCTORS = mark.parametrize("functors", [False, True], ids=["loop", "functors"])
+BLOCKS = mark.parametrize("blocks", ["rigid", "deformable"])
+PLANES = mark.parametrize("plane", [True, False], ids=["plane", "space"])
 #: Turns a scene out of its plane.
 IN_SPACE = Quaternion(Vector3(1, 2, 0.5).normalized(), 0.7)
 
@@ -147,8 +149,21 @@ def ofKind(kind):
     return next((e for e in O.engines if isinstance(e, kind)), None)
 
 
+def energy():
+    return ofKind(MasonryEnergy)
+
+
+def loop():
+    return ofKind(MasonryJointLoop)
+
+
 def balance():
-    return ofKind(MasonryEnergy).balance()
+    return energy().balance()
+
+
+def imbalance():
+    """The error of the balance, over the work that was done."""
+    return abs(balance()["error"])
 
 
 def bits():

@@ -31,7 +31,6 @@ _PATH = re.compile(r"`((?:[\w.-]+/)+[\w.-]*)`")
 
 
 def anchors(source):
-    """The anchors of a document's headings, as GitHub makes them."""
     found = set()
     for heading in re.findall(r"^#+ +(.*?) *#*$", withoutBlocks(source), re.MULTILINE):
         plain = re.sub(r"\[([^\]]*)\]\([^)]*\)", r"\1", heading)

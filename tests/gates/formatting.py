@@ -21,6 +21,7 @@ import tree
 
 CLANG_FORMAT = "14"
 BLACK = "23"
+IMPORTS = ast.Import, ast.ImportFrom
 
 
 def version(program):
@@ -33,31 +34,26 @@ def version(program):
 
 def clangFormat():
     """The program clang-format 14, None if there is none."""
-    for program in ("clang-format-14", "clang-format"):
-        if version(program) == CLANG_FORMAT:
-            return program
-
-
-def _quiet(folder):
-    return dict(cwd=folder, capture_output=True, text=True)
+    programs = "clang-format-14", "clang-format"
+    return next((p for p in programs if version(p) == CLANG_FORMAT), None)
 
 
 def unformattedCpp(paths, root=tree.ROOT):
     """Files and lines that clang-format would change, as ``path:line``."""
     if not paths:
         return []
-    run = subprocess.run([clangFormat(), "--dry-run", *paths], **_quiet(root))
+    command = [clangFormat(), "--dry-run", *paths]
+    run = subprocess.run(command, cwd=root, capture_output=True, text=True)
     found = re.findall(r"^(\S+?:\d+):\d+: (?:warning|error)", run.stderr, re.MULTILINE)
     return list(dict.fromkeys(found))
 
 
 def unformattedPython(paths, root=tree.ROOT):
-    """Files that black would change."""
     if not paths:
         return []
     config = os.path.join(tree.ROOT, "pyproject.toml")
     command = ["black", "--check", "--config", config, *paths]
-    run = subprocess.run(command, **_quiet(root))
+    run = subprocess.run(command, cwd=root, capture_output=True, text=True)
     wrong = [x for x in run.stderr.splitlines() if x.startswith(("would ", "error"))]
     if run.returncode and not wrong:
         wrong = [run.stderr.strip()]
@@ -73,33 +69,25 @@ def unusedImports(path, root=tree.ROOT):
     source = tree.read(path, root)
     lines = source.splitlines()
     parsed = ast.parse(source)
-    imports = [
-        n for n in ast.walk(parsed) if isinstance(n, (ast.Import, ast.ImportFrom))
-    ]
     said = lambda node: "\n".join(lines[node.lineno - 1 : node.end_lineno])
+    imports = [node for node in ast.walk(parsed) if isinstance(node, IMPORTS)]
     kept = {node.lineno for node in imports if re.search("# noqa:.*F401", said(node))}
-    unused = [
-        m
-        for m in checker.Checker(parsed, path).messages
-        if isinstance(m, messages.UnusedImport)
-    ]
+    found = checker.Checker(parsed, path).messages
+    unused = [m for m in found if isinstance(m, messages.UnusedImport)]
     return sorted((m.lineno, m.message_args[0]) for m in unused if m.lineno not in kept)
 
 
 def withoutUnused(source, unused):
-    """The source of a module without the imports that :func:`unusedImports` found in it."""
     lines = source.splitlines(keepends=True)
     names = {}
     for line, name in unused:
         names.setdefault(line, set()).add(name.split(" as ")[0])
-    nodes = [n for n in ast.walk(ast.parse(source)) if getattr(n, "lineno", 0) in names]
+    nodes = [n for n in ast.walk(ast.parse(source)) if isinstance(n, IMPORTS)]
+    nodes = [node for node in nodes if node.lineno in names]
     for node in sorted(nodes, key=lambda n: -n.lineno):
-        if not isinstance(node, (ast.Import, ast.ImportFrom)):
-            continue
         prefix = ""
         if isinstance(node, ast.ImportFrom):
-            prefix = "." * node.level + (node.module or "")
-            prefix += "." if node.module else ""
+            prefix = "." * node.level + (node.module + "." if node.module else "")
         unused = names[node.lineno]
         node.names = [a for a in node.names if prefix + a.name not in unused]
         new = [" " * node.col_offset + ast.unparse(node) + "\n"] if node.names else []
@@ -117,7 +105,6 @@ def problems():
 
 
 def write():
-    """Format the tree."""
     for path in tree.files((".py",)):
         unused = unusedImports(path)
         if unused:

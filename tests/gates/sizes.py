@@ -28,15 +28,7 @@ PARTS = {
     "manual": ((), (".md",)),
 }
 NOT_MANUAL = "validation/"
-NO_TOKEN = {
-    tokenize.COMMENT,
-    tokenize.NL,
-    tokenize.NEWLINE,
-    tokenize.INDENT,
-    tokenize.DEDENT,
-    tokenize.ENCODING,
-    tokenize.ENDMARKER,
-}
+NO_TOKEN = "COMMENT NL NEWLINE INDENT DEDENT ENCODING ENDMARKER".split()
 _COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/", re.DOTALL)
 _WORDS = re.compile(r"\w+|[^\w\s]")
 _TEMPLATE = re.compile(r"^\s*template\s*<[^{;]*?>\s+(?=\w)")
@@ -59,7 +51,7 @@ def tokens(path, text):
         return len(_WORDS.findall(text if isProse else _COMMENT.sub("", text)))
     count = 0
     for token in tokenize.generate_tokens(io.StringIO(text).readline):
-        if token.type not in NO_TOKEN:
+        if tokenize.tok_name[token.type] not in NO_TOKEN:
             isDocstring = token.string.endswith('"""')
             count += len(token.string.split()) if isDocstring else 1
     return count
@@ -68,10 +60,9 @@ def tokens(path, text):
 def ofPython(text):
     """Classes and functions of a source: triples of a kind, a name and a number of lines."""
     for node in ast.walk(ast.parse(text)):
-        if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef)):
-            yield "function", node.name, node.end_lineno - node.lineno + 1
-        elif isinstance(node, ast.ClassDef):
-            yield "class", node.name, node.end_lineno - node.lineno + 1
+        if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)):
+            kind = "class" if isinstance(node, ast.ClassDef) else "function"
+            yield kind, node.name, node.end_lineno - node.lineno + 1
 
 
 def ofCpp(text):
@@ -102,13 +93,12 @@ def weigh(part):
         count = len(text.splitlines())
         sizes["lines"] += count
         sizes["tokens"] += tokens(path, text)
-        found = [("module", path, count)]
-        if path.endswith(".py"):
-            found += [(kind, f"{name} of {path}", n) for kind, name, n in ofPython(text)]  # fmt: skip
-        elif path.endswith(tree.CPP):
-            found += [(kind, f"{name} of {path}", n) for kind, name, n in ofCpp(text)]
         if part == "manual":
             continue
+        found = [("module", path, count)]
+        if path.endswith((".py", *tree.CPP)):
+            inside = ofPython(text) if path.endswith(".py") else ofCpp(text)
+            found += [(kind, f"{name} of {path}", n) for kind, name, n in inside]
         for kind, place, size in found:
             if size > sizes.get(kind, 0):
                 sizes[kind], places[kind] = size, place
@@ -120,22 +110,20 @@ def budget():
         return json.load(file)
 
 
+SPLIT = "split it by what its parts are for."
+REDUCE = """Take out as much elsewhere: what is written twice (`duplicates --change`), defends against what nobody meets, or no longer
+has a user. If what came is worth it, raise the number in tests/gates/budget.json, and give the reason in the commit."""
+
+
 def over(part, sizes, places, allowed):
     """A sentence for each size above its budget."""
     for kind, size in sizes.items():
         if size <= allowed[kind]:
             continue
         if kind in places:
-            yield (
-                f"{places[kind]} has {size} lines, and no {kind} of the {part} may have more than {allowed[kind]}: "
-                f"split it by what its parts are for."
-            )
+            yield f"{places[kind]} has {size} lines, and no {kind} of the {part} may have more than {allowed[kind]}: {SPLIT}"
         else:
-            yield (
-                f"{part}: {size} {kind} are {size - allowed[kind]} more than its budget. Take out as much elsewhere: what is "
-                f"written twice (`duplicates --change`), defends against what nobody meets, or no longer has a user. If what "
-                f"came is worth it, raise the number in tests/gates/budget.json, and give the reason in the commit."
-            )
+            yield f"{part}: {size} {kind} are {size - allowed[kind]} more than its budget. {REDUCE}"
 
 
 def main(arguments):

@@ -26,10 +26,8 @@ PUBLIC = """
     study.calibrate study.incremental study.plan study.variables
 """.split()
 #: Stages are words of a scene, in modules that hold more.
-STAGES = [
-    f"scene.stages.{name}"
-    for name in "rest push drive supports gravity loading shake".split()
-]
+STAGES = "rest push drive supports gravity loading shake".split()
+STAGES = [f"scene.stages.{name}" for name in STAGES]
 MYPY = [sys.executable, "-m", "mypy", "--config-file", os.path.join(tree.ROOT, "pyproject.toml")]  # fmt: skip
 needsMypy = pytest.mark.skipif(
     subprocess.run([*MYPY[:3], "--version"], capture_output=True).returncode != 0,
@@ -60,10 +58,6 @@ def withoutHint(node):
     return missing + ["return"] * (node.returns is None)
 
 
-def source(module):
-    return os.path.join(PACKAGE, *module.split(".")) + ".py"
-
-
 def test_a_missing_hint_is_found():
     node = ast.parse("def f(a, b: int, *c, d=1): pass").body[0]
     assert withoutHint(node) == ["a", "d", "c", "return"]
@@ -74,18 +68,14 @@ def test_what_users_call_has_hints(module):
     isStage = lambda node: any(
         "validated" in ast.unparse(d) for d in node.decorator_list
     )
-    every = [
-        pair
-        for pair in functions(source(module))
-        if module in PUBLIC or isStage(pair[1])
-    ]
+    every = functions(os.path.join(PACKAGE, *module.split(".")) + ".py")
+    every = [(n, node) for n, node in every if module in PUBLIC or isStage(node)]
     found = {name: withoutHint(node) for name, node in every}
     assert found
     assert {name: missing for name, missing in found.items() if missing} == {}
 
 
 def mypy(tmp_path_factory, *words):
-    """Run mypy; returns what it says."""
     cache = tmp_path_factory.getbasetemp() / "mypy"  # shared by the tests of this run
     around = dict(cwd=os.path.join(tree.ROOT, "scripts"), timeout=300)
     command = [*MYPY, "--cache-dir", str(cache), *words]

@@ -14,19 +14,16 @@ def version():
     return found
 
 
-def test_the_version_has_three_numbers():
+def test_change_log_and_citation_are_of_this_version_of_three_numbers():
     assert re.fullmatch(r"\d+\.\d+\.\d+", version())
-
-
-def test_the_first_entry_of_the_change_log_and_the_citation_are_of_this_version():
-    first = re.search(r"^## (\S+)", tree.read("CHANGELOG.md"), re.M)
-    assert first.group(1) == version()
-    cited = re.search(r"^version: (\S+)$", tree.read("CITATION.cff"), re.M)
-    assert cited.group(1) == version()
+    for path, line in (
+        ("CHANGELOG.md", r"^## (\S+)"),
+        ("CITATION.cff", r"^version: (\S+)$"),
+    ):
+        assert re.search(line, tree.read(path), re.M)[1] == version(), path
 
 
 def test_the_debian_package_takes_the_version_from_the_same_line():
-    """By the line of scripts/package.sh that reads it."""
     line = re.search(r"^number=\$\((.*)\)$", tree.read("scripts/package.sh"), re.M)
     command = ["bash", "-c", line.group(1)]
     said = subprocess.check_output(command, cwd=tree.ROOT, text=True)

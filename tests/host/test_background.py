@@ -43,11 +43,11 @@ def test_what_it_raises_is_raised_here():
         raise Unwritable("cannot write x: No space left on device")
         yield
 
-    with pytest.raises(Unwritable, match="cannot write x: No space"):
+    with raises(Unwritable, match="cannot write x: No space"):
         Task(work).result()
 
 
-@pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGTERM])
+@mark.parametrize("number", [signal.SIGKILL, signal.SIGTERM])
 def test_one_that_is_killed_is_one_clear_sentence(number):
     before = children()
 
@@ -57,7 +57,7 @@ def test_one_that_is_killed_is_one_clear_sentence(number):
 
     task = Task(work, parts=2)
     os.kill(task.result(), number)
-    with pytest.raises(Failed, match="its process has ended before its time"):
+    with raises(Failed, match="its process has ended before its time"):
         task.result(1)
     assert children() == before
 

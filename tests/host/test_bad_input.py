@@ -10,7 +10,7 @@ import runpy
 
 from hosted import *
 from hosted import bricks as parts, unitMaterial as mat
-from masonry.read import figures, files as reading, measure
+from masonry.read import files as reading, measure
 from masonry.read.frames import readFrame
 from masonry.run import results
 from yade import Body, utils
@@ -37,14 +37,12 @@ def laid(*places, size=UNIT, **settings):
 
 
 def joined(steps=3, **settings):
-    """Two bricks with their joint, some steps on their way."""
     blocks()
     join(**settings)
     run(steps)
 
 
 def deformable(steps=3, bodies=(1,)):
-    """Two bricks with their engines, the upper one deformable."""
     joined(steps, zones=MasonryZones(bodies=list(bodies)))
 
 
@@ -53,7 +51,6 @@ def zones():
 
 
 def reorder(change):
-    """Two bricks whose engines are changed."""
     joined()
     O.engines = change(O.engines)
 
@@ -85,7 +82,6 @@ def foreign(material):
 
 
 def turned(degrees):
-    """A brick on an edge of another."""
     addBlock(box(), mat())
     turn = Quaternion(Vector3(0, 1, 0), math.radians(-degrees))
     addBlock([corner + Vector3(*ABOVE) for corner in box(turn=turn)], mat())
@@ -126,12 +122,14 @@ def script(name, *words):
         sys.argv = argv
 
 
-def wall(
-    act=lambda scene: None, masonry=materials.calciumSilicate, name="w", **changes
-):
+def said(line):
+    """As above, of a line of words."""
+    return lambda: script(*line.split())
+
+
+def wall(act):
     """A wall of two courses, and what is said of it."""
-    usual = dict(length=0.44, height=0.162)
-    act(Scene(name, parts.Wall(**{**usual, **changes}), masonry(), arguments=[]))
+    act(Scene("w", parts.Wall(0.44, 0.162), materials.calciumSilicate(), arguments=[]))
 
 
 def pressed(stress):
@@ -140,6 +138,11 @@ def pressed(stress):
 
 def topped(**changes):
     wall(lambda scene: scene.platen("top", **changes))
+
+
+STAGES = [{"load": ["push", "top", ""], "first_row": 0}]
+WALL = json.dumps({"energy_balance_error": 0, "wall": {"courses": 2}, "stages": STAGES})
+CURVE = "time_s,displacement_mm,base_shear_kN,top_shear_kN\r\n0,0,1,1\r\n1,1,2,2\r\n"
 
 
 def files(run="{}", curve="time_s,base_shear_kN\r\n0,1\r\n1,2\r\n", **others):
@@ -161,6 +164,12 @@ def read(act, *words, **content):
     raise ValueError(said.getvalue())
 
 
+def shown(*words, **content):
+    """The same of the program that measures; run.json is of a wall unless it is given."""
+    files = {"run": WALL, **content} if content else {}
+    return lambda: read(measure.show, *words, **files)
+
+
 def recorder(directory):
     MasonryVtkRecorder(directory=directory)()
 
@@ -172,7 +181,7 @@ def brokenRule(*_):
 cube = list(corners((0, 0, 0), UNIT))
 tetrahedron = [(0, 0, 0), (0.2, 0, 0), (0, 0.2, 0), (0, 0, 0.2)]
 nothing = lambda: None
-step = lambda: O.step()
+step = O.step
 
 #: (scene, act, message), by subject.
 
@@ -180,7 +189,6 @@ step = lambda: O.step()
 CASES = {
     "block": [
         (nothing, lambda: addBlock(cube[:4], mat()), "4 corners span 0.13025 m but only 0 m out of a plane: no volume"),
-        (nothing, lambda: addBlock(box(size=(0.2, 0.1, 1e-12)), mat()), "only 1e-12 m out of a plane: no volume"),
         (nothing, lambda: addBlock(5, None), ["vertices 5 must be a list with at least 4 values", "material None must be a MasonryMat"]),
         (nothing, lambda: addBlock(cube[:7] + cube[:1], mat()), "corner 7 (0, 0, 0) m is given twice"),
         (nothing, lambda: addBlock(cube + [(0.1, 0.05, 0.04)], mat()), "corner 8 (0.1, 0.05, 0.04) m is no corner of the convex block"),
@@ -189,15 +197,10 @@ CASES = {
     ],
     "material": [
         (nothing, lambda: MasonryMat(label="b", young=0, poisson=1, density=nan), ['MasonryMat "b": young 0', "poisson 1 must", "density nan"]),
-        (nothing, lambda: MasonryMat(young="stiff", jointSet=5), ["young: expected a number, got stiff", "jointSet: expected a text, got 5"]),
-        (nothing, lambda: MasonryMat("brick"), "takes keyword arguments only"),
         (nothing, lambda: update(mat(), poisson=0.3, jointSet=None), "jointSet: expected a text, got None"),
-        (nothing, lambda: materials.dryGraniteJoints(120, 0), ["level 120 kN was not tested, there are 100, 175, 250", "height 0 m must be at least 0.001"]),
     ],
     "joint": [
-        (nothing, lambda: MasonryJoint(shearStiffness=-1, elastic=True), "shear stiffness -1 Pa/m must be above 0"),
         (nothing, lambda: MasonryJoint(name="b", cohesion=-1, friction=nan, peakRatio=0), ["cohesion -1", "friction nan", "peak ratio 0"]),
-        (nothing, lambda: MasonryJoint(friction="x", cohesion="y"), ["friction: expected a number, got x", "cohesion: expected a number, got y"]),
         (nothing, lambda: assign(MasonryJoint(), "friction", -1), "friction -1 must be at least 0"),
         (nothing, lambda: update(MasonryJoint(), cohesion=2e5, friction=-1), "friction -1 must be at least 0"),
         (nothing, lambda: MasonryJoint().compressionCurve([0, nan]), "closure nan m must be a finite number"),
@@ -211,7 +214,6 @@ CASES = {
         (lambda: (joined(), setattr(O.engines[-1], "dead", True)), step, "O.engines: there is no MasonryIntegrator"),
         (lambda: reorder(lambda e: e[-1:] + e[:-1]), step,
          "MasonryIntegrator must stand after the joints' loop; MasonryEnergy must stand before MasonryIntegrator"),
-        (lambda: reorder(lambda e: e[1:]), step, "MasonryJointLoop must stand after a ForceResetter"),
         (lambda: reorder(lambda e: e[:1] + e[2:]), step, "O.engines: there is no MasonryJointLoop"),
         (lambda: reorder(lambda e: e + e[-1:]), step, 'MasonryIntegrator "integrator" stands there twice'),
         (lambda: reorder(lambda e: e + [NewtonIntegrator()]), step, "NewtonIntegrator stands beside MasonryIntegrator"),
@@ -231,22 +233,18 @@ CASES = {
         (lambda: (joined(), setattr(O.interactions[0, 1], "geom", MasonryJointGeom())), step, "is not one that connect() made"),
         (nothing, lambda: MasonryIntegrator(damping=1, dampingKind="viscous", gravity=(0, nan, 0)),
          ["damping 1 must be 0 to 0.99", "dampingKind 'viscous' must be 'combined' or 'local'", "gravity must be finite numbers"]),
-        (joined, lambda: assign(O.engines[-1], "damping", nan), "damping nan must be a finite number, 0 to 0.99"),
-        (nothing, lambda: MasonryEnergy(kinetic=1), "MasonryEnergy.kinetic is read-only"),
     ],
     "connect": [
-        (blocks, lambda: connect(), "needs the joints' engine in O.engines: call masonry.engines() first"),
-        (lambda: engines([MasonryJoint()]), lambda: connect(), "none of 0 bodies shares a face"),
-        (lambda: laid((0, 0, 0)), lambda: connect(), "none of 1 bodies shares a face"),
-        (lambda: (blocks(), setattr(O, "engines", [MasonryJointLoop()])), lambda: connect(), "MasonryJointLoop has no geometry or no physics"),
-        (lambda: (blocks(), setattr(O, "engines", [InteractionLoop()])), lambda: connect(), "InteractionLoop has no geometry or no physics"),
+        (blocks, connect, "needs the joints' engine in O.engines: call masonry.engines() first"),
+        (lambda: engines([MasonryJoint()]), connect, "none of 0 bodies shares a face"),
+        (lambda: (blocks(), setattr(O, "engines", [MasonryJointLoop()])), connect, "MasonryJointLoop has no geometry or no physics"),
         (laid, lambda: connect(5), "connect: rule 5 must be a function"),
         (laid, lambda: connect(lambda *_: "bed"), "rule must return a MasonryJoint or None, got 'bed' for bodies 0 and 1"),
         (laid, lambda: connect(brokenRule), "my rule is broken"),
-        (joined, lambda: connect(), "bodies 0 and 1 have a joint: connect() is called once"),
-        (lambda: (blocks(), engines([MasonryJoint(name="head", direction=(1, 0, 0))])), lambda: connect(),
+        (joined, connect, "bodies 0 and 1 have a joint: connect() is called once"),
+        (lambda: (blocks(), engines([MasonryJoint(name="head", direction=(1, 0, 0))])), connect,
          'no joint fits bodies 0 and 1: joint sets "brick" and "brick", normal (0, 0, 1); offered: head'),
-        (lambda: (blocks(), engines([MasonryJoint(name="steel", jointSet="plate")], functors=True)), lambda: connect(), "offered: steel"),
+        (lambda: (blocks(), engines([MasonryJoint(name="steel", jointSet="plate")], functors=True)), connect, "offered: steel"),
         (laid, lambda: Ip2_MasonryMat_MasonryMat_MasonryJointPhys().assign(None, None), "needs an interaction and a MasonryJoint, got None"),
         (nothing, lambda: Ip2_MasonryMat_MasonryMat_MasonryJointPhys().assign(Interaction(), MasonryJoint()), "body 0 does not exist"),
         (nothing, lambda: Ig2_MasonryBlock_MasonryBlock_MasonryJointGeom(subcontacts=0, rows=1001, tolerance=0, rowDirection=(nan, 0, 0)),
@@ -254,39 +252,34 @@ CASES = {
         (lambda: laid((0, 0, 0), (0, 0, 5), functors=True), lambda: utils.createInteraction(0, 1), "bodies 0 and 1 share no face: no joint can be made"),
     ],
     "geometry": [
-        (lambda: laid((0, 0, 0), (0, 0, 0.082)), lambda: connect(), "bodies 0 and 1 nearly share a face, with a gap of 1 mm; the tolerance is 0.0256 mm"),
-        (lambda: laid((0, 0, 0), (0.23, 0, 0)), lambda: connect(), "bodies 0 and 1 nearly share a face, with a gap of 10 mm"),
+        (lambda: laid((0, 0, 0), (0, 0, 0.082)), connect, "bodies 0 and 1 nearly share a face, with a gap of 1 mm; the tolerance is 0.0256 mm"),
         (lambda: laid((0, 0, 0), (0, 0, 0.0811)), lambda: connect(tolerance=2e-4), "a gap of 0.1 mm; the tolerance is 0.0511 mm"),
-        (lambda: laid((0, 0, 0), (0, 0, 0.081), (0, 0, 0.1621)), lambda: connect(), "bodies 1 and 2 nearly share a face, with a gap of 0.1 mm"),
-        (lambda: laid((0, 0, 0), (0, 0, 0.080)), lambda: connect(), "bodies 0 and 1 lie 1 mm deep in each other; the tolerance is 0.0256 mm"),
+        (lambda: laid((0, 0, 0), (0, 0, 0.081), (0, 0, 0.1621)), connect, "bodies 1 and 2 nearly share a face, with a gap of 0.1 mm"),
+        (lambda: laid((0, 0, 0), (0, 0, 0.080)), connect, "bodies 0 and 1 lie 1 mm deep in each other; the tolerance is 0.0256 mm"),
         (lambda: laid((0, 0, 0), (0, 0, 0.080)), lambda: connect(allowGaps=True), "bodies 0 and 1 lie 1 mm deep in each other"),
-        (lambda: laid((0, 0, 0), (0.01, 0, 0.0405)), lambda: connect(), "bodies 0 and 1 lie 40.5 mm deep in each other"),
-        (lambda: laid(*[(0, 0, 0.082 * i) for i in range(15)]), lambda: connect(), ["bodies 9 and 10 nearly share", "and 4 more", "help(masonry.connect)"]),
-        (lambda: laid((0, 0, 0), (0, 0, 0.080), (0.221, 0, 0)), lambda: connect(), ["bodies 0 and 1 lie 1 mm deep", "bodies 0 and 2 nearly share"]),
-        (lambda: turned(1), lambda: connect(), "bodies 0 and 1 nearly share a face, with a gap of 3.83894 mm"),
-        (lambda: turned(30), lambda: connect(), "none of 2 bodies shares a face with another"),
-        (lambda: laid((0, 0, 0), (0.22, 0, 0.081)), lambda: connect(), "none of 2 bodies shares a face with another (tolerance 0.0001"),
+        (lambda: laid((0, 0, 0), (0.01, 0, 0.0405)), connect, "bodies 0 and 1 lie 40.5 mm deep in each other"),
+        (lambda: laid(*[(0, 0, 0.082 * i) for i in range(15)]), connect, ["bodies 9 and 10 nearly share", "and 4 more", "help(masonry.connect)"]),
+        (lambda: laid((0, 0, 0), (0, 0, 0.080), (0.221, 0, 0)), connect, ["bodies 0 and 1 lie 1 mm deep", "bodies 0 and 2 nearly share"]),
+        (lambda: turned(1), connect, "bodies 0 and 1 nearly share a face, with a gap of 3.83894 mm"),
+        (lambda: turned(30), connect, "none of 2 bodies shares a face with another"),
+        (lambda: laid((0, 0, 0), (0.22, 0, 0.081)), connect, "none of 2 bodies shares a face with another (tolerance 0.0001"),
         (lambda: laid((0, 0, 0), (0, 0, 0.082)), lambda: connect(allowGaps=True), "none of 2 bodies shares a face with another"),
-        (lambda: foreign(FrictMat(density=1000)), lambda: connect(), "body 1 has FrictMat, must have a MasonryMat"),
-        (lambda: foreign(mat()), lambda: connect(), "body 1 lies 171.649 mm from its reference place state.refPos, which addBlock() sets"),
-        (lambda: (laid(), setattr(O.bodies[1], "material", None)), lambda: connect(), "body 1 has no material, must have a MasonryMat"),
-        (lambda: state(1, pos=Vector3(nan, 0, 0)), lambda: connect(), "body 1 has a place or velocity that is no finite number"),
-        (lambda: state(1, vel=Vector3(0, inf, 0)), lambda: connect(), "body 1 has a place or velocity that is no finite number"),
-        (lambda: state(1, inertia=Vector3(0, 1, 1)), lambda: connect(), "body 1 has an inertia of 0 kg m²"),
-        (lambda: state(1, mass=nan, inertia=Vector3(nan, 1, 1)), lambda: connect(), ["mass of nan kg", "inertia of nan kg m²"]),
+        (lambda: foreign(FrictMat(density=1000)), connect, "body 1 has FrictMat, must have a MasonryMat"),
+        (lambda: foreign(mat()), connect, "body 1 lies 171.649 mm from its reference place state.refPos, which addBlock() sets"),
+        (lambda: (laid(), setattr(O.bodies[1], "material", None)), connect, "body 1 has no material, must have a MasonryMat"),
+        (lambda: state(1, pos=Vector3(nan, 0, 0)), connect, "body 1 has a place or velocity that is no finite number"),
+        (lambda: state(1, inertia=Vector3(0, 1, 1)), connect, "body 1 has an inertia of 0 kg m²"),
+        (lambda: state(1, mass=nan, inertia=Vector3(nan, 1, 1)), connect, ["mass of nan kg", "inertia of nan kg m²"]),
         (lambda: (joined(), setattr(O.bodies[1].state, "mass", 0)), lambda: criticalTimeStep(), "body 1 has a mass of 0 kg"),
     ],
     "load": [
         (nothing, lambda: MasonryLoad(point=(nan, 0, 0), force=(inf, 0, 0), velocity=nan, direction=(0, 0, 0)),
          ["point must be finite numbers [m]", "force must be finite numbers [N]", "velocity nan m/s", "direction must not be zero"]),
-        (nothing, lambda: MasonryLoad(reaction=5), "MasonryLoad.reaction is read-only"),
-        (loaded, lambda: assign(O.engines[2], "force", (0, 0, nan)), "force must be finite numbers [N]"),
         (lambda: loaded(body=77), step, "MasonryLoad.body 77 does not exist"),
         (lambda: loaded(body=0, driven=True), step, "body 0 is blocked in the driven direction"),
         (lambda: (loaded(), O.bodies.erase(1)), step, "MasonryLoad.body 1 does not exist"),
         (lambda: (deformable(0), setattr(O, "engines", O.engines[:2] + [MasonryLoad(body=1)] + O.engines[2:])), step,
          "MasonryLoad.body 1 is a deformable unit"),
-        (nothing, lambda: MasonryLoad(body=99).displacement(), "MasonryLoad.body 99 does not exist"),
     ],
     "zones": [
         (blocks, lambda: MasonryZones(bodies=[1, 1]), "body 1 stands twice in bodies"),
@@ -294,22 +287,18 @@ CASES = {
         (blocks, lambda: MasonryZones(bodies=[1, 8, 9]).nodesOf(1), ["body 8 does not exist", "body 9 does not exist"]),
         (lambda: O.bodies.append(utils.sphere((0, 0, 0), 1)), lambda: MasonryZones(bodies=[0]).nodesOf(0), "body 0 is no block of MasonryMat"),
         (nothing, lambda: MasonryZones(divisions=[0, 1, 101]), ["divisions 0 must be 1 to 100", "divisions 101 must be 1 to 100"]),
-        (nothing, lambda: MasonryZones(divisions=[1, 1]), "divisions must be three whole numbers"),
         (nothing, lambda: MasonryZones(damping=nan, dampingKind="x", blocked="q", gravity=(0, 0, nan)),
          ["damping nan must be a finite number, 0 to 0.99", "dampingKind 'x' must be", "blocked 'q' must be made of x, y and z", "gravity must be finite numbers"]),
         (lambda: addBlock(box(size=(1, 1, 1e-4)), mat()), lambda: MasonryZones(bodies=[0]).nodesOf(0), "cannot be divided: block has a sliver zone"),
         (deformable, lambda: zones().nodesOf(0), "body 0 is no deformable unit"),
         (deformable, lambda: zones().referencePoint(1, 99), "body 1 has no node 99"),
-        (deformable, lambda: zones().setVelocity(99, (0, 0, 0)), "there is no node 99"),
         (deformable, lambda: zones().setVelocity(0, (nan, 0, 0)), "velocity of a node must be finite numbers [m/s]"),
         (deformable, lambda: assign(zones(), "bodies", [0]), "bodies and divisions cannot change once joints or a run know their nodes"),
-        (deformable, lambda: assign(zones(), "damping", 1), "damping 1 must be 0 to 0.99"),
-        (lambda: laid(zones=MasonryZones(bodies=[1, 8])), lambda: connect(), "MasonryZones: body 8 does not exist"),
+        (lambda: laid(zones=MasonryZones(bodies=[1, 8])), connect, "MasonryZones: body 8 does not exist"),
         (lambda: (deformable(), O.bodies.erase(1)), step, "MasonryZones: body 1 does not exist"),
     ],
     "recorder": [
         (nothing, lambda: MasonryVtkRecorder(directory="", stepPeriod=-1), ["directory must not be empty", "stepPeriod -1 must be at least 0"]),
-        (nothing, lambda: MasonryVtkRecorder(kinds=["bed"]), "MasonryVtkRecorder.kinds is read-only"),
         (joined, lambda: recorder("nowhere"), "cannot write nowhere/blocks_0000.vtu: No such file or directory"),
         (joined, lambda: recorder("/dev/full"), "cannot write /dev/full/blocks_0000.vtu: Not a directory"),
         (joined, lambda: recorder("/proc"), "cannot write /proc/blocks_0000.vtu: No such file or directory"),
@@ -318,69 +307,48 @@ CASES = {
         (lambda: (joined(), os.symlink("/dev/full", "blocks.pvd.new")), lambda: recorder("."), "cannot write ./blocks.pvd.new: No space left on device"),
     ],
     "wall": [
-        (nothing, lambda: wall(length=0.33 / 2), "length 0.165 m is 0.75 units of 0.22 m; it must be whole half units"),
         (nothing, lambda: topped(upTo=0.1), "platen: upTo 0.1 m must be above the bricks, which end at 0.162 m"),
         (nothing, lambda: topped(recorded=0.1), "platen: recorded 0.1 m is not on the platen, which begins at 0.162 m"),
-        (nothing, lambda: wall(name="a/b"), "must be a text that can name a folder"),
-        (nothing, lambda: wall(masonry=lambda: 5), "Scene: materials 5 must be a masonry.materials.Masonry"),
-        (nothing, lambda: materials.Masonry(FrictMat(), {"bed": 5}), ["> must be a MasonryMat", "joints 'bed': 5 must be a MasonryJoint"]),
         (nothing, lambda: materials.Masonry(mat(), {}), "Masonry: joints {} must have 'bed'"),
     ],
     "option": [
-        (joined, lambda: script("wall_comp4", "--divisions", "2"), "--divisions: rigid units are not divided"),
-        (joined, lambda: script("wall_comp4", "--unti", "5"), "unrecognized arguments: --unti 5"),
-        (joined, lambda: script("wall_comp4", "--until"), "argument --until: expected one argument"),
-        (joined, lambda: script("wall_comp4", "--until", "x", "--rate", "0", "--blocks", "soft", "--nonsense"),
+        (joined, said("wall_comp4 --divisions 2"), "--divisions: rigid units are not divided"),
+        (joined, said("wall_comp4 --unti 5"), "unrecognized arguments: --unti 5"),
+        (joined, said("wall_comp4 --until x --rate 0 --blocks soft --nonsense"),
          ["--until: 'x' must be a number", "--rate: 0.0 mm/s must", "--blocks: invalid choice", "unrecognized arguments: --nonsense"]),
-        (joined, lambda: script("wall_comp4", "--rate", "-5", "--until"), ["--rate: -5.0 mm/s must be at least 0.001", "--until: expected one argument"]),
-        (joined, lambda: script("wall_comp4", "--resume", ""), "argument --resume: must not be empty"),
-        (joined, lambda: script("wall_comp4", "--resume", "nowhere"), "--resume: nowhere has no run.checkpoint, which a run leaves unless"),
-        (joined, lambda: script("wall_comp4", "--set", "bed"), "'bed' must read JOINT.PROPERTY=VALUE"),
-        (joined, lambda: script("wall_comp4", "--set", "bed.cohesion=nan"), 'joint "bed": cohesion nan Pa must be a finite number'),
-        (joined, lambda: script("wall_comp4", "--set", "bed.shearTable=1:0,2:0.5:3"), "must be rows as ratio:damage,ratio:damage,..."),
-        (joined, lambda: script("wall_comp4", "--set", "bed.tensionTable=1:0,1:1"), "row 2: ratio 1 must be above 1 of the row before"),
-        (joined, lambda: script("wall_comp4", "--divisions", "3", "--set", "bed.friction=-1", "--set", "x.y=1"),
+        (joined, said("wall_comp4 --resume nowhere"), "--resume: nowhere has no run.checkpoint, which a run leaves unless"),
+        (joined, said("wall_comp4 --set bed"), "'bed' must read JOINT.PROPERTY=VALUE"),
+        (joined, said("wall_comp4 --set bed.tensionTable=1:0,1:1"), "row 2: ratio 1 must be above 1 of the row before"),
+        (joined, said("wall_comp4 --divisions 3 --set bed.friction=-1 --set x.y=1"),
          ["rigid units are not divided", "friction -1 must be at least 0", "no joint 'x'"]),
-        (joined, lambda: script("wall_dry", "--crack-surfaces", "on", "--set", "bed.cohesion=-1"),
+        (joined, said("wall_dry --crack-surfaces on --set bed.cohesion=-1"),
          ["--crack-surfaces on: the bricks are in pieces, and these materials have no joint", "cohesion -1 Pa must be at least 0"]),
-        (joined, lambda: script("wall_dry", "--level", "120"), ["argument --level: invalid choice: ", "120", "(choose from "]),
-        (joined, lambda: script("couplet", "--normal-stress", "0.5"), "argument --normal-stress: 0.5 MPa must be"),
-        (joined, lambda: script("couplet", "--closure", "0"), "argument --closure: 0.0 mm must be"),
-        (joined, lambda: script("couplet", "--normal-stress", "-8"), "pressJoint: -8 MPa crushes the bed joint, whose compressive strength is 7.55 MPa"),
+        (joined, said("couplet --normal-stress -8"), "pressJoint: -8 MPa crushes the bed joint, whose compressive strength is 7.55 MPa"),
     ],
     "output": [
         (joined, lambda: script("wall_comp4", "--out", ""), "argument --out: must not be empty"),
-        (lambda: (joined(), open("file", "w").close()), lambda: script("wall_comp4", "--out", "file"), "/file: File exists"),
-        (lambda: (joined(), open("file", "w").close()), lambda: script("couplet", "--out", "file/below"), "/file/below: Not a directory"),
-        (joined, lambda: script("wall_comp1", "--out", "/proc"), "/proc holds"),
-        (joined, lambda: script("wall_comp6", "--out", "/proc/nowhere"), "--out: cannot write to /proc/nowhere: No such file"),
-        (joined, lambda: script("wall_dry", "--out", "x" * 300), "File name too long"),
-        (lambda: (joined(), os.makedirs("r/curve.csv")), lambda: script("couplet", "--out", "r"), "r holds curve.csv, which no run has left there"),
+        (lambda: (joined(), open("file", "w").close()), said("wall_comp4 --out file"), "/file: File exists"),
+        (lambda: (joined(), open("file", "w").close()), said("couplet --out file/below"), "/file/below: Not a directory"),
+        (joined, said("wall_comp1 --out /proc"), "/proc holds"),
+        (lambda: (joined(), os.makedirs("r/curve.csv")), said("couplet --out r"), "r holds curve.csv, which no run has left there"),
         (nothing, lambda: results.Results("r", ["a"]).checkSpace(1e18, 1e18), "free, this run writes at least 1000000000000.0 MB"),
     ],
     "files": [
-        (nothing, lambda: read(measure.show, "a", "b"), "name one folder of results, for example results/wall_comp4"),
-        (nothing, lambda: read(measure.show, "nowhere"), "cannot read nowhere/run.json: No such file or directory"),
-        (nothing, lambda: read(measure.show, run=""), "run.json: Expecting value: line 1 column 1"),
-        (nothing, lambda: read(measure.show, run="[]"), "run.json: is no record of a run"),
-        (nothing, lambda: read(measure.show, run=b"\xff\xfe"), "cannot read ./run.json: it is no text"),
-        (nothing, lambda: read(measure.show, run="{}"), "not the files of a finished run (KeyError: 'energy_balance_error')"),
-        (nothing, lambda: read(measure.show, run=WALL, curve=None), "cannot read ./curve.csv: No such file or directory"),
-        (nothing, lambda: read(measure.show, run=WALL, curve=""), "curve.csv: there is no row of numbers"),
-        (nothing, lambda: read(measure.show, run=WALL, curve="a,b\r\n1,2\r\n3\r\n"), "curve.csv, line 3: 1 numbers in 2 columns"),
-        (nothing, lambda: read(measure.show, run=WALL, curve="a,b\r\n1,x\r\n3,\r\n"), ["line 2: could not convert string to float: 'x'", "line 3: could not"]),
-        (nothing, lambda: read(measure.show, run=WALL, curve="a,b\r\n1,nan\r\n"), "curve.csv, line 2: a number is not finite"),
-        (nothing, lambda: read(measure.show, run=WALL, curve="a,b\r\n1,2\r\n"), "nothing was pushed in this run"),
-        (nothing, lambda: read(measure.show, run=WALL, curve=CURVE, **{"joints_0000.vtp": "<VTKFile"}), "cannot read ./joints_0000.vtp: it holds no frame"),
-        (nothing, lambda: read(measure.show, run=WALL, curve=CURVE, **{"joints_0000.vtp": b"\x00" * 4096}), "cannot read ./joints_0000.vtp: it holds no frame"),
-        (nothing, lambda: read(figures.draw, run=WALL, curve=CURVE), 'run.json has no entry "figure", which says what to draw'),
+        (nothing, shown("a", "b"), "name one folder of results, for example results/wall_comp4"),
+        (nothing, shown("nowhere"), "cannot read nowhere/run.json: No such file or directory"),
+        (nothing, shown(run=""), "run.json: Expecting value: line 1 column 1"),
+        (nothing, shown(run="{}"), "not the files of a finished run (KeyError: 'energy_balance_error')"),
+        (nothing, shown(curve=None), "cannot read ./curve.csv: No such file or directory"),
+        (nothing, shown(curve=""), "curve.csv: there is no row of numbers"),
+        (nothing, shown(curve="a,b\r\n1,2\r\n3\r\n"), "curve.csv, line 3: 1 numbers in 2 columns"),
+        (nothing, shown(curve="a,b\r\n1,x\r\n3,\r\n"), ["line 2: could not convert string to float: 'x'", "line 3: could not"]),
+        (nothing, shown(curve="a,b\r\n1,nan\r\n"), "curve.csv, line 2: a number is not finite"),
+        (nothing, shown(curve="a,b\r\n1,2\r\n"), "nothing was pushed in this run"),
+        (nothing, shown(curve=CURVE, **{"joints_0000.vtp": "<VTKFile"}), "cannot read ./joints_0000.vtp: it holds no frame"),
         (nothing, lambda: readFrame(".", "joints"), "no file joints_*.vt? in ."),
     ],
 }
 # fmt: on
-STAGES = [{"load": ["push", "top", ""], "first_row": 0}]
-WALL = json.dumps({"energy_balance_error": 0, "wall": {"courses": 2}, "stages": STAGES})
-CURVE = "time_s,displacement_mm,base_shear_kN,top_shear_kN\r\n0,0,1,1\r\n1,1,2,2\r\n"
 
 
 def snapshot():
@@ -388,27 +356,23 @@ def snapshot():
     kinds = [(type(e).__name__, e.label) for e in O.engines]
     motion = lambda s: (s.pos, s.ori, s.vel, s.mass, s.blockedDOFs)
     made = lambda i: (i.id1, i.id2, i.geom.jumps, i.phys.stress, i.phys.dissipated)
-    bodies, joints = [motion(b.state) for b in O.bodies], [
-        made(i) for i in O.interactions
-    ]
+    bodies = [motion(b.state) for b in O.bodies]
+    joints = [made(i) for i in O.interactions]
     return repr((O.iter, O.time, O.dt, kinds, bodies, joints))
 
 
-@pytest.mark.parametrize(
-    "given, act, message",
-    [
-        pytest.param(*case, id=f"{subject}-{number}")
-        for subject, cases in CASES.items()
-        for number, case in enumerate(cases)
-    ],
-)
-def test_bad_input_is_refused_and_nothing_is_lost(
-    given, act, message, tmp_path, monkeypatch
-):
+EVERY = {}
+for subject, cases in CASES.items():
+    EVERY |= {f"{subject}-{number}": case for number, case in enumerate(cases)}
+
+
+@mark.parametrize("case", EVERY)
+def test_bad_input_is_refused_and_nothing_is_lost(case, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
+    given, act, message = EVERY[case]
     given()
     before = snapshot()
-    with pytest.raises((ValueError, RuntimeError)) as refused:
+    with raises((ValueError, RuntimeError)) as refused:
         act()
     said = str(refused.value)
     for part in [message] if isinstance(message, str) else message:
@@ -420,21 +384,18 @@ def test_bad_input_is_refused_and_nothing_is_lost(
 
 
 def joint(**changes):
-    """Two bricks with a joint of these properties."""
     blocks()
     engines([MasonryJoint(**changes)])
     connect()
 
 
 def unit(**changes):
-    """Two bricks of this material."""
     pile(material=mat(**changes))
     engines([MasonryJoint()])
     connect()
 
 
 def bricks(size, *more):
-    """A brick on another of this size, and others."""
     laid((0, 0, 0), (0, 0, size[2]), *more, size=size)
     connect()
 
@@ -460,13 +421,10 @@ HINTS = [
     (lambda: bricks(UNIT, (5, 0, 0), (6, 0, 0)), "no joint holds bodies [2, 3]"),
     (lambda: unit(young=4800, label="brick"), 'MasonryMat "brick": young 4800 Pa: is it in Pa, not MPa?'),
     (lambda: unit(density=1.8), "density 1.8 kg/m³ weighs 17.658 N/m³: is it in kg/m³?"),
-    (lambda: unit(density=1.8e6), "density 1.8e+06 kg/m³ weighs 1.7658e+07 N/m³: is it in kg/m³?"),
     (lambda: joint(tensileStrength=0.1, cohesion=0.11), ["tensileStrength 0.1 Pa: is it in Pa, not MPa?", "cohesion 0.11 Pa: is it"]),
-    (lambda: joint(compressiveStrength=7.55), 'MasonryJoint "bed": compressiveStrength 7.55 Pa: is it in Pa, not MPa?'),
     (lambda: joint(friction=30, residualFriction=30, tensileStrength=0), 'MasonryJoint "bed": friction 30: is it a tangent, not an angle in degrees?'),
     (lambda: joint(cohesion=1e12, tensileStrength=1e12), "cohesion 1e+12 Pa: is it in Pa, not MPa?"),
     (lambda: joint(normalStiffness=335, shearStiffness=144, cap=False), ["normalStiffness 335 Pa/m: is it in Pa/m, not N/mm³?", "shearStiffness 144"]),
-    (lambda: joint(modeIFractureEnergy=0.016), "modeIFractureEnergy 0.016 J/m²: is it in J/m², not N/mm?"),
     (lambda: joint(modeIIFractureEnergy=1.6e8), "modeIIFractureEnergy 1.6e+08 J/m²: is it in J/m²"),
     (lambda: joint(shearStiffnessLoss=0.5), 'MasonryJoint "bed" follows the law "softening": no effect of shearStiffnessLoss'),
     (lambda: joint(initialClosingStiffness=1e10, closureLimit=1e-4, tensileStrength=0, compressionStiffnessLoss=0), "no effect of compressionStiffnessLoss, initialClosingStiffness, closureLimit"),
@@ -480,7 +438,7 @@ HINTS = [
 # fmt: on
 
 
-@pytest.mark.parametrize("act, hints", HINTS)
+@mark.parametrize("act, hints", HINTS)
 def test_what_may_be_a_slip_is_reported(act, hints, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     try:
@@ -493,12 +451,10 @@ def test_what_may_be_a_slip_is_reported(act, hints, tmp_path, monkeypatch, capsy
         assert any(hint in line for line in warnings), said
 
 
-def test_gaps_that_are_meant_are_left():
+def test_gaps_that_are_meant_are_left_and_a_tolerance_of_the_users_makes_the_joint():
     laid((0, 0, 0), (0, 0, 0.081), (0.222, 0, 0))
     assert len(connect(allowGaps=True)) == 1
-
-
-def test_a_tolerance_of_the_users_makes_the_joint():
+    O.reset()
     laid((0, 0, 0), (0, 0, 0.082))
     assert len(connect(tolerance=0.005)) == 1
 
@@ -506,28 +462,23 @@ def test_a_tolerance_of_the_users_makes_the_joint():
 # -- as a user meets it -----------------------------------------------------------------------------------------------
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    "name, words, message",
-    [
-        ("wall_comp4", ["--rate", "0"], "--rate: 0.0 mm/s must be at least"),
-        ("couplet", ["--normal-stress", "-8"], "crushes the bed joint"),
-    ],
-)
-def test_the_command_line_ends_with_status_2_and_leaves_what_is_there(
-    tmp_path, name, words, message
-):
-    before = tmp_path / "results" / name / "curve.csv"
+WRONG = {"--rate=0": "--rate: 0.0 mm/s must", "--normal-stress=-8": "crushes the bed"}
+
+
+@mark.slow
+@mark.parametrize("word", WRONG)
+def test_the_command_line_ends_with_status_2_and_leaves_files(tmp_path, word):
+    before = tmp_path / "results" / "couplet" / "curve.csv"
     before.parent.mkdir(parents=True)
     before.write_text("of another run")
-    run = runProgram(name, *words, cwd=tmp_path, check=False)
+    run = runProgram("couplet", word, cwd=tmp_path, check=False)
     assert run.returncode == 2
-    assert message in run.stderr and "Traceback" not in run.stderr
+    assert WRONG[word] in run.stderr and "Traceback" not in run.stderr
     assert before.read_text() == "of another run"
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize(
+@mark.slow
+@mark.parametrize(
     "name, words, most, lost",
     [
         ("couplet", ["--no-vtk"], 100e3, "curve.csv"),  # in the middle of the run
@@ -537,28 +488,22 @@ def test_the_command_line_ends_with_status_2_and_leaves_what_is_there(
 )
 def test_a_disk_that_fills_ends_the_run_in_order(tmp_path, name, words, most, lost):
     limit = (int(most), int(most))
-    run = runProgram(
-        name,
-        *words,
-        "--out",
-        "results",
-        check=False,
-        cwd=tmp_path,
-        env={**os.environ, "IPYTHONDIR": str(tmp_path)},  # YADE's shell keeps a history
-        # files that may not grow fail as on a full disk do, with another reason
-        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, limit),
-    )
+    env = {**os.environ, "IPYTHONDIR": str(tmp_path)}  # YADE's shell keeps a history
+    # files that may not grow fail as on a full disk do, with another reason
+    small = lambda: resource.setrlimit(resource.RLIMIT_FSIZE, limit)
+    around = dict(check=False, cwd=tmp_path, env=env, preexec_fn=small)
+    run = runProgram(name, *words, "--out", "results", **around)
     assert run.returncode == 1, run.stdout + run.stderr
     assert "Traceback" not in run.stderr
+    said = f"{lost}: File too large; what was written before is kept"
     if lost == "curve.png":
-        assert "the figures are not drawn; what was written before is" in run.stderr
-    else:
-        assert f"{lost}: File too large; what was written before is kept" in run.stderr
-    curve = reading.readCurve(str(tmp_path / "results"))  # whole lines only
+        said = "the figures are not drawn; what was written before is"
+    assert said in run.stderr
+    out = tmp_path / "results"
+    curve = readCurve(out)  # whole lines only
     assert all(len(column) == len(curve["time_s"]) for column in curve.values())
-    assert reading.readRun(str(tmp_path / "results"))["steps"] > 0
-    assert not (tmp_path / "results" / lost).exists() or lost == "curve.csv"
+    assert readRun(out)["steps"] > 0
+    assert not (out / lost).exists() or lost == "curve.csv"
     if "--no-vtk" not in words:
-        for kind in ("blocks", "joints"):
-            assert len(list((tmp_path / "results").glob(f"{kind}_*"))) == 1
-        assert len(readFrame(str(tmp_path / "results"), "joints")["cells"]) > 100
+        assert len([*out.glob("blocks_*")]) == len([*out.glob("joints_*")]) == 1
+        assert len(readFrame(out, "joints")["cells"]) > 100

@@ -16,10 +16,10 @@ spec.loader.exec_module(host)
 KNOWN = {known.version: known for known in host.knownYades()}
 
 
-@pytest.mark.slow
+@mark.slow
 def test_the_yade_that_is_installed_fits_as_its_own_version(capsys):
     folder = os.path.dirname(glob.glob("/usr/lib/*/yade-double/libyade.so")[0])
-    with pytest.raises(SystemExit) as end:
+    with raises(SystemExit) as end:
         host.main(folder)
     said = capsys.readouterr().out
     assert end.value.code == 0 and f"fits: as {yade.config.version}" in said, said
@@ -38,7 +38,7 @@ def test_three_releases_differ_in_what_is_known_of_them():
     ]
 
 
-@pytest.mark.parametrize("version", KNOWN)
+@mark.parametrize("version", KNOWN)
 def test_each_fault_in_each_class_is_shown_with_its_name(version):
     known = KNOWN[version]
     assert list(known.differences(known)) == []

@@ -25,7 +25,7 @@ def damped(case, functors=False):
     return interactions
 
 
-@pytest.mark.parametrize(
+@mark.parametrize(
     "case, functors",
     [(case, False) for case in CASES] + [("rigid", True), ("deformable", True)],
 )
@@ -92,7 +92,7 @@ def test_a_checkpoint_of_another_scene_is_refused_and_changes_nothing(tmp_path):
         run(20)
         change(interactions)
         before = bits(interactions)
-        with pytest.raises(ValueError, match=f"{path} is of another scene: {message}"):
+        with raises(ValueError, match=f"{path} is of another scene: {message}"):
             loadCheckpoint(path)
         assert bits(interactions) == before
 
@@ -150,9 +150,9 @@ def test_a_damaged_file_is_refused_in_words(saved):
     ):
         open(path, "wb").write(wrong)
         for read in (loadCheckpoint, readCheckpoint):
-            with pytest.raises(ValueError, match=f"{path} {message}"):
+            with raises(ValueError, match=f"{path} {message}"):
                 read(path)
-    with pytest.raises(FileNotFoundError):
+    with raises(FileNotFoundError):
         loadCheckpoint(path + "x")
 
 
@@ -170,7 +170,7 @@ def sealed(data, name, change):
     return data + struct.pack("<Q", sum)
 
 
-@pytest.mark.parametrize(
+@mark.parametrize(
     "name, message",
     [
         ("scene.step", "does not fit this scene, at 'scene.step'"),
@@ -179,9 +179,7 @@ def sealed(data, name, change):
         ("engine 4 MasonryIntegrator.damping", "damping 1e\\+300 must be 0 to 0.99"),
     ],
 )
-def test_hostile_numbers_under_a_right_sum_are_refused_and_change_nothing(
-    saved, name, message
-):
+def test_hostile_numbers_under_a_right_sum_are_refused(saved, name, message):
     path, data = saved
     value = {"scene.time": float("nan"), "scene.step": -7.0}.get(name, 1e300)
     change = lambda old: old[:-8] + struct.pack("<d", value)
@@ -189,7 +187,7 @@ def test_hostile_numbers_under_a_right_sum_are_refused_and_change_nothing(
     interactions = panel(False)
     run(30)
     before = bits(interactions)
-    with pytest.raises(ValueError, match=message):
+    with raises(ValueError, match=message):
         loadCheckpoint(path)
     assert bits(interactions) == before
     run(5)
@@ -198,7 +196,7 @@ def test_hostile_numbers_under_a_right_sum_are_refused_and_change_nothing(
 def test_text_that_is_no_json_is_refused(saved):
     path, data = saved
     open(path, "wb").write(sealed(data, "extra", lambda old: b"{" * len(old)))
-    with pytest.raises(ValueError, match=f"{path} "):
+    with raises(ValueError, match=f"{path} "):
         readCheckpoint(path)
 
 
@@ -207,15 +205,15 @@ def test_a_disk_that_is_full_leaves_the_old_checkpoint(saved, monkeypatch):
     run(10)
     with monkeypatch.context() as full:
         full.setattr(os, "fsync", noSpace)
-        with pytest.raises(OSError, match="No space left on device"):
+        with raises(OSError, match="No space left on device"):
             saveCheckpoint(path)
     assert open(path, "rb").read() == data and not os.path.lexists(path + ".new")
     saveCheckpoint(path)
     assert readCheckpoint(path) is None
 
 
-@pytest.mark.parametrize("end", ["", ".new"])
-@pytest.mark.parametrize("kind", ["symbolic link", "regular file", "hard link"])
+@mark.parametrize("end", ["", ".new"])
+@mark.parametrize("kind", ["symbolic link", "regular file", "hard link"])
 def test_a_checkpoint_is_written_through_no_link_and_into_no_pipe(saved, end, kind):
     path, data = saved
     other = path + ".other"
@@ -232,7 +230,7 @@ def test_a_checkpoint_is_written_through_no_link_and_into_no_pipe(saved, end, ki
     if kind == "hard link" and end == "":
         saveCheckpoint(path)  # it takes the place of one of both names
     else:
-        with pytest.raises(OSError, match=kind):
+        with raises(OSError, match=kind):
             saveCheckpoint(path)
         assert os.path.lexists(path + end)
     assert open(other, "rb").read() == b"of the user"
@@ -241,11 +239,11 @@ def test_a_checkpoint_is_written_through_no_link_and_into_no_pipe(saved, end, ki
 def test_a_state_that_has_left_finite_numbers_is_not_saved(saved):
     path, data = saved
     O.bodies[1].state.vel = Vector3(0, float("nan"), 0)
-    with pytest.raises(ValueError, match="left finite numbers, at 'scene.bodies'"):
+    with raises(ValueError, match="left finite numbers, at 'scene.bodies'"):
         saveCheckpoint(path)
-    with pytest.raises(ValueError):
+    with raises(ValueError):
         saveCheckpoint(path, float("nan"))
-    with pytest.raises(ValueError, match="extra {1, 2} must be what JSON can hold"):
+    with raises(ValueError, match="extra {1, 2} must be what JSON can hold"):
         saveCheckpoint(path, {1, 2})
     assert open(path, "rb").read() == data
     assert os.listdir(os.path.dirname(path)) == ["c"]

@@ -29,7 +29,7 @@ def pair(connectors):
     return [O.bodies[i].state for i in ids[:2]]
 
 
-@pytest.mark.parametrize("case", BARS)
+@mark.parametrize("case", BARS)
 def test_the_force_of_a_bar(case):
     strength, breaking, compression, rest, longer, force = BARS[case]
     middles = [Vector3(x + UNIT[0] / 2, UNIT[1] / 2, UNIT[2] / 2) for x in (0, 1)]
@@ -37,9 +37,9 @@ def test_the_force_of_a_bar(case):
     _, other = pair(ties)
     other.pos += Vector3(longer, 0, 0)
     O.step()
-    assert ties.forces[0] == pytest.approx(force, rel=1e-9, abs=1e-6)
+    assert ties.forces[0] == approx(force, rel=1e-9, abs=1e-6)
     for body, sign in ((0, 1), (1, -1)):
-        assert O.forces.f(body, True)[0] == pytest.approx(sign * force, rel=1e-9, abs=1e-6)  # fmt: skip
+        assert O.forces.f(body, True)[0] == approx(sign * force, rel=1e-9, abs=1e-6)
 
 
 def test_springs_between_two_bricks_turn_both():
@@ -52,8 +52,8 @@ def test_springs_between_two_bricks_turn_both():
     O.step()
     lift = 0.5 * turn * kz  # [N], at arms of 0.5 m
     torques = [O.forces.t(body, True)[1] for body in (0, 1)]
-    assert O.forces.f(1, True)[2] == pytest.approx(-lift, rel=1e-5)
+    assert O.forces.f(1, True)[2] == approx(-lift, rel=1e-5)
     # about y, z × x: a force up on the first, right of its middle, turns it by -0.5 lift
-    assert torques[0] == pytest.approx(rotational * turn - 0.5 * lift, rel=1e-5)
-    assert torques[1] == pytest.approx(-rotational * turn - 0.5 * lift, rel=1e-5)
-    assert balance()["elastic_connectors"] == pytest.approx(0.5 * (rotational * turn**2 + lift**2 / kz), rel=1e-5)  # fmt: skip
+    assert torques[0] == approx(rotational * turn - 0.5 * lift, rel=1e-5)
+    assert torques[1] == approx(-rotational * turn - 0.5 * lift, rel=1e-5)
+    assert balance()["elastic_connectors"] == approx(0.5 * (rotational * turn**2 + lift**2 / kz), rel=1e-5)  # fmt: skip

@@ -4,7 +4,7 @@
 from hosted import *
 from motion_cases import gravityWork
 
-WAYS = pytest.mark.parametrize("direction", ["rigid", "deformable", "functors"])
+WAYS = mark.parametrize("direction", ["rigid", "deformable", "functors"])
 
 
 def stack(direction, joint=None, damping=0.5, free=(1, 2), blocked="", **around):
@@ -21,10 +21,9 @@ def stack(direction, joint=None, damping=0.5, free=(1, 2), blocked="", **around)
 
 @WAYS
 def test_gravity_that_is_raised_step_by_step_does_half_the_work(direction):
-    """A spring under a load that grows from zero stores half of load times way; the load does no more."""
     half, counted = gravityWork(direction)
-    assert counted == pytest.approx(half, rel=2e-3)
-    assert abs(balance()["error"]) < 1e-9
+    assert counted == approx(half, rel=2e-3)
+    assert imbalance() < 1e-9
 
 
 @WAYS
@@ -43,7 +42,7 @@ def test_the_balance_closes_while_gravity_turns(direction):
         assert ofKind(MasonryZones).gravity == gravity
 
 
-@pytest.mark.parametrize("direction", ["rigid", "functors"])
+@mark.parametrize("direction", ["rigid", "functors"])
 def test_blocks_moved_before_the_first_step_fall_from_where_they_are(direction):
     """connect() refuses blocks that were moved before it, so the joints are those of the reference."""
     dry = MasonryJoint(tensileStrength=0, cohesion=0, friction=0, residualFriction=0)
@@ -57,13 +56,12 @@ def test_blocks_moved_before_the_first_step_fall_from_where_they_are(direction):
     ways = [z - s.pos[2] + O.dt * s.vel[2] for s, z in zip(bodies, start)]
     fallen, b = sum(s.mass * z for s, z in zip(bodies, ways)), balance()
     assert fallen > 0
-    assert b["gravity"] == pytest.approx(G * fallen, rel=1e-9)
+    assert b["gravity"] == approx(G * fallen, rel=1e-9)
     assert abs(b["error"]) < 1e-9
 
 
-@pytest.mark.parametrize("direction", ["rigid", "functors"])
+@mark.parametrize("direction", ["rigid", "functors"])
 def test_held_blocks_that_go_down_do_the_work_of_their_weight(direction):
-    """Whatever holds them takes that work, so that the balance closes."""
     stack(direction, gravity=(0, 0, -G), blocked="xyzXYZ")
     O.dt, bodies = 1e-5, [O.bodies[k].state for k in range(3)]
     for state in bodies:
@@ -72,15 +70,15 @@ def test_held_blocks_that_go_down_do_the_work_of_their_weight(direction):
     # the balance belongs to the beginning of the last step
     down, b = 0.05 * (O.time - O.dt), balance()
     whole = G * sum(state.mass for state in bodies)
-    assert b["gravity"] == pytest.approx(whole * down, rel=1e-9)
+    assert b["gravity"] == approx(whole * down, rel=1e-9)
     # what holds them acts along the velocity, which is half a step beside the places
     half = 0.5 * 0.05 * O.dt * whole
-    assert b["external"] == pytest.approx(-whole * down, abs=1.001 * half)
+    assert b["external"] == approx(-whole * down, abs=1.001 * half)
     for state in bodies:
         state.vel = Vector3.Zero
     run(20)
     stayed = 0.05 * 500 * O.dt  # when they stand again, their work stays
-    assert balance()["gravity"] == pytest.approx(whole * stayed, rel=1e-9)
+    assert balance()["gravity"] == approx(whole * stayed, rel=1e-9)
 
 
 def test_deformable_units_know_one_gravity():
@@ -95,12 +93,12 @@ def test_deformable_units_know_one_gravity():
     zones.gravity = (0, 0, -1)
     refused = r"MasonryZones.gravity \(0, 0, -1\) m/s² is not that of the integrator, \(1, 0, -2\)"
     refused += ".* set the gravity of the integrator alone"
-    with pytest.raises(ValueError, match=refused):
+    with raises(ValueError, match=refused):
         O.step()
 
 
 @WAYS
-@pytest.mark.parametrize("through", ["checkpoint", "file"])
+@mark.parametrize("through", ["checkpoint", "file"])
 def test_the_work_goes_on_after_saving_and_loading(direction, through, tmp_path):
     ends = []
     for interrupted in (False, True):
@@ -114,7 +112,7 @@ def test_the_work_goes_on_after_saving_and_loading(direction, through, tmp_path)
         run(200)
         ends.append(balance())
     if through == "file" or direction == "functors":  # sums in another order
-        assert ends[0] == pytest.approx(ends[1], rel=1e-9, abs=1e-12)
+        assert ends[0] == approx(ends[1], rel=1e-9, abs=1e-12)
     else:
         assert ends[0] == ends[1]
     assert abs(ends[1]["error"]) < 1e-9
@@ -130,5 +128,5 @@ def test_a_load_on_a_block_that_vibrates_does_force_times_displacement(direction
         O.step()
         b = balance()
         assert abs(b["error"]) < 1e-6  # round-off of small displacements
-        assert b["external"] == pytest.approx(-500 * before, rel=1e-6, abs=1e-12)
+        assert b["external"] == approx(-500 * before, rel=1e-6, abs=1e-12)
     assert b["external"] > 1e-5

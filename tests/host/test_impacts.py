@@ -9,14 +9,13 @@ B, H = 0.25, 1.0  # of a stack [m]
 
 
 def stack(count=3, inPlane=False, law="softening", restitution=0.0, step=0.5):
-    """Blocks one upon the other."""
     O.reset()
     fix(box((-1, -1, -0.2), (2 + B, 2 + B, 0.2), mat()))
     for k in range(count):
         box((0, 0, k * H / count), (B, B, H / count), mat(), inPlane=inPlane)
     engines([dry(1e9, law=law, restitution=restitution)], damping=0)
     connect()
-    engine("joints").impacts = True
+    loop().impacts = True
     O.dt = step * criticalTimeStep()[0]
 
 
@@ -34,9 +33,8 @@ def isPlane():
 
 
 def untilImpact():
-    """Steps until one of them has taken energy, half of whose work is left."""
-    taken = engine("joints").impactWork
-    while engine("joints").impactWork == taken:
+    taken = loop().impactWork
+    while loop().impactWork == taken:
         O.step()
 
 
@@ -49,7 +47,7 @@ CASES = {
 }
 
 
-@pytest.mark.parametrize("size", [(0.25, 0.5), (0.25, 1.0), (0.25, 2.0)], ids=str)
+@mark.parametrize("size", [(0.25, 0.5), (0.25, 1.0), (0.25, 2.0)], ids=str)
 def test_a_block_that_rocks_keeps_what_that_of_housner_keeps(size):
     for points, least, most in ((3, -0.005, 0.015), (8, -0.005, 0.07)):
         rigid, kept = restitution(size, restitution=0, points=points)
@@ -58,7 +56,7 @@ def test_a_block_that_rocks_keeps_what_that_of_housner_keeps(size):
     assert now["impacts"] > 0 and abs(now["error"]) < 1e-4
 
 
-@pytest.mark.parametrize("share", [0.0, 0.3, 0.6, 1.0])
+@mark.parametrize("share", [0.0, 0.3, 0.6, 1.0])
 def test_a_block_that_lands_on_its_face_leaves_with_its_restitution(share):
     step, speed = 0.02, 0.1  # of the largest; [m/s]
     stack(count=1, restitution=share, step=step)
@@ -69,31 +67,31 @@ def test_a_block_that_lands_on_its_face_leaves_with_its_restitution(share):
     ofKind(MasonryEnergy).given()
     O.run(2000, True)
     # in the step in which they meet the joint takes a little up, and gives it back
-    assert state.vel[2] == pytest.approx(speed * share, abs=step * speed)
-    assert abs(balance()["error"]) < 1e-3
+    assert state.vel[2] == approx(speed * share, abs=step * speed)
+    assert imbalance() < 1e-3
 
 
-@pytest.mark.parametrize("case", CASES)
-@pytest.mark.parametrize("step", [pytest.param(0.1, marks=pytest.mark.slow), 0.4, 0.8])
+@mark.parametrize("case", CASES)
+@mark.parametrize("step", [pytest.param(0.1, marks=mark.slow), 0.4, 0.8])
 def test_impacts_never_give_energy(case, step):
     for seed in range(3):
         # blocks that turn far have an error of the balance without impacts, too
         stack(step=step, **{**CASES[case], "restitution": 1.0})
         for part in range(20):
             shake(0.05, seed + 10 * part)
-        without = abs(balance()["error"])
+        without = imbalance()
         stack(step=step, **CASES[case])
         most = fallen = 0
         for part in range(20):
             shake(0.05, seed + 10 * part)
-            now = engine("joints").impactWork
+            now = loop().impactWork
             fallen, most = max(fallen, most - now), max(most, now)
         now = balance()
         assert most > 0.2 and fallen < 0.01 * most
         assert abs(now["error"]) < max(3e-3, 1.5 * without)
 
 
-@pytest.mark.parametrize("case", CASES)
+@mark.parametrize("case", CASES)
 def test_threads_and_a_checkpoint_change_no_bit(case, tmp_path):
     found = []
     for threads in (1, 2):
@@ -122,7 +120,7 @@ def test_what_is_pressed_or_bonded_has_no_impacts():
         connect()
         O.dt = 0.5 * criticalTimeStep()[0]
         run(500)
-        engine("integrator").damping, engine("joints").impacts = 0, True
+        engine("integrator").damping, loop().impacts = 0, True
         O.bodies[block].state.vel = Vector3(0, 0, -speed)
         engine("energy").given()
         run(1000)
@@ -135,11 +133,11 @@ def test_without_impacts_nothing_is_taken_and_the_last_half_is_counted():
     stack()
     shake(0.3)
     untilImpact()
-    taken = engine("joints").impactWork
-    engine("joints").impacts = False
+    taken = loop().impactWork
+    loop().impacts = False
     O.step()
-    assert engine("joints").impactWork != taken
-    taken = engine("joints").impactWork
+    assert loop().impactWork != taken
+    taken = loop().impactWork
     shake(0.5)
-    assert engine("joints").impactWork == taken
-    assert abs(balance()["error"]) < 1e-3
+    assert loop().impactWork == taken
+    assert imbalance() < 1e-3

@@ -17,10 +17,6 @@ def couplets(count, joint):
     return made
 
 
-def loop():
-    return ofKind(MasonryJointLoop)
-
-
 def stresses(made):
     return [[tuple(s) for s in i.phys.stress] for i in made]
 
@@ -42,7 +38,7 @@ OTHERS = dict(name="other", tensileStrength=0.05e6, cap=False)
 OTHERS["tensionTable"] = [(1, 0), (40, 1)]
 
 
-@pytest.mark.parametrize("name", OTHERS)
+@mark.parametrize("name", OTHERS)
 def test_other_values_are_another_group(name):
     couplets(40, MasonryJoint)
     assert loop().groups == 1
@@ -62,7 +58,7 @@ def test_a_later_change_of_one_object_acts_on_its_own_joints_alone():
     damage = [max(d[0] for d in i.phys.damage) for i in made]
     assert damage[0] > 0.1 < damage[7] < damage[0] - 0.1
     for n in range(40):
-        assert n == 7 or damage[n] == pytest.approx(damage[0], rel=1e-9)
+        assert n == 7 or damage[n] == approx(damage[0], rel=1e-9)
     made[7].phys.joint.tensileStrength = 0.10e6
     assert loop().groups == 1
     O.run(2, True)

@@ -26,30 +26,27 @@ def block(width, height, plane=True, kind=None):
 
 
 def sideways(a, direction=(1, 0, 0)):
-    """Factor of a horizontal acceleration on gravity."""
     return a.largest(a.weights(G * np.array(direction)), a.weights((0, 0, -G)))
 
 
 # -- closed forms ------------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("plane", [True, False])
-@pytest.mark.parametrize("height, friction", [(1.0, 0.7), (0.2, 0.4), (0.25, 2.0)])
-def test_a_block_tips_at_its_slenderness_or_slides_at_its_friction(
-    plane, height, friction
-):
+@mark.parametrize("plane", [True, False])
+@mark.parametrize("height, friction", [(1.0, 0.7), (0.2, 0.4), (0.25, 2.0)])
+def test_a_block_tips_or_slides_as_statics_say(plane, height, friction):
     bound = sideways(block(0.25, height, plane, dry(friction)))
-    assert bound.factor == pytest.approx(min(0.25 / height, friction), rel=1e-6)
+    assert bound.factor == approx(min(0.25 / height, friction), rel=1e-6)
     assert bound.exact == (0.25 / height < friction)
     assert bound.slides == (0.25 / height > friction)
     assert list(bound.joints()) == ["opens" if bound.exact else "slides"]
 
 
-@pytest.mark.parametrize("angle", [0, 10, 22.5, 37, 45])
+@mark.parametrize("angle", [0, 10, 22.5, 37, 45])
 def test_friction_in_space_is_round(angle):
     direction = (math.cos(math.radians(angle)), math.sin(math.radians(angle)), 0)
     bound = sideways(block(0.3, 0.1, False, dry(0.4)), direction)
-    assert bound.factor == pytest.approx(0.4, rel=2e-3)
+    assert bound.factor == approx(0.4, rel=2e-3)
     assert bound.factor >= 0.4 * (1 - 1e-6)  # from above
 
 
@@ -59,19 +56,26 @@ def test_tension_cohesion_and_crushing_are_those_of_the_joint():
     a = block(0.25, 0.5, True, bond)
     dead, top = a.weights((0, 0, -G)), (0.125, 0.15, 0.5)
     lifted = a.largest(a.force(1, (0, 0, 1), top), dead)
-    assert lifted.factor == pytest.approx(weight + 0.1e6 * area, rel=1e-6)
-    assert lifted.powers["tension"] == pytest.approx(0.1e6 * area, rel=1e-6)
+    assert lifted.factor == approx(weight + 0.1e6 * area, rel=1e-6)
+    assert lifted.powers["tension"] == approx(0.1e6 * area, rel=1e-6)
     slid = a.largest(a.force(1, (1, 0, 0), (0.125, 0.15, 0.0)), dead)
-    assert slid.factor == pytest.approx(0.3e6 * area + 0.5 * weight, rel=1e-6)
+    assert slid.factor == approx(0.3e6 * area + 0.5 * weight, rel=1e-6)
     assert not slid.exact and slid.slides
-    with pytest.raises(Refused, match="nothing gives way, however large the load is"):
+    with raises(Refused, match="nothing gives way, however large the load is"):
         a.largest(a.force(1, (0, 0, -1), top), dead)
     O.reset()
-    soft = dry(0.5, tensileStrength=0.1e6, cohesion=0.3e6, cap=True, compressiveStrength=2e6,
-                 peakRatio=2, compressiveFractureEnergy=1e6)  # fmt: skip
+    soft = dry(
+        0.5,
+        tensileStrength=0.1e6,
+        cohesion=0.3e6,
+        cap=True,
+        compressiveStrength=2e6,
+        peakRatio=2,
+        compressiveFractureEnergy=1e6,
+    )
     a = block(0.25, 0.5, True, soft)
     crushed = a.largest(a.force(1, (0, 0, -1), top), a.weights((0, 0, -G)))
-    assert crushed.factor == pytest.approx(2e6 * area - weight, rel=1e-6)
+    assert crushed.factor == approx(2e6 * area - weight, rel=1e-6)
     assert list(crushed.joints()) == ["crushes"]
 
 
@@ -89,8 +93,8 @@ def test_a_support_that_settles_keeps_its_least_reaction():
     dead[1] = 0
     up = a.force(1, (0, 0, 1))
     # about the left and the right edge of the support at the left, with the reaction at an end of the other
-    assert a.smallest(up, dead).factor == pytest.approx(weight * 0.4 / 0.9, rel=1e-6)
-    assert a.largest(up, dead).factor == pytest.approx(weight * 0.5 / 0.9, rel=1e-6)
+    assert a.smallest(up, dead).factor == approx(weight * 0.4 / 0.9, rel=1e-6)
+    assert a.largest(up, dead).factor == approx(weight * 0.5 / 0.9, rel=1e-6)
 
 
 def arch(stones, ratio, friction=0.7, end=math.pi):
@@ -113,20 +117,19 @@ def arch(stones, ratio, friction=0.7, end=math.pi):
     return limit.read()
 
 
-@pytest.mark.parametrize("stones, least", [(7, 0.09570), (16, 0.10708)])
+@mark.parametrize("stones, least", [(7, 0.09570), (16, 0.10708)])
 def test_a_semicircular_arch_needs_its_thickness(stones, least):
     stands = arch(stones, 1.002 * least)
     assert sideways(stands).factor < 0.005
     O.reset()
     thin = arch(stones, 0.998 * least)
-    with pytest.raises(Refused, match=r"does not stand under its dead loads alone: body \d+ at \(.*\) m moves first"):  # fmt: skip
+    with raises(Refused, match=r"does not stand under its dead loads alone: body \d+ at \(.*\) m moves first"):  # fmt: skip
         sideways(thin)
 
 
 def test_an_arch_of_seven_stones_is_pushed_over():
-    """Oppenheim (1992) gives 0.37."""
     bound = sideways(arch(7, 0.15, 0.7, math.radians(157.5)))
-    assert bound.factor == pytest.approx(0.3736, abs=1e-4)
+    assert bound.factor == approx(0.3736, abs=1e-4)
     assert bound.exact and (bound.joints() == "opens").sum() == 4
 
 
@@ -141,48 +144,45 @@ def wall(courses, units, friction):
     return assembly(boxes, dry(friction))
 
 
-@pytest.mark.parametrize(
+@mark.parametrize(
     "courses, units, friction, factor",
     [(10, 5, 0.65, 0.5383), (10, 5, 0.40, 0.4000), (20, 10, 0.65, 0.4655)],
 )
 def test_dry_walls_fall_where_another_programme_says(courses, units, friction, factor):
     bound = sideways(wall(courses, units, friction))
-    assert bound.factor == pytest.approx(factor, abs=1e-4)
+    assert bound.factor == approx(factor, abs=1e-4)
     assert bound.slides and not bound.exact
 
 
 # -- against itself ----------------------------------------------------------------------------------------------------
 
 
-def test_what_is_not_solved_in_time_is_refused():
+def test_a_solver_that_is_late_missing_or_dies_is_one_sentence(monkeypatch):
     a = wall(6, 4, 0.6)
-    a.deadline = time.monotonic() - 1
-    with pytest.raises(Refused, match="limit analysis: it was not solved in time"):
-        sideways(a)
 
+    def refuses(message):
+        with raises(Refused, match=message):
+            sideways(a)
 
-def test_a_solver_that_does_not_answer_is_ended_in_time(monkeypatch):
-    a = wall(6, 4, 0.6)
-    monkeypatch.setattr(solver, "GRACE", 0.1)
-    monkeypatch.setattr(solver, "_solved", lambda *words: time.sleep(60))
-    a.deadline = time.monotonic() + 0.2
-    with pytest.raises(Refused, match="limit analysis: it was not solved in time"):
-        sideways(a)
-
-
-def test_a_solver_that_is_missing_or_dies_is_one_sentence(monkeypatch):
-    a = wall(6, 4, 0.6)
     with monkeypatch.context() as without:
         without.setattr(solver, "LIBRARY", "libMissing.so")
-        with pytest.raises(Refused, match="apt-get install .* coinor-libclp1"):
-            sideways(a)
-    monkeypatch.setattr(solver, "_solved", lambda *words: os.kill(os.getpid(), signal.SIGKILL))  # fmt: skip
-    with pytest.raises(Refused, match="its process has ended before its time"):
-        sideways(a)
+        refuses("apt-get install .* coinor-libclp1")
+    a.deadline = time.monotonic() - 1
+    refuses("limit analysis: it was not solved in time")
+    dies = lambda *words: os.kill(os.getpid(), signal.SIGKILL)
+    a.deadline = time.monotonic() + 60
+    monkeypatch.setattr(solver, "_solved", dies)
+    refuses("its process has ended before its time")
+    monkeypatch.setattr(solver, "GRACE", 0.1)
+    monkeypatch.setattr(solver, "_solved", lambda *words: time.sleep(60))
+    began = time.monotonic()
+    a.deadline = began + 0.2
+    refuses("limit analysis: it was not solved in time")
+    assert time.monotonic() - began < 5
 
 
-@pytest.mark.parametrize("plane", [True, False])
-@pytest.mark.parametrize("bond", [0.0, 0.05e6])
+@mark.parametrize("plane", [True, False])
+@mark.parametrize("bond", [0.0, 0.05e6])
 def test_the_mechanism_takes_as_much_power_as_the_loads_give(plane, bond):
     """The value of the programme is found again from the velocities of its dual alone, with the strengths."""
     kind = dry(0.6, tensileStrength=0.5 * bond, cohesion=bond)
@@ -199,12 +199,12 @@ def test_the_mechanism_takes_as_much_power_as_the_loads_give(plane, bond):
     # in an associated mechanism pressure gives back by dilation what friction takes
     least = (c.area * bond * (speed + 0)).sum() if not plane else None
     taken = (bound.live * bound.velocities).sum()
-    assert taken == pytest.approx(1, rel=1e-6)
+    assert taken == approx(1, rel=1e-6)
     inner = (bound.normal * opening).sum() * -1
     assert (opening >= 0.6 * speed - 1e-4 * speed.max()).all() or plane
     lost = powers["friction"] + powers["cohesion"] + inner
-    assert given.sum() == pytest.approx(lost, rel=2e-3, abs=1e-6)
-    assert least is None or powers["cohesion"] == pytest.approx(least, rel=1e-9)
+    assert given.sum() == approx(lost, rel=2e-3, abs=1e-6)
+    assert least is None or powers["cohesion"] == approx(least, rel=1e-9)
 
 
 def test_without_dilatancy_a_wall_carries_less_and_no_joint_is_above_its_friction():
@@ -222,23 +222,10 @@ def test_without_dilatancy_a_wall_carries_less_and_no_joint_is_above_its_frictio
     assert opening[pressed].max() < 0.05 * np.linalg.norm(slide, axis=1).max()
 
 
-@pytest.mark.slow
-def test_a_wedge_over_open_head_joints_is_found():
-    """The wedge of courses 1 to 5 about the lower right corner, of which the head joints are open: by hand, with n half
-    units in course n, the factor is 0.05 Σn² / (0.1 Σn² - 0.05 Σn). The engine falls there, too.
-    """
-    a = wall(6, 3, 0.65)
-    live, dead = a.weights((G, 0, 0)), a.weights((0, 0, -G))
-    squares, sums = sum(n * n for n in range(1, 6)), sum(range(1, 6))
-    wedge = 0.05 * squares / (0.1 * squares - 0.05 * sums)
-    assert a.withoutDilatancy(live, dead).factor == pytest.approx(wedge, rel=1e-4)
-    assert a.largest(live, dead).factor > 1.02 * wedge
-
-
 def test_a_bond_in_which_no_joint_slides_is_not_called_exact():
     """With such friction the wall tips as a whole at 1 g, if joints that slip must open; its open wedge falls at 0.58 g."""
     bound = sideways(wall(6, 3, 2.0))
-    assert bound.factor == pytest.approx(1.0, rel=1e-4) and bound.rigid
+    assert bound.factor == approx(1.0, rel=1e-4) and bound.rigid
     assert not bound.exact and "upper bound" in bound.sentence("x", "g")
 
 
@@ -249,10 +236,10 @@ def test_odd_loads_are_refused():
         (0, "acts on no free block"),
         (math.nan, "has numbers that are not finite"),
     ):
-        with pytest.raises(Refused, match="the live load " + message):
+        with raises(Refused, match="the live load " + message):
             a.largest(factor * dead, dead)
     O.reset()
-    with pytest.raises(Refused, match="the scene has no joints"):
+    with raises(Refused, match="the scene has no joints"):
         limit.read()
 
 
@@ -270,12 +257,11 @@ def test_a_mechanism_is_drawn_and_written_for_paraview(tmp_path):
     joints = meshio.read(tmp_path / "mechanism_joints.vtu")
     size = np.ptp(blocks.points, axis=0).max()
     moved = np.linalg.norm(blocks.point_data["displacement"], axis=1).max()
-    assert moved == pytest.approx(limit.SHOWN * size, rel=1e-6)
+    assert moved == approx(limit.SHOWN * size, rel=1e-6)
     assert (joints.cell_data["damage_tension"][0] > 0).sum() == 8  # two triangles each
 
 
 def small(*words):
-    """A pushed pier of dry stones."""
     pier = bricks.Wall(0.4, 0.6, unit=(0.2, 0.1, 0.1), halves=False)
     s = Scene("pier", pier, materials.dry(0.6, normalStiffness=1e10), arguments=[*words, "--no-vtk"])  # fmt: skip
     s.platen("bottom")
@@ -305,7 +291,7 @@ def test_a_push_has_its_bound_beside_it(tmp_path):
     assert (tmp_path / "r" / "mechanism.png").exists()
 
 
-@pytest.mark.slow
+@mark.slow
 def test_the_preset_bound_runs_nothing(tmp_path, capsys):
     out = tmp_path / "r"
     s, top = small("--out", str(out), "--preset", "bound")
@@ -319,16 +305,7 @@ def test_the_preset_bound_runs_nothing(tmp_path, capsys):
     assert "there is no run" in capsys.readouterr().out
     O.reset()
     other = pushed(tmp_path / "q", 0.05)["bound_base_shear_kN"]
-    assert other == pytest.approx(run["bound_base_shear_kN"], rel=1e-3)
-
-
-@pytest.mark.slow
-def test_a_lean_is_bracketed_by_its_bound_alone(tmp_path):
-    s, top = small("--out", str(tmp_path / "r"), "--preset", "bound")
-    s.settle()
-    low, high = s.bracket(lambda g: s.lean(g) == "at rest", 0.0, 5.0, within=1e-3)
-    s.finish()
-    assert low <= readRun(tmp_path / "r")["bound_acceleration"] <= high
+    assert other == approx(run["bound_base_shear_kN"], rel=1e-3)
 
 
 def stones(out, load, friction=0.7, *words, **more):
@@ -344,7 +321,7 @@ def stones(out, load, friction=0.7, *words, **more):
     return s, highest, DENSITY * G * 0.3 * 0.3 * 0.6
 
 
-@pytest.mark.parametrize("sign", [1, -1])
+@mark.parametrize("sign", [1, -1])
 def test_the_bound_of_a_push_lacks_what_dead_loads_push_already(tmp_path, sign):
     dead = 100.0  # [N] along x
     s, highest, weight = stones(tmp_path, (dead, 0, 0))
@@ -352,17 +329,7 @@ def test_the_bound_of_a_push_lacks_what_dead_loads_push_already(tmp_path, sign):
     s.finish()
     slides = 0.7 * weight / 3  # the highest stone, before anything tips
     (entry,) = readRun(tmp_path)["bounds"]
-    assert entry["factor"] == pytest.approx(1e-3 * (slides - sign * dead), rel=1e-3)
-
-
-@pytest.mark.slow
-def test_a_lean_that_limit_analysis_finds_held_stays(tmp_path):
-    s, highest, weight = stones(tmp_path, (0, 0, 0))
-    assert s.lean(0.2) == "at rest"
-    s.push(highest, 1)
-    s.finish()
-    pushed = readRun(tmp_path)["bound_base_shear_kN"]
-    assert pushed == pytest.approx(1e-3 * (0.7 - 0.2) * weight / 3, rel=1e-3)
+    assert entry["factor"] == approx(1e-3 * (slides - sign * dead), rel=1e-3)
 
 
 def test_a_tilt_is_the_same_under_another_gravity(tmp_path):
@@ -372,11 +339,11 @@ def test_a_tilt_is_the_same_under_another_gravity(tmp_path):
     moon.accelerate(1)
     moon.finish()
     tilted, leant = readRun(tmp_path)["bounds"]
-    assert tilted["factor"] == pytest.approx(0.5, rel=1e-6)
-    assert leant["factor"] == pytest.approx(0.5 * 1.62 / G, rel=1e-6)
+    assert tilted["factor"] == approx(0.5, rel=1e-6)
+    assert leant["factor"] == approx(0.5 * 1.62 / G, rel=1e-6)
 
 
-@pytest.mark.slow
+@mark.slow
 def test_limit_analysis_alone_replaces_a_load_and_stands_under_one_that_moves_nothing(tmp_path):  # fmt: skip
     s, highest, weight = stones(tmp_path, (100, 0, -50))
     assert s.load(highest, (0, 0, -1e5)) == "at rest"  # on a base that is held
@@ -384,7 +351,7 @@ def test_limit_analysis_alone_replaces_a_load_and_stands_under_one_that_moves_no
     slides = 0.7 * weight / 3  # the highest stone
     assert s.load(highest, (0.9 * slides, 0, 0)) == "at rest"
     assert s.load(highest, (1.1 * slides, 0, 0)) == "moving"
-    assert s.model.loading.forceOf(highest).force[0] == pytest.approx(0.9 * slides)
+    assert s.model.loading.forceOf(highest).force[0] == approx(0.9 * slides)
     low, high = s.bracket(lambda f: s.load(highest, (f, 0, 0)) == "at rest", 1, 1e3)
     assert low <= slides * 1.001 and slides * 0.999 <= high
     s.finish()
@@ -397,12 +364,12 @@ def test_scaled_masses_change_no_bound(tmp_path):
     s.tilt(60)
     s.finish()
     leant, tilted = readRun(tmp_path)["bounds"]
-    assert leant["factor"] == pytest.approx((1 + 200 / weight) * 0.5, rel=1e-6)
+    assert leant["factor"] == approx((1 + 200 / weight) * 0.5, rel=1e-6)
     angle = math.atan(0.5) + math.asin(200 * 0.5 / weight / math.hypot(1, 0.5))
-    assert tilted["factor"] == pytest.approx(math.tan(angle), rel=1e-5)
+    assert tilted["factor"] == approx(math.tan(angle), rel=1e-5)
 
 
-@pytest.mark.slow
+@mark.slow
 def test_a_cycle_has_the_bounds_of_both_directions(tmp_path):
     dead = 100.0  # [N] along x
     s, highest, weight = stones(tmp_path, (dead, 0, 0))
@@ -410,14 +377,14 @@ def test_a_cycle_has_the_bounds_of_both_directions(tmp_path):
     s.finish()
     run, slides = readRun(tmp_path), 0.7 * weight / 3
     forward, back = run["bound_base_shear_kN"], run["negative_bound_base_shear_kN"]
-    assert forward == pytest.approx(1e-3 * (slides - dead), rel=1e-3)
-    assert back == pytest.approx(-1e-3 * (slides + dead), rel=1e-3)
+    assert forward == approx(1e-3 * (slides - dead), rel=1e-3)
+    assert back == approx(-1e-3 * (slides + dead), rel=1e-3)
 
 
 def test_a_bound_is_found_anew_beside_another_load_and_where_the_structure_went(tmp_path):  # fmt: skip
     s, highest, weight = stones(tmp_path, (0, 0, -100), friction=4)
     bound = lambda: s.bounds.lean((1, 0, 0))["factor"]
-    tips = lambda down: pytest.approx((1 + down / weight) * 0.5, rel=1e-6)
+    tips = lambda down: approx((1 + down / weight) * 0.5, rel=1e-6)
     assert bound() == tips(100)
     s.bounds.hold("acceleration towards x", 0.5)
     assert bound() == tips(100) and s.running.at.held
@@ -428,11 +395,11 @@ def test_a_bound_is_found_anew_beside_another_load_and_where_the_structure_went(
         body.state.pos += Vector3(0.15, 0, 0)
     assert s.bounds.lean((1, 0, 0), lowerUpTo=1)["factor"] == tips(400)
     pushed = 1e-3 * (weight + 400) * 0.15 / 0.5
-    assert s.bounds.push(highest, Vector3(1, 0, 0))["factor"] == pytest.approx(pushed, rel=1e-6)  # fmt: skip
+    assert s.bounds.push(highest, Vector3(1, 0, 0))["factor"] == approx(pushed, rel=1e-6)  # fmt: skip
     s.finish()
 
 
-@pytest.mark.parametrize("share", [0.0, 0.5, 1.5])
+@mark.parametrize("share", [0.0, 0.5, 1.5])
 def test_the_bound_of_a_tilt_turns_weight_and_not_dead_loads(tmp_path, share):
     """W sin(a) h/2 turns the stack over its edge, (W cos(a) + P) b/2 holds it. The bound of an acceleration has the same
     tip at W a h/2 = (W + P) b/2."""
@@ -445,20 +412,8 @@ def test_the_bound_of_a_tilt_turns_weight_and_not_dead_loads(tmp_path, share):
     tilted, leant = readRun(tmp_path)["bounds"]
     angle = math.atan(b / h) + math.asin(share * b / math.hypot(b, h))
     assert tilted["load"] == "tilt towards x" and tilted["unit"] == ""
-    assert tilted["factor"] == pytest.approx(math.tan(angle), rel=1e-5)
-    assert leant["factor"] == pytest.approx((1 + share) * b / h, rel=1e-6)
-
-
-@pytest.mark.slow
-def test_a_tilt_that_slides_is_the_same_with_and_without_dilatancy(tmp_path):
-    """W sin(a) slides the stack on its base, 0.3 (W cos(a) + P) holds it: no stone above has as much weight for its P."""
-    s, _, weight = stones(tmp_path, (0, 0, -400), friction=0.3)
-    s.tilt(60)
-    s.finish()
-    (entry,) = readRun(tmp_path)["bounds"]
-    angle = math.atan(0.3) + math.asin(0.3 * 400 / weight / math.hypot(1, 0.3))
-    assert entry["factor"] == pytest.approx(math.tan(angle), rel=1e-5)
-    assert entry["without_dilatancy"] == pytest.approx(math.tan(angle), rel=1e-3)
+    assert tilted["factor"] == approx(math.tan(angle), rel=1e-5)
+    assert leant["factor"] == approx((1 + share) * b / h, rel=1e-6)
 
 
 def test_stones_that_are_pressed_hard_are_moved_by_no_tilt(tmp_path):
@@ -490,7 +445,7 @@ def test_a_peak_may_be_above_its_bound_by_two_per_cent():
     assert lean.startswith("lean: the load that was held, 0.5105 g")
 
 
-@pytest.mark.slow
+@mark.slow
 def test_a_peak_above_its_bound_is_a_warning_with_both_numbers(tmp_path, capsys):
     s, top = small("--out", str(tmp_path / "r"))
     s.settle()
@@ -505,8 +460,8 @@ def test_a_peak_above_its_bound_is_a_warning_with_both_numbers(tmp_path, capsys)
     assert f"{0.9 * peak:.4g} kN" in said
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("plane", [True, False])
+@mark.slow
+@mark.parametrize("plane", [True, False])
 def test_deformable_units_have_the_bound_of_rigid_ones(tmp_path, plane):
     factors = []
     for kind in ("rigid", "deformable"):
@@ -520,10 +475,10 @@ def test_deformable_units_have_the_bound_of_rigid_ones(tmp_path, plane):
         s.push(top, 1)
         s.finish()
         factors.append(readRun(tmp_path / kind)["bound_base_shear_kN"])
-    assert factors[1] == pytest.approx(factors[0], rel=0.02)  # other points of joints
+    assert factors[1] == approx(factors[0], rel=0.02)  # other points of joints
 
 
-@pytest.mark.slow
+@mark.slow
 def test_no_bound_is_reported_after_supports_have_moved(tmp_path):
     two = bricks.Wall(0.4, 0.2, unit=(0.2, 0.1, 0.1), halves=False)
     s = Scene("pier", two, materials.dry(0.6, normalStiffness=1e10), arguments=["--no-vtk", "--out", str(tmp_path / "r")])  # fmt: skip

@@ -17,8 +17,8 @@ HISTORY = {
 ALPHA, DT = 0.3, 1e-4
 
 
-@pytest.mark.parametrize("kind", HISTORY)
-@pytest.mark.parametrize("blocked", ["", "XYZ", "yXZ"], ids=lambda b: b or "free")
+@mark.parametrize("kind", HISTORY)
+@mark.parametrize("blocked", ["", "XYZ", "yXZ"], ids=lambda b: b or "free")
 def test_damping_takes_its_share_of_a_blocks_force(blocked, kind):
     s = O.bodies[addBlock(box(), unitMaterial())].state
     s.blockedDOFs = blocked
@@ -33,8 +33,8 @@ def test_damping_takes_its_share_of_a_blocks_force(blocked, kind):
         assert (s.vel - Vector3(velocity, 0, velocity)).norm() < 1e-13 * velocity
 
 
-@pytest.mark.parametrize("kind", HISTORY)
-@pytest.mark.parametrize("blocked", ["", "xyz", "yXZ"], ids=lambda b: b or "free")
+@mark.parametrize("kind", HISTORY)
+@mark.parametrize("blocked", ["", "xyz", "yXZ"], ids=lambda b: b or "free")
 def test_damping_takes_its_share_of_a_blocks_torque(blocked, kind):
     s = O.bodies[addBlock(box(), unitMaterial())].state
     s.blockedDOFs = blocked
@@ -54,7 +54,7 @@ def test_damping_takes_its_share_of_a_blocks_torque(blocked, kind):
         assert (s.angVel - Vector3(0, turning, 0)).norm() < 1e-12 * turning
 
 
-@pytest.mark.parametrize("kind", HISTORY)
+@mark.parametrize("kind", HISTORY)
 def test_damping_takes_its_share_of_the_weight_of_nodes(kind):
     unit = addBlock(box(), unitMaterial())
     zones = MasonryZones(bodies=[unit], damping=ALPHA, dampingKind=kind)
@@ -70,34 +70,18 @@ def test_damping_takes_its_share_of_the_weight_of_nodes(kind):
         assert all(abs(v[2] - velocity) < 1e-9 for v in zones.velocities)
 
 
-# -- limit of the time step ------------------------------------------------------------------------------------------
-
-
 def stack(count=4, **around):
     """Bricks on each other, the lowest fixed."""
     pile(count, inPlane=True)
     join(MasonryJoint(elastic=True), 0.8, inPlane=True, **around)
 
 
-def test_a_run_finds_by_itself_that_a_lighter_block_makes_its_time_step_too_long():
-    stack(damping=0)
-    O.dt = 0.97 * criticalTimeStep()[0]
-    run(20)
-    O.bodies[3].state.mass *= 0.5
-    O.bodies[3].state.inertia *= 0.5
-    O.dt *= 0.9999  # a new time step is checked in the next step
-    with pytest.raises(RuntimeError, match="unstable"):
-        run(120)
-
-
 # -- drives ----------------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("blocked", ["", "XYZ", "yXZ"], ids=lambda b: b or "free")
-@pytest.mark.parametrize("sign", [(0, 0, 1), (0, 0, -2), (1, 0, 0), (1, 0, 3)])
-def test_a_drive_meets_its_velocity_in_every_step_whatever_the_weight_and_way(
-    sign, blocked
-):
+@mark.parametrize("blocked", ["", "XYZ", "yXZ"], ids=lambda b: b or "free")
+@mark.parametrize("sign", [(0, 0, 1), (0, 0, -2), (1, 0, 0), (1, 0, 3)])
+def test_a_drive_meets_its_velocity_in_every_step(sign, blocked):
     stack(count=2, damping=0.5)
     s = O.bodies[1].state
     s.blockedDOFs = blocked
@@ -112,8 +96,8 @@ def test_a_drive_meets_its_velocity_in_every_step_whatever_the_weight_and_way(
         O.step()
         moving = s.vel + s.angVel.cross(arm)
         expected = 0.003 * min(1, step / 50)
-        assert moving.dot(direction.normalized()) == pytest.approx(expected, rel=1e-5)
-    assert abs(balance()["error"]) < 1e-6
+        assert moving.dot(direction.normalized()) == approx(expected, rel=1e-5)
+    assert imbalance() < 1e-6
 
 
 def test_a_drive_in_a_pattern_moves_the_mean_of_its_points_with_forces_in_proportion():
@@ -131,18 +115,18 @@ def test_a_drive_in_a_pattern_moves_the_mean_of_its_points_with_forces_in_propor
         ]
         O.step()
         speeds = [(s.vel + s.angVel.cross(a)).dot(direction) for s, a in zip(states, arms)]  # fmt: skip
-        assert np.dot(shares, speeds) == pytest.approx(0.003, rel=1e-5)
-    assert speeds[0] != pytest.approx(speeds[1], rel=0.1)
-    assert abs(balance()["error"]) < 1e-6
+        assert np.dot(shares, speeds) == approx(0.003, rel=1e-5)
+    assert speeds[0] != approx(speeds[1], rel=0.1)
+    assert imbalance() < 1e-6
 
 
 def test_a_pattern_of_a_drive_that_does_not_fit_is_refused():
     point = dict(point=(0, 0, 0), otherPoints=[(0, 0, 0)])
-    with pytest.raises(ValueError, match="shares must be 1 in sum"):
+    with raises(ValueError, match="shares must be 1 in sum"):
         MasonryLoad(body=1, others=[2], shares=[0.5, 0.6], **point)
-    with pytest.raises(ValueError, match="must have a number of each other body"):
+    with raises(ValueError, match="must have a number of each other body"):
         MasonryLoad(body=1, others=[2], shares=[1.0], **point)
-    with pytest.raises(ValueError, match="must be different bodies"):
+    with raises(ValueError, match="must be different bodies"):
         MasonryLoad(body=1, others=[1], shares=[0.5, 0.5], **point)
 
 
@@ -155,8 +139,8 @@ def test_a_drive_at_rest_carries_the_weight_and_what_pushes():
         O.engines[-1].gravity = (0, 0, gravity)
         O.step()
         weight = O.bodies[1].state.mass * gravity
-        assert load.reaction == pytest.approx(50 - weight, rel=1e-9)
-        assert O.forces.f(1, True)[2] == pytest.approx(-weight, abs=1e-7)
+        assert load.reaction == approx(50 - weight, rel=1e-9)
+        assert O.forces.f(1, True)[2] == approx(-weight, abs=1e-7)
 
 
 def test_a_load_that_is_dead_does_no_work():
@@ -172,7 +156,7 @@ def test_a_load_that_is_dead_does_no_work():
     assert load.work == work
 
 
-@pytest.mark.parametrize("plane", [True, False], ids=["plane", "space"])
+@PLANES
 def test_a_motion_that_a_script_changes_at_every_step_does_its_work(scene, plane):
     """The work of a step is done with the velocity of that step, also if the next one has another, or several ones
     while bodies are added and states are loaded."""
@@ -196,7 +180,7 @@ def test_a_motion_that_a_script_changes_at_every_step_does_its_work(scene, plane
             base.vel = -base.vel
         run(1)
     assert abs(balance()["external"]) > 1e-4
-    assert abs(balance()["error"]) < 1e-6
+    assert imbalance() < 1e-6
 
 
 # -- joints that are nearly alike ------------------------------------------------------------------------------------
@@ -232,13 +216,9 @@ def couplets(other, functors, turn):
     return made
 
 
-@pytest.mark.parametrize(
-    "turn", [Quaternion.Identity, IN_SPACE], ids=["plane", "space"]
-)
-@pytest.mark.parametrize("other", UNLIKE)
-def test_one_couplet_of_seventy_that_is_one_per_cent_other_keeps_its_own_numbers(
-    other, turn
-):
+@mark.parametrize("turn", [Quaternion.Identity, IN_SPACE], ids=["plane", "space"])
+@mark.parametrize("other", UNLIKE)
+def test_one_couplet_of_seventy_that_is_other_keeps_its_numbers(other, turn):
     ends = []
     for functors in (True, False):
         joints = couplets(other, functors, turn)
@@ -272,7 +252,7 @@ def test_a_block_whose_joint_is_erased_in_the_middle_of_a_run_falls_freely(funct
     before = O.bodies[2].state.vel[2]
     run(100)
     fall = O.bodies[2].state.vel[2] - before
-    assert fall == pytest.approx(-9.81 * 100 * O.dt, rel=1e-9)
+    assert fall == approx(-9.81 * 100 * O.dt, rel=1e-9)
 
 
 def test_deformable_units_of_one_shape_and_two_materials_have_their_own_numbers():
@@ -282,58 +262,4 @@ def test_deformable_units_of_one_shape_and_two_materials_have_their_own_numbers(
     volume = UNIT[0] * UNIT[1] * UNIT[2]
     for unit, density in zip(units, (2400, 1800)):
         mass = sum(zones.masses[n] for n in range(*zones.nodesOf(unit)))
-        assert mass == pytest.approx(density * volume, rel=1e-9)
-
-
-# -- out of the plane ------------------------------------------------------------------------------------------------
-
-
-def tilt(s):
-    s.ori = Quaternion(Vector3(1, 0, 0), 1e-4) * s.ori
-
-
-def twist(s):
-    s.ori = Quaternion(Vector3(0, 0, 1), 1e-4) * s.ori
-
-
-def throw(s):
-    s.blockedDOFs = "XZ"
-    s.vel = Vector3(0, 0.1, 0)
-
-
-@pytest.mark.parametrize(
-    "move",
-    [lambda s: setattr(s, "pos", s.pos + Vector3(0, 1e-6, 0)), tilt, twist, throw],
-    ids=["shifted", "tilted", "twisted", "thrown"],
-)
-def test_a_block_taken_out_of_the_plane_in_a_planar_run_is_followed(move):
-    ends = []
-    for functors in (True, False):
-        O.reset()
-        stack(damping=0, functors=functors)
-        run(50)
-        move(O.bodies[2].state)
-        run(5)
-        across = [j[2] for i in O.interactions for j in i.geom.jumps]
-        stress = [s[2] for i in O.interactions for s in i.phys.stress]
-        push = [O.forces.f(b.id, True)[1] for b in O.bodies]
-        turned = [O.forces.t(b.id, True) for b in O.bodies]
-        ends.append([np.array(v) for v in (across, stress, push, turned)])
-    for one, same in zip(*ends):
-        size = max(1e-3, np.abs(one).max()) if one is not ends[0][0] else 1e-6
-        assert np.abs(one - same).max() < 1e-6 * size  # of m, Pa, N and N m
-    assert np.abs(ends[1][0]).max() > 5e-7  # [m]
-
-
-def test_a_rotation_that_is_freed_in_a_planar_run_is_followed():
-    stack(damping=0)
-    run(50)
-    s = O.bodies[3].state
-    s.blockedDOFs = ""
-    # The torque is set by hand, and its work is not counted.
-    engine("energy").watch = False
-    O.forces.setPermT(3, Vector3(5, 0, 0))
-    run(50)
-    assert abs(s.angVel[0]) > 1e-4
-    top = O.interactions[2, 3]
-    assert max(abs(m[2]) for m in top.phys.stress) > 1
+        assert mass == approx(density * volume, rel=1e-9)

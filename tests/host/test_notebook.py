@@ -5,7 +5,7 @@ import base64
 import queue
 from usual import *
 
-pytestmark = pytest.mark.slow
+pytestmark = mark.slow
 jupyter = pytest.importorskip(
     "jupyter_client", reason="jupyter-nbconvert and python3-ipykernel are not installed"
 )
@@ -130,9 +130,7 @@ print(json.dumps([list(curve), curve.units, {n: list(curve[n]) for n in curve}])
         assert np.allclose(values[name], expected, rtol=1e-8, atol=1e-12), name
 
 
-def test_an_interrupted_run_goes_on_from_a_following_cell_to_the_same_bits(
-    kernel, tmp_path
-):
+def test_an_interrupted_run_goes_on_from_a_following_cell(kernel, tmp_path):
     kernel.say(SCENE.format(name="stopped", rate=0.5, out="stopped"))
     for early in ("push(top, 1)", "stepBack()", "result('early', 1)"):
         assert of(kernel.ask(f"scene.{early}"), "error")
@@ -192,7 +190,7 @@ try:
 except ImportError as error:
     print(error)
 """
-    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+    run = ran([sys.executable, "-c", code])
     assert "apt-get install python3-pandas" in run.stdout, run.stderr
     assert "yade" not in run.stdout
 

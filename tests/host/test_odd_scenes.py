@@ -21,7 +21,7 @@ def stack(number=3, zones=(), lone=False, functors=False, reset=True):
         addBlock(cube(z=SIDE * level), O.materials[0])
     if lone:
         addBlock(cube(x=1), O.materials[0])
-    O.bodies[0].state.blockedDOFs = "xyzXYZ"
+    hold(0)
     load = MasonryLoad(body=number - 1, point=(0.05, 0.05, SIDE * number), force=(0, 0, -10))  # fmt: skip
     joint = MasonryJoint(name="j", normalStiffness=1e10, shearStiffness=5e9, elastic=True)  # fmt: skip
     zones = MasonryZones(bodies=list(zones)) if zones else None
@@ -33,7 +33,7 @@ def steps(count=2):
 
 
 def refused(message, act=steps):
-    with pytest.raises((ValueError, RuntimeError), match=message):
+    with raises((ValueError, RuntimeError), match=message):
         act()
 
 
@@ -83,7 +83,7 @@ def test_a_joint_of_no_scene_has_no_points():
     assert MasonryJointPhys().yielding == [] and MasonryJointGeom().jumps == []
 
 
-@pytest.mark.parametrize("which", ["loop", "load", "all"])
+@mark.parametrize("which", ["loop", "load", "all"])
 def test_an_engine_in_a_parallel_engine_is_reported(which, capfd):
     """Threads of the host cannot pass an error on: an engine that follows does, and the error stream has it anyway."""
     stack()
@@ -127,7 +127,7 @@ def test_a_state_that_replaces_another_counts_within_ten_steps():
     lone.vel = Vector3(1e-3, 0, 0)
     before = lone.pos
     steps(10)
-    assert (lone.pos - before)[0] == pytest.approx(1e-3 * O.dt, rel=1e-6)
+    assert (lone.pos - before)[0] == approx(1e-3 * O.dt, rel=1e-6)
 
 
 @FUNCTORS

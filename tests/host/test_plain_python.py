@@ -24,7 +24,7 @@ def environment(**more):
 def python(*words, cwd=None, env=None):
     around = dict(cwd=cwd, env=env or environment(), timeout=200)
     command = [sys.executable, *words]
-    return subprocess.run(command, capture_output=True, text=True, **around)
+    return ran(command, **around)
 
 
 def played(tmp_path, begin, *words, end=""):
@@ -46,7 +46,7 @@ def done(code, **more):
 # -- how YADE starts --------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.slow
+@mark.slow
 def test_a_scene_finds_yade_and_starts_it_as_it_must(tmp_path):
     begin = "import sys; before = list(sys.argv), list(sys.path)\n"
     end = """
@@ -69,7 +69,7 @@ other.join()
     assert (tmp_path / "elsewhere" / "run.json").exists()
 
 
-@pytest.mark.slow
+@mark.slow
 def test_threads_are_those_that_are_asked_for(tmp_path):
     code = "from masonry import Scene; from yade import O; print(O.numThreads)"
     assert done(code, env=environment(OMP_NUM_THREADS="2")) == "2\n"
@@ -88,11 +88,11 @@ for host in (False, True):
     usual = min(4, len(os.sched_getaffinity(0)))
     for words, count, host in (([], usual, 1), (["-j1"], 1, 1), (["--threads", "3"], 3, 3)):  # fmt: skip
         command = ["yade", *words, "-n", "-x", str(script), "-j7"]
-        run = subprocess.run(command, env=environment(), capture_output=True, text=True)
+        run = ran(command, env=environment())
         assert f"steps {count}\nYADE 1\nYADE {host}\n" in run.stdout
 
 
-@pytest.mark.parametrize(
+@mark.parametrize(
     "asked, allowed, few, said",
     [(True, 4, 900, True), (False, 4, 900, False), (True, 1, 900, False), (True, 4, 100, False)],
 )  # fmt: skip
@@ -113,14 +113,14 @@ def test_a_process_without_HOME_starts_yade():
     assert done("from masonry import Scene; print('yes')", env=env) == "yes\n"
 
 
-@pytest.mark.slow
+@mark.slow
 def test_a_yade_that_was_imported_before_has_one_thread(tmp_path):
     end = "import ctypes; print('threads', ctypes.CDLL(None).omp_get_max_threads())"
     run = played(tmp_path, FOUND + "import yade\n", end=end)
     assert "threads 1" in run.stdout and "plain: at rest" in run.stdout
 
 
-@pytest.mark.parametrize(
+@mark.parametrize(
     "code",
     [
         "import masonry, yade; from yade import O; yade.wrapper.MasonryMat",
@@ -138,7 +138,7 @@ def test_whatever_is_imported_first(code):
     done(code + "; import importlib, masonry; importlib.reload(masonry).Scene")
 
 
-@pytest.mark.slow
+@mark.slow
 def test_what_reads_results_does_not_start_yade():
     code = """
 import sys, masonry, masonry.read.measure, masonry.read.shown, masonry.study, masonry.run.batch
@@ -152,7 +152,7 @@ print([name for name in sys.modules if name.split(".")[0] == "yade"])
     assert "module 'masonry' has no attribute 'Scenes'" in python("-c", code).stderr
 
 
-@pytest.mark.slow
+@mark.slow
 def test_the_importer_of_yade_works_before_and_after(tmp_path):
     (tmp_path / "yadeimport.py").symlink_to("/usr/bin/yade")
     first = "import sys; sys.path.insert(0, '.'); import yadeimport\n"
@@ -162,7 +162,7 @@ def test_the_importer_of_yade_works_before_and_after(tmp_path):
     played(tmp_path, "import sys; sys.path.insert(0, '.')\n", end=after)
 
 
-@pytest.mark.slow
+@mark.slow
 def test_words_of_a_notebook_are_not_those_of_the_scene(tmp_path):
     begin = """
 import sys, types
@@ -213,7 +213,7 @@ def test_a_virtual_environment_without_what_yade_needs_gives_a_sentence(tmp_path
     assert "--system-site-packages" in run.stdout
 
 
-@pytest.mark.slow
+@mark.slow
 def test_a_source_tree_without_the_plugin_says_how_to_build_it(tmp_path):
     shutil.copytree(os.path.join(ROOT, "scripts", "masonry"), tmp_path / "masonry")
     env = environment(PYTHONPATH=str(tmp_path))
@@ -222,7 +222,7 @@ def test_a_source_tree_without_the_plugin_says_how_to_build_it(tmp_path):
     assert "REFUSED: the masonry plugin is not built" in said and "setup.sh" in said
 
 
-@pytest.mark.slow
+@mark.slow
 def test_a_scene_beside_the_sources_uses_the_installed_package(tmp_path):
     shutil.copytree(os.path.join(ROOT, "scripts", "masonry"), tmp_path / "masonry")
     end = "import sys; print(sys.modules['masonry.scene'].__file__)"
@@ -251,7 +251,7 @@ def both(tmp_path, name, *words):
         folder.mkdir(exist_ok=True)
         around = dict(cwd=folder, env=environment(), timeout=200)
         command = [*how, scene, *words]
-        run = subprocess.run(command, capture_output=True, text=True, **around)
+        run = ran(command, **around)
         yield run, folder / "out"
 
 
@@ -263,8 +263,8 @@ def lines(run, folder):
     return [n for n in kept if "steps/s" not in n and not n.startswith("waiting for ")]
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("name", ["couplet", "arch", pytest.param("wall_comp1", marks=pytest.mark.long)])  # fmt: skip
+@mark.slow
+@mark.parametrize("name", ["couplet", "arch", pytest.param("wall_comp1", marks=mark.long)])  # fmt: skip
 def test_a_scene_is_the_same_in_plain_python(tmp_path, name):
     (one, first), (two, second) = both(tmp_path, name, "--out", "out", "--quick")
     assert one.returncode == two.returncode == 0, one.stderr + two.stderr
@@ -279,8 +279,8 @@ def test_a_scene_is_the_same_in_plain_python(tmp_path, name):
     assert records[0] == records[1]
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("words", [["--rate", "fast"], ["--resume", "nowhere"]])
+@mark.slow
+@mark.parametrize("words", [["--rate", "fast"], ["--resume", "nowhere"]])
 def test_what_is_refused_is_refused_alike(tmp_path, words):
     (one, first), (two, second) = both(tmp_path, "couplet", *words)
     assert one.returncode == two.returncode != 0
@@ -289,7 +289,7 @@ def test_what_is_refused_is_refused_alike(tmp_path, words):
     assert alike[0] == alike[1]
 
 
-@pytest.mark.slow
+@mark.slow
 def test_the_help_is_that_of_the_program_that_runs_the_scene(tmp_path):
     (one, first), (two, second) = both(tmp_path, "couplet", "--help")
     assert one.returncode == two.returncode == 0
@@ -299,8 +299,8 @@ def test_the_help_is_that_of_the_program_that_runs_the_scene(tmp_path):
     assert rest[0] and rest[0] == rest[1]
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@mark.slow
+@mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_a_run_that_is_stopped_goes_on_to_the_same_bits(tmp_path, number):
     scene = os.path.join(ROOT, "scripts", "wall_comp1.py")
     words = [sys.executable, scene, "--until", "6", "--no-vtk"]
@@ -319,12 +319,3 @@ def test_a_run_that_is_stopped_goes_on_to_the_same_bits(tmp_path, number):
     assert python(*words[1:], "--out", "whole", cwd=tmp_path).returncode == 0
     curve = lambda name: (tmp_path / name / "curve.csv").read_bytes()
     assert curve("whole") == curve("out")
-
-
-@pytest.mark.slow
-def test_several_scenes_follow_each_other_in_one_process(tmp_path):
-    more = SCENE.replace('"plain"', '"second"').replace("stack(2", "stack(3")
-    run = played(tmp_path, "", end=more)
-    assert "plain: at rest" in run.stdout and "second: at rest" in run.stdout
-    units = [json.loads((tmp_path / "results" / n / "run.json").read_text())["units"] for n in ("plain", "second")]  # fmt: skip
-    assert units == [2, 3]

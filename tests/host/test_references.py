@@ -50,7 +50,7 @@ def eigen():
     return re.search(r"define EIGEN_MAJOR_VERSION (\d+)", text)[1]
 
 
-@pytest.mark.parametrize("name", references.RUNS)
+@mark.parametrize("name", references.RUNS)
 def test_a_run_gives_the_stored_numbers(scene, name):
     apart = references.differences(name, references.go(name))
     wanted = references.RUNS[name]
@@ -77,7 +77,7 @@ def test_every_run_has_its_tolerance_and_its_file():
     assert sum(os.path.getsize(os.path.join(FOLDER, f)) for f in there) < 250e3
 
 
-@pytest.mark.slow
+@mark.slow
 def test_two_threads_give_the_same_numbers():
     """Bit for bit those of one thread, but for YADE's own loop, which sums forces in the order of its threads."""
     program = os.path.join(FOLDER, "references.py")
@@ -85,7 +85,7 @@ def test_two_threads_give_the_same_numbers():
     for threads in ("-j1", "-j2"):
         command = ["yade", threads, "-n", "-x", program, "--told"]
         env = dict(os.environ, MASONRY_THREADS="always")
-        run = subprocess.run(command, env=env, capture_output=True, text=True)
+        run = ran(command, env=env)
         lines = run.stdout.splitlines()
         message.append([line for line in lines if line.startswith("told ")])
     assert len(message[0]) > 60

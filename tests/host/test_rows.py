@@ -34,14 +34,14 @@ def apart(values):
     return sorted({round(v, 9) for v in values})
 
 
-@pytest.mark.parametrize("words, count", [((), 3), (("--points", "5"), 3), (("--points", "5,5"), 5)])  # fmt: skip
+@mark.parametrize("words, count", [((), 3), (("--points", "5"), 3), (("--points", "5,5"), 5)])  # fmt: skip
 def test_joints_in_space_begin_with_points_along_both_sides(tmp_path, words, count):
     points = bedPoints(strip(tmp_path, *words))
     assert len(points) == count**2
     for axis in (0, 1):
         places = apart((p[axis] - points[0][axis]) / UNIT[axis] for p in points)
         expected = [v + min(places) for v in RULES[count]]
-        assert places == pytest.approx(expected, abs=1e-8)
+        assert places == approx(expected, abs=1e-8)
 
 
 def test_a_scene_in_the_plane_has_one_row(tmp_path):
@@ -59,13 +59,13 @@ def test_a_strip_that_bends_cracks_at_a_force_that_settles_with_more_points(tmp_
         bent.settle()
         bent.push(middle, 0.4, direction=(0, 1, 0))
         bent.finish()
-        peaks[points] = readRun(str(tmp_path / str(points)))["peak_base_shear_kN"]
+        peaks[points] = readRun(tmp_path / str(points))["peak_base_shear_kN"]
     assert peaks[None] == peaks["5"]
     assert 1.15 < peaks["3"] / peaks["9,9"] < 1.4
-    assert peaks["5"] == pytest.approx(peaks["9,9"], rel=0.03)
+    assert peaks["5"] == approx(peaks["9,9"], rel=0.03)
 
 
-@pytest.mark.parametrize(
+@mark.parametrize(
     "words, plane, message",
     [
         (("--points", "5", "--blocks", "deformable"), False, "--points 5: joints of deformable units have the points of"),
@@ -74,21 +74,17 @@ def test_a_strip_that_bends_cracks_at_a_force_that_settles_with_more_points(tmp_
         (("--points", "5,6"), True, "'5,6': a joint cannot have fewer points from when it yields than before"),
     ],
 )  # fmt: skip
-def test_points_that_would_do_nothing_or_harm_are_refused(
-    tmp_path, capsys, words, plane, message
-):
-    with pytest.raises(SystemExit) as refused:
+def test_points_that_do_nothing_are_refused(tmp_path, capsys, words, plane, message):
+    with raises(SystemExit) as refused:
         refusing = strip(tmp_path, *words, plane=plane)
         refusing.settle()
     assert refused.value.code == 2
     assert message in str(refused.value) + capsys.readouterr().err
 
 
-@pytest.mark.parametrize("divisions", ["1", "2"])
-def test_deformable_units_have_points_at_faces_and_thirds_of_the_thickness(
-    tmp_path, divisions
-):
+@mark.parametrize("divisions", ["1", "2"])
+def test_deformable_units_have_points_at_faces_and_thirds(tmp_path, divisions):
     words = "--blocks", "deformable", "--divisions", divisions
     points = bedPoints(strip(tmp_path, *words))
     places = apart(p[1] / UNIT[1] for p in points)
-    assert [v - min(places) for v in places] == pytest.approx([0, 1 / 3, 2 / 3, 1])
+    assert [v - min(places) for v in places] == approx([0, 1 / 3, 2 / 3, 1])

@@ -16,30 +16,28 @@ X = Vector3.UnitX
 # -- what acts --------------------------------------------------------------------------------------------------------
 
 
-def model(gravity=5.0, scaling=4.0):
-    description, args = SimpleNamespace(gravity=gravity), SimpleNamespace(
-        density_scaling=scaling
-    )
-    return SimpleNamespace(description=description, args=args)
+def model():
+    args = SimpleNamespace(density_scaling=4.0)
+    return SimpleNamespace(description=SimpleNamespace(gravity=5.0), args=args)
 
 
-@pytest.mark.parametrize("share", [0.0, 0.3, 1.0])
+@mark.parametrize("share", [0.0, 0.3, 1.0])
 def test_an_acceleration_grows_beside_a_gravity_that_stays(share):
     load = Acceleration(model(), 0.4, X, "a")
     # blocks are four times as heavy as they are, so that a quarter makes the forces of the true masses
-    assert load.at(None, share) == pytest.approx([share * 0.4 * GRAVITY / 4, 0, -5 / 4])
-    assert load.shareOf(load.factor(share)) == pytest.approx(share)
+    assert load.at(None, share) == approx([share * 0.4 * GRAVITY / 4, 0, -5 / 4])
+    assert load.shareOf(load.factor(share)) == approx(share)
 
 
-@pytest.mark.parametrize("share", [0.0, 0.3, 1.0])
+@mark.parametrize("share", [0.0, 0.3, 1.0])
 def test_a_tilt_turns_gravity_and_its_factor_is_the_tangent(share):
     angle = math.radians(50)
     load = Tilting(model(), angle, X, "t")
     x, y, z = load.at(None, share)
-    assert math.hypot(x, z) == pytest.approx(5 / 4) and y == 0
-    assert math.atan2(x, -z) == pytest.approx(share * angle)
-    assert load.factor(share) == pytest.approx(x / -z)
-    assert load.shareOf(load.factor(share)) == pytest.approx(share)
+    assert math.hypot(x, z) == approx(5 / 4) and y == 0
+    assert math.atan2(x, -z) == approx(share * angle)
+    assert load.factor(share) == approx(x / -z)
+    assert load.shareOf(load.factor(share)) == approx(share)
 
 
 def test_forces_add_to_what_is_there_or_replace_it_beside_one_that_stays():
@@ -96,9 +94,9 @@ def test_a_growth_takes_longer_with_scaled_masses_and_has_the_load_of_the_middle
     O.dt = 1e-3
     load = Load(most=3.0)
     made = growing._Growth(standing(scaling=4.0), growing.Growing(), load, 2.0)
-    assert made.whole == pytest.approx(4.0)
+    assert made.whole == approx(4.0)
     made._before(1000, 2000)  # from 1 to 2 s
-    assert load.values == [pytest.approx(3.0 * 1.5 / 4.0)]
+    assert load.values == [approx(3.0 * 1.5 / 4.0)]
     assert made.model.loading.loadFactor == load.values[-1]
     made._before(3999, 4100)
     assert load.values[-1] == 3.0  # no more than the whole
@@ -121,25 +119,23 @@ def trial(looks, source=0.2, goal=0.5, scaling=1.0, speeds=None):
     return held, at, load.values, scene
 
 
-@pytest.mark.parametrize("source, goal", [(0.2, 0.5), (0.5, 0.2), (0.3, 0.3)])
-def test_a_trial_leads_smoothly_to_its_load_and_looks_for_rest_under_it_alone(
-    source, goal
-):
+@mark.parametrize("source, goal", [(0.2, 0.5), (0.5, 0.2), (0.3, 0.3)])
+def test_a_trial_leads_smoothly_to_its_load_and_looks_for_rest_there(source, goal):
     held, at, values, made = trial(lambda n: True, source, goal)
-    assert held and made.model.loading.loadFactor == pytest.approx(goal)
+    assert held and made.model.loading.loadFactor == approx(goal)
     ramp = int(rampTime(made.args) / O.dt)
     assert at.taken == math.ceil(ramp / EVERY) * EVERY + (LOOKS - 1) * EVERY
     low, high = sorted((source, goal))
     assert all(low - 1e-12 <= v <= high + 1e-12 for v in values)
     steps = [(b - a) * (goal - source) for a, b in zip([source, *values], values)]
-    assert min(steps) >= 0 and values[-LOOKS:] == [pytest.approx(goal)] * LOOKS
+    assert min(steps) >= 0 and values[-LOOKS:] == [approx(goal)] * LOOKS
 
 
-@pytest.mark.parametrize("scaling", [1.0, 4.0])
+@mark.parametrize("scaling", [1.0, 4.0])
 def test_a_trial_without_looks_at_rest_in_a_row_is_given_up_in_its_time(scaling):
     held, at, _, _ = trial(lambda n: n % LOOKS, scaling=scaling)
     assert not held and growing.WHY[at.ended].startswith("it was still moving")
-    assert at.taken * O.dt == pytest.approx(growing.TRIAL * math.sqrt(scaling), rel=EVERY * O.dt / growing.TRIAL)  # fmt: skip
+    assert at.taken * O.dt == approx(growing.TRIAL * math.sqrt(scaling), rel=EVERY * O.dt / growing.TRIAL)  # fmt: skip
 
 
 def test_a_trial_ends_when_the_structure_moves_faster_and_faster():
@@ -158,26 +154,17 @@ def test_a_trial_ends_when_the_structure_moves_faster_and_faster():
 # -- the search -------------------------------------------------------------------------------------------------------
 
 
-def search(
-    monkeypatch,
-    capacity,
-    moving,
-    last,
-    fell,
-    within,
-    states,
-    setsOff,
-    buckling=math.inf,
-):
+def search(patch, capacity, moving, fell, setsOff, growth, buckling=math.inf):
     """A search on a structure that holds loads below its capacity from rest, and below another one from a state in which it
     moves, and that buckles from a third load on. Returns its memory, the scene and the trials: factor, whether it began at rest,
     the state it began with, and whether it was held."""
-    here, trials = {"state": None}, []
+    last, states = growth["last"], growth["states"]
+    here, trials = {"state": None, "factor": last}, []
     text = lambda factor: base64.b64encode(repr(factor).encode()).decode()
     load, made = Load(most=1.2 * last), standing()
     made.model.atRest = None
-    along = lambda: 1e-3 * here["factor"]  # [m]: as many mm as the factor
-    made.model.loading.alongNow = along
+    # [m]: as many mm as the factor
+    made.model.loading.alongNow = lambda: 1e-3 * here["factor"]
     factors = [last * n / states for n in range(states + 1)]
     at = growing.Growing(
         fell="it fell" if fell else "", last=last, lastState=text(last),
@@ -196,14 +183,10 @@ def search(
         def _buckles(self):
             return (at.goal if at.goal >= 0 else at.held[0]) >= buckling
 
-    here["factor"] = last
-
-    def back(state):
-        here["state"], here["factor"] = state, float(state)
-
-    monkeypatch.setattr(growing, "loadScene", back)
-    monkeypatch.setattr(growing, "saveScene", lambda name: repr(here["factor"]).encode())  # fmt: skip
-    found = Known(made, at, load, within)
+    back = lambda state: here.update(state=state, factor=float(state))
+    patch.setattr(growing, "loadScene", back)
+    patch.setattr(growing, "saveScene", lambda name: repr(here["factor"]).encode())
+    found = Known(made, at, load, growth["within"])
     found.run("x")
     return at, made, trials, found
 
@@ -211,54 +194,48 @@ def search(
 #: The last load of a growth, how near the search shall come to what is held, and how many states are kept.
 GROWTH = dict(last=some.floats(0.5, 20.0), states=some.integers(1, 60))
 GROWTH["within"] = some.sampled_from([0.002, 0.005, 0.05])
+growths = some.fixed_dictionaries(GROWTH)
 
 
 @settings(max_examples=150)
-@given(
-    capacity=some.floats(0.02, 1.5),
-    moves=some.floats(0.5, 1.0),
-    setsOff=some.floats(0.0, 1.2),
-    **GROWTH,
-)
-def test_a_search_brackets_what_the_structure_holds_from_rest(
-    capacity, moves, last, within, states, setsOff
-):
+@given(some.floats(0.02, 1.5), some.floats(0.5, 1.0), some.floats(0.0, 1.2), growths)
+def test_a_search_brackets_what_is_held(capacity, moves, setsOff, growth):
+    last, within = growth["last"], growth["within"]
     with pytest.MonkeyPatch.context() as patch:
         rest = capacity * last  # from rest it holds more than while it moves
         fell = rest <= last or moves * rest <= last
-        at, made, trials, found = search(patch, rest, moves * rest, last, fell, within, states, setsOff)  # fmt: skip
+        at, made, trials, found = search(patch, rest, moves * rest, fell, setsOff, growth)  # fmt: skip
         assert len(trials) < 60 and at.held
         held, lost = at.held[0], at.lost and at.lost[0]
-        assert held < rest and at.held[1] == pytest.approx(held)
+        assert held < rest and at.held[1] == approx(held)
         for factor, calm, state, _ in trials:
             assert not calm or factor >= float(state)  # from what was held
         if lost is None:
-            assert held == pytest.approx(last if not fell else 1.2 * last)
+            assert held == approx(last if not fell else 1.2 * last)
         else:
-            assert lost >= rest and at.lost[1] == pytest.approx(lost)
+            assert lost >= rest and at.lost[1] == approx(lost)
             assert lost - held <= within * max(lost, growing.LEAST * last) * (1 + 1e-9)
             assert at.lost[2] == 1  # it was tried from rest
         if fell:
-            with pytest.raises(Collapsed, match="it fell"):
+            with raises(Collapsed, match="it fell"):
                 found.end()
             assert made.model.loading.loadFactor == last
         else:
             found.end()
-        assert float(made.model.atRest) == pytest.approx(held)
+        assert float(made.model.atRest) == approx(held)
 
 
 @settings(max_examples=150)
-@given(buckles=some.floats(0.02, 1.3), **GROWTH)
-def test_a_search_brackets_the_load_at_which_a_structure_buckles(
-    buckles, last, within, states
-):
+@given(some.floats(0.02, 1.3), growths)
+def test_a_search_brackets_a_load_that_buckles(buckles, growth):
+    last, within = growth["last"], growth["within"]
     with pytest.MonkeyPatch.context() as patch:
         buckling = buckles * last
-        at, _, trials, _ = search(patch, 9 * last, 9 * last, last, False, within, states, 1, buckling)  # fmt: skip
+        at, _, trials, _ = search(patch, 9 * last, 9 * last, False, 1, growth, buckling)
         held, lost = at.held[0], at.lost and at.lost[0]
         assert len(trials) < 60 and held < buckling
         if lost is None:
-            assert held == pytest.approx(last)
+            assert held == approx(last)
         else:
             assert lost >= buckling and growing.WHY[at.lost[3]].startswith("it buckles")
             assert lost - held <= within * max(lost, growing.LEAST * last) * (1 + 1e-9)
@@ -266,14 +243,15 @@ def test_a_search_brackets_the_load_at_which_a_structure_buckles(
 
 def test_a_structure_that_never_rests_is_tried_down_to_no_load_and_has_no_number():
     with pytest.MonkeyPatch.context() as patch:
-        at, made, trials, found = search(patch, 0.0, 0.0, 1.0, True, 0.005, 20, 0.5)
+        growth = dict(last=1.0, within=0.005, states=20)
+        at, made, trials, found = search(patch, 0.0, 0.0, True, 0.5, growth)
         assert at.held is None and at.lost[0] == 0
-        with pytest.raises(Collapsed):
+        with raises(Collapsed):
             found.end()
         assert made.model.atRest is None
 
 
-@pytest.mark.parametrize("held, exact, noted", [(0.94, True, True), (0.96, True, False), (0.5, False, False)])  # fmt: skip
+@mark.parametrize("held, exact, noted", [(0.94, True, True), (0.96, True, False), (0.5, False, False)])  # fmt: skip
 def test_a_note_says_that_much_less_is_held_than_rigid_blocks_carry(capsys, held, exact, noted):  # fmt: skip
     entries = {"a": {"exact": exact, "factor": 1.0}}
     made = SimpleNamespace(bounds=SimpleNamespace(entries=entries))

@@ -4,47 +4,37 @@
 from hosted import *
 
 AREA = UNIT[0] * UNIT[1]
-LIMIT = (
-    r"its limit \S+ s, which (joint \"bed\" between bodies \d+ and \d+|unit \d+) sets"
-)
+LIMIT = r"its limit \S+ s, which (joint \"bed\" between bodies \d+ and \d+|unit \d+) se"
 
 
-def energy():
-    return ofKind(MasonryEnergy)
-
-
-def panel(
-    blocks="rigid", functors=False, size=4, young=4.8e9, rigidLast=False, **around
-):
-    """A small panel under its weight on a fixed course; ``rigidLast``: the last brick is rigid in any case."""
+def panel(blocks="rigid", young=4.8e9, rigid=0, **around):
+    """A small panel under its weight on a fixed course; so many of its last bricks are rigid in any case. Returns its free ones."""
     O.reset()
     mat = unitMaterial(young=young)
-    put = lambda b: addBlock(corners(b.low, b.high), mat, inPlane=True)
-    wall = bricks.Wall(size * UNIT[0] / 2, size * UNIT[2], UNIT)
-    laid = {put(b): b for b in wall}
-    fixed = [i for i, b in laid.items() if b.course == 0]
-    hold(*fixed)
+    wall = bricks.Wall(2 * UNIT[0], 4 * UNIT[2], UNIT)
+    laid = [addBlock(corners(b.low, b.high), mat, inPlane=True) for b in wall]
+    first = len(wall.bottom())
+    hold(*laid[:first])
     zones = None
     if blocks == "deformable":
-        free = [i for i in laid if i not in fixed][: -1 if rigidLast else None]
-        zones = MasonryZones(bodies=free, blocked="y")
-    join(share=0.8, inPlane=True, zones=zones, functors=functors, **around)
-    return laid
+        zones = MasonryZones(bodies=laid[first : len(laid) - rigid], blocked="y")
+    join(share=0.8, inPlane=True, zones=zones, **around)
+    return laid[first:]
 
 
 # -- runs that cannot be trusted --------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("how", ["step", "run", "background"])
+@mark.parametrize("how", ["step", "run", "background"])
 @FUNCTORS
-@pytest.mark.parametrize("blocks", ["rigid", "deformable"])
+@BLOCKS
 def test_a_time_step_above_its_limit_is_refused_and_named(blocks, functors, how):
-    panel(blocks, functors)
+    panel(blocks, functors=functors)
     O.run(20, True)
     there = O.iter
     O.dt = 1.3 * O.dt  # 1.04 of the limit
     unstable = r"unstable: the time step is \S+ s, " + LIMIT
-    with pytest.raises(RuntimeError, match=unstable):
+    with raises(RuntimeError, match=unstable):
         if how == "step":
             O.step()
         else:
@@ -59,10 +49,10 @@ def test_a_time_step_above_its_limit_is_refused_and_named(blocks, functors, how)
 
 
 @FUNCTORS
-@pytest.mark.parametrize("blocks", ["rigid", "deformable"])
+@BLOCKS
 def test_the_limit_follows_joints_and_damping(blocks, functors):
     """A run finds it by itself, without a question for the limit."""
-    panel(blocks, functors, damping=0, young=1e12)
+    panel(blocks, functors=functors, damping=0, young=1e12)
     for zones in [e for e in O.engines if isinstance(e, MasonryZones)]:
         zones.damping = 0
     limit = criticalTimeStep()[0]
@@ -70,9 +60,9 @@ def test_the_limit_follows_joints_and_damping(blocks, functors):
     O.run(20, True)
     for damped in filter(None, (engine("integrator"), ofKind(MasonryZones))):
         damped.damping = 0.8
-    with pytest.raises(RuntimeError, match="unstable: the time step is"):
+    with raises(RuntimeError, match="unstable: the time step is"):
         run(20)
-    assert criticalTimeStep()[0] == pytest.approx(limit / math.sqrt(1.8), rel=1e-6)
+    assert criticalTimeStep()[0] == approx(limit / math.sqrt(1.8), rel=1e-6)
     O.dt = 0.8 * criticalTimeStep()[0]
     O.run(20, True)
     stiff = MasonryJoint(name="bed", normalStiffness=1e14, shearStiffness=1e14)
@@ -80,36 +70,36 @@ def test_the_limit_follows_joints_and_damping(blocks, functors):
     physics = loop.physDispatcher.functors[0] if functors else loop.physics
     for i in O.interactions:
         physics.assign(i, stiff)
-    with pytest.raises(RuntimeError, match="unstable: the time step is"):
+    with raises(RuntimeError, match="unstable: the time step is"):
         run(10)
 
 
-@pytest.mark.parametrize("blocks", ["rigid", "deformable"])
+@BLOCKS
 def test_motion_out_of_nothing_is_seen_within_a_hundred_steps(blocks):
     """A brick whose mass a script divides by 1000 in the middle of a run. No engine is informed of that."""
-    rigid = max(panel(blocks, damping=0, rigidLast=True))
+    rigid = max(panel(blocks, damping=0, rigid=1))
     O.run(20, True)
     O.bodies[rigid].state.mass /= 1000
     start, nothing = O.iter, r"unstable: motion out of nothing at step \d+.*" + LIMIT
-    with pytest.raises(RuntimeError, match=nothing):
+    with raises(RuntimeError, match=nothing):
         run(100)
     assert O.iter - start < 100
 
 
 def test_velocities_given_by_hand_are_no_motion_out_of_nothing_once_reported():
-    laid = panel(damping=0, gravity=(0, 0, 0))
+    free = panel(damping=0, gravity=(0, 0, 0))
     for throw in range(3):
-        for body in (body for body in laid if laid[body].course > 0):
+        for body in free:
             O.bodies[body].state.vel += 30**throw * Vector3(0.1, 0, 0.2)
             O.bodies[body].state.angVel = Vector3(0, 1, 0)
         if throw == 2:
-            with pytest.raises(RuntimeError, match="at once by MasonryEnergy.given"):
+            with raises(RuntimeError, match="at once by MasonryEnergy.given"):
                 run(20)
             break
         if throw == 1:
             energy().given()
         O.run(400, True)
-        assert abs(energy().balance()["error"]) < 1e-3
+        assert imbalance() < 1e-3
 
 
 def test_numbers_that_are_not_finite_stop_the_run_and_are_named():
@@ -117,7 +107,7 @@ def test_numbers_that_are_not_finite_stop_the_run_and_are_named():
     O.run(20, True)
     O.bodies[9].state.vel = Vector3(math.nan, 0, 0)
     named = r"numbers of body \d+ are not finite at step \d+; .*its limit \S+ s$"
-    with pytest.raises(RuntimeError, match=named):
+    with raises(RuntimeError, match=named):
         run(20)
 
 
@@ -149,19 +139,17 @@ def move(distance, direction, steps=4000):
 
 def perArea(**expected):
     """Compare the energies over the joint's area [J/m²] with the expected ones; all that are not given must be zero."""
-    b = energy().balance()
+    b = balance()
     size = max(expected.values())
     # where a prescribed velocity jumps under load, half of a step's work is not counted
     assert abs(b.pop("error")) < 1e-3
     for name, value in b.items():
-        there = pytest.approx(expected.get(name, 0), rel=5e-3, abs=1e-4 * size)
+        there = approx(expected.get(name, 0), rel=5e-3, abs=1e-4 * size)
         assert value / AREA == there, name
 
 
 @FUNCTORS
-def test_an_elastic_joint_stores_half_the_stiffness_times_the_square_of_its_jump(
-    functors,
-):
+def test_an_elastic_joint_stores_half_of_stiffness_times_jump_squared(functors):
     phys = pair(MasonryJoint(elastic=True), functors)
     kn, ks = phys.normalStiffness, phys.shearStiffness
     move(2e-6, (0, 0, 1))
@@ -174,7 +162,7 @@ def test_an_elastic_joint_stores_half_the_stiffness_times_the_square_of_its_jump
     move(-4e-6, (0.6, 0.8, 0))
     move(3e-6, (0, 0, 1))
     # the error is relative to the largest work, also where all of it has come back
-    assert abs(energy().balance()["error"]) < 1e-3
+    assert imbalance() < 1e-3
 
 
 def test_round_off_is_no_error_where_no_work_is_done():
@@ -182,7 +170,7 @@ def test_round_off_is_no_error_where_no_work_is_done():
     for n in range(20):
         O.bodies[0].state.vel = Vector3(1, 0, 1) * (-1) ** n * 1e-13
         run(1)
-    assert abs(energy().balance()["error"]) < 1e-6
+    assert imbalance() < 1e-6
 
 
 @FUNCTORS
@@ -194,10 +182,8 @@ def test_a_joint_torn_open_dissipates_its_fracture_energy(functors):
 
 
 @FUNCTORS
-@pytest.mark.parametrize("pressure", [0.0, 0.5e6])
-def test_a_joint_that_slides_dissipates_its_fracture_energy_and_friction(
-    functors, pressure
-):
+@mark.parametrize("pressure", [0.0, 0.5e6])
+def test_a_sliding_joint_dissipates_its_energy_and_friction(functors, pressure):
     joint = MasonryJoint()
     phys = pair(joint, functors)
     move(-pressure / phys.normalStiffness, (0, 0, 1))
@@ -232,20 +218,3 @@ def test_a_joint_crushed_to_its_peak_dissipates_what_lies_under_its_curve(functo
     work += 0.5 * fcp**2 * bricks
     kept = 0.5 * fcp**2 / phys.normalStiffness
     perArea(external=work, dissipated_compression=work - kept, elastic_compression=kept)
-
-
-@FUNCTORS
-def test_a_brick_that_swings_freely_keeps_the_energy_it_was_given(functors):
-    pair(MasonryJoint(elastic=True), functors)
-    s = O.bodies[1].state
-    s.blockedDOFs = "XYZ"
-    s.vel = Vector3(0.01, 0.02, -0.03)
-    given = 0.5 * s.mass * s.vel.squaredNorm()
-    O.dt = 0.8 * criticalTimeStep()[0]
-    for _ in range(20):
-        O.run(997, True)
-        b = energy().balance()
-        stored = sum(b[k] for k in b if k.startswith("elastic"))
-        assert b["external"] == pytest.approx(given, rel=1e-12)
-        assert b["kinetic"] + stored == pytest.approx(given, rel=1e-9)
-        assert b["damping"] == 0

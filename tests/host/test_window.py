@@ -5,7 +5,7 @@ from usual import *
 import yade.config
 from masonry import Gl1_MasonryBlock, Gl1_MasonryJointPhys
 
-pytestmark = pytest.mark.slow
+pytestmark = mark.slow
 
 SCENE = """
 import os, sys, time
@@ -57,7 +57,7 @@ def run(mode, folder, command=()):
     script = folder / "scene.py"
     script.write_text(SCENE)
     end = ["yade", *["-n"] * (mode == "plain"), "-x", str(script), mode, str(folder)]
-    done = subprocess.run([*command, *end], capture_output=True, text=True, timeout=280)
+    done = ran([*command, *end], timeout=280)
     assert "TAKEN" in done.stdout, done.stdout + done.stderr
     ends = [line for line in done.stdout.splitlines() if line[:4] in ("END ", "TAKE")]
     lines = dict(line.split(" ", 1) for line in ends)
@@ -73,7 +73,7 @@ def seen(tmp_path_factory):
         pytest.skip("this YADE has no graphical interface")
     folder = tmp_path_factory.mktemp("window")
     display = ["xvfb-run", "-a", "-s", "-screen 0 1200x900x24"]
-    probe = subprocess.run([*display, "true"], capture_output=True, text=True)
+    probe = ran([*display, "true"])
     if probe.returncode:
         pytest.skip("no display: " + probe.stderr.strip())
     return folder, run("view", folder, display), run("plain", folder)
@@ -123,7 +123,7 @@ OF_BLOCKS = "'displacement', 'velocity', 'material' or 'own'"
 OF_JOINTS = "'damage', 'opening' or 'regime'"
 
 
-@pytest.mark.parametrize(
+@mark.parametrize(
     "cls, good, known",
     [
         (Gl1_MasonryBlock, "velocity", OF_BLOCKS),
@@ -134,7 +134,7 @@ def test_what_is_drawn_is_chosen_for_all_at_once_and_checked(cls, good, known):
     before = cls().colours
     cls(colours=good)
     assert cls().colours == good
-    with pytest.raises(ValueError, match=f"colours 'pink' must be {known}"):
+    with raises(ValueError, match=f"colours 'pink' must be {known}"):
         cls().colours = "pink"
     assert cls().colours == good
     cls(colours=before)

@@ -20,7 +20,7 @@ def standing(friction, **settings):
 def test_connect_chooses_the_time_step_that_a_script_has_not():
     """Of the 1e-8 s that YADE begins with, a wall would need days; one that the script has chosen stays."""
     standing(0.5)
-    assert O.dt == pytest.approx(0.5 * criticalTimeStep()[0], rel=0.02)
+    assert O.dt == approx(0.5 * criticalTimeStep()[0], rel=0.02)
     O.reset()
     O.dt = 2e-5
     standing(0.5)
@@ -49,14 +49,14 @@ def test_forces_motions_and_records_of_yades_engines_hold_beside_ours(tmp_path, 
     slides = next(force for force, displacement in rows if displacement > 1e-5)
     assert 0.5 <= slides < 0.55
     assert rows[-1][1] > 1e-3
-    assert O.bodies[0].state.displ()[1] == pytest.approx(1e-3 * O.time, rel=0.01)
+    assert O.bodies[0].state.displ()[1] == approx(1e-3 * O.time, rel=0.01)
     assert list(tmp_path.glob("yade-*"))
     assert balance()["dissipated_shear"] > 0.5 * weight * 1e-3
-    assert abs(balance()["error"]) < 1e-3
+    assert imbalance() < 1e-3
     assert "warning" not in capfd.readouterr().err
 
 
-@pytest.mark.parametrize("functors, place", [(False, 2), (True, 1), (True, 2)])
+@mark.parametrize("functors, place", [(False, 2), (True, 1), (True, 2)])
 def test_work_that_is_not_counted_is_said_and_ends_no_run(capfd, functors, place):
     """Behind the loop of the joints, and with functors, forces of YADE's engines are not apart from those of joints."""
     block, weight = standing(0.5, functors=functors)
@@ -67,7 +67,7 @@ def test_work_that_is_not_counted_is_said_and_ends_no_run(capfd, functors, place
     assert capfd.readouterr().err.count("the work of ForceEngine is not counted") == 1
 
 
-@pytest.mark.slow
+@mark.slow
 def test_tables_tags_plots_and_timing_are_those_of_yade(tmp_path, monkeypatch):
     """A value of a table of yade-batch reaches the scene and O.tags; a PyRunner fills yade.plot; and
     yade.timing knows each engine of ours."""
@@ -91,7 +91,7 @@ def test_tables_tags_plots_and_timing_are_those_of_yade(tmp_path, monkeypatch):
     assert len(ours) > 2 and all(e.execCount == 100 and e.execTime > 0 for e in ours)
 
 
-@pytest.mark.slow
+@mark.slow
 def test_the_check_in_yades_form_passes_and_names_what_is_wrong(tmp_path):
     path = os.path.join(ROOT, "tests", "host", "checkMasonryJoint.py")
     again = tmp_path / "checkMasonryJoint.py"

@@ -43,12 +43,10 @@ def names(entries):
 WAYS = ["made", "attribute", "set", "updateAttrs"]
 
 
-@given(
-    given_by=some.dictionaries(
-        some.sampled_from(sorted(OTHER)), some.sampled_from(WAYS)
-    ),
-    brittle=some.booleans(),
-)
+given_by = some.dictionaries(some.sampled_from(sorted(OTHER)), some.sampled_from(WAYS))
+
+
+@given(given_by=given_by, brittle=some.booleans())
 @settings(max_examples=100)
 def test_all_that_was_not_given_is_noted(given_by, brittle):
     by = lambda one: {n: OTHER[n] for n, how in given_by.items() if how == one}
@@ -74,14 +72,14 @@ def test_all_that_was_not_given_is_noted(given_by, brittle):
 
 def test_a_value_that_is_refused_is_not_given():
     joint = MasonryJoint()
-    with pytest.raises(ValueError):
+    with raises(ValueError):
         joint.friction = -1
-    with pytest.raises(ValueError):
+    with raises(ValueError):
         joint.set(friction=-1)
     assert "friction" in joint.assumed()
 
 
-@pytest.mark.parametrize(
+@mark.parametrize(
     "changes, without",
     [
         (dict(elastic=True), "residualFriction dilatancy peakRatio capNormal"),
@@ -102,7 +100,7 @@ def test_what_has_no_effect_is_not_named(changes, without):
 # -- what must be given -----------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(
+@mark.parametrize(
     "joint, unit, message",
     [
         ({}, None, "joint 'bed': tensileStrength [Pa], cohesion [Pa], friction [-], compressiveStrength [Pa] must be given"),
@@ -112,7 +110,7 @@ def test_what_has_no_effect_is_not_named(changes, without):
     ],
 )  # fmt: skip
 def test_what_cannot_be_assumed_is_refused(joint, unit, message, tmp_path, capsys):
-    with pytest.raises(SystemExit) as end:
+    with raises(SystemExit) as end:
         scene(own(joint, unit), tmp_path / "r").settle()
     assert end.value.code == 2 and message in capsys.readouterr().err
     assert not (tmp_path / "r" / "run.json").exists()
@@ -120,12 +118,11 @@ def test_what_cannot_be_assumed_is_refused(joint, unit, message, tmp_path, capsy
 
 def test_all_that_is_missing_is_named_with_the_other_problems(tmp_path, capsys):
     masonry = own({}, {}, head=MasonryJoint(**{**STRENGTHS, "cap": False}), pier=MasonryJoint())  # fmt: skip
-    with pytest.raises(SystemExit):
+    with raises(SystemExit):
         scene(masonry, tmp_path / "r", "--set", "bed.frictoin=1").settle()
     said = capsys.readouterr().err
-    for part in ("joint 'bed':", "joint 'pier':", "unit 'unit':", "bed.frictoin"):
-        assert part in said
-    assert "joint 'head'" not in said and "joint 'support'" not in said
+    named = set(re.findall(r"(joint '\w+'|unit 'unit'|bed\.frictoin)", said))
+    assert named == {"joint 'bed'", "joint 'pier'", "unit 'unit'", "bed.frictoin"}
 
 
 def test_what_the_command_line_gives_is_given(tmp_path):
@@ -154,10 +151,7 @@ def test_a_scene_prints_once_what_it_assumes_and_writes_it(tmp_path, capsys):
     made.finish()
     said = capsys.readouterr().out
     assert said.count("assumed, because it was not given") == 1
-    line = (
-        "  bed: residualFriction 0.43  (default of MasonryJoint, for calcium silicate"
-    )
-    assert said.count(line) == 1
+    assert said.count("  bed: residualFriction 0.43  (default of MasonryJoint") == 1
     assert said.count("joints to platens take the bed joint") == 1
     entries = json.load(open(tmp_path / "r" / "run.json"))["assumed"]
     (friction,) = [e for e in entries if e["name"] == "bed.residualFriction"]
@@ -203,27 +197,27 @@ def test_calcium_silicate_has_the_moduli_and_closures_that_its_help_names():
     for (name, length), modulus, closure in zip(lengths.items(), moduli, (1.54, 1.21)):
         joint = made.joints[name]
         series = 1 / (1 / (length * joint.normalStiffness) + 1 / young)
-        assert series == pytest.approx(modulus, rel=2e-4)
+        assert series == approx(modulus, rel=2e-4)
         peak = joint.peakRatio * joint.compressiveStrength / joint.normalStiffness
-        assert 1e3 * peak == pytest.approx(closure, abs=0.005)
+        assert 1e3 * peak == approx(closure, abs=0.005)
         shear = joint.normalStiffness / (2 * (1 + made.unit.poisson))
-        assert joint.shearStiffness == pytest.approx(shear, rel=2e-3)
+        assert joint.shearStiffness == approx(shear, rel=2e-3)
     bed, support, crack = (made.joints[name] for name in ("bed", "support", "crack"))
     assert support.elastic and support.normalStiffness == bed.normalStiffness
     # it is brick, which the mortar does not change: 0.99 of E/L with a half brick
     half = 0.220 / 2
     soft = 1 / (half / young + 1 / crack.normalStiffness)
-    assert soft == pytest.approx(0.99 * young / half, rel=5e-3)
+    assert soft == approx(0.99 * young / half, rel=5e-3)
 
 
-@pytest.mark.parametrize("level, modulus", [(100, 3.287e9), (175, 4.068e9), (250, 4.722e9)])  # fmt: skip
+@mark.parametrize("level, modulus", [(100, 3.287e9), (175, 4.068e9), (250, 4.722e9)])
 def test_granite_blocks_and_their_dry_joints_have_the_measured_modulus(level, modulus):
     height = 0.15
     made = materials.dryGranite(level, height)
     for joint in made.joints.values():
         series = 1 / (1 / (height * joint.normalStiffness) + 1 / made.unit.young)
-        assert series == pytest.approx(modulus)
-        assert joint.shearStiffness == pytest.approx(0.4 * joint.normalStiffness)
+        assert series == approx(modulus)
+        assert joint.shearStiffness == approx(0.4 * joint.normalStiffness)
 
 
 @given(own=some.sets(some.sampled_from(sorted(DRY))))
@@ -238,8 +232,7 @@ def test_dry_joints_name_the_defaults_that_were_not_given(own):
 
 
 def test_the_defaults_of_dry_joints_are_those_of_its_help():
-    masonry = materials.dry()
-    bed, unit = masonry.joints["bed"], masonry.unit
+    bed, unit = materials.dry().joints["bed"], materials.dry().unit
     assert (bed.friction, bed.residualFriction, bed.normalStiffness) == (0.7, 0.7, 5e9)
     assert (bed.shearStiffness, bed.cohesion, bed.tensileStrength) == (2e9, 0, 0)
     assert (unit.density, unit.young, unit.poisson) == (2600, 20e9, 0.2)
@@ -258,16 +251,16 @@ def test_stones_slide_on_their_platen(tmp_path):
     made.push(pushed, 0.3)
     made.finish()
     run = json.load(open(tmp_path / "r" / "run.json"))
-    assert run["bound_base_shear_kN"] == pytest.approx(0.0864, rel=1e-6)
-    assert run["base_shear_end_kN"] == pytest.approx(0.0864, rel=0.03)
+    assert run["bound_base_shear_kN"] == approx(0.0864, rel=1e-6)
+    assert run["base_shear_end_kN"] == approx(0.0864, rel=0.03)
     assert run["peak_base_shear_kN"] < 1.3 * 0.0864  # the push begins with a jerk
 
 
 def test_a_support_joint_follows_the_bed_joint_until_it_is_given():
-    masonry = own()
-    masonry.joints["bed"].friction = 0.5
-    masonry.joints["support"].cohesion = 0.3e6
-    made = masonry.variant(masonry_options())
+    known = own()
+    known.joints["bed"].friction = 0.5
+    known.joints["support"].cohesion = 0.3e6
+    made = variant(known)
     assert made.joints["support"].friction == 0.5
     made.apply([("bed", "cohesion", "0.25e6"), ("support", "dilatancy", "0.1")])
     support = made.joints["support"]
@@ -277,17 +270,17 @@ def test_a_support_joint_follows_the_bed_joint_until_it_is_given():
     assert (support.tensileStrength, support.dilatancy) == (0.02e6, 0.1)
 
 
-def masonry_options(*words):
-    return masonry.options.parser("", until=1).parse_args(list(words))
+def variant(known, *words):
+    return known.variant(masonry.options.parser("", until=1).parse_args(words))
 
 
 def test_joints_without_a_name_have_that_of_their_place():
     both = MasonryJoint(**STRENGTHS)
-    masonry = own(STRENGTHS, None, head=both, collar=both)
-    assert [j.name for j in masonry.joints.values()] == ["bed", "head", "head", "support"]  # fmt: skip
+    known = own(STRENGTHS, None, head=both, collar=both)
+    assert [j.name for j in known.joints.values()] == ["bed", "head", "head", "support"]
     for words in ([], ["--joints", "brittle"]):
-        made = masonry.variant(masonry_options(*words))
-        assert list(made.joints) == ["bed", "head", "collar", "support"]
+        names = " ".join(variant(known, *words).joints)
+        assert names == "bed head collar support"
 
 
 # -- properties that go together --------------------------------------------------------------------------------------
@@ -304,16 +297,16 @@ def test_properties_are_set_together_in_any_order(order):
 def test_what_cannot_be_set_together_has_all_problems_and_changes_nothing():
     joint = MasonryJoint()
     before, noted = joint.dict(), dict(joint.assumed())
-    with pytest.raises(ValueError) as refused:
+    with raises(ValueError) as refused:
         joint.set(residualFrictoin=0.1, friction=-1, cohesion=2e5)
     assert "no attribute 'residualFrictoin', did you mean 'residualFriction'?" in str(refused.value)  # fmt: skip
     assert "friction -1 must be at least 0" in str(refused.value)
-    with pytest.raises(ValueError, match="residual friction 0.43 must be at most 0.3"):
+    with raises(ValueError, match="residual friction 0.43 must be at most 0.3"):
         joint.set(friction=0.3)
     assert joint.dict() == before and joint.assumed() == noted
 
 
-@pytest.mark.parametrize(
+@mark.parametrize(
     "name, value, together",
     [
         ("friction", 0.5, True),
@@ -325,8 +318,9 @@ def test_what_cannot_be_set_together_has_all_problems_and_changes_nothing():
     ],
 )
 def test_an_error_names_how_to_set_several(name, value, together):
-    joint = MasonryJoint(friction=0.7, residualFriction=0.7, cap=name != "cap", compressiveFractureEnergy=100 if name == "cap" else 15000)  # fmt: skip
-    with pytest.raises(ValueError) as refused:
+    brittle = dict(cap=False, compressiveFractureEnergy=100) if name == "cap" else {}
+    joint = MasonryJoint(friction=0.7, residualFriction=0.7, **brittle)
+    with raises(ValueError) as refused:
         setattr(joint, name, value)
     assert (f"joint.set({name}=..., ...)" in str(refused.value)) == together
 

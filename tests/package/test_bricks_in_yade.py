@@ -30,7 +30,7 @@ STRUCTURES = {
 }
 
 
-@pytest.mark.parametrize("name", STRUCTURES)
+@mark.parametrize("name", STRUCTURES)
 def test_the_plugin_joins_the_same_blocks_without_a_word(scene, name, capsys):
     blocks = STRUCTURES[name]()
     assert all("odd size" in p or "sliver" in p for p in blocks.problems())
@@ -42,4 +42,4 @@ def test_the_plugin_joins_the_same_blocks_without_a_word(scene, name, capsys):
     assert "warning" not in capsys.readouterr().out
     masses = [scene.bodies[body].state.mass for body in number]
     assert min(masses) > 0
-    assert sum(masses) == pytest.approx(1800 * blocks.volume, rel=1e-6)
+    assert sum(masses) == approx(1800 * blocks.volume, rel=1e-6)

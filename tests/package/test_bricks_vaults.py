@@ -21,20 +21,19 @@ def ringArea(radius, thickness, stones, angle):
 def test_an_arch_is_that_of_its_circles(radius, share, depth, stones, angle):
     thickness = share * radius
     arch = Arch(thickness, depth, stones, radius=radius, angle=angle)
-    assert arch.volume == pytest.approx(
-        depth * ringArea(radius, thickness, stones, angle), rel=1e-9
-    )
+    area = ringArea(radius, thickness, stones, angle)
+    assert arch.volume == approx(depth * area, rel=1e-9)
     span = 2 * radius * math.sin(math.radians(angle / 2))
     centre = np.array([span / 2, -radius * math.cos(math.radians(angle / 2))])
     for b in arch:
         far = np.linalg.norm(np.array(b.corners)[:, [0, 2]] - centre, axis=1)
         near = np.isclose(far, radius, rtol=1e-9)
         assert near.sum() == 4
-        assert far[~near] == pytest.approx(radius + thickness, rel=1e-9)
+        assert far[~near] == approx(radius + thickness, rel=1e-9)
     joints = arch.joints()
     assert [j[:2] for j in joints] == [(n, n + 1) for n in range(stones - 1)]
     for j in joints:
-        assert j.area == pytest.approx(thickness * depth, rel=1e-6)
+        assert j.area == approx(thickness * depth, rel=1e-6)
     assert [p for p in arch.problems() if "sliver" not in p] == []
     assert [b.course for b in arch] == list(range(stones))
 
@@ -51,16 +50,14 @@ def test_span_and_radius_say_the_same():
 def test_a_half_circle_stands_on_level_joints():
     arch = Arch(0.3, 0.5, 27, radius=2.0)
     assert [b.course for b in arch.bottom()] == [0, 26]
-    assert arch.low == (pytest.approx(-0.3), 0.0, 0.0)
-
-
-def test_half_an_arch_stands_on_blocks_of_its_width():
+    assert arch.low == (approx(-0.3), 0.0, 0.0)
+    # or on blocks of its width
     arch = Arch(0.2, 0.3, 9, radius=2, skewback=0.4)
     left, right = (block for block in arch if block.part == "skewback")
     sides = lambda b, f: [f(p[i] for p in b.corners) for i in range(3)]
-    assert sides(left, min) == pytest.approx([-0.2, 0, -0.4])
-    assert sides(left, max) == pytest.approx([0, 0.3, 0])
-    assert sides(right, min) == pytest.approx([4, 0, -0.4])
+    assert sides(left, min) == approx([-0.2, 0, -0.4])
+    assert sides(left, max) == approx([0, 0.3, 0])
+    assert sides(right, min) == approx([4, 0, -0.4])
     assert arch.problems() == []
 
 
@@ -69,19 +66,18 @@ def test_skewbacks_carry_a_segmental_arch_on_level_ground():
     assert {b.part for b in arch.bottom()} == {"skewback"} and len(arch.bottom()) == 2
     assert len(arch.joints()) == 16 and arch.problems() == []
     outer = 0.2 * math.sin(math.pi / 4)
-    assert arch.low == pytest.approx((-outer - 0.25, 0, 0))
+    assert arch.low == approx((-outer - 0.25, 0, 0))
     for joint in arch.joints():
-        assert joint.area == pytest.approx(0.2 * 0.3)
+        assert joint.area == approx(0.2 * 0.3)
 
 
 @few
 @given(some.integers(3, 20), some.integers(1, 8), angles, some.booleans())
 def test_a_barrel_vault_is_an_arch_in_rows(stones, rows, angle, staggered):
-    vault = BarrelVault(
-        0.2, 4.0, stones, rows, radius=2.0, angle=angle, staggered=staggered
-    )
-    arch = Arch(0.2, 4.0, stones, radius=2.0, angle=angle)
-    assert vault.volume == pytest.approx(arch.volume, rel=1e-9)
+    by = dict(radius=2.0, angle=angle)
+    vault = BarrelVault(0.2, 4.0, stones, rows, staggered=staggered, **by)
+    arch = Arch(0.2, 4.0, stones, **by)
+    assert vault.volume == approx(arch.volume, rel=1e-9)
     bad = [p for p in vault.problems() if "odd size" not in p and "sliver" not in p]
     assert not bad
     odd = sum(1 for c in range(stones) if c % 2)
@@ -89,22 +85,17 @@ def test_a_barrel_vault_is_an_arch_in_rows(stones, rows, angle, staggered):
     # joints between rows, and between courses
     across = lambda j: vault[j.first].course != vault[j.second].course
     between = sum(j.area for j in vault.joints() if across(j))
-    assert between == pytest.approx((stones - 1) * 0.2 * 4.0, rel=1e-6)
+    assert between == approx((stones - 1) * 0.2 * 4.0, rel=1e-6)
+
+
+spheres = some.floats(0.5, 10), some.floats(0.02, 0.4)  # radius, and share of it
+numbers = some.integers(1, 8), some.integers(3, 24)
+holes = some.one_of(some.none(), some.floats(0.05, 0.6))
 
 
 @few
-@given(
-    some.floats(0.5, 10),
-    some.floats(0.02, 0.4),
-    some.integers(1, 8),
-    some.integers(3, 24),
-    angles,
-    some.one_of(some.none(), some.floats(0.05, 0.6)),
-    some.booleans(),
-)
-def test_a_dome_fits_and_has_the_volume_of_its_frustums(
-    radius, share, courses, stones, angle, hole, staggered
-):
+@given(*spheres, *numbers, angles, holes, some.booleans())
+def test_a_dome_fits(radius, share, courses, stones, angle, hole, staggered):
     """Inner and outer surface are similar about the centre, as (r + t) / r; so the shell has ((r + t)³ - r³) / r³ of the
     volume of the pyramids from the centre to the inner surface."""
     thickness = share * radius
@@ -125,14 +116,14 @@ def test_a_dome_fits_and_has_the_volume_of_its_frustums(
     far = np.linalg.norm(corners - centre, axis=1)
     near = np.isclose(far, radius, rtol=1e-9)
     assert near.sum() * 2 == len(corners)
-    assert far[~near] == pytest.approx(radius + thickness, rel=1e-9)
+    assert far[~near] == approx(radius + thickness, rel=1e-9)
     inner = 0.0
     for b in dome:
         on = np.array(b.corners) - centre
         on = on[np.isclose(np.linalg.norm(on, axis=1), radius, rtol=1e-6)]
         inner += ConvexHull([*on, (0, 0, 0)]).volume
     shell = inner * ((1 + share) ** 3 - 1)
-    assert dome.volume == pytest.approx(shell, rel=1e-6)
+    assert dome.volume == approx(shell, rel=1e-6)
 
 
 def test_stones_of_a_staggered_dome_cover_the_joints_below():
@@ -153,7 +144,7 @@ def test_stones_of_a_staggered_dome_cover_the_joints_below():
         assert not vertical[course] & vertical[course + 1]
 
 
-@pytest.mark.parametrize(
+@mark.parametrize(
     "make, said",
     [
         (lambda: Arch(0.2, 0.3, 15, span=1, radius=1), "either span or radius"),
@@ -163,5 +154,5 @@ def test_stones_of_a_staggered_dome_cover_the_joints_below():
     ],
 )
 def test_an_impossible_vault_is_refused(make, said):
-    with pytest.raises(ValueError, match=said):
+    with raises(ValueError, match=said):
         make()

@@ -8,7 +8,7 @@ from masonry.scene.materials.codes import K, TABLE
 BRICK = dict(unit_E=40e9, unit=(0.24, 0.12, 0.065), joint=0.01)
 
 
-@pytest.mark.parametrize(
+@mark.parametrize(
     "words, fk, fvk0",
     [
         (dict(unit="clay", fb=15e6, mortar="M5"), 0.55 * 15**0.7 * 5**0.3, 0.2),
@@ -23,13 +23,13 @@ BRICK = dict(unit_E=40e9, unit=(0.24, 0.12, 0.065), joint=0.01)
 def test_what_eurocode_6_says_of_a_unit_and_a_mortar(words, fk, fvk0):
     found = materials.en1996(**words, value="characteristic")
     numbers = [found[n] for n in ("fc", "E", "G", "fv0", "friction")]
-    assert numbers == pytest.approx([1e6 * fk, 1e9 * fk, 0.4e9 * fk, 1e6 * fvk0, 0.4], rel=1e-12)  # fmt: skip
+    assert numbers == approx([1e6 * fk, 1e9 * fk, 0.4e9 * fk, 1e6 * fvk0, 0.4], rel=1e-12)  # fmt: skip
     mean = materials.en1996(**words)
     ratios = [mean[n] / found[n] for n in ("fc", "E", "G", "fv0", "friction")]
-    assert ratios == pytest.approx([1.2, 1, 1, 1.25, 1.25], rel=1e-12)
+    assert ratios == approx([1.2, 1, 1, 1.25, 1.25], rel=1e-12)
 
 
-@pytest.mark.parametrize(
+@mark.parametrize(
     "words, message",
     [
         (("natural stone", 2e7, "M5", 2), "table 3.3 has no K for natural stone of group 2"),
@@ -40,7 +40,7 @@ def test_what_eurocode_6_says_of_a_unit_and_a_mortar(words, fk, fvk0):
     ],
 )  # fmt: skip
 def test_what_eurocode_6_does_not_have_is_refused(words, message):
-    with pytest.raises(Refused) as refused:
+    with raises(Refused) as refused:
         materials.en1996(*words)
     assert message in str(refused.value)
 
@@ -54,17 +54,17 @@ def test_more_holes_and_thicker_mortar_make_no_masonry_stronger():
 def test_knowledge_and_confidence_decide_what_the_italian_table_says():
     first = materials.ntc2018("squared stone", "LC1")
     second = materials.ntc2018("squared stone", "LC2")
-    assert [1e-6 * first[n] * 1.35 for n in ("fc", "fv0", "ft")] == pytest.approx([5.8, 0.18, 1.5 * 0.09])  # fmt: skip
-    assert [1e-6 * second[n] * 1.2 for n in ("fc", "fv0", "ft")] == pytest.approx([7.0, 0.23, 1.5 * 0.105])  # fmt: skip
+    assert [1e-6 * first[n] * 1.35 for n in ("fc", "fv0", "ft")] == approx([5.8, 0.18, 1.5 * 0.09])  # fmt: skip
+    assert [1e-6 * second[n] * 1.2 for n in ("fc", "fv0", "ft")] == approx([7.0, 0.23, 1.5 * 0.105])  # fmt: skip
     for found in (first, second):
         values = [found["E"], found["G"], found["friction"], found["density"]]
-        assert values == pytest.approx([2850e6, 950e6, 0.577, 22e3 / 9.81])
+        assert values == approx([2850e6, 950e6, 0.577, 22e3 / 9.81])
     rubble = materials.ntc2018("rubble", "LC2", confidence=1)
-    assert rubble["fv0"] == pytest.approx(1.5 * 0.025e6 / 0.7)
+    assert rubble["fv0"] == approx(1.5 * 0.025e6 / 0.7)
 
 
-@pytest.mark.parametrize("row", TABLE)
-@pytest.mark.parametrize("knowledge", ["LC1", "LC2"])
+@mark.parametrize("row", TABLE)
+@mark.parametrize("knowledge", ["LC1", "LC2"])
 def test_every_row_makes_masonry_whose_properties_name_their_clauses(row, knowledge):
     made = materials.masonry(**materials.ntc2018(row, knowledge), **BRICK)
     said = {entry["name"]: entry["source"] for entry in made.assumed()}

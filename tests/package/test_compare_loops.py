@@ -2,11 +2,8 @@
 """The comparison of the dry-joint walls' loops says yes to the measured curves themselves, and no to others."""
 
 from usual import *
-
-
-sys.path.insert(0, os.path.join(ROOT, "validation", "dry_joint_walls"))
-import compare_loops  # noqa: E402
-import measured  # noqa: E402
+import compare_loops
+import measured
 
 
 def asMeasured(wall, stiffness=1.0, shift=0.0):
@@ -45,7 +42,7 @@ def test_peaks_are_held_against_those_of_the_database():
             assert set(verdicts(rows, column)) == {"missed"}
 
 
-@pytest.mark.parametrize(
+@mark.parametrize(
     "factor, verdict",
     [(0.75, "missed"), (0.85, "holds"), (1.15, "holds"), (1.25, "missed")],
 )
@@ -65,7 +62,7 @@ def test_residual_displacements_are_held_against_each_other():
 
 def test_another_history_is_refused():
     moved, force = asMeasured("WS1175")
-    with pytest.raises(ValueError, match="WS1175: the measured cycle"):
+    with raises(ValueError, match="WS1175: the measured cycle"):
         compare_loops.pairs("WS1175", 0.8 * moved, force)
 
 
@@ -98,7 +95,5 @@ def test_the_closing_curve_gives_the_measured_moduli():
     for load, modulus in ((104.8e3, 3287e6), (179.8e3, 4068e6), (254.8e3, 4722e6)):
         tangent = first * (1 + load / 0.2 / (first * limit)) ** 2
         assert tangent < blind["normalStiffness"]
-        assert 1 / (1 / block + 1 / (height * tangent)) == pytest.approx(
-            modulus, rel=0.015
-        )
-    assert blind["normalStiffness"] == pytest.approx(block / height, rel=0.01)
+        assert 1 / (1 / block + 1 / (height * tangent)) == approx(modulus, rel=0.015)
+    assert blind["normalStiffness"] == approx(block / height, rel=0.01)

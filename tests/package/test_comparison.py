@@ -16,7 +16,6 @@ def drawn(monkeypatch):
 
 
 def lines(figure):
-    """Curves by their label: arrays of x and y."""
     found = {line.get_label(): line for line in figure.axes[0].lines}
     return {name: line.get_xydata() for name, line in found.items() if name[0] != "_"}
 
@@ -34,10 +33,10 @@ def test_runs_and_measured_curves_lie_over_each_other(tmp_path, drawn):
     (figure,) = drawn
     shown = lines(figure)
     assert set(shown) == {"first", "two/out", "test.csv, F", "test.csv, 1"}
-    assert shown["first"] == pytest.approx(loop)
-    assert shown["two/out"] == pytest.approx(loop[:2])
-    assert shown["test.csv, F"] == pytest.approx(np.array([(0, 0), (1.5, 4), (3, 2)]))
-    assert shown["test.csv, 1"][:, 1] == pytest.approx([1, 2, 4])
+    assert shown["first"] == approx(loop)
+    assert shown["two/out"] == approx(loop[:2])
+    assert shown["test.csv, F"] == approx(np.array([(0, 0), (1.5, 4), (3, 2)]))
+    assert shown["test.csv, 1"][:, 1] == approx([1, 2, 4])
     axes = figure.axes[0]
     assert (axes.get_xlabel(), axes.get_ylabel()) == ("moved [mm]", "force [kN]")
     assert axes.get_ylim()[0] < -5
@@ -45,13 +44,13 @@ def test_runs_and_measured_curves_lie_over_each_other(tmp_path, drawn):
 
 def test_columns_of_older_runs_can_be_named(tmp_path, drawn):
     folder = writeRun(tmp_path, ["time_s", "top_mm"], [[0, 1], [1, -2]])
-    with pytest.raises(Refused, match="name the columns by --x and --y"):
+    with raises(Refused, match="name the columns by --x and --y"):
         comparison.compare([folder], out="p.png")
     comparison.compare([folder], x="time_s", y="top_mm", out="p.png")
     assert drawn[0].axes[0].get_ylabel() == "top [mm]"
 
 
-@pytest.mark.parametrize(
+@mark.parametrize(
     "words, message",
     [
         (["--csv", "t.csv"], "'t.csv' must be FILE:X:Y"),
@@ -108,10 +107,10 @@ def test_yade_plot_is_filled_if_the_user_asks(plot, monkeypatch):
     plot.addData(mine=7)  # what the user adds beside
     add((1, 2, 3))
     add((2, 3, 4))
-    nan = pytest.approx(float("nan"), nan_ok=True)
+    nan = approx(float("nan"), nan_ok=True)
     assert plot.data["u_mm"] == [1, nan, 2, 3] and plot.data["f_kN"] == [2, nan, 3, 4]
     assert plot.data["mine"] == [nan, 7, nan, nan]
-    with pytest.raises(ValueError, match="a row of 2 numbers for 3 columns"):
+    with raises(ValueError, match="a row of 2 numbers for 3 columns"):
         add((1, 2))
     plot.resetData()
     add((5, 6, 7))

@@ -3,7 +3,6 @@
 
 from usual import *
 
-
 sys.path.insert(0, os.path.join(ROOT, "validation", "cyclic"))
 import figures  # noqa: E402
 import walls  # noqa: E402
@@ -33,21 +32,19 @@ def test_an_ideal_slider_has_its_closed_form():
     """Work 4 F (A - F/K) a cycle that begins where the one before ended, stiffness F/A, damping 2/π (1 - F/(K A))."""
     found = walls.numbers(*slider([1, 4, 10]), MONOTONIC)
     assert [n.repeat for n in found] == [0, 1, 0, 1, 0, 1]
-    assert [n.stiffness for n in found] == pytest.approx(
-        [1, 1, 0.5, 0.5, 0.2, 0.2], rel=1e-6
-    )
-    assert [n.positive for n in found] == pytest.approx(6 * [1], abs=1e-9)
-    assert [n.negative for n in found] == pytest.approx(6 * [1], abs=1e-9)
+    assert [n.stiffness for n in found] == approx([1, 1, 0.5, 0.5, 0.2, 0.2], rel=1e-6)
+    assert [n.positive for n in found] == approx(6 * [1], abs=1e-9)
+    assert [n.negative for n in found] == approx(6 * [1], abs=1e-9)
     second = found[-1].cycle
-    assert second.work_J == pytest.approx(4 * STRENGTH * (10 - 2), rel=1e-3)
-    assert second.damping == pytest.approx(2 / np.pi * (1 - 0.2), rel=1e-3)
-    assert second.residual_positive_mm == pytest.approx(8, abs=1e-2)
+    assert second.work_J == approx(4 * STRENGTH * (10 - 2), rel=1e-3)
+    assert second.damping == approx(2 / np.pi * (1 - 0.2), rel=1e-3)
+    assert second.residual_positive_mm == approx(8, abs=1e-2)
 
 
 def test_what_one_direction_lost_is_seen_in_the_other():
     found = walls.numbers(*slider([10], negative=0.7), MONOTONIC)
-    assert found[0].positive == pytest.approx(1)
-    assert found[0].negative == pytest.approx(0.7)
+    assert found[0].positive == approx(1)
+    assert found[0].negative == approx(0.7)
     assert walls.tableRows("comp4", "cyclic", found)[0][7] == "0.70"
 
 
@@ -66,5 +63,5 @@ def test_figures_are_drawn(tmp_path):
 
 
 def test_a_figure_of_no_path_is_refused(tmp_path):
-    with pytest.raises(FileNotFoundError, match="no path of joint.py"):
+    with raises(FileNotFoundError, match="no path of joint.py"):
         figures.draw(tmp_path, tmp_path / "joint.png")

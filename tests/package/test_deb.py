@@ -4,10 +4,7 @@
 from usual import *
 import masonry
 
-pytestmark = [
-    pytest.mark.long,
-    pytest.mark.xdist_group("deb"),
-]  # one worker makes the package
+pytestmark = [mark.long, mark.xdist_group("deb")]  # one worker makes the package
 
 
 @pytest.fixture(scope="module")
@@ -19,7 +16,7 @@ def package(tmp_path_factory):
     (path,) = (os.path.join(folder, n) for n in os.listdir(folder) if n.endswith(".deb"))  # fmt: skip
     out = tmp_path_factory.mktemp("unpacked")
     subprocess.run(["dpkg-deb", "-x", path, out], check=True)
-    said = subprocess.run(["dpkg-deb", "-f", path], capture_output=True, text=True, check=True)  # fmt: skip
+    said = ran(["dpkg-deb", "-f", path], check=True)
     fields = dict(line.split(": ", 1) for line in said.stdout.splitlines() if ": " in line)  # fmt: skip
     return fields, out / "usr" / "lib" / "python3" / "dist-packages"
 

@@ -7,7 +7,6 @@ import importlib.util
 import pathlib
 import urllib.parse
 
-
 DOCS = os.path.join(ROOT, "scripts", "docs")
 sys.path[:0] = [DOCS, os.path.join(ROOT, "tests", "gates")]
 
@@ -24,19 +23,16 @@ NEEDS["myst_parser"] = "python3-myst-parser"
 MISSING = [p for m, p in NEEDS.items() if importlib.util.find_spec(m) is None]
 if not os.path.isdir("/usr/share/javascript/mathjax"):
     MISSING.append("libjs-mathjax")
-needsSphinx = pytest.mark.skipif(
-    bool(MISSING), reason=f"not installed: {', '.join(MISSING)}"
-)
+needsSite = mark.skipif(MISSING != [], reason=f"not installed: {MISSING}")
 
 
 class SitePage(Page):
-    """A page of the site: where its links lead, its anchors and its text."""
-
     def __init__(self, path):
         super().__init__(pathlib.Path(path).read_text(encoding="utf-8"))
         known = [attributes for _, attributes, _ in self.elements]
+        links = [attributes for tag, attributes, _ in self.elements if tag == "a"]
         self.links = [
-            a["href"] for t, a, _ in self.elements if t == "a" and "href" in a
+            attributes["href"] for attributes in links if "href" in attributes
         ]
         self.anchors = {a.get(name) for a in known for name in ("id", "name")}
         self.text = "".join(self.data)
@@ -51,12 +47,9 @@ def site(tmp_path_factory):
     if "MASONRY_SITE" in os.environ:
         return pathlib.Path(os.environ["MASONRY_SITE"])
     out = tmp_path_factory.mktemp("docs")
-    run = subprocess.run(
-        ["/usr/bin/python3", os.path.join(DOCS, "build.py"), "--out", str(out), "--no-pdf", "--no-run"],
-        capture_output=True,
-        text=True,
-        timeout=600,
-    )  # fmt: skip
+    program = ["/usr/bin/python3", os.path.join(DOCS, "build.py")]
+    command = [*program, "--out", str(out), "--no-pdf", "--no-run"]
+    run = ran(command, timeout=600)
     assert run.returncode == 0, run.stdout + run.stderr
     assert "WARNING" not in run.stdout + run.stderr
     return out / "html"
@@ -64,13 +57,11 @@ def site(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def pages(site):
-    """All pages by their paths."""
     found = glob.glob(str(site / "**" / "*.html"), recursive=True)
     return {os.path.relpath(path, site): SitePage(path) for path in found}
 
 
-@needsSphinx
-@pytest.mark.slow
+@needsSite
 def test_every_document_is_a_page(site, pages):
     for path in staging.documents():
         page = staging.page(path).removesuffix(".md") + ".html"
@@ -83,8 +74,7 @@ def test_every_document_is_a_page(site, pages):
     assert {"gallery.html", "commands.html", "options.html", "classes.html", "cite.html"} < set(pages)  # fmt: skip
 
 
-@needsSphinx
-@pytest.mark.slow
+@needsSite
 def test_a_page_loads_nothing_from_a_network(site, pages):
     count = 0
     for name, page in pages.items():
@@ -97,11 +87,10 @@ def test_a_page_loads_nothing_from_a_network(site, pages):
     assert count > 500
     for path in glob.glob(str(site / "_static" / "**" / "*.css"), recursive=True):
         with open(path, encoding="utf-8") as file:
-            assert not re.search(r"url\(['\"]?(?:https?:)?/|@import", file.read()), path  # fmt: skip
+            assert not re.search(r"url\(['\"]?(?:https?:)?/|@import", file.read()), path
 
 
-@needsSphinx
-@pytest.mark.slow
+@needsSite
 def test_every_link_within_the_site_leads_somewhere(site, pages):
     lost, count = [], 0
     for name, page in pages.items():
@@ -119,8 +108,7 @@ def test_every_link_within_the_site_leads_somewhere(site, pages):
     assert count > 3000 and lost == []
 
 
-@needsSphinx
-@pytest.mark.slow
+@needsSite
 def test_the_page_of_commands_has_every_command_with_unit_and_bounds(pages):
     from masonry.scene.stages import LATER, STAGES
 
@@ -136,8 +124,7 @@ def test_the_page_of_commands_has_every_command_with_unit_and_bounds(pages):
     assert "degrees (float) – a number above 0 and below 90 degrees" in text
 
 
-@needsSphinx
-@pytest.mark.slow
+@needsSite
 def test_classes_options_and_gallery_are_those_of_the_code(pages):
     import masonry
     from masonry.scene import options
@@ -154,8 +141,7 @@ def test_classes_options_and_gallery_are_those_of_the_code(pages):
         assert "import" in shown and "It takes about" in shown.partition("import")[0]
 
 
-@needsSphinx
-@pytest.mark.slow
+@needsSite
 def test_laws_have_their_equations_as_mathematics(pages):
     paper = pages["yade_plugin/law/README.html"]
     assert paper.text.count(r"\[") >= 14 and r"F_2 = |\tau|" in paper.text
@@ -164,7 +150,10 @@ def test_laws_have_their_equations_as_mathematics(pages):
     assert cyclic.text.count(r"\[") >= 6
 
 
-@pytest.mark.parametrize(
+FLAGS = arguments.listOf(arguments.flag)
+
+
+@mark.parametrize(
     ("kind", "text"),
     [
         (arguments.number("Pa", 0), "a number at least 0 Pa"),
@@ -173,10 +162,7 @@ def test_laws_have_their_equations_as_mathematics(pages):
         (arguments.vector("m"), "three finite numbers"),
         (arguments.whole(1, 10), "a whole number from 1 to 10"),
         (arguments.flag, "True or False"),
-        (
-            arguments.listOf(arguments.flag),
-            "a list with at least 1 value; each is True or False",
-        ),
+        (FLAGS, "a list with at least 1 value; each is True or False"),
         (arguments.orFunction(arguments.flag), "True or False, or a function"),
     ],
 )
@@ -203,27 +189,20 @@ def test_links_lead_to_pages(tmp_path):
 
 
 def test_a_notebook_becomes_a_page():
-    notebook = {
-        "cells": [
-            {"cell_type": "markdown", "source": ["# Title\n", "text"]},
-            {
-                "cell_type": "code",
-                "source": ["print(1)"],
-                "outputs": [
-                    {"output_type": "stream", "name": "stdout", "text": ["10 %\r20 %\n", "\x1b[1mdone\x1b[0m\n"]},
-                    {"output_type": "display_data", "data": {"image/png": "AAAA", "text/plain": ["x"]}},
-                    {"output_type": "execute_result", "data": {"text/html": ["<b>```</b>"], "text/plain": ["x"]}},
-                ],
-            },
-        ]
-    }  # fmt: skip
-    kept = {}
+    outputs = [
+        {"output_type": "stream", "name": "stdout", "text": ["10 %\r20 %\n", "\x1b[1mdone\x1b[0m\n"]},
+        {"output_type": "display_data", "data": {"image/png": "AAAA", "text/plain": ["x"]}},
+        {"output_type": "execute_result", "data": {"text/html": ["<b>```</b>"], "text/plain": ["x"]}},
+    ]  # fmt: skip
+    code = {"cell_type": "code", "source": ["print(1)"], "outputs": outputs}
+    title = {"cell_type": "markdown", "source": ["# Title\n", "text"]}
+    notebook, kept = {"cells": [title, code]}, {}
     text = notebooks.markdown(notebook, "one", kept.__setitem__)
     assert "```python\nprint(1)\n```" in text and "```text\n20 %\ndone\n```" in text
     assert "![](one_1.png)" in text and kept == {"one_1.png": b"\0\0\0"}
     assert "````{raw} html\n<b>```</b>\n````" in text
-    notebook["cells"][1]["outputs"] = [{"output_type": "error", "ename": "ValueError", "evalue": "bad"}]  # fmt: skip
-    with pytest.raises(ValueError, match="one: ValueError: bad"):
+    outputs[:] = [{"output_type": "error", "ename": "ValueError", "evalue": "bad"}]
+    with raises(ValueError, match="one: ValueError: bad"):
         notebooks.markdown(notebook, "one", kept.__setitem__)
 
 
@@ -247,8 +226,8 @@ def setup(app):
 """
 
 
-@needsSphinx
-@pytest.mark.long
+@needsSite
+@mark.long
 def test_yades_documentation_takes_the_classes_of_the_plugin(tmp_path):
     names = [name for name in dir(wrapper) if "Masonry" in name]
     assert len(names) > 15
@@ -256,7 +235,7 @@ def test_yades_documentation_takes_the_classes_of_the_plugin(tmp_path):
     pages = [f".. autoclass:: yade.wrapper.{name}\n   :members:\n" for name in names]
     (tmp_path / "index.rst").write_text("\n".join(["Classes", "=======", "", *pages]))
     command = [sys.executable, "-m", "sphinx", "-q", "-W", "-b", "text", ".", "out"]
-    made = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)
+    made = ran(command, cwd=tmp_path)
     assert made.returncode == 0, made.stderr
     text = (tmp_path / "out" / "index.txt").read_text()
     assert "friction" in text and "Peak friction coefficient tan(phi_p)" in text

@@ -4,14 +4,12 @@
 from usual import *
 import ast
 
-
 PACKAGE = os.path.join(ROOT, "scripts", "masonry")
 #: Rooms of many modules. Those of bricks, limit and study are named by what users call, not by their modules.
 ROOMS = ["assembly", "capacity", "read", "run", "scene", "scene/stages"]
 
 
 def helpOf(folder):
-    """The docstring of a package."""
     source = open(os.path.join(PACKAGE, folder, "__init__.py")).read()
     return ast.get_docstring(ast.parse(source))
 
@@ -28,12 +26,12 @@ def test_help_names_every_room():
     assert unnamed("", helpOf("")) == set()
 
 
-@pytest.mark.parametrize("package", ROOMS)
+@mark.parametrize("package", ROOMS)
 def test_a_room_names_each_of_its_modules(package):
     assert unnamed(package, helpOf(package)) == set()
 
 
-@pytest.mark.parametrize("package", ["", *ROOMS])
+@mark.parametrize("package", ["", *ROOMS])
 def test_what_a_room_names_is_there(package):
     named = re.findall(r":mod:`masonry\.([\w.]+)`", helpOf(package))
     assert named

@@ -30,7 +30,7 @@ def test_storeys_fit_and_all_weight_goes_to_a_pier(houses, ring):
         weights = house.weights(stones, n)
         assert weights.keys() == piers.keys() == {b.part for b in house if b.part in piers}  # fmt: skip
         above = sum(d * v for b, d, v in zip(house, densities, volumes) if b.middle[2] > z)  # fmt: skip
-        assert sum(weights.values()) == pytest.approx(above * 9.81e-3)
+        assert sum(weights.values()) == approx(above * 9.81e-3)
         assert any(
             abs(b.low[2] - z) < 1e-9 for b in house if b.part in piers
         )  # a bed joint
@@ -42,32 +42,32 @@ def test_weights_on_the_piers_of_one_wall_by_hand():
     weights = house.weights(stones)
     assert weights.keys() == {"front 1", "back 1", "left 1 pier 1", "left 1 pier 2", "right 1 pier 1", "right 1 pier 2"}  # fmt: skip
     for n in (1, 2):
-        assert weights[f"left 1 pier {n}"] == pytest.approx(weights[f"right 1 pier {n}"])  # fmt: skip
+        assert weights[f"left 1 pier {n}"] == approx(weights[f"right 1 pier {n}"])
     z = house.heights[0]
     wall = sum(bricks.Bricks([b]).volume for b in house if b.part.startswith("left") and b.middle[2] > z)  # fmt: skip
     floor = 400 * 4.0 * 3.2 / 2
     both = weights["left 1 pier 1"] + weights["left 1 pier 2"]
-    assert both == pytest.approx((2000 * wall + floor) * 9.81e-3)
+    assert both == approx((2000 * wall + floor) * 9.81e-3)
 
 
-@pytest.mark.parametrize("off", [(0.05, 0), (0, -0.05), (0.05, 0.05)])
+@mark.parametrize("off", [(0.05, 0), (0, -0.05), (0.05, 0.05)])
 def test_the_mass_of_a_floor_is_off_its_middle(off):
     house, stones = built([{}], eccentricity=off)
     parts = [b for b in house if b.part.startswith(("floor", "ballast"))]
     masses = np.array([stones.units[b.kind].density * bricks.Bricks([b]).volume for b in parts])  # fmt: skip
     middles = np.array([b.middle[:2] for b in parts])
-    assert masses.sum() == pytest.approx(400 * 4.0 * 3.2)
-    assert masses @ middles / masses.sum() == pytest.approx((4.0 * (0.5 + off[0]), 3.2 * (0.5 + off[1])))  # fmt: skip
+    assert masses.sum() == approx(400 * 4.0 * 3.2)
+    assert masses @ middles / masses.sum() == approx((4.0 * (0.5 + off[0]), 3.2 * (0.5 + off[1])))  # fmt: skip
     assert not [p for p in house.problems() if "overlap" in p]
 
 
 def test_openings_without_a_common_height_are_refused():
     low, high = bricks.Opening(1.0, 0, 1.2, 0.8), bricks.Opening(1.0, 1.2, 1.2, 0.8)
-    with pytest.raises(ValueError, match="storey 1: no height is common"):
+    with raises(ValueError, match="storey 1: no height is common"):
         bricks.House(4.0, 3.2, [bricks.Storey(2.4, front=[low], back=[high])], unit=UNIT)  # fmt: skip
 
 
-@pytest.mark.parametrize("off", [0.05, -0.05])
+@mark.parametrize("off", [0.05, -0.05])
 def test_the_mass_that_is_off_the_middle_goes_to_the_nearer_wall(off):
     moved, plain = (built([{}], eccentricity=(e, 0))[0] for e in (off, 0))
     with_, without = (
@@ -76,13 +76,13 @@ def test_the_mass_that_is_off_the_middle_goes_to_the_nearer_wall(off):
     )  # fmt: skip
     floor = 400 * 4.0 * 3.2 * 9.81e-3  # [kN], which spans along x
     for side, share in (("right 1", off), ("left 1", -off), ("front 1", 0), ("back 1", 0)):  # fmt: skip
-        assert with_[side] - without[side] == pytest.approx(share * floor, abs=1e-6)
+        assert with_[side] - without[side] == approx(share * floor, abs=1e-6)
 
 
-@pytest.mark.parametrize("mass, what", [([300], "one for each of the 2"), ("300", "must be a number, or one")])  # fmt: skip
+@mark.parametrize("mass, what", [([300], "one for each of the 2"), ("300", "must be a number, or one")])  # fmt: skip
 def test_masses_that_do_not_fit_the_floors_are_refused(mass, what):
     house, stones = built([{}, {}])
-    with pytest.raises(ValueError, match=what):
+    with raises(ValueError, match=what):
         house.withFloors(stones, shear=1e6, mass=mass)
-    with pytest.raises(ValueError, match="storey 3 must be at most 2"):
+    with raises(ValueError, match="storey 3 must be at most 2"):
         house.weights(stones, 3)

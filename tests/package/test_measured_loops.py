@@ -2,14 +2,11 @@
 """The measured loops of the dry-joint walls are read, put in order and thinned as their README says."""
 
 from usual import *
+import measured
+from scipy.integrate import trapezoid
 
 
-sys.path.insert(0, os.path.join(ROOT, "validation", "dry_joint_walls"))
-import measured  # noqa: E402
-from scipy.integrate import trapezoid  # noqa: E402
-
-
-@pytest.mark.parametrize("wall", measured.walls())
+@mark.parametrize("wall", measured.walls())
 def test_repaired_pieces_follow_each_other(wall):
     """Between two pieces the wall moves outwards on the negative side, where the force hardly changes with
     displacement, or the next piece begins where the last one ended. The hole of WS1.100 is the one exception.
@@ -27,9 +24,8 @@ def test_repaired_pieces_follow_each_other(wall):
         ), f"{wall}: piece {number} ends at {x1} mm, the next begins at {x2} mm"
 
 
-@pytest.mark.parametrize("wall", ["WS2175", "WS3175"])
+@mark.parametrize("wall", ["WS2175", "WS3175"])
 def test_without_the_repair_the_pieces_do_not_follow(wall):
-    """What the test above would miss, it must be able to see: as the file stands, the wall jumps back by 14 mm."""
     path = os.path.join(measured.REFERENCE, f"FD_{wall}_Vasconcelos2009.csv")
     raw, _ = measured.rawPieces(path)
     jumps = [after[0, 0] - piece[-1, 0] for piece, after in zip(raw, raw[1:])]
@@ -56,7 +52,7 @@ def test_a_stray_row_is_found_and_a_turning_point_is_not():
         assert measured.strays(off) == [row]
 
 
-@pytest.mark.parametrize("wall", measured.walls())
+@mark.parametrize("wall", measured.walls())
 def test_the_history_file_is_that_of_the_loops(wall):
     """reference/history_*.csv is what measured.py --write makes; it turns at every row and reaches the extremes."""
     with open(measured.historyPath(wall)) as f:
@@ -68,13 +64,13 @@ def test_the_history_file_is_that_of_the_loops(wall):
     assert (history.min(), history.max()) == (moved.min(), moved.max())
 
 
-@pytest.mark.parametrize("level", measured.LEVELS)
+@mark.parametrize("level", measured.LEVELS)
 def test_the_loops_reach_the_peaks_that_the_database_gives(level):
     """Within 4 %: one row of WS3.100 has 39.3 kN where the database gives 38.0. The repaired WS1.250 no longer has the 102 kN of its file."""
     for wall, (positive, negative) in measured.peaks(level).items():
         _, force, _ = measured.curve(wall)
-        assert force.max() == pytest.approx(positive, rel=0.04), wall
-        assert -force.min() == pytest.approx(negative, rel=0.04), wall
+        assert force.max() == approx(positive, rel=0.04), wall
+        assert -force.min() == approx(negative, rel=0.04), wall
 
 
 def test_work_over_the_history_of_one_wall():
@@ -83,8 +79,8 @@ def test_work_over_the_history_of_one_wall():
     """
     path = os.path.join(measured.REFERENCE, "FD_WS2175_Vasconcelos2009.csv")
     raw = np.concatenate(measured.rawPieces(path)[0])
-    assert trapezoid(raw[:, 1], raw[:, 0]) == pytest.approx(3129, abs=1)
+    assert trapezoid(raw[:, 1], raw[:, 0]) == approx(3129, abs=1)
     moved, force, number = measured.curve("WS2175")
     end = int(np.flatnonzero(number == 14)[-1]) + 1
     assert moved[end - 1] == raw[-1, 0]
-    assert trapezoid(force[1:end], moved[1:end]) == pytest.approx(3129, rel=0.01)
+    assert trapezoid(force[1:end], moved[1:end]) == approx(3129, rel=0.01)

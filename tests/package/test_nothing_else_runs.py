@@ -3,7 +3,6 @@
 
 from usual import *
 
-
 #: Modules of Python and of other libraries that the package reads.
 PLANTED = (
     "csv token json glob struct zlib base64 numpy matplotlib argparse yade".split()
@@ -18,22 +17,21 @@ def planted(tmp_path):
     return tmp_path
 
 
-@pytest.mark.parametrize("words", ["read.measure nowhere", "read.figures nowhere", "read.report nowhere", "study nowhere.py --out out"])  # fmt: skip
+@mark.parametrize("words", ["read.measure nowhere", "read.figures nowhere", "read.report nowhere", "study nowhere.py --out out"])  # fmt: skip
 def test_programs_of_the_package_run_nothing_of_the_present_folder(planted, words):
     module, *more = words.split()
     command = [sys.executable, "-m", f"masonry.{module}", *more]
-    done = subprocess.run(command, cwd=planted, capture_output=True, text=True)
+    done = ran(command, cwd=planted)
     assert done.returncode == 2 and "nowhere" in done.stderr
     assert not (planted / "ran").exists()
 
 
 def test_figures_are_drawn_with_nothing_of_the_present_folder(planted, monkeypatch):
-    """The program that draws them runs in a process of its own."""
     from masonry.basics import Unwritable
     from masonry.scene.drawing_program import DrawingProgram
 
     monkeypatch.chdir(planted)
-    with pytest.raises(Unwritable):
+    with raises(Unwritable):
         DrawingProgram().draw("nowhere")
     assert not (planted / "ran").exists()
 
@@ -71,8 +69,8 @@ echo "$@" >> "$LOG"
 """
 
 
-@pytest.mark.skipif(os.geteuid() != 0, reason="only root installs packages")
-@pytest.mark.parametrize("removed", ["python3-paraview", ""])
+@mark.skipif(os.geteuid() != 0, reason="only root installs packages")
+@mark.parametrize("removed", ["python3-paraview", ""])
 def test_an_installation_that_would_remove_packages_is_refused(tmp_path, removed):
     (tmp_path / "bin").mkdir()
     for name, text in {"apt-get": APT, "dpkg-query": "#!/bin/sh\nexit 1\n"}.items():
@@ -82,7 +80,7 @@ def test_an_installation_that_would_remove_packages_is_refused(tmp_path, removed
     (tmp_path / "logs").mkdir()
     env = dict(os.environ, PATH=f"{tmp_path}/bin:/usr/bin:/bin", REMOVED=removed, LOG=str(tmp_path / "asked"), TMPDIR=str(tmp_path / "logs"))  # fmt: skip
     setup = os.path.join(ROOT, "scripts", "setup.sh")
-    done = subprocess.run(["bash", setup], env=env, capture_output=True, text=True)
+    done = ran(["bash", setup], env=env)
     assert done.returncode == 1
     asked = (tmp_path / "asked").read_text().splitlines()
     assert asked[0] == "update" and "--simulate" in asked[1]

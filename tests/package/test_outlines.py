@@ -10,7 +10,6 @@ import ezdxf
 
 
 def front(block):
-    """The face of a block at y = 0, counter-clockwise."""
     face = np.array([c for c in block.corners if c[1] == 0])[:, [0, 2]]
     return face[np.argsort(np.arctan2(*(face - face.mean(axis=0)).T[::-1]))]
 
@@ -60,7 +59,7 @@ def asDxf(path, rings):
 FORMATS = {".csv": asCsv, ".svg": asSvg, ".geojson": asGeoJson, ".dxf": asDxf}
 
 
-@pytest.mark.parametrize("seed", range(8))
+@mark.parametrize("seed", range(8))
 def test_a_wall_that_is_drawn_with_mortar_comes_back(tmp_path, seed):
     ending, gap = sorted(FORMATS)[seed % 4], 0.005 + 0.0025 * seed
     wall = bricks.StoneWall(1.2, 0.9, (0.3, 0.3, 0.18), "irregular", seed=seed)
@@ -69,11 +68,11 @@ def test_a_wall_that_is_drawn_with_mortar_comes_back(tmp_path, seed):
     FORMATS[ending](path, rings)
     layer = "stones" if ending == ".dxf" else None
     back = bricks.fromOutlines(path, thickness=0.3, mortar=0.03, layer=layer)
-    assert back.volume == pytest.approx(wall.volume, rel=1e-9)
-    assert back.high == pytest.approx((1.2, 0.3, 0.9), abs=1e-9)
+    assert back.volume == approx(wall.volume, rel=1e-9)
+    assert back.high == approx((1.2, 0.3, 0.9), abs=1e-9)
     assert not [p for p in back.problems() if "odd size" not in p and "sliver" not in p]
     assert len({b.brick for b in back}) == len(wall)
-    assert back.mortar == pytest.approx(gap, abs=0.03 / 16)
+    assert back.mortar == approx(gap, abs=0.03 / 16)
     tolerance = 0.03 / 4
     for n, ring in enumerate(rings):
         parts = [front(b) for b in back if b.brick == n]
@@ -100,28 +99,28 @@ def test_joints_of_bricks_lie_in_the_middle_of_the_mortar(tmp_path):
     assert len(back) == len(wall) and len(back.joints()) == len(wall.joints())
     for one, other in zip(wall, back):
         assert np.allclose(one.low, other.low, atol=1e-3) and np.allclose(one.high, other.high, atol=1e-3)  # fmt: skip
-    assert back.unit == pytest.approx(((5 - 17 * 0.012) / 22, 0.2, 0.1 - (14 + 8 / 2) * 0.012 / 22))  # fmt: skip
+    assert back.unit == approx(((5 - 17 * 0.012) / 22, 0.2, 0.1 - (14 + 8 / 2) * 0.012 / 22))  # fmt: skip
 
 
 def test_stones_that_touch_are_two_blocks(tmp_path):
     rings = [[(x, 0), (x + 1, 0), (x + 1, 0.5), (x, 0.5)] for x in (0.0, 1.0)]
     back = read(tmp_path, rings)
-    assert len(back) == 2 and back.volume == pytest.approx(1.0 * 0.2)
+    assert len(back) == 2 and back.volume == approx(1.0 * 0.2)
 
 
 def test_mortar_of_two_thicknesses_and_the_stiffness_of_its_joints(tmp_path):
     back = read(tmp_path, [box(0, 0, 1, 0.2), box(0, 0.21, 1, 0.2), box(0, 0.44, 1, 0.2)], 0.04)  # fmt: skip
-    assert back.mortar == pytest.approx(0.02, rel=0.02)
-    assert back.thickness(0.5, 0.1, 0.205) == pytest.approx(0.01, rel=0.02)
-    assert back.thickness(0.5, 0.1, 0.425) == pytest.approx(0.03, rel=0.02)
+    assert back.mortar == approx(0.02, rel=0.02)
+    assert back.thickness(0.5, 0.1, 0.205) == approx(0.01, rel=0.02)
+    assert back.thickness(0.5, 0.1, 0.425) == approx(0.03, rel=0.02)
     stone = materials.masonry(E=1e9, unit_E=2e10, fc=2e6, fv0=1e5, friction=0.6, ft=5e4, unit=(1, 0.2, 0.2), joint=back.mortar, density=2200)  # fmt: skip
     kn, Gc = stone.joints["bed"].normalStiffness, stone.joints["bed"].compressiveFractureEnergy  # fmt: skip
     rule = back.withMortar(stone).rule(dict(enumerate(back)))
     for z, factor in ((0.205, 2), (0.425, 2 / 3)):
         geom = SimpleNamespace(centres=[(0.5, 0.1, z)], normal=(0, 0, 1))
         joint = rule(SimpleNamespace(id=0), SimpleNamespace(id=1), geom)
-        assert joint.normalStiffness == pytest.approx(factor * kn, rel=0.03)
-        assert joint.compressiveFractureEnergy == pytest.approx(Gc / factor, rel=0.03)
+        assert joint.normalStiffness == approx(factor * kn, rel=0.03)
+        assert joint.compressiveFractureEnergy == approx(Gc / factor, rel=0.03)
 
 
 def test_a_stone_that_is_not_convex_is_several_blocks_of_one_brick(tmp_path):
@@ -129,7 +128,7 @@ def test_a_stone_that_is_not_convex_is_several_blocks_of_one_brick(tmp_path):
     back = read(tmp_path, [ell, box(0.41, 0.31, 0.59, 0.29)])
     assert sorted(Counter(b.brick for b in back).values()) == [1, 2]
     assert not back.problems()
-    assert back.volume == pytest.approx(0.6 * 0.2, rel=1e-9)
+    assert back.volume == approx(0.6 * 0.2, rel=1e-9)
 
 
 def test_a_window_stays_open_and_is_named(tmp_path, capsys):
@@ -144,25 +143,25 @@ def test_a_window_stays_open_and_is_named(tmp_path, capsys):
 ROW = [box(0, 0, 0.3, 0.2), box(0.31, 0, 0.3, 0.2), box(0.62, 0, 0.3, 0.2)]
 
 
-@pytest.mark.parametrize("more, what, left", [
+@mark.parametrize("more, what, left", [
     ([box(0.605, 0.05, 0.01, 0.004)], r"3 near \(0.610, 0.052\) m is a sliver", 3),
     ([box(0.9, 0, 0.3, 0.2)], r"2 and 3 overlap by 0.02 m near \(0.9\d+, 0.\d+\) m", 4),
     ([box(0.35, 0.05, 0.1, 0.1)], r"3 near \(0.400, 0.100\) m lies within 1", 3),
     (ROW[:1], "3 .* lies within 0", 3),
 ])  # fmt: skip
 def test_what_can_be_mended(tmp_path, capsys, more, what, left):
-    with pytest.raises(ValueError, match=f"(?s){what}.*mend=True does so"):
+    with raises(ValueError, match=f"(?s){what}.*mend=True does so"):
         read(tmp_path, ROW + more)
     back = read(tmp_path, ROW + more, mend=True)
     assert re.search(f"note: fromOutlines: {what}", capsys.readouterr().out)
     assert len(back) == left and not back.problems()
-    assert back.volume == pytest.approx((back.high[0] - back.low[0]) * 0.2 * 0.2)
+    assert back.volume == approx((back.high[0] - back.low[0]) * 0.2 * 0.2)
 
 
 def test_an_open_line_is_closed(tmp_path):
     path = tmp_path / "stones.svg"
     path.write_text('<svg><polyline id="a" points="0,0 1,0 1,1 0,1"/><rect id="b" x="1.01" width="1" height="1"/></svg>')  # fmt: skip
-    with pytest.raises(ValueError, match=r"a is open between \(0.000, 0.000\) m and \(0.000, 1.000\) m"):  # fmt: skip
+    with raises(ValueError, match=r"a is open between \(0.000, 0.000\) m and \(0.000, 1.000\) m"):  # fmt: skip
         bricks.fromOutlines(path, thickness=0.2, mortar=0.02)
     back = bricks.fromOutlines(path, thickness=0.2, mortar=0.02, mend=True)
     assert len(back) == 2 and len(back.joints()) == 1
@@ -172,10 +171,10 @@ def test_paths_of_svg_in_groups(tmp_path):
     path = tmp_path / "stones.svg"
     path.write_text('<svg><g id="x"><path d="M0 0H9V9H0Z"/></g><g id="y" transform="matrix(0 1 1 0 0 0)"><path d="m1,1 h2 v-1l-2 0zm2.01 0 l0-1 1 0 0 1z"/></g></svg>')  # fmt: skip
     back = bricks.fromOutlines(path, thickness=0.2, mortar=0.02, layer="y")
-    assert back.high == pytest.approx((1, 0.2, 3.01)) and len(back) == 2
+    assert back.high == approx((1, 0.2, 3.01)) and len(back) == 2
 
 
-@pytest.mark.parametrize("name, text, what", [
+@mark.parametrize("name, text, what", [
     ("a.svg", '<svg><path id="p" d="M 0 0 C 1 1 2 2 3 3 Z"/></svg>', "path p has the command 'C', a curve"),
     ("a.svg", '<svg><circle id="p" r="1"/></svg>', "circle p is a curve"),
     ("a.svg", '<svg><g transform="rotate(3)"><rect width="1" height="1"/></g></svg>', "rotate is not known"),
@@ -189,7 +188,7 @@ def test_paths_of_svg_in_groups(tmp_path):
 ])  # fmt: skip
 def test_what_is_refused(tmp_path, name, text, what):
     (tmp_path / name).write_text(text)
-    with pytest.raises(ValueError, match=what):
+    with raises(ValueError, match=what):
         bricks.fromOutlines(tmp_path / name, thickness=0.2, mortar=0.02)
 
 
@@ -199,11 +198,11 @@ def test_convex_parts_make_up_the_polygon(radii):
     turn = 2 * np.pi * np.arange(len(radii)) / len(radii)
     ring = np.array(radii)[:, None] * np.column_stack([np.cos(turn), np.sin(turn)])
     parts = polygons.convexParts(ring)
-    assert sum(map(polygons.area, parts)) == pytest.approx(polygons.area(ring), rel=1e-4)  # fmt: skip
+    assert sum(map(polygons.area, parts)) == approx(polygons.area(ring), rel=1e-4)
     assert all((polygons.turns(part) > 0).all() for part in parts)
 
 
-@pytest.mark.parametrize("wall", [
+@mark.parametrize("wall", [
     bricks.Wall(0.88, 0.36, unit=(0.22, 0.1, 0.06), halves=False),
     bricks.Arch(2.0, 0.3, 9, radius=1.0),
     bricks.StoneWall(1.2, 0.9, (0.3, 0.3, 0.18), "irregular", seed=3),

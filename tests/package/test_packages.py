@@ -19,7 +19,7 @@ def without(module, tmp_path, *command):
     (tmp_path / "sitecustomize.py").write_text(HIDES)
     path = os.pathsep.join([str(tmp_path), os.environ.get("PYTHONPATH", "")])
     env = dict(os.environ, PYTHONPATH=path, MISSING=module, OMP_NUM_THREADS="1")
-    return subprocess.run(command, cwd=tmp_path, env=env, capture_output=True, text=True, timeout=120)  # fmt: skip
+    return ran(command, cwd=tmp_path, env=env, timeout=120)
 
 
 def sentence(module):
@@ -27,7 +27,7 @@ def sentence(module):
     return f"{what} the Python module {module}, which is not installed: apt-get install --no-install-recommends {package}"
 
 
-@pytest.mark.parametrize("module, use", [
+@mark.parametrize("module, use", [
     ("ezdxf", "open('a.dxf', 'w').write(''); from masonry import bricks; bricks.fromOutlines('a.dxf', 1, 0.1)"),
     ("jinja2", "from masonry.read import pages; pages.rendered('page/page.html')"),
     ("matplotlib", "from masonry.read import drawing; drawing.empty(1, 1)"),
@@ -41,7 +41,7 @@ def test_a_missing_module_is_one_sentence_with_the_command_that_installs_it(tmp_
     assert done.stderr.splitlines()[-1].endswith(sentence(module)), done.stderr
 
 
-@pytest.mark.parametrize("module, parts, absent", [
+@mark.parametrize("module, parts, absent", [
     ("matplotlib", ("the figures are left out", "mechanism.png is left out"), ("curve.png", "mechanism.png")),
     ("meshio", ("the mechanism for ParaView is left out",), ("mechanism_blocks.vtu",)),
 ])  # fmt: skip

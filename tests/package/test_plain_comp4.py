@@ -2,10 +2,7 @@
 """The plain program of COMP-4, written without the plugin, finds what the plugin finds."""
 
 from usual import *
-
-
-sys.path.insert(0, os.path.join(ROOT, "validation", "benchmark"))
-import plain  # noqa: E402
+import plain
 
 UNTIL, RATE = 1, 20  # [mm], [mm/s]
 
@@ -17,5 +14,5 @@ def test_the_plugin_pushes_comp4_as_the_plain_program_does():
     words = ["--points", "3"]  # as the plain program has
     _, _, ownPeak, ownWork = plain.plugin(UNTIL, RATE, words)
     assert peak > 85, "the wall has hardly been pushed"
-    assert ownPeak == pytest.approx(peak, rel=0.01)
-    assert ownWork == pytest.approx(work, rel=0.02)
+    assert ownPeak == approx(peak, rel=0.01)
+    assert ownWork == approx(work, rel=0.02)

@@ -2,10 +2,7 @@
 """The plain model of the dry-joint wall against statics, and against the closed form of its shear stiffness."""
 
 from usual import *
-
-
-sys.path.insert(0, os.path.join(ROOT, "validation", "dry_joint_walls"))
-import plain_wall  # noqa: E402
+import plain_wall
 
 
 @pytest.fixture(scope="module")
@@ -16,7 +13,7 @@ def program(tmp_path_factory):
 def test_the_wall_rocks_below_the_limit_of_a_rigid_one(program):
     """N L/(2 h0) is 68.3 kN with the weight of the blocks; soft joints take a few percent of the lever arm."""
     moved, force = plain_wall.run([10], program, points=2, rate=100)
-    assert moved[-1] == pytest.approx(10, abs=0.06)
+    assert moved[-1] == approx(10, abs=0.06)
     assert 0.85 * 68.3 < force.max() < 68.3
 
 
@@ -37,5 +34,5 @@ def test_soft_joints_shear_as_springs_in_series(program):
 
 
 def test_an_unknown_option_is_refused(program):
-    with pytest.raises(subprocess.CalledProcessError):
+    with raises(subprocess.CalledProcessError):
         plain_wall.run([1], program, stiffness=3)

@@ -4,19 +4,17 @@
 from usual import *
 import fnmatch
 
-sys.path.insert(0, os.path.join(ROOT, "validation"))
-import remake  # noqa: E402
+import remake
 
 EVERY = remake.everything()
 
 
 def committed():
-    """Files of validation/ that git knows, by their paths there."""
-    done = subprocess.run(["git", "-C", remake.HERE, "ls-files"], capture_output=True, text=True)  # fmt: skip
+    done = ran(["git", "-C", remake.HERE, "ls-files"])
     return done.stdout.splitlines()
 
 
-@pytest.mark.skipif(
+@mark.skipif(
     not os.path.exists(os.path.join(ROOT, ".git")), reason="no repository of git"
 )
 def test_every_figure_and_table_is_made_by_one_result():
@@ -39,25 +37,17 @@ def test_results_come_after_those_that_they_need():
 
 @pytest.fixture
 def tree(tmp_path, monkeypatch):
-    """A place with one result of which everything is known."""
     for folder in ("validation/one", "tests/references", "results/one", "results/other"):  # fmt: skip
         (tmp_path / folder).mkdir(parents=True)
     (tmp_path / "validation/one/run.py").write_text("open('results/one/new', 'w')\n")
     (tmp_path / "tests/references/rigid.json").write_text('{"made by": "a", "x": 1}')
-    result = remake.Result(
-        "one",
-        ((sys.executable, "validation/one/run.py"),),
-        sources=("validation/one/*.py", "tests/references/rigid*.json"),
-        results=("one",),
-    )
-    for name, value in (
-        ("ROOT", tmp_path),
-        ("HERE", tmp_path / "validation"),
-        ("RESULTS", tmp_path / "results"),
-        ("MADE", tmp_path / "validation/made.json"),
-        ("README", tmp_path / "validation/README.md"),
-    ):
-        monkeypatch.setattr(remake, name, str(value))
+    sources = "validation/one/*.py", "tests/references/rigid*.json"
+    programs = ((sys.executable, "validation/one/run.py"),)
+    result = remake.Result("one", programs, sources=sources, results=("one",))
+    places = dict(ROOT=".", HERE="validation", RESULTS="results")
+    places.update(MADE="validation/made.json", README="validation/README.md")
+    for name, path in places.items():
+        monkeypatch.setattr(remake, name, str(tmp_path / path))
     monkeypatch.setattr(remake, "everything", lambda: {"one": result})
     (tmp_path / "validation/README.md").write_text("\n".join(["a", *remake.MARKS, "b"]))
     return tmp_path, result

@@ -96,7 +96,7 @@ RUN = {
 
 
 def folder(path, run=RUN, columns=COLUMNS, **changed):
-    """A folder with curve.csv and run.json. None takes an entry of run.json out."""
+    """A folder with curve.csv and run.json; ... takes an entry of run.json out."""
     path.mkdir(exist_ok=True)
     run = {k: v for k, v in {**run, **changed}.items() if v is not ...}
     (path / "run.json").write_text(json.dumps(run))
@@ -113,80 +113,104 @@ def page(path):
     return found
 
 
-@pytest.fixture
-def pushed(tmp_path):
-    return page(folder(tmp_path))
+@pytest.fixture(scope="module")
+def pushed(tmp_path_factory):
+    return page(folder(tmp_path_factory.mktemp("pushed")))
 
 
 # -- what it says -----------------------------------------------------------------------------------------------------
 
+#: Of the bilinear curve: up to 2 mm the area is 50 + 90 J, so with K = 100 kN/mm: Vy (2 - Vy/200) = 140.
+YIELD = 200 * (1 - math.sqrt(1 - 0.7))
+#: Cells of rows after their first one; None: any.
+ROWS = {
+    "Normal stiffness kn": ["N/mm³", "335.2", "335.2", "335.2"],
+    "tensileStrength": ["MPa", "0.1", "–", "0.1"],
+    "friction": ["-", "0.43assumed", "–", "0.43"],
+    "modeIFractureEnergy": ["N/mm", "0.016assumed"],
+    "compressiveStrength": ["MPa", "7.55", "–", "–"],
+    "law": [None, "softening", "elastic: no strength is reached", "softening, cannot crush"],
+    "Young's modulus of the unitsassumed": ["4,800 MPa"],
+    "bed": ["modeIFractureEnergy 0.016 N/mm, friction 0.43", "the paper gives no value"],
+    "top": ["platen, held about y; pressed by 0.5 MPa"],
+    "2": ["push", "top along x", "4,000", "peak 100 ± 1.5 kN"],
+    "first crack": ["0.5 mm", "0.25 mrad", "50 kN"],
+    "0.8 of the peak": ["2 mm", "1 mrad", "80 kN"],
+    "collapse": ["none", "none", "none"],
+    "stiffness K": ["100 kN/mm"],
+    "yield force Vy": [written(YIELD) + " kN"],
+    "yield displacement dy": [written(YIELD / 100) + " mm"],
+    "ultimate displacement du": ["2 mm"],
+    "ductility µ = du/dy": [written(200 / YIELD)],
+    "top along x": ["125 kN", "2 open, 3 slide"],
+    "peak over bound": ["0.8"],
+    "work of the loads": ["260 J", "100 %"],
+    "energy taken by damping": ["4 J", "1.5 %"],
+    "elastic energy of all parts": ["20 J", "7.7 %"],
+    "energy that joints dissipated in tension": ["8 J", "3.1 %"],
+    "what is missing in the balance": ["220 J", "86 %"],
+    "largest error of the energy balance": ["2\u202f·\u202f10⁻⁸ %"],
+    "dynamic imbalance": ["1.25 %"],
+    "time step": ["20 µs", "80 % of the largest stable one."],
+}  # fmt: skip
+#: Sentences that are somewhere on the page, and texts of its chart.
+SAID = """Peak 100 kN at 1 mm; limit analysis: at most 125 kN.
+until 4 mm; rate 20 mm/s; set –; preset –
+The run has no warnings.
+one run does not tell
+no error of peak or work is promised
+the push did not end in a collapse
+an upper bound"""
+CHART = "supports;loaded point;bilinear;100.0 kN at 1.00 mm;limit analysis: 125 kN at most;displacement of top [mm];force along the push [kN]"
 
-def test_title_date_versions_and_commit_come_first(pushed):
+
+@mark.parametrize("head", ROWS)
+def test_each_number_has_its_unit_and_stands_where_it_belongs(pushed, head):
+    found = pushed.row(head)[1:]
+    assert all(cell in (None, there) for cell, there in zip(ROWS[head], found))
+
+
+def test_the_head_the_sentences_and_the_chart(pushed):
     assert pushed.of("h1") == ["A wall that is made up"]
     facts = pushed.of("dt", "dd")
     assert facts == ["scene", "made_up", "run ended", "2026-05-31 12:00:00 UTC", "versions", "masonry 3.0.0, YADE 2023.02a, Python 3.11.2", "commit", "abc1234"]  # fmt: skip
-    assert "Peak 100 kN at 1 mm; limit analysis: at most 125 kN." in pushed.said()
-    assert "is not whole" not in pushed.said()
+    assert ["property", "unit", "bed", "support", "crack"] in pushed.rows
+    assert pushed.row("peak", 6)[1:4] == ["1 mm", "0.5 mrad", "100 kN"]
+    assert pushed.of("code") == ["platen(where='bottom')", "push(target='top')"]
+    assert not [r for r in pushed.rows if "refining" in r[-1]]  # no joint got points
+    said = pushed.said()
+    assert all(text in said for text in SAID.splitlines())
+    assert "is not whole" not in said
+    assert set(CHART.split(";")) <= {text.strip() for text in pushed.of("text")}
 
 
-def test_properties_have_engineers_units_and_what_was_assumed_is_marked(pushed):
-    kinds = ["bed", "support", "crack"]
-    assert ["property", "unit", *kinds] in pushed.rows
-    assert pushed.row("Normal stiffness kn")[1:] == ["N/mm³", "335.2", "335.2", "335.2"]
-    assert pushed.row("tensileStrength")[1:] == ["MPa", "0.1", "–", "0.1"]
-    assert pushed.row("friction")[1:] == ["-", "0.43assumed", "–", "0.43"]
-    assert pushed.row("modeIFractureEnergy")[1:3] == ["N/mm", "0.016assumed"]
-    assert pushed.row("compressiveStrength")[1:] == ["MPa", "7.55", "–", "–"]
-    assert pushed.row("law")[2:] == ["softening", "elastic: no strength is reached", "softening, cannot crush"]  # fmt: skip
-    assert pushed.row("Young's modulus of the unitsassumed")[1] == "4,800 MPa"
-    assert pushed.row("bed")[1:] == ["modeIFractureEnergy 0.016 N/mm, friction 0.43", "the paper gives no value"]  # fmt: skip
+#: What changes a run, the beginning of a row, and cells of it.
+CHANGED = [
+    (dict(joints={"bed": JOINT, "dry": {**JOINT, "tensileStrength": 0.0, "cohesion": 0.0}}), {}, "modeIFractureEnergy", ["0.016assumed", "–"]),
+    (dict(joints={"bed": JOINT, "dry": {**JOINT, "tensileStrength": 0.0}}), {}, "friction", ["0.43assumed", "0.43"]),
+    (dict(joints_by_kind={"bed": 3, "support": 1}), {}, "law", ["", "softening", "elastic: no strength is reached"]),
+    (dict(ties=[{"name": "rod", "ends_m": [[0, 0, 1.5], [2, 0, 1.5]], "stiffness_N_per_m": 1e7, "prestress_N": 3e4, "state": "yielded", "breaking_strain": None}]), {},
+     "rod", ["ends ((0, 0, 1.5), (2, 0, 1.5)) m; stiffness 1\u202f·\u202f10⁷ N/m; prestress 30,000 N; state yielded; breaking strain –"]),
+    (dict(recorded_drifts=["storey_x_mrad"]), {"storey_x_mrad": ("displacement of b along x less that of a, over the height between them [mrad]", -MOVED)},
+     "largest storey_x", ["−4 mrad"]),
+    ({}, {"base_force_z_kN": ("force of the structure on base along z [kN]", 0 * MOVED - 20)}, "base_force_z", ["−20 kN"] * 3),
+]  # fmt: skip
 
 
-def test_a_warning_stands_at_the_head_and_kinds_without_joints_are_left_out(tmp_path):
-    found = page(folder(tmp_path, warnings=["the push is too fast", "it is damped"], joints_by_kind={"bed": 3, "support": 1}))  # fmt: skip
-    said = found.said()
+@mark.parametrize("changed, columns, head, cells", CHANGED)
+def test_what_a_run_has_beside(tmp_path, changed, columns, head, cells):
+    changed["columns"] = {**MEANINGS, **{n: meaning for n, (meaning, _) in columns.items()}}  # fmt: skip
+    more = {n: values for n, (_, values) in columns.items()}
+    found = page(folder(tmp_path, columns={**COLUMNS, **more}, run={**RUN, **changed}))
+    row = found.row(head)
+    assert any(row[at : at + len(cells)] == cells for at in range(1, len(row)))
+    assert "The moment at the base is not known" in found.said()
+
+
+def test_a_warning_stands_at_the_head(tmp_path):
+    said = page(folder(tmp_path, warnings=["the push is too fast", "it is damped"])).said()  # fmt: skip
     assert said.index("the push is too fast") < said.index(PARTS[0])
     assert "and 1 more" in said and said.count("it is damped") == 1
-    assert found.row("law") == ["law", "", "softening", "elastic: no strength is reached"]  # fmt: skip
-
-
-def test_what_does_not_count_for_a_joint_has_a_dash(tmp_path):
-    dry = {**JOINT, "tensileStrength": 0.0, "cohesion": 0.0}
-    found = page(folder(tmp_path, joints={"bed": JOINT, "dry": dry}))
-    assert found.row("modeIFractureEnergy")[2:] == ["0.016assumed", "–"]
-    assert found.row("friction")[2:] == ["0.43assumed", "0.43"]
-
-
-def test_supports_loads_stages_and_the_script_are_listed(pushed):
-    assert pushed.row("top") == ["top", "platen, held about y; pressed by 0.5 MPa"]
-    assert pushed.row("2") == ["2", "push", "top along x", "4,000", "peak 100 ± 1.5 kN"]  # fmt: skip
-    codes = pushed.of("code")
-    assert codes == ["platen(where='bottom')", "push(target='top')"]
-    assert "until 4 mm; rate 20 mm/s; set –; preset –" in pushed.said()
-
-
-def test_ties_and_springs_have_their_units(tmp_path):
-    tie = {"name": "rod", "ends_m": [[0, 0, 1.5], [2, 0, 1.5]], "stiffness_N_per_m": 1e7, "prestress_N": 3e4, "state": "yielded", "breaking_strain": None}  # fmt: skip
-    found = page(folder(tmp_path, ties=[tie]))
-    assert found.row("rod")[1] == "ends ((0, 0, 1.5), (2, 0, 1.5)) m; stiffness 1\u202f·\u202f10⁷ N/m; prestress 30,000 N; state yielded; breaking strain –"  # fmt: skip
-
-
-def test_drifts_are_displacements_over_the_height(pushed):
-    assert pushed.row("first crack")[1:4] == ["0.5 mm", "0.25 mrad", "50 kN"]
-    assert pushed.row("peak", 6)[1:4] == ["1 mm", "0.5 mrad", "100 kN"]
-    assert pushed.row("0.8 of the peak")[1:4] == ["2 mm", "1 mrad", "80 kN"]
-    assert pushed.row("collapse")[1:4] == ["none"] * 3
-    assert "the push did not end in a collapse" in pushed.row("collapse")[4]
-
-
-def test_the_bilinear_curve_is_that_of_equal_areas(pushed):
-    # up to 2 mm the area is 50 + 90 J, so with K = 100 kN/mm: Vy (2 - Vy/200) = 140
-    force = 200 * (1 - math.sqrt(1 - 0.7))
-    assert pushed.row("stiffness K")[1] == "100 kN/mm"
-    assert pushed.row("yield force Vy")[1] == written(force) + " kN"
-    assert pushed.row("yield displacement dy")[1] == written(force / 100) + " mm"
-    assert pushed.row("ultimate displacement du")[1] == "2 mm"
-    assert pushed.row("ductility µ = du/dy")[1] == written(200 / force)
 
 
 def test_a_curve_that_never_falls_to_its_ultimate_displacement_is_marked(tmp_path):
@@ -196,21 +220,6 @@ def test_a_curve_that_never_falls_to_its_ultimate_displacement_is_marked(tmp_pat
     assert found.row("ductility µ = du/dy")[1].endswith("not reached")
     assert found.row("0.8 of the peak")[1] == "none"
     assert "the force never falls to 0.8 of its peak" in found.row("0.8 of the peak")[4]
-
-
-def test_the_bound_says_what_it_is_and_the_peak_stands_beside_it(pushed):
-    assert pushed.row("top along x")[:3] == ["top along x", "125 kN", "2 open, 3 slide"]
-    assert "an upper bound" in pushed.row("top along x")[3]
-    assert pushed.row("peak over bound")[1] == "0.8"
-
-
-def test_energies_add_up_since_the_first_row(pushed):
-    assert pushed.row("work of the loads")[1:3] == ["260 J", "100 %"]
-    assert pushed.row("energy taken by damping")[1:3] == ["4 J", "1.5 %"]
-    assert pushed.row("elastic energy of all parts")[1:3] == ["20 J", "7.7 %"]  # fmt: skip
-    assert pushed.row("energy that joints dissipated in tension")[1:3] == ["8 J", "3.1 %"]  # fmt: skip
-    assert pushed.row("what is missing in the balance")[1:3] == ["220 J", "86 %"]
-    assert not [r for r in pushed.rows if "refining" in r[-1]]  # no joint got points
 
 
 def test_every_number_has_a_definition_and_a_source(pushed):
@@ -223,17 +232,6 @@ def test_every_number_has_a_definition_and_a_source(pushed):
                 break
             assert row[2].rstrip().endswith(".") and row[3], row
             assert row[3].partition(":")[0] in ("run.json", "curve.csv", "source"), row
-
-
-def test_what_the_run_knows_of_its_errors_and_what_is_not_known(pushed):
-    assert (
-        pushed.row("largest error of the energy balance")[1] == "2\u202f·\u202f10⁻⁸ %"
-    )
-    assert pushed.row("dynamic imbalance")[1] == "1.25 %"
-    assert pushed.row("time step")[1:3] == ["20 µs", "80 % of the largest stable one."]
-    said = pushed.said()
-    assert "The run has no warnings." in said and "one run does not tell" in said
-    assert "no error of peak or work is promised" in said
 
 
 def test_the_promise_of_a_preset_and_the_width_of_an_accuracy_are_said(tmp_path):
@@ -249,28 +247,26 @@ def test_the_promise_of_a_preset_and_the_width_of_an_accuracy_are_said(tmp_path)
     assert "one run does not tell" not in said
 
 
-def test_the_chart_shows_curve_bilinear_curve_mark_and_bound(pushed):
-    texts = [text.strip() for text in pushed.of("text")]
-    for text in ("supports", "loaded point", "bilinear", "100.0 kN at 1.00 mm", "limit analysis: 125 kN at most", "displacement of top [mm]", "force along the push [kN]"):  # fmt: skip
-        assert text in texts
-
-
 # -- runs of all kinds ------------------------------------------------------------------------------------------------
 
 
-def without(*names):
-    """RUN without entries, for :func:`folder`."""
-    return {k: v for k, v in RUN.items() if k not in names}
+NO_PUSH = {k: ... for k in RUN if k.endswith(("_mm", "_kN", "_mrad", "_kN_per_mm")) or k == "bounds"}  # fmt: skip
 
 
-OF_PUSH = [k for k in RUN if k.endswith(("_mm", "_kN", "_mrad", "_kN_per_mm")) or k == "bounds"]  # fmt: skip
+@mark.parametrize("columns", [{n: [] for n in COLUMNS}, None])
+def test_without_rows_there_is_a_page_of_the_bound(tmp_path, columns):
+    found = page(folder(tmp_path, columns=columns, **{**NO_PUSH, "ended": ..., "bounds": RUN["bounds"]}))  # fmt: skip
+    said = found.said()
+    assert "The run has no rows" in said and "There is no curve" in said
+    assert found.row("top along x")[1] == "125 kN"
+    assert "There is no energy balance" in said
 
 
 def test_a_run_without_a_push_says_so(tmp_path):
     figure = {"x": {"column": "time_s", "label": "time [s]"}, "y": [{"column": "displacement_mm", "label": "top"}], "y_label": "displacement [mm]"}  # fmt: skip
     answers = [{"stage": "shake", "number": 2, "name": "largest_displacement_of_top_x", "unit": "mm", "value": -4.0, "uncertainty": None, "how": "of all rows"}]  # fmt: skip
     stages = [{"stage": "settle", "steps": 1, "first_row": 0}, {"stage": "shake", "steps": 1, "first_row": 0, "load": None}]  # fmt: skip
-    found = page(folder(tmp_path, without(*OF_PUSH), figure=figure, answers=answers, stages=stages))  # fmt: skip
+    found = page(folder(tmp_path, figure=figure, answers=answers, stages=stages, **NO_PUSH))  # fmt: skip
     said = found.said()
     assert "The run has no push, so there is no bilinear curve." in said
     assert "The run has no push, so there are no drifts" in said
@@ -281,7 +277,7 @@ def test_a_run_without_a_push_says_so(tmp_path):
 def test_the_search_for_a_load_leads_with_what_was_held_and_what_was_not(tmp_path):
     one = lambda number, name, value: {"stage": "lean", "number": number, "name": name, "unit": "g", "value": value, "uncertainty": None, "how": "it rested"}  # fmt: skip
     answers = [one(2, "factor_held", 0.2), one(2, "factor_not_held", None), one(3, "factor_not_held", 0.4), one(4, "factor_held", 0.3), one(5, "factor_not_held", 0.35)]  # fmt: skip
-    found = page(folder(tmp_path, without("stages", *OF_PUSH), answers=answers))
+    found = page(folder(tmp_path, stages=..., answers=answers, **NO_PUSH))
     assert "Largest load that was held 0.3 g; smallest load that was not held 0.35 g" in found.said()  # fmt: skip
 
 
@@ -293,7 +289,7 @@ def test_several_pushes_are_named(tmp_path):
     assert "from 0 kN to 99 kN" in found.said()
 
 
-@pytest.mark.parametrize(
+@mark.parametrize(
     "changed, text",
     [
         ({"collapsed": True, "collapse": "brick 5 falls", "ended": "collapsed", "collapse_displacement_mm": 4.0}, "Collapsed: brick 5 falls"),
@@ -311,15 +307,6 @@ def test_several_pushes_are_named(tmp_path):
 )  # fmt: skip
 def test_what_ended_a_run_and_what_it_lacks_is_said(tmp_path, changed, text):
     assert text in " ".join(page(folder(tmp_path, **changed)).said().split())
-
-
-def test_without_rows_there_is_a_page_of_the_bound(tmp_path):
-    for name, columns in (("head", {n: [] for n in COLUMNS}), ("none", None)):
-        found = page(folder(tmp_path / name, without("ended", *OF_PUSH[:-1]), columns, bounds=RUN["bounds"]))  # fmt: skip
-        said = found.said()
-        assert "The run has no rows" in said and "There is no curve" in said
-        assert found.row("top along x")[1] == "125 kN"
-        assert "There is no energy balance" in said
 
 
 def test_numbers_that_are_not_finite_and_torn_lines_are_named_and_drawn_around(tmp_path):  # fmt: skip
@@ -358,22 +345,8 @@ def test_sections_have_normal_force_shear_and_moment(tmp_path):
     run = {**RUN, "columns": {**MEANINGS, **meanings}, "recorded_sections": list(names)}
     found = page(folder(tmp_path, run, {**COLUMNS, **names}))
     assert found.row("foot_N")[1:6] == ["−50 kN"] * 5
-    assert found.row("foot_M_y")[1:6] == ["≈ 0", "200 kNm", "80 kNm", "≈ 0", "200 kNm"]  # fmt: skip
+    assert found.row("foot_M_y")[1:6] == ["≈ 0", "200 kNm", "80 kNm", "≈ 0", "200 kNm"]
     assert "no section was recorded" not in found.said()
-
-
-def test_reactions_stand_in_for_sections_without_a_moment(tmp_path):
-    columns = {**COLUMNS, "base_force_z_kN": 0 * MOVED - 20}
-    run = {**RUN, "columns": {**MEANINGS, "base_force_z_kN": "force of the structure on base along z [kN]"}}  # fmt: skip
-    found = page(folder(tmp_path, run, columns))
-    assert found.row("base_force_z")[1:4] == ["−20 kN"] * 3
-    assert "The moment at the base is not known" in found.said()
-
-
-def test_recorded_drifts_have_their_largest_value(tmp_path):
-    run = {**RUN, "columns": {**MEANINGS, "storey_x_mrad": "displacement of b along x less that of a, over the height between them [mrad]"}, "recorded_drifts": ["storey_x_mrad"]}  # fmt: skip
-    found = page(folder(tmp_path, run, {**COLUMNS, "storey_x_mrad": -MOVED}))
-    assert found.row("largest storey_x")[1] == "−4 mrad"
 
 
 # -- damaged and hostile files ----------------------------------------------------------------------------------------
@@ -406,11 +379,6 @@ def test_whatever_stands_in_an_entry_there_is_a_page(tmp_path):
         assert "alert(1)</script>" not in text, key
 
 
-def test_a_folder_without_a_record_of_a_run_is_refused(tmp_path):
-    with pytest.raises(Refused, match="cannot read .*run.json: No such file"):
-        report.read(tmp_path)
-
-
 # -- size, picture, program -------------------------------------------------------------------------------------------
 
 
@@ -437,8 +405,7 @@ def test_without_three_a_sentence_names_the_package(tmp_path, monkeypatch):
     monkeypatch.setattr(library, "PLACES", ("/nowhere",))
     record = report.read(folder(tmp_path))
     record.picture = ({}, "")
-    said = Page(report.page(record)).said()
-    assert "three.js is not installed" in said and "apt-get install --no-install-recommends libjs-three" in said  # fmt: skip
+    assert "apt-get install --no-install-recommends libjs-three" in report.page(record)
 
 
 def test_the_program_writes_a_report_into_the_folder_or_elsewhere(tmp_path, capsys):
@@ -450,7 +417,7 @@ def test_the_program_writes_a_report_into_the_folder_or_elsewhere(tmp_path, caps
     assert open(other).read() == (tmp_path / "run" / "report.html").read_text()
 
 
-@pytest.mark.parametrize(
+@mark.parametrize(
     "words, message",
     [
         (["nowhere"], "cannot read nowhere/run.json"),
@@ -472,7 +439,7 @@ def test_what_cannot_be_written_is_refused_and_nothing_is(tmp_path, monkeypatch,
     assert "report.html, a symbolic link" in capsys.readouterr().err
 
 
-@pytest.mark.parametrize(
+@mark.parametrize(
     "value, text",
     [(0, "0"), (0.0, "0"), (116.4789, "116.5"), (115.9697, "116.0"), (0.5, "0.5"), (-34.5, "−34.5"), (1224, "1,224"), (4800.0, "4,800"),
      (1.0678e-10, "1.068\u202f·\u202f10⁻¹⁰"), (2.0e11, "2\u202f·\u202f10¹¹"), (9.99996, "10.00"), (math.nan, "not known"), (math.inf, "not known"), (None, "not known"), ("7", "not known"), (True, "not known")],

@@ -2,10 +2,10 @@
 """Curves as arrays with units, and the table of results."""
 
 from usual import *
-from masonry.read.shown import Curve, RunFolder, resultsOf, unitOf
+from masonry.read.shown import Curve, resultsOf, unitOf
 
 
-@pytest.mark.parametrize(
+@mark.parametrize(
     "head, meaning, unit",
     [
         ("base_shear_kN", "force on what is held [kN]", "kN"),
@@ -25,16 +25,11 @@ def test_a_curve_is_arrays_by_name():
     assert list(curve) == ["time_s", "top_mm"] and len(curve) == 3 and "top_mm" in curve
     assert curve["top_mm"].dtype == float and np.abs(curve["top_mm"]).max() == 2
     assert curve.units == {"time_s": "s", "top_mm": "mm"}
-    with pytest.raises(KeyError, match="no column 'top', did you mean 'top_mm'"):
+    with raises(KeyError, match="no column 'top', did you mean 'top_mm'"):
         curve["top"]
     page = curve._repr_html_()
     for text in ("3 rows, 2 columns", "<th", ">time_s<", ">-2<", ">0.5<"):
         assert (text in page) == (text != ">0.5<"), text
-
-
-def test_a_folder_without_a_run_is_refused(tmp_path):
-    with pytest.raises(Refused, match="cannot read .*run.json"):
-        RunFolder(tmp_path)
 
 
 def test_results_that_were_not_found_are_not_shown():

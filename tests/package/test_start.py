@@ -3,7 +3,6 @@
 
 from usual import *
 
-
 #: What only pictures, limit analysis, studies and files of bricks need: each takes a tenth of a second or more.
 NOT_NEEDED = ["matplotlib", "meshio", "openturns", "pandas", "scipy", "masonry.study", "numpy.testing"]  # fmt: skip
 SCRIPT = """
@@ -17,7 +16,7 @@ json.dump(sorted(set(sys.modules) - before), open("modules.json", "w"))
 """
 
 
-@pytest.mark.parametrize("scene", ["wall_comp4", "parapet"])
+@mark.parametrize("scene", ["wall_comp4", "parapet"])
 def test_a_lean_run_loads_no_library_that_it_does_not_need(tmp_path, scene):
     path = os.path.join(ROOT, "scripts", scene + ".py")
     (tmp_path / "counted.py").write_text(SCRIPT.format(scene=path))
@@ -36,7 +35,7 @@ def test_what_makes_bricks_loads_no_library_that_looks_at_hulls(tmp_path):
         "import sys; from masonry import bricks; wall = bricks.Wall(1.1, 0.81); print(len(wall), 'scipy.spatial' in sys.modules); "
         "print(round(wall.volume, 9), 'scipy.spatial' in sys.modules)"
     )
-    done = subprocess.run(["/usr/bin/python3", "-c", script], cwd=tmp_path, capture_output=True, text=True)  # fmt: skip
+    done = ran(["/usr/bin/python3", "-c", script], cwd=tmp_path)
     assert done.stdout.splitlines() == ["100 False", f"{1.1 * 0.81 * 0.102:.9g} True"], done.stderr  # fmt: skip
 
 
@@ -45,5 +44,5 @@ def test_yade_starts_in_plain_python_without_the_shell_of_which_it_wants_the_ver
         "import sys, masonry; masonry.classes; import yade.runtime; print('IPython' in sys.modules); "
         "import IPython; print(yade.runtime.ipython_version == 100 * IPython.version_info[0] + IPython.version_info[1])"
     )
-    done = subprocess.run(["/usr/bin/python3", "-c", script], cwd=tmp_path, capture_output=True, text=True)  # fmt: skip
+    done = ran(["/usr/bin/python3", "-c", script], cwd=tmp_path)
     assert done.stdout.split() == ["False", "True"], done.stderr

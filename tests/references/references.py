@@ -23,14 +23,8 @@ import tempfile
 from dataclasses import dataclass
 
 import masonry
-from masonry import (
-    addBlock,
-    connect,
-    criticalTimeStep,
-    engines,
-    loadCheckpoint,
-    saveCheckpoint,
-)
+from masonry import addBlock, bricks, connect, criticalTimeStep, engines
+from masonry import loadCheckpoint, saveCheckpoint
 from yade import O, Quaternion, Vector3
 from yade.wrapper import *
 
@@ -49,19 +43,19 @@ REGIMES = ("elastic", "opening", "slipping", "crushing")
 peaks = {}  # smallest and largest reaction of every load since the run began [N]
 
 
+def ofKind(kind):
+    return [e for e in O.engines if isinstance(e, kind)]
+
+
 def loads():
-    return [e for e in O.engines if isinstance(e, MasonryLoad)]
-
-
-def engine(kind):
-    return next((e for e in O.engines if isinstance(e, kind)), None)
+    return ofKind(MasonryLoad)
 
 
 def step(count):
-    driven = list(enumerate(loads()))
+    driven = loads()
     for _ in range(count):
         O.step()
-        for number, load in driven:
+        for number, load in enumerate(driven):
             low, high = peaks.get(number, (0.0, 0.0))
             peaks[number] = min(low, load.reaction), max(high, load.reaction)
 
@@ -82,8 +76,7 @@ def state():
         "dissipated [J]": [i.phys.dissipated for i in joints],
     }
     regimes = [r for i in joints for r in i.phys.regime]
-    zones = engine(MasonryZones)
-    if zones:
+    for zones in ofKind(MasonryZones):
         points["node displacement [m]"] = zones.displacements
         points["node velocity [m/s]"] = zones.velocities
     bodies = [b.state for b in O.bodies if b]
@@ -94,7 +87,7 @@ def state():
         "spin [rad/s]": [b.angVel for b in bodies],
     }
     shown = sorted({len(bodies) // 2, len(bodies) - 1})
-    balance = engine(MasonryEnergy).balance()
+    balance = ofKind(MasonryEnergy)[0].balance()
     numbers = {
         "step": [float(O.iter)],
         "limit of the time step [s]": [criticalTimeStep()[0]],
@@ -135,24 +128,24 @@ def unitAndPlate():
     return unit, MasonryMat(density=2400, young=1e16, jointSet="plate")
 
 
-def layout(courses, halfUnits, halves):
-    """Running bond: (brick, low, high) of every block."""
-    brick, blocks = 0, []
-    for course in range(courses):
-        cuts = [c for c in range(1, halfUnits) if c % 2 == course % 2]
-        for first, beyond in zip([0, *cuts], [*cuts, halfUnits]):
-            brick += 1
-            ends = range(first, beyond + 1) if halves else (first, beyond)
-            for a, b in zip(ends, list(ends)[1:]):
-                low = (a * LENGTH / 2, 0, course * HEIGHT)
-                high = (b * LENGTH / 2, THICKNESS, (course + 1) * HEIGHT)
-                blocks.append((brick, low, high))
-    return blocks
-
-
 CRUSHING = dict(peakRatio=20, compressiveFractureEnergy=3000)
 DILATANT = dict(dilatancy=0.1, dilatancyDecay=200, residualFriction=0.3)
 DRY = dict(tensileStrength=0, cohesion=0, friction=0.6, residualFriction=0.6)
+
+
+def laid(courses, halfUnits, material, turn, halves=True):
+    """A running bond: body and brick of every block."""
+    unit = LENGTH, THICKNESS, HEIGHT
+    blocks = bricks.Wall(halfUnits * LENGTH / 2, courses * HEIGHT, unit, halves=halves)
+    return {put(b.low, b.high, material, turn): b.brick for b in blocks}
+
+
+def scene(dt, joints, turn, rule=None, **around):
+    """Engines and joints of the blocks; in the plane unless they are turned."""
+    inPlane, gravity = turn == STRAIGHT, turn * Vector3(0, 0, -9.81)
+    engines(joints, gravity=gravity, inPlane=inPlane, **around)
+    connect(rule)
+    O.dt = dt
 
 
 def wall(
@@ -165,72 +158,56 @@ def wall(
     deformable=False,
     divisions=(1, 1, 1),
     rigidBricks=0,
-    damping=0.6,
     kind="local",
     functors=False,
     cyclic=False,
-    pressure=0.12e6,
 ):
     """A small wall in running bond between plates: bed, head, crack and support joints; the upper plate is driven."""
     inPlane = turn == STRAIGHT
     unit, plate = unitAndPlate()
     length, height = halfUnits * LENGTH / 2, courses * HEIGHT
     base = put((0, 0, -0.1), (length, THICKNESS, 0), plate, turn)
-    laid = layout(courses, halfUnits, halves)
-    brickOf = {put(low, high, unit, turn): brick for brick, low, high in laid}
+    brickOf = laid(courses, halfUnits, unit, turn, halves)
     top = put((0, 0, height), (length, THICKNESS, height + 0.1), plate, turn)
     O.bodies[base].state.blockedDOFs = "xyzXYZ"
     up, along = turn * Vector3(0, 0, 1), turn * Vector3(1, 0, 0)
-    joints = [
-        MasonryJoint(name="support", jointSet="plate", elastic=True),
-        MasonryJoint(
-            name="bed", direction=up, compressiveStrength=1.2e6, **CRUSHING, **DILATANT
-        ),
-        MasonryJoint(
-            name="head", direction=along, tensileStrength=0.05e6, cohesion=0.06e6
-        ),
-    ]
+    support = MasonryJoint(name="support", jointSet="plate", elastic=True)
+    crushes = dict(compressiveStrength=1.2e6, **CRUSHING, **DILATANT)
+    bed = MasonryJoint(name="bed", direction=up, **crushes)
+    low = dict(tensileStrength=0.05e6, cohesion=0.06e6)
+    joints = [support, bed, MasonryJoint(name="head", direction=along, **low)]
     crack = MasonryJoint(name="crack", tensileStrength=0.2e6, cohesion=0.4e6, cap=False)
     for joint in (*joints, crack) if cyclic else ():
         joint.law, joint.shearStiffnessLoss = "cyclic", 0.3
     load = MasonryLoad(
         body=top,
         point=turn * Vector3(0.4 * length, THICKNESS / 3, height),
-        force=turn * Vector3(0, 0, -pressure * length * THICKNESS),
+        force=turn * Vector3(0, 0, -0.12e6 * length * THICKNESS),
         direction=turn * Vector3(1, 0 if inPlane else 0.1, 0),
         driven=True,
         velocity=0.005,
     )
     zones = None
     if deformable:
-        zones = MasonryZones(
-            bodies=sorted(brickOf)[: len(brickOf) - rigidBricks],
-            divisions=list(divisions),
-            damping=damping,
-            dampingKind=kind,
-            blocked="y" if inPlane else "",
-        )
-    engines(
-        joints,
-        damping=damping,
-        gravity=turn * Vector3(0, 0, -9.81),
-        rows=rows,
-        inPlane=inPlane,
-        loads=[load],
-        zones=zones,
-        functors=functors,
-        dampingKind="local" if functors else kind,
-    )
-    within = (
-        lambda one, two: one.id in brickOf and brickOf.get(two.id) == brickOf[one.id]
-    )
-    connect(lambda one, two, geom: crack if within(one, two) else None)
-    O.dt = dt
+        bodies = sorted(brickOf)[: len(brickOf) - rigidBricks]
+        zones = MasonryZones(bodies=bodies, divisions=list(divisions), damping=0.6)
+        zones.dampingKind, zones.blocked = kind, "y" if inPlane else ""
+
+    def rule(one, two, geom):
+        isCrack = one.id in brickOf and brickOf.get(two.id) == brickOf[one.id]
+        return crack if isCrack else None
+
+    around = dict(damping=0.6, dampingKind="local" if functors else kind)
+    around.update(rows=rows, loads=[load], zones=zones, functors=functors)
+    scene(dt, joints, turn, rule, **around)
 
 
-def drive(velocity):
+def drive(*velocities):
+    """A change of the velocities of the loads [m/s], in turn."""
+
     def change():
-        loads()[0].velocity = velocity
+        for number, load in enumerate(loads()):
+            load.velocity = velocities[number % len(velocities)]
 
     return change
 
@@ -248,27 +225,18 @@ def kinds():
     """All kinds of joints that a user can make."""
     brittle = MasonryJoint().brittleCoulomb()
     brittle.name = "brittle"
+    loose = dict(dilatancy=0.2, dilatancyDecay=3000, residualFriction=0.3)
+    tables = dict(tensionTable=[(1, 0), (40, 0.6), (400, 1)])
+    tables.update(shearTable=[(1, 0), (30, 0.5), (300, 1)], residualCohesion=0.02e6)
+    soft = dict(compressiveStrength=1e6, capShear=2, capLinear=2e4, **CRUSHING)
     return [
         MasonryJoint(name="default"),
         MasonryJoint(name="elastic", elastic=True),
         brittle,
         MasonryJoint(name="dry", **DRY),
-        MasonryJoint(
-            name="dilatant", dilatancy=0.2, dilatancyDecay=3000, residualFriction=0.3
-        ),
-        MasonryJoint(
-            name="tables",
-            tensionTable=[(1, 0), (40, 0.6), (400, 1)],
-            shearTable=[(1, 0), (30, 0.5), (300, 1)],
-            residualCohesion=0.02e6,
-        ),
-        MasonryJoint(
-            name="crushing",
-            compressiveStrength=1e6,
-            capShear=2,
-            capLinear=2e4,
-            **CRUSHING,
-        ),
+        MasonryJoint(name="dilatant", **loose),
+        MasonryJoint(name="tables", **tables),
+        MasonryJoint(name="crushing", **soft),
         MasonryJoint(name="without cap", cap=False, residualFriction=0.2),
     ]
 
@@ -287,74 +255,45 @@ def couplets(dt, turn=STRAIGHT, damping=0.6, kind="local"):
         if not inPlane:
             O.bodies[body].state.blockedDOFs = "XYZ"
         top = turn * Vector3(number + LENGTH / 2, THICKNESS / 2, 3 * HEIGHT)
+        driven = dict(body=body, point=top, driven=True)
         for sign in ((0, 0, 1), (1, 0, 0)):
-            sign = turn * Vector3(*sign)
-            drives.append(
-                MasonryLoad(body=body, point=top, direction=sign, driven=True)
-            )
+            drives.append(MasonryLoad(direction=turn * Vector3(*sign), **driven))
     elastic = MasonryJoint(name="between", elastic=True)
-    engines(
-        offered,
-        damping=damping,
-        gravity=turn * Vector3(0, 0, -9.81),
-        rows=None,
-        inPlane=inPlane,
-        loads=drives,
-        dampingKind=kind,
-    )
-    connect(lambda one, two, geom: elastic if one.id % 3 else offered[one.id // 3])
-    O.dt = dt
+    rule = lambda one, two, geom: elastic if one.id % 3 else offered[one.id // 3]
+    around = dict(damping=damping, dampingKind=kind, rows=None, loads=drives)
+    scene(dt, offered, turn, rule, **around)
 
 
-def lead(up, along):
-    """Velocities of the couplets' driven blocks [m/s]."""
-
-    def change():
-        for number, load in enumerate(loads()):
-            load.velocity = along if number % 2 else up
-
-    return change
-
-
+#: Velocities of the couplets' driven blocks up and along x [m/s].
 PATH = [
-    ("pressed", 100, lead(-0.0005, 0)),
-    ("opened", 300, lead(0.01, 0)),
-    ("closed again", 320, lead(-0.01, 0)),
-    ("slid", 400, lead(-0.0005, 0.02)),
-    ("slid back", 600, lead(-0.0005, -0.02)),
-    ("crushed", 400, lead(-0.02, 0.005)),
-    ("torn", 600, lead(0.05, 0.01)),
+    ("pressed", 100, drive(-0.0005, 0)),
+    ("opened", 300, drive(0.01, 0)),
+    ("closed again", 320, drive(-0.01, 0)),
+    ("slid", 400, drive(-0.0005, 0.02)),
+    ("slid back", 600, drive(-0.0005, -0.02)),
+    ("crushed", 400, drive(-0.02, 0.005)),
+    ("torn", 600, drive(0.05, 0.01)),
 ]
 
 
 def tilted(dt, turn=STRAIGHT, rows=1, deformable=False, about=(0, 1, 0), rate=2.0):
     """A wall without an upper plate on a base that turns until the wall topples."""
-    inPlane = turn == STRAIGHT
     unit, plate = unitAndPlate()
     base = put((0, 0, -0.1), (4 * LENGTH / 2, THICKNESS, 0), plate, turn)
-    laid = layout(5, 4, halves=False)
-    bricks = [put(low, high, unit, turn) for _, low, high in laid]
+    bodies = [*laid(5, 4, unit, turn, halves=False)]
     soft = dict(normalStiffness=4e9, shearStiffness=2e9)
     support = dict(name="support", jointSet="plate", elastic=True)
     zones = None
     if deformable:
-        zones = MasonryZones(bodies=bricks, blocked="y" if inPlane else "")
+        zones = MasonryZones(bodies=bodies, blocked="y" if turn == STRAIGHT else "")
     dry = MasonryJoint(name="dry", cap=False, **DRY, **soft)
-    engines(
-        [MasonryJoint(**support, **soft), dry],
-        damping=0.3,
-        gravity=turn * Vector3(0, 0, -9.81),
-        rows=rows,
-        inPlane=inPlane,
-        zones=zones,
-        dampingKind="local",
-    )
-    connect()
-    engine(MasonryEnergy).watch = False  # the runs go on after the collapse
+    joints = [MasonryJoint(**support, **soft), dry]
+    around = dict(damping=0.3, dampingKind="local", rows=rows, zones=zones)
+    scene(dt, joints, turn, **around)
+    ofKind(MasonryEnergy)[0].watch = False  # the runs go on after the collapse
     s = O.bodies[base].state
     s.blockedDOFs = "xyzXYZ"
     s.angVel = turn * (rate * Vector3(*about))
-    O.dt = dt
 
 
 def flying(dt, kind="local", damping=0.1):
@@ -364,7 +303,7 @@ def flying(dt, kind="local", damping=0.1):
         high = [a + b for a, b in zip(low, (LENGTH, THICKNESS, HEIGHT))]
         put(low, high, mat, TURN)
     engines([MasonryJoint()], damping=damping, rows=None)
-    engine(MasonryIntegrator).dampingKind = kind
+    ofKind(MasonryIntegrator)[0].dampingKind = kind
     connect()
     for body, spin in ((0, (3, 1, -2)), (1, (-4, 2, 1)), (2, (3, -14, 5))):
         s = O.bodies[body].state
@@ -383,7 +322,7 @@ def otherProperties():
 
 
 def otherEngines():
-    integrator = engine(MasonryIntegrator)
+    (integrator,) = ofKind(MasonryIntegrator)
     integrator.damping, integrator.dampingKind = 0.3, "combined"
     integrator.gravity = (0.5, 0, -12)
     load = loads()[0]
@@ -432,8 +371,13 @@ def alone(**steps):
 SPACE = dict(turn=TURN, rows=None)
 RIGID, ZONED = 2.5e-5, 7e-6  # time steps of the walls [s]
 SOFT = dict(dt=ZONED, deformable=True, kind="combined")
-UNLIKE = dict(halves=False, **SOFT)
+UNLIKE, MIXED = dict(halves=False, **SOFT), dict(rigidBricks=2, divisions=(2, 1, 1))
+QUICKLY = dict(dt=1e-5, deformable=True, rate=8.0)
 LARGE = dict(halfUnits=8, courses=5)
+CYCLIC = dict(dt=RIGID, cyclic=True)
+ALONE = alone(early=200, late=6000)
+FALL = alone(early=400, tilted=2000, fallen=5000)
+OUT = dict(about=(1, 0.3, 0), **SPACE)
 RUNS = {
     "rigid": run(wall, PUSH, dt=RIGID, **LARGE),
     "rigid_combined": run(wall, PUSH, dt=RIGID, kind="combined"),
@@ -446,9 +390,7 @@ RUNS = {
     "deformable": run(wall, PUSH, **SOFT),
     "deformable_local": run(wall, SHORT, dt=ZONED, deformable=True),
     "deformable_space": run(wall, PUSH[:3], **SOFT, **SPACE),
-    "deformable_unlike": run(
-        wall, PUSH[:3], rigidBricks=2, divisions=(2, 1, 1), **UNLIKE
-    ),
+    "deformable_unlike": run(wall, PUSH[:3], **MIXED, **UNLIKE),
     "deformable_space_unlike": run(wall, SHORT, divisions=(2, 2, 2), **UNLIKE, **SPACE),
     "deformable_functors": run(wall, SHORT, functors=True, **SOFT),
     "deformable_resumed": run(wall, PUSH, "checkpoint", "deformable", **SOFT),
@@ -456,27 +398,15 @@ RUNS = {
     "couplets": run(couplets, PATH, dt=2.5e-5),
     "couplets_combined": run(couplets, PATH, dt=2.5e-5, turn=TURN, kind="combined"),
     "couplets_undamped": run(couplets, PATH[:3], dt=2.5e-5, damping=0),
-    "flying": run(flying, alone(early=200, late=6000), dt=3e-5),
-    "flying_combined": run(
-        flying, alone(early=200, late=6000), dt=3e-5, kind="combined"
-    ),
+    "flying": run(flying, ALONE, dt=3e-5),
+    "flying_combined": run(flying, ALONE, dt=3e-5, kind="combined"),
     "collapse": run(tilted, alone(early=400, tilted=3000, fallen=5000), dt=5e-5),
-    "collapse_space": run(
-        tilted,
-        alone(early=400, tilted=2000, fallen=5000),
-        dt=5e-5,
-        about=(1, 0.3, 0),
-        **SPACE,
-    ),
-    "collapse_deformable": run(
-        tilted, alone(early=1000, fallen=12000), dt=1e-5, deformable=True, rate=8.0
-    ),
+    "collapse_space": run(tilted, FALL, dt=5e-5, **OUT),
+    "collapse_deformable": run(tilted, alone(early=1000, fallen=12000), **QUICKLY),
     "changes": run(wall, CHANGES, dt=RIGID),
-    "cyclic": run(wall, PUSH, dt=RIGID, cyclic=True, **LARGE),
-    "cyclic_functors": run(wall, SHORT, dt=RIGID, cyclic=True, functors=True),
-    "cyclic_resumed": run(
-        wall, PUSH, "checkpoint", "cyclic", dt=RIGID, cyclic=True, **LARGE
-    ),
+    "cyclic": run(wall, PUSH, **CYCLIC, **LARGE),
+    "cyclic_functors": run(wall, SHORT, functors=True, **CYCLIC),
+    "cyclic_resumed": run(wall, PUSH, "checkpoint", "cyclic", **CYCLIC, **LARGE),
 }
 
 
@@ -523,21 +453,15 @@ def brief(number):
 
 
 def write(name, instants):
-    lines = [
-        f'{{"made by": {json.dumps(f"masonry {masonry.commit}")},',
-        f' "to remake it": {json.dumps(REMAKE)},',
-        ' "instants": {',
-    ]
-    blocks = []
-    for instant, (numbers, fingerprint) in instants.items():
-        rows = {"fingerprint": fingerprint}
-        rows.update({name: " ".join(map(brief, of)) for name, of in numbers.items()})
-        rows = [
-            f"  {json.dumps(name)}: {json.dumps(text)}" for name, text in rows.items()
-        ]
-        blocks.append(f"  {json.dumps(instant)}: {{\n" + ",\n".join(rows) + "}")
+    made = {"made by": f"masonry {masonry.commit}", "to remake it": REMAKE}
+    made["instants"] = {
+        instant: {"fingerprint": fingerprint}
+        | {name: " ".join(map(brief, of)) for name, of in numbers.items()}
+        for instant, (numbers, fingerprint) in instants.items()
+    }
     with open(pathOf(name), "w") as f:
-        f.write("\n".join(lines) + "\n" + ",\n".join(blocks) + "}}\n")
+        json.dump(made, f, indent=1, ensure_ascii=True)
+        f.write("\n")
 
 
 def stored(name):
@@ -547,9 +471,7 @@ def stored(name):
     found = {}
     for instant, rows in instants.items():
         fingerprint = rows.pop("fingerprint")
-        numbers = {
-            name: list(map(float.fromhex, of.split())) for name, of in rows.items()
-        }
+        numbers = {n: [*map(float.fromhex, of.split())] for n, of in rows.items()}
         found[instant] = numbers, fingerprint
     return found
 
