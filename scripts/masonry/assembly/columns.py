@@ -8,7 +8,7 @@ Adding a column is adding a line here, to :meth:`masonry.scene.targets.Target.co
 from dataclasses import dataclass
 from typing import Callable
 
-from yade import O, Vector3
+from yade import O
 
 from ..read.quantities import ENERGIES, OF_CONNECTORS, OF_CONTACTS
 
@@ -60,13 +60,12 @@ class Reading:
         self.structure, self.time = structure, O.time
         self._moved = {}
         self.forces = {}
-        held = Vector3(0, 0, 0)
+        held = structure.connectors.onGround()
         for target in structure.supports.held:
             force = structure.supports.supportedBy(target)
             self.forces[target.name] = force + structure.connectors.onSpringsOf(target)
             for i in structure.axes:
                 held[i] += force[i]
-        held += structure.connectors.onGround()
         self.along = self.up = self.topShear = self.rotation = 0.0
         self.sunk = -0.0
         loading = structure.loading
@@ -76,7 +75,7 @@ class Reading:
             self.up = moved[2] - loading.origin[1]
         if loading.target:
             self.sunk = -self.moved(loading.target)[0][2]
-            self.topShear = loading.loads["push"].reaction
+            self.topShear = loading.push.reaction
         along, beside = loading.direction, loading.besideThePush()
         self.baseShear = held.dot(along) - beside.dot(along)
         self.energy = structure.energy.balance()

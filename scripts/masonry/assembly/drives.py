@@ -45,11 +45,9 @@ def pushTo(loading, pushed, control, direction, name="push"):
             )
     drive = _drivePattern if isinstance(pushed, Pattern) else _driveOf
     load = drive(loading, pushed, direction, name)
-    for label, other in loading.loads.items():
-        if "_drive" in label:
-            other.velocity = other.ramp = 0
+    loading.stopDrives()
     load.direction, load.driven = direction, True
-    loading.target, loading.direction, loading.loads["push"] = control, direction, load
+    loading.target, loading.direction, loading.push = control, direction, load
     loading.followed, loading.origin, loading.pushing = control, (0, 0, 0), True
 
 
@@ -77,21 +75,20 @@ def _driveOf(loading, target, direction, name):
 
 def _drivePattern(loading, pattern, direction, name):
     """The drive that pushes in a pattern. Raises ValueError."""
-    (body, point, share), *others = pattern.parts
     bodies, points, shares = zip(*pattern.parts)
     for other in loading.loads.values():
-        if other and other.driven and set(bodies) & set(bodiesOf(other)):
-            same = [*bodiesOf(other)] == [*bodies] and np.allclose(other.shares or (1,), shares)  # fmt: skip
+        if other.driven and set(bodies) & set(bodiesOf(other)):
+            same = bodiesOf(other) == bodies and np.allclose(other.shares or (1,), shares)  # fmt: skip
             if not same or other.direction.cross(direction).norm() > 1e-12:
                 _refuseHeld(name, pattern, other)
     load = loading.patternDrive()
     load.updateAttrs(
         dict(
-            body=body,
-            point=point,
+            body=bodies[0],
+            point=points[0],
             others=bodies[1:],
             otherPoints=points[1:],
-            shares=shares if others else (),
+            shares=shares if bodies[1:] else (),
             damped=pattern.damped,
         )
     )
@@ -117,16 +114,21 @@ def bodiesOf(load):
     return load.body, *load.others
 
 
-def isAlong(load, axis):
-    """Whether a MasonryLoad is a drive that holds or moves what it drives along an axis, also across it."""
-    return load.driven and axis in "xyz" and abs(load.direction["xyz".index(axis)]) > 1e-12  # fmt: skip
+def isAlong(load, axis, body):
+    """Whether a MasonryLoad is a drive that holds or moves a body along an axis, also across its direction."""
+    along = axis in "xyz" and abs(load.direction["xyz".index(axis)]) > 1e-12
+    return load.driven and along and body in bodiesOf(load)
+
+
+def reactionOf(load):
+    """Force of the drive of a MasonryLoad [N]."""
+    return load.reaction * load.direction.normalized()
 
 
 def forceOn(load, body):
     """Force of a MasonryLoad and its drive on a body [N]."""
-    ids = bodiesOf(load)
-    if body not in ids:
+    if body not in bodiesOf(load):
         return Vector3.Zero
-    share = load.shares[ids.index(body)] if load.others else 1.0
+    share = load.shares[bodiesOf(load).index(body)] if load.others else 1.0
     force = load.force if body == load.body else Vector3.Zero
     return force + share * load.reaction * load.direction.normalized()

@@ -88,7 +88,7 @@ class Structure:
         self.scheme.begin()
         self._joinRecords()
         self.supports = Supports(self)
-        self.loading.begin(self.supports)
+        self.loading.begin()
         self.motion = Motion(self)
 
     def _addBodies(self, loadingBlock):
@@ -156,7 +156,7 @@ class Structure:
             subcontacts=points[1] if len(points) > 1 else None,
             rows=points[1] if len(points) > 1 and not description.plane else None,
             inPlane=description.plane,
-            loads=self.loading.engines,
+            loads=list(self.loading.loads.values()),
             connectors=list(self.connectors.engines.values()),
             zones=self.zones,
             contacts=self.contacts,
@@ -218,11 +218,9 @@ class Structure:
             axes = zip("xyz", state.vel)
             blocked = state.blockedDOFs
             state.vel = Vector3(*(0.0 if a in blocked else v for a, v in axes))
-        for label, load in self.loading.loads.items():
-            if "_drive" in label:
-                load.velocity = load.ramp = 0
-                if load.others:  # forces in a pattern are loads, and end
-                    load.driven = False
+        for drive in self.loading.stopDrives():
+            if drive.others:  # forces in a pattern are loads, and end
+                drive.driven = False
         self.contacts.dampsLoose = False
 
     def refinedJoints(self):

@@ -29,7 +29,7 @@ def wallOf(description, loading):
         not description.plane
         or not (description.halves or {1, 2} == set(steps))
         or target.brick is not None
-        or loading.loads["push"].others
+        or loading.push.others
         or odd
         or any(abs(size[2] - height) > 1e-6 * height for size in sizes)
         or sum(steps) != courses * columns

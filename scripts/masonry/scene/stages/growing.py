@@ -152,11 +152,9 @@ def follow(scene, name, towards, loaded):
     :param loaded: the target on which the load is, or None
     """
     target, origins = scene.description.followed(loaded), scene.running.at.origins
+    origin = scene.model.loading.follow(target, towards, origins.get(name))
     if target and name not in origins:
-        origin = scene.model.loading.follow(target, towards)
         scene.running.at.origins = {**origins, name: origin}
-    origin = scene.running.at.origins.get(name, (0, 0, 0))
-    scene.model.loading.followFrom(target, towards, origin)
 
 
 def found(scene, rows):

@@ -157,7 +157,7 @@ def _drive(scene, name, target, aims, direction, rate, continued, control):
     scene.running.note("push", *names, counted)
     if not scene.only:
         drivePush(scene, name, args, began, continued)
-        model.loading.loads["push"].velocity = model.loading.loads["push"].ramp = 0
+        model.loading.push.velocity = model.loading.push.ramp = 0
     scene.ended = DONE
     return DONE
 

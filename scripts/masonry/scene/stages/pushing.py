@@ -148,7 +148,7 @@ def drivePush(scene, name, args, began, continued=False):
     :raises Collapsed: with what was seen
     """
     run, model = scene.running, scene.model
-    drive = model.loading.loads["push"]
+    drive = model.loading.push
     at = run.stage(name, Pushing())
     goals = _entered(scene, name, args, at, began, continued)
     whole, spacing = pathOf(args, at.start), frameSpacing(args)
@@ -234,7 +234,7 @@ def _entered(scene, name, args, at, began, continued):
 def _setVelocity(scene, full, start, growth, steps):
     """Let the velocity of the drive grow within the next steps, from one share of the full one [m/s] to another."""
     loading = scene.model.loading
-    load = loading.loads["push"]
+    load = loading.push
     if load.velocity != full * growth:
         load.velocity = full * growth
     # A velocity that grew in stairs would make the pushed block swing in time with them.
@@ -262,7 +262,7 @@ def _lost(model, at, reading, direction, mean, whole):
 def _measuredPeriod(scene, name, args, longest):
     """The first period along a push that begins [s], or 0 with a note if none is found up to the longest [s]."""
     run, model = scene.running, scene.model
-    push = model.loading.loads["push"]
+    push = model.loading.push
     # a drive of all blocks would hold the momentum by which the period is found
     push.driven = not push.damped
     try:
