@@ -88,15 +88,10 @@ class Reading:
         return self._moved[target.name]
 
 
-def _energy(name):
-    return lambda reading: reading.energy[name]
-
-
 def _energies(names):
-    return [
-        Column(name, "J", f"{meaning} since the scene was built", _energy(name))
-        for name, (meaning, _) in names.items()
-    ]
+    for name, (meaning, _) in names.items():
+        value = lambda r, name=name: r.energy[name]
+        yield Column(name, "J", f"{meaning} since the scene was built", value)
 
 
 CRACKS = Column(
@@ -113,13 +108,13 @@ BALANCE = [
         "balance_error",
         "-",
         "error of the energy balance, relative to the largest work done until then",
-        _energy("error"),
+        lambda r: r.energy["error"],
     ),
 ]
-CONNECTORS = _energies(OF_CONNECTORS)
-CONTACTS = _energies(OF_CONTACTS)
+CONNECTORS = [*_energies(OF_CONNECTORS)]
 #: Of a scene whose collapse is followed.
-FALLS = [
+CONTACTS = [
+    *_energies(OF_CONTACTS),
     Column(
         "handed_joints",
         "-",

@@ -63,20 +63,17 @@ def makeJoints(
     """:func:`connect` without its time step, for who chooses it by other rules."""
     engines = list(O.engines)
     loops = [e for e in engines if isinstance(e, (MasonryJointLoop, InteractionLoop))]
-    loop = loops[0] if loops else None
-    if loop is None:
+    if not loops:
         raise ValueError(
             "connect() needs the joints' engine in O.engines: call masonry.engines() first"
         )
-    if isinstance(loop, InteractionLoop):
-        geometry, physics = (
-            d.functors[0] if d.functors else None
-            for d in (loop.geomDispatcher, loop.physDispatcher)
-        )
-        functors = loop.geomDispatcher.functors
+    loop = loops[0]
+    ofYade = isinstance(loop, InteractionLoop)
+    if ofYade:
+        functors, ofPhysics = loop.geomDispatcher.functors, loop.physDispatcher.functors
     else:
-        geometry, physics = loop.geometry, loop.physics
-        functors = [geometry]
+        functors, ofPhysics = [loop.geometry], [loop.physics]
+    geometry, physics = [*functors, None][0], [*ofPhysics, None][0]
     if geometry is None or physics is None:
         raise ValueError(
             f"{type(loop).__name__} has no geometry or no physics: call masonry.engines()"
@@ -86,7 +83,7 @@ def makeJoints(
         for functor in functors:
             functor.tolerance = tolerance
         pairs, sizes = _pairs(tolerance, allowGaps)
-        if not isinstance(loop, InteractionLoop):
+        if not ofYade:
             # YADE makes interactions with the functors of an InteractionLoop: one stands in for a moment
             O.engines = [functorLoop(geometry, physics)]
         made, joints = _connect(pairs, physics, rule)
@@ -114,17 +111,12 @@ def _pairs(tolerance, allowGaps):
             )
     problems = []
     for one, two, gap, bound in misfits:
+        how = f"nearly share a face, with a gap of {1e3 * gap:g} mm"
         if gap < 0:
-            problems.append(
-                f"bodies {one} and {two} lie {-1e3 * gap:g} mm deep in each other"
-            )
-        elif not allowGaps:
-            problems.append(
-                f"bodies {one} and {two} nearly share a face, with a gap of {1e3 * gap:g} mm"
-            )
-        else:
-            continue
-        problems[-1] += f"; the tolerance is {1e3 * bound:.3g} mm"
+            how = f"lie {-1e3 * gap:g} mm deep in each other"
+        if gap < 0 or not allowGaps:
+            how += f"; the tolerance is {1e3 * bound:.3g} mm"
+            problems.append(f"bodies {one} and {two} {how}")
     refuse(
         problems,
         "move them, or allow gaps on purpose with allowGaps=True, of Scene or of connect; see help(masonry.connect) for its tolerance",
@@ -139,15 +131,14 @@ def _pairs(tolerance, allowGaps):
 
 def _connect(pairs, physics, rule):
     """Make the joints of all pairs, or none of them. Returns the interactions and the MasonryJoint objects."""
-    made, problems, joints = [], [], {id(j): j for j in physics.joints}
-    due = 256
+    made, problems, due = [], [], 256
+    joints = {id(j): j for j in physics.joints}
     try:
         for id1, id2 in pairs:
             try:
                 interaction = utils.createInteraction(id1, id2)
             except ValueError as error:
-                if str(error) not in problems:  # joints of a kind are refused alike
-                    problems.append(str(error))
+                problems.append(str(error))
                 continue
             made.append(interaction)
             # what joints leave when they move into columns is free for the next ones
@@ -164,7 +155,7 @@ def _connect(pairs, physics, rule):
                     problems.append(
                         f"rule must return a MasonryJoint or None, got {joint!r} for bodies {id1} and {id2}"
                     )
-        refuse(problems)
+        refuse([*dict.fromkeys(problems)])  # joints of a kind are refused alike
     except BaseException:
         for interaction in made:
             O.interactions.erase(interaction.id1, interaction.id2)
@@ -173,13 +164,10 @@ def _connect(pairs, physics, rule):
     return made, list(joints.values())
 
 
-def _isBlock(body):
-    return type(body.shape).__name__ in ("MasonryBlock", "Polyhedra")
-
-
 def _warn(pairs, joints, sizes, engines):
     """Print warnings of what looks like a mistake: other units, blocks without joints, properties without effect."""
-    bodies = {b.id: b for b in O.bodies if _isBlock(b)}
+    kinds = "MasonryBlock", "Polyhedra"
+    bodies = {b.id: b for b in O.bodies if type(b.shape).__name__ in kinds}
     mats = {(b.mat.label, b.mat.young, b.mat.density): b.mat for b in bodies.values()}
     hints = [
         *_oddSizes(*sizes),
@@ -263,12 +251,9 @@ def _undivided(zones, bodies):
     count = {i: len(range(*zones.nodesOf(i))) for i in zones.bodies}
     if not count:
         yield "MasonryZones has no bodies"
-    corners = {i: len(bodies[i].shape.v) for i in count}
     # of a plane unit that is no hexahedron the nodes are the corners of its base and one in the middle
-    stars = [
-        i
-        for i, n in corners.items()
-        if count[i] == n + 1 or n != 8 and count[i] == n // 2 + 1
-    ]
+    corners = {i: len(bodies[i].shape.v) for i in count}
+    ofStar = lambda n: {n + 1} if n == 8 else {n + 1, n // 2 + 1}
+    stars = [i for i, n in corners.items() if count[i] in ofStar(n)]
     if stars and zones.divisions != [1, 1, 1]:
         yield f"MasonryZones: divisions do not apply to bodies {stars[:10]}, which are no hexahedra"

@@ -30,6 +30,7 @@ if hasattr(NewtonIntegrator, "rotAlgorithm"):
 
 
 Damping = Annotated[float, number("", 0, 0.99)]
+Connectors = Annotated[Sequence[Any], listOf(isA((MasonryTies, MasonrySprings)), 0)]
 
 
 @validated
@@ -45,9 +46,7 @@ def engines(
     zones: Annotated[Any, isA(MasonryZones)] | None = None,
     functors: bool = False,
     dampingKind: Annotated[str, oneOf("combined", "local")] | None = None,
-    connectors: Annotated[
-        Sequence[Any], listOf(isA((MasonryTies, MasonrySprings)), 0)
-    ] = (),  # fmt: skip
+    connectors: Connectors = (),
     contacts: Annotated[Any, isA(MasonryContacts)] | None = None,
 ) -> None:
     """Fill O.engines for a masonry scene: joints, loads, energy balance and integration. There is no collider.
@@ -92,10 +91,8 @@ def engines(
         gravity=gravity,
         label="integrator",
     )
-    counts = {"subcontacts": subcontacts, "rows": rows}
-    geometry = Ig2_MasonryBlock_MasonryBlock_MasonryJointGeom(
-        **{name: n for name, n in counts.items() if n is not None},
-        rowDirection=(0, 1, 0) if inPlane else (0, 0, 0),
+    geometry = _GEOMETRY(
+        subcontacts=subcontacts or 3, rows=rows or 0, rowDirection=(0, inPlane, 0)
     )
     physics = Ip2_MasonryMat_MasonryMat_MasonryJointPhys(joints=joints)
     if zones:
@@ -151,16 +148,8 @@ def functorLoop(geometry: Any, physics: Any) -> Any:
     laws = [joint.law for joint in physics.joints if not joint.elastic]
     law = LAWS[laws[0] if laws else next(iter(LAWS))]  # one functor takes all joints
     functor = getattr(wrapper, law["functor"])()
-    return InteractionLoop(
-        [geometry, *_forPolyhedra(geometry)], [physics], [functor], label="joints"
-    )
-
-
-def _forPolyhedra(geometry):
-    """Functors for the pairs of shapes that a geometry functor does not take, where this YADE has Polyhedra."""
     same = {p["name"]: getattr(geometry, p["name"]) for p in _GEOMETRY.properties()}
-    return [
-        cls(**same)
-        for cls in (_GEOMETRY, *_GEOMETRY.__subclasses__())
-        if cls is not type(geometry)
-    ]
+    # those of other pairs of shapes, where this YADE has Polyhedra
+    kinds = _GEOMETRY, *_GEOMETRY.__subclasses__()
+    others = [kind(**same) for kind in kinds if kind is not type(geometry)]
+    return InteractionLoop([geometry, *others], [physics], [functor], label="joints")

@@ -56,7 +56,6 @@ class Motion:
         """The weight of the base in the shear force of a push, as in :func:`masonry.read.curves.quasiStatic` [-].
 
         :param before: :meth:`positions` when the push began
-        :param direction: of the push, a unit vector
         :param moved: displacement of the driven point along it since then [m]
         :returns: None if the blocks have not moved with the push, so that there is none from above 0 to 1
         """
@@ -72,16 +71,14 @@ class Motion:
 
     def _speeds(self):
         """Velocity of every block [m/s]: of its centre, or, of deformable ones, the mean of their nodes."""
-        speeds = [state.vel.norm() for state in self._states]
+        speeds = {i: state.vel.norm() for i, state in zip(self.ids, self._states)}
         if self.zones:
             velocities = self.zones.velocities
-            deformable = set(self.zones.bodies)
-            for index, body in enumerate(self.ids):
-                if body in deformable:
-                    first, end = self.zones.nodesOf(body)
-                    mean = sum(velocities[first:end], Vector3.Zero) / (end - first)
-                    speeds[index] = mean.norm()
-        return speeds
+            for body in set(self.zones.bodies) & set(self.ids):
+                first, end = self.zones.nodesOf(body)
+                mean = sum(velocities[first:end], Vector3.Zero) / (end - first)
+                speeds[body] = mean.norm()
+        return [*speeds.values()]
 
     def fastest(self, far=0.0):
         """Velocity of the fastest block over that of one that has fallen [-].

@@ -16,7 +16,7 @@ class Scheme:
     """Damping, masses, time step and gravity of a structure that is built.
 
     - ``limit``: the stable limit of the time step under the present damping [s]
-    - ``massScaling``: selective scaling of masses that the options say [-]
+    - ``massScaling``: selective scaling of masses that the options say [-]; ``joints``: the engine of the joints
 
     :param args: the options of :func:`masonry.scene.options.parser`
     :param zones: MasonryZones, the engine of deformable units, or None
@@ -43,19 +43,10 @@ class Scheme:
         :param massDamping: viscous, of the motion [1/s]
         :param stiffnessDamping: viscous, of the joints [s]
         """
-        if self.zones:
-            self.zones.damping, self.zones.dampingKind = damping, kind
-        else:
-            self.integrator.damping, self.integrator.dampingKind = damping, kind
+        damped = self.zones or self.integrator
+        damped.damping, damped.dampingKind = damping, kind
         self.integrator.massDamping = massDamping
         self.joints.stiffnessDamping = stiffnessDamping
-
-    def countImpacts(self, real):
-        """Let impacts of joints that close take energy from now on, or not.
-
-        :param real: whether what follows runs in real time
-        """
-        self.joints.impacts = real
 
     def _chosenMassScaling(self):
         """The scaling of masses that the options say, for this structure [-].
@@ -80,18 +71,13 @@ class Scheme:
             self.zones.massScaling = scaling
 
     def trueMasses(self, stage):
-        """Have true masses from now on, because a stage runs in real time, and say so if the options say otherwise. Returns
-        whether they have changed; :meth:`chooseTimeStep` is then to follow.
-
-        :param stage: its name
-        """
-        if not (self.zones and self.massScaling):
-            return False
-        say(
-            f"note: {stage} runs in real time with true masses, without --mass-scaling {self.massScaling:g}"
-        )
-        self.scaleMasses(0.0)
-        return True
+        """Have true masses from now on, because a stage runs in real time, and say so if the options say otherwise;
+        :meth:`chooseTimeStep` follows it."""
+        if self.zones and self.massScaling:
+            say(
+                f"note: {stage} runs in real time with true masses, without --mass-scaling {self.massScaling:g}"
+            )
+            self.scaleMasses(0.0)
 
     def dampByOptions(self):
         """Choose the damping and the masses that the options say, for a stage that says nothing else, and its time step if a

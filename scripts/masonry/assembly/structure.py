@@ -1,14 +1,13 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What a scene is in YADE: its bodies, joints, loads and engines."""
 
-from yade import O, Vector3
+from yade import O
 from yade.wrapper import MasonryContacts, MasonryJoint, MasonryZones
 
 from ..basics import Collapsed, Refused, say
 from ..bricks import boxCorners
 from . import threads
 from .blocks import placeBlock
-from .columns import Reading
 from .connecting import makeJoints
 from .connectors import Connectors
 from .engines import engine, engines
@@ -21,15 +20,14 @@ from .supports import Supports
 class Structure:
     """What a scene is in YADE, and what acts on it.
 
-    It is made in two steps, so that what the user asks for can be refused before anything changes: ``__init__`` takes the
-    description, and :meth:`build` builds it in YADE. From then on it has
+    ``__init__`` takes the description, so that what the user asks for can be refused before anything changes. From :meth:`build` on it
+    has
 
     - ``ids``: body ids of the bricks, in their order; ``parts``: those of every part; ``bricks``: number of the brick by
       body id, for all bodies that are bricks or parts of bricks
     - ``widest``: width of the widest crack when it was looked for last [mm]
     - ``interactions``: the joints between blocks; ``subcontacts``: how many points they have
-    - ``loading``, ``connectors``, ``supports``, ``scheme``, ``motion``: loads and drives, ties and springs, what holds it,
-      its scheme in time, and how blocks move
+    - ``loading``, ``connectors``, ``supports``, ``scheme``, ``motion``: objects of the modules of these names
     - ``zones``, ``contacts``: the engines of deformable units and of contacts, or None; ``energy``: that of the balance
 
     :param description: :class:`masonry.scene.description.Description`
@@ -77,9 +75,8 @@ class Structure:
         self._addEngines()
         self.scheme = Scheme(self.args, self.zones)
         blocks = dict(zip(self.ids, self.description.bricks))
-        self.interactions = makeJoints(
-            self.masonry.rule(blocks), allowGaps=self.description.allowGaps
-        )
+        rule, allowGaps = self.masonry.rule(blocks), self.description.allowGaps
+        self.interactions = makeJoints(rule, allowGaps=allowGaps)
         self.widest = 0.0
         self.subcontacts = sum(len(i.geom.areas) for i in self.interactions)
         for target in self.description.targets.values():
@@ -100,8 +97,7 @@ class Structure:
             if target.box and target.fixed and target.joined:
                 self._addPlaten(target, loadingBlock)
         for block in description.bricks:
-            material = self.units[block.kind]
-            body = placeBlock(block.corners, material, description.plane)
+            body = placeBlock(block.corners, self.units[block.kind], description.plane)
             self.ids.append(body)
             self.bricks[body] = block.brick
             self.parts.setdefault(block.part, []).append(body)
@@ -124,8 +120,8 @@ class Structure:
 
     def _deformableUnits(self):
         args, description = self.args, self.description
-        rigid = [t.body for t in description.targets.values() if t.freedom]
-        for body in (*rigid, *(self.ids[index] for index in self.rigid)):
+        rigid = {t.body for t in description.targets.values() if t.freedom}
+        for body in rigid.union(self.ids[index] for index in self.rigid):
             self.bricks.pop(body, None)
         held = [n for n in description.pointLoaded() if description.bricks[n].kind not in self._stiff]  # fmt: skip
         if held:
@@ -147,14 +143,15 @@ class Structure:
     def _addEngines(self):
         args, description = self.args, self.description
         points = [int(n) for n in args.points.split(",")] if args.points else []
+        points, along = (*points, None, None)[:2]
         engines(
             # the rule chooses; YADE wants a joint that fits any pair before it asks
             [MasonryJoint(name="any", elastic=True)],
             damping=args.damping,
             gravity=(0, 0, -self.gravity),
-            points=points[0] if points else None,
-            subcontacts=points[1] if len(points) > 1 else None,
-            rows=points[1] if len(points) > 1 and not description.plane else None,
+            points=points,
+            subcontacts=along,
+            rows=None if description.plane else along,
             inPlane=description.plane,
             loads=list(self.loading.loads.values()),
             connectors=list(self.connectors.engines.values()),
@@ -181,22 +178,14 @@ class Structure:
         """The largest opening of a point of any joint now [mm], 0 if none is open."""
         return 1e3 * max(0.0, *(max(one.phys.opening) for one in self.interactions))
 
-    def read(self):
-        """What the columns are made of, measured now."""
-        return Reading(self)
-
     def fallen(self):
         """Blocks that have fallen, in a scene whose collapse is followed: a dict from the index of the block to a dict with
         ``since``, when it had come loose [s], ``fell`` [s], ``most``, its largest kinetic energy [J], and ``at``, when it had
         that [s]."""
         if not self.contacts:
             return {}
-        known = self.contacts.fallen()
-        return {
-            index: known[body]
-            for index, body in enumerate(self.ids)
-            if body in known and known[body]["fell"] is not None
-        }
+        known = {b: one for b, one in self.contacts.fallen().items() if one["fell"] is not None}  # fmt: skip
+        return {n: known[body] for n, body in enumerate(self.ids) if body in known}
 
     def checkFallen(self):
         """Raise Collapsed if a block has fallen, in a scene whose collapse is followed."""
@@ -212,20 +201,16 @@ class Structure:
     def letFall(self):
         """From now on no drive and no support moves, no numerical damping brakes blocks that have come loose, and impacts of
         joints that close take energy."""
-        self.scheme.countImpacts(True)
+        self.scheme.joints.impacts = True
         for target in self.supports.held:  # one that was released moves on
             state = O.bodies[target.body].state
-            axes = zip("xyz", state.vel)
-            blocked = state.blockedDOFs
-            state.vel = Vector3(*(0.0 if a in blocked else v for a, v in axes))
+            for i, axis in enumerate("xyz"):
+                if axis in state.blockedDOFs:
+                    state.vel[i] = 0.0
         for drive in self.loading.stopDrives():
             if drive.others:  # forces in a pattern are loads, and end
                 drive.driven = False
         self.contacts.dampsLoose = False
-
-    def refinedJoints(self):
-        """How many joints have got more points during the run."""
-        return engine("joints").refinedJoints
 
     # -- what a checkpoint keeps beside the state in YADE ------------------------------------------------------------
 

@@ -144,7 +144,7 @@ def _carryOut(scene, act, traits, args, settings):
             return _asBefore(scene, over)
         running.loading = traits.grows and not scene.grown
         scene.model.scheme.dampByOptions()
-        scene.model.scheme.countImpacts(traits.real)
+        scene.model.scheme.joints.impacts = traits.real
         follows = scene.description.contact is not None
         if follows:
             scene.model.scheme.keepStable()
