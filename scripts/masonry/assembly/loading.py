@@ -8,6 +8,11 @@ from .._masonry import loadScene, saveScene
 from .drives import PATTERN, isAlong, reactionOf
 
 
+def smooth(x):
+    """The share of a load that has grown when a share of the time in which it grows is over [-]."""
+    return x * x * (3 - 2 * x)
+
+
 class Loading:
     """Loads and drives of a structure, from its description and from stages.
 
@@ -81,10 +86,9 @@ class Loading:
     def grow(self, x):
         """Let presses and dead loads grow smoothly: 0 to 1 is from nothing to their whole."""
         self.grown = x == 1
-        share = x * x * (3 - 2 * x)
         for label, force in self._grown.items():
-            self.loads[label].force = force * share
-        self.structure.connectors.grow(share)
+            self.loads[label].force = force * smooth(x)
+        self.structure.connectors.grow(smooth(x))
 
     def deadLoads(self):
         """Loads, each with its force, or that which it will have when presses, dead loads and wind have grown: pairs of MasonryLoad and

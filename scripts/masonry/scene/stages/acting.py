@@ -1,13 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What acts on a structure and can be changed by a stage: gravity with an acceleration, and forces.
-
-An :class:`Acting` gives its present values as a list of numbers, takes others, and says which they are at a share of a growth.
-"""
+"""What acts on a structure and can be changed by a stage: gravity with an acceleration, and forces."""
 
 import math
 
 from yade import Vector3
-
 
 from ...basics import GRAVITY
 
@@ -15,28 +11,18 @@ from ...basics import GRAVITY
 class Acting:
     """What acts. A share of 1 is the whole growth, and its factor is ``most`` [-].
 
+    Its kinds have ``now()``, their present values as a list of numbers, ``put(values)``, and ``at(began, share)``, their values when a
+    share of the growth is over, 0 to 1 [-], from those when it began.
+
     :param name: under which its bound is found
     :param unit: of the factor
+    :param towards: direction along which displacements are counted
     """
 
-    def __init__(self, name, most, unit):
-        self.name, self.most, self.unit = name, most, unit
-        self.target = None  # the platen or brick on which it acts, if it is one
+    target = None  # the platen or brick on which it acts, if it is one
 
-    def now(self):
-        """Its present values: a list of numbers."""
-        raise NotImplementedError
-
-    def put(self, values):
-        """Give it other values."""
-        raise NotImplementedError
-
-    def at(self, began, share):
-        """Its values when a share of the growth is over, 0 to 1 [-].
-
-        :param began: its values when the growth began
-        """
-        raise NotImplementedError
+    def __init__(self, name, most, unit, towards=None):
+        self.name, self.most, self.unit, self.towards = name, most, unit, towards
 
     def factor(self, share):
         """The load factor at a share [-]."""
@@ -56,8 +42,8 @@ class Acceleration(Acting):
     """
 
     def __init__(self, model, most, towards, name, unit="g"):
-        super().__init__(name, most, unit)
-        self.model, self.towards = model, towards
+        super().__init__(name, most, unit, towards)
+        self.model = model
 
     def now(self):
         return list(self.model.scheme.now)
@@ -99,17 +85,15 @@ class Forces(Acting):
 
     :param loads: the engines
     :param forces: that they have at a factor of 1, a vector for each [N]
-    :param unit: of the factor
-    :param most: the factor at the end
     """
 
-    def __init__(self, loads, forces, name, unit, most):
-        super().__init__(name, most, unit)
+    replaces = False  # whether the forces replace those that are there, and are not added to them
+    beside = 0, 0, 0  # a force that stays beside those that replace [N]
+    dead = False  # whether what was there grows by the factor, too
+
+    def __init__(self, loads, forces, name, unit, most, towards=None):
+        super().__init__(name, most, unit, towards)
         self.loads, self.forces = loads, forces
-        #: Whether the forces replace those that are there, and are not added to them.
-        self.replaces = False
-        self.beside = [0, 0, 0]  # a force that stays beside those that replace [N]
-        self.dead = False  # whether what was there grows by the factor, too
 
     def pairs(self):
         """The engines and their forces at a factor of 1."""

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import csv
-from dataclasses import dataclass
+from types import SimpleNamespace
 from typing import Annotated, Any, Sequence
 
 import numpy as np
@@ -27,23 +27,15 @@ LONGEST = 4.0  # [s]: the longest first period that is looked for
 
 def remains(scene, rows):
     """The first period, what has moved since the scene was built, and the widest crack."""
-    at, how = scene.running.memory, "at rest, since the scene was built"
     looked = f"free vibration after a small push, at most {LONGEST:g} s"
-    found = [Answer("first_period", "s", at.period or None, looked)]
+    yield Answer("first_period", "s", scene.running.memory.period or None, looked)
     for target in scene.description.targets.values():
         moved = scene.model.supports.moved(target)[0]
         for i, axis in enumerate("xyz" if not target.fixed else ""):
-            name = f"residual_{target.name}_{axis}"
-            found.append(Answer(name, "mm", 1e3 * moved[i], how))
+            how = "at rest, since the scene was built"
+            yield Answer(f"residual_{target.name}_{axis}", "mm", 1e3 * moved[i], how)
     width = scene.model.widestCrack()
-    return [*found, Answer("largest_crack", "mm", width, "of all joints, at rest")]
-
-
-@dataclass
-class Vibration:
-    """What the stage remembers."""
-
-    period: float = 0.0  # [s]; 0 if none was found
+    yield Answer("largest_crack", "mm", width, "of all joints, at rest")
 
 
 @stage(answers=remains)
@@ -55,10 +47,9 @@ def period(scene: Any, direction: Level = (1, 0, 0)) -> str:
     :param direction: horizontal
     """
     along = sideways(scene, direction, "period")
-    at = scene.running.stage("period", Vibration())
+    at = scene.running.stage("period", SimpleNamespace(period=0.0))  # [s]; 0: none
     with scene.running.clock("setup"), scene.running.breakable():
         at.period = firstPeriod(scene.model, along, LONGEST) or 0.0
-    scene.ended = DONE
     return DONE
 
 
@@ -97,10 +88,8 @@ def shakeAgain(
             period(scene, direction)
             stages.append(scene.running.entered)
         values, _ = readRecord(one, every, scale, how.get("unit"))
-        row = {
-            "shake": number,
-            "peak_m_per_s2": abs(scale) * float(np.abs(values).max()),
-        }
+        peak = abs(scale) * float(np.abs(values).max())
+        row = {"shake": number, "peak_m_per_s2": peak}
         for answer in scene.answers:
             if answer["number"] in stages:
                 unit = "" if answer["unit"] == "-" else f"_{answer['unit']}"
@@ -114,7 +103,6 @@ def shakeAgain(
 
 
 def _write(scene, rows):
-    """Write shakes.csv. Raises Unwritable."""
     heads = dict.fromkeys(head for row in rows for head in row if head != "ended")
     path = scene.results.path(TABLE)
     try:

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from types import SimpleNamespace
 from typing import Annotated, Any, Callable, Union
 
 from yade import O
@@ -19,29 +19,22 @@ ROWS = 2000  # of curve.csv while a block is driven over a distance
 Distance = Annotated[Union[float, Callable[[], float]], orFunction(millimetres)]
 
 
-@dataclass
-class Driving:
-    """What such a stage remembers."""
-
-    length: int = 0  # steps in all
-    done: int = 0  # steps so far
+#: The largest mean stresses of a recorded joint that are answers: name, column, and the sign with which they are counted.
+STRESSES = (
+    ("peak_normal_stress", "normal_stress_MPa", 1),
+    ("peak_compressive_stress", "normal_stress_MPa", -1),
+    ("peak_shear_stress", "shear_stress_MPa", 1),
+)
 
 
 def stresses(scene, rows):
     """The largest mean stresses of the joints that are recorded, in tension, compression and shear."""
-    found = []
+    how = "the largest mean over the joint in this stage"
     for joint in scene.description.joints:
-        for name, stress, sign in (
-            ("peak_normal_stress", "normal", 1),
-            ("peak_compressive_stress", "normal", -1),
-            ("peak_shear_stress", "shear", 1),
-        ):
-            values = rows.column(joint.prefixed(f"{stress}_stress_MPa"))
-            if values:
-                how = "the largest mean over the joint in this stage"
+        for name, column, sign in STRESSES:
+            if values := rows(joint.prefixed(column)):
                 value = max(sign * v for v in values)
-                found.append(Answer(joint.prefixed(name), "MPa", value, how))
-    return found
+                yield Answer(joint.prefixed(name), "MPa", value, how)
 
 
 @stage(options=("rate",), answers=stresses)
@@ -67,19 +60,17 @@ def drive(
             f"drive: give one displacement other than 0, along an axis that has a drive; {_drivesOf(target)}"
         )
     ((axis, value),) = given.items()
-    distance = lambda: 1e-3 * scene.share * _distance(axis, value)
+
+    def distance():
+        try:
+            found = millimetres(value() if callable(value) else value)
+        except ValueError as error:
+            raise ValueError(f"drive: {axis} {error}") from None
+        if not found:
+            raise ValueError(f"drive: {axis} {found} mm must be other than 0")
+        return 1e-3 * scene.share * found
+
     return _driveBy(scene, target, axis, distance)
-
-
-def _distance(axis, value):
-    """A displacement [mm], which a function may give. Raises ValueError."""
-    try:
-        found = millimetres(value() if callable(value) else value)
-    except ValueError as error:
-        raise ValueError(f"drive: {axis} {error}") from None
-    if not found:
-        raise ValueError(f"drive: {axis} {found} mm must be other than 0")
-    return found
 
 
 def checkStress(scene, target, joint, stress):
@@ -118,14 +109,12 @@ def pressJoint(
 
 
 def _driveBy(scene, target, axis, distance):
-    """Drive a target along an axis at ``--rate``, with rows, which are closer together at the beginning, where the peaks
-    are.
+    """Drive a target along an axis at ``--rate``, with rows, which are closer together at the beginning, where the peaks are.
 
     :param distance: function that gives the displacement [m] when the stage begins
     """
     run, load = scene.running, scene.model.loading.driveOf(target, axis)
-    scene.ended = DONE
-    at = run.stage(axis, Driving())
+    at = run.stage(axis, SimpleNamespace(length=0, done=0))  # steps in all, and so far
     if at is None:
         return DONE
     if not at.length:
@@ -133,9 +122,7 @@ def _driveBy(scene, target, axis, distance):
         at.length = max(ROWS, int(abs(path) / (speed * O.dt)))
         load.velocity = path / (at.length * O.dt)
     marks = {round(at.length * (i / ROWS) ** 2) for i in range(1, ROWS + 1)}
-    for mark in sorted(marks):
-        if mark <= at.done:
-            continue
+    for mark in sorted(mark for mark in marks if mark > at.done):
         run.advance(mark - at.done)
         at.done = mark
         reading = run.record()

@@ -11,6 +11,7 @@ from typing import Any
 
 from yade import O, Vector3
 
+from ...assembly.blocks import placeOf
 from ...assembly.motion import REST
 from ...basics import GRAVITY, Unwritable, say
 from .answers import FALL, FALLEN_AT_REST, FALLEN_MOVING, Answer
@@ -61,7 +62,7 @@ def followFall(scene: Any, tilted: bool) -> str:
         at.looks += 1
         running.record()
         missing, _ = model.supports.unrest()
-        rests = abs(missing) < REST and model.motion.fastest() < CALM
+        rests = missing < REST and model.motion.fastest() < CALM
         at.quiet = at.quiet + 1 if rests else 0
         if at.looks >= at.nextFrame:
             running.frame()
@@ -92,12 +93,8 @@ def followFall(scene: Any, tilted: bool) -> str:
 
 def cornersNow(model: Any, index: int) -> list[Any]:
     """Where the corners of a block are now [m]."""
-    state = O.bodies[model.ids[index]].state
-    turn = state.ori * state.refOri.conjugate()
-    return [
-        state.pos + turn * (Vector3(*corner) - state.refPos)
-        for corner in model.description.bricks[index].corners
-    ]
+    corners = model.description.bricks[index].corners
+    return [placeOf(model.ids[index], corner) for corner in corners]
 
 
 def volume(model: Any, index: int) -> float:

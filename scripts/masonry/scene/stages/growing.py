@@ -16,6 +16,7 @@ not held, and every later trial is looked at so.
 from __future__ import annotations
 
 import base64
+import bisect
 import statistics
 from dataclasses import dataclass
 from typing import Any, Sequence
@@ -23,6 +24,7 @@ from typing import Any, Sequence
 from yade import O
 
 from ..._masonry import loadScene, saveScene
+from ...assembly.loading import smooth
 from ...assembly.motion import FALLEN, REST
 from ...basics import Collapsed, say
 from .rest import CALM, EVERY, LOOKS, WAITED, buckles, rampTime
@@ -31,9 +33,8 @@ from .timed import Timed, timed
 
 WITHIN = 0.005  # width of the bracket, over its upper end [-]
 LEAST = 0.05  # of the whole growth: the width of a bracket below this load is that of a bracket at it [-]
-TRIAL = (
-    4.0  # [s] in the scene after which a trial is given up, or later on soft springs
-)
+#: [s] in the scene after which a trial is given up, or later on soft springs
+TRIAL = 4.0
 MOST_KEPT, LEAST_KEPT = 128, 8  # states that are kept during a growth
 KEPT_BYTES = 100e6  # that they may have in all; a checkpoint during the growth or the search has them
 #: A trial is not held as soon as a block has moved as far as one that has fallen, has at least this share of its speed [-], and is
@@ -63,7 +64,6 @@ class Growing(Timed):
     fell: str = ""  # how the structure fell
     last: float = -1.0  # factor at the end of the growth, or below 0 before that [-]
     lastState: str = ""  # the state then, as text
-    steps: int = 0  # that the growth took
     # -- of the search
     over: int = 0  # 1 when it has ended, and only the last state at rest is kept
     #: 1 when the largest load that was held was seen to buckle; from then on every trial is looked at so.
@@ -86,21 +86,18 @@ class Growing(Timed):
     marks: Sequence[Any] = ()  # velocities after 1, 2, 4, ... looks [-]
 
 
-def grow(scene, name, load, duration, towards, within=WITHIN):
+def grow(scene, name, load, duration, within=WITHIN):
     """Let a load grow evenly until the structure falls or the load has its whole, then search for the one that is held.
 
-    :param name: of the stage
-    :param load: :class:`masonry.scene.stages.acting.Acting`, with ``at(began, share)`` for its values and ``factor(share)``
+    :param load: :class:`masonry.scene.stages.acting.Acting`
     :param duration: [s], with true masses
-    :param towards: direction along which displacements are counted
     :param within: width of the bracket, over its upper end [-]
     """
     if scene.only:
-        scene.ended = DONE
         return DONE
     running, scene.loadUnit = scene.running, load.unit
     running.note("growth", load.name)
-    follow(scene, f"stage {running.entered + 1}", towards, load.target)
+    follow(scene, f"stage {running.entered + 1}", load)
     _noteDrives(scene, name)
     at = running.stage(name, Growing())
     if at.begun is None:
@@ -115,10 +112,9 @@ def grow(scene, name, load, duration, towards, within=WITHIN):
         scene.bounds.hold(load.name, at.held[0])
         _compare(scene, name, load, at)
     if at.lost and at.held:
-        low, high = at.held[0], at.lost[0]
         unit = "" if load.unit == "-" else f" {load.unit}"
         say(
-            f"{name}: held at {low:.5g}{unit}, not held at {high:.5g}{unit} ({WHY[at.lost[3]]})"
+            f"{name}: held at {at.held[0]:.5g}{unit}, not held at {at.lost[0]:.5g}{unit} ({WHY[at.lost[3]]})"
         )
     return search.end()
 
@@ -145,14 +141,13 @@ def _compare(scene, name, load, at):
         )
 
 
-def follow(scene, name, towards, loaded):
+def follow(scene, name, load):
     """From now on record the displacement of what is watched along a load, from where it was when that began.
 
     :param name: under which the run keeps where that was
-    :param loaded: the target on which the load is, or None
     """
-    target, origins = scene.description.followed(loaded), scene.running.at.origins
-    origin = scene.model.loading.follow(target, towards, origins.get(name))
+    target, origins = scene.description.followed(load.target), scene.running.at.origins
+    origin = scene.model.loading.follow(target, load.towards, origins.get(name))
     if target and name not in origins:
         scene.running.at.origins = {**origins, name: origin}
 
@@ -199,8 +194,13 @@ def _text(state):
     return base64.b64encode(state).decode()
 
 
-def _state(text):
-    return base64.b64decode(text)
+def _present():
+    """The present state as text."""
+    return _text(saveScene("null"))
+
+
+def _load(text):
+    loadScene(base64.b64decode(text))
 
 
 class _Growth:
@@ -215,15 +215,15 @@ class _Growth:
         """Let the load grow."""
         at, scene, model = self.at, self.scene, self.model
         if not at.kept:
-            at.kept = [[0.0, _text(saveScene("null"))]]
+            at.kept = [[0.0, _present()]]
         try:
             timed(scene, at, scene.share * self.whole, self._before, self._after)
             self._put(scene.share)
         except Collapsed as collapse:
             at.fell = str(collapse)
-        at.steps, at.last = at.done, model.loading.loadFactor
+        at.last = model.loading.loadFactor
         try:
-            at.lastState = _text(saveScene("null"))
+            at.lastState = _present()
         except ValueError:  # a number of what has fallen may no longer be finite
             at.lastState = at.kept[-1][1]
 
@@ -239,7 +239,7 @@ class _Growth:
         # a checkpoint may hold the old lists
         at.rows = [*at.rows, [O.time, factor, self.model.motion.fastest()]]
         if len(at.rows) % at.spacing == 0:
-            at.kept = [*at.kept, [factor, _text(saveScene("null"))]]
+            at.kept = [*at.kept, [factor, _present()]]
             most = KEPT_BYTES / len(at.kept[-1][1])
             if len(at.kept) > min(MOST_KEPT, max(LEAST_KEPT, most)):
                 at.kept, at.spacing = at.kept[::2], 2 * at.spacing
@@ -268,13 +268,13 @@ class _Search:
                 at.source, at.goal, state, at.calm = chosen
                 at.taken, at.quiet, at.marks = 0, 0, []
                 if state is not None:
-                    loadScene(_state(state))
+                    _load(state)
             held = self._trial()
             if held and at.buckled and self._buckles():
                 held, at.ended = False, 3
             end = [at.goal, 1e3 * self.model.loading.alongNow()]
             if held:
-                at.held, at.heldState = end, _text(saveScene("null"))
+                at.held, at.heldState = end, _present()
                 at.climbs += bool(at.climbs)
                 if at.lost and at.goal >= at.lost[0]:
                     at.lost, at.climbs = None, 1
@@ -286,25 +286,22 @@ class _Search:
 
     def end(self):
         """Take the scene to where the stage ends, and return how it ended."""
-        at, scene = self.at, self.scene
+        at, running = self.at, self.running
+        stands = not at.fell and at.lost is None and at.held
         if at.held:
-            self.model.atRest = _state(at.heldState)
-        if not at.fell and at.lost is None and at.held:
-            if self.running.readings.time != O.time:
-                self.running.record()
-            self.running.flush()
+            self.model.atRest = base64.b64decode(at.heldState)
+        if stands:
+            if running.readings.time != O.time:
+                running.record()
+            running.flush()
+        else:
             if not at.over:
-                at.kept, at.lastState, at.over = [], "", 1
-            scene.ended = AT_REST
-            return scene.ended
-        if not at.over:
-            loadScene(_state(at.lastState))
-            at.kept, at.lastState, at.over = [], "", 1
-        self.model.loading.loadFactor = at.last
+                _load(at.lastState)
+            self.model.loading.loadFactor = at.last
+        at.kept, at.lastState, at.over = [], "", 1
         if at.fell:
             raise Collapsed(at.fell)
-        scene.ended = DONE
-        return DONE
+        return AT_REST if stands else DONE
 
     # -- which trial comes next -----------------------------------------------------------------------------------
 
@@ -325,7 +322,8 @@ class _Search:
         if chosen or at.held is None:
             return chosen
         if at.lost is None:
-            at.lost = [at.last, 1e3 * self._alongThen(), 0, 0]
+            _load(at.lastState)
+            at.lost = [at.last, 1e3 * self.model.loading.alongNow(), 0, 0]
         width = self.within * max(at.lost[0], LEAST * at.last)
         if at.lost[0] - at.held[0] > width:
             return self._fromRest(0.5 * (at.held[0] + at.lost[0]))
@@ -335,30 +333,25 @@ class _Search:
         """The next trial from a state of the growth, or None if there is none between the ends of the bracket."""
         at = self.at
         factors, step = [factor for factor, _ in at.kept], 2 ** max(0, len(at.trials) - 1)  # fmt: skip
-        low, high = self._index(factors, at.held), self._index(factors, at.lost)
-        if at.held is None and at.lost is None:
-            return self._from(self._guess(factors))
-        if at.held is None:
-            return self._from(max(0, high - step)) if high else None
-        if at.lost is None:
-            return self._from(min(len(factors) - 1, low + step)) if low + 1 < len(factors) else None  # fmt: skip
-        wide = at.lost[0] - at.held[0] > self.within * at.lost[0]
-        return self._from((low + high) // 2) if wide and low + 1 < high else None
+        # numbers of the last state up to what was held, and of the first from what was not
+        low = at.held and bisect.bisect_right(factors, at.held[0]) - 1
+        high = at.lost and bisect.bisect_left(factors, at.lost[0])
+        if low is None and high is None:
+            index = self._guess(factors)
+        elif low is None:
+            index = max(0, high - step) if high else None
+        elif high is None:
+            index = min(len(factors) - 1, low + step) if low + 1 < len(factors) else None  # fmt: skip
+        else:
+            wide = at.lost[0] - at.held[0] > self.within * at.lost[0]
+            index = (low + high) // 2 if wide and low + 1 < high else None
+        if index is None:
+            return None
+        factor, state = at.kept[index]
+        return factor, factor, state, 0
 
     def _fromRest(self, goal):
         return self.at.held[0], goal, self.at.heldState, 1
-
-    def _from(self, index):
-        factor, state = self.at.kept[index]
-        return factor, factor, state, 0
-
-    def _index(self, factors, end):
-        """Number of the last kept state up to an end of the bracket, or of the first one from it on."""
-        if end is None:
-            return None
-        if end is self.at.held:
-            return max(i for i, f in enumerate(factors) if f <= end[0])
-        return next((i for i, f in enumerate(factors) if f >= end[0]), len(factors))
 
     def _guess(self, factors):
         """Number of the kept state with which the search begins: the last before the structure leaves rest."""
@@ -367,16 +360,12 @@ class _Search:
         while n > 0 and speeds[n] > SETTING_OFF * statistics.median(speeds[:n]):
             n -= 1
         reached = self.at.rows[n][1] if speeds else 0.0
-        return max(i for i, f in enumerate(factors) if f <= reached or i == 0)
-
-    def _alongThen(self):
-        loadScene(_state(self.at.lastState))
-        return self.model.loading.alongNow()
+        return max(0, bisect.bisect_right(factors, reached) - 1)
 
     def _buckles(self):
         """Whether the structure that is at rest under the load that was held last buckles."""
         if self.at.goal < 0:
-            loadScene(_state(self.at.heldState))
+            _load(self.at.heldState)
         return buckles(self.scene)
 
     # -- a trial --------------------------------------------------------------------------------------------------
@@ -392,7 +381,7 @@ class _Search:
         most = int(longest / O.dt)
         while True:
             x = min(1.0, (at.taken + EVERY) / growing)
-            factor = at.source + x * x * (3 - 2 * x) * (at.goal - at.source)
+            factor = at.source + smooth(x) * (at.goal - at.source)
             self.load.put(self.load.at(at.begun, self.load.shareOf(factor)))
             model.loading.loadFactor = factor
             try:
@@ -403,7 +392,7 @@ class _Search:
                 at.ended = 0
                 return False
             missing, moving = model.supports.unrest()
-            rests = abs(missing) < REST and moving < CALM and x == 1
+            rests = missing < REST and moving < CALM and x == 1
             at.quiet = at.quiet + 1 if rests else 0
             if at.quiet == LOOKS:
                 return True

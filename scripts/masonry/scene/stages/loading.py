@@ -15,7 +15,6 @@ from typing import Annotated, Any
 from yade import O, Vector3
 
 from ...common.arguments import Direction, Freedoms, Level, isNumber, kindOf, number, shown, validated  # fmt: skip
-from ...assembly.blocks import vector
 from ...basics import Refused
 from ..bounds import findBound, nameOf
 
@@ -23,7 +22,7 @@ from ..loads import Field, Force, Pressure, Stress, checkedForce, doubtPress, do
 from ..pressures import pressures
 from ..targets import AnyTarget, Loaded, MovingPlaten, Part
 from .acting import Forces
-from .gravity import Width, boundAlone, putOn, putOnAnswers
+from .gravity import Width, putOn, putOnAnswers
 from .growing import WITHIN, found
 from .growing import grow as growTo
 from .answers import AT_REST
@@ -49,9 +48,9 @@ def _forceOn(scene, target, force, name):
     along = force if force.norm() > 0 else engine.force
     towards = along.normalized() if along.norm() > 0 else Vector3.UnitZ
     what = f"load on {target.name} along {nameOf(towards)}"
-    made = Forces([engine], [1e3 * towards], what, "kN", 1e-3 * force.norm())
+    made = Forces([engine], [1e3 * towards], what, "kN", 1e-3 * force.norm(), towards)
     made.target = target
-    return made, towards
+    return made
 
 
 @stage(bounded=True, answers=putOnAnswers)
@@ -69,8 +68,7 @@ def load(
     :param longest: time in the scene after which it is given up [s]; None: 4 s
     :returns: ``AT_REST``, ``MOVING`` or ``COLLAPSED``
     """
-    made, towards = _forceOn(scene, target, force, "load")
-    return _putOn(scene, "load", made, towards, longest)
+    return _putOn(scene, "load", _forceOn(scene, target, force, "load"), longest)
 
 
 @stage(bounded=True, answers=found)
@@ -86,42 +84,44 @@ def growLoad(
 
     :param force: at the end, three numbers [N]
     """
-    made, towards = _forceOn(scene, target, force, "growLoad")
-    return _grow(scene, "growLoad", made, towards, over, within)
+    made = _forceOn(scene, target, force, "growLoad")
+    return _grow(scene, "growLoad", made, over, within)
 
 
 # -- pressure on faces --------------------------------------------------------------------------------------------
 
 
 def _windOn(scene, pressure, towards, part, name):
-    """The load of a wind, in kPa, and its direction. Raises ValueError."""
-    towards = vector(towards, f"{name}: direction")
+    """The load of a wind, in kPa. Raises ValueError."""
+    towards = Vector3(*towards)
     if name == "growWind" or pressure:  # 0 takes a wind away
         doubtWind(pressure, name)
-    sign = math.copysign(1e3, pressure)
-    forces = windForces(scene.description, sign, towards, part, name)
+    sign = math.copysign(1, pressure)
+    forces = windForces(scene.description, 1e3 * sign, towards, part, name)
     # suction has the engines of a pressure on the same faces, so that one replaces the other
     made = _onFaces(scene, forces, "wind", towards, part, "kPa", 1e-3 * abs(pressure))
-    return made, math.copysign(1, pressure) * towards.normalized()
+    made.towards *= sign
+    return made
 
 
 def _pressureOn(scene, value, towards, part, normal):
-    """The load of a pressure, of which 1 is the whole, and its direction. Raises ValueError."""
+    """The load of a pressure, of which 1 is the whole. Raises ValueError."""
     forces = pressures(scene.description, value, towards, part, normal)
-    towards = vector(towards, "pressure: direction").normalized()
     kind = "pressure" if normal else "pressure in plan"
-    return _onFaces(scene, forces, kind, towards, part, "-", 1.0), towards
+    return _onFaces(scene, forces, kind, Vector3(*towards), part, "-", 1.0)
 
 
 def _onFaces(scene, forces, kind, towards, part, unit, most):
     """The load of forces on faces, by what labels its engines and names it."""
-    axes = "_".join(f"{v + 0.0:.6g}".replace("-", "minus") for v in towards.normalized())  # fmt: skip
+    along = towards.normalized()
+    axes = "_".join(f"{v + 0.0:.6g}".replace("-", "minus") for v in along)
     # YADE makes names of labels
     label = re.sub(r"\W", "_", f"{kind}_towards_{axes}_{part or 'all'}")
     places = [(one.brick, one.point) for one in forces]
     engines = scene.model.loading.onBricks(label, places)
     what = f"{kind} towards {nameOf(towards)}" + (f" on {part}" if part else "")
-    return Forces(engines, [Vector3(*one.force) for one in forces], what, unit, most)
+    whole = [Vector3(*one.force) for one in forces]
+    return Forces(engines, whole, what, unit, most, along)
 
 
 @stage(bounded=True, answers=putOnAnswers)
@@ -143,8 +143,8 @@ def wind(
         :meth:`load`
     :returns: ``AT_REST``, ``MOVING`` or ``COLLAPSED``
     """
-    made, towards = _windOn(scene, pressure, towards, part, "wind")
-    return _putOn(scene, "wind", made, towards, longest)
+    made = _windOn(scene, pressure, towards, part, "wind")
+    return _putOn(scene, "wind", made, longest)
 
 
 @stage(bounded=True, answers=found)
@@ -161,8 +161,8 @@ def growWind(
 
     :param pressure: at the end [Pa]; ``towards`` and ``part``: as in :meth:`wind`
     """
-    made, towards = _windOn(scene, pressure, towards, part, "growWind")
-    return _grow(scene, "growWind", made, towards, over, within)
+    made = _windOn(scene, pressure, towards, part, "growWind")
+    return _grow(scene, "growWind", made, over, within)
 
 
 @stage(bounded=True, answers=putOnAnswers)
@@ -182,8 +182,8 @@ def pressure(
         stage; ``longest``: as in :meth:`load`
     :returns: ``AT_REST``, ``MOVING`` or ``COLLAPSED``
     """
-    made, towards = _pressureOn(scene, value, towards, part, normal)
-    return _putOn(scene, "pressure", made, towards, longest)
+    made = _pressureOn(scene, value, towards, part, normal)
+    return _putOn(scene, "pressure", made, longest)
 
 
 # -- presses ------------------------------------------------------------------------------------------------------
@@ -195,9 +195,8 @@ def _pressOn(scene, platen, stress, name):
         raise ValueError(f"{name}: stress {stress!r} Pa must be above 0")
     doubtPress(stress, name)
     engine, area = scene.model.loading.pressOf(platen)
-    down = -1e6 * area * Vector3.UnitZ
-    what = f"press of {platen.name}"
-    made = Forces([engine], [down], what, "MPa", 1e-6 * stress)
+    what, whole = f"press of {platen.name}", [-1e6 * area * Vector3.UnitZ]
+    made = Forces([engine], whole, what, "MPa", 1e-6 * stress, -Vector3.UnitZ)
     made.target = platen
     return made
 
@@ -217,7 +216,7 @@ def press(
     """
     made = _pressOn(scene, platen, stress, "press")
     made.beside = [0, 0, scene.model.supports.weightOf(platen)]
-    return _putOn(scene, "press", made, -Vector3.UnitZ, longest)
+    return _putOn(scene, "press", made, longest)
 
 
 @stage(bounded=True, answers=found)
@@ -234,7 +233,7 @@ def growPress(
     :param stress: what is added at the end [Pa]
     """
     made = _pressOn(scene, platen, stress, "growPress")
-    return _grow(scene, "growPress", made, -Vector3.UnitZ, over, within)
+    return _grow(scene, "growPress", made, over, within)
 
 
 # -- several loads ------------------------------------------------------------------------------------------------
@@ -282,13 +281,11 @@ def grow(
     :returns: as in :meth:`tilt`; ``scene.factor`` has no unit
     """
     made = [
-        _pressOn(scene, target, amount, "grow")
-        if isNumber(amount)
-        else _forceOn(scene, target, amount, "grow")[0]
+        (_pressOn if isNumber(amount) else _forceOn)(scene, target, amount, "grow")
         for target, amount in loads.items()
     ]
     if pressure is not None:
-        made.append(_pressureOn(scene, pressure, towards, part, normal)[0])
+        made.append(_pressureOn(scene, pressure, towards, part, normal))
     pairs = [(e, one.most * force) for one in made for e, force in one.pairs()]
     if dead:
         pairs += [(load, Vector3.Zero) for load, _ in scene.model.loading.deadLoads()]
@@ -299,34 +296,36 @@ def grow(
         forces[engine.label] = forces.get(engine.label, Vector3.Zero) + force
     engines = [scene.model.loading.loads[label] for label in forces]
     what = " and ".join([one.name for one in made] + ["the dead loads"] * dead)
-    whole = Forces(engines, [*forces.values()], what, "-", most)
+    total = sum(forces.values(), Vector3.Zero)
+    along = total.normalized() if total.norm() > 0 else -Vector3.UnitZ
+    whole = Forces(engines, [*forces.values()], what, "-", most, along)
     whole.dead = dead
     whole.target = next((one.target for one in made if one.target), None)
-    total = sum(whole.forces, Vector3.Zero)
-    along = total.normalized() if total.norm() > 0 else -Vector3.UnitZ
-    return _grow(scene, "grow", whole, along, over, within)
+    return _grow(scene, "grow", whole, over, within)
 
 
 # -- what they share ----------------------------------------------------------------------------------------------
 
 
-def _putOn(scene, name, made, towards, longest):
-    made.replaces, scene.loadUnit, before = True, made.unit, made.now()
+def _putOn(scene, name, made, longest):
+    made.replaces, before = True, made.now()
     if scene.only:  # what it replaces is no load beside it
         made.put(made.at(before, 0.0))
     if scene.only or not any(before):
-        findBound(scene, "forces", made.name, made.unit.strip("-"), made.pairs())
-    if scene.only:
-        ended = boundAlone(scene, made)
-        if ended != AT_REST:
-            made.put(before)
-        return ended
-    return putOn(scene, name, made, towards, longest)
+        _findBound(scene, made)
+    ended = putOn(scene, name, made, longest)
+    if scene.only and ended != AT_REST:
+        made.put(before)
+    return ended
 
 
-def _grow(scene, name, made, towards, over, within):
+def _grow(scene, name, made, over, within):
+    _findBound(scene, made)
+    return growTo(scene, name, made, over, within)
+
+
+def _findBound(scene, made):
     findBound(scene, "forces", made.name, made.unit.strip("-"), made.pairs())
-    return growTo(scene, name, made, over, towards, within)
 
 
 @stage()
@@ -347,7 +346,7 @@ def hold(scene: Any, target: AnyTarget, axes: Freedoms = "xyzXYZ") -> str:
             f"hold: only a platen, a handle(), or what was held and released, can be held after the first stage: curve.csv has no "
             f"columns for the reaction of {target.name}"
         )
-    across = [a for a in axes if a in "xy"] if target.box and not target.fixed else []
+    across = [a for a in axes if a in "xy" and target.box and not target.fixed]
     if across:
         raise ValueError(
             f"hold: {target.name} is a platen, which can be held along z and about X, Y and Z after the first stage: curve.csv has no column for its "
@@ -369,9 +368,9 @@ def hold(scene: Any, target: AnyTarget, axes: Freedoms = "xyzXYZ") -> str:
         state = O.bodies[target.body].state
         blocked = {*state.blockedDOFs, *axes}
         state.blockedDOFs = "".join(a for a in "xyzXYZ" if a in blocked)
-        free = [float(a not in blocked) for a in "xyzXYZ"]
-        state.vel = Vector3(*(v * f for v, f in zip(state.vel, free[:3])))
-        state.angVel = Vector3(*(v * f for v, f in zip(state.angVel, free[3:])))
+        for i, (axis, about) in enumerate(zip("xyz", "XYZ")):
+            state.vel[i] *= axis not in blocked
+            state.angVel[i] *= about not in blocked
 
     return atOnce(scene, "hold", act)
 
@@ -386,9 +385,9 @@ def prepare(scene, word, arguments):
     if word in PUSHES and (isinstance(target, dict) or target not in scene.targets):
         loading.patternDrive()
         return
-    loads = {target: None} if word in ("load", "growLoad") else {}
-    loads = {target: 0} if word in ("press", "growPress") else loads
-    for name, amount in get("loads", loads).items():
+    alone = {"load": None, "growLoad": None, "press": 0, "growPress": 0}
+    loads = {target: alone[word]} if word in alone else get("loads", {})
+    for name, amount in loads.items():
         if name in scene.targets:
             make = loading.pressOf if isNumber(amount) else loading.forceOf
             make(scene.targets[name])

@@ -21,40 +21,33 @@ from ...basics import Refused
 from ..targets import Target, kindOfLoaded
 from .rest import rampTime
 
-LONGEST = (
-    20  # the longest first period of which the shape is looked for, over rampTime() [-]
-)
+#: The longest first period of which the shape is looked for, over rampTime() [-].
+LONGEST = 20
 FREE = 1e-12  # of the sum of all forces: what a block takes at least that is part of a pattern [-]
-#: Patterns over all blocks, by their names. Each is a function of the model, the direction, and the options of the run that gives the
-#: force on a block over its mass, as a function of the block's body.
-OVER_ALL: dict[str, Callable] = {}
 
 
-def _overAll(made):
-    OVER_ALL[made.__name__] = made
-    return made
-
-
-@_overAll
 def masses(model, direction, args):
     """Forces as of a uniform acceleration."""
     return lambda body: 1.0
 
 
-@_overAll
 def triangle(model, direction, args):
     """Forces that grow with the height above the lowest brick."""
     base = model.description.low[2]
     return lambda body: max(0.0, body.state.refPos[2] - base)
 
 
-@_overAll
 def mode(model, direction, args):
     """Forces as of the first mode along the push, in the present state."""
     shape = firstMode(model, direction, LONGEST * rampTime(args))
     if shape is None:
         raise Refused('push: "mode": no first mode along the push is found; name the targets and their shares')  # fmt: skip
     return lambda body: shape[body.id]
+
+
+#: Patterns over all blocks, by their names. Each is a function of the model, the direction, and the options of the run that gives the
+#: force on a block over its mass, as a function of the block's body.
+OVER_ALL: dict[str, Callable] = dict(masses=masses, triangle=triangle, mode=mode)
 
 
 def pushed(value: Any, first: Any = None) -> Any:
@@ -95,9 +88,8 @@ def patternOf(scene: Any, value: Any, direction: Any, args: Any) -> Any:
         return Pattern(name, tuple(parts))
     name = value if isinstance(value, str) else "a pattern"
     running, loading = scene.running, scene.model.loading
-    if (
-        running.redoes and running.takesUp
-    ):  # its drive has the pattern, which was found when the push began
+    # its drive has the pattern, which was found when the push began
+    if running.redoes and running.takesUp:
         return _named(patternOfDrive(loading, name))
     if scene.model.zones:
         raise Refused("push: forces on all blocks act on rigid ones: name platens and handles with their shares, or choose --blocks rigid")  # fmt: skip
@@ -141,8 +133,8 @@ def _ofPlace(shape):
 def controlOf(scene: Any, value: Any, control: Target | None) -> Target:
     """The target whose displacement a push counts: the one that is given, else what is pushed, of a dict the highest target, else what
     is watched or moves. Raises Refused."""
-    if control is not None or isinstance(value, Target):
-        return value if control is None else control
+    if control or isinstance(value, Target):
+        return control or value
     found = max(value, key=lambda t: t.recorded[2]) if isinstance(value, dict) else scene.description.followed()  # fmt: skip
     if found is None:
         raise Refused("push: control is missing: watch() a brick whose displacement counts, and give it")  # fmt: skip

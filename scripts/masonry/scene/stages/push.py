@@ -6,14 +6,15 @@ from __future__ import annotations
 from types import SimpleNamespace
 from typing import Annotated, Any
 
+from yade import Vector3
+
 from ...common.arguments import Direction, FilePath, Numbers, listOf, number, oneOf, validated, whole  # fmt: skip
-from ...assembly.blocks import vector
 from ...assembly.drives import pushTo
 from ...basics import NotAccurate, Refused, say
 from ...read import curves
 from ...read.run_data import BASE, MOVED, TOP, RunData
-from .. import history
 from ..bounds import findBound, nameOfPush
+from ..history import CYCLES, MOST, parse
 from ...run.options import Rate
 from ..targets import AnyTarget
 from ..words import PUSHES
@@ -30,10 +31,10 @@ def peaks(scene, rows):
     """The largest force that both ends carried, on either side if the push goes there and back, with the displacement there."""
     looped, run = bool(scene.pushed.history), {"stages": [{"load": ["push"], "first_row": 0}]}  # fmt: skip
     run.update({"history": {}} if looped else {})
-    data = RunData(run, lambda name: rows.column(name) or None)
+    data = RunData(run, lambda name: rows(name) or None)
     if not all(map(data.column, (BASE, TOP, MOVED))):
-        return []
-    found, imbalance = [], curves.dynamicImbalance(data[TOP], data[BASE])
+        return
+    imbalance = curves.dynamicImbalance(data[TOP], data[BASE])
     for name, side in (("peak", 1), ("negative_peak", -1))[: 1 + looped]:
         at = data.peak(side)
         how = (
@@ -41,13 +42,9 @@ def peaks(scene, rows):
             f"{100 * imbalance:.1f} % of the force did not reach them on the way there or behind it. How far rate, mesh and points change it is "
             "not known from one run"
         )
-        found.append(Answer(name, "kN", data.peakForce(side), how))
+        yield Answer(name, "kN", data.peakForce(side), how)
         how = "displacement of the pushed point at the peak"
-        found.append(Answer(f"displacement_at_{name}", "mm", data[MOVED][at], how))
-    return found
-
-
-#: What pushes take beside their aim: kinds of arguments. A rate is bounded as ``--rate`` is.
+        yield Answer(f"displacement_at_{name}", "mm", data[MOVED][at], how)
 
 
 @stage(bounded=True, farther=("until",), options=OPTIONS, answers=peaks)
@@ -55,7 +52,7 @@ def peaks(scene, rows):
 def push(
     scene: Any,
     target: Pushed,
-    until: Annotated[float, number("mm", 0, history.MOST, above=True)] | None = None,
+    until: Annotated[float, number("mm", 0, MOST, above=True)] | None = None,
     direction: Direction = (1, 0, 0),
     rate: Rate | None = None,
     continued: bool = False,
@@ -82,8 +79,8 @@ def push(
     """
     if until is not None:
         until *= scene.share
-    aims = dict(until=until)
-    return _drive(scene, "push", target, aims, direction, rate, continued, control)
+    how = direction, rate, continued, control
+    return _drive(scene, "push", target, *how, until=until)
 
 
 @stage(bounded=True, farther=("amplitudes", "repeats"), options=OPTIONS, answers=peaks)
@@ -91,8 +88,8 @@ def push(
 def cycle(
     scene: Any,
     target: Pushed,
-    amplitudes: Annotated[Numbers, listOf(number("mm or %", 1e-6, history.MOST))],
-    repeats: Annotated[int, whole(1, history.CYCLES)] = 1,
+    amplitudes: Annotated[Numbers, listOf(number("mm or %", 1e-6, MOST))],
+    repeats: Annotated[int, whole(1, CYCLES)] = 1,
     direction: Direction = (1, 0, 0),
     rate: Rate | None = None,
     continued: bool = False,
@@ -110,8 +107,8 @@ def cycle(
     height = _driftHeight(scene, controlOf(scene, target, control))
     share = scene.share * (10 * height if unit == "%" else 1)
     text = ",".join(f"{share * a:g}x{repeats}" for a in amplitudes)
-    aims = dict(history=text)
-    return _drive(scene, "cycle", target, aims, direction, rate, continued, control)
+    how = direction, rate, continued, control
+    return _drive(scene, "cycle", target, *how, history=text)
 
 
 @stage(bounded=True, farther=("path",), options=OPTIONS, answers=peaks)
@@ -129,36 +126,34 @@ def follow(
 
     :param continued: and other parameters: as in :meth:`push`
     """
-    aims = dict(history=str(path))
-    return _drive(scene, "follow", target, aims, direction, rate, continued, control)
+    how = direction, rate, continued, control
+    return _drive(scene, "follow", target, *how, history=str(path))
 
 
-def _drive(scene, name, target, aims, direction, rate, continued, control):
-    args = _argumentsOf(scene, name, aims)
+def _drive(scene, name, target, direction, rate, continued, control, **aim):
+    args = _argumentsOf(scene, name, **aim)
     if rate is not None and args.accuracy:
         raise NotAccurate(
             f"--accuracy: it chooses the rate, and {name}() has one of its own: rate={rate:g} mm/s"
         )
     args.rate = args.rate if rate is None else rate
-    model = scene.model
-    direction = vector(direction, f"{name}: direction").normalized()
+    direction, running = Vector3(*direction).normalized(), scene.running
     control = controlOf(scene, target, control)
-    pushed = patternOf(scene, target, direction, args)
-    pushTo(model.loading, pushed, control, direction, name)
+    pushed, loading = patternOf(scene, target, direction, args), scene.model.loading
+    pushTo(loading, pushed, control, direction, name)
     scene.pushed = args
     counted = "" if pushed is control else control.name
     began = f"{pushed.name} {[round(v, 9) for v in direction]}" + f" {counted}" * bool(counted)  # fmt: skip
-    if continued and began not in scene.running.at.origins:
+    if continued and began not in running.at.origins:
         raise ValueError(
             f"{name}: continued: {pushed.name} has not been pushed along {tuple(direction)} before, with this control"
         )
     findBound(scene, "push", pushed, direction, bool(args.history))
     names = [nameOfPush(pushed, sign * direction) for sign in (1, -1)]
-    scene.running.note("push", *names, counted)
+    running.note("push", *names, counted)
     if not scene.only:
         drivePush(scene, name, args, began, continued)
-        model.loading.push.velocity = model.loading.push.ramp = 0
-    scene.ended = DONE
+        loading.stopDrives()
     return DONE
 
 
@@ -168,25 +163,22 @@ def _driftHeight(scene, target):
     return (target.recorded[2] if turns else target.box[0][2]) - scene.description.low[2]  # fmt: skip
 
 
-def _argumentsOf(scene, name, aims):
+def _argumentsOf(scene, name, until=None, history=None):
     """The options of the run, with what this push goes to. ``--until`` or ``--history`` are for the first push alone."""
     args = SimpleNamespace(**vars(scene.args))
-    own = bool(args.until or args.history) and scene.script.isFirst(PUSHES)
-    if own:
-        if args.until:
-            args.until *= scene.share
+    if (args.until or args.history) and scene.script.isFirst(PUSHES):
+        args.until = args.until and args.until * scene.share
         return args
-    args.until, args.history = aims.get("until"), None
-    if "history" in aims:
+    args.until, args.history = until, None
+    if history is not None:
         try:
-            args.history = history.parse(aims["history"])
+            args.history = parse(history)
         except ValueError as error:
             raise Refused(f"{name}: {error}") from None
-    elif not (isinstance(args.until, (int, float)) and 0 < args.until <= history.MOST):
+    elif until is None:
         raise Refused(
-            f"{name}: until {args.until!r} must be above 0 and at most {history.MOST:g} mm; the direction says "
-            "where to"
+            f"{name}: until None must be above 0 and at most {MOST:g} mm; the direction says where to"
         )
-    elif args.until < SHORT * scene.share:
-        say(f"warning: {name}: until {args.until:g} mm: is it in mm, not m?")
+    elif until < SHORT * scene.share:
+        say(f"warning: {name}: until {until:g} mm: is it in mm, not m?")
     return args

@@ -22,8 +22,6 @@ SHORT = 0.05  # [mm]: a shorter push has rows that are closer together
 ARRIVED = 2e-3  # [mm] from a turning point of a history at which the drive turns: what remains of the path takes it there
 GROWING = 20  # rows at least while the velocity of the drive grows
 LONGEST = 20  # the longest first period that is looked for, over rampTime() [-]
-#: Likewise, over the time that the path takes at full speed: a shorter push is no slow one [-].
-SHARE = 1.0
 #: Frames for ParaView along a history, beside those at its turning points and zeros.
 FRAMES = 200
 SUDDEN = 0.1  # of the peak: a larger fall within a tenth of a millimetre is few bricks that give way at once
@@ -74,14 +72,16 @@ class Pushing:
         """
         whole = bool(self.recent) and self.recent[0][0] <= self.now - span
         before = [one for one in self.recent if one[0] > self.now - span]
-        self.recent = [*self.recent[: len(self.recent) - len(before)][-1:], *before, [self.now, shear]]  # fmt: skip
+        last = self.recent[: len(self.recent) - len(before)][-1:]
+        self.recent = [*last, *before, [self.now, shear]]
         if not whole:
             return None
         mean = sum(force for _, force in self.recent) / len(self.recent)
-        for side, sign in enumerate((-1, 1)):
-            if sign * mean > self.peaks[side]:
-                self.peaks = _exchanged(self.peaks, side, sign * mean)
-                self.peaksAt = _exchanged(self.peaksAt, side, sign * self.moved)
+        side, out = mean > 0, abs(mean)
+        if out > self.peaks[side]:
+            self.peaks = _exchanged(self.peaks, side, out)
+            outwards = self.moved if side else -self.moved
+            self.peaksAt = _exchanged(self.peaksAt, side, outwards)
         return mean
 
     def retreats(self, direction, whole):
@@ -102,14 +102,14 @@ class Pushing:
         turned = False
         while True:
             goal = goals[self.passed]
-            brakes = goal.brake is not None
-            near = brakes and abs(goal.brake - goal.displacement) <= ARRIVED
+            brake = math.inf if goal.brake is None else goal.brake
+            near = abs(brake - goal.displacement) <= ARRIVED
             missing = goal.direction * (goal.displacement - self.moved)
             if missing > (ARRIVED if near else 0):
                 return True, turned
             if self.passed + 1 == len(goals):
                 return False, turned
-            self.path = self.path + abs(goal.displacement - self.last)
+            self.path += abs(goal.displacement - self.last)
             self.passed, self.last = self.passed + 1, goal.displacement
             if goals[self.passed].direction != goal.direction:
                 side, out = goal.direction > 0, goal.direction * goal.displacement
@@ -125,23 +125,21 @@ def _exchanged(pair, side, value):
 def drivePush(scene, name, args, began, continued=False):
     """Drive the pushed target to ``--until`` or along ``--history``, with rows and frames.
 
-    The drive moves at ``--rate``. When it begins, its velocity grows evenly in time, from rest to ``--rate`` within one
-    first period of the structure, which is measured then: a motion that begins so leaves no swing of that period. If not all
-    blocks are driven, nothing is damped while it grows. Numerical damping would act as more mass. Where the history turns, the velocity changes within whole
-    periods, together :func:`rampTime` at least, because open joints make periods longer. Where no period is found both take
-    :func:`rampTime`. The drive brakes by the displacement that curve.csv has, so the wall turns within 0.01 mm of the
-    history's turning points. Points at which the history does not turn are passed at full speed, and so is the end, unless
-    it is that of a file.
+    When the drive begins, its velocity grows evenly in time, from rest to ``--rate`` within one first period of the structure, which is
+    measured then: a motion that begins so leaves no swing of that period. If not all blocks are driven, nothing is damped while it
+    grows: numerical damping would act as more mass. Where the history turns, the velocity changes within whole periods, together
+    :func:`rampTime` at least, because open joints make periods longer. Where no period is found both take :func:`rampTime`. The drive
+    brakes by the displacement that curve.csv has, so the wall turns within 0.01 mm of the history's turning points. Other points are
+    passed at full speed, and so is the end, unless it is that of a file.
 
     Rows are 0.01 mm apart at full speed; where the drive is slower, the time between them is the same or less.
     ParaView frames are :func:`frameSpacing` of the path apart. Those of a history are also at its turning points and where
     it passes through zero, unless the frame before is less than half of this away.
 
     A wall has collapsed if the loading block has come down by half a course, if less than a fifth of the peak of a side
-    is left in the mean over a first period or a millimetre, a millimetre or more beyond that peak and farther out than the wall has turned before, or
-    if it moves against its push by a tenth of the path, a millimetre or more. So a loop that unloads is no collapse.
+    is left in the mean over a first period or a millimetre, a millimetre or more beyond that peak and farther out than the wall has
+    turned before, or if it moves against its push by a tenth of the path, a millimetre or more. So a loop that unloads is no collapse.
 
-    :param name: of the stage
     :param args: the options of the run, with the ``until``, ``history`` and ``rate`` of this push
     :param began: under this name the run keeps where the push began
     :param continued: whether displacements count from where an earlier push of that name began
@@ -155,10 +153,9 @@ def drivePush(scene, name, args, began, continued=False):
     every = max(1, int(rowSpacing(args) / (args.rate * O.dt)))
 
     def detail():
-        if not args.history:
-            return f"{at.moved:6.2f} of {args.until:g} mm  {shear:7.2f} kN"
-        path = f"{travelled:.1f} of {whole:g} mm"
-        return f"{path}, at {at.moved:6.2f} mm  {shear:7.2f} kN"
+        until = "" if args.history else f" of {args.until:g}"
+        path = f"{travelled:.1f} of {whole:g} mm, at " if args.history else ""
+        return f"{path}{at.moved:6.2f}{until} mm  {shear:7.2f} kN"
 
     moves, undamped = True, None
     while moves:
@@ -203,10 +200,9 @@ def _entered(scene, name, args, at, began, continued):
     run, model = scene.running, scene.model
     first, origin = at.origin is None, at.origin
     if first:
-        origin = here = list(model.loading.topDisplacement())
-        if continued:
-            origin = run.at.origins[began]
-            at.moved = at.last = at.start = 1e3 * (here[0] - origin[0])
+        here = list(model.loading.topDisplacement())
+        origin = run.at.origins[began] if continued else here
+        at.moved = at.last = at.start = 1e3 * (here[0] - origin[0])
     if not args.history and not args.until > at.moved:
         raise Refused(
             f"{name}: until {args.until:g} mm (--until {args.until:g}): the run is at {at.moved:.2f} mm already"
@@ -221,22 +217,20 @@ def _entered(scene, name, args, at, began, continued):
         at.now = at.since = O.time
         at.moved = 1e3 * run.record().along
         run.frame()
-        longest = min(LONGEST * rampTime(args), SHARE * pathOf(args, at.start) / args.rate)  # fmt: skip
+        # a push that is shorter than its first period is no slow one
+        longest = min(LONGEST * rampTime(args), pathOf(args, at.start) / args.rate)
         at.period = _measuredPeriod(scene, name, args, longest)
         at.slowest = at.period or longest
         at.places = model.motion.positions() if at.period else []
-        vibration = [at.period, 0.0, 0.0]
-        run.at.freeVibrations = {**run.at.freeVibrations, str(run.entered): vibration}
+        _keepVibration(run, at.period, 0.0, 0.0)
         at.nextFrame = frameSpacing(args)
     return goals
 
 
 def _setVelocity(scene, full, start, growth, steps):
-    """Let the velocity of the drive grow within the next steps, from one share of the full one [m/s] to another."""
-    loading = scene.model.loading
-    load = loading.push
-    if load.velocity != full * growth:
-        load.velocity = full * growth
+    """Let the velocity of the drive grow within the next steps, from a share of the full one [m/s] to another."""
+    load = scene.model.loading.push
+    load.velocity = full * growth
     # A velocity that grew in stairs would make the pushed block swing in time with them.
     if start < growth:
         load.ramp = scene.running.at.left or steps
@@ -284,9 +278,12 @@ def _keepFreeVibration(run, model, at):
     """Keep the period of a push whose velocity has grown, the weight of the base in its shear force, and the time."""
     moved = model.loading.alongNow() - 1e-3 * at.start
     weight = model.motion.baseWeight(at.places, model.loading.direction, moved)
-    vibration = [at.period, weight or 0.0, at.now]
-    run.at.freeVibrations = {**run.at.freeVibrations, str(run.entered): vibration}
+    _keepVibration(run, at.period, weight or 0.0, at.now)
     at.places = []
+
+
+def _keepVibration(run, *values):
+    run.at.freeVibrations = {**run.at.freeVibrations, str(run.entered): [*values]}
 
 
 def _rampOf(at, args, every, turns):
@@ -307,15 +304,11 @@ def _rampOf(at, args, every, turns):
 
 def _pace(at, goal, args, every):
     """Velocities of the drive at the end and at the beginning of the next row, over the full one, and how many steps the row
-    has, from what a push remembers.
+    has, from what a push remembers. Parameters as in :func:`_rampOf`.
 
     The velocity grows evenly to the full one, but is not more than what can be braked before the next turn: √(2·a·s) at
     the distance s with the deceleration a.
-
-    :param args: the options of the run, with the ``rate`` of this push
-    :param every: how many steps are between rows at full speed
     """
-    rate = args.rate
     growing, closer = _rampOf(at, args, every, at.turned)
     braking, _ = _rampOf(at, args, every, True)
     start = _sum(at.growth, (at.now - at.since) / growing)
@@ -324,12 +317,12 @@ def _pace(at, goal, args, every):
     if goal.brake is None:
         return growth, start, row
     distance = max(0.0, goal.direction * (goal.brake - at.moved))
-    slow = math.sqrt(2 * distance / (rate * braking))
+    slow = math.sqrt(2 * distance / (args.rate * braking))
     if slow < growth:
         start = growth = slow
-    if growth <= 0:
-        return growth, start, row
-    return growth, start, max(1, min(row, int(distance / (rate * growth * O.dt))))
+    if growth > 0:
+        row = max(1, min(row, int(distance / (args.rate * growth * O.dt))))
+    return growth, start, row
 
 
 def _sum(growth, more):
@@ -346,9 +339,7 @@ def pathOf(args, start=0.0):
 
 def rowSpacing(args):
     """Displacement between rows at full speed [mm]: :data:`ROW_EVERY`, or a twentieth of a shorter push."""
-    if args.history or args.until >= SHORT:
-        return ROW_EVERY
-    return args.until / 20
+    return ROW_EVERY if args.history or args.until >= SHORT else args.until / 20
 
 
 def rowCount(args):

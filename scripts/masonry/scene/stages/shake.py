@@ -25,53 +25,42 @@ from .timed import Duration, Time, Timed, timed
 def displacements(scene, rows):
     """The largest horizontal displacement of every target that moves, and what remains at the end, with the direction's
     sign."""
-    found = []
     for target in scene.description.targets.values():
-        for axis in "xy":
-            values = [] if target.fixed else rows.column(f"{target.name}_{axis}_mm")
-            if not values:
-                continue
-            largest = max(values, key=abs)
-            how = "relative to the ground, since the scene was built, of the rows of this stage"
-            name = f"largest_displacement_of_{target.name}_{axis}"
-            found.append(Answer(name, "mm", largest, how))
-            name = f"displacement_of_{target.name}_{axis}_at_the_end"
-            found.append(Answer(name, "mm", values[-1], how))
+        for axis in "xy" if not target.fixed else "":
+            if values := rows(f"{target.name}_{axis}_mm"):
+                how = "relative to the ground, since the scene was built, of the rows of this stage"
+                of = f"displacement_of_{target.name}_{axis}"
+                yield Answer(f"largest_{of}", "mm", max(values, key=abs), how)
+                yield Answer(f"{of}_at_the_end", "mm", values[-1], how)
     for drift in scene.description.drifts:
         for axis, unit in itertools.product("xy", ("mm", "mrad")):
-            values = rows.column(f"{drift.name}_{axis}_{unit}")
-            if values:
+            of = f"{drift.name}_{axis}"
+            if values := rows(f"{of}_{unit}"):
                 how = f"of {drift.upper.name} against {drift.lower.name}, of the rows of this stage"
-                largest = max(values, key=abs)
-                found.append(Answer(f"largest_{drift.name}_{axis}", unit, largest, how))
-                name = f"{drift.name}_{axis}_at_the_end"
-                found.append(Answer(name, unit, values[-1], how))
-    times = rows.column("time_s")
+                yield Answer(f"largest_{of}", unit, max(values, key=abs), how)
+                yield Answer(f"{of}_at_the_end", unit, values[-1], how)
+    times = rows("time_s")
     if scene.collapsed and times:
         how = "when the fall was noticed, from the beginning of the stage"
-        fell = [one["fell"] for one in scene.model.fallen().values()]
+        fell = (one["fell"] for one in scene.model.fallen().values())
         noticed = min(fell, default=times[-1])
-        found.append(Answer("time_of_collapse", "s", noticed - times[0], how))
-    return found
-
-
-def byOptions(scene, accelerations, every, scale, unit):
-    """What ``--record`` and ``--scale`` make of a record, the time between its samples, its factor and its unit. They are
-    for the first shake of a scene."""
-    args = scene.args
-    if not scene.script.isFirst(SHAKES):
-        return accelerations, every, scale, unit
-    if args.record is not None:
-        accelerations, every, scale, unit = batch.beside(args.record), None, 1.0, None
-    return accelerations, every, scale * args.scale, unit
+        yield Answer("time_of_collapse", "s", noticed - times[0], how)
 
 
 @dataclass
 class Damped(Timed):
     """What a stage remembers that has a damping of its own."""
 
-    #: The stable limit of its time step [s]; 0 before that is known.
-    limit: float = 0.0
+    limit: float = 0.0  # the stable limit of its time step [s]; 0 before that is known
+
+
+def inRealTime(scene, name, damping, massDamping=0.0, stiffnessDamping=0.0):
+    """Begin a stage in real time with a damping of its own. Returns what it remembers."""
+    at, scheme = scene.running.stage(name, Damped()), scene.model.scheme
+    scheme.trueMasses(name)
+    scheme.damp(damping, scene.args.damping_kind, massDamping, stiffnessDamping)
+    at.limit = scheme.chooseTimeStep(at.limit)
+    return at
 
 
 @stage(options=("record", "scale"), real=True, answers=displacements)
@@ -116,10 +105,13 @@ def shake(
     :param massDamping: viscous, of the motion relative to the ground [1/s]
     :param stiffnessDamping: viscous, of the joints [s]; it shortens the time step
     """
-    given = byOptions(scene, accelerations, every, scale, unit)
-    scale = given[2]
+    # --record and --scale are for the first shake of a scene
+    args, isFirst = scene.args, scene.script.isFirst(SHAKES)
+    if isFirst and args.record is not None:
+        accelerations, every, scale, unit = batch.beside(args.record), None, 1.0, None
+    scale *= args.scale if isFirst else 1
     try:
-        values, every = readRecord(*given)
+        values, every = readRecord(accelerations, every, scale, unit)
     except Refused as refused:
         raise Refused(f"shake: {refused}") from None
     motions = components(values).tolist()
@@ -130,13 +122,9 @@ def shake(
     if len(motions) == 3:
         left = Vector3.UnitZ.cross(axes[0])
         axes += [sideways(scene, left, "shake"), Vector3.UnitZ]
-    if scene.args.density_scaling != 1:
+    if args.density_scaling != 1:
         raise Refused("--density-scaling: a scene that is shaken runs in real time")
-    at = scene.running.stage("shake", Damped())
-    model = scene.model
-    model.scheme.trueMasses("shake")
-    model.scheme.damp(damping, scene.args.damping_kind, massDamping, stiffnessDamping)
-    at.limit = model.scheme.chooseTimeStep(at.limit)
+    at = inRealTime(scene, "shake", damping, massDamping, stiffnessDamping)
     if O.dt > every:
         say(
             f"warning: shake: the time step, {O.dt:.3g} s, is longer than the time between samples, {every:.3g} s, so that some "
@@ -152,11 +140,11 @@ def shake(
             for motion, axis in zip(motions, axes):
                 a = (1 - share) * motion[first] + share * motion[first + 1]
                 now = now - scale * a * axis
-        model.scheme.setGravity(now)
+        scene.model.scheme.setGravity(now)
 
     duration = (len(values) - 1) * every + after
     timed(scene, at, scene.share * duration, before, each=1)
-    model.scheme.setGravity(down)
+    scene.model.scheme.setGravity(down)
     return DONE
 
 
@@ -179,10 +167,5 @@ def run(scene: Any, seconds: Duration, damping: Damping = 0.0) -> str:
     :param seconds: time in the scene [s]
     :param damping: numerical damping constant of the options' kind [-]
     """
-    at = scene.running.stage("run", Damped())
-    scheme = scene.model.scheme
-    scheme.trueMasses("run")
-    scheme.damp(damping, scene.args.damping_kind)
-    at.limit = scheme.chooseTimeStep(at.limit)
-    timed(scene, at, scene.share * seconds, lambda done, beyond: None)
-    return DONE
+    at = inRealTime(scene, "run", damping)
+    return timed(scene, at, scene.share * seconds, lambda done, beyond: None)

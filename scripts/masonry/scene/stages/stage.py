@@ -25,28 +25,6 @@ P = ParamSpec("P")
 Stage = Callable[Concatenate[Any, P], str]
 
 
-class Rows:
-    """The rows of curve.csv that a stage has made.
-
-    :param results: of the run
-    :param first: number of the first of them, from 0
-    """
-
-    def __init__(self, results, first):
-        self._results, self._first = results, first
-
-    def column(self, head):
-        """The values of a column, or an empty list if curve.csv does not have it."""
-        if head not in self._results.columns:
-            return []
-        return self._results.column(head)[self._first :]
-
-
-def nothing(scene, rows):
-    """The answers of a stage that is not run for a number."""
-    return []
-
-
 @dataclass(frozen=True)
 class Traits:
     """What the rest of the package must know of a kind of stage.
@@ -57,8 +35,8 @@ class Traits:
     :param grows: whether presses, dead loads and wind grow in it
     :param real: whether it runs in real time, whatever falls, in a scene whose collapse is followed
     :param check: function of the scene and what the user says, which raises Refused before the scene is built
-    :param answers: function of the scene and the :class:`Rows` of the stage that gives a list of
-        :class:`~masonry.scene.stages.answers.Answer`
+    :param answers: function of the scene, and of a function that gives the values of a column in the rows of the stage by its head, or an
+        empty list if curve.csv does not have it. It gives a list of :class:`~masonry.scene.stages.answers.Answer`
     """
 
     bounded: bool = False
@@ -67,7 +45,7 @@ class Traits:
     grows: bool = False
     real: bool = False
     check: Callable | None = None
-    answers: Callable = nothing
+    answers: Callable = lambda scene, rows: []
 
 
 def stage(**traits: Any) -> Callable[[Stage[P]], Stage[P]]:
@@ -113,23 +91,20 @@ def _check(scene, act, traits, args, settings):
 
 
 def _carryOut(scene, act, traits, args, settings):
-    name = act.__name__
+    running, before, name = scene.running, None, act.__name__
     scene.checkOpen(name)
     loaded = scene.description.loaded()
     if not scene.model and loaded and not traits.grows:
         raise ValueError(
             f"{name}: the loads on {', '.join(loaded)} grow in settle(): call that first"
         )
-    running, before = scene.running, None
     try:
         args, settings = _check(scene, act, traits, args, settings)
         scene.begin()
         if batch.PROBE in os.environ:
             return scene.probe(name, traits, argumentsOf(act, scene, args, settings))
         scene.script.note(act, scene, args, settings, traits.farther)
-        farther = False
-        if not running.advanced:
-            farther = scene.script.compare(running.scriptBefore)
+        farther = not running.advanced and scene.script.compare(running.scriptBefore)
         if scene.collapsed:
             say(
                 f"note: {name} is left out, because the structure has fallen; stepBack() takes it to its last state at rest"
@@ -143,15 +118,15 @@ def _carryOut(scene, act, traits, args, settings):
         if over:
             return _asBefore(scene, over)
         running.loading = traits.grows and not scene.grown
-        scene.model.scheme.dampByOptions()
-        scene.model.scheme.joints.impacts = traits.real
-        follows = scene.description.contact is not None
+        scheme, follows = scene.model.scheme, scene.description.contact is not None
+        scheme.dampByOptions()
+        scheme.joints.impacts = traits.real
         if follows:
-            scene.model.scheme.keepStable()
+            scheme.keepStable()
         if follows and running.redoes and running.at.stage == FALL:
             return _follow(scene, name)
         running.endsAtFall = follows and not traits.real
-        ended = act(scene, *args, **settings)
+        scene.ended = ended = act(scene, *args, **settings)
         if follows:
             scene.model.checkFallen()
         _noteEnd(running, before, ended)
@@ -168,9 +143,8 @@ def _carryOut(scene, act, traits, args, settings):
 
 
 def _fall(scene, name, traits, before, what):
-    """End a stage in which the structure has fallen, or go on with the fall.
+    """End a stage in which the structure has fallen, or go on with the fall. Parameters as in :func:`_answer`.
 
-    :param before: how many stages the run had entered before it
     :param what: has fallen, and how far
     """
     running = scene.running
@@ -188,16 +162,11 @@ def _fall(scene, name, traits, before, what):
         follows = False  # what has fallen may have left finite numbers
         _noteEnd(running, before, COLLAPSED)
     _answer(scene, name, traits, before)
-    if follows:
-        return _follow(scene, name)
-    return COLLAPSED
+    return _follow(scene, name) if follows else COLLAPSED
 
 
 def _follow(scene, name):
-    """Go on with a structure that has fallen until it is at rest, in a stage or in a run that is resumed while it falls.
-
-    :param name: of the stage
-    """
+    """Go on with a structure that has fallen until it is at rest, in a stage or in a run that is resumed while it falls."""
     running, begun = scene.running, scene.running.at.begun
     try:
         running.endsAtFall = False
@@ -209,10 +178,8 @@ def _follow(scene, name):
             scene.ended = followFall(scene, tilted=name == "tilt")
         except Collapsed as collapse:
             say(f"note: the fall is followed no farther: {collapse}")
-        number = running.entered
         found = answersOfFall(scene, scene.ended, running.memory.begun)
-        kept = [{"stage": FALL, "number": number, **vars(one)} for one in found]
-        running.at.answers = {**running.at.answers, str(number): kept}
+        _keepAnswers(running, FALL, running.entered, found)
         writeTable(scene)
         _noteEnd(running, begun - 1, scene.ended)
         running.checkpoints.mark()
@@ -242,9 +209,11 @@ def _answer(scene, name, traits, before):
     running = scene.running
     if scene.only or before is None or running.entered == before:
         return
-    rows = Rows(running.results, running.at.stages[before][3])
-    found = [
-        {"stage": name, "number": before + 1, **vars(answer)}
-        for answer in traits.answers(scene, rows)
-    ]
-    running.at.answers = {**running.at.answers, str(before + 1): found}
+    results, first = running.results, running.at.stages[before][3]
+    rows = lambda head: results.column(head)[first:] if head in results.columns else []
+    _keepAnswers(running, name, before + 1, traits.answers(scene, rows))
+
+
+def _keepAnswers(running, stage, number, answers):
+    kept = [{"stage": stage, "number": number, **vars(one)} for one in answers]
+    running.at.answers = {**running.at.answers, str(number): kept}

@@ -3,13 +3,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from types import SimpleNamespace
 from typing import Annotated, Any, Callable, Union, cast
 
 from yade import O, Vector3
 
 from ...common.arguments import Freedoms, number, orFunction, validated
-from ...assembly.blocks import vector
 from ...assembly.motion import FAR
 from ..history import MOST
 from ..loads import Force
@@ -39,36 +38,25 @@ def release(
     return atOnce(scene, "release", lambda: letGo(scene, target, axes, force))
 
 
-@dataclass
-class Instant:
-    """What a stage remembers that takes no time: nothing."""
-
-
 def atOnce(scene, name, act):
     """A stage that takes no time.
 
     :param act: function that changes the state of the scene
     """
     act()  # first: what it refuses is no stage
-    scene.running.stage(name, Instant())
-    scene.ended = DONE
+    scene.running.stage(name, SimpleNamespace())
     return DONE
 
 
 def letGo(scene, target, axes, force):
     """Free a target along some axes, with a force in place of its drive."""
-    plane = scene.description.plane
-    state = O.bodies[target.body].state
-    if plane:  # nothing moves along the others
-        axes = "".join(a for a in axes if a in "xzY") or axes
-    loading = scene.model.loading
+    free = "xzY" if scene.description.plane else "xyzXYZ"  # nothing moves along others
+    state, loading = O.bodies[target.body].state, scene.model.loading
+    axes = [a for a in axes if a in free] or axes
     drives = {a: loading.driveOf(target, a) or loading.pushOf(target, a) for a in axes}
-    held = {a for a in state.blockedDOFs if a in "xzY" or not plane}
-    problems = [
-        f"release: {target.name} is not held along {axis}"
-        for axis, drive in drives.items()
-        if not (drive or axis in held)
-    ]
+    held = set(state.blockedDOFs) & set(free)
+    loose = [a for a, drive in drives.items() if not (drive or a in held)]
+    problems = [f"release: {target.name} is not held along {axis}" for axis in loose]
     if force is not None and not any(drives.values()):
         problems.append("release: only in place of a drive a force can stay")
     if force is not None and any(drive and drive.others for drive in drives.values()):
@@ -78,7 +66,7 @@ def letGo(scene, target, axes, force):
     for axis, drive in drives.items():
         if drive:
             drive.driven, drive.velocity = False, 0
-            drive.force = vector(force or (0, 0, 0), "release: force [N]")
+            drive.force = Vector3(*(force or (0, 0, 0)))
             scene.model.motion.far = FAR  # what it held swings back
         else:
             state.blockedDOFs = state.blockedDOFs.replace(axis, "")
@@ -87,19 +75,12 @@ def letGo(scene, target, axes, force):
 
 def displacement(scene, rows):
     """How far each held target has moved in this stage: at its end, or when the structure fell."""
-    found = []
+    how = "from the first row of the stage to its last, which is the collapse if the structure fell"
     for target in scene.description.targets.values():
-        if not target.fixed:
-            continue
-        squares = 0.0
-        for axis in "xyz":
-            values = rows.column(f"{target.name}_{axis}_mm")
-            squares += (values[-1] - values[0]) ** 2 if values else 0.0
+        columns = [rows(f"{target.name}_{axis}_mm") for axis in "xyz" if target.fixed]
+        squares = sum((values[-1] - values[0]) ** 2 for values in columns if values)
         if squares:
-            how = "from the first row of the stage to its last, which is the collapse if the structure fell"
-            name = f"displacement_of_{target.name}"
-            found.append(Answer(name, "mm", squares**0.5, how))
-    return found
+            yield Answer(f"displacement_of_{target.name}", "mm", squares**0.5, how)
 
 
 @stage(farther=("x", "y", "z"), options=("rate",), answers=displacement)
@@ -124,8 +105,8 @@ def move(
     at = scene.running.stage("move", Timed())
     targets = cast("list[Target]", target)
     paths = [_path(scene, one, (x, y, z)) for one in targets]
-    rate = scene.args.rate if rate is None else rate
-    distance, rate = 1e-3 * max(path.norm() for path in paths), 1e-3 * rate
+    rate = 1e-3 * (scene.args.rate if rate is None else rate)
+    distance = 1e-3 * max(path.norm() for path in paths)
     if not distance > 0:
         raise ValueError("move: the displacement must not be zero")
     ramp = min(rampTime(scene.args), distance / rate)
@@ -141,8 +122,8 @@ def move(
     states = [O.bodies[one.body].state for one in targets]
 
     def before(done, beyond):
-        began, ends = done * O.dt, min(duration, beyond * O.dt)
-        speed = (place(ends) - place(min(began, duration))) / ((beyond - done) * O.dt)
+        began, ends = (place(min(duration, steps * O.dt)) for steps in (done, beyond))
+        speed = (ends - began) / ((beyond - done) * O.dt)
         for state, path in zip(states, paths):
             state.vel = speed * (1e-3 / distance * path)
 
@@ -156,7 +137,7 @@ def move(
 def _path(scene, target, along):
     """The displacement of a target in :func:`move` [mm]. Raises ValueError."""
     values = [atPlace(v, target.recorded, millimetres, "move") if callable(v) else v for v in along]  # fmt: skip
-    path = scene.share * vector(values, "move: displacement [mm]")
+    path = scene.share * Vector3(*values)
     if scene.description.plane and path[1]:
         raise ValueError(
             "move: the scene is in the x-z plane; Scene(..., plane=False) is in space"

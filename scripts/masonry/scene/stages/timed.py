@@ -34,21 +34,23 @@ def timed(scene, at, duration, before, after=None, each=None):
     :param after: called after each row
     :param each: steps of a stretch; None: 20, or fewer
     """
-    running = scene.running
+    running, step = scene.running, O.step
     length = max(1, round(duration / O.dt))
     stretch = each or max(1, min(20, length // ROWS))
     perRow = max(stretch, length // ROWS // stretch * stretch)
     perFrame = max(1, length // FRAMES)
+
+    def alone(number):  # a step with its own ``before``
+        before(at.done + number, at.done + number + 1)
+        step()
+
     while at.done < length:
         goal = min(length, (at.done // perRow + 1) * perRow)
-        if stretch == 1:
-            before(at.done, at.done + 1)
-            _stepping(running, at, goal, before)
-        else:
-            beyond = min(goal, at.done + stretch)
-            before(at.done, beyond)
-            running.advance(beyond - at.done)
-            at.done = beyond
+        beyond = min(goal, at.done + stretch)
+        before(at.done, beyond)
+        beyond = goal if stretch == 1 else beyond
+        running.advance(beyond - at.done, alone if stretch == 1 else None)
+        at.done = beyond
         if at.done < goal:
             continue
         running.record()
@@ -61,16 +63,4 @@ def timed(scene, at, duration, before, after=None, each=None):
             after()
     running.show(1, lambda: f"{duration:.3f} s", final=True)
     running.flush()
-    scene.ended = DONE
-
-
-def _stepping(running, at, goal, before):
-    """Steps up to a goal, with ``before`` ahead of each of them."""
-    step, first = O.step, at.done
-
-    def one(number):
-        before(first + number, first + number + 1)
-        step()
-
-    running.advance(goal - first, one)
-    at.done = goal
+    return DONE
