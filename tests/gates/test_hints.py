@@ -72,7 +72,7 @@ def test_a_missing_hint_is_found():
 @pytest.mark.parametrize("module", [*PUBLIC, *STAGES])
 def test_what_users_call_has_hints(module):
     isStage = lambda node: any(
-        "validated" in ast.unparse(d) for d in node.decorator_list
+        re.match(r"validated|stage\(", ast.unparse(d)) for d in node.decorator_list
     )
     every = [
         pair

@@ -7,7 +7,8 @@ from hosted import *
 from masonry.assembly.motion import REST
 from masonry.basics import GRAVITY, Collapsed
 from masonry.scene.stages import growing
-from masonry.scene.stages.acting import Acceleration, Forces, Tilting
+from masonry.scene.stages.gravity import Acceleration, Tilting
+from masonry.scene.stages.loading import Forces
 from masonry.scene.stages.rest import CALM, EVERY, LOOKS, rampTime
 
 X = Vector3.UnitX

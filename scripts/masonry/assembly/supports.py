@@ -6,7 +6,7 @@ import math
 from yade import O, Vector3
 
 from ..basics import GRAVITY
-from .drives import forceOn, reactionOf
+from .loading import forceOn, reactionOf
 from .motion import FALLEN
 
 #: Share of all loads above which the horizontal ones must be carried on their own at rest [-].

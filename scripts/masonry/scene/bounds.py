@@ -95,7 +95,7 @@ class Bounds:
     def push(self, target, direction, both=False, lowerUpTo=0, background=False):
         """Find the bound of a push [kN], without what acts beside it. Returns its entry of run.json, the last one if there are two.
 
-        :param target: what is pushed, or a :class:`masonry.assembly.drives.Pattern`
+        :param target: what is pushed, or a :class:`masonry.assembly.loading.Pattern`
         :param direction: unit vector of the push
         :param both: whether it goes there and back
         :param lowerUpTo: up to so many joints a collapse without dilatancy is looked for, too, if the bound is not exact

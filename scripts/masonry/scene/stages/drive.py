@@ -8,7 +8,7 @@ from typing import Annotated, Any, Callable, Union
 
 from yade import O
 
-from ...common.arguments import number, orFunction, validated
+from ...common.arguments import number, orFunction
 from ...basics import Refused
 from ..targets import AnyTarget, RecordedJoint
 from .answers import DONE, Answer
@@ -38,7 +38,6 @@ def stresses(scene, rows):
 
 
 @stage(options=("rate",), answers=stresses)
-@validated
 def drive(
     scene: Any,
     target: AnyTarget,
@@ -84,7 +83,6 @@ def checkStress(scene, target, joint, stress):
 
 
 @stage(options=("rate",), check=checkStress, answers=stresses)
-@validated
 def pressJoint(
     scene: Any,
     target: AnyTarget,

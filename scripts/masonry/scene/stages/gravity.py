@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Horizontal acceleration and a tilting ground: ``tilt``, ``accelerate`` and ``lean``, and the search with ``bracket``."""
+"""Horizontal acceleration and a tilting ground: ``tilt``, ``accelerate`` and ``lean``, and the search with ``bracket``. What acts and can
+be changed is an :class:`Acting`."""
 
 from __future__ import annotations
 
@@ -10,15 +11,86 @@ from yade import Vector3
 
 from ...common.arguments import Level, number, validated
 from ...assembly.loading import smooth
+from ...basics import GRAVITY
 from ..bounds import findBound, nameOfLean
-from .acting import Acceleration, Tilting
 from .growing import TRIAL, WITHIN, ends, follow, found, grow
 from .rest import WAITED, Resting, waitForRest
 from .answers import AT_REST, MOVING
-from .stage import stage
-from .timed import Duration
+from .stage import Duration, stage
 
 LEAN_GROWS = 0.2  # [s] in which a lean grows
+
+
+class Acting:
+    """What acts. A share of 1 is the whole growth, and its factor is ``most`` [-].
+
+    Its kinds have ``now()``, their present values as a list of numbers, ``put(values)``, and ``at(began, share)``, their values when a
+    share of the growth is over, 0 to 1 [-], from those when it began.
+
+    :param name: under which its bound is found
+    :param unit: of the factor
+    :param towards: direction along which displacements are counted
+    """
+
+    target = None  # the platen or brick on which it acts, if it is one
+
+    def __init__(self, name, most, unit, towards=None):
+        self.name, self.most, self.unit, self.towards = name, most, unit, towards
+
+    def factor(self, share):
+        """The load factor at a share [-]."""
+        return share * self.most
+
+    def shareOf(self, factor):
+        """The share at which it has a load factor [-]."""
+        return factor / self.most
+
+
+class Acceleration(Acting):
+    """Gravity, with a horizontal acceleration that grows beside it.
+
+    :param model: :class:`masonry.assembly.structure.Structure`
+    :param most: at its end [g]
+    :param towards: unit vector
+    """
+
+    def __init__(self, model, most, towards, name, unit="g"):
+        super().__init__(name, most, unit, towards)
+        self.model = model
+
+    def now(self):
+        return list(self.model.scheme.now)
+
+    def put(self, values):
+        self.model.scheme.setGravity(Vector3(*values))
+
+    def at(self, began, share):
+        down = self.model.description.gravity * Vector3.UnitZ
+        whole = self.factor(share) * GRAVITY * self.towards - down
+        return list(whole / self.model.args.density_scaling)
+
+
+class Tilting(Acceleration):
+    """Gravity that turns, as on a ground that is tilted. The factor is the horizontal over the vertical part.
+
+    :param angle: at its end [rad]
+    """
+
+    def __init__(self, model, angle, towards, name):
+        super().__init__(model, math.tan(angle), towards, name, "-")
+        self.angle = angle
+
+    def at(self, began, share):
+        down, angle = self.model.description.gravity, share * self.angle
+        turned = math.sin(angle) * self.towards - math.cos(angle) * Vector3.UnitZ
+        return list(down * turned / self.model.args.density_scaling)
+
+    def factor(self, share):
+        angle = share * self.angle
+        return math.tan(angle) if angle < math.pi / 2 else math.inf
+
+    def shareOf(self, factor):
+        return math.atan(factor) / self.angle
 
 
 def putOnAnswers(scene, rows):
@@ -45,7 +117,6 @@ Width = Annotated[float, number("", 1e-4, 1, below=True)]  # of a bracket
 
 
 @stage(bounded=True, answers=found)
-@validated
 def tilt(
     scene: Any,
     degrees: Annotated[float, number("degrees", 0, 90, above=True, below=True)],
@@ -71,7 +142,6 @@ def tilt(
 
 
 @stage(bounded=True, answers=found)
-@validated
 def accelerate(
     scene: Any,
     most: Annotated[float, number("g", 0, 1e3, above=True)],
@@ -95,7 +165,6 @@ def accelerate(
 
 
 @stage(bounded=True, answers=putOnAnswers)
-@validated
 def lean(
     scene: Any,
     factor: Annotated[float, number("g", 0, 1000)],
@@ -117,7 +186,7 @@ def putOn(scene, name, load, longest, over=0.0):
     """Let a load grow within a short time, and wait until the structure is at rest or falls. With ``--preset bound`` it stays if limit
     analysis finds that it is carried.
 
-    :param load: :class:`masonry.scene.stages.acting.Acting`
+    :param load: :class:`Acting`
     :param longest: time in the scene after which it is given up [s]; None: :data:`masonry.scene.stages.growing.TRIAL`, and longer
         on soft springs
     :param over: time in which it grows at least [s]

@@ -29,7 +29,7 @@ from ...assembly.motion import FALLEN, REST
 from ...basics import Collapsed, say
 from .rest import CALM, EVERY, LOOKS, WAITED, buckles, rampTime
 from .answers import AT_REST, DONE, Answer
-from .timed import Timed, timed
+from .stage import Timed, timed
 
 WITHIN = 0.005  # width of the bracket, over its upper end [-]
 LEAST = 0.05  # of the whole growth: the width of a bracket below this load is that of a bracket at it [-]
@@ -89,7 +89,7 @@ class Growing(Timed):
 def grow(scene, name, load, duration, within=WITHIN):
     """Let a load grow evenly until the structure falls or the load has its whole, then search for the one that is held.
 
-    :param load: :class:`masonry.scene.stages.acting.Acting`
+    :param load: :class:`masonry.scene.stages.gravity.Acting`
     :param duration: [s], with true masses
     :param within: width of the bracket, over its upper end [-]
     """

@@ -14,25 +14,58 @@ from typing import Annotated, Any
 
 from yade import O, Vector3
 
-from ...common.arguments import Direction, Freedoms, Level, isNumber, kindOf, number, shown, validated  # fmt: skip
+from ...common.arguments import Direction, Freedoms, Level, isNumber, kindOf, number, shown  # fmt: skip
 from ...basics import Refused
 from ..bounds import findBound, nameOf
 
 from ..loads import Field, Force, Pressure, Stress, checkedForce, doubtPress, doubtWind, windForces  # fmt: skip
 from ..pressures import pressures
 from ..targets import AnyTarget, Loaded, MovingPlaten, Part
-from .acting import Forces
-from .gravity import Width, putOn, putOnAnswers
+from .gravity import Acting, Width, putOn, putOnAnswers
 from .growing import WITHIN, found
 from .growing import grow as growTo
 from .answers import AT_REST
-from .stage import stage
+from .stage import Duration, stage
 from .supports import atOnce
 from ..words import PUSHES
-from .timed import Duration
 from .travelling import placed
 
 GROWS = 2.0  # [s] in which a load grows to its whole
+
+
+class Forces(Acting):
+    """Forces of MasonryLoad engines.
+
+    :param loads: the engines
+    :param forces: that they have at a factor of 1, a vector for each [N]
+    """
+
+    replaces = False  # whether the forces replace those that are there, and are not added to them
+    beside = 0, 0, 0  # a force that stays beside those that replace [N]
+    dead = False  # whether what was there grows by the factor, too
+
+    def __init__(self, loads, forces, name, unit, most, towards=None):
+        super().__init__(name, most, unit, towards)
+        self.loads, self.forces = loads, forces
+
+    def pairs(self):
+        """The engines and their forces at a factor of 1."""
+        pairs = zip(self.loads, self.forces)
+        return [(load, force + self.dead * load.force) for load, force in pairs]
+
+    def now(self):
+        return [value for load in self.loads for value in load.force]
+
+    def put(self, values):
+        for n, load in enumerate(self.loads):
+            load.force = Vector3(*values[3 * n : 3 * n + 3])
+
+    def at(self, began, share):
+        factor = self.factor(share)
+        whole = [factor * value for force in self.forces for value in force]
+        if self.replaces:
+            return [v + self.beside[n % 3] for n, v in enumerate(whole)]
+        return [was * (1 + factor * self.dead) + v for was, v in zip(began, whole)]
 
 
 # -- forces on a target -------------------------------------------------------------------------------------------
@@ -54,7 +87,6 @@ def _forceOn(scene, target, force, name):
 
 
 @stage(bounded=True, answers=putOnAnswers)
-@validated
 def load(
     scene: Any, target: Loaded, force: Force, longest: Duration | None = None
 ) -> str:
@@ -72,7 +104,6 @@ def load(
 
 
 @stage(bounded=True, answers=found)
-@validated
 def growLoad(
     scene: Any,
     target: Loaded,
@@ -125,7 +156,6 @@ def _onFaces(scene, forces, kind, towards, part, unit, most):
 
 
 @stage(bounded=True, answers=putOnAnswers)
-@validated
 def wind(
     scene: Any,
     pressure: Pressure,
@@ -148,7 +178,6 @@ def wind(
 
 
 @stage(bounded=True, answers=found)
-@validated
 def growWind(
     scene: Any,
     pressure: Pressure,
@@ -166,7 +195,6 @@ def growWind(
 
 
 @stage(bounded=True, answers=putOnAnswers)
-@validated
 def pressure(
     scene: Any,
     value: Field,
@@ -202,7 +230,6 @@ def _pressOn(scene, platen, stress, name):
 
 
 @stage(bounded=True, answers=putOnAnswers)
-@validated
 def press(
     scene: Any, platen: MovingPlaten, stress: Stress, longest: Duration | None = None
 ) -> str:
@@ -220,7 +247,6 @@ def press(
 
 
 @stage(bounded=True, answers=found)
-@validated
 def growPress(
     scene: Any,
     platen: MovingPlaten,
@@ -252,7 +278,6 @@ def together(value, first):
 
 
 @stage(bounded=True, answers=found)
-@validated
 def grow(
     scene: Any,
     loads: Annotated[dict[Any, Any], together],
@@ -329,7 +354,6 @@ def _findBound(scene, made):
 
 
 @stage()
-@validated
 def hold(scene: Any, target: AnyTarget, axes: Freedoms = "xyzXYZ") -> str:
     """Hold a target where it is now. What follows is the next stage's.
 

@@ -10,14 +10,13 @@ from typing import Annotated, Any
 from yade import O, Vector3
 
 from ..._masonry import loadScene, saveScene
-from ...common.arguments import oneOf, validated
+from ...common.arguments import oneOf
 from ...assembly import period
 from ...assembly.motion import FAR, REST
 from ...basics import Collapsed, Refused, say
 from ..resuming import saidBefore
 from .answers import AT_REST, MOVING
-from .stage import stage
-from .timed import Duration
+from .stage import Duration, stage
 
 RAMP = 0.02  # [s] in which loads and velocities grow: some ten periods of a wave through the height of a wall
 CALM = 1e-5  # kinetic over elastic energy of a structure that is said to be at rest [-]
@@ -68,7 +67,6 @@ def isSlender(scene: Any) -> bool:
 
 
 @stage(bounded=True, grows=True)
-@validated
 def settle(
     scene: Any,
     longest: Duration | None = None,

@@ -1,16 +1,17 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What all stages of a scene share: how they begin and end, and their traits."""
+"""What stages of a scene share: how they begin and end, their traits, and how time passes in those that last for a given time."""
 
 from __future__ import annotations
 
 import functools
 import os
 from dataclasses import dataclass
-from typing import Any, Callable, Concatenate, ParamSpec
+from typing import Annotated, Any, Callable, Concatenate, ParamSpec
 
 from yade import O
 
 from ...common import notebook
+from ...common.arguments import number, validated
 from ...basics import Collapsed, NotAccurate, say
 from ...run import batch
 from ...run.accuracy import STAGES
@@ -19,6 +20,13 @@ from ..words import argumentsOf
 from .answers import COLLAPSED, DONE, FALL, FALLEN
 from .falling import followFall, writeTable
 from .falling import answers as answersOfFall
+
+ROWS = 500  # of curve.csv in a stage that lasts for a given time
+FRAMES = 20  # for ParaView in such a stage
+
+#: Kinds of arguments: a time that is not longer than a day, and one above 0 [s].
+Time = Annotated[float, number("s", 0, 86400)]
+Duration = Annotated[float, number("s", 0, 86400, above=True)]
 
 P = ParamSpec("P")
 #: A stage: a function of the scene and what the user says, which returns how it ended.
@@ -49,13 +57,15 @@ class Traits:
 
 
 def stage(**traits: Any) -> Callable[[Stage[P]], Stage[P]]:
-    """Make a stage of a function of the scene and what the user says, which is
+    """Make a stage of a function of the scene and what the user says, which is checked as by
     :func:`masonry.common.arguments.validated`; the keywords are those of :class:`Traits`.
 
     The stage builds the scene if it is the first, is left out after a collapse, and ends the run in order on errors.
     """
 
-    def made(act: Stage[P]) -> Stage[P]:
+    def made(said: Stage[P]) -> Stage[P]:
+        act = validated(said)
+
         @functools.wraps(act)
         def staged(scene: Any, *args: P.args, **settings: P.kwargs) -> str:
             if scene.staging:  # it is a part of another stage
@@ -217,3 +227,51 @@ def _answer(scene, name, traits, before):
 def _keepAnswers(running, stage, number, answers):
     kept = [{"stage": stage, "number": number, **vars(one)} for one in answers]
     running.at.answers = {**running.at.answers, str(number): kept}
+
+
+@dataclass
+class Timed:
+    """What a stage remembers that lasts for a given time."""
+
+    done: int = 0  # steps so far
+    nextFrame: int = 0  # number of the step after which a frame is due
+
+
+def timed(scene, at, duration, before, after=None, each=None):
+    """Steps for a duration [s], with rows and frames evenly in time.
+
+    :param at: :class:`Timed`
+    :param before: function of the number of steps so far and after the next stretch, called before each stretch
+    :param after: called after each row
+    :param each: steps of a stretch; None: 20, or fewer
+    """
+    running, step = scene.running, O.step
+    length = max(1, round(duration / O.dt))
+    stretch = each or max(1, min(20, length // ROWS))
+    perRow = max(stretch, length // ROWS // stretch * stretch)
+    perFrame = max(1, length // FRAMES)
+
+    def alone(number):  # a step with its own ``before``
+        before(at.done + number, at.done + number + 1)
+        step()
+
+    while at.done < length:
+        goal = min(length, (at.done // perRow + 1) * perRow)
+        beyond = min(goal, at.done + stretch)
+        before(at.done, beyond)
+        beyond = goal if stretch == 1 else beyond
+        running.advance(beyond - at.done, alone if stretch == 1 else None)
+        at.done = beyond
+        if at.done < goal:
+            continue
+        running.record()
+        text = lambda: f"{at.done * O.dt:.3f} of {duration:.3f} s"
+        running.show(at.done / length, text)
+        if at.done >= at.nextFrame:
+            running.frame()
+            at.nextFrame += perFrame
+        if after:
+            after()
+    running.show(1, lambda: f"{duration:.3f} s", final=True)
+    running.flush()
+    return DONE

@@ -8,7 +8,7 @@ from typing import Annotated, Any, Callable, Union, cast
 
 from yade import O, Vector3
 
-from ...common.arguments import Freedoms, number, orFunction, validated
+from ...common.arguments import Freedoms, number, orFunction
 from ...assembly.motion import FAR
 from ..history import MOST
 from ..loads import Force
@@ -17,15 +17,13 @@ from ...run.options import Rate
 from ..targets import AnyTarget, HeldTargets, Target
 from .rest import rampTime
 from .answers import DONE, Answer
-from .stage import stage
-from .timed import Timed, timed
+from .stage import Timed, stage, timed
 
 millimetres = number("mm", -MOST, MOST)  # the kind of a displacement
 Along = Annotated[Union[float, Callable[[float, float, float], float]], orFunction(millimetres)]  # fmt: skip
 
 
 @stage(bounded=True)
-@validated
 def release(
     scene: Any, target: AnyTarget, axes: Freedoms, force: Force | None = None
 ) -> str:
@@ -84,7 +82,6 @@ def displacement(scene, rows):
 
 
 @stage(farther=("x", "y", "z"), options=("rate",), answers=displacement)
-@validated
 def move(
     scene: Any,
     target: HeldTargets,

@@ -9,15 +9,14 @@ from typing import Annotated, Any, Sequence
 
 from yade import Vector3
 
-from ...common.arguments import listOf, number, validated
+from ...common.arguments import listOf, number
 from ...common.arguments import vector as point
 from ...assembly.loading import smooth
 from ..bounds import SMALL, findBound
 from ..pressures import placesBelow
 from .answers import AT_REST, DONE, Answer
 from .rest import Resting, waitForRest
-from .stage import stage
-from .timed import Duration
+from .stage import Duration, stage
 
 
 TRAVELS = "load that travels, at "  # how the names of its bounds begin
@@ -65,7 +64,6 @@ def placed(scene, along):
 
 
 @stage(bounded=True, answers=standings)
-@validated
 def travel(
     scene: Any,
     force: Annotated[float, number("N", 0, 1e15, above=True)],
