@@ -166,39 +166,41 @@ def _connect(pairs, physics, rule):
 
 def _warn(pairs, joints, sizes, engines):
     """Print warnings of what looks like a mistake: other units, blocks without joints, properties without effect."""
+    (thin, thickness), (large, size) = sizes
+    if thickness < 1e-3:
+        say(f"warning: body {thin} is {thickness:g} m thick: are corners in m?")
+    if size > 50:
+        say(f"warning: body {large} is {size:g} m long: are corners in m, not mm?")
     kinds = "MasonryBlock", "Polyhedra"
     bodies = {b.id: b for b in O.bodies if type(b.shape).__name__ in kinds}
     mats = {(b.mat.label, b.mat.young, b.mat.density): b.mat for b in bodies.values()}
-    hints = [
-        *_oddSizes(*sizes),
-        *_oddProperties([*mats.values(), *joints]),
-        *_idleProperties(joints),
-        *_oddWeights(mats, engines),
-    ]
+    _warnOfUnits([*mats.values(), *joints])
+    _warnOfIdle(joints)
+    kinds = MasonryIntegrator, NewtonIntegrator
+    gravity = next((e.gravity.norm() for e in engines if isinstance(e, kinds)), 0)
+    for label, _, density in mats:  # density scaling keeps the weight
+        if gravity and not 1e3 <= density * gravity <= 1e5:
+            say(
+                f'warning: MasonryMat "{label}": density {density:g} kg/m³ weighs {density * gravity:g} N/m³: is it in kg/m³?'
+            )
     alone = sorted(set(bodies).difference(*zip(*pairs)))
     if alone:
         more = " and more" * (len(alone) > 10)
-        hints.append(f"no joint holds bodies {alone[:10]}{more}")
+        say(f"warning: no joint holds bodies {alone[:10]}{more}")
     for engine in engines:
         if isinstance(engine, MasonryLoad) and engine.body in bodies:
-            hints += _farLoad(engine, bodies[engine.body])
+            body = bodies[engine.body]
+            away = (engine.point - body.state.refPos).norm()
+            if away > 20 * max(v.norm() for v in body.shape.v):
+                say(
+                    f"warning: MasonryLoad: its point lies {away:g} m from body {body.id}: is it in m?"
+                )
         if isinstance(engine, MasonryZones):
-            hints += _undivided(engine, bodies)
-    for hint in hints:
-        say("warning: " + hint)
+            _warnOfZones(engine, bodies)
 
 
-def _oddSizes(thinnest, largest):
-    """Sentences on blocks that are not in m, from pairs of a body and its size [m]."""
-    (thin, thickness), (large, size) = thinnest, largest
-    if thickness < 1e-3:
-        yield f"body {thin} is {thickness:g} m thick: are corners in m?"
-    if size > 50:
-        yield f"body {large} is {size:g} m long: are corners in m, not mm?"
-
-
-def _oddProperties(things):
-    """Sentences on properties of materials and joints that are usual in another unit."""
+def _warnOfUnits(things):
+    """Warn of properties of materials and joints that are usual in another unit."""
     for thing in things:
         name = thing.name if isinstance(thing, MasonryJoint) else thing.label
         for p in properties(type(thing)):
@@ -208,52 +210,37 @@ def _oddProperties(things):
                 what = f"{value:g}: is it a tangent, not an angle in {other}?"
                 if unit != "-":
                     what = f"{value:g} {unit}: is it in {unit}, not {other}?"
-                yield f'{type(thing).__name__} "{name}": {p["name"]} {what}'
+                say(f'warning: {type(thing).__name__} "{name}": {p["name"]} {what}')
 
 
-def _idleProperties(joints):
-    """Sentences on properties that were given and that the law of their joint does not read; of an elastic joint, those that one
-    law alone reads."""
+def _warnOfIdle(joints):
+    """Warn of properties that were given and that the law of their joint does not read; of an elastic joint, of those that one law
+    alone reads."""
     default, read = MasonryJoint(), [law["properties"] for law in LAWS.values()]
     readers = {p["name"]: sum(p["name"] in names for names in read) for p in properties(MasonryJoint)}  # fmt: skip
     for joint in joints:
-        own = LAWS[joint.law]["properties"]
-        idle = [
-            name
-            for name, count in readers.items()
-            if getattr(joint, name) != getattr(default, name)
-            and (count == 1 if joint.elastic else count and name not in own)
-        ]
+        own, idle = LAWS[joint.law]["properties"], []
+        for name, count in readers.items():
+            unread = count == 1 if joint.elastic else count and name not in own
+            if unread and getattr(joint, name) != getattr(default, name):
+                idle.append(name)
         if idle:
             why = "is elastic" if joint.elastic else f'follows the law "{joint.law}"'
-            yield f'MasonryJoint "{joint.name}" {why}: no effect of {", ".join(idle)}'
+            what = f"no effect of {', '.join(idle)}"
+            say(f'warning: MasonryJoint "{joint.name}" {why}: {what}')
 
 
-def _oddWeights(mats, engines):
-    """Sentences on densities that are not in kg/m³."""
-    kinds = MasonryIntegrator, NewtonIntegrator
-    integrator = next((e for e in engines if isinstance(e, kinds)), None)
-    gravity = integrator.gravity.norm() if integrator else 0
-    for label, _, density in mats:  # density scaling keeps the weight
-        if gravity and not 1e3 <= density * gravity <= 1e5:
-            yield f'MasonryMat "{label}": density {density:g} kg/m³ weighs {density * gravity:g} N/m³: is it in kg/m³?'
-
-
-def _farLoad(load, body):
-    """A sentence on a load that acts far from its body."""
-    away = (load.point - body.state.refPos).norm()
-    if away > 20 * max(v.norm() for v in body.shape.v):
-        yield f"MasonryLoad: its point lies {away:g} m from body {body.id}: is it in m?"
-
-
-def _undivided(zones, bodies):
-    """Sentences on zones without bodies, and on bodies that divisions do not divide."""
-    count = {i: len(range(*zones.nodesOf(i))) for i in zones.bodies}
-    if not count:
-        yield "MasonryZones has no bodies"
+def _warnOfZones(zones, bodies):
+    """Warn of zones without bodies, and of bodies that divisions do not divide."""
+    if not zones.bodies:
+        say("warning: MasonryZones has no bodies")
     # of a plane unit that is no hexahedron the nodes are the corners of its base and one in the middle
-    corners = {i: len(bodies[i].shape.v) for i in count}
-    ofStar = lambda n: {n + 1} if n == 8 else {n + 1, n // 2 + 1}
-    stars = [i for i, n in corners.items() if count[i] in ofStar(n)]
+    stars = []
+    for i in zones.bodies:
+        n, nodes = len(bodies[i].shape.v), len(range(*zones.nodesOf(i)))
+        if nodes == n + 1 or n != 8 and nodes == n // 2 + 1:
+            stars.append(i)
     if stars and zones.divisions != [1, 1, 1]:
-        yield f"MasonryZones: divisions do not apply to bodies {stars[:10]}, which are no hexahedra"
+        say(
+            f"warning: MasonryZones: divisions do not apply to bodies {stars[:10]}, which are no hexahedra"
+        )

@@ -96,15 +96,14 @@ class Motion:
 
         :param far: over the largest side of the block [-]; None: :attr:`far`
         """
-        speeds, far = None, self.far if far is None else far
-        for index, moved in enumerate(self._moved()):
-            if moved.norm() <= far * self._sizes[index]:
-                continue
-            speeds = speeds or self._speeds()
+        far, moved = self.far if far is None else far, self._moved()
+        beyond = [n for n, v in enumerate(moved) if v.norm() > far * self._sizes[n]]
+        speeds = beyond and self._speeds()
+        for index in beyond:
             if speeds[index] >= self._falling[index]:
                 at = ", ".join(f"{v:.3g}" for v in self.description.middle(index))
-                moved, speed = 1e3 * moved, 1e3 * speeds[index]
+                x, y, z = 1e3 * moved[index]
                 raise Collapsed(
-                    f"brick {index} at ({at}) m has moved by ({moved[0]:.3g}, {moved[1]:.3g}, {moved[2]:.3g}) mm and falls "
-                    f"at {speed:.3g} mm/s"
+                    f"brick {index} at ({at}) m has moved by ({x:.3g}, {y:.3g}, {z:.3g}) mm and falls "
+                    f"at {1e3 * speeds[index]:.3g} mm/s"
                 )

@@ -5,12 +5,10 @@ A uniform acceleration that begins at once and stays sets an elastic structure s
 Of its modes n, with the angular frequencies ω_n and the shares c_n of the mass, the momentum is then proportional to
 Σ c_n/ω_n sin(ω_n t). The first mode has nearly all of that, and in a bar in shear between two ends that are held the
 others pass through zero at the same moment. So half a period is over when the momentum is first back at zero. It is
-the integral over time of all forces on what can move: weights, loads, supports and drives. This needs nothing but
-these forces, so it is the same for rigid and deformable blocks, walls with openings and arches.
+the integral over time of all forces on what can move, so it is the same for rigid and deformable blocks, walls and arches.
 
-Where a load is near that at which the structure buckles, the stiffness against a push sideways vanishes. Then the momentum does
-not come back to zero: beyond that load it grows faster than that of a body that nothing holds, which is the force times the
-time.
+Near the load at which a structure buckles, the stiffness against a push sideways vanishes. The momentum does not come back to zero then:
+beyond that load it grows faster than that of a body that nothing holds, which is the force times the time.
 
 A structure that is said to be at rest still moves a little. So it is done to both sides, and the difference counts.
 """

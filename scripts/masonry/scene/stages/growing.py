@@ -2,15 +2,14 @@
 """Loads that grow until the structure falls, and the search for the load that it holds.
 
 A structure under a growing load falls late: it must first move. It also begins to move early, where joints give way little
-by little. So neither moment says what it carries. The run finds that out by trials. During the growth it keeps states to go
-back to. Then it takes such a state, leaves the load as it is, and waits: the load is held if the structure comes to rest
-under it. Between the largest load that was held and the smallest that was not it goes on in halves, from the state at rest
-under the first. At the end the load that was not held is tried once more from that state, in which nothing moves: so it does
-not matter how fast the load grew.
+by little. So the run finds by trials what it carries. During the growth it keeps states to go back to. Then it takes such a state,
+leaves the load as it is, and waits: the load is held if the structure comes to rest under it. Between the largest load that was held
+and the smallest that was not it goes on in halves, from the state at rest under the first. At the end the load that was not held is
+tried once more from that state, in which nothing moves: so it does not matter how fast the load grew.
 
 A perfectly symmetric structure comes to rest under loads far above that at which it buckles. So the largest load that was held is
-looked at with a small push to the side (:func:`masonry.assembly.period.buckles`), which leaves no trace. If that grows, the load is
-not held, and every later trial is looked at so.
+looked at with a small push to the side (:func:`masonry.assembly.period.buckles`). If that grows, the load is not held, and every later
+trial is looked at so.
 """
 
 from __future__ import annotations
@@ -27,7 +26,7 @@ from ..._masonry import loadScene, saveScene
 from ...assembly.loading import smooth
 from ...assembly.motion import FALLEN, REST
 from ...basics import Collapsed, say
-from .rest import CALM, EVERY, LOOKS, WAITED, buckles, rampTime
+from .rest import CALM, EVERY, LOOKS, WAITED, buckles, growthTime
 from .answers import AT_REST, DONE, Answer
 from .stage import Timed, timed
 
@@ -134,8 +133,9 @@ def _compare(scene, name, load, at):
     """Say that much less is held than rigid blocks would carry."""
     entry = scene.bounds.entries.get(load.name, {})
     if at.lost and entry.get("exact") and at.held[0] < FAR * entry["factor"]:
+        less = 100 * (1 - at.held[0] / entry["factor"])
         say(
-            f"note: {name}: rigid blocks would carry {entry['factor']:.4g}, and the run held {100 * (1 - at.held[0] / entry['factor']):.0f} % "
+            f"note: {name}: rigid blocks would carry {entry['factor']:.4g}, and the run held {less:.0f} % "
             "less: joints that are soft let the structure lean before it falls. Try stiffer joints (normalStiffness), and more "
             "points (--points)"
         )
@@ -159,15 +159,13 @@ def found(scene, rows):
         return []
     what = "trials of the run itself, each under a constant load from a state at rest or of the growth"
     held = f"the largest load factor under which the structure came to rest; {what}"
+    lost = f"the load ended at {at.last:.4g} while the structure stood"
     if at.held is None:
         held = "the structure came to rest under no load that was tried"
         if at.trials:
-            least = min(factor for factor, _ in at.trials)
-            held += f", of {len(at.trials)} from {least:.4g} on"
-    why = f": {WHY[at.lost[3]]}" if at.lost else ""
-    lost = f"the smallest load factor under which it did not come to rest{why}; {what}"
-    if at.lost is None:
-        lost = f"the load ended at {at.last:.4g} while the structure stood"
+            held += f", of {len(at.trials)} from {min(at.trials)[0]:.4g} on"
+    if at.lost:
+        lost = f"the smallest load factor under which it did not come to rest: {WHY[at.lost[3]]}; {what}"
     return ends(scene, at.held, held, at.lost, lost)
 
 
@@ -177,17 +175,15 @@ def ends(scene, held, whyHeld, lost, whyLost):
     :param held: factor and displacement [mm] of a load that was held, or None; ``lost``: of one that was not
     :param whyHeld: how it was found, or why it was not; ``whyLost``: likewise
     """
-    answers, target = [], scene.model.loading.followed
+    target = scene.model.loading.followed
     for name, end, how, when in (
         ("held", held, whyHeld, "at rest"),
         ("not_held", lost, whyLost, "when it was seen not to come to rest"),
     ):
-        value = end[0] if end else None
-        answers.append(Answer(f"factor_{name}", scene.loadUnit, value, how))
+        yield Answer(f"factor_{name}", scene.loadUnit, end[0] if end else None, how)
         if end and target:
             how = f"of {target.name} along the load since that began, {when}"
-            answers.append(Answer(f"displacement_{name}", "mm", end[1], how))
-    return answers
+            yield Answer(f"displacement_{name}", "mm", end[1], how)
 
 
 def _text(state):
@@ -282,7 +278,10 @@ class _Search:
                 at.lost = [*end, at.calm, at.ended]
             at.trials = [*at.trials, [at.goal, int(held)]]
             at.goal = -1.0
-            self._show(name)
+            ends = [f"held {at.held[0]:.4g}"] if at.held else []
+            ends += [f"not held {at.lost[0]:.4g}"] if at.lost else []
+            detail = f"trial {len(at.trials)}: {', '.join(ends)}"
+            self.running.show(1, lambda: detail, True)
 
     def end(self):
         """Take the scene to where the stage ends, and return how it ended."""
@@ -310,6 +309,7 @@ class _Search:
         present one, and 1 if it is at rest, else 0. None if there is nothing left to try.
         """
         at = self.at
+        fromRest = lambda goal: (at.held[0], goal, at.heldState, 1)
         if not at.trials and not at.fell:
             return at.last, at.last, None, 0  # the structure still stands
         if not at.fell and at.held and at.held[0] >= at.last:
@@ -317,17 +317,16 @@ class _Search:
         if at.climbs and at.lost is None:
             goal = at.held[0] * (1 + self.within * 2**at.climbs)
             most = self.load.factor(1.0)
-            return self._fromRest(min(goal, most)) if at.held[0] < most else None
+            return fromRest(min(goal, most)) if at.held[0] < most else None
         chosen = None if at.climbs else self._ofGrowth()
         if chosen or at.held is None:
             return chosen
         if at.lost is None:
             _load(at.lastState)
             at.lost = [at.last, 1e3 * self.model.loading.alongNow(), 0, 0]
-        width = self.within * max(at.lost[0], LEAST * at.last)
-        if at.lost[0] - at.held[0] > width:
-            return self._fromRest(0.5 * (at.held[0] + at.lost[0]))
-        return None if at.lost[2] else self._fromRest(at.lost[0])
+        if at.lost[0] - at.held[0] > self.within * max(at.lost[0], LEAST * at.last):
+            return fromRest(0.5 * (at.held[0] + at.lost[0]))
+        return None if at.lost[2] else fromRest(at.lost[0])
 
     def _ofGrowth(self):
         """The next trial from a state of the growth, or None if there is none between the ends of the bracket."""
@@ -350,9 +349,6 @@ class _Search:
         factor, state = at.kept[index]
         return factor, factor, state, 0
 
-    def _fromRest(self, goal):
-        return self.at.held[0], goal, self.at.heldState, 1
-
     def _guess(self, factors):
         """Number of the kept state with which the search begins: the last before the structure leaves rest."""
         speeds = [speed for _, _, speed in self.at.rows]
@@ -373,10 +369,8 @@ class _Search:
     def _trial(self):
         """Hold a load, and wait. Returns whether the structure came to rest under it."""
         at, scene, model = self.at, self.scene, self.model
-        height = scene.description.high[2] - scene.description.low[2]
         slowest = model.supports.slowest()
-        ramp = max(rampTime(scene.args) * max(1.0, height / 3), slowest)
-        growing = max(1, int(ramp / O.dt))
+        growing = max(1, int(max(growthTime(scene), slowest) / O.dt))
         longest = max(TRIAL * scene.args.density_scaling**0.5, WAITED * slowest)
         most = int(longest / O.dt)
         while True:
@@ -396,11 +390,9 @@ class _Search:
             at.quiet = at.quiet + 1 if rests else 0
             if at.quiet == LOOKS:
                 return True
-            if self._accelerates(model.motion.fastest(FALLEN)):
-                at.ended = 1
-                return False
-            if at.taken >= most:
-                at.ended = 2
+            accelerates = self._accelerates(model.motion.fastest(FALLEN))
+            if accelerates or at.taken >= most:
+                at.ended = 1 if accelerates else 2
                 return False
 
     def _accelerates(self, speed):
@@ -411,9 +403,3 @@ class _Search:
             at.marks = [*at.marks, speed]
         before = at.marks[max(0, looks.bit_length() - 2)]
         return looks > 8 and speed > SURE and speed > 2 * before
-
-    def _show(self, name):
-        at = self.at
-        ends = [f"held {at.held[0]:.4g}"] if at.held else []
-        ends += [f"not held {at.lost[0]:.4g}"] if at.lost else []
-        self.running.show(1, lambda: f"trial {len(at.trials)}: {', '.join(ends)}", True)

@@ -68,9 +68,6 @@ class Forces(Acting):
         return [was * (1 + factor * self.dead) + v for was, v in zip(began, whole)]
 
 
-# -- forces on a target -------------------------------------------------------------------------------------------
-
-
 def _forceOn(scene, target, force, name):
     """The load of a force on a target, in kN along its direction. Raises ValueError."""
     force = checkedForce(scene.description, force, name)
@@ -92,8 +89,7 @@ def load(
 ) -> str:
     """Give a target another dead load, and wait until the structure is at rest or falls.
 
-    Before the first stage :meth:`load` describes a load that grows in :meth:`settle`. After it the force replaces the dead load
-    that the target has, described or put on; it changes within 0.02 s, and longer for tall structures. So
+    The force replaces the dead load that the target has, described or put on; it changes within 0.02 s, and longer for tall structures. So
     ``bracket(lambda f: scene.load(target, (0, 0, -f)) == AT_REST, 1e3, 9e3)`` finds the largest that is held.
 
     :param force: three numbers [N]; zeros take the load away
@@ -117,9 +113,6 @@ def growLoad(
     """
     made = _forceOn(scene, target, force, "growLoad")
     return _grow(scene, "growLoad", made, over, within)
-
-
-# -- pressure on faces --------------------------------------------------------------------------------------------
 
 
 def _windOn(scene, pressure, towards, part, name):
@@ -146,8 +139,9 @@ def _onFaces(scene, forces, kind, towards, part, unit, most):
     """The load of forces on faces, by what labels its engines and names it."""
     along = towards.normalized()
     axes = "_".join(f"{v + 0.0:.6g}".replace("-", "minus") for v in along)
-    # YADE makes names of labels
-    label = re.sub(r"\W", "_", f"{kind}_towards_{axes}_{part or 'all'}")
+    label = re.sub(
+        r"\W", "_", f"{kind}_towards_{axes}_{part or 'all'}"
+    )  # a name in YADE
     places = [(one.brick, one.point) for one in forces]
     engines = scene.model.loading.onBricks(label, places)
     what = f"{kind} towards {nameOf(towards)}" + (f" on {part}" if part else "")
@@ -163,18 +157,14 @@ def wind(
     part: Part | None = None,
     longest: Duration | None = None,
 ) -> str:
-    """Give the faces that look against a horizontal direction another pressure, and wait until the structure is at rest or
-    falls.
+    """Give the faces that look against a horizontal direction another pressure, and wait as :meth:`load` does. It is added to the wind that
+    grew in :meth:`settle`; another :meth:`wind` of the same direction and part after the first stage replaces it.
 
-    Before the first stage :meth:`wind` describes a wind that grows in :meth:`settle`, and to which this one is added. Another
-    :meth:`wind` of the same direction and part after the first stage replaces it.
-
-    :param pressure: [Pa]; 0 takes the wind away; ``towards`` and ``part``: as before the first stage; ``longest``: as in
-        :meth:`load`
-    :returns: ``AT_REST``, ``MOVING`` or ``COLLAPSED``
+    :param pressure: [Pa]; 0 takes the wind away; ``towards`` and ``part``: as before the first stage
     """
-    made = _windOn(scene, pressure, towards, part, "wind")
-    return _putOn(scene, "wind", made, longest)
+    return _putOn(
+        scene, "wind", _windOn(scene, pressure, towards, part, "wind"), longest
+    )
 
 
 @stage(bounded=True, answers=found)
@@ -203,18 +193,13 @@ def pressure(
     normal: bool = True,
     longest: Duration | None = None,
 ) -> str:
-    """Give faces another pressure, and wait until the structure is at rest or falls. It replaces another :meth:`pressure` of the
-    same direction, part and ``normal`` of a later stage, and is added to those that grew in :meth:`settle`.
+    """Give faces another pressure, and wait as :meth:`load` does. It is added to those that grew in :meth:`settle`; another
+    :meth:`pressure` of the same direction, part and ``normal`` after the first stage replaces it.
 
-    :param value: [Pa], or a function of the place; 0 takes it away; ``towards``, ``part`` and ``normal``: as before the first
-        stage; ``longest``: as in :meth:`load`
-    :returns: ``AT_REST``, ``MOVING`` or ``COLLAPSED``
+    :param value: [Pa], or a function of the place; 0 takes it away; ``towards``, ``part`` and ``normal``: as before the first stage
     """
     made = _pressureOn(scene, value, towards, part, normal)
     return _putOn(scene, "pressure", made, longest)
-
-
-# -- presses ------------------------------------------------------------------------------------------------------
 
 
 def _pressOn(scene, platen, stress, name):
@@ -233,13 +218,9 @@ def _pressOn(scene, platen, stress, name):
 def press(
     scene: Any, platen: MovingPlaten, stress: Stress, longest: Duration | None = None
 ) -> str:
-    """Press a platen with another mean stress on the bricks below it, and wait until the structure is at rest or falls.
-
-    Before the first stage :meth:`press` describes a press that grows in :meth:`settle`. After it the stress replaces that.
+    """Press a platen with another mean stress on the bricks below it, which replaces that before, and wait as :meth:`load` does.
 
     :param stress: mean vertical stress that the bricks feel [Pa]; the weight of the platen is part of it
-    :param longest: as in :meth:`load`
-    :returns: ``AT_REST``, ``MOVING`` or ``COLLAPSED``
     """
     made = _pressOn(scene, platen, stress, "press")
     made.beside = [0, 0, scene.model.supports.weightOf(platen)]
@@ -260,9 +241,6 @@ def growPress(
     """
     made = _pressOn(scene, platen, stress, "growPress")
     return _grow(scene, "growPress", made, over, within)
-
-
-# -- several loads ------------------------------------------------------------------------------------------------
 
 
 def together(value, first):
@@ -329,9 +307,6 @@ def grow(
     return _grow(scene, "grow", whole, over, within)
 
 
-# -- what they share ----------------------------------------------------------------------------------------------
-
-
 def _putOn(scene, name, made, longest):
     made.replaces, before = True, made.now()
     if scene.only:  # what it replaces is no load beside it
@@ -356,8 +331,6 @@ def _findBound(scene, made):
 @stage()
 def hold(scene: Any, target: AnyTarget, axes: Freedoms = "xyzXYZ") -> str:
     """Hold a target where it is now. What follows is the next stage's.
-
-    Before the first stage :meth:`hold` describes a brick that is held from the beginning.
 
     A platen that is pressed and then held along z keeps its height, and one held about Y does not turn: so does the top of many
     test rigs.

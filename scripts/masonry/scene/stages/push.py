@@ -45,8 +45,7 @@ def masses(model, direction, args):
 
 def triangle(model, direction, args):
     """Forces that grow with the height above the lowest brick."""
-    base = model.description.low[2]
-    return lambda body: max(0.0, body.state.refPos[2] - base)
+    return lambda body: max(0.0, body.state.refPos[2] - model.description.low[2])
 
 
 def mode(model, direction, args):
@@ -70,10 +69,10 @@ def pushed(value: Any, first: Any = None) -> Any:
             if not isNumber(share) or not 0 < plain(share) < 1e9:
                 raise ValueError(f"{shown(share)}, the share of {target.name}, must be a number above 0")  # fmt: skip
         return value
-    if callable(value) or value in tuple(OVER_ALL):
-        return value
     if isinstance(value, Target):
         return kindOfLoaded(value, first)
+    if callable(value) or value in tuple(OVER_ALL):
+        return value
     names = ", ".join(map(repr, OVER_ALL))
     raise ValueError(
         f"{shown(value)} must be a platen that moves or a handle() of this scene, a dict from these to their shares of the force, one of {names}, "
@@ -95,27 +94,26 @@ def patternOf(scene: Any, value: Any, direction: Any, args: Any) -> Any:
         return value
     if isinstance(value, dict):
         whole = sum(map(plain, value.values()))
-        name = " and ".join(f"{plain(share) / whole:.4g} {target.name}" for target, share in value.items())  # fmt: skip
-        parts = ((t.body, t.point, plain(share) / whole) for t, share in value.items())
-        return Pattern(name, tuple(parts))
+        shares = {target: plain(share) / whole for target, share in value.items()}
+        name = " and ".join(f"{share:.4g} {target.name}" for target, share in shares.items())  # fmt: skip
+        return Pattern(name, tuple((t.body, t.point, s) for t, s in shares.items()))
     name = value if isinstance(value, str) else "a pattern"
-    running, loading = scene.running, scene.model.loading
-    # its drive has the pattern, which was found when the push began
-    if running.redoes and running.takesUp:
-        return _named(patternOfDrive(loading, name))
+    if scene.running.redoes and scene.running.takesUp:
+        # its drive has the pattern, which was found when the push began
+        return _named(patternOfDrive(scene.model.loading, name))
     if scene.model.zones:
         raise Refused("push: forces on all blocks act on rigid ones: name platens and handles with their shares, or choose --blocks rigid")  # fmt: skip
     of = OVER_ALL[value](scene.model, direction, args) if isinstance(value, str) else _ofPlace(value)  # fmt: skip
-    held = lambda body: any(v and a in body.state.blockedDOFs for a, v in zip("xyz", direction))  # fmt: skip
-    forces = [
-        (body.id, tuple(body.state.refPos), body.state.mass * of(body))
-        for body in O.bodies
-        if not held(body)
-    ]
-    whole = sum(force for *_, force in forces)
+    isHeld = lambda body: any(v and a in body.state.blockedDOFs for a, v in zip("xyz", direction))  # fmt: skip
+    forces = {b: b.state.mass * of(b) for b in O.bodies if not isHeld(b)}
+    whole = sum(forces.values())
     if not whole > 0:
         raise Refused(f"push: the forces of {name} have the sum {whole:g}, and it must be above 0")  # fmt: skip
-    parts = ((b, p, force / whole) for b, p, force in forces if abs(force) > FREE * whole)  # fmt: skip
+    parts = [
+        (body.id, tuple(body.state.refPos), force / whole)
+        for body, force in forces.items()
+        if abs(force) > FREE * whole
+    ]
     return _named(Pattern(name, tuple(parts), damped=True))
 
 
@@ -124,7 +122,8 @@ def _named(pattern):
     if pattern.name in ("masses", "triangle"):
         return pattern
     numbers = [(body, f"{share:.6g}") for body, _, share in pattern.parts]
-    return replace(pattern, name=f"{pattern.name} {zlib.crc32(repr(numbers).encode()):08x}")  # fmt: skip
+    number = zlib.crc32(repr(numbers).encode())
+    return replace(pattern, name=f"{pattern.name} {number:08x}")
 
 
 def _ofPlace(shape):
@@ -156,7 +155,8 @@ def controlOf(scene: Any, value: Any, control: Target | None) -> Target:
 def peaks(scene, rows):
     """The largest force that both ends carried, on either side if the push goes there and back, with the displacement there."""
     looped, run = bool(scene.pushed.history), {"stages": [{"load": ["push"], "first_row": 0}]}  # fmt: skip
-    run.update({"history": {}} if looped else {})
+    if looped:
+        run["history"] = {}
     data = RunData(run, lambda name: rows(name) or None)
     if not all(map(data.column, (BASE, TOP, MOVED))):
         return
@@ -202,10 +202,8 @@ def push(
     :param control: the target whose displacement ``until`` and the curve count; None: what is pushed, of a dict the highest, else the first
         that is watched or moves
     """
-    if until is not None:
-        until *= scene.share
     how = direction, rate, continued, control
-    return _drive(scene, "push", target, *how, until=until)
+    return _drive(scene, "push", target, *how, until=until and until * scene.share)
 
 
 @stage(bounded=True, farther=("amplitudes", "repeats"), options=OPTIONS, answers=peaks)

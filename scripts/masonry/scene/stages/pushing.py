@@ -22,14 +22,15 @@ SHORT = 0.05  # [mm]: a shorter push has rows that are closer together
 ARRIVED = 2e-3  # [mm] from a turning point of a history at which the drive turns: what remains of the path takes it there
 GROWING = 20  # rows at least while the velocity of the drive grows
 LONGEST = 20  # the longest first period that is looked for, over rampTime() [-]
-#: Frames for ParaView along a history, beside those at its turning points and zeros.
-FRAMES = 200
-SUDDEN = 0.1  # of the peak: a larger fall within a tenth of a millimetre is few bricks that give way at once
+FRAMES = (
+    200  # for ParaView along a history, beside those at its turning points and zeros
+)
 #: A push has collapsed by the mean of its force over so much of it [mm], and over its first period at least. If no period was
 #: found, it is over the longest that was looked for.
 AVERAGED = 1.0
 #: A push is over where the drive has gone so many times the path of the target whose displacement counts [-].
 UNFOLLOWED = 10
+SUDDEN = 0.1  # of the peak: a larger fall within a tenth of a millimetre is few bricks that give way at once
 DAMPED = 0.1  # of what loops lose: a larger share of damping is a warning, because the loops are too fat by it
 
 
@@ -37,24 +38,22 @@ DAMPED = 0.1  # of what loops lose: a larger share of damping is a warning, beca
 class Pushing:
     """What a push remembers. Pairs are of the negative and of the positive side, and positive outwards."""
 
-    # as in Structure.topDisplacement() when the push began [m]
-    origin: list | None = None
+    origin: list | None = None  # Loading.topDisplacement() when the push began [m]
     now: float = 0.0  # time of the last row [s]
     moved: float = 0.0  # displacement there [mm]
     passed: int = 0  # points of the history that lie behind
     last: float = 0.0  # displacement of the last of them [mm]
-    #: displacement when it began, if it counts from an earlier push [mm]
-    start: float = 0.0
-    path: float = 0.0  # length of the path to there [mm]
+    start: float = 0.0  # when it began, if it counts from an earlier push [mm]
+    path: float = 0.0  # length of the path to the last point [mm]
     driven: float = 0.0  # what the drive has gone, to and fro [mm]
     period: float = 0.0  # the first one when the push began [s]; 0 if none was found
     slowest: float = 0.0  # that period, or the longest that was looked for [s]
-    #: of the blocks then, while the velocity grows [m]
-    places: list = field(default_factory=list)
+    places: list = field(default_factory=list)  # of the blocks then, while it grows [m]
     turned: bool = False  # whether the drive has turned since the push began
     since: float = 0.0  # time from which the velocity grows [s]
-    #: velocity then, in the present direction, over the full one [-]
-    growth: float = 0.0
+    growth: float = (
+        0.0  # velocity then, in the present direction, over the full one [-]
+    )
     #: Of the last rows, as far as AVERAGED says: time [s] and base shear [kN]; their mean decides whether it has collapsed.
     recent: Sequence[Sequence[float]] = ()
     peaks: Sequence[float] = (0.0, 0.0)  # largest mean so far [kN]
@@ -70,16 +69,14 @@ class Pushing:
         """Keep the peaks, with the base shear of the last row [kN]. Returns its mean over a time [s], or None when that is not over:
         what vibrates dips below any share of its peak, and a spike when the drive begins is no strength.
         """
-        whole = bool(self.recent) and self.recent[0][0] <= self.now - span
-        before = [one for one in self.recent if one[0] > self.now - span]
-        last = self.recent[: len(self.recent) - len(before)][-1:]
-        self.recent = [*last, *before, [self.now, shear]]
-        if not whole:
+        over = [one for one in self.recent if one[0] <= self.now - span]
+        self.recent = [*over[-1:], *self.recent[len(over) :], [self.now, shear]]
+        if not over:
             return None
         mean = sum(force for _, force in self.recent) / len(self.recent)
-        side, out = mean > 0, abs(mean)
-        if out > self.peaks[side]:
-            self.peaks = _exchanged(self.peaks, side, out)
+        side = mean > 0
+        if abs(mean) > self.peaks[side]:
+            self.peaks = _exchanged(self.peaks, side, abs(mean))
             outwards = self.moved if side else -self.moved
             self.peaksAt = _exchanged(self.peaksAt, side, outwards)
         return mean
@@ -93,9 +90,9 @@ class Pushing:
         holds the drive with now [kN]. A slow wave can take the base alone below any share of a peak.
         """
         side, out = direction > 0, direction * self.moved
-        beyond = out > self.reach[side] and out > self.peaksAt[side] + 1
-        least = 0.2 * self.peaks[side]
-        return beyond and shear is not None and max(direction * shear, direction * top) < least  # fmt: skip
+        if shear is None or out <= max(self.reach[side], self.peaksAt[side] + 1):
+            return False
+        return max(direction * shear, direction * top) < 0.2 * self.peaks[side]
 
     def passOn(self, goals):
         """Go on to the first point that is not reached yet. Returns whether there is one, and whether the drive turns."""
@@ -166,14 +163,22 @@ def drivePush(scene, name, args, began, continued=False):
         if free != undamped:
             undamped = free
             model.scheme.damp(0.0, "local") if free else model.scheme.dampByOptions()
-        _setVelocity(scene, goal.direction * args.rate * 1e-3, start, growth, steps)
+        full = goal.direction * args.rate * 1e-3  # [m/s]
+        drive.velocity = full * growth
+        # A velocity that grew in stairs would make the pushed block swing in time with them.
+        if start < growth:
+            drive.ramp = run.at.left or steps
+            drive.acceleration = full * (growth - start) / (steps * O.dt)
         run.advance(steps)
         at.driven += 0.5 * args.rate * (abs(start) + abs(growth)) * steps * O.dt
         reading = run.record()
         before = at.moved
         at.now, at.moved = reading.time, 1e3 * reading.along
         if at.places and not undamped:
-            _keepFreeVibration(run, model, at)
+            moved = model.loading.alongNow() - 1e-3 * at.start
+            weight = model.motion.baseWeight(at.places, model.loading.direction, moved)
+            _keepVibration(run, at.period, weight or 0.0, at.now)
+            at.places = []
         shear, travelled = 1e-3 * reading.baseShear, at.travelled(goal.direction)
         mean = at.note(shear, max(at.slowest, AVERAGED / args.rate))
         how = _lost(model, at, reading, goal.direction, mean, whole)
@@ -193,10 +198,8 @@ def drivePush(scene, name, args, began, continued=False):
 
 
 def _entered(scene, name, args, at, began, continued):
-    """Begin a push, with its first row and frame and the first period of the structure along it, or go on with it.
-
-    Parameters are those of :func:`drivePush`, and what the push remembers. Returns the points of its path.
-    """
+    """Begin a push, with its first row and frame and the first period of the structure along it, or go on with it. Returns the points of
+    its path. Parameters as in :func:`drivePush`."""
     run, model = scene.running, scene.model
     first, origin = at.origin is None, at.origin
     if first:
@@ -227,62 +230,44 @@ def _entered(scene, name, args, at, began, continued):
     return goals
 
 
-def _setVelocity(scene, full, start, growth, steps):
-    """Let the velocity of the drive grow within the next steps, from a share of the full one [m/s] to another."""
-    load = scene.model.loading.push
-    load.velocity = full * growth
-    # A velocity that grew in stairs would make the pushed block swing in time with them.
-    if start < growth:
-        load.ramp = scene.running.at.left or steps
-        load.acceleration = full * (growth - start) / (steps * O.dt)
-
-
 def _lost(model, at, reading, direction, mean, whole):
     """Why a wall has collapsed, or None.
 
     :param mean: base shear over a time, as in :meth:`Pushing.note` [kN]
     :param whole: length of the whole path [mm]
     """
+    loading = model.loading
     if at.hasLost(direction, mean, 1e-3 * reading.topShear):
         return "less than a fifth of the peak of its force is left"
-    sunk = reading.sunk + min(0.0, reading.along * model.loading.direction[2])
-    if model.loading.hasSunk(sunk):
+    if loading.hasSunk(reading.sunk + min(0.0, reading.along * loading.direction[2])):
         return "the pushed point has come down by half a course"
     if at.driven > UNFOLLOWED * whole:
-        return f"another part gives way: the drive has gone {at.driven:.0f} mm, and {model.loading.target.name} has not followed"
+        return f"another part gives way: the drive has gone {at.driven:.0f} mm, and {loading.target.name} has not followed"
     return "it moves against its push" if at.retreats(direction, whole) else None
 
 
 def _measuredPeriod(scene, name, args, longest):
     """The first period along a push that begins [s], or 0 with a note if none is found up to the longest [s]."""
-    run, model = scene.running, scene.model
-    push = model.loading.push
+    run, loading = scene.running, scene.model.loading
     # a drive of all blocks would hold the momentum by which the period is found
-    push.driven = not push.damped
+    loading.push.driven = not loading.push.damped
     try:
         with run.clock("setup"), run.breakable():
-            period = firstPeriod(model, model.loading.direction, longest)
+            period = firstPeriod(scene.model, loading.direction, longest)
     finally:
-        push.driven = True
-    if not period:
-        say(
-            f"note: {name}: no first period up to {1e3 * longest:.3g} ms was found; the drive gets to its rate within "
-            f"{1e3 * rampTime(args):.3g} ms"
-        )
-        return 0.0
-    say(f"{name}: first period along it {1e3 * period:.3g} ms")
-    return period
-
-
-def _keepFreeVibration(run, model, at):
-    """Keep the period of a push whose velocity has grown, the weight of the base in its shear force, and the time."""
-    moved = model.loading.alongNow() - 1e-3 * at.start
-    weight = model.motion.baseWeight(at.places, model.loading.direction, moved)
-    _keepVibration(run, at.period, weight or 0.0, at.now)
-    at.places = []
+        loading.push.driven = True
+    if period:
+        say(f"{name}: first period along it {1e3 * period:.3g} ms")
+        return period
+    say(
+        f"note: {name}: no first period up to {1e3 * longest:.3g} ms was found; the drive gets to its rate within "
+        f"{1e3 * rampTime(args):.3g} ms"
+    )
+    return 0.0
 
 
 def _keepVibration(run, *values):
+    """Keep the period of a push, the weight of the base in its shear force when its velocity has grown, and the time then."""
     run.at.freeVibrations = {**run.at.freeVibrations, str(run.entered): [*values]}
 
 

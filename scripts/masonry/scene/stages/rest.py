@@ -40,6 +40,12 @@ def rampTime(args: Any) -> float:
     return RAMP * args.density_scaling**0.5
 
 
+def growthTime(scene: Any) -> float:
+    """Time in which a load is put on a structure [s]: longer for tall ones."""
+    box = scene.description
+    return rampTime(scene.args) * max(1.0, (box.high[2] - box.low[2]) / 3)
+
+
 @dataclass
 class Resting:
     """What a stage remembers that waits for rest."""
@@ -109,10 +115,9 @@ def waitForRest(scene, at, longest, grow, over=0.0, record=True, buckling=False)
     :param record: whether the end is a row of curve.csv
     :param buckling: whether a structure at rest must not buckle, else it is ``MOVING``
     """
-    model, running, box = scene.model, scene.running, scene.description
-    ramp = rampTime(scene.args) * max(1.0, (box.high[2] - box.low[2]) / 3)
+    model, running = scene.model, scene.running
     slowest = model.supports.slowest()
-    ramp = max(ramp, over, PERIODS * slowest)
+    ramp = max(growthTime(scene), over, PERIODS * slowest)
     growing = max(1, int(ramp / O.dt))
     every = max(n for n in SHORTER if n == 1 or n <= growing / 3)
     swinging = SWINGING * scene.args.density_scaling**0.5 * (model.motion.far == FAR)
