@@ -52,8 +52,6 @@ class Reading:
     - ``goal``: number of the point of a history that the drive is going to, from 1, and its displacement [mm]
     - ``forces``: force of the structure on what is held, along the axes that are held now or that springs hold, by the name of
       the target [N]
-
-    :param structure: :class:`masonry.assembly.structure.Structure`
     """
 
     def __init__(self, structure):

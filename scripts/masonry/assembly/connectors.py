@@ -11,8 +11,6 @@ class Connectors:
     :mod:`masonry.scene.ties`: one engine has all of a kind.
 
     - ``engines``: by their class of records, in the order in which the scene named them first
-
-    :param structure: :class:`masonry.assembly.structure.Structure`, whose bodies are there
     """
 
     def __init__(self, structure):
@@ -32,10 +30,7 @@ class Connectors:
                 one.engine, one.number = self.engines[kind], number
 
     def grow(self, share):
-        """Let forces grow with which connectors are tightened.
-
-        :param share: 0: nothing, 1: their whole [-]
-        """
+        """Let forces grow with which connectors are tightened, to a share of their whole [-]."""
         for kind, made in self.engines.items():
             kind.grow(self.description.connectorsOf(kind), made, share)
 

@@ -11,6 +11,7 @@ from yade import O, Vector3
 from yade.wrapper import MasonryLoad
 
 from .._masonry import loadScene, saveScene
+from .blocks import inPlane
 
 PATTERN = "_drive"  # label of the drive of a push in a pattern: that of no target
 
@@ -31,8 +32,6 @@ class Loading:
     - ``grown``: whether presses, dead loads and wind have their whole
     - ``loadFactor`` of the load that a stage puts on or lets grow [-]
     - ``goal``: point of a history that the drive is going to: its number, from 1, and its displacement [mm]
-
-    :param structure: :class:`masonry.assembly.structure.Structure`, whose bodies are there
     """
 
     def __init__(self, structure):
@@ -115,11 +114,8 @@ class Loading:
         return load, self.supports.contactOf(target)[0] if known else self._centre(load, target)  # fmt: skip
 
     def onBricks(self, label, places):
-        """The engines of forces at points of bricks; they are made if they are missing.
-
-        :param label: with which their labels begin
-        :param places: pairs of the number of a brick and a point [m]
-        """
+        """The engines of forces at pairs of the number of a brick and a point [m], by how their labels begin; they are made if they are
+        missing."""
         made = {
             f"{label}_{n}": dict(body=self.ids[brick], point=point, damped=True)
             for n, (brick, point) in enumerate(places)
@@ -132,10 +128,8 @@ class Loading:
         return self._loadsOf({PATTERN: on})[0]
 
     def _loadsOf(self, made):
-        """Loads by their labels; those that are missing are made all at once, as engines before that of the energy balance.
-
-        :param made: dict from the label to the attributes of a load that may be missing
-        """
+        """Loads by their labels; those that are missing get their attributes and are made all at once, before the engine of the energy
+        balance."""
         new = {n: MasonryLoad(label=n, **of) for n, of in made.items() if n not in self.loads}  # fmt: skip
         if new:
             before = list(O.engines)
@@ -178,10 +172,8 @@ class Loading:
         return reactionOf(self.driveOf(target, axis))
 
     def follow(self, target, direction, origin=None):
-        """From now on record the displacement of a target, or None, along a direction. Returns its origin [m].
-
-        :param origin: None: where it is now
-        """
+        """From now on record the displacement of a target, or None, along a direction, from an origin [m]; None: where it is now. Returns
+        that."""
         self.followed, self.direction, self.pushing = target, direction, False
         self.origin = origin or (0, 0, 0)
         if target and origin is None:
@@ -204,10 +196,7 @@ class Loading:
         return self.topDisplacement()[0] - self.origin[0] if self.followed else 0.0
 
     def hasSunk(self, down=None):
-        """Whether the pushed platen has come down by half the height of a brick.
-
-        :param down: its displacement downwards [m], if that is known
-        """
+        """Whether the pushed platen has come down by half the height of a brick; ``down``: how far, if that is known [m]."""
         down = -self.supports.moved(self.target)[0][2] if down is None else down
         block = self.description.bricks[-1].corners
         return down > 0.5 * (max(p[2] for p in block) - min(p[2] for p in block))
@@ -283,15 +272,9 @@ class Pattern:
 
 
 def pushTo(loading, pushed, control, direction, name="push"):
-    """From now on ``push`` moves a target, or all of a pattern, in a direction. The other drives hold what they hold.
-
-    :param pushed: a target, or :class:`Pattern`
-    :param control: the target whose displacement is recorded
-    """
-    if loading.description.plane and direction[1]:
-        raise ValueError(
-            f"{name}: the scene is in the x-z plane; Scene(..., plane=False) is in space"
-        )
+    """From now on ``push`` moves a target, or all of a :class:`Pattern`, in a direction, and the displacement of a control is recorded. The
+    other drives hold what they hold."""
+    inPlane(loading.description, direction, name)
     for body, *_ in pushed.parts:
         blocked = O.bodies[body].state.blockedDOFs
         if not any(v and a not in blocked for a, v in zip("xyz", direction)):

@@ -18,10 +18,7 @@ REST = 5e-3
 
 
 class Motion:
-    """Displacements of all bricks since the last state at rest, and their velocities.
-
-    :param structure: :class:`masonry.assembly.structure.Structure`, when it is built
-    """
+    """Displacements of all bricks since the last state at rest, and their velocities."""
 
     def __init__(self, structure):
         self.ids, self.zones = structure.ids, structure.zones
@@ -81,10 +78,8 @@ class Motion:
         return [*speeds.values()]
 
     def fastest(self, far=0.0):
-        """Velocity of the fastest block over that of one that has fallen [-].
-
-        :param far: how far a block that counts has moved since the last state at rest, over its largest side [-]
-        """
+        """Velocity over that of a block that has fallen [-], of the fastest one that has moved so far since the last state at rest, over
+        its largest side [-]."""
         blocks = zip(self._speeds(), self._falling, self._moved(), self._sizes)
         return max((v / falling for v, falling, moved, size in blocks if moved.norm() >= far * size), default=0.0)  # fmt: skip
 
@@ -92,10 +87,7 @@ class Motion:
         return [state.pos - place for state, place in zip(self._states, self._places)]
 
     def checkFall(self, far=None):
-        """Raise Collapsed if a block has moved far since the last state at rest, and is fast.
-
-        :param far: over the largest side of the block [-]; None: :attr:`far`
-        """
+        """Raise Collapsed if a block has moved far since the last state at rest, over its largest side [-], and is fast."""
         far, moved = self.far if far is None else far, self._moved()
         beyond = [n for n, v in enumerate(moved) if v.norm() > far * self._sizes[n]]
         speeds = beyond and self._speeds()

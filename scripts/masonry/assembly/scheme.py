@@ -17,9 +17,6 @@ class Scheme:
 
     - ``limit``: the stable limit of the time step under the present damping [s]
     - ``massScaling``: selective scaling of masses that the options say [-]; ``joints``: the engine of the joints
-
-    :param args: the options of :func:`masonry.scene.options.parser`
-    :param zones: MasonryZones, the engine of deformable units, or None
     """
 
     def __init__(self, args, zones):
@@ -38,10 +35,8 @@ class Scheme:
     def damp(self, damping, kind, massDamping=0.0, stiffnessDamping=0.0):
         """Choose the damping from now on; :meth:`chooseTimeStep` follows it.
 
-        :param damping: numerical damping constant of what moves: deformable units, else rigid ones [-]
-        :param kind: of that, ``local`` or ``combined``
-        :param massDamping: viscous, of the motion [1/s]
-        :param stiffnessDamping: viscous, of the joints [s]
+        :param damping: numerical damping constant of deformable units, else of rigid ones [-]
+        :param massDamping: viscous, of the motion [1/s]; ``stiffnessDamping``: of the joints [s]
         """
         damped = self.zones or self.integrator
         damped.damping, damped.dampingKind = damping, kind

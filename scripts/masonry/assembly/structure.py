@@ -30,9 +30,7 @@ class Structure:
     - ``loading``, ``connectors``, ``supports``, ``scheme``, ``motion``: objects of the modules of these names
     - ``zones``, ``contacts``: the engines of deformable units and of contacts, or None; ``energy``: that of the balance
 
-    :param description: :class:`masonry.scene.description.Description`
-    :param masonry: its materials for these options: :class:`masonry.scene.materials.Masonry`
-    :param args: the options of :func:`masonry.scene.options.parser`
+    :param masonry: the materials for these options: :class:`masonry.scene.materials.Masonry`
     """
 
     def __init__(self, description, masonry, args):
@@ -58,10 +56,7 @@ class Structure:
     # -- building -------------------------------------------------------------------------------------------------
 
     def build(self, loadingBlock):
-        """Build all of it in YADE.
-
-        :param loadingBlock: MasonryMat of the platens
-        """
+        """Build all of it in YADE, with a MasonryMat of the platens."""
         threads.beginScene(host=self.description.functors)
         O.reset()
         loadingBlock.density *= self.args.density_scaling

@@ -34,8 +34,6 @@ class Supports:
 
     - ``held``: targets of which a direction is held
     - ``freeMass``: of all other blocks [kg]
-
-    :param structure: :class:`masonry.assembly.structure.Structure`
     """
 
     def __init__(self, structure):

@@ -69,8 +69,6 @@ def beginScene(host):
 
     YADE adds up forces for each of its threads, and sums these columns in every step, also where a single thread has
     added all of them.
-
-    :param host: whether they may. If not, they use one thread from now on
     """
     with contextlib.suppress(AttributeError):
         ctypes.CDLL(None).omp_set_num_threads(_ofYade if host else 1)

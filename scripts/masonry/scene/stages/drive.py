@@ -107,10 +107,7 @@ def pressJoint(
 
 
 def _driveBy(scene, target, axis, distance):
-    """Drive a target along an axis at ``--rate``, with rows, which are closer together at the beginning, where the peaks are.
-
-    :param distance: function that gives the displacement [m] when the stage begins
-    """
+    """Drive a target along an axis by what a function gives when the stage begins [m]."""
     run, load = scene.running, scene.model.loading.driveOf(target, axis)
     at = run.stage(axis, SimpleNamespace(length=0, done=0))  # steps in all, and so far
     if at is None:

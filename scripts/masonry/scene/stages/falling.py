@@ -38,9 +38,7 @@ class Falling:
 def followFall(scene: Any, tilted: bool) -> str:
     """Go on with what falls until it is at rest. Loads stay, but for a horizontal acceleration, which ends when the first block
     has fallen; drives and supports stand still, and the numerical damping of the options acts on what stands, not on what no
-    joint holds. Returns how that ended.
-
-    :param tilted: whether gravity is that of a ground that is tilted, which stays
+    joint holds. The gravity of a ground that is tilted stays. Returns how that ended.
     """
     model, running, box = scene.model, scene.running, scene.description
     at = running.stage(FALL, Falling())
@@ -103,11 +101,7 @@ def volume(model: Any, index: int) -> float:
 
 
 def answers(scene: Any, ended: str, begun: float) -> list[Answer]:
-    """What fell, when, how fast, and where it lies.
-
-    :param ended: how the fall ended
-    :param begun: time when the collapse was noticed [s]
-    """
+    """What fell, when, how fast, and where it lies, by how the fall ended and when the collapse was noticed [s]."""
     model, box = scene.model, scene.description
     fallen, atRest = model.fallen(), ended == FALLEN_AT_REST
     masses = [O.bodies[body].state.mass for body in model.ids]

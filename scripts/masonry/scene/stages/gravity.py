@@ -10,6 +10,7 @@ from typing import Annotated, Any, Callable
 from yade import Vector3
 
 from ...common.arguments import Level, number, validated
+from ...assembly.blocks import inPlane
 from ...assembly.loading import smooth
 from ...basics import GRAVITY
 from ..bounds import findBound, nameOfLean
@@ -47,12 +48,7 @@ class Acting:
 
 
 class Acceleration(Acting):
-    """Gravity, with a horizontal acceleration that grows beside it.
-
-    :param model: :class:`masonry.assembly.structure.Structure`
-    :param most: at its end [g]
-    :param towards: unit vector
-    """
+    """Gravity, with a horizontal acceleration that grows beside it, to ``most`` [g]."""
 
     def __init__(self, model, most, towards, name, unit="g"):
         super().__init__(name, most, unit, towards)
@@ -71,10 +67,7 @@ class Acceleration(Acting):
 
 
 class Tilting(Acceleration):
-    """Gravity that turns, as on a ground that is tilted. The factor is the horizontal over the vertical part.
-
-    :param angle: at its end [rad]
-    """
+    """Gravity that turns to an angle [rad], as on a ground that is tilted. The factor is the horizontal over the vertical part."""
 
     def __init__(self, model, angle, towards, name):
         super().__init__(model, math.tan(angle), towards, name, "-")
@@ -105,12 +98,7 @@ def putOnAnswers(scene, rows):
 
 def sideways(scene, towards, name):
     """A horizontal direction as a unit vector. Raises ValueError."""
-    towards = Vector3(*towards)
-    if scene.description.plane and towards[1]:
-        raise ValueError(
-            f"{name}: the scene is in the x-z plane; Scene(..., plane=False) is in space"
-        )
-    return towards.normalized()
+    return inPlane(scene.description, towards, name).normalized()
 
 
 Width = Annotated[float, number("", 1e-4, 1, below=True)]  # of a bracket
@@ -186,7 +174,6 @@ def putOn(scene, name, load, longest, over=0.0):
     """Let a load grow within a short time, and wait until the structure is at rest or falls. With ``--preset bound`` it stays if limit
     analysis finds that it is carried.
 
-    :param load: :class:`Acting`
     :param longest: time in the scene after which it is given up [s]; None: :data:`masonry.scene.stages.growing.TRIAL`, and longer
         on soft springs
     :param over: time in which it grows at least [s]

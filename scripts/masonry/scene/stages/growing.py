@@ -86,11 +86,10 @@ class Growing(Timed):
 
 
 def grow(scene, name, load, duration, within=WITHIN):
-    """Let a load grow evenly until the structure falls or the load has its whole, then search for the one that is held.
+    """Let a :class:`~masonry.scene.stages.gravity.Acting` grow evenly until the structure falls or it has its whole, then search for the one
+    that is held.
 
-    :param load: :class:`masonry.scene.stages.gravity.Acting`
-    :param duration: [s], with true masses
-    :param within: width of the bracket, over its upper end [-]
+    :param duration: [s], with true masses; ``within``: width of the bracket, over its upper end [-]
     """
     if scene.only:
         return DONE
@@ -142,10 +141,8 @@ def _compare(scene, name, load, at):
 
 
 def follow(scene, name, load):
-    """From now on record the displacement of what is watched along a load, from where it was when that began.
-
-    :param name: under which the run keeps where that was
-    """
+    """From now on record the displacement of what is watched along a load, from where it was when that began, which the run keeps under a
+    name."""
     target, origins = scene.description.followed(load.target), scene.running.at.origins
     origin = scene.model.loading.follow(target, load.towards, origins.get(name))
     if target and name not in origins:
@@ -172,8 +169,7 @@ def found(scene, rows):
 def ends(scene, held, whyHeld, lost, whyLost):
     """The answers of a stage that looks for the load that is held.
 
-    :param held: factor and displacement [mm] of a load that was held, or None; ``lost``: of one that was not
-    :param whyHeld: how it was found, or why it was not; ``whyLost``: likewise
+    :param held: factor and displacement [mm] of a load that was held, or None, and how it was found or why not; ``lost``: likewise
     """
     target = scene.model.loading.followed
     for name, end, how, when in (

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import math
 import re
+from types import SimpleNamespace
 from typing import Annotated, Any
 
 from yade import O, Vector3
@@ -24,9 +25,8 @@ from ..targets import AnyTarget, Loaded, MovingPlaten, Part
 from .gravity import Acting, Width, putOn, putOnAnswers
 from .growing import WITHIN, found
 from .growing import grow as growTo
-from .answers import AT_REST
+from .answers import AT_REST, DONE
 from .stage import Duration, stage
-from .supports import atOnce
 from ..words import PUSHES
 from .travelling import placed
 
@@ -34,11 +34,7 @@ GROWS = 2.0  # [s] in which a load grows to its whole
 
 
 class Forces(Acting):
-    """Forces of MasonryLoad engines.
-
-    :param loads: the engines
-    :param forces: that they have at a factor of 1, a vector for each [N]
-    """
+    """Forces of MasonryLoad engines: of each the vector at a factor of 1 [N]."""
 
     replaces = False  # whether the forces replace those that are there, and are not added to them
     beside = 0, 0, 0  # a force that stays beside those that replace [N]
@@ -359,24 +355,19 @@ def hold(scene: Any, target: AnyTarget, axes: Freedoms = "xyzXYZ") -> str:
         raise ValueError(
             f"hold: a drive holds {target.name} along {', '.join(driven)} already"
         )
-
-    def act():
-        scene.model.supports.holdAlso(target, axes)
-        state = O.bodies[target.body].state
-        blocked = {*state.blockedDOFs, *axes}
-        state.blockedDOFs = "".join(a for a in "xyzXYZ" if a in blocked)
-        for i, (axis, about) in enumerate(zip("xyz", "XYZ")):
-            state.vel[i] *= axis not in blocked
-            state.angVel[i] *= about not in blocked
-
-    return atOnce(scene, "hold", act)
+    scene.model.supports.holdAlso(target, axes)
+    state = O.bodies[target.body].state
+    blocked = {*state.blockedDOFs, *axes}
+    state.blockedDOFs = "".join(a for a in "xyzXYZ" if a in blocked)
+    for i, (axis, about) in enumerate(zip("xyz", "XYZ")):
+        state.vel[i] *= axis not in blocked
+        state.angVel[i] *= about not in blocked
+    scene.running.stage("hold", SimpleNamespace())
+    return DONE
 
 
 def prepare(scene, word, arguments):
-    """Make the engines of a load that the script puts on after the first stage, before a checkpoint is loaded that has them.
-
-    :param word: what the script said; ``arguments``: its arguments as data
-    """
+    """Make the engines of a load that the script puts on after the first stage, before a checkpoint is loaded that has them."""
     loading, get = scene.model.loading, arguments.get
     target = get("target") or get("platen")
     if word in PUSHES and (isinstance(target, dict) or target not in scene.targets):

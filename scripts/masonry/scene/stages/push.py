@@ -33,32 +33,11 @@ from .stage import stage
 
 #: What the stages of this file take from the command line.
 OPTIONS = "until", "history", "rate"
-#: The longest first period of which the shape is looked for, over rampTime() [-].
-LONGEST = 20
+PATTERNS = "masses", "triangle", "mode"  # over all blocks
+LONGEST = (
+    20  # the longest first period of which the shape is looked for, over rampTime() [-]
+)
 FREE = 1e-12  # of the sum of all forces: what a block takes at least that is part of a pattern [-]
-
-
-def masses(model, direction, args):
-    """Forces as of a uniform acceleration."""
-    return lambda body: 1.0
-
-
-def triangle(model, direction, args):
-    """Forces that grow with the height above the lowest brick."""
-    return lambda body: max(0.0, body.state.refPos[2] - model.description.low[2])
-
-
-def mode(model, direction, args):
-    """Forces as of the first mode along the push, in the present state."""
-    shape = firstMode(model, direction, LONGEST * rampTime(args))
-    if shape is None:
-        raise Refused('push: "mode": no first mode along the push is found; name the targets and their shares')  # fmt: skip
-    return lambda body: shape[body.id]
-
-
-#: Patterns over all blocks, by their names. Each is a function of the model, the direction, and the options of the run that gives the
-#: force on a block over its mass, as a function of the block's body.
-OVER_ALL: dict[str, Callable] = dict(masses=masses, triangle=triangle, mode=mode)
 
 
 def pushed(value: Any, first: Any = None) -> Any:
@@ -71,9 +50,9 @@ def pushed(value: Any, first: Any = None) -> Any:
         return value
     if isinstance(value, Target):
         return kindOfLoaded(value, first)
-    if callable(value) or value in tuple(OVER_ALL):
+    if callable(value) or value in PATTERNS:
         return value
-    names = ", ".join(map(repr, OVER_ALL))
+    names = ", ".join(map(repr, PATTERNS))
     raise ValueError(
         f"{shown(value)} must be a platen that moves or a handle() of this scene, a dict from these to their shares of the force, one of {names}, "
         "or a function of x, y and z"
@@ -85,11 +64,7 @@ Pushed = Annotated[Union[Target, dict[Target, float], str, Callable[[float, floa
 
 
 def patternOf(scene: Any, value: Any, direction: Any, args: Any) -> Any:
-    """What a push moves: a target as it is, anything else as a :class:`masonry.assembly.loading.Pattern`. Raises Refused.
-
-    :param value: as :func:`pushed` returns it
-    :param args: the options of the run
-    """
+    """What a push moves: a target as it is, anything else as a :class:`masonry.assembly.loading.Pattern`. Raises Refused."""
     if isinstance(value, Target):
         return value
     if isinstance(value, dict):
@@ -103,7 +78,7 @@ def patternOf(scene: Any, value: Any, direction: Any, args: Any) -> Any:
         return _named(patternOfDrive(scene.model.loading, name))
     if scene.model.zones:
         raise Refused("push: forces on all blocks act on rigid ones: name platens and handles with their shares, or choose --blocks rigid")  # fmt: skip
-    of = OVER_ALL[value](scene.model, direction, args) if isinstance(value, str) else _ofPlace(value)  # fmt: skip
+    of = _shapeOf(scene.model, value, direction, args)
     isHeld = lambda body: any(v and a in body.state.blockedDOFs for a, v in zip("xyz", direction))  # fmt: skip
     forces = {b: b.state.mass * of(b) for b in O.bodies if not isHeld(b)}
     whole = sum(forces.values())
@@ -126,12 +101,23 @@ def _named(pattern):
     return replace(pattern, name=f"{pattern.name} {number:08x}")
 
 
-def _ofPlace(shape):
-    """A function of a body by one of the place of its centre [m]. It raises Refused."""
+def _shapeOf(model, value, direction, args):
+    """The force on a block over its mass, as a function of its body, which raises Refused: of a uniform acceleration, with the height above
+    the lowest brick, in the first mode along the push in the present state, or as a function of the place of its centre [m].
+    """
+    if value == "mode":
+        mode = firstMode(model, direction, LONGEST * rampTime(args))
+        if mode is None:
+            raise Refused('push: "mode": no first mode along the push is found; name the targets and their shares')  # fmt: skip
+        return lambda body: mode[body.id]
+    if value == "masses":
+        return lambda body: 1.0
+    if value == "triangle":
+        return lambda body: max(0.0, body.state.refPos[2] - model.description.low[2])
 
     def of(body):
         try:
-            found = shape(*body.state.refPos)
+            found = value(*body.state.refPos)
         except Exception as error:  # of the user's own
             found = f"{type(error).__name__}: {error}"
         if not isNumber(found) or not abs(plain(found)) < 1e9:

@@ -231,11 +231,7 @@ def _entered(scene, name, args, at, began, continued):
 
 
 def _lost(model, at, reading, direction, mean, whole):
-    """Why a wall has collapsed, or None.
-
-    :param mean: base shear over a time, as in :meth:`Pushing.note` [kN]
-    :param whole: length of the whole path [mm]
-    """
+    """Why a wall has collapsed, or None, by its mean base shear (:meth:`Pushing.note`) [kN] and the length of the whole path [mm]."""
     loading = model.loading
     if at.hasLost(direction, mean, 1e-3 * reading.topShear):
         return "less than a fifth of the peak of its force is left"
@@ -274,7 +270,6 @@ def _keepVibration(run, *values):
 def _rampOf(at, args, every, turns):
     """Time in which the velocity of the drive grows from 0 to the full one [s], and how many steps each row has then.
 
-    :param at: what the push remembers
     :param every: how many steps are between rows at full speed
     :param turns: whether the drive turns, and does not begin
     """

@@ -108,7 +108,6 @@ def settle(
 def waitForRest(scene, at, longest, grow, over=0.0, record=True, buckling=False):
     """Let something grow, then wait until the structure is at rest. Returns how that ended.
 
-    :param at: :class:`Resting`
     :param longest: time after which it is given up [s]; None: 20 times that in which it grows
     :param grow: function of how much of the time in which it grows is over, 0 to 1 [-]
     :param over: time in which it grows at least [s]

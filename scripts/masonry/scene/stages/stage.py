@@ -153,10 +153,7 @@ def _carryOut(scene, act, traits, args, settings):
 
 
 def _fall(scene, name, traits, before, what):
-    """End a stage in which the structure has fallen, or go on with the fall. Parameters as in :func:`_answer`.
-
-    :param what: has fallen, and how far
-    """
+    """End a stage in which the structure has fallen, or go on with the fall; ``what`` has fallen, and how far."""
     running = scene.running
     scene.ended = COLLAPSED
     follows = scene.description.contact is not None and not scene.bracketing
@@ -212,10 +209,8 @@ def _asBefore(scene, ended):
 
 
 def _answer(scene, name, traits, before):
-    """Keep the answers of a stage that was carried out now, and not before the run was resumed.
-
-    :param before: how many stages the run had entered before it
-    """
+    """Keep the answers of a stage that was carried out now, and not before the run was resumed; ``before``: how many stages the run had
+    entered before it."""
     running = scene.running
     if scene.only or before is None or running.entered == before:
         return
@@ -240,7 +235,6 @@ class Timed:
 def timed(scene, at, duration, before, after=None, each=None):
     """Steps for a duration [s], with rows and frames evenly in time.
 
-    :param at: :class:`Timed`
     :param before: function of the number of steps so far and after the next stretch, called before each stretch
     :param after: called after each row
     :param each: steps of a stretch; None: 20, or fewer

@@ -9,6 +9,7 @@ from typing import Annotated, Any, Callable, Union, cast
 from yade import O, Vector3
 
 from ...common.arguments import Freedoms, number, orFunction
+from ...assembly.blocks import inPlane
 from ...assembly.motion import FAR
 from ..history import MOST
 from ..loads import Force
@@ -33,16 +34,8 @@ def release(
     :param axes: along which it becomes free, some of xyz, and about which, XYZ
     :param force: three numbers [N] of a load that stays in place of a drive; None: none
     """
-    return atOnce(scene, "release", lambda: letGo(scene, target, axes, force))
-
-
-def atOnce(scene, name, act):
-    """A stage that takes no time.
-
-    :param act: function that changes the state of the scene
-    """
-    act()  # first: what it refuses is no stage
-    scene.running.stage(name, SimpleNamespace())
+    letGo(scene, target, axes, force)  # first: what it refuses is no stage
+    scene.running.stage("release", SimpleNamespace())
     return DONE
 
 
@@ -134,11 +127,7 @@ def move(
 def _path(scene, target, along):
     """The displacement of a target in :func:`move` [mm]. Raises ValueError."""
     values = [atPlace(v, target.recorded, millimetres, "move") if callable(v) else v for v in along]  # fmt: skip
-    path = scene.share * Vector3(*values)
-    if scene.description.plane and path[1]:
-        raise ValueError(
-            "move: the scene is in the x-z plane; Scene(..., plane=False) is in space"
-        )
+    path = scene.share * inPlane(scene.description, values, "move")
     loose = [a for a, w in zip("xyz", path) if w and a not in target.freedom]
     if loose:
         raise ValueError(f"move: {target.name} is not held along {', '.join(loose)}")
