@@ -60,18 +60,11 @@ def engines(
     :param gravity: [m/s²]
     :param points: points along a side of a joint between rigid blocks from when it is about to yield:
         ``MasonryJointLoop.points``. None: 8 where blocks move in a plane, 5 in space. Functors keep those of the next two
-    :param subcontacts: how many there are, until then, along a joint, that is, at right angles to its rows; None: 3. They are the points
-        of Gauss and Lobatto, so the ends of a joint are points, and a block rocks about its edge at the true moment. Where
-        neither ``inPlane`` nor the blocks' freedom says where rows lead, "along" is the direction of the longest edge of
-        the joint, of a bed joint that of the wall. From three on the elastic rotational
-        stiffness is exact; with two it is three times too large; with one, a joint does not resist rotation.
-    :param rows: rows of subcontacts across a joint, at the points of Gauss and Lobatto, too; None or 0: chosen for every
-        joint when it is made. It gets one row, in the middle, if its two blocks can turn about one and the same of the
-        global axes only, and if that axis lies in the joint: blocks of a wall in its plane, and fixed bodies. That is
-        exact there. Every other joint gets three rows. So block degrees of freedom before ``connect()``, and free none
-        later. One row where blocks are free in space would leave a joint without stiffness out of its plane; two rows make
-        it three times too stiff there. A joint in space that has not four corners has the points of triangles about its middle, which are the
-        finer the larger of both numbers is; a joint of deformable ``zones`` whose nodes cover it has those of their cells
+    :param subcontacts: how many there are, until then, along a joint, that is, at right angles to its rows; None: 3. The ends of a joint
+        are points, so a block rocks about its edge at the true moment
+    :param rows: rows of subcontacts across a joint; None or 0: chosen for every joint when it is made, one where its blocks can only turn
+        about an axis in the joint, else three. So block degrees of freedom before ``connect()``, and free none later. Two rows make
+        a joint in space three times too stiff out of its plane. ``Ig2_MasonryBlock_MasonryBlock_MasonryJointGeom`` says more of both
     :param inPlane: the rows follow each other along y, also where the blocks' freedom does not say so
     :param loads: MasonryLoad engines
     :param zones: MasonryZones of the deformable units, if there are any

@@ -119,8 +119,8 @@ def tilt(
     :param rate: [degrees/s]
     :param within: width of the bracket that the search leaves, over its upper end [-]
     :returns: ``COLLAPSED`` if the structure fell, else ``AT_REST`` if it came to rest under the whole load, else ``DONE``.
-        ``scene.factor`` is the largest horizontal over vertical acceleration under which it came to rest in trials under a
-        constant load, see :mod:`masonry.scene.stages.growing`; the scene stays as it was at the end of the growth
+        ``scene.factor`` is the largest horizontal over vertical acceleration that it held, by :mod:`masonry.scene.stages.growing`; the
+        scene stays as it was at the end of the growth
     """
     towards = sideways(scene, towards, "tilt")
     findBound(scene, "lean", towards, True)
@@ -142,9 +142,7 @@ def accelerate(
 
     :param most: [g]
     :param towards: horizontal direction of the force on the blocks
-    :param rate: [g/s]
-    :param within: as in :meth:`tilt`
-    :returns: as in :meth:`tilt`
+    :param rate: [g/s]; the rest as in :meth:`tilt`
     """
     towards = sideways(scene, towards, "accelerate")
     findBound(scene, "lean", towards)

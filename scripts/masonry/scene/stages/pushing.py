@@ -86,8 +86,8 @@ class Pushing:
         return self.path - self.travelled(direction) > max(1.0, 0.1 * whole)
 
     def hasLost(self, direction, shear, top):
-        """Whether the wall is farther out than ever before, and has lost its force there: both a mean at its base, and what it
-        holds the drive with now [kN]. A slow wave can take the base alone below any share of a peak.
+        """Whether the wall is farther out than ever before, a millimetre beyond the peak, and less than a fifth of that is left: in a mean at
+        its base, and in what it holds the drive with now [kN]. A slow wave can take the base alone below any share of a peak.
         """
         side, out = direction > 0, direction * self.moved
         if shear is None or out <= max(self.reach[side], self.peaksAt[side] + 1):
@@ -129,18 +129,12 @@ def drivePush(scene, name, args, began, continued=False):
     brakes by the displacement that curve.csv has, so the wall turns within 0.01 mm of the history's turning points. Other points are
     passed at full speed, and so is the end, unless it is that of a file.
 
-    Rows are 0.01 mm apart at full speed; where the drive is slower, the time between them is the same or less.
-    ParaView frames are :func:`frameSpacing` of the path apart. Those of a history are also at its turning points and where
-    it passes through zero, unless the frame before is less than half of this away.
-
-    A wall has collapsed if the loading block has come down by half a course, if less than a fifth of the peak of a side
-    is left in the mean over a first period or a millimetre, a millimetre or more beyond that peak and farther out than the wall has
-    turned before, or if it moves against its push by a tenth of the path, a millimetre or more. So a loop that unloads is no collapse.
+    Where the drive is slower than at full speed, the time between rows is the same or less. Frames of a history are also at its turning
+    points and where it passes through zero, unless the frame before is less than half of their spacing away. A wall has collapsed
+    as :func:`_lost` says, and a loop that unloads is no collapse.
 
     :param args: the options of the run, with the ``until``, ``history`` and ``rate`` of this push
-    :param began: under this name the run keeps where the push began
-    :param continued: whether displacements count from where an earlier push of that name began
-    :raises Collapsed: with what was seen
+    :param began: under this name the run keeps where the push began; ``continued``: displacements count from there
     """
     run, model = scene.running, scene.model
     drive = model.loading.push

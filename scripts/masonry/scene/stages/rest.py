@@ -52,7 +52,6 @@ class Resting:
 
     done: int = 0  # steps so far
     quiet: int = 0  # looks that found it at rest, one after the other
-    load: float = 0.0  # share of the load that has grown [-]
     begun: list | None = None  # the load when it began to be put on
     goal: float = 0.0  # factor of the load that is put on [-]
 
@@ -132,7 +131,7 @@ def waitForRest(scene, at, longest, grow, over=0.0, record=True, buckling=False)
         load = min(1.0, (at.done + every) / growing)
         grow(load)
         running.advance(every)
-        at.load, at.done = load, at.done + every
+        at.done += every
         if at.done % EVERY:
             model.motion.checkFall(FAR)
             continue

@@ -94,22 +94,19 @@ def shake(
 ) -> str:
     """Shake the ground by a record.
 
-    The scene moves with the ground: every block feels the negative ground acceleration, and all displacements are
-    those relative to the ground, whose motion is exact. Time is real, so masses must not be scaled. Between the
-    samples the acceleration changes evenly, and each step has that of its middle: nothing is filtered, and the time step
-    does not depend on the samples.
+    The scene moves with the ground: every block feels the negative ground acceleration, and all displacements are relative to the
+    ground. Time is real, so masses must not be scaled. Between the samples the acceleration changes evenly, and each step has that of
+    its middle: nothing is filtered, and the time step does not depend on the samples.
 
     Joints that slide, crack and crush take energy, and so do those without bond that close after they have been open, as
     their ``restitution`` says. The default adds no other damping, since none is measured for masonry that rocks.
-    :func:`rayleigh` gives the two viscous ones from a damping ratio. The stages that follow have the damping of the options
-    again.
+    :func:`rayleigh` gives the two viscous ones from a damping ratio. They end with the stage.
 
     ``--record FILE`` replaces the record of the first shake of a scene, with the time between its samples, its factor and its
     unit, and ``--scale S`` makes that shake S times as strong. A record that does not end at rest is named with its numbers; nothing is corrected.
 
-    :param accelerations: a list, or the path of a file of PEER or ESM or of a text with one or two columns, as
-        :mod:`masonry.scene.accelerograms` says; or three paths, of both horizontal components and the vertical one, upwards,
-        which act at once
+    :param accelerations: a list, or the path of a file as :mod:`masonry.scene.accelerograms` reads it; or three paths, of both horizontal
+        components and the vertical one, upwards, which act at once
     :param every: time between two samples [s]; None: that of the file
     :param direction: of the ground's motion, horizontal; the second of three components is at 90° to its left
     :param scale: factor on the accelerations

@@ -43,8 +43,8 @@ class Traits:
     :param grows: whether presses, dead loads and wind grow in it
     :param real: whether it runs in real time, whatever falls, in a scene whose collapse is followed
     :param check: function of the scene and what the user says, which raises Refused before the scene is built
-    :param answers: function of the scene, and of a function that gives the values of a column in the rows of the stage by its head, or an
-        empty list if curve.csv does not have it. It gives a list of :class:`~masonry.scene.stages.answers.Answer`
+    :param answers: function of the scene, and of one that gives the values of a column in the rows of the stage, or an empty list, by its
+        head; it gives some :class:`~masonry.scene.stages.answers.Answer`
     """
 
     bounded: bool = False
