@@ -78,37 +78,25 @@ def engines(
     """
     if functors and dampingKind == "combined":
         raise ValueError("engines: dampingKind must be local with functors")
-    integrator = MasonryIntegrator(
-        damping=damping,
-        dampingKind=dampingKind or ("local" if functors else "combined"),
-        gravity=gravity,
-        label="integrator",
-    )
     geometry = _GEOMETRY(
         subcontacts=subcontacts or 3, rows=rows or 0, rowDirection=(0, inPlane, 0)
     )
     physics = Ip2_MasonryMat_MasonryMat_MasonryJointPhys(joints=joints)
+    moving = dict(damping=damping, gravity=gravity, label="integrator")
     if zones:
-        zones.gravity = integrator.gravity
+        zones.gravity = gravity
         geometry.zones = zones
     if functors:
         loop = functorLoop(geometry, physics)
-        integrator = NewtonIntegrator(
-            damping=damping, gravity=integrator.gravity, label="integrator", **ROTATION
-        )
+        integrator = NewtonIntegrator(**moving, **ROTATION)
     else:
         loop = MasonryJointLoop(
             geometry=geometry, physics=physics, points=points or 0, label="joints"
         )
-    O.engines = [
-        ForceResetter(),
-        loop,
-        *([contacts] if contacts else []),
-        *connectors,
-        *loads,
-        MasonryEnergy(label="energy"),
-        integrator,
-    ] + ([zones] if zones else [])
+        integrator = MasonryIntegrator(**moving, dampingKind=dampingKind or "combined")
+    forces = loop, contacts, *connectors, *loads
+    made = ForceResetter(), *forces, MasonryEnergy(label="energy"), integrator, zones
+    O.engines = [one for one in made if one is not None]
 
 
 @validated

@@ -1,12 +1,10 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The scheme in time of a structure: damping, masses, time step and gravity."""
 
-import math
-
 from yade import O
 
 from .._masonry import timeStepLimit
-from ..basics import GRAVITY, say
+from ..basics import say
 from .engines import engine
 
 MOST_SCALED = 50.0  # largest massScaling that is chosen by itself: more gained nothing in any wall
@@ -23,12 +21,22 @@ class Scheme:
         self.args, self.zones = args, zones
         self.integrator, self.joints = engine("integrator"), engine("joints")
         self.damp(args.damping, args.damping_kind)
-        self.massScaling = 0.0
-        self._usualLimit = self.limit = 0.0
 
     def begin(self):
-        """Choose masses and time step, when all joints are there."""
-        self.massScaling = self._chosenMassScaling()
+        """Choose masses and time step, when all joints are there.
+
+        With ``--mass-scaling auto`` there are two limits of the time step: with true masses, and with deformation so slow that only the
+        rigid motions of bricks are left. Waves through a brick get slower by the root of 1 + massScaling, so the least that brings
+        their limit to the second one is known.
+        """
+        self.massScaling = self.args.mass_scaling if self.zones else 0.0
+        if self.massScaling == "auto":
+            limits = []
+            for scaling in (0.0, 1e8):
+                self.scaleMasses(scaling)
+                limits.append(timeStepLimit())
+            least = round((limits[1] / limits[0]) ** 2 - 1, 1)
+            self.massScaling = min(MOST_SCALED, max(0.0, least))
         self.scaleMasses(self.massScaling)
         self._usualLimit = self.chooseTimeStep()
 
@@ -42,23 +50,6 @@ class Scheme:
         damped.damping, damped.dampingKind = damping, kind
         self.integrator.massDamping = massDamping
         self.joints.stiffnessDamping = stiffnessDamping
-
-    def _chosenMassScaling(self):
-        """The scaling of masses that the options say, for this structure [-].
-
-        ``auto`` finds two limits of the time step: with true masses, and with deformation so slow that only the rigid motions
-        of bricks are left. Waves through a brick get slower by the root of 1 + massScaling, so the least that brings their
-        limit to the second one is known.
-        """
-        if not self.zones:
-            return 0.0
-        if self.args.mass_scaling != "auto":
-            return self.args.mass_scaling
-        limits = []
-        for scaling in (0.0, 1e8):
-            self.scaleMasses(scaling)
-            limits.append(timeStepLimit())
-        return min(MOST_SCALED, max(0.0, round((limits[1] / limits[0]) ** 2 - 1, 1)))
 
     def scaleMasses(self, scaling):
         """Choose the selective scaling of the masses of deformable units from now on [-]; :meth:`chooseTimeStep` follows it."""
@@ -105,8 +96,3 @@ class Scheme:
     def now(self):
         """Present gravity [m/s²]."""
         return self.integrator.gravity
-
-    def factor(self):
-        """Horizontal over vertical acceleration that acts on the blocks [-]."""
-        down = abs(self.now[2]) or GRAVITY / self.args.density_scaling
-        return math.hypot(self.now[0], self.now[1]) / down

@@ -46,11 +46,6 @@ class Structure:
         self.axes = (0, 2) if description.plane else (0, 1, 2)
         self.ids, self.parts, self.bricks = [], {}, {}
         self.zones = self.contacts = None
-        self._stiff = masonry.stiff  # kinds of blocks that are rigid in themselves
-        #: Indices of blocks that are rigid also where bricks are deformable.
-        self.rigid = description.pointLoaded() | {
-            n for n, b in enumerate(description.bricks) if b.kind in self._stiff
-        }
         self.atRest = None  # the last state at rest, as saveScene gave it
 
     # -- building -------------------------------------------------------------------------------------------------
@@ -115,12 +110,13 @@ class Structure:
 
     def _deformableUnits(self):
         args, description = self.args, self.description
-        rigid = {t.body for t in description.targets.values() if t.freedom}
-        for body in rigid.union(self.ids[index] for index in self.rigid):
+        blocks, loaded = enumerate(description.bricks), description.pointLoaded()
+        stiff = {n for n, block in blocks if block.kind in self.masonry.stiff}
+        held = {t.body for t in description.targets.values() if t.freedom}
+        for body in held.union(self.ids[n] for n in loaded | stiff):
             self.bricks.pop(body, None)
-        held = [n for n in description.pointLoaded() if description.bricks[n].kind not in self._stiff]  # fmt: skip
-        if held:
-            say(f"note: {len(held)} of {len(description.bricks)} bricks are rigid, because ties, springs or fibre layers end at them")  # fmt: skip
+        if loaded - stiff:
+            say(f"note: {len(loaded - stiff)} of {len(description.bricks)} bricks are rigid, because ties, springs or fibre layers end at them")  # fmt: skip
         if args.mass_scaling and "crack" in self.joints:
             # the halves of a brick move as one, as far as masses are scaled, until their crack surface yields
             self.joints["crack"].monolithic = True
@@ -163,9 +159,8 @@ class Structure:
         for joint in self.description.joints:
             joint.interaction = pairs.get(frozenset(self.ids[b] for b in joint.bricks))
             if joint.interaction is None:
-                raise Refused(
-                    "joint: bricks {} and {} share no face".format(*joint.bricks)
-                )
+                one, two = joint.bricks
+                raise Refused(f"joint: bricks {one} and {two} share no face")
         for section in self.description.sections:
             section.join(self)
 
@@ -186,7 +181,7 @@ class Structure:
         """Raise Collapsed if a block has fallen, in a scene whose collapse is followed."""
         fallen = self.fallen()
         if fallen:
-            first = min(fallen, key=lambda index: (fallen[index]["fell"], index))
+            first = min(fallen, key=lambda index: fallen[index]["fell"])
             at = ", ".join(f"{v:.3g}" for v in self.description.middle(first))
             others = f", and so have {len(fallen) - 1} others since" if len(fallen) > 1 else ""  # fmt: skip
             raise Collapsed(

@@ -212,7 +212,10 @@ def cycle(
         and on a platen that cannot turn over the height of the bricks below it
     :param continued: and other parameters: as in :meth:`push`
     """
-    height = _driftHeight(scene, controlOf(scene, target, control))
+    counted = controlOf(scene, target, control)
+    turns = not counted.box or "Y" not in counted.freedom
+    height = counted.recorded[2] if turns else counted.box[0][2]
+    height -= scene.description.low[2]
     share = scene.share * (10 * height if unit == "%" else 1)
     text = ",".join(f"{share * a:g}x{repeats}" for a in amplitudes)
     how = direction, rate, continued, control
@@ -262,12 +265,6 @@ def _drive(scene, name, target, direction, rate, continued, control, **aim):
         drivePush(scene, name, args, began, continued)
         loading.stopDrives()
     return DONE
-
-
-def _driftHeight(scene, target):
-    """Height over which the displacements of a target are drifts [m]."""
-    turns = not target.box or "Y" not in target.freedom
-    return (target.recorded[2] if turns else target.box[0][2]) - scene.description.low[2]  # fmt: skip
 
 
 def _argumentsOf(scene, name, until=None, history=None):

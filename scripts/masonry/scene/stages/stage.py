@@ -125,8 +125,12 @@ def _carryOut(scene, act, traits, args, settings):
             return DONE
         before = running.entered
         over = enter(scene, before + 1, farther)
-        if over:
-            return _asBefore(scene, over)
+        if over:  # before the run was resumed: it ends as it did then
+            if over in FALLEN:
+                running.collapsed = True
+                running.results.run["collapse"] = running.at.fall
+            scene.ended = over
+            return COLLAPSED if scene.collapsed else over
         running.loading = traits.grows and not scene.grown
         scheme, follows = scene.model.scheme, scene.description.contact is not None
         scheme.dampByOptions()
@@ -197,15 +201,6 @@ def _follow(scene, name):
 
 def _noteEnd(running, before, ended):
     running.at.ended = {**running.at.ended, str(before + 1): [ended, running.entered]}
-
-
-def _asBefore(scene, ended):
-    """What a stage returns that was over before the run was resumed: how it ended then."""
-    running = scene.running
-    if ended in FALLEN:
-        running.collapsed, running.results.run["collapse"] = True, running.at.fall
-    scene.ended = ended
-    return COLLAPSED if running.collapsed else ended
 
 
 def _answer(scene, name, traits, before):
