@@ -28,7 +28,7 @@ PUBLIC = """
 #: Stages are words of a scene, in modules that hold more.
 STAGES = [
     f"scene.stages.{name}"
-    for name in "rest push drive supports gravity loading shake".split()
+    for name in "rest push supports gravity loading shake".split()
 ]
 MYPY = [sys.executable, "-m", "mypy", "--config-file", os.path.join(tree.ROOT, "pyproject.toml")]  # fmt: skip
 needsMypy = pytest.mark.skipif(

@@ -205,7 +205,7 @@ def search(
     monkeypatch.setattr(growing, "loadScene", back)
     monkeypatch.setattr(growing, "saveScene", lambda name: repr(here["factor"]).encode())  # fmt: skip
     found = Known(made, at, load, within)
-    found.run("x")
+    found.run()
     return at, made, trials, found
 
 

@@ -3,9 +3,9 @@
 
 A new stage is such a function (:func:`masonry.scene.stages.stage.stage`) and its place in :data:`STAGES`.
 
-- :mod:`masonry.scene.stages.rest`: ``settle``; :mod:`masonry.scene.stages.drive`: ``drive`` and ``pressJoint``
+- :mod:`masonry.scene.stages.rest`: ``settle``
 - :mod:`masonry.scene.stages.push`: ``push``, ``cycle`` and ``follow``, whose drive is in :mod:`masonry.scene.stages.pushing`
-- :mod:`masonry.scene.stages.supports`: ``release`` and ``move``
+- :mod:`masonry.scene.stages.supports`: ``drive``, ``pressJoint``, ``release`` and ``move``
 - :mod:`masonry.scene.stages.gravity`: ``tilt``, ``accelerate``, ``lean`` and ``bracket``
 - :mod:`masonry.scene.stages.loading`: ``load``, ``wind``, ``press``, ``pressure`` and ``hold`` after the first stage, and ``grow``
   with its simple cases ``growLoad``, ``growWind`` and ``growPress``; :mod:`masonry.scene.stages.travelling`: ``travel``
@@ -15,7 +15,6 @@ A new stage is such a function (:func:`masonry.scene.stages.stage.stage`) and it
 - :mod:`masonry.scene.stages.answers`: how stages end, and what they answer; :mod:`masonry.scene.stages.stage`: what all share
 """
 
-from .drive import drive, pressJoint
 from .gravity import accelerate, lean, tilt
 
 from .loading import grow, growLoad, growPress, growWind, hold, load, prepare, press, pressure, wind  # fmt: skip
@@ -23,7 +22,7 @@ from .push import cycle, follow, push
 from .rest import settle
 from .shake import period, run, shake, shakeAgain
 from .answers import AT_REST, COLLAPSED, DONE, MOVING
-from .supports import move, release
+from .supports import drive, move, pressJoint, release
 from .travelling import travel
 
 #: All stages. Each is a method of :class:`masonry.scene.scene.Scene`.

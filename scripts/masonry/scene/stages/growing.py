@@ -104,7 +104,7 @@ def grow(scene, name, load, duration, within=WITHIN):
         _Growth(scene, at, load, duration).run()
     within = within if scene.share == 1 else max(within, 0.5)
     search = _Search(scene, at, load, within)
-    search.run(name)
+    search.run()
     if at.held:
         scene.bounds.take(True)
         scene.bounds.hold(load.name, at.held[0])
@@ -245,7 +245,7 @@ class _Search:
         self.scene, self.at, self.load, self.within = scene, at, load, within
         self.model, self.running = scene.model, scene.running
 
-    def run(self, name):
+    def run(self):
         """Make trials until the bracket is narrow, or nothing is left to try."""
         at = self.at
         while not at.over:

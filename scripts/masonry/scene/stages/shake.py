@@ -237,7 +237,7 @@ def shakeAgain(
     if len(scales) != len(records):
         raise ValueError(f"shakeAgain: {len(scales)} scales for {len(records)} records")
     ends, rows = [], []
-    for number, (one, scale) in enumerate(zip(records, scales), 1):
+    for count, (one, scale) in enumerate(zip(records, scales), 1):
         ends.append(shake(scene, one, every, direction, scale, **how))
         stages = [scene.running.entered]
         if ends[-1] != COLLAPSED and settle(scene, longest=longest) != COLLAPSED:
@@ -245,7 +245,7 @@ def shakeAgain(
             stages.append(scene.running.entered)
         values, _ = readRecord(one, every, scale, how.get("unit"))
         peak = abs(scale) * float(np.abs(values).max())
-        row = {"shake": number, "peak_m_per_s2": peak}
+        row = {"shake": count, "peak_m_per_s2": peak}
         for answer in scene.answers:
             if answer["number"] in stages:
                 unit = "" if answer["unit"] == "-" else f"_{answer['unit']}"
@@ -253,7 +253,7 @@ def shakeAgain(
         rows.append({**row, "ended": scene.ended})
         _write(scene, rows)
         if scene.collapsed:
-            say(f"shakeAgain: the structure fell in record {number} of {len(records)}")
+            say(f"shakeAgain: the structure fell in record {count} of {len(records)}")
             break
     return ends
 

@@ -27,9 +27,9 @@ class Travelling(Resting):
     """What the stage remembers."""
 
     place: int = 0  # at which the load arrives, from 0; behind the last place it leaves
-    labels: Sequence = ()  # of the engines at the places
     began: Sequence = ()  # vertical displacements of all places when the load came [mm]
     moved: Sequence = ()  # of each place where it stood, since then [mm]
+    after: float = 0.0  # largest amount of them when it has left [mm]
 
 
 def standings(scene, rows):
@@ -44,9 +44,8 @@ def standings(scene, rows):
         where = f"of the loaded point, upwards, since the load came, at place {at.moved.index(least) + 1} of {len(at.began)}"
         yield Answer("largest_displacement", "mm", least, where)
     if at.place > len(at.began):
-        largest = max(map(abs, _moved(scene, at)))
         last = "largest amount of the vertical displacement of a place since the load came, when it has left"
-        yield Answer("displacement_after", "mm", largest, last)
+        yield Answer("displacement_after", "mm", at.after, last)
     scene.bounds.take(True)
     entries = scene.bounds.entries.values()
     bounds = {e["load"]: e["factor"] for e in entries if e["load"].startswith(TRAVELS) and "factor" in e}  # fmt: skip
@@ -93,9 +92,8 @@ def travel(
     if scene.only:
         return DONE
     at = scene.running.stage("travel", Travelling())
-    if not at.began:
-        at.labels = [engine.label for engine in engines]
-        at.began = [1e3 * engine.displacement()[2] for engine in engines]
+    places = lambda: [1e3 * engine.displacement()[2] for engine in engines]
+    at.began = at.began or places()
     while at.place <= len(engines):
         place = at.place
 
@@ -110,13 +108,8 @@ def travel(
         ended = waitForRest(scene, at, longest, arriving)
         if ended != AT_REST:
             return ended
-        if place < len(engines):
-            at.moved = [*at.moved, _moved(scene, at)[place]]
+        moved = [now - was for now, was in zip(places(), at.began)]
+        at.moved = [*at.moved, *moved[place : place + 1]]
+        at.after = max(map(abs, moved))
         at.place, at.done, at.quiet = place + 1, 0, 0
     return DONE
-
-
-def _moved(scene, at):
-    """Vertical displacements of all places since the load came [mm]."""
-    loads = scene.model.loading.loads
-    return [1e3 * loads[label].displacement()[2] - was for label, was in zip(at.labels, at.began)]  # fmt: skip
