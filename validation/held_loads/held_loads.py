@@ -143,7 +143,7 @@ def row(name, slow=True):
     scene, at, seconds = grown(name)
     scene.finish()
     held, lost = at.held[0], at.lost[0]
-    search = scene.running.at.steps - scene.running.at.stages[-1][1] - at.steps
+    search = scene.running.at.steps - scene.running.at.stages[-1][1] - at.done
     moved = 0.0
     if slow:
         slower, again, _ = grown(name, slower=3.0)

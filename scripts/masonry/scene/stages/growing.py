@@ -330,7 +330,7 @@ class _Search:
         factors, step = [factor for factor, _ in at.kept], 2 ** max(0, len(at.trials) - 1)  # fmt: skip
         # numbers of the last state up to what was held, and of the first from what was not
         low = at.held and bisect.bisect_right(factors, at.held[0]) - 1
-        high = at.lost and bisect.bisect_left(factors, at.lost[0])
+        high = at.lost and sum(factor < at.lost[0] for factor in factors)
         if low is None and high is None:
             index = self._guess(factors)
         elif low is None:
