@@ -108,7 +108,7 @@ def travel(
         ended = waitForRest(scene, at, longest, arriving)
         if ended != AT_REST:
             return ended
-        moved = [now - was for now, was in zip(places(), at.began)]
+        moved: list[float] = [now - was for now, was in zip(places(), at.began)]
         at.moved = [*at.moved, *moved[place : place + 1]]
         at.after = max(map(abs, moved))
         at.place, at.done, at.quiet = place + 1, 0, 0
