@@ -108,8 +108,8 @@ def travel(
         ended = waitForRest(scene, at, longest, arriving)
         if ended != AT_REST:
             return ended
-        moved: list[float] = [now - was for now, was in zip(places(), at.began)]
+        moved = [now - was for now, was in zip(places(), at.began)]
         at.moved = [*at.moved, *moved[place : place + 1]]
-        at.after = max(map(abs, moved))
+        at.after = max(abs(one) for one in moved)
         at.place, at.done, at.quiet = place + 1, 0, 0
     return DONE
