@@ -44,9 +44,7 @@ def test_a_tilt_turns_gravity_and_its_factor_is_the_tangent(share):
 
 def test_forces_add_to_what_is_there_or_replace_it_beside_one_that_stays():
     engines = [SimpleNamespace(force=Vector3(1, 2, 3)), SimpleNamespace(force=Vector3(4, 5, 6))]  # fmt: skip
-    load = loading.Forces(
-        engines, [Vector3(10, 0, 0), Vector3(0, 0, -20)], "f", "kN", 2
-    )
+    load = loading.Forces(engines, [Vector3(10, 0, 0), Vector3(0, 0, -20)], "f", "N", 2)
     began = load.now()
     assert began == [1, 2, 3, 4, 5, 6]
     assert load.at(began, 0.5) == [11, 2, 3, 4, 5, -14]
