@@ -10,11 +10,13 @@ Compared are the virtual functions and the size of each class of Yade.hpp, and t
 the tables of the YADE versions that the plugin knows. Needs binutils, which g++ brings.
 """
 
+import functools
 import pathlib
 import re
 import subprocess
 import sys
 import tempfile
+from itertools import zip_longest
 
 HOST = pathlib.Path(__file__).resolve().parents[1] / "yade_plugin" / "host"
 TABLES = HOST / "tables"
@@ -54,31 +56,27 @@ class Library:
             name = fields[-1].split("@")[0]
             size = int(fields[1], 16) if len(fields) == 4 else 0
             self.symbols[name] = int(fields[0], 16), size
-        self._pointers = None
 
+    @functools.cached_property
     def pointers(self):
         """Address of a word -> name of the symbol that the word will point to."""
-        if self._pointers is None:
-            names = {address: name for name, (address, _) in self.symbols.items()}
-            self._pointers = {}
-            for line in output("objdump", "-R", self.path).splitlines():
-                fields = line.split()
-                if len(fields) != 3 or not re.fullmatch("[0-9a-f]{16}", fields[0]):
-                    continue
-                local = re.fullmatch(r"\*ABS\*\+0x([0-9a-f]+)", fields[2])
-                target = names.get(int(local[1], 16), "") if local else fields[2]
-                self._pointers[int(fields[0], 16)] = target.split("@")[0]
-        return self._pointers
+        names = {address: name for name, (address, _) in self.symbols.items()}
+        found, listed = {}, output("objdump", "-R", self.path)
+        for address, target in re.findall(
+            r"^([0-9a-f]{16}) +\S+ +(\S+)$", listed, re.M
+        ):
+            local = re.fullmatch(r"\*ABS\*\+0x([0-9a-f]+)", target)
+            target = names.get(int(local[1], 16), "") if local else target
+            found[int(address, 16)] = target.split("@")[0]
+        return found
 
     def tableOf(self, name):
         """Functions of a class in the order of its slots, without their classes; None if there is no table here."""
         address, size = self.symbols.get(f"_ZTVN4yade{len(name)}{name}E", (0, 0))
         if not size:
             return None
-        words = [
-            self.pointers().get(address + at, "")
-            for at in range(HEAD * WORD, size, WORD)
-        ]
+        slots = range(address + HEAD * WORD, address + size, WORD)
+        words = [self.pointers.get(slot, "") for slot in slots]
         return [brief(word) for word in output("c++filt", text="\n".join(words)).split("\n")]  # fmt: skip
 
     def sizeOf(self, name):
@@ -119,11 +117,10 @@ class Yade:
         libraries = [Library(str(path)) for path in paths]
         classes = {}
         for name in declaredClasses():
-            tables = (library.tableOf(name) for library in libraries)
-            table = next((t for t in tables if t), None)
-            sizes = (library.sizeOf(name) for library in libraries)
+            table = next(filter(None, (one.tableOf(name) for one in libraries)), None)
+            size = next(filter(None, (one.sizeOf(name) for one in libraries)), None)
             if table:
-                classes[name] = next((s for s in sizes if s), None), table
+                classes[name] = size, table
         symbols = set().union(*(library.symbols for library in libraries))
         return cls(version, classes, symbols)
 
@@ -164,14 +161,10 @@ class Yade:
             mySize, mine = self.classes[name]
             if mySize != size:
                 yield f"{name}: {size} bytes in {known.version}, {mySize} in this YADE"
-            longer = range(max(len(functions), len(mine)))
-            at = lambda table, i: table[i] if i < len(table) else "nothing"
-            slot = next((i for i in longer if at(functions, i) != at(mine, i)), None)
-            if slot is not None:
-                yield (
-                    f"{name}, virtual function {slot} of {len(mine)}: {at(functions, slot)} in {known.version}, "
-                    f"{at(mine, slot)} in this YADE"
-                )
+            slots = enumerate(zip_longest(functions, mine, fillvalue="nothing"))
+            other = ((slot, *pair) for slot, pair in slots if pair[0] != pair[1])
+            for slot, theirs, own in list(other)[:1]:
+                yield f"{name}, virtual function {slot} of {len(mine)}: {theirs} in {known.version}, {own} in this YADE"
         for call in sorted(known.calls - self.calls):
             yield f"not in this YADE: {output('c++filt', call).strip()}"
 
@@ -186,7 +179,7 @@ def callsOf(module, classes):
 
 
 def knownYades():
-    return [Yade.ofTable(path) for path in sorted(TABLES.glob("*.txt"))]
+    return map(Yade.ofTable, sorted(TABLES.glob("*.txt")))
 
 
 def read(package):

@@ -11,10 +11,7 @@
 #       options of the tool, and of its build; these are for a machine on which it may mount nothing
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
-for tool in podman buildah docker; do
-    ! command -v "$tool" >/dev/null || break
-    tool=
-done
+tool=$(command -v podman buildah docker | head -n 1 | xargs -r basename) || true
 [[ -n $tool ]] || { echo "needs podman, buildah or docker: apt-get install --no-install-recommends podman" >&2; exit 1; }
 read -ra options <<<"${OPTIONS:-}"
 read -ra buildOptions <<<"${BUILD_OPTIONS:-}"

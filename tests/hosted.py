@@ -13,9 +13,19 @@ from masonry.read.files import readCurve, readRun  # noqa: F401
 from yade import O, Quaternion, Vector3
 
 
+def letGo():
+    """Let go of a scene that was not finished."""
+    if Scene.present and not Scene.present.finished:
+        Scene.present.finished = True
+        Scene.present.running.release()
+        Scene.present = None
+
+
 @pytest.fixture(autouse=True)
 def emptyScene(scene):
-    """Every test of a file that begins with hosted.py has an empty scene."""
+    """Every test of a file that begins with hosted.py has an empty scene, and need not finish one of its own."""
+    yield
+    letGo()
 
 
 G = 9.81  # [m/s²]
@@ -44,6 +54,26 @@ def box(low=(0, 0, 0), size=UNIT, turn=Quaternion.Identity):
     """Corners of a box with this lowest corner and these sides [m], turned about the origin."""
     high = [a + b for a, b in zip(low, size)]
     return [turn * Vector3(*corner) for corner in corners(low, high)]
+
+
+def lean(folder, blocks, masonry=None, /, *words, **settings):
+    """A scene that leaves its rows and run.json alone, in this folder."""
+    words = ["--lean", "--checkpoint-every", "0", "--out", str(folder), *words]
+    return Scene(
+        "lean", blocks, masonry or materials.dry(), arguments=words, **settings
+    )
+
+
+def standing(*words, **settings):
+    """Such a scene on a platen."""
+    scene = lean(*words, **settings)
+    scene.platen("bottom")
+    return scene
+
+
+def arrays(folder):
+    """Columns of curve.csv by their names."""
+    return {name: np.array(values) for name, values in readCurve(folder).items()}
 
 
 def hold(*bodies):

@@ -10,6 +10,7 @@ imported. Nothing is fetched from a network.
 import argparse
 import glob
 import os
+import pathlib
 import re
 import shutil
 import subprocess
@@ -18,10 +19,8 @@ import time
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 ROOT = os.path.dirname(os.path.dirname(HERE))
-sys.path[:0] = [
-    HERE,
-    os.path.join(ROOT, "tests", "gates"),
-]  # the gates list the files of the repository
+# the gates list the files of the repository
+sys.path[:0] = [HERE, os.path.join(ROOT, "tests", "gates")]
 YADE = "/usr/lib/x86_64-linux-gnu/yade-double/py"
 JAVASCRIPT = "/usr/share/javascript"  # of Debian
 MATHJAX = os.path.join(JAVASCRIPT, "mathjax")
@@ -32,28 +31,11 @@ PARTS = ["MathJax.js", "config/TeX-AMS_SVG-full.js", "extensions", "jax/element"
 FIRST = "First steps"  # the notebooks of the tutorial come before its other pages
 SECTIONS = {
     FIRST: ["scripts/TASKS", "scripts/WALL", "gallery"],
-    "Manual": [
-        "scripts/README",
-        "commands",
-        "options",
-        "scripts/STUDIES",
-        "scripts/FILES",
-        "yade_plugin/FOR_YADE_USERS",
-    ],
-    "Laws": [
-        "yade_plugin/law/README",
-        "yade_plugin/law/cyclic_softening/README",
-        "yade_plugin/contact/README",
-    ],
+    "Manual": "scripts/README commands options scripts/STUDIES scripts/FILES yade_plugin/FOR_YADE_USERS".split(),
+    "Laws": "yade_plugin/law/README yade_plugin/law/cyclic_softening/README yade_plugin/contact/README".split(),
     "Validation": ["validation/README"],
     "Reference": ["api/masonry", "classes"],
-    "Project": [
-        "yade_plugin/README",
-        "yade_plugin/host/README",
-        "CONTRIBUTING",
-        "CHANGELOG",
-        "cite",
-    ],
+    "Project": "yade_plugin/README yade_plugin/host/README CONTRIBUTING CHANGELOG cite".split(),
 }
 #: Pages that :func:`stage` makes; all others are Markdown files of the repository.
 GENERATED = {"gallery", "commands", "options", "api/masonry", "classes", "cite"}
@@ -99,10 +81,10 @@ def contents(documents, first=()):
     """
     named = {page for pages in SECTIONS.values() for page in pages}
     rest = [d.removesuffix(".md") for d in documents if d != "README.md"]
-    rest = [d for d in rest if d not in named]
-    cases = [d for d in rest if d.startswith("validation/")]
-    if set(rest) - set(cases):
-        raise ValueError(f"no section of build.py has {', '.join(sorted(set(rest) - set(cases)))}")  # fmt: skip
+    cases = [d for d in rest if d.startswith("validation/") and d not in named]
+    others = sorted({*rest} - {*cases} - named)
+    if others:
+        raise ValueError(f"no section of build.py has {', '.join(others)}")
     gone = sorted(p for p in named - GENERATED if p + ".md" not in documents)
     if gone:
         raise ValueError(f"build.py names {', '.join(gone)}, which the repository does not have")  # fmt: skip
@@ -120,7 +102,9 @@ def stage(folder, out, runs):
     from tree import read
 
     made = staging.Stage(folder)
-    documents = made.documents()
+    documents = staging.documents()
+    for path in documents:
+        made.document(path)
     lessons = tutorial(made, out, runs)
     for path, table in contents(documents, lessons).items():
         made.document(path, read(path) + table)
@@ -150,8 +134,7 @@ def sphinx(out, builder, target, *more):
     from sphinx.cmd.build import main
 
     words = ["-b", builder, "-c", HERE, "-d", os.path.join(out, "doctrees-" + builder), "-W", "--keep-going", "-q", *more]  # fmt: skip
-    failed = main([*words, os.path.join(out, "source"), target])
-    if failed:
+    if main([*words, os.path.join(out, "source"), target]):
         raise SystemExit(f"Sphinx failed ({builder}): see above")
 
 
@@ -159,47 +142,26 @@ def bundle(static):
     """Make one script and one style sheet of those of the theme, which Debian leaves in parts that a web server would put
     together: browsers load neither modules nor ``/javascript`` from files.
     """
-    sheet = os.path.join(static, "styles", "furo.css")
-    with open(sheet, encoding="utf-8") as file:
-        rules = file.read()
-    part = re.match(r"@import url\(/javascript/([\w./-]+)\);", rules)
-    if part:
-        with open(os.path.join(JAVASCRIPT, part[1]), encoding="utf-8") as file:
-            rules = file.read() + rules[part.end() :]
-        with open(sheet, "w", encoding="utf-8") as file:
-            file.write(rules)
     scripts = os.path.join(static, "scripts")
-    with open(os.path.join(scripts, "furo.js"), encoding="utf-8") as file:
-        first, _, rest = file.read().partition("\n")
-    part = re.fullmatch(r'import Gumshoe from "\./([\w-]+\.js)";', first)
-    if part:
-        with open(os.path.join(scripts, part[1]), encoding="utf-8") as file:
-            rest = file.read() + rest
-        with open(os.path.join(scripts, "furo.js"), "w", encoding="utf-8") as file:
-            file.write(rest)
+    for path, first, folder in (
+        (os.path.join(static, "styles", "furo.css"), r"@import url\(/javascript/([\w./-]+)\);", JAVASCRIPT),
+        (os.path.join(scripts, "furo.js"), r'import Gumshoe from "\./([\w-]+\.js)";\n', scripts),
+    ):  # fmt: skip
+        text = pathlib.Path(path).read_text(encoding="utf-8")
+        if part := re.match(first, text):
+            begin = pathlib.Path(folder, part[1]).read_text(encoding="utf-8")
+            pathlib.Path(path).write_text(begin + text[part.end() :], encoding="utf-8")
 
 
 def pdf(page, target):
     """Print a page to a PDF with chromium, without a display and without a network."""
-    subprocess.run(
-        [
-            "chromium",
-            "--headless=new",
-            "--no-sandbox",
-            "--disable-gpu",
-            "--disable-background-networking",
-            "--host-resolver-rules=MAP * ~NOTFOUND",
-            "--virtual-time-budget=300000",
-            "--generate-pdf-document-outline",
-            "--no-pdf-header-footer",
-            f"--print-to-pdf={target}",
-            "file://" + os.path.abspath(page),
-        ],
-        check=True,
-        stdout=subprocess.DEVNULL,
-        stderr=subprocess.DEVNULL,
-        timeout=600,
-    )
+    words = """
+        chromium --headless=new --no-sandbox --disable-gpu --disable-background-networking --virtual-time-budget=300000
+        --generate-pdf-document-outline --no-pdf-header-footer
+    """.split()
+    words += ["--host-resolver-rules=MAP * ~NOTFOUND", f"--print-to-pdf={target}"]
+    words.append("file://" + os.path.abspath(page))
+    subprocess.run(words, check=True, capture_output=True, timeout=600)
 
 
 def main(words=None):
@@ -210,6 +172,7 @@ def main(words=None):
     args = parser.parse_args(words)
     out = os.path.abspath(args.out)
     began = time.monotonic()
+    said = lambda path: print(f"{path}: {time.monotonic() - began:.0f} s")
     if os.path.isdir(YADE):
         sys.path.insert(1, YADE)
     import yade.config  # noqa: F401, before masonry, so that it registers its classes
@@ -220,13 +183,11 @@ def main(words=None):
     os.environ["MASONRY_DOCS_STATIC"] = static
     sphinx(out, "html", os.path.join(out, "html"))
     bundle(os.path.join(out, "html", "_static"))
-    print(
-        f"{os.path.join(out, 'html', 'index.html')}: {time.monotonic() - began:.0f} s"
-    )
+    said(os.path.join(out, "html", "index.html"))
     if not args.no_pdf:
         sphinx(out, "singlehtml", os.path.join(out, "paper"), "-t", "paper")
         pdf(os.path.join(out, "paper", "index.html"), os.path.join(out, "masonry.pdf"))
-        print(f"{os.path.join(out, 'masonry.pdf')}: {time.monotonic() - began:.0f} s")
+        said(os.path.join(out, "masonry.pdf"))
     return 0
 
 

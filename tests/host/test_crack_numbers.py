@@ -4,7 +4,7 @@
 from hosted import *
 from masonry.read import cracks, curves, quantities
 from masonry.read.run_data import RunData
-from masonry.scene.figure import restsUnder
+from masonry.scene.outcome import restsUnder
 
 WIDTH, HEIGHT, COURSE = 0.4, 0.6, 0.2  # [m] of a pile of three blocks
 

@@ -472,7 +472,7 @@ def test_stones_that_are_pressed_hard_are_moved_by_no_tilt(tmp_path):
 
 def test_a_peak_may_be_above_its_bound_by_two_per_cent():
     """Also where a part of the force does not reach the supports: then it is off by that."""
-    from masonry.scene.bound_texts import over
+    from masonry.scene.bounds import over
 
     entries = {"lean": {"factor": 0.5, "unit": "g"}}
 

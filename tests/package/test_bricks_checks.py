@@ -28,7 +28,7 @@ def test_a_cube_has_six_faces_that_run_counter_clockwise_outside():
 
 @few
 @given(some.integers(4, 12), some.integers(0, 10**6))
-def test_volume_and_centroid_of_any_convex_solid(count, seed):
+def test_volume_of_any_convex_solid(count, seed):
     """Against the sum of tetrahedra of Qhull's own triangles."""
     from scipy.spatial import ConvexHull
 
@@ -39,15 +39,13 @@ def test_volume_and_centroid_of_any_convex_solid(count, seed):
         assume(not solids.problems)
     except ValueError:
         assume(False)
-    volume, moment = 0.0, np.zeros(3)
+    volume = 0.0
     found = ConvexHull(points)
     for triangle, plane in zip(found.simplices, found.equations):
         a, b, c = points[triangle]
         six = abs(np.dot(a, np.cross(b, c))) * np.sign(-plane[3])
         volume += six / 6
-        moment += six / 6 * (a + b + c) / 4
     assert solids.volumes()[0] == pytest.approx(volume, rel=1e-6)
-    assert solids.middles()[0] == pytest.approx(moment / volume, abs=1e-6)
 
 
 @pytest.mark.parametrize(

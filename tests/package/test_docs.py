@@ -219,7 +219,6 @@ def test_a_notebook_becomes_a_page():
     }  # fmt: skip
     kept = {}
     text = notebooks.markdown(notebook, "one", kept.__setitem__)
-    assert notebooks.title(notebook) == "Title"
     assert "```python\nprint(1)\n```" in text and "```text\n20 %\ndone\n```" in text
     assert "![](one_1.png)" in text and kept == {"one_1.png": b"\0\0\0"}
     assert "````{raw} html\n<b>```</b>\n````" in text

@@ -3,7 +3,7 @@
 
 from usual import *
 from masonry import bricks
-from masonry.bricks.stones import LEAST, SHORTEST, _sides
+from masonry.bricks.stones import LEAST, SHORTEST, _joints
 
 patterns = pytest.mark.parametrize("pattern", ["squared", "irregular"])
 lengths = some.floats(0.8, 2.5)
@@ -36,11 +36,11 @@ def test_a_seed_is_a_wall(pattern):
 
 @pytest.mark.parametrize("seed", range(3))
 def test_joints_of_irregular_stones_are_long_and_level_at_the_ends(seed):
-    sides, (low, high) = _sides(bricks.StoneWall(1.5, 1.2, (0.3, 0.2, 0.1), "irregular", 0.2, seed=seed))  # fmt: skip
-    for one, two in sides:
+    wall = bricks.StoneWall(1.5, 1.2, (0.3, 0.2, 0.1), "irregular", 0.2, seed=seed)
+    for one, two in _joints(wall):
         along = abs(two - one) / (0.3, 0.1)
         assert np.hypot(*along) > LEAST
-        if min(one[0], two[0]) < 1e-9 or max(one[0], two[0]) > high[0] - 1e-9:
+        if min(one[0], two[0]) < 1e-9 or max(one[0], two[0]) > wall.length - 1e-9:
             assert along[1] < LEAST / 2  # where a short side beside it was closed
 
 

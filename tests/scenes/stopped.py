@@ -11,7 +11,6 @@ from kept import records
 from masonry import basics
 from masonry.run import checkpoints
 from masonry.run.run import Run
-from masonry.scene import Scene
 from masonry.scene.drawing_program import DrawingProgram
 from masonry.scene.stages import growing
 
@@ -237,11 +236,7 @@ def carryOut(script, *words, stop=None, most=math.inf):
     finally:
         sys.argv, Run._take, DrawingProgram.draw = before, take, draw
         growing.TRIAL = trial
-        scene = Scene.present
-        if scene is not None:
-            scene.finished = True
-            scene.running.release()
-            Scene.present = None
+        letGo()
         os.chdir(folder)
     return status, taken[0], output.getvalue()
 

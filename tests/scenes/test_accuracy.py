@@ -23,9 +23,15 @@ def pier(tmp_path):
     return tmp_path
 
 
-def run(folder, *words, script="pier.py", program=(sys.executable,)):
-    command = [*program, script, "--lean", "--out", "out", *words]
-    return subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=120)  # fmt: skip
+COMMAND = [sys.executable, "pier.py", "--lean", "--out", "out"]
+
+
+def run(folder, *words, command=COMMAND):
+    return subprocess.run([*command, *words], cwd=folder, capture_output=True, text=True, timeout=120)  # fmt: skip
+
+
+def recorded(folder):
+    return json.loads((folder / "out" / "run.json").read_text())
 
 
 def test_differences_that_shrink_as_those_of_an_order_count_by_richardson_and_others_whole():
@@ -75,7 +81,7 @@ def test_a_finer_fidelity_takes_what_it_does_not_know_yet_from_the_one_before():
 def test_a_push_says_its_peak_and_work_with_half_widths_everywhere(pier):
     done = run(pier, "--accuracy", "20")
     assert done.returncode == 0, done.stdout + done.stderr
-    found = json.loads((pier / "out" / "run.json").read_text())
+    found = recorded(pier)
     entry, values = found["accuracy"], {}
     for q in entry["quantities"]:
         values[q["name"]] = q
@@ -104,7 +110,7 @@ def test_a_push_says_its_peak_and_work_with_half_widths_everywhere(pier):
 def test_what_cannot_be_reached_is_said_with_the_width_that_was_found(pier):
     done = run(pier, "--accuracy", "0.01", "--quick")
     assert done.returncode == 0, done.stdout + done.stderr
-    found = json.loads((pier / "out" / "run.json").read_text())["accuracy"]
+    found = recorded(pier)["accuracy"]
     assert not found["reached"] and found["fidelity"] == FIDELITIES[-1].name
     assert "0.01 % is not reached by the finest fidelity there is" in done.stdout
 
@@ -123,43 +129,32 @@ def test_wrong_values_and_options_are_one_sentence(pier, words, sentence):
     assert not os.path.exists(pier / "out")
 
 
-@pytest.mark.parametrize("stage, sentence", [
-    ("scene.lean(0.01)", "this scene has the stage lean"),
-    ("scene.run(0.01)", "this scene has the stage run"),
-    ("pass", "this scene has no push of one target that takes force"),
-    ("scene.push(top, rate=5)", "push() has one of its own: rate=5 mm/s"),
+PUSH = "scene.push(top)"
+
+
+@pytest.mark.parametrize("what, other, sentence", [
+    (PUSH, "scene.lean(0.01)", "this scene has the stage lean"),
+    (PUSH, "scene.run(0.01)", "this scene has the stage run"),
+    (PUSH, "pass", "this scene has no push of one target that takes force"),
+    (PUSH, "scene.push(top, rate=5)", "push() has one of its own: rate=5 mm/s"),
+    ("until=1", "arguments=['--accuracy', '2']", "that takes its options from the command line"),
 ])  # fmt: skip
-def test_scenes_of_which_it_says_nothing_are_refused_and_leave_nothing(pier, stage, sentence):  # fmt: skip
-    (pier / "other.py").write_text(SCENE.replace("scene.push(top)", stage))
-    done = run(pier, "--accuracy", "2", script="other.py")
+def test_scenes_of_which_it_says_nothing_are_refused(pier, what, other, sentence):
+    (pier / "pier.py").write_text(SCENE.replace(what, other))
+    done = run(pier, *["--accuracy", "2"] * (what == PUSH))
     assert done.returncode == 2
     assert done.stderr.splitlines()[-1].startswith("--accuracy: ")
     assert sentence in done.stderr and "Traceback" not in done.stderr
     assert not os.path.exists(pier / "out")
 
 
-def test_a_scene_that_takes_no_options_from_the_command_line_is_refused(pier):
-    own = SCENE.replace("until=1", "arguments=['--accuracy', '2', '--until', '1']")
-    (pier / "own.py").write_text(own)
-    done = run(pier, script="own.py")
-    assert done.returncode == 2
-    assert "that takes its options from the command line" in done.stderr
-
-
 def test_a_stack_that_falls_has_its_answer_and_a_sentence(pier):
-    falls = """
-from masonry import Scene, bricks, materials
-scene = Scene("falls", bricks.stack(2, (0.06, 0.06, 0.06)), materials.dry(friction=0.7), until=50)
-base, top = scene.platen("bottom"), scene.platen("top", rotation="free")
-scene.press(top, 3e5)
-scene.settle()
-scene.push(top)
-scene.finish()
-"""
-    (pier / "falls.py").write_text(falls)
-    done = run(pier, "--accuracy", "50", script="falls.py")
+    falls = SCENE.replace("held", "free").replace("until=1", "until=50")
+    falls = falls.replace("Wall(0.44, 0.324)", "stack(2, (0.06, 0.06, 0.06))")
+    (pier / "pier.py").write_text(falls.replace("calciumSilicate()", "dry(0.7)"))
+    done = run(pier, "--accuracy", "50")
     assert done.returncode == 0, done.stdout + done.stderr
-    found = json.loads((pier / "out" / "run.json").read_text())
+    found = recorded(pier)
     assert found["collapsed"]
     assert all(c["collapsed"] for c in found["accuracy"]["companions"])
     assert "the work of a run that collapses ends there" in done.stdout
@@ -189,20 +184,18 @@ def companions():
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGKILL])
 def test_companions_end_with_the_run_and_the_same_command_goes_on(pier, number):
     (pier / "pier.py").write_text(SCENE.replace("0.44, 0.324", "1.1, 1.62").replace("until=1", "until=6"))  # fmt: skip
-    words = [sys.executable, "pier.py", "--lean", "--out", "out", "--accuracy", "50"]
     with open(pier / "log", "w") as log:
-        process = subprocess.Popen(words, cwd=pier, stdout=log, stderr=log)
+        process = subprocess.Popen([*COMMAND, "--accuracy", "50"], cwd=pier, stdout=log, stderr=log)  # fmt: skip
         while "accuracy: rigid" not in (pier / "log").read_text():
             time.sleep(0.05)
             assert process.poll() is None
         process.send_signal(number)
         status = process.wait(timeout=20)
     assert status == (130 if number != signal.SIGKILL else -9)
-    for _ in range(100):
-        if not companions():
-            break
+    until = time.monotonic() + 10
+    while companions():
+        assert time.monotonic() < until
         time.sleep(0.1)
-    assert not companions()
     if number == signal.SIGINT:
         done = run(pier, "--accuracy", "50")
         assert done.returncode == 0, done.stdout + done.stderr
@@ -216,7 +209,6 @@ def test_a_run_that_is_resumed_has_its_half_widths_too(pier):
     # a lean run that ended has no checkpoint: one that draws nothing else keeps it
     began = ["--no-vtk", "--out", "kept", "--accuracy", "20", "--until", "1"]
     for words in (began, ["--resume", "kept", "--until", "1.2"]):
-        words = [sys.executable, "pier.py", *words]
-        done = subprocess.run(words, cwd=pier, capture_output=True, text=True)
+        done = run(pier, *words, command=COMMAND[:2])
         assert done.returncode == 0, done.stdout + done.stderr
     assert "longer push than its companions" in done.stdout

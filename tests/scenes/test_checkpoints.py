@@ -26,53 +26,6 @@ def files(folder):
     return {n: c for n, c in found if n.endswith(wanted) and "mechanism" not in n}
 
 
-# -- a wall as a user runs it ------------------------------------------------------------------------------------------
-
-
-def test_a_wall_killed_six_times_leaves_the_curve_of_a_whole_run(runScene, tmp_path):
-    words = ["--until", "0.5", "--rate", "2", "--vtk-every", "0.2"]
-    _, whole = runScene("wall_comp4", *words, "--checkpoint-every", "0")
-    steps = readRun(whole)["steps"]
-    assert not os.path.exists(os.path.join(whole, "run.checkpoint"))
-
-    out = str(tmp_path / "killed")
-    kept = os.path.join(out, "run.checkpoint")
-    dice = random.Random()
-    moments = [(n + dice.random()) / 7 * steps for n in range(6)]
-
-    def start():
-        known = ["--resume", out] if os.path.exists(kept) else [*words, "--out", out]
-        scene = os.path.join(ROOT, "scripts", "wall_comp4.py")
-        return subprocess.Popen(
-            ["yade", "-n", "-x", scene, *known, "--checkpoint-every", "0.001"],
-            stdout=subprocess.DEVNULL,
-        )
-
-    def stamp():
-        return os.stat(kept).st_mtime_ns if os.path.exists(kept) else 0
-
-    for moment in moments:
-        before = stamp()
-        process = start()
-        seen, there = before, 0
-        while there < moment or seen == before:
-            assert process.poll() is None
-            time.sleep(0.005)
-            if stamp() != seen:
-                seen, there = stamp(), readCheckpoint(kept)["at"]["steps"]
-        time.sleep(dice.uniform(0, 0.05))  # at any moment, also while a file is written
-        process.kill()
-        assert process.wait() == -signal.SIGKILL
-    assert start().wait() == 0
-    assert files(out) == files(whole)
-    one, other = readRun(whole), readRun(out)
-    assert len(other["resumed_at_s"]) == 6 and one["resumed_at_s"] == []
-    for name in ("steps", "peak_base_shear_kN", "energy_balance_error", "kinds"):
-        assert one[name] == other[name]
-
-
-# -- a small wall, in this process -------------------------------------------------------------------------------------
-
 PUSH = ["--until", "0.3", "--vtk-every", "0.1", "--rate", "40"]
 LOOPS = ["--history", "0.1,0.25x2", "--rate", "40", "--vtk-every", "0.1"]
 
@@ -109,6 +62,26 @@ def interrupt(run):
 CANTILEVER = Wall(loadHeight=0.6, riding=False)  # under rollers
 
 
+def interrupted(at, start, out, every, first=None):
+    """Interrupt a run before every so many-th ``advance`` until it ends; ``start`` gets whether it is resumed. What was kept."""
+    kept = []
+    while True:
+        at(first if first and not kept else every, interrupt)
+        status = start(bool(kept))
+        if status == 0:
+            return kept
+        assert status == 130
+        kept.append(readCheckpoint(str(out / "run.checkpoint"))["at"])
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory):
+    """A push that was not disturbed."""
+    out = tmp_path_factory.mktemp("whole")
+    assert run(out, *PUSH) == 0
+    return files(out)
+
+
 @pytest.mark.parametrize(
     "path, every", [(PUSH, 35), pytest.param(LOOPS, 211, marks=pytest.mark.long)]
 )
@@ -117,19 +90,12 @@ CANTILEVER = Wall(loadHeight=0.6, riding=False)  # under rollers
     [(SMALL, "rigid"), (SMALL, "deformable"), (CANTILEVER, "rigid")],
     ids=["rigid", "deformable", "cantilever"],
 )
-def test_a_wall_interrupted_in_every_stage_leaves_the_curve_of_a_whole_run(
-    tmp_path, at, wall, blocks, path, every
-):
+def test_a_wall_interrupted_in_every_stage(tmp_path, at, wall, blocks, path, every):
     words = [*path, "--blocks", blocks]
     assert run(tmp_path / "whole", *words, wall=wall) == 0
-    out, found = tmp_path / "broken", []
-    while True:
-        at(every if found else 3, interrupt)
-        status = run(out, *([] if found else words), wall=wall, resume=bool(found))
-        if status == 0:
-            break
-        assert status == 130
-        found.append(readCheckpoint(str(out / "run.checkpoint"))["at"])
+    out = tmp_path / "broken"
+    start = lambda again: run(out, *words[: 0 if again else None], wall=wall, resume=again)  # fmt: skip
+    found = interrupted(at, start, out, every, first=3)
     assert {"settle", "push"} == {one["stage"] for one in found}
     points = {one["memory"].get("passed", 0) for one in found}
     assert path is PUSH or len(points) > 3
@@ -139,51 +105,37 @@ def test_a_wall_interrupted_in_every_stage_leaves_the_curve_of_a_whole_run(
 
 @pytest.mark.parametrize("blocks", ["rigid", "deformable"])
 @pytest.mark.parametrize("path", ["shear", "closure-shear"])
-def test_a_couplet_interrupted_in_every_move_leaves_the_curve_of_a_whole_run(
-    tmp_path, at, blocks, path
-):
-    def run(*words):
-        return runScript("couplet", *words)
-
-    words = ["--path", path, "--until", "0.05", "--rate", "20", "--closure", "0.02"]
-    words += ["--blocks", blocks]
-    assert run("--out", str(tmp_path / "whole"), *words) == 0
-    words += ["--out", str(tmp_path / "broken")]
-    moves = []
-    while True:
-        at(700, interrupt)
-        if run(*words) == 0:
-            break
-        text = readCheckpoint(str(tmp_path / "broken" / "run.checkpoint"))
-        moves.append(text["at"]["number"])
-        words = ["--resume", str(tmp_path / "broken")]
-    assert set(moves) == ({1, 2, 3} if path == "shear" else {1, 2})
-    assert files(tmp_path / "broken") == files(tmp_path / "whole")
+def test_a_couplet_interrupted_in_every_move(tmp_path, at, blocks, path):
+    words = f"--path {path} --until 0.05 --rate 20 --closure 0.02 --blocks {blocks}"
+    begin = lambda out: runScript("couplet", *words.split(), "--out", str(out))
+    assert begin(tmp_path / "whole") == 0
+    out = tmp_path / "broken"
+    start = lambda again: runScript("couplet", "--resume", str(out)) if again else begin(out)  # fmt: skip
+    moves = {one["number"] for one in interrupted(at, start, out, 700)}
+    assert moves == ({1, 2, 3} if path == "shear" else {1, 2})
+    assert files(out) == files(tmp_path / "whole")
 
 
-def test_a_finished_run_can_be_pushed_on(tmp_path):
-    assert run(tmp_path / "whole", *PUSH) == 0
-    assert run(tmp_path / "parts", *PUSH, "--until", "0.15") == 0
-    assert run(tmp_path / "parts", "--until", "0.3", resume=True) == 0
-    assert files(tmp_path / "parts") == files(tmp_path / "whole")
-    assert readRun(tmp_path / "parts")["options"]["rate"] == 40
+def test_a_finished_run_can_be_pushed_on(tmp_path, whole):
+    assert run(tmp_path, *PUSH, "--until", "0.15") == 0
+    assert run(tmp_path, "--until", "0.3", resume=True) == 0
+    assert files(tmp_path) == whole
+    assert readRun(tmp_path)["options"]["rate"] == 40
 
 
-def test_frames_can_begin_and_end_with_a_resumed_run(tmp_path):
-    assert run(tmp_path / "whole", *PUSH) == 0
-    assert run(tmp_path / "parts", *PUSH, "--no-vtk", "--until", "0.15") == 0
-    text = str(tmp_path / "parts")
-    args = parsed("--resume", text, "--until", "0.3")
+def test_frames_can_begin_and_end_with_a_resumed_run(tmp_path, whole):
+    assert run(tmp_path, *PUSH, "--no-vtk", "--until", "0.15") == 0
+    args = parsed("--resume", str(tmp_path), "--until", "0.3")
     args.no_vtk = False
     assert carryOut(SMALL, args) == 0
-    frames = [n for n in files(text) if n.endswith("vtu")]
+    found = files(tmp_path)
+    frames = [n for n in found if n.endswith("vtu")]
     assert frames == ["blocks_0000.vtu", "blocks_0001.vtu"]  # at 0.2 mm and the end
-    assert files(text)["curve.csv"] == files(tmp_path / "whole")["curve.csv"]
+    assert found["curve.csv"] == whole["curve.csv"]
 
 
 @pytest.mark.parametrize("rows", [0, 29])
-def test_a_run_that_fails_is_taken_up_where_it_failed(tmp_path, monkeypatch, rows):
-    assert run(tmp_path / "whole", *PUSH) == 0
+def test_a_run_that_fails_is_taken_up_there(tmp_path, monkeypatch, rows, whole):
     read, count = Structure.read, [rows + 1]
 
     def fail(self):
@@ -194,41 +146,35 @@ def test_a_run_that_fails_is_taken_up_where_it_failed(tmp_path, monkeypatch, row
 
     monkeypatch.setattr(Structure, "read", fail)
     with pytest.raises(OSError, match="a pipe that broke"):
-        run(tmp_path / "failed", *PUSH)
-    assert len((tmp_path / "failed" / "curve.csv").read_text().splitlines()) == 1 + rows
-    assert run(tmp_path / "failed", resume=True) == 0
-    assert files(tmp_path / "failed") == files(tmp_path / "whole")
+        run(tmp_path, *PUSH)
+    assert len((tmp_path / "curve.csv").read_text().splitlines()) == 1 + rows
+    assert run(tmp_path, resume=True) == 0
+    assert files(tmp_path) == whole
 
 
-def test_a_run_goes_on_after_a_full_disk(tmp_path, at, capsys, monkeypatch):
-    assert run(tmp_path / "whole", *PUSH) == 0
-    kept = str(tmp_path / "full" / "run.checkpoint")
-    seen = {}
+def test_a_run_goes_on_after_a_full_disk(tmp_path, at, capsys, monkeypatch, whole):
+    kept = tmp_path / "run.checkpoint"
 
     def fill(run):
         run.checkpoints.write()
-        seen["before"] = open(kept, "rb").read()
+        before = kept.read_bytes()
         with monkeypatch.context() as full:
             full.setattr(os, "fsync", noSpace)
             run.checkpoints.write()
-        seen["after"] = open(kept, "rb").read()
+        assert kept.read_bytes() == before
 
     at(60, fill)
-    assert run(tmp_path / "full", *PUSH) == 0
+    assert run(tmp_path, *PUSH) == 0
     said = f"no checkpoint could be written to {kept}: [Errno 28] No space left on"
     assert said in capsys.readouterr().err
-    assert seen["before"] == seen["after"]
-    assert files(tmp_path / "full") == files(tmp_path / "whole")
+    assert files(tmp_path) == whole
     # The disk has room again.
-    assert readCheckpoint(kept)["at"]["memory"]["moved"] > 0.25
+    assert readCheckpoint(str(kept))["at"]["memory"]["moved"] > 0.25
 
 
 @pytest.mark.parametrize("lost", ["curve.csv", "joints_0001.vtp", "run.json.new"])
-def test_a_run_whose_results_cannot_be_written_goes_on_when_there_is_room(
-    tmp_path, at, capsys, monkeypatch, lost
-):
+def test_results_wait_for_room(tmp_path, at, capsys, monkeypatch, lost, whole):
     monkeypatch.setattr(frames, "SLOW_FRAME", math.inf)  # none is written beside
-    assert run(tmp_path / "whole", *PUSH) == 0
     out = tmp_path / "full"
 
     def fill(run):
@@ -257,12 +203,10 @@ def test_a_run_whose_results_cannot_be_written_goes_on_when_there_is_room(
     assert f"{lost}: No space left on device; what was written before" in said.err
     assert f"--resume {out} goes on from here" in said.out
     assert run(out, resume=True) == 0
-    assert files(out) == files(tmp_path / "whole")
+    assert files(out) == whole
 
 
-def test_a_frame_that_is_lost_beside_a_run_is_said_and_is_in_no_list(
-    tmp_path, at, capsys, monkeypatch
-):
+def test_a_lost_frame_is_said_and_in_no_list(tmp_path, at, capsys, monkeypatch):
     out = tmp_path / "full"
     monkeypatch.setattr(frames, "SLOW_FRAME", -1)  # all are written beside the run
     at(32, lambda run: os.symlink("/dev/full", out / "joints_0001.vtp"))
@@ -285,7 +229,7 @@ def test_a_row_waits_for_a_fifth_of_a_second_at_most(tmp_path, at):
 
     def look(run):
         read = run.readings.count
-        seen.append((read, len(readCurve(str(tmp_path))["time_s"])))
+        seen.append((read, len(readCurve(tmp_path)["time_s"])))
         at(1, slow)
 
     def slow(run):
@@ -300,29 +244,25 @@ def test_a_row_waits_for_a_fifth_of_a_second_at_most(tmp_path, at):
 
 
 @pytest.mark.parametrize("end", ["checkpoint", "interrupt", "error"])
-def test_rows_that_wait_are_kept(tmp_path, at, end):
+def test_rows_that_wait_are_kept(tmp_path, at, monkeypatch, end):
     def act(run):
         waiting = len(run.readings.waiting)
         assert waiting > 1
         seen.append(len(run.results.rows) + waiting)
         if end == "checkpoint":
             run.args.checkpoint_every = 1e-9  # due after these steps
-            at(1, lambda run: seen.append(len(readCurve(str(tmp_path))["time_s"])))
+            at(1, lambda run: seen.append(len(readCurve(tmp_path)["time_s"])))
         elif end == "interrupt":
             interrupt(run)
         else:
             raise OSError("a pipe that broke")
 
     seen = []
-    monkey = pytest.MonkeyPatch()
-    monkey.setattr("masonry.run.readings.FLUSH_EVERY", 1e9)
+    monkeypatch.setattr("masonry.run.readings.FLUSH_EVERY", 1e9)
     at(60, act)
-    try:
+    with pytest.raises(OSError) if end == "error" else contextlib.nullcontext():
         run(tmp_path, *PUSH, "--no-vtk")
-    except OSError:
-        assert end == "error"
-    monkey.undo()
-    rows = len(readCurve(str(tmp_path))["time_s"])
+    rows = len(readCurve(tmp_path)["time_s"])
     if end == "checkpoint":
         assert seen[1] == seen[0] and rows > seen[0]
     else:
@@ -411,7 +351,8 @@ def test_options_that_say_the_same_are_welcome(broken):
 
 
 def test_what_cannot_be_taken_up_is_refused(broken, capsys):
-    def says(message):
+    def says(message, wall=SMALL):
+        assert refused(broken, wall=wall) == 2
         error = capsys.readouterr().err
         assert message in error and len(error.splitlines()) == 1
 
@@ -422,30 +363,22 @@ def test_what_cannot_be_taken_up_is_refused(broken, capsys):
         (dict(luck=1), "of another version of the plugin"),
     ):
         saveCheckpoint(str(kept), dict(text, at=dict(text["at"], **change)))
-        assert refused(broken) == 2
         says(message)
     kept.write_bytes(data)
-    assert refused(broken, wall=Wall(name="other")) == 2
-    says("holds a run of small, this is other")
-    assert refused(broken, wall=Wall(courses=7)) == 2
-    says("run.checkpoint is of another scene: its blocks are others")
-
+    says("holds a run of small, this is other", Wall(name="other"))
+    says("run.checkpoint is of another scene: its blocks are others", Wall(courses=7))
     middle = len(data) // 2
     flip = data[:middle] + bytes([data[middle] ^ 1]) + data[middle + 1 :]
     for wrong, message in (
         (data[:middle], "run.checkpoint is cut short: "),
         (flip, "run.checkpoint is damaged: "),
         (data.replace(b"format 3", b"format 9"), "of another version of the plugin"),
-        (b"", "run.checkpoint is cut short: 0 bytes"),
     ):
         kept.write_bytes(wrong)
-        assert refused(broken) == 2
         says(message)
     saveCheckpoint(str(kept), "a user's own")
-    assert refused(broken) == 2
     says("was not left by a run in stages")
     os.remove(kept)
-    assert refused(broken) == 2
     says("has no run.checkpoint, which a run leaves unless")
 
 

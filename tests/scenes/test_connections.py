@@ -4,11 +4,9 @@
 from hosted import *
 from masonry.scene import resuming
 from masonry.basics import GRAVITY
-from masonry.read import files
 from masonry.read.frames import readFrame
 from masonry.read.page.data import dataOf
 
-LEAN = ["--lean", "--checkpoint-every", "0"]
 WIDTH, DEPTH, HEIGHT = 0.4, 0.3, 1.6  # of a block [m]
 BLOCK = WIDTH, DEPTH, HEIGHT
 WEIGHT = WIDTH * DEPTH * HEIGHT * 2600 * GRAVITY  # [N]
@@ -19,23 +17,15 @@ def refused(text):
     return pytest.raises((Refused, ValueError), match=re.escape(text))
 
 
+STONE = materials.dry(5.0, normalStiffness=1e11)
+
+
 def block(tmp_path, *words, **settings):
     """A stiff block, which cannot slide on what it stands on."""
-    words = [*LEAN, "--out", str(tmp_path / "results"), *words]
-    stone = materials.dry(5.0, normalStiffness=1e11)
-    return Scene("block", bricks.stack(1, BLOCK), stone, arguments=words, **settings)
+    return lean(tmp_path, bricks.stack(1, BLOCK), STONE, *words, **settings)
 
 
-def wall(tmp_path, *words, out="results", **settings):
-    """A dry wall of three courses, and its bricks."""
-    words = [*(words or LEAN), "--out", str(tmp_path / out)]
-    made = bricks.Wall(0.66, 0.243, halves=False)
-    scene = Scene("wall", made, materials.dry(0.6), arguments=words, **settings)
-    return scene, made
-
-
-def readCurve(folder):
-    return {name: np.array(values) for name, values in files.readCurve(folder).items()}
+WALL = bricks.Wall(0.66, 0.243, halves=False)  # three courses
 
 
 def at(height, x=WIDTH / 2):
@@ -50,7 +40,6 @@ def test_limit_analysis_has_the_tie(tmp_path):
     found = scene.bound(towards=(1, 0, 0))
     expected = (WEIGHT * WIDTH / 2 + force * level) / (WEIGHT * HEIGHT / 2)
     assert found["factor"] == pytest.approx(expected, rel=1e-4)
-    scene.finish()
 
 
 def pulled(tmp_path, *words, most=1.0, **properties):
@@ -62,7 +51,7 @@ def pulled(tmp_path, *words, most=1.0, **properties):
     scene.settle()
     scene.push(top, most, direction=(0, 0, 1))
     scene.finish()
-    return readCurve(tmp_path / "results"), tie, readRun(tmp_path / "results")
+    return arrays(tmp_path), tie, readRun(tmp_path)["ties"][0]
 
 
 def test_a_tie_is_elastic_then_yields(tmp_path, capsys):
@@ -71,11 +60,13 @@ def test_a_tie_is_elastic_then_yields(tmp_path, capsys):
     moved = rows["tie0_elongation_mm"]
     expected = np.minimum(stiffness * 1e-6 * np.maximum(moved, 0), strength / 1e3)
     assert np.abs(rows["tie0_force_kN"] - expected).max() < 1e-8
-    assert run["ties"][0]["state"] == "yielded"
-    assert run["ties"][0]["plastic_elongation_m"] == pytest.approx(1e-3 * moved[-1] - strength / stiffness)  # fmt: skip
-    lost = strength * (1e-3 * moved[-1] - strength / stiffness)
-    assert rows["dissipated_connectors_J"][-1] == pytest.approx(lost, rel=1e-2)
-    assert rows["elastic_connectors_J"][-1] == pytest.approx(strength**2 / (2 * stiffness))  # fmt: skip
+    plastic = 1e-3 * moved[-1] - strength / stiffness
+    assert run["state"] == "yielded"
+    assert run["plastic_elongation_m"] == pytest.approx(plastic)
+    lost = pytest.approx(strength * plastic, rel=1e-2)
+    assert rows["dissipated_connectors_J"][-1] == lost
+    stored = pytest.approx(strength**2 / (2 * stiffness))
+    assert rows["elastic_connectors_J"][-1] == stored
     assert abs(rows["balance_error"]).max() < 1e-3
     assert capsys.readouterr().out.count("tie0 yields: between brick 0 at") == 1
 
@@ -85,20 +76,17 @@ def test_a_tie_breaks_at_its_strain(tmp_path, capsys):
     broken = rows["tie0_elongation_mm"] > 0.5
     assert (rows["tie0_force_kN"][broken] == 0).all() and broken.any()
     assert rows["tie0_force_kN"].max() == pytest.approx(2.0, rel=0.1)
-    assert rows["dissipated_connectors_J"][-1] == pytest.approx(0.5 * 4e6 * 0.5e-3**2, rel=0.02)  # fmt: skip
-    assert run["ties"][0]["state"] == "broken" and tie.force == 0
+    lost = pytest.approx(0.5 * 4e6 * 0.5e-3**2, rel=0.02)
+    assert rows["dissipated_connectors_J"][-1] == lost
+    assert run["state"] == "broken" and tie.force == 0
     assert abs(rows["balance_error"]).max() < 0.01
     assert "tie0 breaks" in capsys.readouterr().out
 
 
-def test_a_checkpoint_may_know_more_ties_that_yielded_than_have_yielded_so_far(
-    tmp_path,
-):
+def test_a_checkpoint_may_know_more_ties_that_yielded_than_have_so_far(tmp_path):
     """A run that is resumed gets the state in which its stage began, and then that of the checkpoint."""
-    words = ["--lean", "--out", str(tmp_path)]
-    scene = Scene("tie", bricks.stack(2, (0.3, 0.3, 0.2)), materials.dry(), arguments=words)  # fmt: skip
-    scene.platen("bottom")
-    scene.tie((0.15, 0.15, 0.3), anchor=(1, 0.15, 0.3), stiffness=1e6, strength=100)
+    scene = standing(tmp_path, WALL)
+    scene.tie(3, anchor=(-1, 0.15, 0.2), stiffness=1e6, strength=100)
     scene.begin()
     said = scene.model.connectors.reported
     states = []
@@ -109,7 +97,6 @@ def test_a_checkpoint_may_know_more_ties_that_yielded_than_have_yielded_so_far(
     for state in states:
         resuming.putState(scene, state)
         assert resuming.stateOf(scene) == state
-    scene.finish()
 
 
 def test_prestress_grows_in_settle_and_its_work_is_counted(tmp_path):
@@ -118,18 +105,17 @@ def test_prestress_grows_in_settle_and_its_work_is_counted(tmp_path):
     scene.platen("bottom")
     scene.watch(0, "top")
     tie = scene.tie(at(HEIGHT), anchor=at(-0.5), stiffness=1e6, prestress=force)
-    assert scene.settle() == "at rest"
+    assert scene.settle() == AT_REST
     (joint,) = scene.model.interactions
     support = joint.phys.normalStiffness * WIDTH * DEPTH
     down = (force + WEIGHT) / (1e6 + support)
     assert tie.force == pytest.approx(force - 1e6 * down, rel=1e-4)
     scene.run(0.05, damping=0.5)
-    scene.finish()
-    rows = readCurve(tmp_path / "results")
-    pressed = -1e-3 * (WEIGHT + tie.force)
-    assert rows["base_force_z_kN"][-1] == pytest.approx(pressed, rel=1e-4)
-    stored = rows["elastic_connectors_J"][-1]
-    assert stored == pytest.approx(tie.force**2 / 2e6, rel=1e-4)
+    rows = scene.curve()
+    pressed = pytest.approx(-1e-3 * (WEIGHT + tie.force), rel=1e-4)
+    assert rows["base_force_z_kN"][-1] == pressed
+    stored = pytest.approx(tie.force**2 / 2e6, rel=1e-4)
+    assert rows["elastic_connectors_J"][-1] == stored
     assert rows["external_J"][-1] == pytest.approx(force**2 / 2e6, rel=0.02)
     assert abs(rows["balance_error"][-1]) < 1e-3
 
@@ -141,11 +127,11 @@ def test_columns_of_a_platen_on_springs(tmp_path):
     top = scene.handle(at(level), "top")
     scene.settle()
     scene.push(top, 0.05)
-    scene.finish()
-    rows = readCurve(tmp_path / "results")
-    height = level + 0.2  # over the springs, at the outer side of the platen
-    assert rows["base_spring_moment_y_kNm"][-1] == pytest.approx(rows["base_shear_kN"][-1] * height, rel=0.05)  # fmt: skip
-    assert rows["base_force_x_kN"][-1] == pytest.approx(rows["base_shear_kN"][-1], rel=1e-6)  # fmt: skip
+    rows = scene.curve()
+    shear = rows["base_shear_kN"][-1]
+    moment = shear * (level + 0.2)  # over the springs, at the outer side of the platen
+    assert rows["base_spring_moment_y_kNm"][-1] == pytest.approx(moment, rel=0.05)
+    assert rows["base_force_x_kN"][-1] == pytest.approx(shear, rel=1e-6)
     assert abs(rows["balance_error"]).max() < 1e-3
 
 
@@ -162,12 +148,8 @@ def test_a_spring_period_is_its_closed_form(tmp_path):
     scene.model.energy.given()
     period = 2 * math.pi * math.sqrt(mass / 4e5)
     scene.run(2 * period, damping=0.0)
-    scene.finish()
-    rows = readCurve(tmp_path / "results")
-    moved, times = rows["base_x_mm"], rows["time_s"]
+    moved, times = scene.curve()["base_x_mm"], scene.curve()["time_s"]
     assert moved.max() == pytest.approx(10 * period / (2 * math.pi), rel=0.01)
-    ups = [t for t, a, b in zip(times[1:], moved, moved[1:]) if a < 0 <= b]
-    assert len(ups) >= 1
     downs = [t for t, a, b in zip(times[1:], moved, moved[1:]) if a > 0 >= b]
     assert downs[1] - downs[0] == pytest.approx(period, rel=0.02)
 
@@ -178,9 +160,9 @@ def test_a_tie_sets_the_time_step_where_it_is_stiffest(tmp_path):
         scene = block(tmp_path / str(n))
         scene.platen("bottom")
         scene.tie(at(1.2), anchor=at(1.2, -3.0), stiffness=stiffness)
-        assert scene.settle() == "at rest"
+        assert scene.settle() == AT_REST
         limits.append(scene.model.scheme.limit)
-        scene.finish()
+        letGo()
     mass = WEIGHT / GRAVITY
     assert limits[1] < 2 / math.sqrt(1e13 / mass) * 1.35 < 0.1 * limits[0]
 
@@ -190,13 +172,10 @@ def test_a_tie_sets_the_time_step_where_it_is_stiffest(tmp_path):
     [
         ("tie", dict(), "tie: give either other or anchor"),
         ("tie", dict(other=BASE, prestress=5, slack=0.1), "exclude each other"),
-        (
-            "tie",
-            dict(other=BASE, prestress=50, strength=20),
-            "below its strength, 20 N",
-        ),
+        ("tie", dict(other=BASE, prestress=50, strength=20), "its strength, 20 N"),
         ("tie", dict(other=0), "are on one brick"),
         ("tie", dict(anchor=(0, 0, 3), name="base"), "there is a 'base' already"),
+        ("settle", dict(other=BASE), "must come before the first stage"),
         ("spring", dict(stiffness=(0, 0, 0)), "a stiffness must be above 0"),
         ("spring", dict(stiffness=(0, 1e6, 0)), "the scene is in the x-z plane"),
         ("platen", dict(where="top", springs={"x": 1}), "for the one at the bottom"),
@@ -207,65 +186,55 @@ def test_what_makes_no_sense_is_refused(tmp_path, word, settings, text):
     scene = block(tmp_path)
     base = scene.platen("bottom")
     settings = {n: base if v == BASE else v for n, v in settings.items()}
-    usual = {"tie": {"stiffness": 1e6}}.get(word, {})
     place = () if word == "platen" else (at(1),)
+    if word == "settle":
+        scene.settle()
+    if word in ("tie", "settle"):
+        word, settings = "tie", {"stiffness": 1e6, **settings}
     with refused(text):
-        getattr(scene, word)(*place, **{**usual, **settings})
-
-
-def test_a_tie_in_a_later_stage_is_refused(tmp_path):
-    scene = block(tmp_path)
-    base = scene.platen("bottom")
-    scene.settle()
-    with refused("must come before the first stage"):
-        scene.tie(at(1), base, stiffness=1e6)
-    scene.finish()
+        getattr(scene, word)(*place, **settings)
 
 
 def test_no_energy_is_made_by_ties_in_a_shaken_wall(tmp_path):
     """Bars that slacken, yield and tighten again under a strong motion: the balance closes, and what is lost never falls."""
-    scene, made = wall(tmp_path, out="", plane=False)
-    scene.platen("bottom")
+    scene = standing(tmp_path, WALL, plane=False)
     rng = np.random.default_rng(5)
     for n in range(8):
-        one, other = rng.choice(len(made), 2, replace=False)
+        one, other = rng.choice(len(WALL), 2, replace=False)
         scene.tie(int(one), int(other), stiffness=10 ** rng.uniform(5, 7), strength=10 ** rng.uniform(0, 2),
                   compression=bool(n % 2))  # fmt: skip
     scene.settle()
     times = np.arange(0, 0.5, 0.005)
-    ended = scene.shake(list(9 * np.sin(30 * times)), every=0.005)
-    scene.finish()
-    rows = readCurve(tmp_path)
-    assert ended != COLLAPSED
+    assert scene.shake(list(9 * np.sin(30 * times)), every=0.005) != COLLAPSED
+    rows = scene.curve()
     assert abs(rows["balance_error"]).max() < 0.01
     lost = rows["dissipated_connectors_J"]
     assert lost[-1] > 0 and (np.diff(lost) > -1e-3 * lost[-1]).all()
 
 
 def test_fibres_cross_the_joints_of_one_face_only(tmp_path):
-    scene, made = wall(tmp_path, plane=False)
-    scene.platen("bottom")
-    both = scene.overlay((0, 1, 0), stiffness=1e7, strength=1e4, gauge=0.1)
-    joints = made.joints()
+    scene = standing(tmp_path, WALL, plane=False)
+    layer = dict(stiffness=1e7, strength=1e4, gauge=0.1)
+    both = scene.overlay((0, 1, 0), **layer)
+    joints = WALL.joints()
     assert len(both.ties) == 2 * len(joints)
     level = sum(abs(joint.normal[2]) > 0.9 for joint in joints)
-    upright = scene.overlay((0, -1, 0), stiffness=1e7, strength=1e4, gauge=0.1, fibres="vertical", name="other")  # fmt: skip
+    upright = scene.overlay((0, -1, 0), **layer, fibres="vertical", name="other")
     assert len(upright.ties) == 2 * level
     # a level crack crosses the layer over all of the wall's length, with the strength and the stiffness of that
     crack = [one for one in upright.ties if abs(one.place()[2] - 0.081) < 1e-9]
     assert sum(one.strength for one in crack) == pytest.approx(1e4 * 0.66)
     assert sum(one.stiffness for one in crack) == pytest.approx(1e7 * 0.66 / 0.1)
-    front = max(c[1] for block in made for c in block.corners)
+    front = max(c[1] for block in WALL for c in block.corners)
     assert {round(end.point[1] - front, 12) for t in both.ties for end in t.ends} == {0}
     with refused("no joint ends at a face"):
-        scene.overlay((0, 0, 1), stiffness=1e7, strength=1e4, gauge=0.1, fibres="vertical")  # fmt: skip
+        scene.overlay((0, 0, 1), **layer, fibres="vertical")
     scene.settle()
-    scene.finish()
 
 
 def test_a_layer_on_a_part_leaves_the_others_bare(tmp_path):
     left, right = (bricks.stack(3, (0.2, 0.1, 0.1)).moved(dx).named(name) for dx, name in ((0, "left"), (0.2, "right")))  # fmt: skip
-    scene = Scene("parts", left + right, materials.dry(0.6), plane=False, arguments=[*LEAN, "--out", str(tmp_path)])  # fmt: skip
+    scene = lean(tmp_path, left + right, plane=False)
     layer = lambda part: scene.overlay((0, -1, 0), stiffness=1e7, strength=1e4, gauge=0.1, part=part)  # fmt: skip
     # two bed joints of the part, and none of the joints between both parts
     assert {one.brick for tie in layer("right").ties for one in tie.ends} == {3, 4, 5}
@@ -276,16 +245,14 @@ def test_a_spring_between_two_blocks_turns_nothing_as_a_whole(tmp_path):
     """Its force and the opposite one have one line, at a point that is the middle of neither block: the moment at the base is that of
     the load alone."""
     twins = bricks.stack(1, BLOCK) + bricks.stack(1, BLOCK).moved(2 * WIDTH)
-    stone = materials.dry(5.0, normalStiffness=1e11)
-    scene = Scene("twins", twins, stone, arguments=[*LEAN, "--out", str(tmp_path)])
-    scene.platen("bottom")
+    scene = standing(tmp_path, twins, STONE)
     scene.load(scene.handle(at(1.5)), (400, 0, 0))
     spring = scene.spring(at(1.3), 1, stiffness=(1e8, 0, 0))
-    assert scene.settle() == "at rest"
-    scene.finish()
+    assert scene.settle() == AT_REST
     # its force would have an arm of 0.5 m between that point and the middle of the other block
     assert spring.force[0] < -100
-    assert readCurve(tmp_path)["base_M_y_kNm"][-1] == pytest.approx(1.5 * 0.4, rel=0.01)
+    moment = scene.curve()["base_M_y_kNm"][-1]
+    assert moment == pytest.approx(1.5 * 0.4, rel=0.01)
 
 
 def test_ends_that_a_script_moves_are_where_it_moved_them(tmp_path):
@@ -308,43 +275,38 @@ def test_ends_that_a_script_moves_are_where_it_moved_them(tmp_path):
     engine.updateAttrs({**twice, **of})
     O.step()
     assert engine.elongations[1] == engine.elongations[0] == tie.elongation
-    scene.finish()
 
 
 def test_ties_pull_the_same_with_functors(tmp_path):
     """Both ways to run the joints give the same forces at the same displacements."""
     found = []
     for functors in (False, True):
-        folder = tmp_path / str(functors)
-        scene, _ = wall(folder, functors=functors)
-        scene.platen("bottom")
+        scene = standing(tmp_path / str(functors), WALL, functors=functors)
         scene.tie(1, anchor=(-1, 0, 0.2), stiffness=3e6, prestress=200)
         scene.spring(3, stiffness=(1e5, 0, 0))
         top = scene.handle(3, "top")
         scene.settle()
         scene.push(top, 1)
-        scene.finish()
-        rows = readCurve(folder / "results")
+        rows = scene.curve()
         assert abs(rows["balance_error"]).max() < 1e-3
-        moved = rows["displacement_mm"]
-        at = lambda name: np.interp((0.3, 0.6, 0.9), moved, rows[name])
+        at = lambda n: np.interp((0.3, 0.6, 0.9), rows["displacement_mm"], rows[n])
         found.append([*at("tie0_force_kN"), *at("spring0_force_x_kN")])
+        letGo()
     assert found[0] == pytest.approx(found[1], rel=0.01)
     assert min(map(abs, found[0])) > 0.01
 
 
 def test_bricks_at_ties_of_deformable_walls_are_said_to_be_rigid(tmp_path, capsys):
-    scene, made = wall(tmp_path, *LEAN, "--blocks", "deformable")
-    scene.platen("bottom")
+    scene = standing(tmp_path, WALL, blocks="deformable")
     scene.tie(1, anchor=(-1, 0, 0.2), stiffness=1e6)
     scene.settle()
-    scene.finish()
-    assert f"1 of {len(made)} bricks are rigid, because ties" in capsys.readouterr().out
+    assert f"1 of {len(WALL)} bricks are rigid, because ties" in capsys.readouterr().out
 
 
 def test_frames_have_ties_and_springs(tmp_path):
     """The file of a frame for ParaView, and the page that draws it, against what the engines say."""
-    scene, _ = wall(tmp_path, "--checkpoint-every", "0", out="")
+    scene = lean(tmp_path, WALL)
+    scene.args.lean = False
     scene.platen("bottom", springs={"x": 1e7})
     tie = scene.tie(3, anchor=(-1, 0, 0.2), stiffness=3e6, strength=100)
     scene.tie(2, 3, stiffness=3e6)
@@ -373,10 +335,9 @@ def test_frames_have_ties_and_springs(tmp_path):
 
 @pytest.mark.parametrize("stiffness", [2e5, 1e8])
 def test_a_structure_that_sinks_into_soft_soil_has_not_fallen(tmp_path, stiffness):
-    scene = Scene("soil", bricks.stack(4, (0.5, 0.5, 0.5)), materials.dry(0.6, density=2000), arguments=[*LEAN, "--out", str(tmp_path)])  # fmt: skip
-    scene.platen("bottom", springs={"z": stiffness})
-    assert scene.settle() == "at rest"
-    weight = 9.81 * sum(O.bodies[body].state.mass for body in [*scene.model.ids, scene.targets["base"].body])  # fmt: skip
+    scene = lean(tmp_path, bricks.stack(4, (0.5, 0.5, 0.5)))
+    base = scene.platen("bottom", springs={"z": stiffness})
+    assert scene.settle() == AT_REST
+    mass = sum(O.bodies[body].state.mass for body in [*scene.model.ids, base.body])
     sunk = -1e-3 * scene.curve()["base_z_mm"][-1]
-    assert sunk * stiffness == pytest.approx(weight, rel=0.01)
-    scene.finish()
+    assert sunk * stiffness == pytest.approx(GRAVITY * mass, rel=0.01)

@@ -36,7 +36,7 @@ def test_the_theory_of_dominoes_has_the_speed_of_a_single_impact():
     assert speeds[0] == pytest.approx((0.0275 / 0.02) * 0.048 * first, rel=0.1)
 
 
-def test_the_program_prints_rows_and_fails_where_a_limit_is_missed(tmp_path, capsys, monkeypatch):  # fmt: skip
+def test_the_program_prints_rows_and_misses(tmp_path, capsys, monkeypatch):
     good = [Row("a [m]", "b", 1.001, 1.0, 0.01), Row("c", "d", 2.0, (1, 3))]
     bad = [Row("a", "b", 1.2, 1.0, 0.01), Row("c", "d", 0.2, limit=0.1, misses="why")]
     monkeypatch.setattr(contact, "CASES", {"good": lambda quick: good})

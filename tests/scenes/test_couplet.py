@@ -12,7 +12,7 @@ def couplet(request, runScene):
     def run(path, *options):
         words = ("--path", path, "--blocks", request.param, "--no-vtk", *options)
         _, out = runScene("couplet", *words)
-        return readCurve(out), readRun(out)
+        return arrays(out), readRun(out)
 
     return run
 
@@ -34,11 +34,10 @@ def test_shear_peaks_on_the_coulomb_line_and_keeps_friction(couplet, stress):
     peak, residual = 0.11 - 0.43 * stress, -0.43 * stress
     assert run["peak_shear_stress_MPa"] == pytest.approx(peak, rel=0.005)
     assert run["end_shear_stress_MPa"] == pytest.approx(residual, rel=0.005)
-    shear = np.array(curve["shear_stress_MPa"])
-    above = 1e3 * trapezoid(shear - residual, curve["slide_mm"])  # J/m²
-    above += 1e6 * residual**2 / 2 / 2.17e10
+    above = 1e3 * trapezoid(curve["shear_stress_MPa"] - residual, curve["slide_mm"])
+    above += 1e6 * residual**2 / 2 / 2.17e10  # J/m²
     assert above == pytest.approx(160 * peak / 0.11, rel=0.02)
-    assert np.allclose(np.array(curve["normal_stress_MPa"])[-1000:], stress, rtol=1e-3)
+    assert np.allclose(curve["normal_stress_MPa"][-1000:], stress, rtol=1e-3)
 
 
 def test_closure_peaks_at_fc_and_ends_at_the_residual(couplet):
@@ -52,7 +51,7 @@ def test_closure_peaks_at_fc_and_ends_at_the_residual(couplet):
 
 def test_shear_after_closure_stays_inside_the_cap(couplet):
     curve, run = couplet("closure-shear", "--until", "2", "--rate", "20")
-    sigma, tau = (np.array(curve[f"{n}_stress_MPa"]) for n in ("normal", "shear"))
+    sigma, tau = curve["normal_stress_MPa"], curve["shear_stress_MPa"]
     assert np.all(np.sqrt(sigma**2 + 9 * tau**2) <= 7.55 * 1.001)
     assert tau.max() > 1.5
 

@@ -13,10 +13,8 @@ LEAN = ["--lean", "--checkpoint-every", "0"]
 @pytest.mark.parametrize("scaling", [1, 25])
 def test_the_period_of_a_brick_between_two_joints_is_its_closed_form(tmp_path, scaling):
     """The joints above and below it turn it by opposite moments, so it only slides."""
-    words = [*LEAN, "--out", str(tmp_path), "--density-scaling", str(scaling)]
-    args, size = parsed(*words), (0.5, 0.1, 0.5)  # [m]
-    scene = Scene("brick", bricks.stack(1, size), materials.calciumSilicate(), arguments=args)  # fmt: skip
-    scene.platen("bottom")
+    size, stones = (0.5, 0.1, 0.5), materials.calciumSilicate()  # [m]
+    scene = standing(tmp_path, bricks.stack(1, size), stones, density_scaling=scaling)
     top = scene.platen("top", rotation="held", drive="x")
     scene.press(top, 0.5e6)
     scene.settle()
@@ -30,7 +28,6 @@ def test_the_period_of_a_brick_between_two_joints_is_its_closed_form(tmp_path, s
     assert found == pytest.approx(expected, rel=0.003)
     assert saveScene("null") == before
     assert firstPeriod(model, Vector3.UnitX, 0.5 * expected) is None
-    scene.finish()
 
 
 #: A clamped wall that is pushed fast begins to crack within the first quarter of its peak, and then seems softer.
@@ -38,14 +35,11 @@ def test_the_period_of_a_brick_between_two_joints_is_its_closed_form(tmp_path, s
 def test_the_initial_stiffness_hardly_depends_on_the_rate(tmp_path, turns, within):
     found = {}
     wall = type(SMALL)(courses=12, length=1.32, loadHeight=1.1 if turns else None)
-    for rate in (20, 100):
-        out = tmp_path / str(rate)
-        carryOut(
-            wall,
-            parsed(*LEAN, "--out", str(out), "--rate", str(rate), "--until", "1"),
-        )
-        found[rate] = readRun(out)
-    slow, fast = found[20], found[100]
+    for rate in ("20", "100"):
+        words = ["--out", str(tmp_path), "--rate", rate, "--until", "1"]
+        carryOut(wall, parsed(*LEAN, *words))
+        found[rate] = readRun(tmp_path)
+    slow, fast = found.values()
     stiffness = "initial_stiffness_kN_per_mm"
     assert fast[stiffness] == pytest.approx(slow[stiffness], rel=within)
     assert fast["first_period_s"] == slow["first_period_s"] > 0
@@ -53,9 +47,8 @@ def test_the_initial_stiffness_hardly_depends_on_the_rate(tmp_path, turns, withi
 
 
 def test_a_push_without_a_period_says_so(tmp_path, capsys):
-    carryOut(
-        SMALL, parsed(*LEAN, "--out", str(tmp_path), "--rate", "100", "--until", "0.02")
-    )
+    words = ["--out", str(tmp_path), "--rate", "100", "--until", "0.02"]
+    carryOut(SMALL, parsed(*LEAN, *words))
     assert "no first period up to 0.2 ms was found" in capsys.readouterr().out
     assert readRun(tmp_path)["first_period_s"] is None
 

@@ -28,17 +28,17 @@ def signalled():
     """Function that sends this process a signal when something is so; returns the moments at which signals were sent."""
     sent, threads = [], []
 
-    def watch(number, isSo):
-        def act():
-            for _ in range(1000):
-                if isSo():
-                    time.sleep(0.1)
-                    sent.append(time.monotonic())
-                    os.kill(os.getpid(), number)
-                    return
-                time.sleep(0.01)
+    def act(number, isSo):
+        for _ in range(1000):
+            if isSo():
+                time.sleep(0.1)
+                sent.append(time.monotonic())
+                os.kill(os.getpid(), number)
+                return
+            time.sleep(0.01)
 
-        threads.append(threading.Thread(target=act))
+    def watch(*words):
+        threads.append(threading.Thread(target=act, args=words))
         threads[-1].start()
         return sent
 
@@ -47,10 +47,13 @@ def signalled():
         thread.join()
 
 
+def started(out, *words):
+    """Exit status of a short run."""
+    return carryOut(SMALL, parsed(*SHORT, *words, "--out", str(out)))
+
+
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
-def test_a_signal_ends_limit_analysis_and_the_run_says_so(
-    tmp_path, undrawn, monkeypatch, signalled, number
-):
+def test_a_signal_ends_a_bound(tmp_path, undrawn, monkeypatch, signalled, number):
     asked, solved = tmp_path / "asked", solver._solved
 
     def slow(*words):
@@ -59,19 +62,18 @@ def test_a_signal_ends_limit_analysis_and_the_run_says_so(
 
     monkeypatch.setattr(solver, "_solved", slow)
     sent = signalled(number, asked.exists)
-    assert carryOut(SMALL, parsed(*SHORT, "--out", str(tmp_path))) == 130
+    assert started(tmp_path) == 130
     assert time.monotonic() - sent[0] < PROMPT
     gone = f"/proc/{asked.read_text()}"
     time.sleep(0.2)  # a process that was killed with its parent needs a moment to end
     assert not os.path.exists(gone) or "(zombie)" in open(gone + "/status").read()
-    run = readRun(str(tmp_path))
+    run = readRun(tmp_path)
     assert run["interrupted"] and run["bounds"][0]["note"] == GIVEN_UP
     monkeypatch.setattr(solver, "_solved", solved)
     assert carryOut(SMALL, parsed("--resume", str(tmp_path))) == 0
-    assert readRun(str(tmp_path))["bounds"][0]["note"] == GIVEN_UP  # its stage was over
-    assert carryOut(SMALL, parsed(*SHORT, "--out", str(tmp_path / "whole"))) == 0
-    curves = [folder / "curve.csv" for folder in (tmp_path, tmp_path / "whole")]
-    assert curves[0].read_bytes() == curves[1].read_bytes()
+    assert readRun(tmp_path)["bounds"][0]["note"] == GIVEN_UP  # its stage was over
+    assert started(tmp_path / "whole") == 0
+    assert readCurve(tmp_path) == readCurve(tmp_path / "whole")
 
 
 def test_a_signal_ends_drawing(tmp_path, monkeypatch, signalled, capsys):
@@ -81,25 +83,22 @@ def test_a_signal_ends_drawing(tmp_path, monkeypatch, signalled, capsys):
     monkeypatch.setattr(outcome.sys, "executable", str(slow))
     drawing = lambda: begun.exists() and Scene.present.finished
     sent = signalled(signal.SIGTERM, drawing)
-    out = tmp_path / "out"
-    assert carryOut(SMALL, parsed(*SHORT, "--out", str(out))) == 130
+    assert started(tmp_path / "out") == 130
     assert time.monotonic() - sent[0] < PROMPT
     assert "the figures are not drawn; /usr/bin" in capsys.readouterr().out
-    assert readRun(str(out))["ended"] == "done"
+    assert readRun(tmp_path / "out")["ended"] == "done"
 
 
 def test_a_drawing_program_that_is_missing(tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(outcome.sys, "executable", "/nowhere/python3")
-    assert carryOut(SMALL, parsed(*SHORT, "--out", str(tmp_path))) == 1
-    said = capsys.readouterr()
-    assert "the figures are not drawn: No such file or directory; what" in said.err
-    assert readRun(str(tmp_path))["peak_base_shear_kN"] > 0
+    assert started(tmp_path) == 1
+    said = "the figures are not drawn: No such file or directory; what"
+    assert said in capsys.readouterr().err
+    assert readRun(tmp_path)["peak_base_shear_kN"] > 0
 
 
 @pytest.mark.parametrize("steps", [0, 300])
-def test_too_little_memory_is_one_sentence(
-    tmp_path, monkeypatch, undrawn, capsys, steps
-):
+def test_too_little_memory(tmp_path, monkeypatch, undrawn, capsys, steps):
     take = Run._take
 
     def full(run, count, one):
@@ -108,9 +107,9 @@ def test_too_little_memory_is_one_sentence(
         take(run, count, one)
 
     monkeypatch.setattr(Run, "_take", full)
-    assert carryOut(SMALL, parsed(*SHORT, "--out", str(tmp_path))) == 1
+    assert started(tmp_path) == 1
     assert capsys.readouterr().err.startswith(FULL + "; what was written before")
-    assert readRun(str(tmp_path))["error"] == FULL
+    assert readRun(tmp_path)["error"] == FULL
 
 
 #: Lets a process have 100 MB more than it has.
@@ -146,17 +145,16 @@ def test_too_little_memory_for_numerical_libraries_is_one_sentence(program):
 
 
 def test_a_clock_that_jumps_changes_nothing(tmp_path, monkeypatch, undrawn):
-    words = [*SHORT, "--checkpoint-every", "5"]
-    assert carryOut(SMALL, parsed(*words, "--out", str(tmp_path / "one"))) == 0
+    folders, words = [tmp_path / "one", tmp_path / "two"], ("--checkpoint-every", "5")
+    assert started(folders[0], *words) == 0
     now = iter(range(10**9, 0, -(10**5)))
     monkeypatch.setattr(time, "time", lambda: float(next(now)))
     began = time.monotonic()
-    assert carryOut(SMALL, parsed(*words, "--out", str(tmp_path / "two"))) == 0
-    one, two = (readRun(str(tmp_path / name)) for name in ("one", "two"))
+    assert started(folders[1], *words) == 0
+    one, two = map(readRun, folders)
     assert one["bounds"] == two["bounds"] and one["steps"] == two["steps"]
     assert 0 < two["wall_clock_s"] <= time.monotonic() - began
-    curves = [(tmp_path / name / "curve.csv").read_bytes() for name in ("one", "two")]
-    assert curves[0] == curves[1]
+    assert readCurve(folders[0]) == readCurve(folders[1])
 
 
 STUDY = """

@@ -2,40 +2,42 @@
 """Scenes whose collapse is followed to the ground: what they say of it, against what stands in YADE, and how they go on."""
 
 from hosted import *
+import functools
 from masonry.basics import GRAVITY
-from masonry.read import files
 from masonry.read.elevation import frameOfCracks
 from masonry.read.frames import readFrame
 from masonry.scene.stages import falling
 
 DENSITY = 2200
 SIDE = 0.3  # [m] of a cubic half stone
-LEAN = ["--checkpoint-every", "0", "--no-vtk"]
+#: Gives the folder, blocks, stones and words of a scene whose collapse is followed.
+following = functools.partial(lean, plane=False, collapse="follow")
 
 
-def column(tmp_path, *words, courses=4, **settings):
+def stones(friction=0.6, stiffness=2e9):
+    return materials.dry(friction, stiffness, density=DENSITY)
+
+
+def column(tmp_path, *words, **settings):
     """A narrow dry wall of six stones that can turn over along y."""
-    stones = materials.dry(0.6, 2e9, density=DENSITY)
-    wall = bricks.Wall(2 * SIDE, courses * SIDE, unit=(2 * SIDE, SIDE, SIDE), halves=False)  # fmt: skip
-    words = [*(words or LEAN), "--out", str(tmp_path / "results")]
-    scene = Scene("column", wall, stones, plane=False, arguments=words, **{"collapse": "follow", **settings})  # fmt: skip
+    wall = bricks.Wall(2 * SIDE, 4 * SIDE, unit=(2 * SIDE, SIDE, SIDE), halves=False)
+    scene = following(tmp_path, wall, stones(), *words, **settings)
     scene.platen("bottom")
     return scene
 
 
 @pytest.fixture(scope="module")
 def fallen(tmp_path_factory):
-    """The column after an acceleration that it cannot bear: the scene, and its rows."""
-    scene = column(tmp_path_factory.mktemp("fallen"), "--checkpoint-every", "0")
+    """The column after an acceleration that it cannot bear, and its rows."""
+    scene = column(tmp_path_factory.mktemp("fallen"))
+    scene.args.lean = False  # frames are compared
     scene.settle()
     scene.lasted = scene.lean(0.4, towards=(0, 1, 0))
     states = [O.bodies[b].state for b in scene.model.ids]
     scene.places = [np.array(s.pos) for s in states]
     scene.turns = [s.ori * s.refOri.conjugate() for s in states]
-    scene.corners = scene.model.description.bricks
     scene.finish()
-    rows = {n: np.array(v) for n, v in files.readCurve(scene.results.directory).items()}
-    return scene, rows
+    return scene, arrays(scene.results.directory)
 
 
 def answer(scene, name):
@@ -64,10 +66,9 @@ def test_the_base_section_has_what_contacts_carry(fallen):
     """All that stands on the base passes through it, whether by joints or by contacts, and later to the ground. The force of a
     joint that turns is along the mean of both faces, hence 1e-4 kN."""
     _, rows = fallen
-    carried = rows["base_force_z_kN"] + rows["ground_force_z_kN"]
-    assert rows["base_N_kN"] == pytest.approx(carried, abs=1e-4)
-    along = rows["base_force_y_kN"] + rows["ground_force_y_kN"]
-    assert rows["base_V_y_kN"] == pytest.approx(along, abs=1e-4)
+    for force, axis in (("N", "z"), ("V_y", "y")):
+        carried = rows[f"base_force_{axis}_kN"] + rows[f"ground_force_{axis}_kN"]
+        assert rows[f"base_{force}_kN"] == pytest.approx(carried, abs=1e-4)
     assert rows["handed_joints"][-1] > 0
 
 
@@ -83,8 +84,7 @@ def test_energies_of_the_fall(fallen):
 
 def test_the_table_has_a_row_for_every_fallen_block(fallen):
     scene, _ = fallen
-    with open(scene.results.path("fallen.csv")) as file:
-        rows = list(csv.DictReader(file))
+    rows = list(csv.DictReader(open(scene.results.path("fallen.csv"))))
     assert [int(row["block"]) for row in rows] == list(range(6))
     first = min(float(row["fallen_at_s"]) for row in rows)
     assert answer(scene, "first_fall") == pytest.approx(first, rel=1e-8)
@@ -105,10 +105,9 @@ def test_the_table_has_a_row_for_every_fallen_block(fallen):
 def test_cracks_are_those_of_the_moment_when_the_collapse_was_noticed(fallen):
     scene, _ = fallen
     folder = scene.results.directory
-    run = readRun(folder)
-    number = frameOfCracks(run, folder)
+    number = frameOfCracks(readRun(folder), folder)
     noticed = answer(scene, "noticed_at")
-    assert files.readCurve(folder)["time_s"][-1] > noticed + 1
+    assert readCurve(folder)["time_s"][-1] > noticed + 1
     moved = readFrame(folder, "blocks", number)["displacement"]
     assert 0 < np.abs(moved).max() < SIDE / 2
     assert np.abs(readFrame(folder, "blocks", -1)["displacement"]).max() > SIDE
@@ -121,15 +120,14 @@ def test_an_acceleration_that_the_column_bears_leaves_it_as_without_follow(tmp_p
         scene = column(tmp_path, collapse=collapse)
         scene.settle()
         time = O.dt
-        scene.lean(0.1, towards=(0, 1, 0))
-        found.append((time, scene.results.column("gravity_J"), [list(O.bodies[b].state.pos) for b in scene.model.ids]))  # fmt: skip
-        scene.finish()
+        assert scene.lean(0.1, towards=(0, 1, 0)) == AT_REST
+        found.append((time, scene.results.column("gravity_J"), bits()))
     assert found[0][1:] == found[1][1:] or found[0][0] != found[1][0]
 
 
 def test_a_shaken_wall_goes_on_while_its_top_falls(tmp_path):
     """The record ends as it would, the stones below stay, and the fall is reported."""
-    scene = column(tmp_path, courses=4)
+    scene = column(tmp_path)
     scene.settle()
     pulse = [0, 12.0, 12.0, 12.0, 0, -12.0, -12.0, 0] + 20 * [0.0]
     assert scene.shake(pulse, 0.05, direction=(0, 1, 0)) == COLLAPSED
@@ -142,7 +140,6 @@ def test_a_shaken_wall_goes_on_while_its_top_falls(tmp_path):
     damped, noticed = scene.results.column("damping_J"), answer(scene, "noticed_at")
     shaken = max(d for d, t in zip(damped, times) if t <= noticed)
     assert shaken == pytest.approx(damped[1], rel=1e-6) and damped[-1] > 2 * shaken
-    scene.finish()
 
 
 @pytest.mark.parametrize(
@@ -156,36 +153,29 @@ def test_a_shaken_wall_goes_on_while_its_top_falls(tmp_path):
 )
 def test_what_does_not_go_together_is_refused(tmp_path, capsys, settings, message):
     with pytest.raises((Refused, SystemExit)) as end:
-        scene = column(tmp_path, **settings)
-        scene.settle()
+        column(tmp_path, **settings).settle()
     assert message in str(end.value) + capsys.readouterr().err
 
 
 def test_contact_takes_the_bed_joint_and_what_set_says(tmp_path, capsys):
-    scene = column(tmp_path, *LEAN, "--set", "contact.friction=0.3", "--set", "contact.restitution=0.2")  # fmt: skip
-    scene.settle()
-    contacts = scene.model.contacts
-    assert (contacts.friction, contacts.restitution) == (0.3, 0.2)
-    assert contacts.normalStiffness == 2e9 and contacts.tangentialRatio == pytest.approx(0.4)  # fmt: skip
-    scene.finish()
-    scene = column(tmp_path)
-    scene.settle()
-    assert scene.model.contacts.friction == 0.6
-    scene.finish()
+    for words, friction in (["--set=contact.restitution=0.2"], 0.6), (["--set=contact.friction=0.3"], 0.3):  # fmt: skip
+        scene = column(tmp_path, *words)
+        scene.begin()
+        contacts = scene.model.contacts
+        assert (contacts.friction, contacts.normalStiffness) == (friction, 2e9)
+        assert contacts.tangentialRatio == pytest.approx(0.4)
+        assert (contacts.restitution == 0.2) == (friction == 0.6)
+        letGo()
     with pytest.raises(SystemExit):
-        column(tmp_path, *LEAN, "--set", "contact.friction=11").settle()
-    assert (
-        "contact: friction 11.0 - must be at least 0 and at most 10"
-        in capsys.readouterr().err
-    )
+        column(tmp_path, "--set=contact.friction=11").settle()
+    assert "friction 11.0 - must be at least 0 and at most 10" in capsys.readouterr().err  # fmt: skip
 
 
 def test_a_support_that_moved_stands_still_in_the_fall(tmp_path):
     """The right one of two stones on which a third one lies is drawn from under it."""
-    words = [*LEAN, "--out", str(tmp_path / "results")]
-    sides = bricks.block((0, 0, 0), (SIDE, SIDE, SIDE)) + bricks.block((1.5 * SIDE, 0, 0), (2.5 * SIDE, SIDE, SIDE))  # fmt: skip
+    side = bricks.block((0, 0, 0), (SIDE, SIDE, SIDE))
     lintel = bricks.block((0.8 * SIDE, 0, SIDE), (1.7 * SIDE, SIDE, 1.5 * SIDE))
-    scene = Scene("lintel", sides + lintel, materials.dry(0.3, 1e8, density=DENSITY), plane=False, collapse="follow", allowGaps=True, arguments=words)  # fmt: skip
+    scene = following(tmp_path, side + side.moved(1.5 * SIDE) + lintel, stones(0.3, 1e8), allowGaps=True)  # fmt: skip
     scene.hold(0, name="still")
     moved = scene.hold(1, name="ground")  # a name that the ground itself would have
     scene.settle()
@@ -195,7 +185,6 @@ def test_a_support_that_moved_stands_still_in_the_fall(tmp_path):
     rows = [n for n, t in enumerate(column("time_s")) if t > answer(scene, "noticed_at") + 0.01]  # fmt: skip
     assert np.ptp([column("ground_x_mm")[n] for n in rows]) == 0
     assert column("ground2_force_z_kN")[-1] < 0 and answer(scene, "fallen_blocks") == 1
-    scene.finish()
 
 
 def test_the_ground_where_the_scene_has_it(tmp_path):
@@ -208,7 +197,6 @@ def test_the_ground_where_the_scene_has_it(tmp_path):
     # on the low side, too, and along x, to the farthest corner
     reach = -min(c[0] for c in corners)
     assert answer(scene, "rubble_reach") == pytest.approx(reach, rel=1e-3) and reach > SIDE  # fmt: skip
-    scene.finish()
     with pytest.raises(Refused, match="ground: level 1 m must be at most -0.2 m"):
         column(tmp_path).ground(1.0)
     with pytest.raises(Refused, match="only a scene with collapse='follow'"):
@@ -219,8 +207,7 @@ def test_a_tilt_stays_when_the_block_that_it_overturned_lies(tmp_path):
     """It turns over at 14°, where the tangent is 0.25, and lies on the slope, since friction is 0.6: the force on the ground has
     that share along y to the last, and all of the weight. After an acceleration, which ends, it would press straight down.
     """
-    made, stone = bricks.stack(1, (SIDE, SIDE, 4 * SIDE)), materials.dry(0.6, 2e9, density=DENSITY)  # fmt: skip
-    scene = Scene("slope", made, stone, plane=False, collapse="follow", arguments=[*LEAN, "--out", str(tmp_path)])  # fmt: skip
+    scene = following(tmp_path, bricks.stack(1, (SIDE, SIDE, 4 * SIDE)), stones())
     scene.platen("bottom")
     scene.settle()
     assert scene.tilt(20, towards=(0, 1, 0), rate=5, within=0.3) == COLLAPSED
@@ -228,10 +215,8 @@ def test_a_tilt_stays_when_the_block_that_it_overturned_lies(tmp_path):
     y, z = (1e3 * sum(scene.results.column(f"{name}_force_{axis}_kN")[-1] for name in ("base", "ground")) for axis in "yz")  # fmt: skip
     slope = scene.results.column("load_factor")[-1]
     assert slope > 0.25 and y == pytest.approx(-slope * z, rel=0.01)
-    assert math.hypot(y, z) == pytest.approx(
-        4 * SIDE**3 * DENSITY * GRAVITY, rel=0.01
-    )
-    scene.finish()
+    weight = 4 * SIDE**3 * DENSITY * GRAVITY
+    assert math.hypot(y, z) == pytest.approx(weight, rel=0.01)
 
 
 def test_without_follow_the_run_ends_where_it_fell(tmp_path):
@@ -240,14 +225,13 @@ def test_without_follow_the_run_ends_where_it_fell(tmp_path):
     assert scene.lean(0.4, towards=(0, 1, 0)) == COLLAPSED
     assert scene.ended == COLLAPSED and "ground" not in scene.targets
     assert not [a for a in scene.answers if a["stage"] == "fall"]
-    scene.finish()
 
 
 def test_what_is_released_keeps_its_momentum_and_nothing_brakes_its_flight(tmp_path):
     """A block without joints, which falls by half a metre; the settling brakes it until its collapse is noticed."""
     made = bricks.block((0, 0, 0.5), (SIDE, SIDE, 0.7)) + bricks.stack(2, (SIDE,) * 3).moved(dx=3)  # fmt: skip
     for stage in ("run", "settle"):
-        scene = Scene("flight", made, materials.dry(0.6, density=2000), allowGaps=True, collapse="follow", arguments=["--lean", "--out", str(tmp_path / stage)])  # fmt: skip
+        scene = following(tmp_path / stage, made, stones(), plane=None, allowGaps=True)
         scene.ground(0.0)
         block = scene.hold(0, name="block")
         scene.hold(1, name="pier")
@@ -261,4 +245,3 @@ def test_what_is_released_keeps_its_momentum_and_nothing_brakes_its_flight(tmp_p
         assert max(abs(v) for v in column("balance_error")) < 1e-3
         kinetic = max(fall["most"] for fall in scene.model.fallen().values())
         assert kinetic == pytest.approx(energy - braked, rel=0.01)
-        scene.finish()

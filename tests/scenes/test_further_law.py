@@ -95,9 +95,7 @@ def start(environment, *words):
     return subprocess.Popen(command, env=environment, stdout=subprocess.DEVNULL)
 
 
-def test_a_wall_of_the_law_runs_and_goes_on_from_a_checkpoint_bit_for_bit(
-    environment, tmp_path
-):
+def test_a_wall_of_the_law_goes_on_from_a_checkpoint(environment, tmp_path):
     words = "--joints coulomb --until 0.3 --rate 4 --vtk-every 0.1".split()
     kinds = ("support", "bed", "head", "crack")
     words += [f"--set={kind}.tensileStrength=0" for kind in kinds]
@@ -108,7 +106,7 @@ def test_a_wall_of_the_law_runs_and_goes_on_from_a_checkpoint_bit_for_bit(
         assert process.poll() is None
         time.sleep(0.01)
     process.kill()
-    assert process.wait() == -signal.SIGKILL
+    process.wait()
     assert start(environment, "--resume", broken).wait() == 0
     assert len(readRun(broken)["resumed_at_s"]) == 1
     assert files(broken) == files(whole)
@@ -126,25 +124,16 @@ def test_a_wall_of_the_law_runs_and_goes_on_from_a_checkpoint_bit_for_bit(
 
 def test_the_law_runs_in_a_study(environment, tmp_path):
     (tmp_path / "study.py").write_text(STUDY)
-    out = tmp_path / "study"
-    command = [
-        sys.executable,
-        "-m",
-        "masonry.study",
-        tmp_path / "study.py",
-        "--out",
-        out,
-    ]
-    run = subprocess.run(command, env=environment, capture_output=True, text=True)
+    command = [sys.executable, "-m", "masonry.study", "study.py", "--out", "study"]
+    settings = dict(cwd=tmp_path, env=environment, capture_output=True, text=True)
+    run = subprocess.run(command, **settings)
     assert run.returncode == 0, run.stdout + run.stderr
-    table = (out / "study.csv").read_text()
+    table = (tmp_path / "study" / "study.csv").read_text()
     assert "coulomb" in table and "softening" in table
 
 
 @pytest.mark.parametrize("script", [FUNCTORS, FALLING], ids=["functor", "collapse"])
-def test_the_law_has_a_functor_and_its_joints_are_handed_over(
-    environment, tmp_path, script
-):
+def test_the_law_has_a_functor_and_falls(environment, tmp_path, script):
     (tmp_path / "script.py").write_text(script)
     run = runProgram(str(tmp_path / "script.py"), env=environment, check=False)
     assert "DONE" in run.stdout, run.stdout + run.stderr

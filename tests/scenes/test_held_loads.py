@@ -13,18 +13,25 @@ STONE = materials.dry(friction=0.7, normalStiffness=1e11, density=2600)
 WEIGHT = 2600 * 9.81 * 0.3 * 0.3 * 0.6  # of the stack [N]
 
 
-def stack(folder, *words, blocks=None, **settings):
+def stack(folder, **settings):
     """Three stones, 0.3 m wide and 0.6 m high, on a base: the scene, and its highest stone."""
-    blocks = blocks or bricks.stack(3, (0.3, 0.3, 0.2))
-    words = ["--no-vtk", "--out", str(folder), *words]
-    scene = Scene("stones", blocks, STONE, arguments=words, **settings)
-    scene.platen("bottom")
-    return scene, scene.handle(len(blocks) - 1, name="stone")
+    scene = standing(folder, bricks.stack(3, (0.3, 0.3, 0.2)), STONE, **settings)
+    return scene, scene.handle(2, name="stone")
 
 
-def found(folder, name):
-    answers = readRun(str(folder))["answers"]
-    return [a["value"] for a in answers if a["name"] == name]
+def atRest(*where, **settings):
+    """The same after its settling."""
+    scene, stone = stack(*where, **settings)
+    scene.settle()
+    return scene, stone
+
+
+def found(scene, name):
+    return [a["value"] for a in scene.answers if a["name"] == name]
+
+
+def last(scene, column):
+    return scene.results.column(column)[-1]
 
 
 @pytest.mark.parametrize("name", held_loads.QUICK)
@@ -35,16 +42,14 @@ def test_a_held_load_is_that_of_limit_analysis(name):
 
 @pytest.mark.parametrize("rate", [0.2, 4.0])
 def test_the_rate_of_the_growth_hardly_counts(tmp_path, rate):
-    s, stone = stack(tmp_path)
-    s.settle()
+    s, stone = atRest(tmp_path)
     assert s.accelerate(1.5, rate=rate) == COLLAPSED
     s.finish()
-    (held,), (lost,) = (found(tmp_path, n) for n in ("factor_held", "factor_not_held"))
+    (held,), (lost,) = (found(s, n) for n in ("factor_held", "factor_not_held"))
     assert held < 0.5 * 1.001 and lost > 0.5 * 0.999  # b/h, when it tips
     assert lost - held <= 0.005 * lost * 1.001
-    run, curve = readRun(str(tmp_path)), readCurve(str(tmp_path))
-    times = curve["time_s"]
-    assert all(one < other for one, other in zip(times, times[1:]))  # no row twice
+    run, curve = readRun(tmp_path), s.curve()
+    assert (np.diff(curve["time_s"]) > 0).all()  # no row twice
     assert run["factor"] == held == s.factor
     assert {mark["y"] for mark in run["figure"]["marks"]} == {held, lost}
     rows = run["figure"]["rows"]
@@ -54,22 +59,19 @@ def test_the_rate_of_the_growth_hardly_counts(tmp_path, rate):
 
 
 def test_a_structure_that_stands_has_a_load_that_was_held_and_no_other(tmp_path):
-    s, stone = stack(tmp_path)
-    s.settle()
+    s, stone = atRest(tmp_path)
     assert s.accelerate(0.2, rate=0.4) == AT_REST
     assert s.lean(0.3) == AT_REST  # it stands yet
-    times = s.results.column("time_s")
-    assert all(one < other for one, other in zip(times, times[1:]))  # no row twice
-    s.finish()
-    assert found(tmp_path, "factor_held") == [pytest.approx(0.2, rel=0.01), 0.3]
-    assert found(tmp_path, "factor_not_held") == [None, None]
+    assert (np.diff(s.curve()["time_s"]) > 0).all()  # no row twice
+    assert found(s, "factor_held") == [pytest.approx(0.2, rel=0.01), 0.3]
+    assert found(s, "factor_not_held") == [None, None]
 
 
 def test_loads_of_later_stages_replace_others_and_can_be_bracketed(tmp_path):
     s, stone = stack(tmp_path)
     s.load(stone, (0, 0, -1000))
     s.settle()
-    down = lambda: -1e3 * s.results.column("base_force_z_kN")[-1]
+    down = lambda: -1e3 * last(s, "base_force_z_kN")
     assert down() == pytest.approx(WEIGHT + 1000, rel=1e-3)
     assert s.load(stone, (0, 0, -3000)) == AT_REST
     assert down() == pytest.approx(WEIGHT + 3000, rel=1e-3)
@@ -78,7 +80,6 @@ def test_loads_of_later_stages_replace_others_and_can_be_bracketed(tmp_path):
     tips = (WEIGHT + 3000) * 0.15 / 0.5
     low, high = s.bracket(carries, 0.5 * tips, 1.5 * tips)
     assert low * 0.99 < tips < high * 1.01
-    s.finish()
 
 
 class Fragile:
@@ -114,8 +115,7 @@ def test_each_trial_of_a_bracket_begins_with_the_structure_at_rest(capacity):
 
 
 def test_a_fall_is_counted_from_the_state_to_which_the_scene_steps_back(tmp_path):
-    s, stone = stack(tmp_path)
-    s.settle()
+    s, stone = atRest(tmp_path)
     state = O.bodies[stone.body].state
     far, fast = Vector3(0.1, 0, 0), Vector3(1, 0, 0)  # a third of the stone, and m/s
     state.pos += far
@@ -129,8 +129,6 @@ def test_a_fall_is_counted_from_the_state_to_which_the_scene_steps_back(tmp_path
     assert s.model.motion.fastest(0.05) > 1
     with pytest.raises(Collapsed, match="brick 2 .* has moved by .100, 0, 0. mm"):
         s.model.motion.checkFall()
-    s.stepBack()
-    s.finish()
 
 
 @pytest.mark.parametrize(
@@ -144,52 +142,51 @@ def test_a_fall_is_counted_from_the_state_to_which_the_scene_steps_back(tmp_path
 )  # fmt: skip
 def test_growing_loads_hold_what_statics_says(tmp_path, grow, expected):
     s, stone = stack(tmp_path)
+    s.args.lean = False  # bounds are found beside the run
     s.settle()
     assert grow(s, stone) == COLLAPSED
     s.finish()
     assert s.factor == pytest.approx(expected, rel=0.01)
-    entry = [e for e in readRun(str(tmp_path))["bounds"] if "factor" in e][-1]
+    entry = [e for e in readRun(tmp_path)["bounds"] if "factor" in e][-1]
     assert s.factor < 1.002 * entry["factor"] < 1.02 * expected
 
 
 def test_supports_of_later_stages_take_their_reaction(tmp_path):
-    s, stone = stack(tmp_path)
-    s.settle()
+    s, stone = atRest(tmp_path)
     s.hold(stone, "x")
     assert s.lean(0.6) == AT_REST  # it would fall without
-    column = s.results.column
-    both = column("base_force_x_kN")[-1] + column("stone_force_x_kN")[-1]
+    held = last(s, "stone_force_x_kN")
+    both = last(s, "base_force_x_kN") + held
     # of the held stone itself nothing goes through joints
     assert both == pytest.approx(0.6e-3 * WEIGHT * 2 / 3, rel=0.01)
-    assert column("stone_force_x_kN")[-1] > 0.1 * both
+    assert held > 0.1 * both
     s.release(stone, "x")
     assert s.settle() == COLLAPSED
-    s.finish()
 
 
 def test_a_lean_that_is_held_is_noted_with_its_factor_and_displacement(tmp_path):
     s, stone = stack(tmp_path)
+    s.args.lean = False  # bounds are found beside the run
     s.settle()
-    before = s.results.column("stone_x_mm")[-1]
-    assert s.lean(0.3) == AT_REST and s.lean(0.2) == AT_REST
-    column = s.results.column
+    place = lambda: last(s, "stone_x_mm")
+    x = [place()]
+    for factor in (0.3, 0.2):
+        assert s.lean(factor) == AT_REST
+        x.append(place())
     assert s.running.at.held == {"acceleration towards x": 0.3}
-    assert s.model.loading.loadFactor == column("load_factor")[-1] == 0.2
+    assert s.model.loading.loadFactor == last(s, "load_factor") == 0.2
     assert s.load(stone, (100, 0, 0)) == AT_REST
     s.finish()
     # both leans count from where the first one began, and the force from where it began itself
-    ends = [stage[3] - 1 for stage in s.running.at.stages[2:]] + [-1]
-    x = [column("stone_x_mm")[end] for end in ends]
-    moved = [x[0] - before, x[1] - before, x[2] - x[1]]
-    assert found(tmp_path, "displacement_held") == pytest.approx(moved, rel=1e-3)
-    assert readRun(str(tmp_path))["figure"]["y_label"] == "load [kN]"
+    moved = [x[1] - x[0], x[2] - x[0], place() - x[2]]
+    assert found(s, "displacement_held") == pytest.approx(moved, rel=1e-3)
+    assert readRun(tmp_path)["figure"]["y_label"] == "load [kN]"
     assert moved[0] > 1.2 * moved[1] > 0
 
 
 def test_suction_pulls_with_the_pressure_times_the_face(tmp_path):
-    s, stone = stack(tmp_path)
-    s.settle()
-    pulled = lambda: 1e3 * s.results.column("base_force_x_kN")[-1]
+    s, stone = atRest(tmp_path)
+    pulled = lambda: 1e3 * last(s, "base_force_x_kN")
     assert s.wind(-500, (1, 0, 0)) == AT_REST
     assert pulled() == pytest.approx(-500 * 0.3 * 0.6, rel=0.01)
     # one from the other side is beside it, and another from this side in its place
@@ -201,113 +198,97 @@ def test_suction_pulls_with_the_pressure_times_the_face(tmp_path):
         assert s.wind(-300, towards) == AT_REST
         assert s.wind(0, towards) == AT_REST
     assert abs(pulled()) < 1
-    s.finish()
 
 
-def test_a_press_of_a_later_stage_has_its_stress_with_the_weight_of_the_platen(tmp_path):  # fmt: skip
+def test_a_later_press_has_its_stress_with_the_weight_of_the_platen(tmp_path):
     s, _ = stack(tmp_path)
     top = s.platen("top", height=0.2)
     s.press(top, 0.05e6)
     s.settle()
-    down = lambda: -1e3 * s.results.column("base_force_z_kN")[-1]
+    down = lambda: -1e3 * last(s, "base_force_z_kN")
     assert down() == pytest.approx(0.05e6 * 0.3 * 0.3 + WEIGHT, rel=5e-3)
     assert s.model.supports.weightOf(top) > 0.02 * down()
     assert s.press(top, 0.1e6) == AT_REST
     assert down() == pytest.approx(0.1e6 * 0.3 * 0.3 + WEIGHT, rel=5e-3)
-    s.finish()
 
 
 def test_what_is_held_in_a_later_stage_stops_and_stays_held(tmp_path):
-    s, stone = stack(tmp_path, plane=False)
-    s.settle()
+    s, stone = atRest(tmp_path, plane=False)
     state = O.bodies[stone.body].state
     s.hold(stone, "yZ")
     state.vel, state.angVel = Vector3(1, 0, 2), Vector3(3, 4, 0)
     s.hold(stone, "xY")
     assert set(state.blockedDOFs) == set("xyYZ")
     assert state.vel == Vector3(0, 0, 2) and state.angVel == Vector3(3, 0, 0)
-    state.vel = state.angVel = Vector3.Zero
-    s.finish()
 
 
 def test_a_support_moves_at_its_rate_and_stands_then(tmp_path):
-    s, _ = stack(tmp_path)
-    base = next(iter(s.description.targets.values()))
-    s.settle()
+    s, _ = atRest(tmp_path)
+    base = s.targets["base"]
+    place = lambda: (last(s, "base_x_mm"), last(s, "base_z_mm"))
     s.move(base, x=3, z=-4, rate=20)
     assert O.bodies[base.body].state.vel == Vector3.Zero
-    first = len(s.results.rows)
+    assert place() == pytest.approx((3, -4), rel=1e-6)
     s.move(base, z=1, rate=20)
-    column = s.results.column
-    x, z, t = column("base_x_mm"), column("base_z_mm"), column("time_s")
-    assert (x[-1], z[-1]) == pytest.approx((3, -3), rel=1e-6)
-    paths = [math.hypot(x[i + 1] - x[i], z[i + 1] - z[i]) for i in range(len(x) - 1)]
-    speeds = [path / (b - a) for path, a, b in zip(paths, t, t[1:]) if b > a]
-    assert max(speeds) == pytest.approx(20, rel=1e-3)
-    s.finish()
+    assert place() == pytest.approx((3, -3), rel=1e-6)
+    x, z, t = (np.diff(s.curve()[n]) for n in ("base_x_mm", "base_z_mm", "time_s"))
+    speeds = np.hypot(x, z)[t > 0] / t[t > 0]
+    assert speeds.max() == pytest.approx(20, rel=1e-3)
     # from the first row of each stage, which is at its beginning but for a five-hundredth
-    assert found(tmp_path, "displacement_of_base") == pytest.approx([5, 1], rel=0.01)
-    assert (x[first - 1], z[first - 1]) == pytest.approx((3, -4), rel=1e-6)
+    assert found(s, "displacement_of_base") == pytest.approx([5, 1], rel=0.01)
 
 
 @pytest.mark.parametrize("direction", [(0, 0, -1), (0.6, 0, -0.8), (-1, 0, 0)])
 def test_a_push_is_counted_in_its_direction_without_dead_weight(tmp_path, direction):
-    s, stone = stack(tmp_path, "--rate", "2")
+    s, stone = stack(tmp_path, rate=2)
     s.load(stone, (50, 0, -1000))
     s.settle()
     s.push(stone, 0.06, direction=direction)
     s.finish()
-    run, curve = readRun(str(tmp_path)), readCurve(str(tmp_path))
+    run, curve = readRun(tmp_path), s.curve()
     top, base = curve["top_shear_kN"], curve["base_shear_kN"]
     assert base[-1] == pytest.approx(top[-1], rel=0.05, abs=0.01)
     assert abs(base[1]) < 0.02 * max(base)  # no weight in it
-    both = max(map(min, zip(top, base)))
+    both = np.minimum(top, base).max()
     assert run["peak_at_both_ends_kN"] == pytest.approx(both, rel=1e-8)
     assert not run["too_fast"] and run["initial_stiffness_kN_per_mm"] > 0
 
 
 def test_a_bound_changes_nothing_of_the_scene(tmp_path):
-    s, stone = stack(tmp_path)
-    s.settle()
+    s, stone = atRest(tmp_path)
     entry = s.bound(stone, direction=(1, 0, 0))
     assert entry["factor"] == pytest.approx(0.7e-3 * WEIGHT / 3, rel=0.01)
     assert s.lean(0.6) == COLLAPSED  # no drive holds the stone
-    s.finish()
 
 
 def test_a_driven_platen_is_a_support_in_limit_analysis(tmp_path):
-    s, stone = stack(tmp_path)
-    top = s.platen("top", rotation="held", drive="xz")
+    s, _ = stack(tmp_path)
+    s.platen("top", rotation="held", drive="xz")
     s.settle()
-    entry = s.bound(towards=(1, 0, 0))
-    assert "nothing gives way" in entry["note"]
-    s.finish()
-    assert {"top_force_x_kN", "top_force_z_kN"} <= set(readCurve(str(tmp_path)))
+    assert "nothing gives way" in s.bound(towards=(1, 0, 0))["note"]
+    assert {"top_force_x_kN", "top_force_z_kN"} <= set(s.curve())
 
 
 def test_pushes_along_two_lines_have_numbers_of_the_last(tmp_path):
-    s, stone = stack(tmp_path, "--rate", "2")
+    s, stone = stack(tmp_path, rate=2)
     lower = s.handle(1, name="lower")
     s.settle()
     s.push(stone, 0.05, direction=(0, 0, -1))
     first = len(s.results.rows)
     s.push(lower, 0.05)
     s.finish()
-    run, curve = readRun(str(tmp_path)), readCurve(str(tmp_path))
+    run, curve = readRun(tmp_path), s.curve()
     assert run["figure"]["rows"][0] == first
-    both = list(map(min, zip(curve["base_shear_kN"], curve["top_shear_kN"])))
-    assert run["peak_at_both_ends_kN"] == pytest.approx(max(both[first:]), rel=1e-8)
-    assert max(both) > run["peak_at_both_ends_kN"]
+    both = np.minimum(curve["base_shear_kN"], curve["top_shear_kN"])
+    peak = run["peak_at_both_ends_kN"]
+    assert peak == pytest.approx(max(both[first:]), rel=1e-8) and max(both) > peak
 
 
-def test_a_very_short_push_ends_where_it_was_asked_to_and_asks_for_the_unit(tmp_path, capsys):  # fmt: skip
-    s, stone = stack(tmp_path, "--rate", "0.1")
-    s.settle()
+def test_a_very_short_push_ends_where_it_should_and_asks_for_the_unit(tmp_path, capsys):
+    s, stone = atRest(tmp_path, rate=0.1)
     assert s.push(stone, 0.002) == DONE
-    s.finish()
     assert "until 0.002 mm: is it in mm, not m?" in capsys.readouterr().out
-    end = readRun(str(tmp_path))["displacement_end_mm"]
-    assert end == pytest.approx(0.002, rel=0.06)
+    assert last(s, "displacement_mm") == pytest.approx(0.002, rel=0.06)
 
 
 def test_a_result_of_the_script_is_an_answer(tmp_path, capsys):
@@ -318,10 +299,9 @@ def test_a_result_of_the_script_is_an_answer(tmp_path, capsys):
     s.result("height", 0.6, "m")
     s.result("height", 0.7, "m")
     s.result("nothing", math.nan)
-
     s.finish()
-    assert found(tmp_path, "height") == [0.7]
-    assert found(tmp_path, "nothing") == [None]
+    answers = {a["name"]: a["value"] for a in readRun(tmp_path)["answers"]}
+    assert answers["height"] == 0.7 and answers["nothing"] is None
     assert "script: height 0.7 m\n" in capsys.readouterr().out
 
 
@@ -355,18 +335,16 @@ def test_a_perfect_column_holds_no_more_than_its_buckling_load(tmp_path, stage):
     wide = side if plane else 1.5 * side
     joint = MasonryJoint(elastic=True, normalStiffness=stiffness, shearStiffness=2e8)
     light = materials.Masonry(MasonryMat(young=2e10, poisson=0.2, density=200), {"bed": joint})  # fmt: skip
-    scene = Scene("column", bricks.stack(n, (wide, side, side)), light, plane=plane, arguments=["--lean", "--out", str(tmp_path)])  # fmt: skip
-    scene.platen("bottom")
+    blocks = bricks.stack(n, (wide, side, side))
+    scene = standing(tmp_path, blocks, light, plane=plane)
     head = scene.handle((wide / 2, side / 2, n * side - 0.01))
     scene.settle()
     turning = stiffness * wide * side**3 / 12
     euler = 4 * turning / side * np.sin(np.pi / (4 * n + 2)) ** 2
     if stage == "growLoad":
         scene.growLoad(head, (0, 0, -3 * euler), within=0.02)
-        scene.finish()
-        (low,), (high,) = (found(tmp_path, name) for name in ("factor_held", "factor_not_held"))  # fmt: skip
-        assert 0.97 * euler < 1e3 * low < euler < 1e3 * high < 1.03 * euler
+        held, lost = found(scene, "factor_held")[0], found(scene, "factor_not_held")[0]
+        assert 0.97 * euler < 1e3 * held < euler < 1e3 * lost < 1.03 * euler
     else:
         ends = [scene.load(head, (0, 0, -share * euler)) for share in (0.97, 1.03)]
         assert ends == [AT_REST, MOVING]
-        scene.finish()

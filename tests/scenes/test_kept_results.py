@@ -2,13 +2,11 @@
 """Results are the user's: what a run may touch, when, and how it ends when something is odd."""
 
 from hosted import *
-import errno
 import socket
 import threading
 from masonry.assembly.loading import Loading
 from masonry.assembly.structure import Structure
 from masonry.assembly.supports import Supports
-from masonry.read import files
 from masonry.run import keeping, lock, run as running
 from masonry.run.results import Results
 from masonry.run.run import Run
@@ -45,27 +43,28 @@ def finished(tmp_path):
 def test_a_run_without_rows_leaves_the_results_of_before(finished, monkeypatch, capsys):
     before = contents(finished)
 
-    def spoilt(patch):
+    def spoilt(*patch):
         with monkeypatch.context() as m:
-            patch(m)
+            m.setattr(*patch)
             try:
                 return run(finished, *SHORT)
-            except (OSError, RuntimeError) as error:
+            except RuntimeError as error:
                 return str(error)
             finally:
                 assert contents(finished) == before
 
-    def stop(self):
+    def stop(self, *words):
         os.kill(os.getpid(), signal.SIGINT)
+        return 1.0, 1.0
 
     def unstable(self, *words):
         raise RuntimeError("unstable")
 
     full = lambda folder: SimpleNamespace(free=10)
-    assert spoilt(lambda m: m.setattr(shutil, "disk_usage", full)) == 2
-    assert spoilt(lambda m: m.setattr(Structure, "build", unstable)) == "unstable"
-    assert spoilt(lambda m: m.setattr(Run, "_take", unstable)) == "unstable"
-    assert spoilt(lambda m: m.setattr(Supports, "unrest", lambda self, *rest: stop(self) or (1.0, 1.0))) == 130  # fmt: skip
+    assert spoilt(shutil, "disk_usage", full) == 2
+    assert spoilt(Structure, "build", unstable) == "unstable"
+    assert spoilt(Run, "_take", unstable) == "unstable"
+    assert spoilt(Supports, "unrest", stop) == 130
     assert "still has the results of an earlier one" in capsys.readouterr().out
     # The other run has its rows now.
     assert run(finished, *SHORT, "--rate", "30") == 0
@@ -95,15 +94,15 @@ def test_files_that_no_run_has_left_are_refused(finished, tmp_path, capsys):
     assert not (tmp_path / "new").exists()
 
 
+def noLocks(file, how):
+    raise OSError(errno.ENOLCK, "No locks available")
+
+
 @pytest.mark.parametrize("locks", [True, False])
 def test_a_folder_is_for_one_run_at_a_time(finished, monkeypatch, capsys, locks):
     """Also where the file system has no locks, as some network folders: then the text of the file counts."""
     if not locks:
-
-        def none(file, how):
-            raise OSError(errno.ENOLCK, "No locks available")
-
-        monkeypatch.setattr(lock.fcntl, "flock", none)
+        monkeypatch.setattr(lock.fcntl, "flock", noLocks)
     report, tell = os.pipe()
     child = os.fork()
     if child == 0:
@@ -114,10 +113,10 @@ def test_a_folder_is_for_one_run_at_a_time(finished, monkeypatch, capsys, locks)
     os.read(report, 1)
     before = contents(finished)
     try:
-        for words in (dict(), dict(resume=True)):
-            assert run(finished, *([] if words else SHORT), **words) == 2
+        who = f"a run of other on host {socket.gethostname()}, process {child}, is writing to {finished}"
+        for words, resume in ((SHORT, False), ([], True)):
+            assert run(finished, *words, resume=resume) == 2
             said = capsys.readouterr().err
-            who = f"a run of other on host {socket.gethostname()}, process {child}, is writing to {finished}"
             assert who in said and len(said.splitlines()) == 1
         assert contents(finished) == before
     finally:
@@ -145,20 +144,18 @@ def test_files_of_a_run_that_was_killed_are_replaced(tmp_path):
 
 def test_a_slow_push_obeys_at_once_and_keeps_checkpoints(tmp_path, monkeypatch):
     monkeypatch.setattr(running, "LOOK_EVERY", 0.1)
-    out, ends = tmp_path / "slow", []
+    ends = []
+    left = lambda: readCheckpoint(str(tmp_path / "run.checkpoint"))["at"]["left"]
 
     def end():
-        there = readCheckpoint(str(out / "run.checkpoint"))["at"]
-        ends.append((time.perf_counter(), there["left"]))
+        ends.extend((time.perf_counter(), left()))
         os.kill(os.getpid(), signal.SIGINT)
 
-    timer = threading.Timer(2.0, end)
-    timer.start()
-    words = ["--rate", "0.001", "--no-vtk", "--checkpoint-every", "0.002"]
-    assert run(out, *words, "--until", "0.05") == 130
-    assert time.perf_counter() - ends[0][0] < 1
-    assert ends[0][1] > 1000  # of the steps of a row
-    assert readCheckpoint(str(out / "run.checkpoint"))["at"]["left"] > 1000
+    threading.Timer(2.0, end).start()
+    words = "--rate 0.001 --no-vtk --checkpoint-every 0.002 --until 0.05"
+    assert run(tmp_path, *words.split()) == 130
+    assert time.perf_counter() - ends[0] < 1
+    assert ends[1] > 1000 and left() > 1000  # of the steps of a row
 
 
 def test_what_is_no_checkpoint_is_refused_at_once(finished, capsys):
@@ -173,20 +170,11 @@ def test_what_is_no_checkpoint_is_refused_at_once(finished, capsys):
         assert set(os.listdir(finished)) == before
 
 
-STACK = """
-from masonry import Scene, bricks, materials
-words = ["--no-vtk", "--out", "r"]
-s = Scene("two", bricks.stack(3, (0.2, 0.1, 0.1)), materials.dry(), arguments=words)
-s.platen("bottom"); s.settle(); s.finish()
-"""
-
-
 def test_odd_names_and_terminals_end_in_order(tmp_path):
     """A folder that is not UTF-8, and a terminal that has no µ and no m³."""
-    script = tmp_path / "s.py"
-    script.write_text(STACK)
     plain = dict(os.environ, PYTHONIOENCODING="ascii:strict")
-    report = runProgram(str(script), cwd=tmp_path, env=plain, text=False)
+    words = ("--quick", "--lean", "--out", tmp_path / "r")
+    report = runProgram("couplet", *words, env=plain, text=False)
     assert b"\\xb5s" in report.stdout
     odd = os.fsencode(tmp_path) + b"/caf\xe9"
     report = runProgram("couplet", "--out", os.fsdecode(odd), check=False)
@@ -199,18 +187,18 @@ def test_odd_names_and_terminals_end_in_order(tmp_path):
 def test_a_wall_that_falls_before_its_push_has_status_1(tmp_path, monkeypatch):
     monkeypatch.setattr(Loading, "hasSunk", lambda self, down=None: True)
     assert run(tmp_path / "r", *SHORT) == 1
-    assert readRun(str(tmp_path / "r"))["collapsed"]
+    assert readRun(tmp_path / "r")["collapsed"]
 
 
 def test_a_wall_that_moves_against_its_push_has_collapsed(tmp_path, capsys):
     """The foot of a tall loading block on slippery joints moves back while its head is pushed."""
     words = ["--rate", "100", "--until", "10", "--no-vtk"]
-    for what in ("residualFriction=0.01", "friction=0.01", "cohesion=0", "tensileStrength=0"):  # fmt: skip
-        words += ["--set", "bed." + what]
-    assert run(tmp_path / "r", *words, wall=LIGHT) == 0
+    slippery = "residualFriction=0.01 friction=0.01 cohesion=0 tensileStrength=0"
+    words += [f"--set=bed.{what}" for what in slippery.split()]
+    assert run(tmp_path, *words, wall=LIGHT) == 0
     report = "collapsed: at -1.00 mm it moves against its push"
     assert report in capsys.readouterr().out
-    assert len(files.readCurve(str(tmp_path / "r"))["time_s"]) < 1000
+    assert len(readCurve(tmp_path)["time_s"]) < 1000
 
 
 def test_no_earlier_checkpoint_is_promised(tmp_path, monkeypatch, capsys):

@@ -9,13 +9,13 @@ STONE = materials.dry(friction=0.7, normalStiffness=1e11, density=DENSITY)
 
 
 def made(folder, blocks, *words, **settings):
-    words = ["--no-vtk", "--out", str(folder), *words]
-    scene = Scene("loads", blocks, STONE, arguments=words, **settings)
-    scene.platen("bottom")
+    """A scene on a platen, with bounds beside the run."""
+    scene = standing(folder, blocks, STONE, *words, **settings)
+    scene.args.lean = False
     return scene
 
 
-def moments(forces, about):
+def moments(forces, about=(0, 0, 0)):
     """The sum of some forces and of their moments about a point."""
     force = np.sum([one.force for one in forces], axis=0)
     arms = [np.subtract(one.point, about) for one in forces]
@@ -23,7 +23,16 @@ def moments(forces, about):
 
 
 def described(blocks, plane=None):
-    return Scene("d", blocks, STONE, plane=plane, arguments=["--lean"]).description
+    return lean("nowhere", blocks, STONE, plane=plane).description
+
+
+def pressed(description, field):
+    """Forces of a pressure along x."""
+    return pressures.pressures(description, field, (1, 0, 0), None, True)
+
+
+def water(level):
+    return lambda x, y, z: WATER * max(0, level - z)
 
 
 # -- forces on faces --------------------------------------------------------------------------------------------------
@@ -33,10 +42,7 @@ def described(blocks, plane=None):
 def test_the_resultant_of_water_acts_at_a_third_of_its_depth(plane):
     """Force γ h²/2 a metre, moment about the foot γ h³/6, whatever the height of the blocks."""
     dam = described(bricks.stack(4, (1.0, 0.8, 0.5)), plane)
-    water = lambda x, y, z: WATER * (2 - z)
-    force, moment = moments(
-        pressures.pressures(dam, water, (1, 0, 0), None, True), (0, 0.4, 0)
-    )
+    force, moment = moments(pressed(dam, water(2)), (0, 0.4, 0))
     assert force == pytest.approx([0.8 * WATER * 2**2 / 2, 0, 0], abs=1e-8)
     assert moment == pytest.approx([0, 0.8 * WATER * 2**3 / 6, 0], abs=1e-8)
 
@@ -44,10 +50,7 @@ def test_the_resultant_of_water_acts_at_a_third_of_its_depth(plane):
 def test_a_pressure_that_varies_to_both_sides_turns_a_face_without_pushing_it():
     """p = a y + b z from the middle of a face: moments a w h³/12 and the like, and no force."""
     block = described(bricks.block((0, -0.5, -1), (1, 0.5, 1)), False)
-    field = lambda x, y, z: 300 * y + 700 * z
-    force, moment = moments(
-        pressures.pressures(block, field, (1, 0, 0), None, True), (0, 0, 0)
-    )
+    force, moment = moments(pressed(block, lambda x, y, z: 300 * y + 700 * z))
     assert force == pytest.approx(np.zeros(3), abs=1e-9)
     assert moment == pytest.approx([0, 700 * 1 * 2**3 / 12, -300 * 2 / 12], abs=1e-9)
 
@@ -55,8 +58,7 @@ def test_a_pressure_that_varies_to_both_sides_turns_a_face_without_pushing_it():
 def test_what_a_joint_covers_of_a_face_has_no_pressure():
     """A low block before the foot of a high one, and water over both up to 2 m."""
     blocks = bricks.block((0, 0, 0), (1, 1, 2)) + bricks.block((-1, 0, 0), (0, 1, 1))
-    water = lambda x, y, z: WATER * (2 - z)
-    found = pressures.pressures(described(blocks, False), water, (1, 0, 0), None, True)
+    found = pressed(described(blocks, False), water(2))
     high = moments([one for one in found if one.brick == 0], (0, 0.5, 0))
     assert high[0][0] == pytest.approx(WATER / 2)
     assert high[1][1] == pytest.approx(WATER / 2 * (1 + 1 / 3))
@@ -69,8 +71,7 @@ def test_snow_weighs_its_pressure_times_the_area_in_plan(tmp_path):
     total = scene.pressure(1200, (0, 0, -1), part="arch", normal=False)
     # the outside of the arch is a polygon whose corners lie on the circle
     assert total == pytest.approx((0, 0, -1200 * 4.6 * 0.5), abs=1e-6)
-    below = lambda x, y, z: WATER * (3 - z)
-    x, y, z = scene.pressure(below, (0, 0, -1), part="arch")
+    x, y, z = scene.pressure(water(3), (0, 0, -1), part="arch")
     assert x == pytest.approx(0, abs=1e-6)
     # by Gauss: the weight of the water between the polygon and its surface
     polygon = 0.5 * 21 * 2.3**2 * math.sin(math.pi / 21)
@@ -79,26 +80,22 @@ def test_snow_weighs_its_pressure_times_the_area_in_plan(tmp_path):
 
 def test_a_level_within_a_face_is_found_within_a_part_of_it():
     dam = described(bricks.stack(2, (1.0, 0.8, 1.0)))
-    level = lambda x, y, z: WATER * max(0, 1.37 - z)
-    force, _ = moments(pressures.pressures(dam, level, (1, 0, 0), None, True), (0, 0, 0))  # fmt: skip
+    force, _ = moments(pressed(dam, water(1.37)))
     assert force[0] == pytest.approx(0.8 * WATER * 1.37**2 / 2, rel=4e-3)
 
 
 # -- runs -------------------------------------------------------------------------------------------------------------
 
 
-def overturning(h, b, t):
-    """Factor of a water level at the crown under which a dam of b × h tips about its foot, by hand: W b/2 = f γ t h³/6."""
-    return DENSITY * G * b * h * t * b / 2 / (WATER * t * h**3 / 6)
-
-
 @pytest.mark.parametrize("words", [[], ["--preset", "bound"]])
 def test_a_dam_of_blocks_tips_over_under_the_water_of_statics(tmp_path, words):
-    scene = made(tmp_path, bricks.stack(4, (0.8, 1.0, 0.5)), *words)
+    """A dam of b × h tips about its foot under the factor f of a water level at its crown: W b/2 = f γ t h³/6."""
+    h, b = 2.0, 0.8
+    scene = made(tmp_path, bricks.stack(4, (b, 1.0, h / 4)), *words)
     scene.settle()
-    scene.grow({}, most=2, pressure=lambda x, y, z: WATER * (2 - z), towards=(1, 0, 0))
+    scene.grow({}, most=2, pressure=water(h), towards=(1, 0, 0))
     scene.finish()
-    limit = overturning(2.0, 0.8, 1.0)
+    limit = DENSITY * G * b * h * b / 2 / (WATER * h**3 / 6)
     (bound,) = readRun(tmp_path)["bounds"]
     assert bound["factor"] == pytest.approx(limit, rel=2e-3) and bound["exact"]
     assert words or 0.98 * limit < scene.factor < 1.002 * limit
@@ -109,12 +106,10 @@ def test_water_that_rises_in_stages_replaces_what_was_there(tmp_path):
     scene.settle()
     pushed = lambda: 1e3 * scene.results.column("base_force_x_kN")[-1]
     for level in (1.0, 1.5, 0.5):
-        water = lambda x, y, z: WATER * max(0, level - z)
-        assert scene.pressure(water, (1, 0, 0)) == AT_REST
+        assert scene.pressure(water(level), (1, 0, 0)) == AT_REST
         assert pushed() == pytest.approx(WATER * level**2 / 2, rel=0.01)
     assert scene.pressure(0, (1, 0, 0)) == AT_REST
     assert abs(pushed()) < 10
-    scene.finish()
 
 
 def test_two_loads_in_proportion_tip_a_stack_at_the_factor_of_statics(tmp_path):
@@ -134,37 +129,23 @@ def test_two_loads_in_proportion_tip_a_stack_at_the_factor_of_statics(tmp_path):
     assert bound["factor"] == pytest.approx(limit, rel=2e-3)
 
 
-def test_a_growing_pair_is_the_same_load_as_each_alone(tmp_path):
-    def factor(act):
-        scene = made(tmp_path / str(act.__code__.co_firstlineno), bricks.stack(3, (0.3, 0.3, 0.2)))  # fmt: skip
-        stone = scene.handle(2, name="stone")
-        scene.settle()
-        act(scene, stone)
-        scene.finish()
-        return scene.factor
-
-    alone = factor(lambda s, t: s.growLoad(t, (2000, 0, 0), within=0.01))
-    both = factor(lambda s, t: s.grow({t: (1000, 0, 0)}, most=2, within=0.01))
-    assert both == pytest.approx(alone, rel=0.01)
-
-
 def bridge(folder, *words):
     """An arch under fill, five places on it, and its highest stone."""
     arch = bricks.Arch(0.25, 0.5, 15, span=4.0, angle=140)
-    words = ["--no-vtk", "--out", str(folder), *words]
-    scene = Scene("bridge", arch, STONE, arguments=words)
+    scene = lean(folder, arch, STONE, *words)
+    scene.args.lean = False
     for n in (0, 14):
         scene.hold(n)
-    weight = scene.pressure(lambda x, y, z: 18e3 * (2.2 - z), (0, 0, -1), normal=False)
+    scene.pressure(lambda x, y, z: 18e3 * (2.2 - z), (0, 0, -1), normal=False)
     places = [(2 + x, 0.25, 9) for x in (-1.2, -0.6, 0, 0.6, 1.2)]
     crown = scene.handle((2, 0.25, scene.description.high[2]), name="crown")
-    return scene, places, crown, weight
+    scene.settle()
+    assert scene.travel(2e3, places) == DONE
+    return scene, crown
 
 
 def test_an_axle_goes_over_an_arch_and_leaves_nothing(tmp_path):
-    scene, places, _, _ = bridge(tmp_path)
-    scene.settle()
-    assert scene.travel(2e3, places) == DONE
+    scene, _ = bridge(tmp_path)
     scene.finish()
     run, curve = readRun(tmp_path), readCurve(tmp_path)
     answers = {a["name"]: a["value"] for a in run["answers"]}
@@ -178,9 +159,7 @@ def test_an_axle_goes_over_an_arch_and_leaves_nothing(tmp_path):
 
 
 def test_the_bound_of_a_load_that_travels_is_that_of_one_that_stands_there(tmp_path):
-    scene, places, crown, _ = bridge(tmp_path, "--preset", "bound")
-    scene.settle()
-    assert scene.travel(2e3, places) == DONE
+    scene, crown = bridge(tmp_path, "--preset", "bound")
     scene.growLoad(crown, (0, 0, -1e5))
     scene.finish()
     *travels, alone = [b["factor"] for b in readRun(tmp_path)["bounds"]]
@@ -191,25 +170,26 @@ def test_the_bound_of_a_load_that_travels_is_that_of_one_that_stands_there(tmp_p
 def test_a_load_that_travels_stands_on_the_highest_face_below(tmp_path):
     blocks = bricks.stack(3, (0.4, 0.4, 0.2)) + bricks.block((0.4, 0, 0), (0.8, 0.4, 0.2))  # fmt: skip
     description = described(blocks, False)
-    below = lambda *points: pressures.placesBelow(description, points)
-    assert below((0.1, 0.1, 5), (0.5, 0.1, 5)) == [(2, (0.1, 0.1, pytest.approx(0.6))), (3, (0.5, 0.1, pytest.approx(0.2)))]  # fmt: skip
-    with pytest.raises(ValueError, match="no face that looks up is below"):
-        below((0.9, 0.1, 5))
-    with pytest.raises(ValueError, match="no face that looks up is below"):
-        below((0.5, 0.1, 0.1))
+    below = lambda point: pressures.placesBelow(description, [point])
+    for x, brick, z in ((0.1, 2, 0.6), (0.5, 3, 0.2)):
+        assert below((x, 0.1, 5)) == [(brick, (x, 0.1, pytest.approx(z)))]
+    for point in ((0.9, 0.1, 5), (0.5, 0.1, 0.1)):
+        with pytest.raises(ValueError, match="no face that looks up is below"):
+            below(point)
 
 
 def test_pressures_that_are_no_numbers_and_loads_that_are_none_are_refused(tmp_path):
     scene = made(tmp_path, bricks.stack(2, (0.3, 0.3, 0.2)))
-    with pytest.raises(ValueError, match=r"pressure: its value at \(0, .*must be a number"):  # fmt: skip
-        scene.pressure(lambda x, y, z: "deep", (1, 0, 0))
-    for wrong, what in ((lambda x: x, "positional argument"), (lambda x, y, z: 1 / 0, "division"), (0.0, "0 on all faces")):  # fmt: skip
-        with pytest.raises(ValueError, match=what):
-            scene.pressure(wrong, (1, 0, 0))
-    with pytest.raises(ValueError, match="'roof' must be one of stack"):
-        scene.pressure(1.0, (1, 0, 0), part="roof")
-    with pytest.raises(ValueError, match="the scene is in the x-z plane"):
-        scene.pressure(1.0, (0, 1, 0))
+    for pressure, settings, message in (
+        (lambda x, y, z: "deep", {}, r"pressure: its value at \(0, .*must be a number"),
+        (lambda x: x, {}, "positional argument"),
+        (lambda x, y, z: 1 / 0, {}, "division"),
+        (0.0, {}, "0 on all faces"),
+        (1.0, {"part": "roof"}, "'roof' must be one of stack"),
+        (1.0, {"towards": (0, 1, 0)}, "the scene is in the x-z plane"),
+    ):
+        with pytest.raises(ValueError, match=message):
+            scene.pressure(pressure, **{"towards": (1, 0, 0), **settings})
     scene.settle()
     with pytest.raises(ValueError, match="must say what grows"):
         scene.grow({})

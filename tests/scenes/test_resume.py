@@ -118,9 +118,7 @@ def resumed(script, whole):
         ("patterns", (0.3, 0.5, 0.9)),
     ],
 )
-def test_a_run_stopped_again_and_again_leaves_what_an_unbroken_one_does(
-    here, name, shares
-):
+def test_a_run_stopped_again_and_again(here, name, shares):
     script = stopped.BEGIN + KNOWN[name]
     status, steps, said = stopped.carryOut(script, "--out", "whole")
     assert status == 0, said
@@ -133,13 +131,11 @@ def test_a_run_stopped_again_and_again_leaves_what_an_unbroken_one_does(
     resumed(script, "whole")
 
 
-@pytest.mark.parametrize(
-    "seed",
-    [
-        pytest.param(SEED + n, marks=[pytest.mark.long] if n >= SCRIPTS // 4 else [])
-        for n in range(SCRIPTS)
-    ],
-)
+LONG = [[], [pytest.mark.long]]
+SEEDS = [pytest.param(SEED + n, marks=LONG[n >= SCRIPTS // 4]) for n in range(SCRIPTS)]
+
+
+@pytest.mark.parametrize("seed", SEEDS)
 def test_a_script_stopped_and_resumed_leaves_what_an_unbroken_one_leaves(here, seed):
     dice = random.Random(f"{seed} stop")
     for trial in range(100):

@@ -35,11 +35,9 @@ scene.finish()
 
 
 def table(folder):
-    with open(os.path.join(folder, "shakes.csv")) as file:
-        return [
-            {name: float(value) if name != "ended" else value for name, value in row.items()}
-            for row in csv.DictReader(file)
-        ]  # fmt: skip
+    """Columns of shakes.csv."""
+    rows = [*csv.DictReader(open(os.path.join(folder, "shakes.csv")))]
+    return {name: [row[name] for row in rows] for name in rows[0]}
 
 
 def test_a_slab_slides_with_every_pulse_and_keeps_its_period(tmp_path, monkeypatch):
@@ -48,16 +46,16 @@ def test_a_slab_slides_with_every_pulse_and_keeps_its_period(tmp_path, monkeypat
     status, steps, said = stopped.carryOut(stopped.BEGIN + SCRIPT, "--out", "whole")
     assert status == 0, said
     rows = table("whole")
-    x = [row["residual_slab_x_mm"] for row in rows]
+    numbers = lambda name: np.array(rows[name], float)
+    x = numbers("residual_slab_x_mm")
     slips = np.cumsum([slip(PULSE), slip(PULSE / 2), slip(PULSE)])
     assert x == pytest.approx(-slips, rel=0.03)
     assert x[1] - x[0] == pytest.approx(-slip(PULSE / 2), rel=0.5)
     # sways on its joint; it hardly turns
     swings = 2 * math.pi * math.sqrt(DENSITY * HIGH / STIFFNESS)
-    periods = [row["first_period_s"] for row in rows]
-    assert periods == pytest.approx([swings] * 3, rel=0.05)
-    assert [row["peak_m_per_s2"] for row in rows] == [PULSE, PULSE / 2, PULSE]
-    assert {row["ended"] for row in rows} == {"done"}
+    assert numbers("first_period_s") == pytest.approx(swings, rel=0.05)
+    assert [*numbers("peak_m_per_s2")] == [PULSE, PULSE / 2, PULSE]
+    assert {*rows["ended"]} == {"done"}
     # stopped within the second record, the run goes on and leaves the same
     stop = stopped.signalled(signal.SIGTERM, round(0.5 * steps))
     assert stopped.carryOut(stopped.BEGIN + SCRIPT, "--out", "stopped", stop=stop)[0] == 130  # fmt: skip
@@ -68,26 +66,19 @@ def test_a_slab_slides_with_every_pulse_and_keeps_its_period(tmp_path, monkeypat
 
 def test_a_sequence_ends_with_the_record_in_which_the_structure_falls(tmp_path):
     stone = materials.dry(friction=0.7, normalStiffness=1e10, density=DENSITY)
-    words = ["--no-vtk", "--out", str(tmp_path)]
-    scene = Scene("stack", bricks.stack(2, (0.1, 0.1, 0.4)), stone, arguments=words)
-    scene.platen("bottom")
+    scene = standing(tmp_path, bricks.stack(2, (0.1, 0.1, 0.4)), stone)
     scene.watch(1, name="top")
     scene.settle()
     records = [pulse(), pulse(), pulse()]
-    ends = scene.shakeAgain(
-        records, every=EVERY, scales=[0.1, 3, 1], after=2.0, unit="m/s²"
-    )
-    assert ends == [DONE, COLLAPSED]
-    scene.finish()
-    assert [row["ended"] for row in csv.DictReader(open(tmp_path / "shakes.csv"))] == ["done", "collapsed"]  # fmt: skip
+    settings = dict(every=EVERY, after=2.0, unit="m/s²")
+    ends = scene.shakeAgain(records, scales=[0.1, 3, 1], **settings)
+    assert ends == table(tmp_path)["ended"] == [DONE, COLLAPSED]
     with pytest.raises(ValueError, match="2 scales for 3 records"):
         scene.shakeAgain(records, scales=[1, 2])
 
 
 def test_options_for_the_record_of_one_shake_are_refused(tmp_path):
-    words = ["--out", str(tmp_path), "--lean", "--scale", "2"]
-    scene = Scene("slab", bricks.stack(1, (SIDE, SIDE, HIGH)), materials.dry(friction=FRICTION), arguments=words)  # fmt: skip
-    scene.platen("bottom")
+    scene = standing(tmp_path, bricks.stack(1, (SIDE, SIDE, HIGH)), None, "--scale", "2")  # fmt: skip
     scene.settle()
     with pytest.raises(ValueError, match="give records and scales here"):
         scene.shakeAgain([pulse()], every=EVERY)

@@ -49,6 +49,15 @@ BLOCKS = {
     "scripts/WALL.md": ["my_wall.py"],
     "yade_plugin/FOR_YADE_USERS.md": ["joints.py"],
 }
+#: What makes studies shorter.
+SHORTER = {
+    "study.py": [("runs=200", "runs=3"), ('"until": 6', '"until": 0.2')],
+    "ida.py": [
+        ("levels=[0.2, 0.4, 0.6, 0.9, 1.3, 1.8]", "levels=[0.2, 0.4]"),
+        ('"parapet",', '"parapet", options={"quick": True},'),
+    ],
+    "couplets.py": [("unknown=", "runs=9,\n    unknown=")],
+}
 #: A record of the format of PEER: a sine that swells and fades, with another frequency in every file.
 PEER = """PEER NGA STRONG MOTION DATABASE RECORD
 none
@@ -114,21 +123,12 @@ def folder(tmp_path_factory):
     path = tmp_path_factory.mktemp("reader")
     for name in ("scripts", "validation", "yade_plugin", "tests"):
         os.symlink(os.path.join(ROOT, name), path / name)
-    (path / "my_scene.py").write_text(PYTHON["README.md"][0])
-    (path / "my_wall.py").write_text(PYTHON["scripts/WALL.md"][0])
-    (path / "joints.py").write_text(PYTHON["yade_plugin/FOR_YADE_USERS.md"][0])
-    study = PYTHON["scripts/STUDIES.md"][0]
-    small = study.replace("runs=200", "runs=3").replace('"until": 6', '"until": 0.2')
-    assert small.count("runs=3") == 1 and small.count('"until": 0.2') == 1
-    (path / "study.py").write_text(small)
-    shaken = PYTHON["scripts/STUDIES.md"][1]
-    short = shaken.replace("levels=[0.2, 0.4, 0.6, 0.9, 1.3, 1.8]", "levels=[0.2, 0.4]")
-    assert short != shaken
-    (path / "ida.py").write_text(short.replace('"parapet",', '"parapet", options={"quick": True},'))  # fmt: skip
-    couplets = PYTHON["scripts/STUDIES.md"][2]
-    fewer = couplets.replace("unknown=", "runs=9,\n    unknown=")
-    assert fewer != couplets
-    (path / "couplets.py").write_text(fewer)
+    for document, names in BLOCKS.items():
+        for name, text in zip(names, PYTHON[document]):
+            for before, after in SHORTER.get(name, ()):
+                assert text.count(before) == 1, before
+                text = text.replace(before, after)
+            (path / name).write_text(text)
     for name, residual in (("low", 0.1), ("high", 0.35)):
         rows = [f"{0.1 * n},{residual + 0.2 * math.exp(-n / 3)}" for n in range(10)]
         (path / f"{name}.csv").write_text("\n".join(["slide,stress", *rows]))
@@ -138,9 +138,9 @@ def folder(tmp_path_factory):
         (path / "records" / f"sine{hertz}.AT2").write_text(PEER + "\n".join(f"{0.3 * a:.6E}" for a in wave))  # fmt: skip
     (path / "measured.csv").write_text("displacement_mm\n0.1\n-0.1\n0\n")
     (path / "test.csv").write_text("d,F\n0,0\n1,50\n2,60\n")
-    (path / "checkpoint.py").write_text(
-        SCENE + PYTHON["scripts/FILES.md"][0] + "assert pushed == 1000\nscene.finish()\n"
-    )  # fmt: skip
+    checkpoint = SCENE + (path / "checkpoint.py").read_text()
+    checkpoint += "assert pushed == 1000\nscene.finish()\n"
+    (path / "checkpoint.py").write_text(checkpoint)
     return path
 
 
@@ -159,18 +159,15 @@ def test_every_command_that_has_no_reason_runs(folder):
     ran = 0
     typed(folder, "yade -n -x checkpoint.py")
     typed(folder, "yade -n -x joints.py")
-    for document in sorted(
-        ALL
-    ):  # README.md at the top, then scripts/, which goes on with its results
-        for command in ALL[document]:
-            if reasonOf(command):
-                continue
-            for pattern, text in REPLACED:
-                command = re.sub(pattern, text, command)
-            typed(folder, command)
-            ran += 1
+    # README.md at the top, then scripts/, which goes on with its results
+    every = [command for document in sorted(ALL) for command in ALL[document]]
+    for command in every:
+        if reasonOf(command):
+            continue
+        for pattern, text in REPLACED:
+            command = re.sub(pattern, text, command)
+        typed(folder, command)
+        ran += 1
     assert ran >= 10
-    assert (folder / "results" / "wall_comp4" / "curve.png").exists()
-    assert (folder / "study" / "study.csv").exists()
-    assert (folder / "IDA" / "study.csv").exists()
-    assert (folder / "COUPLETS" / "calibration.png").exists()
+    for path in ("results/wall_comp4/curve.png", "study/study.csv", "IDA/study.csv", "COUPLETS/calibration.png"):  # fmt: skip
+        assert (folder / path).exists()

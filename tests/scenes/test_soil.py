@@ -2,7 +2,6 @@
 """A tower on soil that turns: it leans by its weight, and above a height it falls over however small the load is."""
 
 from hosted import *
-from masonry import AT_REST, MOVING
 from masonry.scene.stages import growing, rest
 
 SIDE, HEIGHT, DENSITY = 2.0, 20.0, 2000.0  # [m], [m], [kg/m³]
@@ -13,7 +12,7 @@ OVERTURNING = DENSITY * G * SIDE**2 * HEIGHT**2 / 2
 def tower(folder, stiffness):
     blocks = bricks.stack(2, (SIDE, SIDE, HEIGHT / 2))
     stones = materials.dry(friction=0.7, density=DENSITY, normalStiffness=5e10)
-    scene = Scene("tower", blocks, stones, arguments=["--out", str(folder), "--lean"])
+    scene = lean(folder, blocks, stones)
     springs = {"x": 1e8, "z": 1e8, "Y": stiffness}
     scene.platen("bottom", springs=springs, height=0.01)
     scene.watch(-1, name="top")
@@ -26,10 +25,9 @@ def test_a_tower_leans_as_its_soil_gives_way_and_waits_for_its_slow_period(tmp_p
     assert scene.settle() == AT_REST
     assert scene.wind(pressure, (1, 0, 0)) == AT_REST
     moment = pressure * SIDE * HEIGHT**2 / 2
-    lean = moment / (stiffness - OVERTURNING)
-    middle = 0.75 * HEIGHT  # of the upper stone
-    scene.finish()
-    assert readCurve(tmp_path)["top_x_mm"][-1] == pytest.approx(1e3 * lean * middle, rel=0.03)  # fmt: skip
+    leans = moment / (stiffness - OVERTURNING)
+    moved = 1e3 * leans * 0.75 * HEIGHT  # in the middle of the upper stone
+    assert scene.curve()["top_x_mm"][-1] == pytest.approx(moved, rel=0.03)
 
 
 def test_a_tower_that_its_soil_does_not_hold_upright_is_not_at_rest(tmp_path, capsys):
@@ -40,10 +38,10 @@ def test_a_tower_that_its_soil_does_not_hold_upright_is_not_at_rest(tmp_path, ca
 
 @pytest.mark.parametrize("length, height", [(8.0, 1.0), (1.0, 8.0)])
 @pytest.mark.parametrize("place", [(0, 0, 0), (30, 0, -10)])
-def test_the_slowest_period_is_that_of_a_body_that_rocks(tmp_path, length, height, place):  # fmt: skip
+def test_the_slowest_period_is_that_of_rocking(tmp_path, length, height, place):
     """T = 2π √(I / (k - W h/2)), with the inertia I = m (l²/12 + h²/3) about the soil."""
     wall = bricks.Wall(length, height, (0.5, 0.3, 0.25), halves=False).moved(*place)
-    scene = Scene("wall", wall, materials.dry(density=DENSITY), arguments=["--out", str(tmp_path), "--lean"])  # fmt: skip
+    scene = lean(tmp_path, wall, materials.dry(density=DENSITY))
     mass = DENSITY * length * height * 0.3
     stiffness = 2 * mass * G * height / 2
     scene.platen("bottom", springs={"Y": stiffness}, height=0.01)
@@ -51,7 +49,6 @@ def test_the_slowest_period_is_that_of_a_body_that_rocks(tmp_path, length, heigh
     inertia = mass * (length**2 / 12 + height**2 / 3)
     expected = 2 * math.pi * math.sqrt(inertia / (stiffness / 2))
     assert scene.model.supports.slowest() == pytest.approx(expected, rel=0.03)
-    scene.finish()
 
 
 @pytest.mark.parametrize("soil, seconds", [(0.0, growing.TRIAL), (2.0, 20.0)])
@@ -78,7 +75,7 @@ def test_a_thin_wall_is_slender_unless_it_stays_in_its_plane(plane, slender):
     assert rest.isSlender(scene) == slender
 
 
-def test_small_horizontal_loads_must_be_carried_on_their_own(scene, tmp_path):
+def test_small_horizontal_loads_must_be_carried_on_their_own(tmp_path):
     scene = tower(tmp_path, 3 * OVERTURNING)
     scene.begin()
     supports = scene.model.supports
@@ -86,22 +83,18 @@ def test_small_horizontal_loads_must_be_carried_on_their_own(scene, tmp_path):
         supports.applied = lambda: Vector3(across, 0, -1000)
         supports.carried = lambda: Vector3(0, 0, 1000)
         assert supports.unrest()[0] == pytest.approx(missing, rel=1e-3)
-    scene.finish()
 
 
-def test_a_wall_that_is_soft_sinks_far_and_slowly_and_has_not_fallen(scene, tmp_path):
+def test_a_wall_that_is_soft_sinks_far_and_slowly_and_has_not_fallen(tmp_path):
     """Its blocks move by a tenth of their size, as fast as blocks fall if the load comes in the usual time."""
     side, pressure, stiffness = 0.25, 1e6, 2e8
     blocks = bricks.stack(4, (side, side, side))
     stones = materials.dry(friction=0.7, density=DENSITY, normalStiffness=stiffness)
-    scene = Scene("soft", blocks, stones, arguments=["--out", str(tmp_path), "--lean"])
-    scene.platen("bottom")
-    top = scene.platen("top", guided="x")
-    scene.press(top, pressure)
+    scene = standing(tmp_path, blocks, stones)
+    scene.press(scene.platen("top", guided="x"), pressure)
     assert scene.settle() == AT_REST
-    scene.finish()
     sinks = 5 * pressure / stiffness + sum(range(1, 5)) * DENSITY * G * side / stiffness
-    assert readCurve(tmp_path)["top_z_mm"][-1] == pytest.approx(-1e3 * sinks, rel=0.01)  # fmt: skip
+    assert scene.curve()["top_z_mm"][-1] == pytest.approx(-1e3 * sinks, rel=0.01)
 
 
 def test_a_press_over_rollers_keeps_its_line_while_what_it_presses_leans(tmp_path):
@@ -113,5 +106,5 @@ def test_a_press_over_rollers_keeps_its_line_while_what_it_presses_leans(tmp_pat
     assert scene.settle() == AT_REST
     load = scene.model.loading.loads["roof_force"]
     moved = load.displacement()[0]
-    assert moved > 1e-3 and load.point[0] + moved == pytest.approx(SIDE / 2, abs=1e-2 * moved)  # fmt: skip
-    scene.finish()
+    middle = pytest.approx(SIDE / 2, abs=1e-2 * moved)
+    assert moved > 1e-3 and load.point[0] + moved == middle

@@ -4,9 +4,7 @@
 from hosted import *
 import statics
 
-SEED = int(
-    os.environ.get("STATICS_SEED", time.time() // 86400)
-)  # another one every day
+SEED = int(os.environ.get("STATICS_SEED", time.time() // 86400))  # other ones every day
 
 
 def sample(stage, count):

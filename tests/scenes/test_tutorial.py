@@ -35,35 +35,31 @@ def test_a_notebook_runs_from_top_to_bottom(tmp_path, name):
     pytest.importorskip("nbconvert", reason="jupyter-nbconvert is not installed")
     pytest.importorskip("ipykernel", reason="python3-ipykernel is not installed")
     shutil.copy(os.path.join(TUTORIAL, name), tmp_path)
-    command = [sys.executable, "-m", "nbconvert", "--to", "notebook", "--execute", "--inplace", "--ExecutePreprocessor.kernel_name=python3", name]  # fmt: skip
-    words = dict(capture_output=True, text=True, timeout=300)
-    run = subprocess.run(command, cwd=tmp_path, **words)
+    words = (
+        "--to notebook --execute --inplace --ExecutePreprocessor.kernel_name=python3"
+    )
+    command = [sys.executable, "-m", "nbconvert", *words.split(), name]
+    settings = dict(capture_output=True, text=True, timeout=300)
+    run = subprocess.run(command, cwd=tmp_path, **settings)
     assert run.returncode == 0, run.stderr[-5000:]
-    count = pictures = 0
-    for cell in read(tmp_path / name)["cells"]:
-        for output in cell.get("outputs", []):
-            assert output["output_type"] != "error", output
-            assert len(json.dumps(output)) < LARGEST, cell["source"]
-            data = output.get("data", {})
-            page = "".join(data.get("text/html", ""))
-            found = re.findall(r'base64,([^"]+)"', page)
-            found += ["".join(data.get("image/png", ""))] * ("image/png" in data)
-            assert all(base64.b64decode(p).startswith(b"\x89PNG") for p in found)
-            pictures += len(found)
-            count += 1
-    assert count >= 10 and pictures >= 5
+    outputs = [o for c in read(tmp_path / name)["cells"] for o in c.get("outputs", [])]
+    pictures = []
+    for output in outputs:
+        assert output["output_type"] != "error", output
+        assert len(json.dumps(output)) < LARGEST, output
+        data = output.get("data", {})
+        pictures += re.findall(r'base64,([^"]+)"', "".join(data.get("text/html", "")))
+        pictures += ["".join(data["image/png"])] if "image/png" in data else []
+    assert all(base64.b64decode(p).startswith(b"\x89PNG") for p in pictures)
+    assert len(outputs) >= 10 and len(pictures) >= 5
     assert len(os.listdir(tmp_path / "results")) >= 3
 
 
 def test_every_command_of_the_tutorial(tmp_path):
     for name in ("scripts", "validation"):
         os.symlink(os.path.join(ROOT, name), tmp_path / name)
-    commands = [
-        line
-        for name in NOTEBOOKS
-        for text in cells(name, "markdown")
-        for line in re.findall(r"(?m)^    ((?:yade|/usr/bin/python3) \S.*)$", text)
-    ]
+    texts = "\n".join(text for name in NOTEBOOKS for text in cells(name, "markdown"))
+    commands = re.findall(r"(?m)^    ((?:yade|/usr/bin/python3) \S.*)$", texts)
     assert len(commands) == 5
     for command in commands:
         if "view.py" in command:  # tests/scenes/test_view.py has ParaView

@@ -2,8 +2,8 @@
 """The quick variants of the validation cases hold their limits, and the program says so when one does not."""
 
 from hosted import *
-import glob
-import importlib.util
+import pathlib
+import runpy
 import invariance
 import observed
 import stability
@@ -12,20 +12,15 @@ import validate
 from masonry.scene import options
 from masonry.scene.settings import applySettings
 
-# There is also a package of this name, which notebooks import.
-_spec = importlib.util.spec_from_file_location("sensitivity_tornado", os.path.join(ROOT, "validation", "sensitivity", "tornado.py"))  # fmt: skip
-tornado = importlib.util.module_from_spec(_spec)
-_spec.loader.exec_module(tornado)
+# There is also a package of the name tornado, which notebooks import.
+PATH = os.path.join(ROOT, "validation", "sensitivity", "tornado.py")
+ROWS = runpy.run_path(PATH)["ROWS"]
 
-CASES = [
-    os.path.basename(os.path.dirname(path))
-    for path in sorted(glob.glob(os.path.join(studies.HERE, "*", "case.json")))
-]
+CASES = sorted(path.parent.name for path in pathlib.Path(studies.HERE).glob("*/case.json"))  # fmt: skip
+QUICK = [case for case in CASES if "quick" in studies.readCase(case)]
 
 
-@pytest.mark.parametrize(
-    "case", [case for case in CASES if "quick" in studies.readCase(case)]
-)
+@pytest.mark.parametrize("case", QUICK)
 def test_the_quick_variant_holds_its_limits(case, tmp_path, capsys):
     assert validate.main([case, "quick", "--results", str(tmp_path)]) == 0
     assert "MISSED" not in capsys.readouterr().out
@@ -57,7 +52,7 @@ def test_an_unknown_run_is_refused(capsys):
     assert "no run soft; there are rigid, deformable" in capsys.readouterr().err
 
 
-@pytest.mark.parametrize("row", tornado.ROWS, ids=lambda row: row.name)
+@pytest.mark.parametrize("row", ROWS, ids=lambda row: row.name)
 def test_a_variation_changes_joints_within_their_bounds(row):
     assert row.low or row.high
     for text in (row.low, row.high):
@@ -65,10 +60,7 @@ def test_a_variation_changes_joints_within_their_bounds(row):
         applySettings(materials.calciumSilicateJoints(), args.set)
 
 
-AXES = [axis for axis in stability.AXES if "COMP-4" not in axis]
-
-
-@pytest.mark.parametrize("axis", AXES)
+@pytest.mark.parametrize("axis", [a for a in stability.AXES if "COMP-4" not in a])
 def test_walls_at_the_extremes_are_stable_or_stopped_with_a_reason(axis):
     """Of the stability map: rigid units at both ends of each axis, deformable ones in its middle."""
     points = stability.AXES[axis]
@@ -90,15 +82,8 @@ def test_energy_that_joints_make_is_an_error_of_the_balance():
 
 
 @pytest.mark.parametrize("blocks", observed.BLOCKS)
-def test_a_panel_in_other_units_turned_and_renumbered_gives_the_same_curve(
-    blocks,
-):
-    telling = dict(
-        length=1e-3,
-        stress=1e6,
-        turn=invariance.TURN,
-        shuffle=True,
-        mirror=blocks == "rigid",
-    )
-    early, late = invariance.difference(blocks, telling)
+def test_a_panel_in_other_units_turned_and_renumbered(blocks):
+    units = dict(length=1e-3, stress=1e6)
+    order = dict(turn=invariance.TURN, shuffle=True, mirror=blocks == "rigid")
+    early, late = invariance.difference(blocks, {**units, **order})
     assert early < 1e-9 and late < 1e-7

@@ -5,9 +5,9 @@ from hosted import *
 from masonry.read import viewer
 from matplotlib.image import imread
 
-MISSING = "" if shutil.which("pvpython") or os.path.exists(os.path.join(viewer.UNPACKED, "usr", "bin", "pvpython")) else "ParaView is not installed"  # fmt: skip
-
-needsParaView = pytest.mark.skipif(bool(MISSING), reason=MISSING)
+UNPACKED = os.path.join(viewer.UNPACKED, "usr", "bin", "pvpython")
+isThere = shutil.which("pvpython") or os.path.exists(UNPACKED)
+needsParaView = pytest.mark.skipif(not isThere, reason="ParaView is not installed")
 
 
 @pytest.fixture(scope="module")
@@ -33,8 +33,7 @@ def cracked(path):
 
 @needsParaView
 def test_a_picture_shows_bricks_and_the_crack(wall, tmp_path):
-    path = str(tmp_path / "wall.png")
-    early = str(tmp_path / "early.png")
+    path, early = str(tmp_path / "wall.png"), str(tmp_path / "early.png")
     for words in ((path,), (early, "--at", "0")):
         run = view(wall, "--size", "600x400", "--picture", *words)
         assert run.returncode == 0, run.stderr
@@ -46,12 +45,10 @@ def test_a_picture_shows_bricks_and_the_crack(wall, tmp_path):
 
 @needsParaView
 def test_a_film_has_all_frames(wall, tmp_path):
-    frames = len(viewer.frameTimes(wall))
-    folder = tmp_path / "film"
-    assert view(wall, "--film", str(folder), "--size", "300x200").returncode == 0
-    assert len(os.listdir(folder)) == frames
-    film = tmp_path / "film.avi"
-    assert view(wall, "--film", str(film), "--size", "300x200").returncode == 0
+    folder, film = tmp_path / "film", tmp_path / "film.avi"
+    for path in (folder, film):
+        assert view(wall, "--film", str(path), "--size", "300x200").returncode == 0
+    assert len(os.listdir(folder)) == len(viewer.frameTimes(wall))
     assert film.read_bytes().startswith(b"RIFF")
 
 
@@ -85,8 +82,8 @@ def test_places_in_a_run(wall):
     moved = viewer.readCurve(wall)
     middle = len(times) // 2
     row = int(np.argmin(np.abs(np.array(moved["time_s"]) - times[middle])))
-    for text in ("{:.9g}", "{:.9g}mm", "{:.9g} mm"):
-        place = text.format(moved["displacement_mm"][row])
+    for unit in ("", "mm", " mm"):
+        place = f"{moved['displacement_mm'][row]:.9g}{unit}"
         assert abs(viewer.frameNear(wall, place) - middle) <= 1
     for text, message in (
         ("3 kN", "'3 kN' must be in mm or in s"),
@@ -115,8 +112,7 @@ def test_without_paraview_the_packages_are_named(wall, monkeypatch):
         (["RUN", "--rate", "0"], "--rate: 0 must be from 1 to 100"),
     ],
 )
-def test_what_cannot_be_shown_is_refused(
-    wall, monkeypatch, tmp_path, capsys, words, message):  # fmt: skip
+def test_what_cannot_be_shown(wall, monkeypatch, tmp_path, capsys, words, message):
     monkeypatch.chdir(tmp_path)
     assert viewer.main([wall if w == "RUN" else w for w in words]) == 2
     assert message in capsys.readouterr().err
@@ -124,5 +120,6 @@ def test_what_cannot_be_shown_is_refused(
 
 
 def test_it_needs_no_yade():
-    message = subprocess.run([sys.executable, "-c", "import sys, masonry.read.viewer; print([m for m in sys.modules if 'yade' in m or 'vtk' in m])"], capture_output=True, text=True)  # fmt: skip
-    assert message.stdout.strip() == "[]", message.stderr
+    code = "import sys, masonry.read.viewer; print({'yade', 'vtk'} & {*sys.modules})"
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+    assert run.stdout.strip() == "set()", run.stderr

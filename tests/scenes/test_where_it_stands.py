@@ -21,9 +21,9 @@ NOISE = {"energy_balance_error", "energy_made", "wall corner_m", "wall pushed_to
 }  # fmt: skip
 
 
-def pushedWall(words, stand, towards):
+def pushedWall(folder, stand, towards):
     blocks = stand(bricks.Wall(length=0.88, height=0.81))
-    scene = Scene("wall", blocks, materials.calciumSilicate(), rate=20, arguments=words)  # fmt: skip
+    scene = lean(folder, blocks, materials.calciumSilicate(), rate=20)
     _, top = scene.platen("bottom"), scene.platen("top", rotation="free")
     scene.press(top, 2e4)
     scene.settle()
@@ -31,10 +31,10 @@ def pushedWall(words, stand, towards):
     scene.finish()
 
 
-def leaningArch(words, stand, towards):
+def leaningArch(folder, stand, towards):
     blocks = bricks.Arch(thickness=0.15, depth=0.3, stones=7, radius=0.925, angle=157.5, skewback=0.2)  # fmt: skip
     stones = materials.dry(friction=0.7, normalStiffness=1e11)
-    scene = Scene("arch", stand(blocks), stones, arguments=words)
+    scene = lean(folder, stand(blocks), stones)
     for brick, name in ((7, "left"), (8, "right")):
         scene.hold(brick, name=name)
     scene.settle()
@@ -42,10 +42,9 @@ def leaningArch(words, stand, towards):
     scene.finish()
 
 
-def fallingStack(words, stand, towards):
+def fallingStack(folder, stand, towards):
     blocks = stand(bricks.stack(5, (0.2, 0.25, 0.2)))
-    scene = Scene("stack", blocks, materials.dry(0.7), collapse="follow", plane=False, arguments=words)  # fmt: skip
-    scene.platen("bottom")
+    scene = standing(folder, blocks, materials.dry(0.7), collapse="follow", plane=False)
     scene.settle()
     scene.lean(0.4, towards=towards(1, 0))
     scene.finish()
@@ -62,7 +61,7 @@ def here(build, folder):
 def answers(build, folder, stand, towards):
     """All numbers of a run: the quantities, those of its joints and pattern, and the answers of its stages."""
     O.reset()
-    build(["--out", folder, "--lean", "--no-vtk"], stand, towards)
+    build(folder, stand, towards)
     run = readRun(folder)
     measured = {key: run[key] for key in [*quantities.BY_KEY, *MORE] if key in run}
     stages = {f"{n} {one['name']}": one["value"] for n, one in enumerate(run["answers"])}  # fmt: skip

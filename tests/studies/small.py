@@ -10,10 +10,7 @@ parser = options.parser(__doc__, until=1, rate=20)
 parser.add_argument("--fall", action="store_true", help="fail")
 args = parser.parse_args()
 scene = Scene(
-    "small",
-    bricks.Wall(0.88, 0.648),
-    materials.calciumSilicate(),
-    arguments=args,
+    "small", bricks.Wall(0.88, 0.648), materials.calciumSilicate(), arguments=args
 )
 scene.platen("bottom")
 top = scene.platen("top", drive="x")

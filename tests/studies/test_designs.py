@@ -60,9 +60,7 @@ def test_values_lie_in_bounds_and_are_the_same_again(seed, runs, design, low, wi
     u=some.floats(0.001, 0.999),
 )
 @settings(max_examples=200)
-def test_a_distribution_that_is_cut_off_has_the_rest_of_the_whole_one(
-    kind, size, mean, cov, ends, given, u
-):
+def test_a_cut_distribution_is_the_rest(kind, size, mean, cov, ends, given, u):
     assume(ends[0] + 0.01 < ends[1])
     mean *= 10.0**size
     whole = kind(mean, cov).law()

@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Sensitivities against closed forms, and pictures of what they must show, drawn from numbers and from a study's folder."""
 
-from usual import *
+from commands import *
 import pathlib
-from masonry.read import drawing
 from masonry.study import pictures, records, report, sensitivity, statistics
 from scipy import stats
 from scipy.integrate import trapezoid
@@ -112,16 +111,7 @@ def test_what_no_sensitivity_can_be_made_of_is_refused(call, message):
 # -- pictures --------------------------------------------------------------------------------------------------------
 
 
-@pytest.fixture
-def drawn(monkeypatch):
-    """Figures that would be saved, by the name of their file."""
-    found = {}
-    save = lambda figure, path, dpi: found.update({os.path.basename(path): figure})
-    monkeypatch.setattr(drawing, "save", save)
-    return found
-
-
-PEAK = "peak base shear [kN]"
+PEAKS, PEAK = "peak_base_shear_kN", "peak base shear [kN]"
 VALUES = 110 * np.exp(0.05 * np.random.default_rng(7).standard_normal(200))
 
 
@@ -201,22 +191,18 @@ def test_bars_stand_for_the_numbers_with_the_largest_on_top(drawn):
 
 def writeStudy(folder, rows, measures, curves=0):
     """A folder as gathering leaves it. Of ``rows`` and ``measures`` a cell that is empty has no number."""
-    os.makedirs(folder)
-    heads = ["run", *NAMES, "status", *measures]
-    lines = [
-        [f"{n:04d}", *map(repr, row), "ended" if any(cells) else "failed", *cells]
-        for n, (row, cells) in enumerate(zip(rows, zip(*measures.values())), 1)
-    ]
-    with open(os.path.join(folder, "study.csv"), "w") as f:
-        f.writelines(",".join(line) + "\n" for line in [heads, *lines])
-    with open(os.path.join(folder, "times.csv"), "w") as f:
-        f.write("run,status,host,run_seconds,job_seconds,commit,told\n")
-        for n, line in enumerate(lines):
-            f.write(f"{line[0]},{line[4]},here,9,{10 + n % 2},,\n")
-    for n in range(curves):
-        os.makedirs(os.path.join(folder, "rows", lines[n][0]))
-        with open(os.path.join(folder, "rows", lines[n][0], "curve.csv"), "w") as f:
-            f.write("displacement_mm,base_shear_kN\r\n0,0\r\n1,100\r\n3,80\r\n")
+    lines = [["run", *NAMES, "status", *measures]]
+    times = ["run,status,host,run_seconds,job_seconds,commit,told"]
+    for n, (row, cells) in enumerate(zip(rows, zip(*measures.values())), 1):
+        status = "ended" if any(cells) else "failed"
+        lines.append([f"{n:04d}", *map(repr, row), status, *cells])
+        times.append(f"{n:04d},{status},here,9,{10 + n % 2},,")
+        run = folder / "rows" / f"{n:04d}"
+        run.mkdir(parents=True)
+        if n <= curves:
+            (run / "curve.csv").write_text("displacement_mm,base_shear_kN\r\n0,0\r\n1,100\r\n3,80\r\n")  # fmt: skip
+    (folder / "study.csv").write_text("\n".join(map(",".join, lines)) + "\n")
+    (folder / "times.csv").write_text("\n".join(times) + "\n")
     return str(folder)
 
 
@@ -226,25 +212,23 @@ def studies(tmp_path):
     generator = np.random.default_rng(10)
     rows = generator.uniform(0, 1, (120, 3)).tolist()
     scatter = 0.3 * generator.standard_normal((2, 120))
-    expensive = [
-        100 + 20 * a - 10 * b + float(s) for (a, b, _), s in zip(rows, scatter[0])
-    ]
-    cheap = [1.1 * y - 3 + float(s) for y, s in zip(expensive, scatter[1])]
+    expensive = 100 + np.array(rows) @ [20, -10, 0] + scatter[0]
+    cheap = 1.1 * expensive - 3 + scatter[1]
     order = generator.permutation(120)
-    shuffled = {"peak_base_shear_kN": [repr(cheap[i]) for i in order]}
+    texts = lambda numbers: [repr(float(number)) for number in numbers]
     modes = ["slides"] * 5 + ["rocks"] * 10
-    few = {"failure_mode": modes, "peak_base_shear_kN": list(map(repr, expensive[:15]))}
+    few = {"failure_mode": modes, PEAKS: texts(expensive[:15])}
     return (
         writeStudy(tmp_path / "accurate", rows[:15], few, curves=15),
-        writeStudy(tmp_path / "fast", [rows[i] for i in order], shuffled),
-        np.array(expensive),
+        writeStudy(tmp_path / "fast", [rows[i] for i in order], {PEAKS: texts(cheap[order])}),  # fmt: skip
+        expensive,
     )
 
 
 def test_shared_rows_are_found_by_what_varied_in_them(studies):
     expensive, cheap, peaks = studies
     few, many = records.Record(expensive), records.Record(cheap)
-    y, x, shared, rows = records.paired(few, many, "peak_base_shear_kN")
+    y, x, shared, rows = records.paired(few, many, PEAKS)
     assert y == pytest.approx(peaks[:15]) and shared == list(range(15))
     assert len(x) == 120 and sorted(rows) == list(range(120))
     assert x[:15] == pytest.approx(1.1 * y - 3, abs=1.5)
@@ -253,11 +237,11 @@ def test_shared_rows_are_found_by_what_varied_in_them(studies):
 def test_rows_without_a_number_in_either_study_are_not_shared(studies):
     expensive, cheap, peaks = studies
     few, many = records.Record(expensive), records.Record(cheap)
-    few.cells["peak_base_shear_kN"][2] = ""
+    few.cells[PEAKS][2] = ""
     keys = list(zip(*(many.cells[name] for name in NAMES)))
     lost = keys.index(tuple(few.cells[name][4] for name in NAMES))
-    many.cells["peak_base_shear_kN"][lost] = ""
-    y, x, shared, rows = records.paired(few, many, "peak_base_shear_kN")
+    many.cells[PEAKS][lost] = ""
+    y, x, shared, rows = records.paired(few, many, PEAKS)
     assert shared == [n for n in range(15) if n not in (2, 4)] and len(y) == 13
     assert np.isfinite(y).all() and np.isfinite(x).all() and len(x) == 119
     assert y == pytest.approx(peaks[shared])
@@ -267,44 +251,39 @@ def test_studies_of_which_it_cannot_be_reported_what_they_share_are_refused(stud
     few, many = map(records.Record, studies[:2])
     many.varied = many.varied[:2]
     with pytest.raises(Refused, match=f"varies {', '.join(NAMES)}, and"):
-        records.paired(few, many, "peak_base_shear_kN")
+        records.paired(few, many, PEAKS)
     few, many = map(records.Record, studies[:2])
     for name in NAMES:
         many.cells[name][1] = many.cells[name][0]
     with pytest.raises(Refused, match="rows have the same properties"):
-        records.paired(few, many, "peak_base_shear_kN")
+        records.paired(few, many, PEAKS)
 
 
 def test_studies_of_other_walls_or_options_are_not_joined(studies):
-    options = {"accurate": {"preset": "accurate"}, "fast": {"preset": "fast"}}
+    def shared(scene="wall_comp4", **more):
+        """How many rows studies of a scene and another one share, of which the other has more options."""
+        described = (("wall_comp4", {"preset": "accurate"}), (scene, {"preset": "fast", **more}))  # fmt: skip
+        for directory, (name, options) in zip(studies, described):
+            study = {"scene": name, "runs": 15, "options": options, "vary": {}}
+            text = json.dumps({"study": study, "script": name + ".py"})
+            (pathlib.Path(directory) / "study.json").write_text(text)
+        return len(records.paired(*map(records.Record, studies[:2]), PEAKS)[0])
 
-    def write(scene="wall_comp4", **more):
-        for (name, own), directory in zip(options.items(), studies):
-            study = {"scene": "wall_comp4", "runs": 15, "options": own, "vary": {}}
-            if name == "fast":
-                study = {**study, "scene": scene, "options": {**own, **more}}
-            message = {"study": study, "script": scene + ".py"}
-            (pathlib.Path(directory) / "study.json").write_text(json.dumps(message))
-        return [records.Record(directory) for directory in studies[:2]]
-
-    assert len(records.paired(*write(), "peak_base_shear_kN")[0]) == 15
     with pytest.raises(Refused, match="has scene 'wall_comp4', and .* 'wall_comp1'"):
-        records.paired(*write("wall_comp1"), "peak_base_shear_kN")
+        shared("wall_comp1")
     with pytest.raises(Refused, match="has until None, and .* 6"):
-        records.paired(*write(until=6), "peak_base_shear_kN")
+        shared(until=6)
     with pytest.raises(Refused, match="has joints None, and .* 'cyclic'"):
-        records.paired(*write(joints="cyclic", rate=20), "peak_base_shear_kN")
+        shared(joints="cyclic", rate=20)
     # rates and meshes may be others
-    assert (
-        len(records.paired(*write(rate=20, points="4"), "peak_base_shear_kN")[0]) == 15
-    )
+    assert shared() == shared(rate=20, points="4") == 15
 
 
 def test_the_seed_of_a_random_field_is_no_input(studies):
     record = records.Record(studies[0])
     record.varied.append("field:bed.cohesion")
     record.cells["field:bed.cohesion"] = list(map(str, range(15)))
-    assert list(record.complete("peak_base_shear_kN")[1]) == list(NAMES)
+    assert list(record.complete(PEAKS)[1]) == list(NAMES)
 
 
 def test_the_report_tells_and_draws_all(studies, capsys):
@@ -326,7 +305,7 @@ def test_the_report_tells_and_draws_all(studies, capsys):
 
 def test_rows_that_failed_are_reported_and_left_out(tmp_path, capsys):
     rows = np.random.default_rng(11).uniform(0, 1, (40, 3)).tolist()
-    peaks = {"peak_base_shear_kN": [repr(float(n)) if n % 4 else "" for n in range(40)]}
+    peaks = {PEAKS: [repr(float(n)) if n % 4 else "" for n in range(40)]}
     folder = writeStudy(tmp_path / "study", rows, peaks)
     assert report.main([folder, "--no-pictures"]) == 0
     said = capsys.readouterr().out

@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Studies that run: here, killed at random moments, on Slurm, and by plain yade-batch; always with the same study.csv."""
 
-from usual import *
-import cluster
+from commands import *
 from masonry.run import batch
 from masonry.read.cracks import failureMode
 from masonry.read.measure import measure
@@ -10,7 +9,6 @@ from masonry.read.files import readRun
 
 pytest.importorskip("openturns", reason="python3-openturns is not installed")
 
-HERE = os.path.dirname(os.path.abspath(__file__))
 SMALL = os.path.join(HERE, "small.py")
 STUDY = f"""
 from masonry.study import Study, field, lognormal
@@ -19,7 +17,6 @@ study = Study({SMALL!r}, runs=4, seed=1, options={{"rate": 5, "until": 1, "check
            ("bed.cohesion", "bed.tensileStrength"): field(cov=0.2, length=0.3)}})
 """
 JOB = " -x " + SMALL
-COMMAND = [sys.executable, "-m", "masonry.study"]
 
 
 def write(folder, text=STUDY):
@@ -28,50 +25,22 @@ def write(folder, text=STUDY):
     return path
 
 
-def study(*words, **settings):
-    words = [*COMMAND, *map(str, words)]
-    return subprocess.run(words, capture_output=True, text=True, **settings)
-
-
-def start(*words):
-    pipes = dict(stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
-    return subprocess.Popen([*COMMAND, *map(str, words)], **pipes)
-
-
-def table(out, name="study.csv"):
-    """The rows of a table."""
-    return [*csv.DictReader(read(out, name).decode().splitlines())]
-
-
 def family(process):
     """Ids and command lines of a process and of all that it has started and that live."""
-    listed = subprocess.check_output(["ps", "-e", "-o", "pid=,ppid=,args="], text=True)
+    listed = run("ps", "-e", "-o", "pid=,ppid=,args=").stdout
     message = [line.split(None, 2) for line in listed.splitlines()]
-    found = {str(process.pid)}
-    while True:
-        more = {pid for pid, parent, _ in message if parent in found} - found
-        if not more:
-            return {int(pid): args for pid, _, args in message if pid in found}
+    found, more = set(), {str(process.pid)}
+    while more:
         found |= more
-
-
-def read(out, name="study.csv"):
-    return (out / name).read_bytes()
-
-
-def ended(out):
-    """The rows that came to their end, in turn, as their scene wrote them."""
-    return (out / "ended.txt").read_text().split()
+        more = {pid for pid, parent, _ in message if parent in found} - found
+    return {int(pid): args for pid, _, args in message if pid in found}
 
 
 @pytest.fixture(scope="module")
 def whole(tmp_path_factory):
     """A study that was not disturbed: its folder, and what it said."""
     folder = tmp_path_factory.mktemp("whole")
-    out = folder / "out"
-    done = study(write(folder), "--out", out, "--jobs", "2")
-    assert done.returncode == 0, done.stdout + done.stderr
-    return out, done.stdout
+    return folder / "out", done(write(folder), "--out", folder / "out", "--jobs", "2")
 
 
 def test_a_study_runs_all_rows_once(whole):
@@ -83,15 +52,14 @@ def test_a_study_runs_all_rows_once(whole):
     field = "bed.cohesion+bed.tensileStrength"
     for row, asked in zip(rows, batch.readTable(str(out / "table.txt")).values()):
         folder = out / "rows" / row["run"]
-        run = readRun(str(folder))
-        assert float(row["peak_base_shear_kN"]) == run["peak_base_shear_kN"] > 1
-        friction = float(asked["bed.friction"])
-        assert (
-            float(row["bed.friction"]) == run["joints"]["bed"]["friction"] == friction
-        )
-        assert run["options"]["joints"] == row["joints"] == batch.value(asked["joints"])
-        drawn = batch.value(asked[f"field:{field}"])
-        assert run["options"]["field"] == [f"{field}={drawn}"]
+        found = readRun(folder)
+        assert float(row["peak_base_shear_kN"]) == found["peak_base_shear_kN"] > 1
+        friction = found["joints"]["bed"]["friction"]
+        assert float(row["bed.friction"]) == friction == float(asked["bed.friction"])
+        law = found["options"]["joints"]
+        assert law == row["joints"] == batch.value(asked["joints"])
+        values = batch.value(asked[f"field:{field}"])
+        assert found["options"]["field"] == [f"{field}={values}"]
         assert row["failure_mode"] and float(row["push_work_J"]) > 0
         assert sorted(os.listdir(folder)) == ["curve.csv", "run.json"]
     assert len({row["peak_base_shear_kN"] for row in rows}) == 4
@@ -101,11 +69,10 @@ def test_a_study_runs_all_rows_once(whole):
 def test_a_study_that_is_done_runs_nothing(whole):
     out, *_ = whole
     before = read(out)
-    done = study(out.parent / "study.py", "--out", out)
-    assert done.returncode == 0 and len(ended(out)) == 4
-    assert read(out) == before
+    done(out.parent / "study.py", "--out", out)
+    assert read(out) == before and len(ended(out)) == 4
     os.remove(out / "study.csv")
-    assert study("--out", out, "--gather").returncode == 0
+    done("--out", out, "--gather")
     assert read(out) == before
 
 
@@ -115,8 +82,8 @@ def test_a_row_by_hand_gives_the_same(whole, tmp_path):
     words = batch.optionWords(batch.readTable(str(out / "table.txt"))[3])
     words.remove("--lean")
     runProgram(SMALL, *words, "--out", tmp_path / "r")
-    curve = (tmp_path / "r" / "curve.csv").read_bytes()
-    assert curve == (out / "rows" / "0002" / "curve.csv").read_bytes()
+    curves = [read(folder, "curve.csv") for folder in (tmp_path / "r", out / "rows" / "0002")]  # fmt: skip
+    assert curves[0] == curves[1]
     numbers, row = measure(str(tmp_path / "r")), table(out)[1]
     alike = [n for n in row.keys() & numbers.keys() if row[n] and n != "failure_mode"]
     assert len(alike) > 20
@@ -135,9 +102,9 @@ def test_plain_yade_batch_runs_the_table(whole, tmp_path):
     command = [*words.split(), SMALL]
     # its own port stays closed in a network of its own, if that can be had
     alone = ["unshare", "--user", "--map-current-user", "--net"]
-    if subprocess.run([*alone, "true"], capture_output=True).returncode == 0:
+    if run(*alone, "true").returncode == 0:
         command = alone + command
-    subprocess.run(command, cwd=tmp_path, check=True, capture_output=True)
+    run(*command, cwd=tmp_path, check=True)
     assert study("--out", tmp_path / "t", "--gather").returncode == 1
     mine = read(tmp_path / "t").splitlines()
     assert mine[1] in (theirs := read(out).splitlines()) and mine[3] in theirs
@@ -174,8 +141,7 @@ def test_kills_at_random_moments_change_no_number(whole, tmp_path, seed):
         if process.returncode != -signal.SIGKILL:
             assert process.returncode == 0, message
     assert len(kills) >= 3, kills
-    done = study(path, "--out", out)
-    assert done.returncode == 0, done.stdout + done.stderr
+    done(path, "--out", out)
     assert read(out) == read(whole[0])
     assert sorted(ended(out)) == sorted(set(ended(out))), "a row was run twice"
 
@@ -191,25 +157,23 @@ def test_ctrl_c_leaves_checkpoints_and_the_study_goes_on(whole, tmp_path):
     assert b"missing" in read(out)
     assert not [a for a in family(process).values() if SMALL in a]
     interrupted = [p.parent for p in out.glob("rows/*/run.checkpoint")]
-    done = study(path, "--out", out, "--jobs", "2")
-    assert done.returncode == 0, done.stdout + done.stderr
+    done(path, "--out", out, "--jobs", "2")
     assert read(out) == read(whole[0])
-    assert any(readRun(str(folder))["resumed_at_s"] for folder in interrupted)
+    assert any(readRun(folder)["resumed_at_s"] for folder in interrupted)
 
 
-FAILS = (
-    STUDY.replace('"joints": ["softening", "cyclic"]', '"fall": [False, True]')
-    .replace("runs=4", 'design="grid"')
-    .replace("lognormal(mean=0.43, cov=0.05)", "[0.43]")
-)
+FAILS = f"""
+from masonry.study import Study
+study = Study({SMALL!r}, design="grid", options={{"until": 0.1}}, vary={{"fall": [False, True]}})
+"""
 
 
 def test_a_row_that_fails_is_named_and_the_others_run(tmp_path):
     path, out = write(tmp_path, FAILS), tmp_path / "out"
-    done = study(path, "--out", out, "--jobs", "2")
-    assert done.returncode == 1
-    assert "row 0002 failed: RuntimeError: it was told to fall; see " in done.stdout
-    assert "1 ended, 1 failed" in done.stdout
+    process = study(path, "--out", out, "--jobs", "2")
+    assert process.returncode == 1
+    assert "row 0002 failed: RuntimeError: it was told to fall; see " in process.stdout
+    assert "1 ended, 1 failed" in process.stdout
     rows = table(out)
     assert [row["status"] for row in rows] == ["ended", "failed"]
     assert rows[1]["fall"] == "True"
@@ -221,12 +185,12 @@ def test_a_row_that_fails_is_named_and_the_others_run(tmp_path):
 
 def refused(tmp_path, text, *words, env=None):
     path, out = write(tmp_path, text), tmp_path / "out"
-    done = study(path, "--out", out, *words, env=env)
-    assert done.returncode == 2, done.stdout + done.stderr
-    assert "Traceback" not in done.stderr
+    process = study(path, "--out", out, *words, env=env)
+    assert process.returncode == 2, process.stdout + process.stderr
+    assert "Traceback" not in process.stderr
     places = [out, tmp_path / "results", os.path.join(HERE, "results")]
     assert not any(map(os.path.exists, places))
-    return done.stderr
+    return process.stderr
 
 
 def test_what_the_scene_cannot_take_is_reported_at_once_and_nothing_runs(tmp_path):
@@ -255,11 +219,9 @@ def test_rows_that_contradict_themselves_are_reported_by_their_number(tmp_path):
     vary = '{"bed.tensileStrength": uniform(1e4, 5e5), ("head.tensileStrength",): field(cov=0.5)}'
     text = f"study = Study({SMALL!r}, runs=8, seed=1, vary={vary})"
     message = refused(tmp_path, "from masonry.study import *\n" + text)
-    for part in (
-        r'row 000\d.*: joint "bed": tensile strength',
-        r"--field head.tensileStrength=.*where the field is [\d.]+ of the mean",
-    ):
-        assert re.search(part, message), message
+    assert re.search(r'row 000\d.*: joint "bed": tensile strength', message)
+    field = r"--field head.tensileStrength=.*where the field is [\d.]+ of the mean"
+    assert re.search(field, message), message
 
 
 DEAF = """
@@ -273,48 +235,31 @@ scene.finish()
 
 def test_a_scene_that_ignores_what_varies_is_refused(tmp_path):
     text = "from masonry.study import *\nstudy = Study('scene.py', vary={'bed.friction': [0.4, 0.5]}, design='grid')"
-    (tmp_path / "scene.py").write_text(DEAF)
-    message = refused(tmp_path, text)
-    assert "takes no options from the command line" in message
-    (tmp_path / "scene.py").write_text(DEAF.replace("arguments=[]", "until=1"))
-    message = refused(tmp_path, text.replace("bed.friction", "head.friction"))
-    assert "head.friction: the scene has no head joint and would ignore it" in message
-    (tmp_path / "scene.py").write_text("print('hello')")
-    assert "no masonry.Scene began a stage" in refused(tmp_path, text)
-    (tmp_path / "scene.py").write_text("import masonry\n1 / 0")
-    assert "ZeroDivisionError: division by zero" in refused(tmp_path, text)
+    for scene, name, message in (
+        (DEAF, "bed", "takes no options from the command line"),
+        (DEAF.replace("arguments=[]", "until=1"), "head", "head.friction: the scene has no head joint and would ignore it"),
+        ("print('hello')", "bed", "no masonry.Scene began a stage"),
+        ("import masonry\n1 / 0", "bed", "ZeroDivisionError: division by zero"),
+    ):  # fmt: skip
+        (tmp_path / "scene.py").write_text(scene)
+        assert message in refused(tmp_path, text.replace("bed", name))
 
 
 def test_another_study_in_the_folder_is_refused(whole, tmp_path):
     out, *_ = whole
     before = {path: path.read_bytes() for path in out.glob("*.*")}
     path = write(tmp_path, STUDY.replace("seed=1", "seed=2").replace("0.05", "0.06"))
-    done = study(path, "--out", out)
-    assert done.returncode == 2
-    for part in (
-        "holds another study",
-        "seed is 1, not 2",
-        '"cov": 0.05}',
-        '"cov": 0.06}',
-    ):
-        assert part in done.stderr, done.stderr
+    process = study(path, "--out", out)
+    assert process.returncode == 2
+    said = ("holds another study", "seed is 1, not 2", '"cov": 0.05}', '"cov": 0.06}')
+    assert all(part in process.stderr for part in said), process.stderr
     assert before == {path: path.read_bytes() for path in out.glob("*.*")}
     (tmp_path / "mine").mkdir()
     (tmp_path / "mine" / "letter.txt").write_text("expensive")
-    done = study(path, "--out", tmp_path / "mine")
-    assert done.returncode == 2
-    assert "is not empty (letter.txt) and holds no study" in done.stderr
+    process = study(path, "--out", tmp_path / "mine")
+    assert process.returncode == 2
+    assert "is not empty (letter.txt) and holds no study" in process.stderr
     assert os.listdir(tmp_path / "mine") == ["letter.txt"]
-
-
-def test_a_changed_scene_is_another_study(whole, tmp_path):
-    out, *_ = whole
-    shutil.copytree(out, tmp_path / "out")
-    message = json.loads((tmp_path / "out" / "study.json").read_text())
-    message["scene_sha256"] = "0" * 64
-    (tmp_path / "out" / "study.json").write_text(json.dumps(message))
-    done = study(write(tmp_path), "--out", tmp_path / "out")
-    assert done.returncode == 2 and "the file of its scene" in done.stderr
 
 
 # -- a folder that somebody else has packed ---------------------------------------------------------------------------
@@ -331,9 +276,22 @@ def packed(whole, tmp_path):
 
 def contents(folder):
     """What is in a folder, by paths; of what is no file whether it is a pipe."""
-    return {
-        p: p.read_bytes() if p.is_file() else p.is_fifo() for p in folder.rglob("*")
-    }
+    of = lambda path: path.read_bytes() if path.is_file() else path.is_fifo()
+    return {path: of(path) for path in folder.rglob("*")}
+
+
+def changed(path, change):
+    """Change what a JSON file holds."""
+    record = json.loads(path.read_text())
+    change(record)
+    path.write_text(json.dumps(record))
+
+
+def test_a_changed_scene_is_another_study(packed):
+    again, out = packed
+    changed(out / "study.json", lambda record: record.update(scene_sha256="0" * 64))
+    process = again()
+    assert process.returncode == 2 and "the file of its scene" in process.stderr
 
 
 @pytest.mark.parametrize(
@@ -349,8 +307,8 @@ def test_a_table_that_no_study_draws_is_refused(packed, pattern, text, message):
     table.write_text(re.sub(pattern, text, table.read_text()))
     shutil.rmtree(out / "rows" / "0003")
     before = contents(out)
-    done = again()
-    assert done.returncode == 2 and re.search(message, done.stderr), done.stderr
+    process = again()
+    assert process.returncode == 2 and re.search(message, process.stderr)
     assert contents(out) == before
     os.remove(table)
     assert again("--prepare").returncode == 0
@@ -360,13 +318,11 @@ def test_a_table_that_no_study_draws_is_refused(packed, pattern, text, message):
 def test_rows_that_ended_with_other_values_are_refused(packed):
     again, out = packed
     path = out / "rows" / "0002" / "run.json"
-    run = json.loads(path.read_text())
-    run["options"]["set"][0][2] = "0.77"
-    path.write_text(json.dumps(run))
+    changed(path, lambda record: record["options"]["set"][0].__setitem__(2, "0.77"))
     for words in ([], ["--gather"]):
-        done = again(*words)
-        assert done.returncode == 2
-        assert "row 0002 was run with --set=['bed.friction=0.77'" in done.stderr
+        process = again(*words)
+        assert process.returncode == 2
+        assert "row 0002 was run with --set=['bed.friction=0.77'" in process.stderr
     shutil.rmtree(path.parent)
     assert again("--prepare").returncode == 0
 
@@ -382,8 +338,8 @@ def test_a_row_whose_checkpoint_has_other_values_begins_again(packed):
     wait(lambda: (row / "run.checkpoint").exists(), 60)
     process.terminate()
     assert process.wait() == 130
-    done = again()
-    assert done.returncode == 0, done.stdout + done.stderr
+    process = again()
+    assert process.returncode == 0, process.stdout + process.stderr
     assert read(out) == before
     assert (row / "run.checkpoint.refused").exists()
 
@@ -399,44 +355,37 @@ def test_a_folder_with_links_or_pipes_is_refused(packed, tmp_path, name, kind):
     else:
         os.mkfifo(out / name)
     before = contents(out)
-    row = [sys.executable, "-m", "masonry.study.row", "--scene", SMALL, str(out), "1"]
-    alone = subprocess.run(row, capture_output=True, text=True, timeout=60)
-    for done in (again(), again("--gather"), alone):
-        assert done.returncode == 2, done.stdout
-        assert os.path.basename(name) in done.stderr and done.stderr.count("\n") == 1
+    alone = run(*ROW, "--scene", SMALL, out, 1, timeout=60)
+    for process in (again(), again("--gather"), alone):
+        said = process.stderr
+        assert process.returncode == 2 and said.count("\n") == 1
+        assert os.path.basename(name) in said
     assert contents(out) == before and other.read_text() == "of the user"
 
 
 def test_a_row_runs_the_scene_that_its_user_names(packed, tmp_path):
     _, out = packed
-
-    def row(*words):
-        command = [sys.executable, "-P", "-m", "masonry.study.row", *map(str, words)]
-        return subprocess.run(command, capture_output=True, text=True)
-
-    done = row(out, 1)
-    assert done.returncode == 2 and "outside the folder of the study" in done.stderr
-    done = row("--scene", SMALL, out, 1, 2)
-    assert done.returncode == 0
-    assert done.stdout.splitlines() == [f"note: this runs {SMALL}"]
+    process = run(*ROW, out, 1)
+    assert process.returncode == 2
+    assert "outside the folder of the study" in process.stderr
+    process = run(*ROW, "--scene", SMALL, out, 1, 2)
+    assert process.returncode == 0 and process.stdout == f"note: this runs {SMALL}\n"
     other = tmp_path / "other.py"
     other.write_text("print('another one')")
-    done = row("--scene", other, out, 1)
-    assert done.returncode == 2 and "another file than the one" in done.stderr
-    shutil.copy(SMALL, out / "scene.py")
-    record = json.loads((out / "study.json").read_text())
-    record["script"] = str(out / "scene.py")
-    (out / "study.json").write_text(json.dumps(record))
-    assert row(out, 1).returncode == 0
+    process = run(*ROW, "--scene", other, out, 1)
+    assert process.returncode == 2 and "another file than the one" in process.stderr
+    scene = shutil.copy(SMALL, out / "scene.py")
+    changed(out / "study.json", lambda record: record.update(script=str(scene)))
+    assert run(*ROW, out, 1).returncode == 0
 
 
 @pytest.mark.parametrize("text", ["[" * 100_000, '{"study": {"runs": 4}}'])
 def test_a_damaged_description_is_refused(packed, text):
     again, out = packed
     (out / "study.json").write_text(text)
-    done = again()
-    assert done.returncode == 2 and "study" in done.stderr
-    assert "Traceback" not in done.stderr
+    process = again()
+    assert process.returncode == 2 and "study" in process.stderr
+    assert "Traceback" not in process.stderr
 
 
 def test_damaged_records_of_rows_count_as_none_and_steer_no_terminal(packed):
@@ -445,11 +394,12 @@ def test_damaged_records_of_rows_count_as_none_and_steer_no_terminal(packed):
     for number, record in (("0001", {"status": 1}), ("0002", failed)):
         shutil.rmtree(out / "rows" / number)
         (out / "rows" / f"{number}.job").write_text(json.dumps(record))
-    done = again("--gather")
-    assert done.returncode == 1 and "1 missing" in done.stdout
+    process = again("--gather")
+    assert process.returncode == 1 and "1 missing" in process.stdout
     (out / "rows" / "0003" / "run.json").write_text('{"options": "\\u001b[2J"}')
-    done = again("--gather")
-    assert "\x1b" not in done.stdout + done.stderr and "Traceback" not in done.stderr
+    process = again("--gather")
+    assert "\x1b" not in process.stdout + process.stderr
+    assert "Traceback" not in process.stderr
 
 
 def test_ctrl_c_while_a_study_is_prepared_ends_in_order(tmp_path):
@@ -465,11 +415,11 @@ def test_ctrl_c_while_a_study_is_prepared_ends_in_order(tmp_path):
 def test_a_limit_on_the_size_of_files_fails_rows_in_order(tmp_path):
     path, out = write(tmp_path), tmp_path / "out"
     limited = f"ulimit -f 8; exec {' '.join(COMMAND)} {path} --out {out} --jobs 2"
-    done = subprocess.run(["bash", "-c", limited], capture_output=True, text=True)
-    assert done.returncode == 1 and "Traceback" not in done.stdout + done.stderr
-    assert "File too large" in done.stdout + done.stderr
-    done = study(path, "--out", out, "--jobs", "2")
-    assert done.returncode == 0, done.stdout + done.stderr
+    process = run("bash", "-c", limited)
+    said = process.stdout + process.stderr
+    assert process.returncode == 1 and "Traceback" not in said
+    assert "File too large" in said
+    done(path, "--out", out, "--jobs", "2")
 
 
 def test_a_cluster_that_is_missing_is_reported_before_anything_runs(tmp_path):
@@ -496,10 +446,9 @@ def disk(place, size):
 @pytest.mark.skipif(os.geteuid() != 0, reason="only root mounts a small disk")
 def test_a_full_disk_is_reported_before_anything_runs(tmp_path):
     with disk(tmp_path / "disk", "1m") as small:
-        done = study(write(tmp_path), "--out", small / "out")
-        assert done.returncode == 2
-        assert re.search(r"has 1 MB free, the study writes some \d+ MB", done.stderr)
-        assert os.listdir(small) == []
+        process = study(write(tmp_path), "--out", small / "out")
+        assert process.returncode == 2 and os.listdir(small) == []
+        assert re.search(r"has 1 MB free, the study writes some \d+ MB", process.stderr)
 
 
 @pytest.mark.skipif(os.geteuid() != 0, reason="only root mounts a small disk")
@@ -508,13 +457,13 @@ def test_a_disk_that_fills_up_stops_the_study_in_order(whole, tmp_path):
         shutil.copytree(whole[0], small / "out")
         shutil.rmtree(small / "out" / "rows" / "0003")
         (small / "filler").write_bytes(bytes(shutil.disk_usage(small).free - 6_000_000))
-        path = write(tmp_path)
-        done = study(path, "--out", small / "out", "--jobs", "2")
-        assert done.returncode == 1 and "Traceback" not in done.stderr
-        assert re.search(r"has [56].\d MB free, too little for 2 runs", done.stderr)
-        assert "goes on when there is space" in done.stderr
+        words = [write(tmp_path), "--out", small / "out", "--jobs", "2"]
+        process = study(*words)
+        assert process.returncode == 1 and "Traceback" not in process.stderr
+        assert re.search(r"has [56].\d MB free, too little for 2 runs", process.stderr)
+        assert "goes on when there is space" in process.stderr
         os.remove(small / "filler")
-        assert study(path, "--out", small / "out", "--jobs", "2").returncode == 0
+        done(*words)
         assert read(small / "out") == read(whole[0])
         assert ended(small / "out")[4:] == ["0003"]
 
@@ -522,40 +471,22 @@ def test_a_disk_that_fills_up_stops_the_study_in_order(whole, tmp_path):
 # -- Slurm ------------------------------------------------------------------------------------------------------------
 
 
-@pytest.fixture
-def slurm():
-    absent = cluster.missing()
-    if absent:
-        pytest.skip("slurm-wlm and munge are not installed")
-    with cluster.cluster(tasks=4) as env:
-        yield env
-
-
 def test_slurm_gives_the_same(whole, slurm, tmp_path):
     """Three tasks for four rows; one task is out of time, another one's node fails, and both go on."""
     path, out = write(tmp_path), tmp_path / "out"
-    done = study(path, "--out", out, "--slurm", "--partition=walls", env=slurm)
-    assert done.returncode == 0, done.stderr
+    done(path, "--out", out, "--slurm", "--partition=walls", env=slurm)
     job = (out / "slurm.job").read_text().strip()
     assert "#SBATCH --array=0-1" in (out / "slurm.sh").read_text()
     again = study(path, "--out", out, "--slurm", env=slurm)
     assert again.returncode == 2 and f"job array {job} still has tasks" in again.stderr
-    asked = lambda *words: subprocess.check_output(words, env=slurm, text=True)
+    asked = lambda *words: run(*words, env=slurm, check=True).stdout
     wait(lambda: [*out.glob("rows/*/run.checkpoint")], 60)
     # as at the end of its time
     asked("scancel", "--signal=USR1", "--batch", f"{job}_0")
     asked("scontrol", "requeue", f"{job}_1")
     wait(lambda: not asked("squeue", "--noheader"), 120)
-    done = study("--out", out, "--gather", env=slurm)
-    assert done.returncode == 0, [p.read_text() for p in out.glob("rows/*.out")]
+    done("--out", out, "--gather", env=slurm)
     assert read(out) == read(whole[0])
     assert sorted(ended(out)) == sorted(set(ended(out))), "a row was run twice"
-    runs = [readRun(str(path.parent)) for path in out.glob("rows/*/run.json")]
-    assert any(run["resumed_at_s"] for run in runs)
-
-
-def wait(found, seconds):
-    end = time.monotonic() + seconds
-    while not found():
-        assert time.monotonic() < end
-        time.sleep(0.05)
+    runs = [readRun(path.parent) for path in out.glob("rows/*/run.json")]
+    assert any(one["resumed_at_s"] for one in runs)

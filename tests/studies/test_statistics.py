@@ -37,9 +37,9 @@ def test_intervals_of_a_standard_deviation_have_it_as_often_as_they_say(normal):
 def test_intervals_of_a_quantile_have_it_at_least_as_often_as_they_say(share):
     """They are of steps of one row, so they may have it more often; by how much follows from the binomial distribution."""
     n = 100
-    inside = [stats.binom.cdf(np.arange(n), n, share)]
-    low = np.flatnonzero(inside[0] <= 0.025)[-1] + 1  # of so many rows below
-    high = np.flatnonzero(inside[0] >= 0.975)[0]
+    inside = stats.binom.cdf(np.arange(n), n, share)
+    low = np.flatnonzero(inside <= 0.025)[-1] + 1  # of so many rows below
+    high = np.flatnonzero(inside >= 0.975)[0]
     exact = stats.binom.cdf(high, n, share) - stats.binom.cdf(low - 1, n, share)
     assert 0.95 <= exact <= 0.985
     find = lambda values: statistics.quantile(values, share)

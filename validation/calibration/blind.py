@@ -17,7 +17,6 @@ import numpy as np
 from masonry.read.files import readCurve
 from masonry.study import Calibration, Specimen, Study, uniform
 from masonry.study.calibrate import UNKNOWN
-from masonry.study.continuing import rowsOf
 from masonry.study.gathering import gather
 from masonry.study.local import Local
 from masonry.study.pictures import increasing
@@ -59,7 +58,7 @@ def tested(jobs):
         study = Study("couplet", options(stress), CASES, HIDDEN, vary)
         folder = begin(study, os.path.join(PLACE, f"hidden{number}"), HERE)
         Local(folder, CASES, jobs).run()
-        gather(folder, rowsOf(folder))
+        gather(folder)
         grid = np.linspace(0, END, POINTS + 1)
         for case in range(1, CASES + 1):
             curve = readCurve(folder.row(case))

@@ -15,7 +15,6 @@ import sys
 import numpy as np
 from masonry.basics import Refused
 from masonry.study import Study, estimate, lognormal, statistics
-from masonry.study.continuing import rowsOf
 from masonry.study.gathering import gather
 from masonry.study.local import Local
 from masonry.study.records import Record, paired
@@ -123,7 +122,7 @@ def run(jobs):
             made = study(wall, name)
             place = begin(made, folder(wall, name), HERE)
             Local(place, made.runs, jobs).run()
-            whole &= set(gather(place, rowsOf(place))) == {"ended"}
+            whole &= set(gather(place)) == {"ended"}
     return whole
 
 

@@ -1,17 +1,16 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Beams and floors as rows of boxes. What they are made of is said by ``withBeam`` and ``withFloor`` of
-:class:`masonry.scene.materials.Masonry`. Nothing here needs YADE."""
+:class:`masonry.scene.materials.Masonry`."""
 
 from __future__ import annotations
 
 from typing import Annotated
 
-from ..common.arguments import Numbers, number, oneOf, validated, vector, whole
-from .blocks import Block, Bricks
+from ..common.arguments import oneOf, validated, whole
+from .blocks import Block, Bricks, Length, Point
 from .geometry import boxCorners
 
-Place = Annotated[Numbers, vector("m", 1e6)]
-Length = Annotated[float, number("m", 0, 1e6, above=True)]
+Along = Annotated[str, oneOf("x", "y")]
 MOST = 100_000  # pieces
 
 
@@ -22,17 +21,17 @@ def _row(start, size, pieces, axis, name):
         low, high = list(start), [a + b for a, b in zip(start, size)]
         low[axis] = start[axis] + n * size[axis] / pieces
         high[axis] = start[axis] + (n + 1) * size[axis] / pieces
-        found.append(Block(boxCorners(tuple(low), tuple(high)), n, name, -1, name))
+        found.append(Block(boxCorners(low, high), n, name, -1, name))
     return Bricks(found)
 
 
 @validated
 def Beam(
-    start: Place,
+    start: Point,
     length: Length,
     width: Length,
     height: Length,
-    along: Annotated[str, oneOf("x", "y")] = "x",
+    along: Along = "x",
     pieces: Annotated[int, whole(1, MOST)] = 8,
     name: str = "beam",
 ) -> Bricks:
@@ -54,11 +53,11 @@ def Beam(
 
 @validated
 def Floor(
-    start: Place,
+    start: Point,
     length: Length,
     width: Length,
     height: Length,
-    along: Annotated[str, oneOf("x", "y")] = "x",
+    along: Along = "x",
     strips: Annotated[int, whole(2, MOST)] = 8,
     name: str = "floor",
 ) -> Bricks:

@@ -1,42 +1,39 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Blocks as plain records, and collections of them. Nothing here needs YADE."""
+"""Blocks as plain records, and collections of them."""
 
 from __future__ import annotations
 
+import contextlib
 import functools
 import math
-from collections import Counter
+from collections import Counter, defaultdict
 from dataclasses import dataclass, replace
-from numbers import Integral
-from typing import Annotated, Any, Callable, Iterable, Iterator
+from typing import Annotated, Any, Callable, Iterable, Iterator, get_args
 
 from ..common.arguments import Direction, Numbers, isA, items, isNumber, number, oneOf, shown, text, validated, vector, whole  # fmt: skip
+from .. import basics
 from ..basics import firstOf
 from . import checks
-from .geometry import COINCIDENT, Solids, cutCorners, joinedCorners
+from .geometry import COINCIDENT, Solids, cosSin, cutCorners, joinedCorners
 
 #: No corner of masonry is farther from the origin [m].
 FARTHEST = 1e6
 
-#: A length, one that may be 0, a coordinate, a point [m], and a number of things.
+#: A length, one that may be 0, a coordinate, and a point [m].
 Length = Annotated[float, number("m", 0, FARTHEST, above=True)]
 Gap = Annotated[float, number("m", 0, FARTHEST)]
 Coordinate = Annotated[float, number("m", -FARTHEST, FARTHEST)]
 Point = Annotated[Numbers, vector("m", FARTHEST)]
-Count = Annotated[int, whole(1, 10**9)]
 
 
 def sides(value: Any, first: Any = None) -> tuple[float, ...]:
     """The kind of the length, thickness and height of a block."""
-    try:
-        found = tuple(map(number("m", 0, FARTHEST, above=True), items(value)))
-    except (TypeError, ValueError):
-        found = ()
-    if len(found) != 3:
-        raise ValueError(
-            f"{shown(value)} must be a length, thickness and height above 0 and at most {FARTHEST:g} m"
-        )
-    return found
+    with contextlib.suppress(TypeError, ValueError):
+        length, thickness, height = map(get_args(Length)[1], items(value))
+        return length, thickness, height
+    raise ValueError(
+        f"{shown(value)} must be a length, thickness and height above 0 and at most {FARTHEST:g} m"
+    )
 
 
 def corner(value: Any, first: Any = None) -> tuple[float, ...]:
@@ -48,6 +45,7 @@ def corner(value: Any, first: Any = None) -> tuple[float, ...]:
 
 
 Sides = Annotated[Numbers, sides]
+_integer = whole(-(10**9), 10**9)
 
 #: Kinds of blocks that every masonry has: they are of its unit unless it says otherwise.
 KINDS = "brick", "lintel", "voussoir", "block"
@@ -91,13 +89,9 @@ class Block:
                 problems.append(
                     f"corner {n} [m] must be finite, and at most {FARTHEST:g} m from the origin, got {shown(corner)}"
                 )
-        for what in ("brick", "course"):
-            value = getattr(self, what)
-            if not isinstance(value, Integral) or isinstance(value, bool):
-                problems.append(f"{what} must be a whole number, got {shown(value)}")
-        for what in ("part", "kind"):
+        for what in ("brick", "course", "part", "kind"):
             try:
-                text(getattr(self, what))
+                (_integer if what in ("brick", "course") else text)(getattr(self, what))
             except ValueError as error:
                 problems.append(f"{what} {error}")
         refuse("block", problems)
@@ -129,13 +123,10 @@ class Bricks:
     """
 
     @validated
-    def __init__(self, blocks: Iterable[Any] = ()) -> None:
-        try:
-            self._blocks = tuple(blocks)
-        except TypeError:
-            raise ValueError(
-                f"Bricks needs a list of blocks, got {shown(blocks)}"
-            ) from None
+    def __init__(
+        self, blocks: Annotated[Iterable[Any], isA(Iterable, "list of blocks")] = ()
+    ) -> None:
+        self._blocks = tuple(blocks)
         odd = [(n, b) for n, b in enumerate(self._blocks) if not isinstance(b, Block)]
         refuse("Bricks", [f"item {n} is {shown(b)}, not a Block" for n, b in odd])
 
@@ -239,13 +230,7 @@ class Bricks:
         :param axis: "x", "y" or "z"
         :param about: point of the axis [m]
         """
-        quarters = degrees / 90
-        cos: float
-        sin: float
-        if quarters == round(quarters):
-            cos, sin = [(1, 0), (0, 1), (-1, 0), (0, -1)][round(quarters) % 4]
-        else:
-            cos, sin = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
+        cos, sin = cosSin(degrees / 90, math.radians(degrees))
         k = "xyz".index(axis)
         i, j = (k + 1) % 3, (k + 2) % 3
 
@@ -289,11 +274,12 @@ class Bricks:
         :param high:
         """
         if not all(a <= b for a, b in zip(low, high)):
-            raise ValueError(
-                f"within: low corner {low} m must lie below high corner {high} m"
+            refuse(
+                "within", [f"low corner {low} m must lie below high corner {high} m"]
             )
-        inside = lambda b: all(p <= x <= q for p, x, q in zip(low, b.middle, high))
-        return self.where(inside)
+        return self.where(
+            lambda b: all(p <= x <= q for p, x, q in zip(low, b.middle, high))
+        )
 
     def top(self) -> Bricks:
         """The blocks with a face in the highest horizontal plane."""
@@ -327,15 +313,12 @@ class Bricks:
         solids = self._convex("cut")
         blocks, beyond = [], []
         for n, block in enumerate(self._blocks):
-            faces = solids.groups[solids.groupOf[n]].faces
-            width = COINCIDENT * solids.diagonal[n]
+            faces, width = solids.of(n)[0].faces, COINCIDENT * solids.diagonal[n]
             above, below = cutCorners(block.corners, faces, point, normal, width)
-            if above is None or below is None:
-                beyond.append(below is None)
-                blocks.append(block)
-            else:
-                beyond += [False, True]
-                blocks += [replace(block, corners=c) for c in (below, above)]
+            for corners, far in ((below, False), (above, True)):
+                if corners:
+                    blocks.append(replace(block, corners=corners))
+                    beyond.append(far)
         if own:
             here = {b.brick for b, far in zip(blocks, beyond) if not far}
             numbers, first = {}, self._nextBrick()
@@ -356,19 +339,19 @@ class Bricks:
 
         :raises ValueError: if the pieces of a brick do not make up a convex solid
         """
-        pieces, problems, joined = {}, [], []
+        pieces, problems, joined = defaultdict(list), [], []
         for block in self._blocks:
-            pieces.setdefault(block.brick, []).append(block)
+            pieces[block.brick].append(block)
         for number, blocks in pieces.items():
+            corners = blocks[0].corners
             if len(blocks) > 1:
                 corners = joinedCorners([b.corners for b in blocks])
-                if corners is None:
-                    problems.append(
-                        f"the {len(blocks)} pieces of brick {number} make up no convex solid"
-                    )
-                    continue
-                blocks = [replace(blocks[0], corners=corners)]
-            joined += blocks
+            if corners:
+                joined.append(replace(blocks[0], corners=corners))
+            else:
+                problems.append(
+                    f"the {len(blocks)} pieces of brick {number} make up no convex solid"
+                )
         refuse("whole", problems)
         return Bricks(joined)
 
@@ -419,9 +402,7 @@ class Bricks:
 
 
 @validated
-def summary(
-    bricks: Annotated[Bricks, lambda value, first=None: isA(Bricks)(value)]
-) -> dict[str, Any]:
+def summary(bricks: Annotated[Bricks, isA(Bricks)]) -> dict[str, Any]:
     """Counts and sizes of a collection of blocks: a dict with units in its names."""
     count = lambda what: dict(Counter(getattr(b, what) for b in bricks))
     return dict(
@@ -441,5 +422,4 @@ def summary(
 
 def refuse(what: str, problems: list[str]) -> None:
     """Raise ValueError with the first problems of a list, if there are any."""
-    if problems:
-        raise ValueError(f"{what}: " + "; ".join(firstOf(problems)))
+    basics.refuse(firstOf(problems), f"{what}: ", "; ")

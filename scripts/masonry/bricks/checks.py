@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What is wrong with a set of blocks before anything runs: gaps, overlaps, slivers, loose parts, joints of odd size."""
 
-from collections import namedtuple
+from collections import defaultdict, namedtuple
 from math import dist
 from statistics import median
 
@@ -36,9 +36,7 @@ def findJoints(solids):
         block, of the second, gap [m] (negative for an overlap), place [m])
     """
     thickness = solids.thicknesses()
-    with np.errstate(invalid="ignore"):
-        reach = np.where(np.isfinite(thickness), REACH * thickness, 0)
-    one, two = solids.nearPairs(reach / 2)
+    one, two = solids.nearPairs(REACH / 2 * thickness)
     apart, faces, cosine = solids.compare(one, two)
     width = COINCIDENT * np.minimum(solids.diagonal[one], solids.diagonal[two])
     # A face that two blocks share is as long as wide: their bounding boxes overlap along two axes at least.
@@ -49,15 +47,16 @@ def findJoints(solids):
     near &= (apart < -width) | (cosine <= NEARLY_OPPOSITE)
     rows = (one, two, width, apart, cosine, *faces)
     joints, misfits = [], []
-    faceOf = _Faces(solids)
     for i, j, w, gap, cos, f, g in zip(*(row[near].tolist() for row in rows)):
         if gap < -w:
             gap = float(solids.separation(i, j))
             if gap < -w:
-                misfits.append((i, j, gap, _shared(solids, i, j)))
+                low = np.maximum(solids.low[i], solids.low[j])
+                high = np.minimum(solids.high[i], solids.high[j])
+                misfits.append((i, j, gap, tuple((low + high) / 2)))
             continue
-        mine, normal, area = faceOf(i, f)
-        theirs, other, otherArea = faceOf(j, g)
+        mine, normal, area = _side(solids, i, f)
+        theirs, other, otherArea = _side(solids, j, g)
         shared = clip(mine, theirs, normal)
         if len(shared) < 3:
             continue
@@ -65,58 +64,33 @@ def findJoints(solids):
         if middle is None or size < 0.5 * perimeter * w:
             continue
         (x, y, z), (nx, ny, nz) = theirs[0], other
-        between = [
-            abs((p - x) * nx + (q - y) * ny + (r - z) * nz) for p, q, r in shared
-        ]
-        if max(between) <= w and cos < OPPOSITE:
+        widest = max(abs((p - x) * nx + (q - y) * ny + (r - z) * nz) for p, q, r in shared)  # fmt: skip
+        if widest <= w and cos < OPPOSITE:
             joints.append(Joint(i, j, normal, tuple(shared), size, middle))
         elif size > 0.01 * min(area, otherArea):
             away = sum((m - p) * n for m, p, n in zip(middle, theirs[0], other)) / 2
             place = tuple(m - away * n for m, n in zip(middle, other))
             if not _filled(solids, place, (i, j)):
-                misfits.append((i, j, max(between), place))
+                misfits.append((i, j, widest, place))
     joints.sort(key=lambda joint: joint[:2])
     return joints, misfits
 
 
-class _Faces:
-    """Faces of solids as plain lists of points, with normal and area, made when they are asked for."""
-
-    def __init__(self, solids):
-        self.solids = solids
-        self.corners = [group.corners.tolist() for group in solids.groups]
-        self.normals = [group.normals.tolist() for group in solids.groups]
-        self.areas = [group.areas.tolist() for group in solids.groups]
-        self.groupOf, self.rowOf = solids.groupOf.tolist(), solids.rowOf.tolist()
-
-    def __call__(self, solid, face):
-        g, row = self.groupOf[solid], self.rowOf[solid]
-        corners = self.corners[g][row]
-        polygon = [corners[n] for n in self.solids.groups[g].faces[face]]
-        return polygon, tuple(self.normals[g][row][face]), self.areas[g][row][face]
+def _side(solids, solid, face):
+    """Corners of a face as lists of numbers, its outward normal, and its area."""
+    group, row = solids.of(solid)
+    normal, area = group.normals[row, face].tolist(), float(group.areas[row, face])
+    return solids.face(solid, face).tolist(), tuple(normal), area
 
 
 def _filled(solids, place, but):
     """Whether a place lies in a solid other than two given ones."""
     around = (solids.low <= place) & (solids.high >= place)
     for n in np.flatnonzero(around.all(axis=1) & (solids.groupOf >= 0)):
-        group, row = solids.groups[solids.groupOf[n]], solids.rowOf[n]
-        heights = group.normals[row] @ place - group.offsets[row]
-        if n not in but and (heights <= 0).all():
+        group, row = solids.of(n)
+        if n not in but and (group.normals[row] @ place <= group.offsets[row]).all():
             return True
     return False
-
-
-def _shared(solids, one, two):
-    """Middle of what the bounding boxes of two solids have in common."""
-    low = np.maximum(solids.low[one], solids.low[two])
-    high = np.minimum(solids.high[one], solids.high[two])
-    return tuple((low + high) / 2)
-
-
-def _reaches(solids, n, place):
-    """Whether the bounding box of a solid contains a point."""
-    return bool(np.all(solids.low[n] <= place) and np.all(place <= solids.high[n]))
 
 
 def freeParts(solids, joints, direction, least):
@@ -126,21 +100,21 @@ def freeParts(solids, joints, direction, least):
     """
     sight = np.array(direction, float)
     sight /= np.linalg.norm(sight)
-    covered = {}
+    covered = defaultdict(list)
     for joint in joints:
-        for block, sign in ((joint.first, 1), (joint.second, -1)):
-            outward = sign * np.array(joint.normal)
-            covered.setdefault(block, []).append((outward, joint))
+        outward = np.array(joint.normal)
+        covered[joint.first].append((outward, joint))
+        covered[joint.second].append((-outward, joint))
     faces = []
     for n in range(solids.count):
-        group, row = solids.groups[solids.groupOf[n]], solids.rowOf[n]
+        group, row = solids.of(n)
         for face, normal in enumerate(group.normals[row]):
             if normal @ sight < least:
                 continue
             whole = [tuple(c) for c in solids.face(n, face)]
             area, _, middle = measures(whole, normal)
             free, moment, covers = area, area * np.array(middle), []
-            for outward, joint in covered.get(n, ()):
+            for outward, joint in covered[n]:
                 if outward @ normal > ALONG:
                     free -= joint.area
                     moment -= joint.area * np.array(joint.middle)
@@ -172,32 +146,32 @@ def findProblems(blocks, solids, joints, misfits):
     found = []
     thickness = solids.thicknesses().tolist()
     nameOf = lambda n: f"block {n} of brick {blocks[n].brick}"
-    middles = solids.middles()
-    for n in sorted(solids.problems):
-        found.append(f"{nameOf(n)} ({blocks[n].part}): {solids.problems[n]}")
-    neighbours = {}
-    for joint in joints:
-        neighbours.setdefault(joint[0], set()).add(joint[1])
-        neighbours.setdefault(joint[1], set()).add(joint[0])
+    for n, problem in sorted(solids.problems.items()):
+        found.append(f"{nameOf(n)} ({blocks[n].part}): {problem}")
+    neighbours = defaultdict(set)
+    for one, two, *_ in joints:
+        neighbours[one].add(two)
+        neighbours[two].add(one)
     for i, j, gap, place in misfits:
-        between = lambda n: neighbours.get(n, set()) - {i, j}
-        if gap > 0 and all(any(_reaches(solids, k, place) for k in between(n)) for n in (i, j)):  # fmt: skip
+        around = ((solids.low <= place) & (place <= solids.high)).all(axis=1)
+        filling = {*np.flatnonzero(around)} - {i, j}
+        if gap > 0 and filling & neighbours[i] and filling & neighbours[j]:
             continue  # thin blocks fill it, which have joints with both
         both = f"{nameOf(i)} and {nameOf(j)}"
         if gap < 0:
             found.append(f"{both} overlap by {-gap:.3g} m near {where(place)}")
         else:
             found.append(f"{both}: a gap of up to {gap:.3g} m near {where(place)}")
-    kinds = {}
-    for n, block in enumerate(blocks):
-        if n not in solids.problems:
-            kinds.setdefault(block.kind, []).append(n)
+    good = [n for n in range(len(blocks)) if n not in solids.problems]
+    kinds, parts = defaultdict(list), defaultdict(list)
+    for n in good:
+        kinds[blocks[n].kind].append(n)
     for kind, members in kinds.items():
         least = SLIVER * median(thickness[n] for n in members)
         for n in members:
             if thickness[n] < least * (1 - 1e-9):
                 found.append(
-                    f"{nameOf(n)} near {where(middles[n])} is a sliver: {thickness[n]:.3g} m thin, less than {least:.3g} m, "
+                    f"{nameOf(n)} near {where(blocks[n].middle)} is a sliver: {thickness[n]:.3g} m thin, less than {least:.3g} m, "
                     f"a quarter of what is usual for a {kind} here"
                 )
     for joint in joints:
@@ -209,19 +183,16 @@ def findProblems(blocks, solids, joints, misfits):
                 f"{nameOf(i)} and {nameOf(j)} share a joint of odd size near {where(joint.middle)}: {longest:.3g} m long but "
                 f"{width:.3g} m wide, less than {least:.3g} m, a tenth of the thinner block"
             )
-    parts = {}
-    good = [n for n in range(len(blocks)) if n not in solids.problems]
-    for n, part in enumerate(components(len(blocks), joints)):
-        if n not in solids.problems:
-            parts.setdefault(part, []).append(n)
+    partOf = components(len(blocks), joints)
+    for n in good:
+        parts[partOf[n]].append(n)
     largest = max(parts.values(), key=len, default=[])
     for members in parts.values():
         if members is not largest:
             what = nameOf(members[0])
-            if len(members) > 1:
-                what = f"{len(members)} blocks from {what} on"
+            what = f"{len(members)} blocks from {what} on" if len(members) > 1 else what
             found.append(
-                f"{what}, near {where(middles[members[0]])}: no joint with the other {len(good) - len(members)} blocks"
+                f"{what}, near {where(blocks[members[0]].middle)}: no joint with the other {len(good) - len(members)} blocks"
             )
     return found
 

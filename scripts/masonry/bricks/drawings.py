@@ -7,6 +7,7 @@ import csv
 import json
 import os
 import re
+from collections import defaultdict
 from dataclasses import dataclass
 from typing import Any
 from xml.etree import ElementTree
@@ -14,6 +15,7 @@ from xml.etree import ElementTree
 import numpy as np
 
 from ..common.packages import needed
+from .files import readBy
 
 #: Sagitta of the chords that stand for the curves of a DXF file, over the size of the curve [-].
 FLATTENED = 1e-3
@@ -41,14 +43,9 @@ def read(path: str, layer: str | None) -> list[Outline]:
     """
     readers = {".csv": _csv, ".dxf": _dxf, ".geojson": _geoJson, ".json": _geoJson, ".svg": _svg}  # fmt: skip
     ending = os.path.splitext(path)[1].lower()
-    if ending not in readers:
-        raise ValueError(f"{path}: must end with one of {', '.join(readers)}")
-    if layer is not None and ending not in (".dxf", ".svg"):
+    if layer is not None and ending in (".csv", ".geojson", ".json"):
         raise ValueError(f"{path}: files that end with {ending} have no layers")
-    try:
-        found = list(readers[ending](path, layer))
-    except (OSError, ValueError, IndexError, KeyError, TypeError, AttributeError, ElementTree.ParseError) as error:  # fmt: skip
-        raise ValueError(f"{path}: cannot be read: {error}") from None
+    found = readBy(readers, path, layer)
     if not found:
         raise ValueError(f"{path}: no outlines" + (f" in layer {layer!r}" if layer else ""))  # fmt: skip
     for outline in found:
@@ -63,7 +60,7 @@ def read(path: str, layer: str | None) -> list[Outline]:
 
 
 def _csv(path, layer):
-    rows = {}
+    rows = defaultdict(list)
     with open(path, newline="", encoding="utf-8-sig") as file:
         for number, row in enumerate(csv.reader(file), 1):
             try:
@@ -72,7 +69,7 @@ def _csv(path, layer):
                 if number == 1 or not row:
                     continue  # the heads of the columns
                 raise ValueError(f"line {number}: {','.join(row)!r} is not name,x,z") from None  # fmt: skip
-            rows.setdefault(name, []).append((x, z))
+            rows[name].append((x, z))
     return [Outline(name, ring) for name, ring in rows.items()]
 
 

@@ -10,11 +10,11 @@ from __future__ import annotations
 import json
 import math
 import os
-from collections import namedtuple
+from collections import defaultdict, namedtuple
+
+from typing import Annotated, Any
 
 import numpy as np
-
-from typing import Annotated
 
 from ..common.arguments import FilePath, number, validated
 from ..common.packages import needed
@@ -57,23 +57,7 @@ def fromFile(
         each is named by its group and its number there, with the face and its place
     """
     problems = []
-    ending = os.path.splitext(path)[1].lower()
-    readers = {
-        ".obj": _readObj,
-        ".off": _readOff,
-        ".stl": _readStl,
-        ".ply": _byMeshio,
-        ".json": _readJson,
-    }
-    if ending not in readers:
-        problems.append(f"{path}: must end with one of {', '.join(readers)}")
-    elif not os.path.isfile(path):
-        problems.append(f"{path}: no such file")
-    refuse("fromFile", problems)
-    try:
-        surfaces = readers[ending](path)
-    except (OSError, ValueError, IndexError, KeyError, TypeError) as error:
-        raise ValueError(f"{path}: cannot be read: {error}") from None
+    surfaces = readBy(_READERS, path)
     solids = [(surface.name, corners) for surface in surfaces for corners in _solids(surface, scale, problems)]  # fmt: skip
     names, bodies = zip(*solids) if solids else ((), ())
     if mortar and not problems:
@@ -90,7 +74,24 @@ def fromFile(
     return Bricks(blocks)
 
 
+#: What reading a file that is damaged may raise.
+MISREAD = OSError, SyntaxError, ValueError, LookupError, TypeError, AttributeError
+
+
 # -- formats ----------------------------------------------------------------------------------------------------------
+
+
+def readBy(readers: dict[str, Any], path: FilePath, *more: Any) -> list[Any]:
+    """A list of what the reader for the ending of a file finds in it. Raises ValueError."""
+    ending = os.path.splitext(path)[1].lower()
+    if ending not in readers:
+        raise ValueError(f"{path}: must end with one of {', '.join(readers)}")
+    if not os.path.isfile(path):
+        raise ValueError(f"{path}: no such file")
+    try:
+        return list(readers[ending](path, *more))
+    except MISREAD as error:
+        raise ValueError(f"{path}: cannot be read: {error}") from None
 
 
 def _plain(path):
@@ -108,7 +109,7 @@ def _lines(path):
 
 
 def _readObj(path):
-    points, groups, name = [], {}, _plain(path)
+    points, groups, name = [], defaultdict(list), _plain(path)
     for number, words in _lines(path):
         what = words[0]
         if what == "v":
@@ -125,7 +126,7 @@ def _readObj(path):
                         f"line {number}: face with point {word}, of {len(points)} so far"
                     )
                 face.append(n)
-            groups.setdefault(name, []).append(tuple(face))
+            groups[name].append(tuple(face))
     return [_Surface(name, np.array(points), faces) for name, faces in groups.items()]
 
 
@@ -142,15 +143,13 @@ def _point(words, number):
 
 
 def _readOff(path):
-    lines = list(_lines(path))
-    if not lines or not lines[0][1][0].endswith("OFF"):
+    (_, (word, *head)), *lines = [*_lines(path)] or [(0, [""])]
+    if not word.endswith("OFF"):
         raise ValueError("does not start with OFF")
-    if lines[0][1][0] != "OFF":
-        raise ValueError(f"{lines[0][1][0]} is a variant of OFF that is not known here")
-    head = lines[0][1][1:]
-    lines = lines[1:]
+    if word != "OFF":
+        raise ValueError(f"{word} is a variant of OFF that is not known here")
     if not head:
-        head, lines = lines[0][1], lines[1:]
+        (_, head), *lines = lines
     count, faces = int(head[0]), int(head[1])
     if count < 0 or faces < 0 or len(lines) < count + faces:
         raise ValueError(
@@ -163,7 +162,7 @@ def _readOff(path):
         if len(face) != int(words[0]) or not all(0 <= n < count for n in face):
             raise ValueError(f"line {number}: a face with points {face} of {count}")
         found.append(face)
-    return [_Surface(_plain(path), np.array(points), found)]
+    yield _Surface(_plain(path), np.array(points), found)
 
 
 def _readStl(path):
@@ -172,12 +171,13 @@ def _readStl(path):
         head = file.read(84)
     count = int.from_bytes(head[80:84], "little")
     if len(head) == 84 and size == 84 + 50 * count:
-        return _byMeshio(path)
+        yield from _byMeshio(path)
+        return
     if not head.lstrip().startswith(b"solid"):
         raise ValueError(
             f"neither text that starts with solid, nor bytes of {count} triangles"
         )
-    surfaces, points, name = [], None, ""
+    points, name = None, ""
     for number, words in _lines(path):
         what = words[0].lower()
         if what == "solid":
@@ -191,16 +191,14 @@ def _readStl(path):
                 )
             faces = [(n, n + 1, n + 2) for n in range(0, len(points), 3)]
             if faces:
-                surfaces.append(_Surface(name, np.array(points), faces))
+                yield _Surface(name, np.array(points), faces)
             points = None
     if points is not None:
         raise ValueError(f"solid {name} has no end")
-    return surfaces
 
 
 def _byMeshio(path):
     meshio = needed("meshio")  # takes a second, and few scenes need it
-
     try:
         mesh = meshio.read(path)
     except (Exception, SystemExit) as error:  # meshio ends the program for some files
@@ -215,17 +213,15 @@ def _byMeshio(path):
         faces += [tuple(int(n) for n in face) for face in cells.data]
     if any(not 0 <= n < len(points) for face in faces for n in face):
         raise ValueError(f"a face has a point that is none of the {len(points)}")
-    return [_Surface(_plain(path), points, faces)]
+    yield _Surface(_plain(path), points, faces)
 
 
 def _readJson(path):
     with open(path, encoding="utf-8") as file:
         data = json.load(file)
-    found = []
-    _meshes(data, "", found)
+    found = list(_meshes(data, ""))
     if not found:
         raise ValueError("no mesh: nothing with both vertex and face")
-    surfaces = []
     for n, (name, mesh) in enumerate(found):
         defaults = mesh.get("default_vertex_attributes") or mesh.get("dva") or {}
         keys = {key: k for k, key in enumerate(mesh["vertex"])}
@@ -240,11 +236,10 @@ def _readJson(path):
                 raise ValueError(f"face {key} has a vertex {missing[0]} that is none")
             faces.append(tuple(keys[str(v)] for v in face))
         name = name or (f"{_plain(path)} {n}" if len(found) > 1 else _plain(path))
-        surfaces.append(_Surface(name, np.array(points), faces))
-    return surfaces
+        yield _Surface(name, np.array(points), faces)
 
 
-def _meshes(data, name, found):
+def _meshes(data, name):
     """Every dictionary with the vertices and faces of a COMPAS mesh, with the name that it or its holder has."""
     if isinstance(data, dict):
         own = data.get("attributes")
@@ -252,13 +247,20 @@ def _meshes(data, name, found):
         name = own or data.get("name") or name
         name = name if isinstance(name, str) else ""
         if isinstance(data.get("vertex"), dict) and isinstance(data.get("face"), dict):
-            found.append((name, data))
+            yield name, data
             return
-        for value in data.values():
-            _meshes(value, name, found)
-    elif isinstance(data, list):
-        for value in data:
-            _meshes(value, name, found)
+        data = list(data.values())
+    for value in data if isinstance(data, list) else ():
+        yield from _meshes(value, name)
+
+
+_READERS = {
+    ".obj": _readObj,
+    ".off": _readOff,
+    ".stl": _readStl,
+    ".ply": _byMeshio,
+    ".json": _readJson,
+}
 
 
 # -- from surfaces to solids ------------------------------------------------------------------------------------------
@@ -301,39 +303,33 @@ def _solids(surface, scale, problems):
     if volume < 0:
         faces = [face[::-1] for face in faces]
     mates, open_ = _mates(points, faces)
+    for face, (a, b) in open_[:3]:
+        middle = (points[a] + points[b]) / 2
+        problems.append(
+            f"{name}, face {numbers[face]}: an edge at {where(middle)} without a second face that runs the other way: "
+            f"the solid is open, or its faces run in different senses"
+        )
+    if len(open_) > 3:
+        problems.append(f"{name}: {len(open_) - 3} more such edges")
     if open_:
-        for face, (a, b) in open_[:3]:
-            middle = (points[a] + points[b]) / 2
-            problems.append(
-                f"{name}, face {numbers[face]}: an edge at {where(middle)} without a second face that runs the other way: "
-                f"the solid is open, or its faces run in different senses"
-            )
-        if len(open_) > 3:
-            problems.append(f"{name}: {len(open_) - 3} more such edges")
         return
-    solids = {}
+    solids = defaultdict(list)
     for face, first in enumerate(components(len(faces), mates)):
-        solids.setdefault(first, []).append(face)
+        solids[first].append(face)
     for n, members in enumerate(solids.values()):
         solid = f"{name}, solid {n}"
-        corners = _corners(points, faces, numbers, members, solid, problems)
-        if corners:
+        if corners := _corners(points, faces, numbers, members, solid, problems):
             yield corners
 
 
 def _merged(points, used):
     """For each point the number of the first one that is at the same place."""
-    merge = np.arange(len(points))
-    size = np.ptp(points[used], axis=0).max()
-    if not size > 0:
-        return merge
-    width = SAME * size
     from scipy.spatial import cKDTree
 
-    tree = cKDTree(points[used])
-    for a, b in sorted(tree.query_pairs(width)):
-        one, two = merge[used[a]], merge[used[b]]
-        merge[used[b]] = merge[used[a]] = min(one, two)
+    merge = np.arange(len(points))
+    width = SAME * np.ptp(points[used], axis=0).max()
+    for a, b in sorted(cKDTree(points[used]).query_pairs(width) if width else ()):
+        merge[[used[a], used[b]]] = min(merge[used[a]], merge[used[b]])
     return merge.tolist()
 
 
@@ -343,10 +339,10 @@ def _mates(points, faces):
     Where solids touch, an edge has more than two faces. Of these the first that one meets on the way from a face through
     the inside of its solid is the one of the same solid.
     """
-    edges = {}
+    edges = defaultdict(list)
     for n, face in enumerate(faces):
-        for a, b in zip(face, face[1:] + face[:1]):
-            edges.setdefault((a, b), []).append(n)
+        for edge in zip(face, face[1:] + face[:1]):
+            edges[edge].append(n)
     normals = [_normal(points[list(face)]) for face in faces]
     mates, open_ = [], []
     for (a, b), here in edges.items():
@@ -393,7 +389,7 @@ def _corners(points, faces, numbers, members, solid, problems):
     own = points[used]
     size = np.linalg.norm(np.ptp(own, axis=0))
     width = FLAT * size
-    planes, meeting = [], {n: [] for n in used}
+    planes, meeting = [], defaultdict(set)
     for face in members:
         polygon = points[list(faces[face])]
         normal, middle = _normal(polygon), polygon.mean(axis=0)
@@ -413,21 +409,13 @@ def _corners(points, faces, numbers, members, solid, problems):
                 f"convex"
             )
             return None
-        same = (_same(plane, normal, middle, width) for plane in planes)
-        k = next((k for k, is_ in enumerate(same) if is_), len(planes))
-        if k == len(planes):
-            planes.append((normal, middle))
+        alike = lambda n, at: n @ normal > 1 - 1e-6 and abs((middle - at) @ n) <= width
+        k = next((k for k, plane in enumerate(planes) if alike(*plane)), len(planes))
+        planes[k:] = planes[k:] or [(normal, middle)]
         for n in faces[face]:
-            meeting[n].append(k)
+            meeting[n].add(k)
     if len(planes) < 4:
         problems.append(f"{solid}: only {len(planes)} planes, so no volume")
         return None
-    corners = (points[n] for n in used if len(set(meeting[n])) >= 3)
+    corners = (points[n] for n in used if len(meeting[n]) >= 3)
     return tuple(tuple(map(float, corner)) for corner in corners)
-
-
-def _same(plane, normal, middle, width):
-    return (
-        np.dot(plane[0], normal) > 1 - 1e-6
-        and abs(np.dot(middle - plane[1], plane[0])) <= width
-    )

@@ -44,8 +44,8 @@ def hull(corners):
     if not size > 0:
         raise ValueError("all its corners are one point")
     centred = (corners - middle) / size
-    for n, corner in enumerate(centred):
-        if n and np.abs(centred[:n] - corner).max(axis=1).min() < 1e-9:
+    for n in range(1, len(corners)):
+        if np.abs(centred[:n] - centred[n]).max(axis=1).min() < 1e-9:
             raise ValueError(f"corner {n} at {_place(corners[n])} m is given twice")
     # not above: a run of a wall of boxes needs none
     from scipy.spatial import ConvexHull, QhullError
@@ -56,33 +56,23 @@ def hull(corners):
         raise ValueError(
             f"its {len(corners)} corners lie in one plane: no volume"
         ) from None
-    faces, left = [], set(range(len(found.equations)))
-    order = sorted(left, key=lambda n: -_triangleArea(centred[found.simplices[n]]))
-    for n in order:  # from the largest triangle on, whose plane is the surest
-        if n not in left:
-            continue
-        plane = found.equations[n]
-        # Triangles that lie in the plane of the largest one belong to its face.
-        same = [
-            m
-            for m in left
-            if np.abs(centred[found.simplices[m]] @ plane[:3] + plane[3]).max() < FLAT
-        ]
-        left.difference_update(same)
-        members = np.unique(found.simplices[same])
-        faces.append(_around(members, centred, plane[:3]))
-    count = np.zeros(len(corners), int)
-    for face in faces:
-        count[list(face)] += 1
-    for n in np.flatnonzero(count < 3):
-        raise ValueError(
-            f"corner {n} at {_place(corners[n])} m is no corner of the convex solid around all of them"
-        )
+    triangles = centred[found.simplices]
+    first, second = (triangles[:, n] - triangles[:, 0] for n in (1, 2))
+    areas = np.linalg.norm(np.cross(first, second), axis=1)
+    faces, left = [], np.ones(len(triangles), bool)
+    # from the largest triangle on, whose plane is the surest; triangles in it belong to its face
+    for n in np.argsort(-areas, kind="stable"):
+        if left[n]:
+            normal, offset = found.equations[n][:3], found.equations[n][3]
+            same = left & (np.abs(triangles @ normal + offset).max(axis=1) < FLAT)
+            left &= ~same
+            faces.append(_around(np.unique(found.simplices[same]), centred, normal))
+    for n in range(len(corners)):
+        if sum(n in face for face in faces) < 3:
+            raise ValueError(
+                f"corner {n} at {_place(corners[n])} m is no corner of the convex solid around all of them"
+            )
     return tuple(faces)
-
-
-def _triangleArea(points):
-    return np.linalg.norm(np.cross(points[1] - points[0], points[2] - points[0]))
 
 
 def _around(members, corners, normal):
@@ -114,13 +104,10 @@ class Alike:
         size = np.linalg.norm(np.ptp(corners, axis=1), axis=1)
         centres, normals = [], []
         for face in faces:
-            points = corners[:, face]
-            centre = points.mean(axis=1)
-            arms = points - centre[:, None]
+            centres.append(corners[:, face].mean(axis=1))
+            arms = corners[:, face] - centres[-1][:, None]
             # Newell's normal of a polygon: half the sum of the products of neighbouring corners
-            normal = np.cross(arms, np.roll(arms, -1, axis=1)).sum(axis=1) / 2
-            centres.append(centre)
-            normals.append(normal)
+            normals.append(np.cross(arms, np.roll(arms, -1, axis=1)).sum(axis=1) / 2)
         self._areaVectors = np.stack(normals, axis=1)
         self._centres = np.stack(centres, axis=1)
         self.areas = np.linalg.norm(self._areaVectors, axis=2)
@@ -129,9 +116,7 @@ class Alike:
         self.offsets = np.einsum("nfk,nfk->nf", self.normals, self._centres)
         heights = np.einsum("nfk,nck->nfc", self.normals, corners)
         heights -= self.offsets[..., None]
-        on = np.zeros((len(faces), corners.shape[1]), bool)
-        for row, face in zip(on, faces):
-            row[list(face)] = True
+        on = [[n in face for n in range(corners.shape[1])] for face in faces]
         limit = (FLAT * size)[:, None, None]
         with np.errstate(invalid="ignore"):
             fit = np.where(on, np.abs(heights) <= limit, heights < -limit)
@@ -143,21 +128,6 @@ class Alike:
         middle = self.corners.mean(axis=1)
         arms = self._centres - middle[:, None]
         return np.einsum("nfk,nfk->n", self._areaVectors, arms) / 3
-
-    def middles(self):
-        """Centroids of the solids, (n, 3) [m], from the tetrahedra between a middle and the triangles of the surface."""
-        middle = self.corners.mean(axis=1)
-        moment, volume = np.zeros_like(middle), np.zeros(len(middle))
-        for face in self.faces:
-            for a, b in zip(face[1:], face[2:]):
-                arms = [self.corners[:, c] - middle for c in (face[0], a, b)]
-                six = np.einsum("nk,nk->n", arms[0], np.cross(arms[1], arms[2]))
-                moment += six[:, None] * sum(arms) / 4
-                volume += six
-        return middle + moment / volume[:, None]
-
-    def taken(self, keep):
-        return Alike(self.index[keep], self.corners[keep], self.faces)
 
 
 class Solids:
@@ -174,13 +144,12 @@ class Solids:
         byCorners = {}
         for n, corners in enumerate(solids):
             byCorners.setdefault(len(corners), []).append(n)
-        for count, members in byCorners.items():
+        for members in byCorners.values():
             index = np.array(members)
             corners = np.array([solids[n] for n in members], float)
             self.low[index], self.high[index] = corners.min(axis=1), corners.max(axis=1)
             self._sort(index, corners)
-        self.groupOf = np.full(self.count, -1)
-        self.rowOf = np.full(self.count, -1)
+        self.groupOf, self.rowOf = np.full((2, self.count), -1)
         for g, group in enumerate(self.groups):
             self.groupOf[group.index] = g
             self.rowOf[group.index] = np.arange(len(group.index))
@@ -196,7 +165,9 @@ class Solids:
                         "its corners lie so near to one another, or to one plane, that its faces are not to be told"
                     )
                 fit = alike.fit
-                self.groups.append(alike if fit.all() else alike.taken(fit))
+                self.groups.append(
+                    alike if fit.all() else Alike(index[fit], corners[fit], alike.faces)
+                )
             except ValueError as error:
                 self.problems[int(index[0])] = str(error)
                 fit = np.arange(len(index)) == 0
@@ -210,29 +181,28 @@ class Solids:
         """Smallest extent along the normal of a face [m], (n,); NaN for a solid with problems."""
         return self._each(lambda group: group.thickness)
 
-    def middles(self):
-        """Centroids [m], (n, 3)."""
-        return self._each(Alike.middles, 3)
-
-    def _each(self, measure, *shape):
-        found = np.full((self.count, *shape), np.nan)
+    def _each(self, measure):
+        found = np.full(self.count, np.nan)
         for group in self.groups:
             found[group.index] = measure(group)
         return found
 
+    def of(self, solid):
+        """The group of a solid, and its row there."""
+        return self.groups[self.groupOf[solid]], self.rowOf[solid]
+
     def face(self, solid, number):
         """Corners of a face, (corners, 3) [m]."""
-        group = self.groups[self.groupOf[solid]]
-        return group.corners[self.rowOf[solid]][list(group.faces[number])]
+        group, row = self.of(solid)
+        return group.corners[row][list(group.faces[number])]
 
     # -- pairs ----------------------------------------------------------------------------------------------------
 
     def nearPairs(self, reach):
         """Pairs of solids whose bounding boxes are no further apart than `reach` [m] of both: arrays of their numbers."""
         good = np.flatnonzero(self.groupOf >= 0)
-        empty = np.zeros(0, int)
         if len(good) < 2:
-            return empty, empty
+            return np.zeros((2, 0), int)
         low = self.low[good] - reach[good, None]
         high = self.high[good] + reach[good, None]
         # Solids are sorted along the axis on which they overlap least.
@@ -241,27 +211,12 @@ class Solids:
         order = np.argsort(low[:, axis], kind="stable")
         good, low, high = good[order], low[order], high[order]
         last = np.searchsorted(low[:, axis], high[:, axis], side="right")
-        firsts, seconds = [], []
-        counts = np.maximum(last - np.arange(len(good)) - 1, 0)
-        sums = np.concatenate([[0], np.cumsum(counts)])
-        start = 0
-        while start < len(good):
-            end = np.searchsorted(sums, sums[start] + 2_000_000, side="right") - 1
-            end = max(end, start + 1)
-            n = counts[start:end]
-            one = np.repeat(np.arange(start, end), n)
-            within = np.arange(len(one)) - np.repeat(sums[start:end] - sums[start], n)
-            two = one + 1 + within
-            near = np.ones(len(one), bool)
-            for k in range(3):
-                if k != axis:
-                    near &= low[one, k] <= high[two, k]
-                    near &= low[two, k] <= high[one, k]
-            firsts.append(good[one[near]])
-            seconds.append(good[two[near]])
-            start = end
-        one, two = np.concatenate(firsts), np.concatenate(seconds)
-        return np.minimum(one, two), np.maximum(one, two)
+        pairs = []
+        for n, end in enumerate(last):
+            near = (low[n + 1 : end] <= high[n]) & (low[n] <= high[n + 1 : end])
+            other = good[n + 1 : end][near.all(axis=1)]
+            pairs.append((np.full_like(other, good[n]), other))
+        return np.sort(np.concatenate(pairs, axis=1), axis=0)
 
     def compare(self, one, two):
         """How far pairs of solids are apart, and with which of their faces they look at each other.
@@ -294,8 +249,7 @@ class Solids:
         """How far two solids are apart [m] by the separating axis theorem; negative for an overlap: its smallest depth."""
         corners, sides, axes = [], [], []
         for solid in (one, two):
-            group = self.groups[self.groupOf[solid]]
-            row = self.rowOf[solid]
+            group, row = self.of(solid)
             corners.append(group.corners[row])
             axes.append(group.normals[row])
             ends = group.corners[row][np.array(sorted(edges(group.faces)))]
@@ -321,6 +275,13 @@ def _parted(a, i, b, j):
     beyond = heights.min(axis=2) - a.offsets[i]
     face = beyond.argmax(axis=1)
     return beyond[np.arange(len(i)), face], face
+
+
+def cosSin(quarters, angle):
+    """Cosine and sine of an angle [rad], exact if it is a whole number of quarter turns."""
+    if quarters == round(quarters):
+        return [(1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0)][round(quarters) % 4]
+    return math.cos(angle), math.sin(angle)
 
 
 def clip(polygon, other, normal):
@@ -378,22 +339,19 @@ def cutCorners(corners, faces, point, normal, width):
     A corner no further from the plane than `width` [m] counts as lying in it. A part without volume is None.
     """
     corners = [tuple(map(float, c)) for c in corners]
-    heights = [
-        sum((x - p) * n for x, p, n in zip(corner, point, normal)) for corner in corners
-    ]
-    sides = [0 if abs(h) <= width else (1 if h > 0 else -1) for h in heights]
-    if not any(s > 0 for s in sides):
-        return None, tuple(corners)
-    if not any(s < 0 for s in sides):
-        return tuple(corners), None
-    new = []
+    heights = [sum((x - p) * n for x, p, n in zip(c, point, normal)) for c in corners]
+    above = [c for c, h in zip(corners, heights) if h >= -width]
+    below = [c for c, h in zip(corners, heights) if h <= width]
     for a, b in sorted(edges(faces)):
-        if sides[a] * sides[b] < 0:
-            share, ends = heights[a] / (heights[a] - heights[b]), zip(corners[a], corners[b])  # fmt: skip
-            new.append(tuple(u + share * (v - u) for u, v in ends))
-    above = [c for c, s in zip(corners, sides) if s >= 0] + new
-    below = [c for c, s in zip(corners, sides) if s <= 0] + new
-    return tuple(above), tuple(below)
+        ends = heights[a], heights[b]
+        if min(ends) < -width and max(ends) > width:
+            share = heights[a] / (heights[a] - heights[b])
+            new = tuple(u + share * (v - u) for u, v in zip(corners[a], corners[b]))
+            above, below = [*above, new], [*below, new]
+    return (
+        tuple(above) if max(heights) > width else None,
+        tuple(below) if min(heights) < -width else None,
+    )
 
 
 def joinedCorners(pieces):
@@ -410,6 +368,11 @@ def joinedCorners(pieces):
     if abs(found.volume - volume) < COINCIDENT * volume:
         return tuple(points[n] for n in sorted(found.vertices))
     return None
+
+
+def prism(section, low, high):
+    """Corners of a section (x, z) that is stretched along y [m]."""
+    return tuple((x, y, z) for y in (low, high) for x, z in section)
 
 
 def boxCorners(low: Numbers, high: Numbers) -> tuple[tuple[float, float, float], ...]:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Houses of several storeys, with floors and ring beams. Nothing here needs YADE."""
+"""Houses of several storeys, with floors and ring beams."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from typing import Annotated, Any, Sequence
 
 from ..common.arguments import isA, isNumber, items, listOf, number, oneOf, shown, validated, whole  # fmt: skip
+from ..basics import GRAVITY
 from .beams import Beam, Floor
 from .blocks import Block, Bricks, Gap, Length, Sides, refuse
 from .geometry import boxCorners
@@ -14,7 +15,6 @@ from .openings import WHOLE
 from .walls import UNIT, Openings, Room
 
 SIDES = "front", "right", "back", "left"
-GRAVITY = 9.81  # [m/s²]
 
 
 @validated
@@ -95,34 +95,38 @@ class House(Bricks):
         high = min((o.z + o.height for o in openings), default=storey.height) + z
         if not low < high:
             refuse("House", [f"storey {n}: no height is common to all its openings, so it has no piers there"])  # fmt: skip
-        courses = {b.middle[2] for b in walls if low < b.middle[2] < high}
-        self.heights.append(min(courses, key=lambda at: abs(at - (low + high) / 2)) - walls[0].high[2] / 2 + walls[0].low[2] / 2)  # fmt: skip
+        between = walls.where(lambda block: low < block.middle[2] < high)
+        courses = {block.middle[2] for block in between}
+        course = min(courses, key=lambda at: abs(at - (low + high) / 2))
+        self.heights.append(course - walls[0].high[2] / 2 + walls[0].low[2] / 2)
         piers = {}
         for side in SIDES:
             axis = SIDES.index(side) % 2
-            cut = sorted((b.low[axis], b.high[axis]) for b in walls if b.part == side and low < b.middle[2] < high)  # fmt: skip
             found = []
-            for a, b in cut:
+            for a, b in sorted((b.low[axis], b.high[axis]) for b in between if b.part == side):  # fmt: skip
                 if found and a <= found[-1][1] + WHOLE:
-                    found[-1][1] = max(b, found[-1][1])
-                else:
-                    found.append([a, b])
-            for k, (a, b) in enumerate(found, 1):
-                piers[f"{side} {n} pier {k}" if len(found) > 1 else f"{side} {n}"] = side, a, b  # fmt: skip
+                    a, b = found[-1][0], max(b, found.pop()[1])
+                found.append((a, b))
+            for k, ends in enumerate(found, 1):
+                piers[f"{side} {n}" + f" pier {k}" * (len(found) > 1)] = side, *ends
         self.piers.append(piers)
 
         def part(block):
-            axis = SIDES.index(block.part) % 2
-            if low < block.middle[2] < high:
-                return next(name for name, (side, a, b) in piers.items() if side == block.part and a <= block.middle[axis] <= b)  # fmt: skip
-            return f"{block.part} {n}"
+            if not low < block.middle[2] < high:
+                return f"{block.part} {n}"
+            at = block.middle[SIDES.index(block.part) % 2]
+            return next(name for name, (side, a, b) in piers.items() if side == block.part and a <= at <= b)  # fmt: skip
 
         return Bricks(replace(block, part=part(block)) for block in walls)
 
     def _ring(self, n, z, height, unit):
-        (length, width), thick, name = self.size, self.thick, f"ring {n}"
-        beam = lambda x, y, long, along: Beam((x, y, z), long, thick, height, along, max(2, round(long / unit[0])), name)  # fmt: skip
-        return sum((beam(0, y, length, "x") for y in (0, width - thick)), Bricks()) + sum((beam(x, thick, width - 2 * thick, "y") for x in (0, length - thick)), Bricks())  # fmt: skip
+        (length, width), thick = self.size, self.thick
+        rows = [(0, y, length, "x") for y in (0, width - thick)]
+        rows += [(x, thick, width - 2 * thick, "y") for x in (0, length - thick)]
+        return sum(
+            Beam((x, y, z), long, thick, height, along, max(2, round(long / unit[0])), f"ring {n}")
+            for x, y, long, along in rows
+        )  # fmt: skip
 
     def _ballast(self, n, z):
         """A strip along the wall to which the mass of a floor is moved."""
@@ -157,17 +161,17 @@ class House(Bricks):
         if masses is None or len(masses) != len(self.piers):
             refuse("withFloors", [f"mass {shown(mass)} must be a number, or one for each of the {len(self.piers)} floors"])  # fmt: skip
         for n, own in enumerate(masses, 1):
-            if len(self.part(f"ring {n}")):
-                masonry.withBeam(self.part(f"ring {n}"), young=ring, density=2400, bearing="fixed")  # fmt: skip
+            if len(beams := self.part(f"ring {n}")):
+                masonry.withBeam(beams, young=ring, density=2400, bearing="fixed")  # fmt: skip
             moved = 0.0
             for axis, share in enumerate(self.eccentricity):
                 if share:
-                    ballast = self.part(f"ballast {n}{'xy'[axis]}")
-                    lever = abs(ballast[0].middle[axis] - self.size[axis] / 2)
+                    (strip,) = ballast = self.part(f"ballast {n}{'xy'[axis]}")
+                    lever = abs(strip.middle[axis] - self.size[axis] / 2)
                     part = abs(share) * self.size[axis] / lever
                     moved += part
-                    unit = type(masonry.unit)(label=ballast[0].kind, young=masonry.unit.young, density=part * own * self.size[0] * self.size[1] / ballast.volume)  # fmt: skip
-                    masonry.units[ballast[0].kind] = unit
+                    density = part * own * self.size[0] * self.size[1] / ballast.volume
+                    masonry.units[strip.kind] = type(masonry.unit)(label=strip.kind, young=masonry.unit.young, density=density)  # fmt: skip
             masonry.withFloor(self.part(f"floor {n}"), shear=shear, mass=own * (1 - moved), bearing=bearing)  # fmt: skip
         return masonry
 
@@ -190,17 +194,18 @@ class House(Bricks):
         for block, volume in zip(self, self._solids.volumes()):
             if block.middle[2] < z:
                 continue
-            weight = float(masonry.units.get(block.kind, masonry.unit).density * volume * GRAVITY / 1e3)  # fmt: skip
+            unit = masonry.units.get(block.kind, masonry.unit)
+            weight = float(unit.density * volume * GRAVITY / 1e3)
             x, y, _ = block.middle
             if block.part.startswith(("floor", "ballast")):
                 strips = self.part(f"floor {block.part.split()[1].strip('xy')}")
-                axis = int(strips[0].high[0] - strips[0].low[0] < strips[0].high[1] - strips[0].low[1])  # fmt: skip
-                share = block.middle[axis] / self.size[axis]
-                ends = [s.middle[1 - axis] for s in strips]
-                over = [at for at in ends if block.low[1 - axis] < at < block.high[1 - axis]]  # fmt: skip
-                for at in over or [block.middle[1 - axis]]:
-                    for side, part in zip((("left", "right"), ("front", "back"))[axis], (1 - share, share)):  # fmt: skip
-                        carry(side, at, weight * part / max(1, len(over)))
+                axis = int(strips[:1].length < strips[0].high[1] - strips[0].low[1])
+                share, across = block.middle[axis] / self.size[axis], 1 - axis
+                over = [s.middle[across] for s in strips if block.low[across] < s.middle[across] < block.high[across]]  # fmt: skip
+                over = over or [block.middle[across]]
+                for at in over:
+                    carry(("left", "front")[axis], at, weight * (1 - share) / len(over))
+                    carry(("right", "back")[axis], at, weight * share / len(over))
                 continue
             side = block.part.split()[0]
             if side not in SIDES:  # a ring beam

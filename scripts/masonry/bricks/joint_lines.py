@@ -7,6 +7,8 @@ nearly straight are one line, so that a bed joint stays straight where head join
 
 from __future__ import annotations
 
+from collections import defaultdict
+
 import numpy as np
 
 from .polygons import area, turns, withoutStraight
@@ -63,32 +65,25 @@ def _contracted(cells, fine):
     """The sides with nodes nearer to each other than two tolerances made one, and the places. A node moves by one at most."""
     places, first = cells.places.copy(), np.arange(len(cells.places))
     air = set(cells.ends[(cells.labels < 0).any(axis=1)].ravel().tolist())
-    done = set()
-    lines = _lines(cells.ends, places)
-    for line in sorted(lines, key=lambda line: _length(places[line])):
-        if _length(places[line]) >= 2 * fine:
-            break
+    done, lines = set(), _lines(cells.ends, places)
+    length = lambda line: np.hypot(*np.diff(cells.places[line], axis=0).T).sum()
+    for line in sorted((line for line in lines if length(line) < 2 * fine), key=length):
         ends = {line[0], line[-1]}
-        if len(ends) < 2 or ends & done:
-            continue
-        done |= ends
-        first[line] = line[0]
-        outer = [n for n in ends if n in air]  # at the air they stay on the face
-        places[line[0]] = places[outer or list(ends)].mean(axis=0)
+        if len(ends) == 2 and not ends & done:
+            done |= ends
+            first[line] = line[0]
+            outer = [n for n in ends if n in air]  # at the air they stay on the face
+            places[line[0]] = places[outer or list(ends)].mean(axis=0)
     return first[cells.ends], places
-
-
-def _length(points):
-    return np.linalg.norm(np.diff(points, axis=0), axis=1).sum()
 
 
 def _rings(ends, labels, places):
     """Numbers of the places around each stone, counter-clockwise, of the largest of its cells; and the outlines of holes."""
-    following = {}
+    following = defaultdict(lambda: defaultdict(list))
     for (v, w), (left, right) in zip(ends.tolist(), labels.tolist()):
         if v != w:
-            following.setdefault(left, {}).setdefault(v, []).append(w)
-            following.setdefault(right, {}).setdefault(w, []).append(v)
+            following[left][v].append(w)
+            following[right][w].append(v)
     rings, holes = {}, []
     for label, after in following.items():
         sizes = {}
@@ -113,11 +108,10 @@ def _rings(ends, labels, places):
 
 def _lines(ends, places):
     """Lines from node to node, and closed ones from their lowest left corner to it again: lists of numbers."""
-    beside = {}
+    beside = defaultdict(dict)
     for v, w in ends.tolist():
         if v != w:
-            beside.setdefault(v, {})[w] = None
-            beside.setdefault(w, {})[v] = None
+            beside[v][w] = beside[w][v] = None
     nodes = [n for n, others in beside.items() if len(others) != 2]
     lines, done = [], set()
 
@@ -129,8 +123,9 @@ def _lines(ends, places):
         lines.append(line)
 
     for start in (*nodes, *sorted(beside, key=lambda n: places[n].sum())):
-        if start in beside and (len(beside[start]) != 2 or not any((start, n) in done for n in beside[start])):  # fmt: skip
-            for onward in beside[start]:
+        near = beside[start]
+        if len(near) != 2 or not any((start, n) in done for n in near):
+            for onward in near:
                 if (start, onward) not in done:
                     follow(start, onward)
     return lines
@@ -138,11 +133,10 @@ def _lines(ends, places):
 
 def _joined(lines, places, fine):
     """Lines that go on through nodes."""
-    starts = {}
+    starts = defaultdict(list)
     for k, line in enumerate(lines):
-        for side in (0, 1):
-            points = line[::-1] if side else line
-            starts.setdefault(points[0], []).append((k, side, _direction(places[points], fine)))  # fmt: skip
+        for side, points in enumerate((line, line[::-1])):
+            starts[points[0]].append((k, side, _direction(places[points], fine)))
     mates = {}
     for here in starts.values():
         pairs = [(float(u @ v), a, i, b, j) for n, (a, i, u) in enumerate(here) for b, j, v in here[:n] if a != b]  # fmt: skip
@@ -177,10 +171,6 @@ def _corners(points, fine):
     """Positions of the points of a line that stay, by the method of Douglas and Peucker."""
     last = len(points) - 1
     kept, open_ = {0, last}, [(0, last)]
-    if np.array_equal(points[0], points[last]):
-        far = int(np.argmax(np.linalg.norm(points - points[0], axis=1)))
-        kept.add(far)
-        open_ = [(0, far), (far, last)]
     while open_:
         a, b = open_.pop()
         if b - a < 2:
@@ -202,8 +192,8 @@ def _onLines(places, between):
     """
     if not between:
         return places
-    numbers = np.array(list(between))
-    a, b, share = (np.array(column) for column in zip(*between.values()))
+    numbers = list(between)
+    a, b, share = map(np.array, zip(*between.values()))
     share = share[:, None]
     while True:
         new = (1 - share) * places[a] + share * places[b]

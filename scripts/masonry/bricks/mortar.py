@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections import namedtuple
+from collections import defaultdict, namedtuple
 
 import numpy as np
 
@@ -32,9 +32,9 @@ def closed(solids, mortar, problems):
     faces = sorted({face for gap in gaps for face in (gap.one, gap.two)})
     number = {face: n for n, face in enumerate(faces)}
     group = components(len(faces), [(number[g.one], number[g.two]) for g in gaps])
-    together = {}
+    together = defaultdict(list)
     for gap in gaps:
-        together.setdefault(group[number[gap.one]], []).append(gap)
+        together[group[number[gap.one]]].append(gap)
     planes = {}
     for members in together.values():
         first = members[0].normal
@@ -54,13 +54,13 @@ def closed(solids, mortar, problems):
 
 def _plane(solids, n, face):
     """Outward normal of a face, and its offset [m]."""
-    group, row = solids.groups[solids.groupOf[n]], solids.rowOf[n]
-    return group.normals[row][face], group.offsets[row][face]
+    group, row = solids.of(n)
+    return group.normals[row, face], group.offsets[row, face]
 
 
 def _gaps(solids, mortar, one, two):
     """The faces of two solids with mortar between them."""
-    ours, theirs = (solids.groups[solids.groupOf[n]].normals[solids.rowOf[n]] for n in (one, two))  # fmt: skip
+    ours, theirs = (group.normals[row] for group, row in map(solids.of, (one, two)))
     for f, g in np.argwhere(ours @ theirs.T < FACING).tolist():
         normal = ours[f] - theirs[g]
         normal /= np.linalg.norm(normal)
@@ -80,8 +80,7 @@ def _gaps(solids, mortar, one, two):
 
 def _grown(solids, n, corners, planes):
     """Corners of a solid some of whose faces have other planes; as they are if none has."""
-    group = solids.groups[solids.groupOf[n]]
-    count = len(group.faces)
+    count = len(solids.of(n)[0].faces)
     if not any((n, face) in planes for face in range(count)):
         return corners
     from scipy.spatial import HalfspaceIntersection

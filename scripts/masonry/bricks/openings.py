@@ -7,7 +7,6 @@ from dataclasses import dataclass, replace
 from typing import Annotated
 
 from ..common.arguments import isA, validated
-from ..basics import withoutCollector
 from .blocks import Block, Bricks, Gap, Length, refuse
 from .checks import components, where
 from .geometry import boxCorners
@@ -56,16 +55,10 @@ class LaidBrick:
     high: tuple
     course: int
     part: str
-    split: tuple | None = None  # (axis, coordinate)
-    number: int = -1
+    split: tuple | None  # (axis, coordinate)
+    number: int
     cut: bool = False  # whether an opening has cut it
-
-
-# -- openings ---------------------------------------------------------------------------------------------------------
-
-
-def numbered(bricks):
-    return [replace(brick, number=n) for n, brick in enumerate(bricks)]
+    kind: str = "brick"
 
 
 def opened(bricks, openings, unit, levels, ends, ys, part, crossed=None):
@@ -81,66 +74,56 @@ def opened(bricks, openings, unit, levels, ends, ys, part, crossed=None):
     refuse(part, problems)
     for _, hole in holes + lintels:  # lintels take the place of bricks, too
         bricks = _without(bricks, hole)
-    slivers = _slivers(bricks, holes + lintels, unit, levels)
-    refuse(part, slivers)
+    refuse(part, _slivers(bricks, holes + lintels, unit, levels))
     made = []
-    for n, (name, (x0, z0, x1, z1)) in enumerate(lintels):
+    for number, (_, (x0, z0, x1, z1)) in enumerate(lintels, _unused(bricks)):
         course = max(c for c, z in enumerate(levels[:-1]) if z <= z0)
-        number = max((b.number for b in bricks), default=-1) + 1 + n
         box = (x0, ys[0], z0), (x1, ys[1], z1)
-        made.append(LaidBrick(*box, course, part, None, number, None))
+        made.append(LaidBrick(*box, course, part, None, number, kind="lintel"))
     _whole(bricks + made, part)
     return bricks, made
+
+
+def _unused(bricks):
+    """The first number that no brick has."""
+    return max((brick.number for brick in bricks), default=-1) + 1
 
 
 def _holes(openings, unit, levels, ends, crossed, problems):
     """Boxes (x0, z0, x1, z1) of openings and of lintels, each with its name."""
     top, q = levels[-1], unit[0] / 4
 
-    def alongWall(x):
-        """A place on the lattice of quarter units, if it is there but for round-off."""
-        near = round(x / q) * q
-        near = min([near, *ends], key=lambda line: abs(line - x))
-        return near if abs(near - x) <= WHOLE * unit[0] else x
+    def at(value, places, size):
+        """One of some places, if a value is there but for round-off."""
+        near = min(places, key=lambda place: abs(place - value))
+        return near if abs(near - value) <= WHOLE * size else value
 
-    def upWall(z):
-        near = min(levels, key=lambda level: abs(level - z))
-        return near if abs(near - z) <= WHOLE * unit[2] else z
-
+    alongWall = lambda x: at(x, [round(x / q) * q, *ends], unit[0])
+    upWall = lambda z: at(z, levels, unit[2])
     holes, lintels = [], []
     for n, opening in enumerate(openings):
-        name = f"opening {n}"
-        lintel = opening.lintel
         x0, x1 = alongWall(opening.x), alongWall(opening.x + opening.width)
         z0, z1 = upWall(opening.z), upWall(opening.z + opening.height)
+        holes.append((f"opening {n}", (x0, z0, x1, z1)))
+        if x0 <= ends[0] and x1 >= ends[1]:
+            problems.append(f"opening {n} is as wide as the wall and cuts it in two")
+        if lintel := opening.lintel:
+            a, b = alongWall(x0 - lintel.bearing), alongWall(x1 + lintel.bearing)
+            box = (a, z1, b, upWall(z1 + lintel.height))
+            lintels.append((f"the lintel of opening {n}", box))
+    boxes = holes + lintels
+    for n, (name, box) in enumerate(boxes):
+        x0, _, x1, z1 = box
         if x0 < ends[0] or x1 > ends[1]:
             problems.append(
                 f"{name} reaches from x = {x0:g} to {x1:g} m, off the wall, where it may be from {ends[0]:g} to {ends[1]:g} m"
             )
         if z1 > top:
             problems.append(f"{name} reaches up to {z1:g} m, off the wall of {top:g} m")
-        if x0 <= ends[0] and x1 >= ends[1]:
-            problems.append(f"{name} is as wide as the wall and cuts it in two")
-        holes.append((name, (x0, z0, x1, z1)))
-        if lintel is not None:
-            a, b = alongWall(x0 - lintel.bearing), alongWall(x1 + lintel.bearing)
-            z2 = upWall(z1 + lintel.height)
-            if a < ends[0] or b > ends[1]:
-                problems.append(
-                    f"{name}: its lintel bears from x = {a:g} to {b:g} m, off the wall, where it may be from {ends[0]:g} to "
-                    f"{ends[1]:g} m"
-                )
-            if z2 > top:
-                problems.append(
-                    f"{name}: its lintel reaches up to {z2:g} m, off the wall of {top:g} m"
-                )
-            lintels.append((f"the lintel of {name}", (a, z1, b, z2)))
-    boxes = holes + lintels
-    for n, (name, box) in enumerate(boxes):
         for other, second in boxes[:n]:
             if _overlap(box, second):
                 problems.append(f"{other} and {name} overlap")
-        if crossed and box[0] < crossed[1] and box[2] > crossed[0]:
+        if crossed and x0 < crossed[1] and x1 > crossed[0]:
             problems.append(
                 f"{name} reaches into the junction, from x = {crossed[0]:g} to {crossed[1]:g} m"
             )
@@ -154,7 +137,7 @@ def _overlap(a, b):
 def _without(bricks, hole):
     """The bricks outside a hole. A brick at its edge is cut; what is left of it in an L is two or more pieces of it."""
     x0, z0, x1, z1 = hole
-    found, spare = [], max(b.number for b in bricks) + 1 if bricks else 0
+    found, spare = [], _unused(bricks)
     for brick in bricks:
         (a, ya, c), (b, yb, d) = brick.low, brick.high
         if not _overlap((a, c, b, d), hole):
@@ -179,27 +162,21 @@ def _slivers(bricks, holes, unit, levels):
     """Sentences about pieces of bricks, cut by openings or lintels, that are shorter or lower than a quarter."""
     slivers = []
     for brick in bricks:
-        if not brick.cut:
-            continue
-        length = brick.high[0] - brick.low[0]
-        height = brick.high[2] - brick.low[2]
-        least = unit[0] / 4, (levels[brick.course + 1] - levels[brick.course]) / 4
-        if length >= least[0] * (1 - WHOLE) and height >= least[1] * (1 - WHOLE):
-            continue
         box = brick.low[0], brick.low[2], brick.high[0], brick.high[2]
-        name = next((name for name, hole in holes if _touch(box, hole)), "an opening")
-        long = length < least[0] * (1 - WHOLE)
-        size = f"{length:.3g} m long" if long else f"{height:.3g} m high"
-        bound = f"{least[0]:.3g} m" if long else f"{least[1]:.3g} m"
-        middle = [(p + q) / 2 for p, q in zip(brick.low, brick.high)]
-        slivers.append(
-            f"{name} leaves a sliver of brick {brick.number} in course {brick.course}, {size}, at {where(middle)}; a piece "
-            f"must have a quarter of the unit, {bound}"
-        )
+        height = levels[brick.course + 1] - levels[brick.course]
+        word, size, least = "long", box[2] - box[0], unit[0] / 4
+        if size >= least * (1 - WHOLE):
+            word, size, least = "high", box[3] - box[1], height / 4
+        if brick.cut and size < least * (1 - WHOLE):
+            name = next(name for name, hole in holes if _touch(box, hole))
+            middle = [(p + q) / 2 for p, q in zip(brick.low, brick.high)]
+            slivers.append(
+                f"{name} leaves a sliver of brick {brick.number} in course {brick.course}, {size:.3g} m {word}, at {where(middle)}; "
+                f"a piece must have a quarter of the unit, {least:.3g} m"
+            )
     if slivers:
-        slivers[
-            -1
-        ] += f" (edges at multiples of {unit[0] / 4:g} m along the wall, and at bed joints, leave no slivers)"
+        hint = f"edges at multiples of {unit[0] / 4:g} m along the wall, and at bed joints, leave no slivers"
+        slivers[-1] += f" ({hint})"
     return slivers
 
 
@@ -209,38 +186,26 @@ def _touch(a, b):
 
 def _whole(bricks, part):
     """Refuse a wall of which openings have cut something off."""
-    boxes = Bricks(_blocks(replace(b, split=None) for b in bricks))  # halves hold
-    parts = components(len(boxes), boxes.joints())
-    loose = sorted({b.brick for b, p in zip(boxes, parts) if p != parts[0]})
+    boxes = Bricks(blocksOf(replace(b, split=None) for b in bricks))  # halves hold
     if not len(boxes):
-        raise ValueError(f"{part}: its openings leave nothing of it")
+        refuse(part, ["its openings leave nothing of it"])
+    parts = components(len(boxes), boxes.joints())
+    loose = [box for box, one in zip(boxes, parts) if one != parts[0]]
     if loose:
-        first = next(b for b, p in zip(boxes, parts) if p != parts[0])
-        raise ValueError(
-            f"{part}: its openings cut it in parts: {len(loose)} bricks, such as brick {first.brick} at "
-            f"{where(first.middle)}, have no joint with the rest"
-        )
+        one, count = loose[0], len({box.brick for box in loose})
+        problem = f"its openings cut it in parts: {count} bricks, such as brick {one.brick} at {where(one.middle)}, have no joint with the rest"
+        refuse(part, [problem])
 
 
-# -- records ----------------------------------------------------------------------------------------------------------
-
-
-def _blocks(bricks):
-    """The blocks of the bricks, in their order. A lintel is what has no mark whether it is cut."""
+def blocksOf(bricks):
+    """The blocks of some bricks, in their order."""
     for brick in bricks:
-        kind = "lintel" if brick.cut is None else "brick"
         pieces = [(brick.low, brick.high)]
         if brick.split:
             axis, at = brick.split
             middleHigh, middleLow = list(brick.high), list(brick.low)
             middleHigh[axis] = middleLow[axis] = at
-            pieces = [(brick.low, tuple(middleHigh)), (tuple(middleLow), brick.high)]
-        for low, high in pieces:
-            number = brick.number if brick.number >= 0 else 0
-            yield Block(boxCorners(low, high), number, brick.part, brick.course, kind)
-
-
-@withoutCollector()
-def finished(bricks):
-    """A collection of blocks whose bricks are numbered in their order, from 0."""
-    return Bricks(Bricks(_blocks(bricks))._renumbered(0))
+            pieces = [(brick.low, middleHigh), (middleLow, brick.high)]
+        names = brick.number, brick.part, brick.course, brick.kind
+        for box in pieces:
+            yield Block(boxCorners(*box), *names)

@@ -9,7 +9,7 @@ keep the same line.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections import namedtuple
 from typing import Annotated, Any
 
 import numpy as np
@@ -18,7 +18,8 @@ from ..common.arguments import FilePath, number, validated
 from ..basics import say
 from .blocks import Block, Bricks, Length, refuse
 from .checks import where
-from .polygons import convexParts, crossing, inside, withoutStraight
+from .geometry import prism
+from .polygons import area, convexParts, crossing, inside, withoutStraight
 from .drawings import read
 from .joint_lines import straightened
 
@@ -37,13 +38,30 @@ class DrawnWall(Bricks):
     :ivar unit: mean length of the stones as they are drawn, thickness of the wall, and mean height of the stones [m]
     """
 
-    def __init__(self, blocks: Any, mortar: float, unit: Any, measured: Any) -> None:
+    def __init__(self, blocks: Any, mortar: float, unit: Any, points: Any) -> None:
+        from scipy.spatial import cKDTree
+
         super().__init__(blocks)
-        self.mortar, self.unit, self._measured = mortar, unit, measured
+        self.mortar, self.unit, self._step = mortar, unit, points.step
+        own = [points.stones == n for n in range(points.stones.max() + 1)]
+        self._trees = [cKDTree(points.places[n]) for n in own]
+        self._normals = [points.normals[n] for n in own]
+        self._boxes = np.array([(tree.mins, tree.maxes) for tree in self._trees])
 
     def thickness(self, x: float, y: float, z: float) -> float:
-        """Thickness of the mortar at a place of a joint [m]; where stones touch, a quarter of the tolerance."""
-        return self._measured.thickness((x, z))
+        """Thickness of the mortar at a place of a joint [m]: the distances of the two nearest stones together; where stones
+        touch, a quarter of the tolerance."""
+        place = x, z
+        beyond = np.maximum(self._boxes[:, 0] - place, place - self._boxes[:, 1])
+        near = np.argsort(np.linalg.norm(np.maximum(beyond, 0), axis=1))[:8]
+        return max(sum(sorted(self._distance(n, place) for n in near)[:2]), self._step)
+
+    def _distance(self, stone, place):
+        """Distance from an outline, a piece of which lies along each of its points."""
+        k = self._trees[stone].query(place)[1]
+        arm, normal = place - self._trees[stone].data[k], self._normals[stone][k]
+        beside = abs(float(np.cross(normal, arm)))
+        return math.hypot(float(arm @ normal), max(beside - self._step / 2, 0.0))
 
     def withMortar(self, masonry: Any) -> Any:
         """Let the joints of a :class:`masonry.scene.materials.Masonry` be as stiff as the mortar is thin. Returns the same masonry.
@@ -109,19 +127,15 @@ def fromOutlines(
             problems.append(f"{stone.name} near {_at(stone.ring)}: nothing is left of it, or it crosses itself, at a tolerance of {fine:g} m")  # fmt: skip
             continue
         for face in convexParts(ring):
-            corners = [(float(x), y, float(z)) for y in (0.0, thickness) for x, z in face]  # fmt: skip
-            blocks.append(Block(tuple(corners), n, part))
+            blocks.append(Block(prism(face.tolist(), 0.0, thickness), n, part))
     refuse(str(path), problems)
     sizes = np.mean([np.ptp(s.ring, axis=0) for s in stones], axis=0)
     unit = float(sizes[0]), thickness, float(sizes[1])
-    return DrawnWall(blocks, cells.mortar, unit, _Measured(points))
+    return DrawnWall(blocks, cells.mortar, unit, points)
 
 
 def _at(ring):
     return where(ring.mean(axis=0))
-
-
-# -- what is wrong ----------------------------------------------------------------------------------------------------
 
 
 def _checked(path, drawn, fine, mend):
@@ -135,13 +149,12 @@ def _checked(path, drawn, fine, mend):
             continue
         if not outline.closed:
             found.append(f"{outline.name} is open between {where(ring[-1])} and {where(ring[0])}: close it")  # fmt: skip
-        twice = np.sum(np.cross(ring, np.roll(ring, -1, axis=0)))
-        size = np.linalg.norm(np.ptp(ring, axis=0))
-        if size <= 0 or abs(twice) / 2 < 2 * fine * size:
-            thin = abs(twice) / 2 / size if size > 0 else 0.0
+        size = area(ring)
+        thin = abs(size) / max(np.linalg.norm(np.ptp(ring, axis=0)), 1e-300)
+        if thin < 2 * fine:
             found.append(f"{outline.name} near {_at(ring)} is a sliver, {thin:.3g} m thin, below two tolerances of {fine:g} m: leave it out")  # fmt: skip
             continue
-        outline.ring = ring if twice > 0 else ring[::-1]
+        outline.ring = ring if size > 0 else ring[::-1]
         kept.append(outline)
     stones = [s for s in kept if not _overlapping(s, kept, fine, found)]
     if not stones:
@@ -164,9 +177,8 @@ def _overlapping(stone, others, fine, found):
         if not len(shared):
             continue
         edge, _ = _along(other.ring, fine)
-        depths = fine / 2 + np.min(
-            np.linalg.norm(shared[:, None] - edge, axis=2), axis=1
-        )
+        away = np.linalg.norm(shared[:, None] - edge, axis=2)
+        depths = fine / 2 + away.min(axis=1)
         first = others.index(stone) < others.index(other)
         both = f"{stone.name} and {other.name}"
         # of two equal ones the second goes
@@ -178,53 +190,12 @@ def _overlapping(stone, others, fine, found):
     return False
 
 
-# -- growth -----------------------------------------------------------------------------------------------------------
+#: Points on outlines (n, 2), the normals outwards there, the numbers of their stones, and their distance [m].
+_Points = namedtuple("_Points", "places normals stones step")
 
-
-@dataclass
-class _Points:
-    """Points on outlines (n, 2), the normals outwards there, and the numbers of their stones."""
-
-    places: Any
-    normals: Any
-    stones: Any
-    step: float
-
-
-class _Measured:
-    """Thickness of the mortar at a place: the distances of the two nearest stones, together."""
-
-    def __init__(self, points):
-        from scipy.spatial import cKDTree
-
-        own = [points.stones == n for n in range(points.stones.max() + 1)]
-        self.trees = [cKDTree(points.places[n]) for n in own]
-        self.normals = [points.normals[n] for n in own]
-        self.boxes = np.array([(t.mins, t.maxes) for t in self.trees])
-        self.step = points.step
-
-    def thickness(self, place):
-        beyond = np.maximum(self.boxes[:, 0] - place, place - self.boxes[:, 1])
-        near = np.argsort(np.linalg.norm(np.maximum(beyond, 0), axis=1))[:8]
-        both = sorted(self._distance(n, place) for n in near)[:2]
-        return max(sum(both), self.step)
-
-    def _distance(self, stone, place):
-        """Distance from an outline, a piece of which lies along each of its points."""
-        k = self.trees[stone].query(place)[1]
-        arm, normal = place - self.trees[stone].data[k], self.normals[stone][k]
-        beside = abs(float(np.cross(normal, arm)))
-        return math.hypot(float(arm @ normal), max(beside - self.step / 2, 0.0))
-
-
-@dataclass
-class _Cells:
-    """Sides of cells that part two labels: their ends, numbers of places (n, 2), and the labels left and right of them."""
-
-    places: Any
-    ends: Any
-    labels: Any
-    mortar: float
+#: Sides of cells that part two labels: their ends, numbers of places (n, 2), the labels left and right of them, and the mean
+#: thickness of the mortar [m].
+_Cells = namedtuple("_Cells", "places ends labels mortar")
 
 
 def _along(ring, step):
@@ -257,9 +228,8 @@ def _grown(points, stones, radius):
     """Cells of the stones. Where a ball of a radius that rolls along the outlines touches them, they are at the air."""
     from scipy.spatial import Voronoi, cKDTree
 
-    places, normals, inset = points.places, points.normals, points.step
-    high = places.max(axis=0)
-    low = places.min(axis=0)
+    places, normals, _, inset = points
+    low, high = places.min(axis=0), places.max(axis=0)
     ball = places + radius * normals
     free = cKDTree(places).query(ball)[0] > radius * (1 - 1e-3)
     free &= (ball - radius > low).all(axis=1) & (ball + radius < high).all(axis=1)
@@ -274,12 +244,10 @@ def _grown(points, stones, radius):
         alone[within[~own]] = False  # in an overlap
     good &= alone
     voids = [places[free & alone] + inset * normals[free & alone]]
-    for axis in (0, 1):
-        for side in (low, high):
-            near = good & (abs(sites[:, axis] - side[axis]) < 2 * radius)
-            mirrored = sites[near]
-            mirrored[:, axis] = 2 * side[axis] - mirrored[:, axis]
-            voids.append(mirrored)
+    for axis, side in ((0, low), (0, high), (1, low), (1, high)):
+        mirrored = sites[good & (abs(sites[:, axis] - side[axis]) < 2 * radius)]
+        mirrored[:, axis] = 2 * side[axis] - mirrored[:, axis]
+        voids.append(mirrored)
     turn = np.arange(64)[:, None] * np.pi / 32
     far = np.linalg.norm(high - low) + 4 * radius
     voids.append((low + high) / 2 + far * np.hstack([np.cos(turn), np.sin(turn)]))

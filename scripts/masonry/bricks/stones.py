@@ -12,6 +12,7 @@ import numpy as np
 from ..common.arguments import isA, number, oneOf, validated, whole
 from ..basics import say
 from .blocks import Block, Bricks, Length, Sides, refuse
+from .geometry import prism
 
 #: Walls that are drawn until one has the trace that is asked for, and how near it must come [-].
 DRAWS, NEAR = 30, 0.03
@@ -69,7 +70,6 @@ def StoneWall(
         walls are drawn, those of squared stones after the running bond itself with overlaps from none to half a stone: the
         first within 3 % of it is taken, else the nearest, and a note says how near it is
     :param seed: of the draws; another one is another wall of the same kind
-    :raises ValueError: with all problems
     """
     problems = []
     for what, stone, wall in (("length", unit[0], length), ("height", unit[2], height)):
@@ -91,7 +91,12 @@ def StoneWall(
             # the running bond itself comes first
             own, overlap = (own, 0.5 * draw.random()) if n else (0.0, 0.5)
         stones = lay(counts, overlap, own, draw)
-        bricks = _bricks(stones, (length / counts[0], height / counts[1]), unit[1], part)  # fmt: skip
+        wide, high = length / counts[0], height / counts[1]  # of a stone
+        faces = ((n, [(float(x) * wide, float(z) * high) for x, z in ring]) for n, ring in stones)  # fmt: skip
+        bricks = Bricks(
+            Block(prism(face, 0.0, float(unit[1])), n, part, course)
+            for n, (course, face) in enumerate(faces)
+        )
         if trace is None:
             return bricks
         miss = abs(leastTrace(bricks) / trace - 1)
@@ -111,70 +116,33 @@ def leastTrace(bricks: Annotated[Any, isA(Bricks)]) -> float:
     no way goes through because a course is one stone."""
     from scipy.sparse import csr_array
     from scipy.sparse.csgraph import dijkstra
+    from scipy.spatial import cKDTree
 
-    sides, (low, high) = _sides(bricks)
-    near = SAME * float(np.max(high - low))
-    keys, points = {}, []
-
-    def numberOf(point):
-        key = tuple(np.round((point - low) / near / 4).astype(int))
-        if key not in keys:
-            keys[key] = len(points)
-            points.append(point)
-        return keys[key]
-
-    ends = [[numberOf(a), numberOf(b)] for a, b in sides]
-    places = np.array(points).reshape(-1, 2)
-    lengths = {}
-    for a, b in ends:
-        along = places[b] - places[a]
-        size = np.hypot(*along)
-        # other stones may have corners on this side: it is cut there
-        at = (places - places[a]) @ along / size**2
-        off = np.abs(np.cross(along, places - places[a])) / size
-        on = np.flatnonzero((off < 4 * near) & (at > -SAME) & (at < 1 + SAME))
-        on = on[np.argsort(at[on])]
-        for one, two in zip(on, on[1:]):
-            lengths[one, two] = np.hypot(*(places[two] - places[one]))
-    start = np.flatnonzero(places[:, 1] < low[1] + 4 * near)
-    end = np.flatnonzero(places[:, 1] > high[1] - 4 * near)
+    near = 4 * SAME * max(bricks.length, bricks.height)
+    points = _joints(bricks).reshape(-1, 2)
+    start = np.flatnonzero(points[:, 1] < bricks.low[2] + near)
+    end = np.flatnonzero(points[:, 1] > bricks.high[2] - near)
     if not (len(start) and len(end)):
         return math.inf
-    rows, columns = np.array(list(lengths)).T
-    graph = csr_array((list(lengths.values()), (rows, columns)), [len(places)] * 2)
+    # ends that lie together are the first of them
+    ends = np.array([min(n) for n in cKDTree(points).query_ball_point(points, near)])
+    pairs, one = np.unique(ends.reshape(-1, 2), axis=0, return_index=True)
+    lengths = np.hypot(*(points[2 * one] - points[2 * one + 1]).T)
+    graph = csr_array((lengths, pairs.T), [len(points)] * 2)
     found = dijkstra(graph, directed=False, indices=start, min_only=True)[end]
-    return float(found.min() / (high[1] - low[1]))
+    return float(found.min() / bricks.height)
 
 
-def _sides(bricks):
-    """Sides of the front faces of all blocks that are joints, from (x, z) to (x, z) [m], and the corners of their box."""
-    found, pieces = [], {}
-    for block in bricks:
-        corners = np.array(block.corners)
-        front = corners[np.isclose(corners[:, 1], block.low[1])][:, [0, 2]]
-        middle = front.mean(axis=0)
-        turn = np.arctan2(*(front - middle).T[::-1])
-        ring = front[np.argsort(turn)]
-        for side in zip(ring, np.roll(ring, -1, axis=0)):
-            found.append(side)
-            key = block.brick, tuple(np.round(side[0] + side[1], 6))
-            pieces.setdefault(key, []).append(side)
-    # what two pieces of a brick share is no joint
-    cracks = {id(side) for sides in pieces.values() if len(sides) > 1 for side in sides}  # fmt: skip
-    points = np.array([a for a, _ in found])
-    low, high = points.min(axis=0), points.max(axis=0)
-    near = SAME * np.max(high - low)
-
-    def outside(a, b):
-        """Whether a side lies on the edge of the wall, which is no joint."""
-        return any(
-            abs(a[n] - at[n]) < near and abs(b[n] - at[n]) < near
-            for n in (0, 1)
-            for at in (low, high)
-        )
-
-    kept = [s for s in found if id(s) not in cracks and not outside(*s)]
-    return kept, (low, high)
+def _joints(bricks):
+    """Ends (x, z) of the joints of a wall along x, (n, 2, 2) [m]. What two pieces of a brick share is no joint."""
+    found = []
+    for joint in bricks.joints():
+        x, y, z = joint.normal
+        if bricks[joint.first].brick != bricks[joint.second].brick and abs(y) < 0.5:
+            points = np.array(joint.polygon)[:, [0, 2]]
+            order = np.argsort(points @ (z, -x))
+            found.append(points[order[[0, -1]]])
+    return np.reshape(found, (-1, 2, 2))
 
 
 def _squared(counts, overlap, scatter, draw):
@@ -214,20 +182,17 @@ def _irregular(counts, overlap, scatter, draw):
             rows.append(row)
     points = np.array(points)
     # mirrored points make the sides of the wall those of its stones
-    mirrored = [points]
-    for axis, most in ((0, columns), (1, courses)):
-        for at in (0, most):
-            other = points.copy()
-            other[:, axis] = 2 * at - other[:, axis]
-            mirrored.append(other)
-    diagram = Voronoi(np.concatenate(mirrored))
+    sides = [(axis, at) for axis in (0, 1) for at in (0, counts[axis])]
+    sites = [points]
+    for axis, at in sides:
+        sites.append(points.copy())
+        sites[-1][:, axis] = 2 * at - points[:, axis]
+    diagram = Voronoi(np.concatenate(sites))
     corners = np.clip(diagram.vertices, 0, counts)
-    for axis, most in ((0, columns), (1, courses)):
-        for at in (0, most):
-            corners[np.isclose(corners[:, axis], at, atol=1e-9), axis] = at
+    for axis, at in sides:
+        corners[np.isclose(corners[:, axis], at, atol=1e-9), axis] = at
     rings = [diagram.regions[diagram.point_region[n]] for n in range(len(rows))]
-    for row, ring in zip(rows, _withoutShort(rings, corners, counts)):
-        yield row, ring
+    return zip(rows, _withoutShort(rings, corners, counts))
 
 
 def _withoutShort(rings, corners, counts):
@@ -263,17 +228,7 @@ def _distinct(ring):
 
 def _convex(ring):
     """Whether a polygon is convex, and has an area."""
-    along = np.diff(np.concatenate([ring, ring[:1]]), axis=0)
-    along = along[np.any(along != 0, axis=1)]
+    ring = _distinct(ring)
+    along = ring - np.roll(ring, 1, axis=0)
     turns = np.cross(along, np.roll(along, -1, axis=0))
     return len(turns) > 2 and (np.all(turns > 1e-6) or np.all(turns < -1e-6))
-
-
-def _bricks(stones, scale, thickness, part):
-    """Blocks of stones that are given by the corners of their faces, in lengths and heights of a stone."""
-    blocks = []
-    for n, (course, ring) in enumerate(stones):
-        face = [(float(x) * scale[0], float(z) * scale[1]) for x, z in ring]
-        corners = [(x, y, z) for y in (0.0, float(thickness)) for x, z in face]
-        blocks.append(Block(tuple(corners), n, part, course))
-    return Bricks(blocks)

@@ -9,6 +9,7 @@ from typing import Annotated
 
 from ..common.arguments import number, validated, whole
 from .blocks import Block, Bricks, Length, refuse
+from .geometry import cosSin, prism
 
 #: No arch, vault or dome has more stones.
 MOST_STONES = 100_000
@@ -47,14 +48,11 @@ def Arch(
     :param skewback: width of two blocks, kind "block", part "skewback", on which the arch springs, behind the outer
         springings [m]. Their bottom is level with the inner springings, so that an arch of less than 180° can stand on
         level supports. An arch of 180° stands on two such blocks, as wide as the ring and so high. None: none
-    :raises ValueError: with all problems
     """
-    problems = []
-    radius = _circle(stones, span, radius, angle, problems)
-    refuse("arch", problems)
-    points = _ring(radius, thickness, stones, angle)
+    depth = float(depth)
+    points = _ring("arch", stones, span, radius, angle, thickness, [])
     voussoirs = [
-        Block(_prism(_quad(points, n), 0.0, float(depth)), n, part, n, "voussoir")
+        Block(prism(points[n] + points[n + 1], 0.0, depth), n, part, n, "voussoir")
         for n in range(stones)
     ]
     if skewback is not None:
@@ -65,7 +63,7 @@ def Arch(
             else:
                 outer = u + sign * skewback
                 section = [(x, z), (u, v), (outer, v), (outer, z)]
-            corners = _prism(section, 0.0, float(depth))
+            corners = prism(section, 0.0, depth)
             voussoirs.append(Block(corners, len(voussoirs), "skewback", -1, "block"))
     return Bricks(voussoirs)
 
@@ -93,21 +91,16 @@ def BarrelVault(
     :param span: clear span [m]; give this or ``radius`` of the inner surface
     :param angle: at the centre [°], up to 180
     :param staggered: whether odd courses are shifted by half a stone, with half stones at their ends
-    :raises ValueError: with all problems
     """
-    problems = []
-    radius = _circle(stones, span, radius, angle, problems)
-    _few(stones * rows, problems)
-    refuse("vault", problems)
-    points = _ring(radius, thickness, stones, angle)
+    many = _few(stones * rows)
+    points = _ring("vault", stones, span, radius, angle, thickness, many)
     blocks = []
     for course in range(stones):
-        halves = list(range(0, 2 * rows + 1, 2))
-        if staggered and course % 2:
-            halves = [0, *range(1, 2 * rows, 2), 2 * rows]
-        ends = [length * k / (2 * rows) for k in halves]
+        shifted = 1 if staggered and course % 2 else 2
+        ends = [0, *range(shifted, 2 * rows, 2), 2 * rows]
         for low, high in zip(ends, ends[1:]):
-            corners = _prism(_quad(points, course), low, high)
+            low, high = (length * k / (2 * rows) for k in (low, high))
+            corners = prism(points[course] + points[course + 1], low, high)
             blocks.append(Block(corners, len(blocks), part, course, "voussoir"))
     return Bricks(blocks)
 
@@ -138,43 +131,38 @@ def Dome(
     :param angle: at the centre, from springing to springing [°], up to 180: half a sphere, the default
     :param staggered: whether odd courses are turned by half a stone. Every stone is then two pieces of one brick, and
         the faces between these are crack surfaces of it
-    :raises ValueError: with all problems
     """
-    problems = []
+    problems = _few(2 * courses * stones)
     least = 2 if staggered else 3
     if stones < least:
         problems.append(f"stones {stones} must be at least {least}")
-    _few(2 * courses * stones, problems)
-    if oculus is not None:
-        most = radius * math.sin(math.radians(angle / 2))
-        if oculus >= most:
-            problems.append(
-                f"oculus {oculus:g} m must be smaller than the springing's radius, {most:g} m"
-            )
-    refuse("dome", problems)
     lowest = math.radians(angle / 2)
+    most = radius * math.sin(lowest)
+    if oculus is not None and oculus >= most:
+        problems.append(
+            f"oculus {oculus:g} m must be smaller than the springing's radius, {most:g} m"
+        )
+    refuse("dome", problems)
     # polar angles of the bed joints, from below
     highest = lowest / (2 * courses + 1)
     if oculus is not None:
         highest = math.asin(oculus / radius)
     polar = [lowest + (highest - lowest) * n / courses for n in range(courses + 1)]
     sectors = 2 * stones if staggered else stones
-    turns = [_unitVector(n, sectors) for n in range(sectors)]
+    turns = [cosSin(4 * n / sectors, 2 * math.pi * n / sectors) for n in range(sectors)]
     level = radius * math.cos(lowest)
 
     def corner(turn, polarAngle, r):
         out = r * math.sin(polarAngle)
-        foot = r == radius and polarAngle == lowest
-        up = 0.0 if foot else r * math.cos(polarAngle) - level
-        return out * turn[0], out * turn[1], up
+        return out * turn[0], out * turn[1], r * math.cos(polarAngle) - level
 
     radii = radius, radius + thickness
     blocks, brick = [], 0
     for course in range(courses):
-        beds = polar[course], polar[course + 1]
+        beds = polar[course : course + 2]
         shift = course % 2 if staggered else 0
         for k in range(sectors):
-            pair = turns[(k + shift) % sectors], turns[(k + 1 + shift) % sectors]
+            pair = [turns[(k + n + shift) % sectors] for n in (0, 1)]
             corners = tuple(corner(t, p, r) for t in pair for p in beds for r in radii)
             number = brick + (k // 2 if staggered else k)
             blocks.append(Block(corners, number, part, course, "voussoir"))
@@ -185,40 +173,29 @@ def Dome(
     return Bricks(blocks)
 
 
-# -- circles ----------------------------------------------------------------------------------------------------------
+def _few(count):
+    return [f"{count} stones are more than {MOST_STONES}"] * (count > MOST_STONES)
 
 
-def _few(count, problems):
-    if count > MOST_STONES:
-        problems.append(f"{count} stones are more than {MOST_STONES}")
-
-
-def _circle(stones, span, radius, angle, problems):
-    """The inner radius [m] of a ring, or None with sentences."""
+def _ring(what, stones, span, radius, angle, thickness, problems):
+    """Inner and outer point (x, z) of each joint of a ring, from left to right. Raises ValueError, also with given problems."""
+    half, quarters = math.radians(angle / 2), angle / 180
     if (span is None) == (radius is None):
-        problems.append("either span or radius [m] must be given")
-        return None
+        problems = [*problems, "either span or radius [m] must be given"]
+    elif half / stones > math.pi / 4:
+        problems = [
+            *problems,
+            f"{stones} voussoirs are too few for {angle:g}°: each may take 90° at most",
+        ]
+    refuse(what, problems)
     if radius is None:
-        radius = span / 2 / math.sin(math.radians(angle / 2))
-    if math.radians(angle / stones / 2) > math.pi / 4:
-        problems.append(
-            f"{stones} voussoirs are too few for {angle:g}°: each may take 90° at most"
-        )
-    return radius
-
-
-def _ring(radius, thickness, stones, angle):
-    """Inner and outer point (x, z) of each joint of a ring, from left to right."""
-    half = math.radians(angle / 2)
-    across, up = radius * math.sin(half), radius * math.cos(half)
-    if angle == 180:
-        across, up = radius, 0.0
+        radius = span / 2 / math.sin(half)
+    cos, sin = cosSin(quarters, half)
+    across, up = radius * sin, radius * cos
     points = []
     for n in range(stones + 1):
-        turn = half * (2 * n / stones - 1)
-        sin, cos = math.sin(turn), math.cos(turn)
-        if angle == 180 and n in (0, stones):  # level joints
-            sin, cos = math.copysign(1.0, turn), 0.0
+        share = 2 * n / stones - 1
+        cos, sin = cosSin(quarters * share, half * share)
         inner, outer = (
             (across + r * sin, r * cos - up) for r in (radius, radius + thickness)
         )
@@ -226,20 +203,3 @@ def _ring(radius, thickness, stones, angle):
             inner = (0.0 if n == 0 else 2 * across), 0.0
         points.append((inner, outer))
     return points
-
-
-def _quad(points, n):
-    return [*points[n], *points[n + 1]]
-
-
-def _prism(section, low, high):
-    """Corners of a section (x, z) that is stretched along y."""
-    return tuple((x, y, z) for y in (low, high) for x, z in section)
-
-
-def _unitVector(n, of):
-    """Direction n of so many equal ones around the axis; quarter turns are exact."""
-    if 4 * n % of == 0:
-        return [(1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0)][4 * n // of % 4]
-    turn = 2 * math.pi * n / of
-    return math.cos(turn), math.sin(turn)

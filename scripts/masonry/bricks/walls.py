@@ -7,16 +7,18 @@ meet face to face. All positions along a wall are multiples of a quarter unit, e
 
 from __future__ import annotations
 
+import functools
 import itertools
 import math
 from dataclasses import replace
 from typing import Annotated, Iterable, Sequence
 
 from ..common.arguments import isA, listOf, number, oneOf, validated, whole
+from ..basics import withoutCollector
 from .blocks import FARTHEST, Block, Bricks, Gap, Length, Point, Sides, refuse
 from .bonds import layout
 from .geometry import FLAT, boxCorners
-from .openings import WHOLE, LaidBrick, Opening, finished, numbered, opened
+from .openings import WHOLE, LaidBrick, Opening, blocksOf, opened
 
 #: A calcium-silicate unit of the walls in the paper (yade_plugin/law/README.md): length, thickness and height [m].
 UNIT = (0.220, 0.102, 0.081)
@@ -75,23 +77,20 @@ def Wall(
     :param collar: thickness of the joint between two wythes [m], which they share in halves. None: 0, and where headers
         go through, what these are longer than two thicknesses
     :param part: name of the part
-    :raises ValueError: with all problems
     """
     problems = []
-    unit = _laid("wall", unit, joint)
     through = bond in ("header", "english", "flemish")
     if through and wythes != 2:
         problems.append(
             f"{bond} bond has headers that go through the wall and needs wythes=2, got {wythes}"
         )
-    size = length, 4 if bond == "stack" else 2, 4
-    (quarters,), levels = _counted("wall", unit, height, courses, problems, wythes, length=size)  # fmt: skip
+    size = length, 1 if bond == "stack" else 0.5, 1
+    unit, (quarters,), levels = _counted("wall", unit, joint, height, courses, problems, wythes, length=size)  # fmt: skip
     thickness, deep = unit[1], unit[0] - joint  # of the wall, where headers go through
     if through:
-        if collar is None:
-            collar = max(deep - 2 * thickness, 0.0)
-        if abs(2 * thickness + collar - deep) > WHOLE * unit[0]:
-            fitting = deep - 2 * thickness
+        fitting = deep - 2 * thickness
+        collar = max(fitting, 0.0) if collar is None else collar
+        if abs(collar - fitting) > WHOLE * unit[0]:
             fits = f"collar {fitting:g} m" if fitting >= 0 else f"a thickness of {deep / 2:g} m"  # fmt: skip
             problems.append(
                 f"headers of {deep:g} m do not fit through two wythes of {thickness:g} m with a collar of {collar:g} m; {fits} fits"
@@ -104,8 +103,8 @@ def Wall(
     collar = collar or 0.0
     ys = [0.0] + [w * thickness + (w - 0.5) * collar for w in range(1, wythes)]
     ys.append(wythes * thickness + (wythes - 1) * collar)
-    if through:
-        ys[2] = deep if wythes == 2 and collar else ys[2]
+    if through and collar:
+        ys[2] = deep
     bricks = []
     for course in range(len(levels) - 1):
         for k0, k1, w0, w1 in layout(bond, wythes, quarters, course):
@@ -117,10 +116,9 @@ def Wall(
             elif halves and through and k1 - k0 == 2 and w1 - w0 == 2:
                 split = 1, ys[1]
             leaf = part if through or wythes == 1 else f"{part} leaf {w0 + 1}"
-            bricks.append(LaidBrick(low, high, course, leaf, split))
+            bricks.append(LaidBrick(low, high, course, leaf, split, len(bricks)))
     ends = (0.0, quarters * unit[0] / 4), (ys[0], ys[-1])
-    kept, lintels = opened(numbered(bricks), openings, unit, levels, *ends, part)
-    return finished(kept + lintels)
+    return _joined(opened(bricks, openings, unit, levels, *ends, part))
 
 
 @validated
@@ -141,22 +139,19 @@ def Corner(
     the return go through to the corner. The bricks beside the corner are cut or stretched by what the thickness of the
     unit differs from half its length, so that the bond goes on.
 
-    :param length: of the wall, measured outside [m]; whole half units, at least 1.5 units
-    :param length2: of the return, likewise
-    :param openings: of the wall; x is measured from the corner's outer edge
-    :param openings2: of the return; x is measured along it from the corner's outer edge
+    :param length: of the wall, measured outside [m]; whole half units, at least 1.5 units. ``length2``: of the return
+    :param openings: of the wall, ``openings2``: of the return; x is measured along each from the corner's outer edge
     :param height: as for :func:`Wall`, like ``unit``, ``courses``, ``halves`` and ``joint``
-    :raises ValueError: with all problems
     """
-    unit = _laid("corner", unit, joint)
-    sizes = dict(length=(length, 2, 6), length2=(length2, 2, 6))
-    (one, two), levels = _counted("corner", unit, height, courses, [], 1, **sizes)
-    ys = (0.0, unit[1])
-    walls = [
-        _leaf(one, levels, unit, ys, halves, "wall", openings, start=0),
-        _leaf(two, levels, unit, ys, halves, "return", openings2, start=1),
-    ]
-    return finished(_joined([walls[0], _along(walls[1])]))
+    sizes = dict(length=(length, 0.5, 1.5), length2=(length2, 0.5, 1.5))
+    unit, (one, two), levels = _counted(
+        "corner", unit, joint, height, courses, [], 1, **sizes
+    )
+    lay = functools.partial(_leaf, levels, unit, halves, ys=(0.0, unit[1]))
+    return _joined(
+        lay(one, "wall", openings, meets=(0, None)),
+        _along(lay(two, "return", openings2, meets=(1, None))),
+    )
 
 
 @validated
@@ -180,19 +175,18 @@ def Tee(
     :param length2: of the stem along y, measured from the outer face of the wall [m]; whole half units, at least 1.5 units
     :param at: distance of the stem's axis from the start of the wall [m]: half a unit more than whole units, so that it
         stands over the middle of a brick
-    :param openings: of the wall
-    :param openings2: of the stem; x is measured along it from the outer face of the wall
+    :param openings: of the wall, ``openings2``: of the stem; there x is measured from the outer face of the wall
     :param height: as for :func:`Wall`, like ``unit``, ``courses``, ``halves`` and ``joint``
-    :raises ValueError: with all problems
     """
-    problems = []
-    unit = _laid("tee", unit, joint)
-    if unit[1] > 0.75 * unit[0]:
+    problems, long = [], unit[0] + joint
+    if unit[1] > 0.75 * long:
         problems.append(
-            f"a junction needs a unit no thicker than 0.75 of its length, got {unit[1]:g} m and {unit[0]:g} m"
+            f"a junction needs a unit no thicker than 0.75 of its length, got {unit[1]:g} m and {long:g} m"
         )
-    sizes = dict(length=(length, 2, 8), length2=(length2, 2, 6))
-    (one, two), levels = _counted("tee", unit, height, courses, problems, 1, **sizes)
+    sizes = dict(length=(length, 0.5, 2), length2=(length2, 0.5, 1.5))
+    unit, (one, two), levels = _counted(
+        "tee", unit, joint, height, courses, problems, 1, **sizes
+    )
     middle, most = at / unit[0] - 0.5, one // 4 - 1
     nearest = round(middle)
     nearest = min(max(nearest, 1), most - 1) if most > 1 else nearest
@@ -201,14 +195,13 @@ def Tee(
             f"tee: at {at:g} m: the stem must stand over the middle of a brick of the even courses, with a brick on each "
             f"side; nearest: {(nearest + 0.5) * unit[0]:g} m"
         )
-    ys = (0.0, unit[1])
     axis = (4 * nearest + 2) * unit[0] / 4
     across = (axis - unit[1] / 2, axis + unit[1] / 2)
-    walls = [
-        _leaf(one, levels, unit, ys, halves, "wall", openings, crossed=across),
-        _leaf(two, levels, unit, across, halves, "stem", openings2, start=1),
-    ]
-    return finished(_joined([walls[0], _along(walls[1])]))
+    lay = functools.partial(_leaf, levels, unit, halves)
+    return _joined(
+        lay(one, "wall", openings, (0.0, unit[1]), crossed=across),
+        _along(lay(two, "stem", openings2, across, meets=(1, None))),
+    )
 
 
 @validated
@@ -230,34 +223,29 @@ def Room(
     The parts "front" and "back" run along x, "left" and "right" along y. Even courses of front and back, and odd ones of
     left and right, go through to the corners.
 
-    :param length: along x, measured outside [m]; whole units, at least 3
-    :param width: along y, likewise
+    :param length: along x, measured outside [m]; whole units, at least 3. ``width``: along y, likewise
     :param front: openings of this wall, and likewise ``right``, ``back`` and ``left``; x is measured along x or y from
         the outer edge of the corner nearer to the origin
     :param height: as for :func:`Wall`, like ``unit``, ``courses``, ``halves`` and ``joint``
-    :raises ValueError: with all problems
     """
-    problems = []
-    unit = _laid("room", unit, joint)
-    if unit[1] > unit[0]:
+    problems, long = [], unit[0] + joint
+    if unit[1] > long:
         problems.append(
-            f"a room needs a unit no thicker than its length, got {unit[1]:g} m and {unit[0]:g} m"
+            f"a room needs a unit no thicker than its length, got {unit[1]:g} m and {long:g} m"
         )
-    sizes = dict(length=(length, 4, 12), width=(width, 4, 12))
-    (one, two), levels = _counted("room", unit, height, courses, problems, 2, **sizes)
-    near = (0.0, unit[1])
-    ends = one * unit[0] / 4, two * unit[0] / 4
-    far = [(end - unit[1], end) for end in ends]
-    lay = lambda n, ys, part, openings, parity: _leaf(
-        n, levels, unit, ys, halves, part, openings, start=parity, end=parity
+    sizes = dict(length=(length, 1, 3), width=(width, 1, 3))
+    unit, (one, two), levels = _counted(
+        "room", unit, joint, height, courses, problems, 2, **sizes
     )
-    walls = [
-        lay(one, near, "front", front, 0),
-        _along(lay(two, far[0], "right", right, 1)),
-        lay(one, far[1], "back", back, 0),
-        _along(lay(two, near, "left", left, 1)),
-    ]
-    return finished(_joined(walls))
+    near = (0.0, unit[1])
+    far = [(end - unit[1], end) for end in (one * unit[0] / 4, two * unit[0] / 4)]
+    lay = functools.partial(_leaf, levels, unit, halves)
+    return _joined(
+        lay(one, "front", front, near, meets=(0, 0)),
+        _along(lay(two, "right", right, far[0], meets=(1, 1))),
+        lay(one, "back", back, far[1], meets=(0, 0)),
+        _along(lay(two, "left", left, near, meets=(1, 1))),
+    )
 
 
 @validated
@@ -270,9 +258,8 @@ def stack(
     :param size: length, thickness and height of a block [m]
     """
     wide, deep, high = size
-    boxes = (((0.0, 0.0, n * high), (wide, deep, (n + 1) * high)) for n in range(count))
-    corners = enumerate(boxCorners(*box) for box in boxes)
-    return Bricks(Block(own, n, part, n, "block") for n, own in corners)
+    box = lambda n: boxCorners((0.0, 0.0, n * high), (wide, deep, (n + 1) * high))
+    return Bricks(Block(box(n), n, part, n, "block") for n in range(count))
 
 
 @validated
@@ -288,59 +275,51 @@ def block(low: Point, high: Point, part: str = "block", kind: str = "block") -> 
 # -- checks of what a user gives --------------------------------------------------------------------------------------
 
 
-def _laid(name, unit, joint):
-    """The sides of a unit with its joints. Raises ValueError."""
-    if joint == 0:
-        return unit
+def _counted(name, unit, joint, height, courses, problems, times, **sizes):
+    """Sides of a unit with its joints, lengths in quarter units, and heights of bed joints. Raises ValueError, with problems
+    that are known before, too.
+
+    :param times: walls of all these lengths
+    :param sizes: of each length its value [m], the multiple of units that it must be, and how many units it needs
+    """
     if joint >= min(unit[0], unit[2]):
         raise ValueError(
             f"{name}: joint {joint:g} m must be below length and height of the unit {unit} m"
         )
-    return unit[0] + joint, unit[1], unit[2] + joint
-
-
-def _counted(name, unit, height, courses, problems, times, **sizes):
-    """Lengths in quarter units, and heights of bed joints. Raises ValueError, with problems that are known before, too.
-
-    :param times: walls of all these lengths
-    :param sizes: of each length its value [m], of how many quarter units it must be a multiple, and how many it needs
-    """
-    quarters = [_quarters(size[0], unit, what, *size[1:], problems) for what, size in sizes.items()]  # fmt: skip
+    unit = unit[0] + joint, unit[1], unit[2] + joint
+    units = [_multiple(what, size, unit[0], "units", *bounds, problems) for what, (size, *bounds) in sizes.items()]  # fmt: skip
     levels = _levels(height, courses, unit, problems)
     refuse(name, problems)
-    bricks = times * sum(quarters) / 4 * (len(levels) - 1)
+    bricks = times * sum(units) * (len(levels) - 1)
     if bricks > MOST_BRICKS:
         raise ValueError(
             f"{name}: {bricks:.3g} bricks are more than {MOST_BRICKS}: are all lengths in m?"
         )
-    return quarters, levels
+    return unit, [round(4 * n) for n in units], levels
 
 
-def _quarters(length, unit, what, step, least, problems):
-    """A length in quarter units, or None with a sentence.
+def _multiple(what, size, one, word, share, least, problems):
+    """How many units or courses a size is, or None with a sentence.
 
-    :param step: of which it must be a multiple; ``least``: smallest number of quarter units
+    :param one: size of a unit or a course [m]; ``word``: what it is
+    :param share: of one, whole numbers of which are needed, and of ones at ``least`` so many [-]
     """
-    units = length / unit[0]
-    steps = 4 * units / step
-    if not steps < 1e9:
-        problems.append(f"{what} {length:g} m is {units:.3g} units: is it in m?")
+    count = size / one / share
+    if not size / one < MOST_BRICKS:
+        problems.append(f"{what} {size:g} m is {size / one:.3g} {word}: is it in m?")
         return None
-    nearest = round(steps)
-    if abs(steps - nearest) > WHOLE * max(1, nearest) or nearest * step < least:
-        below = max(math.floor(steps + WHOLE), math.ceil(least / step))
-        above = max(math.ceil(steps - WHOLE), below)
-        choices = " or ".join(
-            f"{n * step * unit[0] / 4:.6g} m ({n * step / 4:g})"
-            for n in sorted({below, above})
-        )
-        need = "whole units" if step == 4 else "whole half units"
+    nearest = round(count)
+    if abs(count - nearest) > WHOLE * max(1, nearest) or nearest * share < least:
+        below = max(math.floor(count + WHOLE), math.ceil(least / share))
+        above = max(math.ceil(count - WHOLE), below)
+        choices = (n * share for n in sorted({below, above}))
+        choices = " or ".join(f"{n * one:.6g} m ({n:g})" for n in choices)
         problems.append(
-            f"{what} {length:g} m is {units:.6g} units of {unit[0]:g} m; it must be {need}, at least {least / 4:g}; "
-            f"nearest: {choices}"
+            f"{what} {size:g} m is {size / one:.6g} {word} of {one:g} m; it must be whole {'half ' * (share < 1)}{word}, "
+            f"at least {least:g}; nearest: {choices}"
         )
         return None
-    return nearest * step
+    return nearest * share
 
 
 def _levels(height, courses, unit, problems):
@@ -348,12 +327,12 @@ def _levels(height, courses, unit, problems):
     if courses is not None:
         # a block as flat as corners may lie off their face's plane has no volume
         least = FLAT * max(unit)
-        low = [n for n, h in enumerate(courses) if h <= least]
-        if low:
-            problems.append(
-                f"course {low[0]}: {courses[low[0]]:g} m is too flat, it must be above {least:g} m"
-            )
-            return None
+        for n, flat in enumerate(courses):
+            if flat <= least:
+                problems.append(
+                    f"course {n}: {flat:g} m is too flat, it must be above {least:g} m"
+                )
+                return None
         levels = [0.0, *itertools.accumulate(courses)]
         if height is not None and abs(height - levels[-1]) > WHOLE * levels[-1]:
             problems.append(
@@ -363,64 +342,37 @@ def _levels(height, courses, unit, problems):
     if height is None:
         problems.append("height [m] or courses must be given")
         return None
-    count = height / unit[2]
-    if not count < MOST_BRICKS:
-        problems.append(f"height {height:g} m is {count:.3g} courses: is it in m?")
-        return None
-    nearest = round(count)
-    if nearest < 1 or abs(count - nearest) > WHOLE * nearest:
-        below, above = max(math.floor(count), 1), max(math.ceil(count), 1)
-        counts = sorted({below, above})
-        nearest = " or ".join(f"{n * unit[2]:.6g} m ({n})" for n in counts)
-        problems.append(
-            f"height {height:g} m is {count:.6g} courses of {unit[2]:g} m; it must be whole courses; nearest: {nearest}"
-        )
-        return None
-    return [course * unit[2] for course in range(nearest + 1)]
+    count = _multiple("height", height, unit[2], "courses", 1, 1, problems)
+    return count and [course * unit[2] for course in range(count + 1)]
 
 
 # -- leaves that meet others ------------------------------------------------------------------------------------------
 
 
 def _leaf(
-    quarters,
-    levels,
-    unit,
-    ys,
-    halves,
-    part,
-    openings,
-    start=None,
-    end=None,
-    crossed=None,
+    levels, unit, halves, quarters, part, openings, ys, meets=(None, None), crossed=None
 ):
     """A leaf in running bond, as (bricks, lintels), along x between the two ``ys``.
 
-    :param start: remainder by 2 of the courses that go through to x = 0, where another wall meets this one; the other
-        courses start beside that wall. None: no wall there
-    :param end: likewise at the other end
+    :param meets: for both ends, where another wall may meet this one, the remainder by 2 of the courses that go through to
+        the end; the other courses begin beside that wall. None: no wall there
     :param crossed: from where to where another wall goes through the odd courses [m]
     """
-    q, thickness = unit[0] / 4, unit[1]
-    length = quarters * q
-    free = (
-        thickness if start is not None else 0.0,
-        length - thickness if end is not None else length,
-    )
+    joined = [end is not None for end in meets]
+    free = unit[1] * joined[0], quarters * unit[0] / 4 - unit[1] * joined[1]
     bricks = []
-    for course in range(len(levels) - 1):
-        shifted = course % 2 if start is None else course % 2 != start
-        joined = start is not None, end is not None
-        for x0, x1, split in _course(quarters, unit, shifted, free, joined):
-            pieces = [(x0, x1, split)]
+    for course, (z0, z1) in enumerate(zip(levels, levels[1:])):
+        shifted = course % 2 != (meets[0] or 0)
+        for x0, x1, at in _course(quarters, unit, shifted, free, joined):
+            pieces = [(x0, x1)]
             if crossed and course % 2 and x0 < crossed[1] and x1 > crossed[0]:
-                pieces = [(x0, crossed[0], None)] if x0 < crossed[0] else []
-                pieces += [(crossed[1], x1, None)] if x1 > crossed[1] else []
-            for a, b, at in pieces:
-                low, high = (a, ys[0], levels[course]), (b, ys[1], levels[course + 1])
-                cut = (0, at) if halves and at is not None else None
-                bricks.append(LaidBrick(low, high, course, part, cut))
-    return opened(numbered(bricks), openings, unit, levels, free, ys, part, crossed)
+                pieces, at = [(x0, crossed[0]), (crossed[1], x1)], None
+            split = (0, at) if halves and at is not None else None
+            for a, b in pieces:
+                box, n = ((a, ys[0], z0), (b, ys[1], z1)), len(bricks)
+                if a < b:
+                    bricks.append(LaidBrick(*box, course, part, split, n))
+    return opened(bricks, openings, unit, levels, free, ys, part, crossed)
 
 
 def _course(quarters, unit, shifted, free, joined):
@@ -431,15 +383,14 @@ def _course(quarters, unit, shifted, free, joined):
     :param joined: whether another wall meets this one there
     """
     q, whole, (joinedStart, joinedEnd) = unit[0] / 4, unit[0], joined
-    length = quarters * q
     if not shifted:
         for k0 in range(0, quarters, 4):
             k1 = min(k0 + 4, quarters)
             at = (k0 + 2) * q if k1 - k0 == 4 else None
             if at is not None and q < unit[1] < 3 * q:
                 # The end that stands in the other wall is split where that wall's face is.
-                at = unit[1] if joinedStart and k0 == 0 else at
-                at = length - unit[1] if joinedEnd and k1 == quarters else at
+                at = free[0] if joinedStart and k0 == 0 else at
+                at = free[1] if joinedEnd and k1 == quarters else at
             yield k0 * q, k1 * q, at
         return
     low, high = free
@@ -466,13 +417,13 @@ def _along(leaf):
     return tuple(list(map(turn, bricks)) for bricks in leaf)
 
 
-def _joined(leaves):
-    """Bricks of several leaves, course by course, then their lintels, with numbers of their own."""
-    found, numbers = [], {}
-    bricks = [(n, b) for n, leaf in enumerate(leaves) for b in leaf[0]]
-    bricks.sort(key=lambda item: item[1].course)
-    lintels = [(n, b) for n, leaf in enumerate(leaves) for b in leaf[1]]
-    for n, brick in bricks + lintels:
-        number = numbers.setdefault((n, brick.number), len(numbers))
-        found.append(replace(brick, number=number))
-    return found
+@withoutCollector()
+def _joined(*leaves):
+    """Blocks of the bricks of some leaves, course by course, then of their lintels. Bricks are numbered in this order."""
+    bricks, lintels = [], []
+    for n, (laid, over) in enumerate(leaves):
+        own = lambda brick: replace(brick, number=brick.number * len(leaves) + n)
+        bricks += map(own, laid)
+        lintels += map(own, over)
+    bricks.sort(key=lambda brick: brick.course)
+    return Bricks(Bricks(blocksOf(bricks + lintels))._renumbered(0))

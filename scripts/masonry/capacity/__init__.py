@@ -35,36 +35,14 @@ less. Torsion, walls that fall out of their plane, and the change of the stiffne
 """
 
 from ..read.bilinear import Bilinear, Pushover, bilinear, drifts, pushover
-from ..read.quantities import Number
 from ..read.bilinear import ofRun as bilinearOf
+from ..read.quantities import Number
 from .n2 import Demand, Equivalent, demand, equivalent, iterated, ofMasses, ofRun
 from .domains import BoundPoint, Domain, RunPoint, domain, runPoint
 from .report import assess, assessDomain
 from .spectra import Spectrum, elastic, readSpectrum
 
-__all__ = [
-    "Bilinear",
-    "BoundPoint",
-    "Demand",
-    "Domain",
-    "Equivalent",
-    "Number",
-    "Pushover",
-    "RunPoint",
-    "Spectrum",
-    "assess",
-    "assessDomain",
-    "bilinear",
-    "bilinearOf",
-    "demand",
-    "domain",
-    "drifts",
-    "elastic",
-    "equivalent",
-    "iterated",
-    "ofMasses",
-    "ofRun",
-    "pushover",
-    "readSpectrum",
-    "runPoint",
-]
+__all__ = """
+    Bilinear BoundPoint Demand Domain Equivalent Number Pushover RunPoint Spectrum assess assessDomain bilinear bilinearOf demand
+    domain drifts elastic equivalent iterated ofMasses ofRun pushover readSpectrum runPoint
+""".split()

@@ -1,27 +1,24 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Bilinear curve, capacity and demand of runs: ``/usr/bin/python3 -m masonry.capacity results/WALL ...``. This program needs no YADE."""
-
-from __future__ import annotations
+"""Bilinear curve, capacity and demand of runs: ``/usr/bin/python3 -m masonry.capacity results/WALL ...``."""
 
 import argparse
 import re
 import sys
-from typing import Sequence
 
 from ..common import memory
 from ..basics import Refused, say
 from ..read.bilinear import RULES, lines
+from ..read.files import program
 from ..read.quantities import Number
 from . import n2
-from .domains import Domain
 from .report import CAPACITY, DOMAIN, assess, assessDomain
-from .spectra import PARAMETERS, UNITS, Spectrum, elastic, readSpectrum
+from .spectra import PARAMETERS, UNITS, elastic, readSpectrum
 
 #: Options that belong to the spectrum of EN 1998-1, and to one from a file.
 OF_CODE, OF_FILE = ("type", "ground", "ag"), ("unit", "corner")
 
 
-def parser() -> argparse.ArgumentParser:
+def parser():
     """The options of the program."""
     p = argparse.ArgumentParser(
         prog="python3 -m masonry.capacity",
@@ -57,7 +54,7 @@ def parser() -> argparse.ArgumentParser:
     return p
 
 
-def numbers(text: str, option: str) -> list[float]:
+def numbers(text, option):
     """The numbers of an option, apart by commas. Raises Refused."""
     try:
         return [float(one) for one in text.split(",")]
@@ -65,7 +62,7 @@ def numbers(text: str, option: str) -> list[float]:
         raise Refused(f"{option} {text!r} must be numbers with commas between them, as 20e3,15e3") from None  # fmt: skip
 
 
-def systemOf(args: argparse.Namespace) -> n2.Equivalent | None:
+def systemOf(args):
     """The equivalent system of the options, or None if they do not give one. Raises Refused."""
     pairs = ("mass", "gamma"), ("masses", "shape")
     given = [[name for name in pair if getattr(args, name) is not None] for pair in pairs]  # fmt: skip
@@ -82,7 +79,7 @@ def systemOf(args: argparse.Namespace) -> n2.Equivalent | None:
     return None
 
 
-def spectrumOf(args: argparse.Namespace) -> Spectrum | None:
+def spectrumOf(args):
     """The spectrum of the options, or None if they do not give one. Raises Refused."""
     code = [name for name in OF_CODE if getattr(args, name) is not None]
     if args.spectrum is not None:
@@ -119,7 +116,7 @@ def _show(folder, found, out):
     say(f"written: {', '.join(CAPACITY)} in {out or folder}")
 
 
-def _showDomain(folder, found: Domain, out):
+def _showDomain(folder, found, out):
     say(f"{'normal kN':>12}{'at most kN':>14}{'without dilatancy kN':>24}  exact")
     for one in found.bounds:
         other = "-" if one.withoutDilatancy is None else f"{one.withoutDilatancy:.4g}"
@@ -137,35 +134,28 @@ def _showDomain(folder, found: Domain, out):
     say(f"written: {', '.join(DOMAIN)} in {out or folder}")
 
 
-def main(words: Sequence[str] | None = None) -> int:
+@program
+def main(words=None):
     """The program. Returns its exit status."""
-    p = parser()
-    args = p.parse_args(words)
-    try:
-        memory.reserve()
-        if args.domain is not None:
-            _showDomain(args.domain, assessDomain(args.domain, args.result, args.out), args.out)  # fmt: skip
-            return 0
-        if not args.result:
-            raise Refused("name one folder of results at least, for example results/wall_comp4")  # fmt: skip
-        if args.out and len(args.result) > 1:
-            raise Refused(f"--out {args.out}: it is for one folder, not {len(args.result)}")  # fmt: skip
-        spectrum, system, status = spectrumOf(args), systemOf(args), 0
-        for folder in args.result:
-            try:
-                found = assess(folder, spectrum, system, args.rule, args.mechanism, args.limited, args.iterate, args.height, args.out, args.column)  # fmt: skip
-            except Refused as problem:
-                say(problem, sys.stderr)
-                status = 2
-            else:
-                _show(folder, found, args.out)
-        return status
-    except Refused as problem:
-        say(problem, sys.stderr)
-        return 2
-    except MemoryError:
-        say(memory.FULL, sys.stderr)
-        return 1
+    args = parser().parse_args(words)
+    memory.reserve()
+    if args.domain is not None:
+        _showDomain(args.domain, assessDomain(args.domain, args.result, args.out), args.out)  # fmt: skip
+        return 0
+    if not args.result:
+        raise Refused("name one folder of results at least, for example results/wall_comp4")  # fmt: skip
+    if args.out and len(args.result) > 1:
+        raise Refused(f"--out {args.out}: it is for one folder, not {len(args.result)}")  # fmt: skip
+    spectrum, system, status = spectrumOf(args), systemOf(args), 0
+    for folder in args.result:
+        try:
+            found = assess(folder, spectrum, system, args.rule, args.mechanism, args.limited, args.iterate, args.height, args.out, args.column)  # fmt: skip
+        except Refused as problem:
+            say(problem, sys.stderr)
+            status = 2
+        else:
+            _show(folder, found, args.out)
+    return status
 
 
 if __name__ == "__main__":

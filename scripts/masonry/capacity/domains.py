@@ -3,10 +3,8 @@
 
 A scene says ``scene.domain(top, normal=[50, 100, 200])`` after its presses are described; with ``--preset bound`` that takes no run.
 Limit analysis of the scene is then in run.json, for each of these normal forces, and :func:`domain` reads it, with the peaks of other
-runs beside it. This module needs no YADE.
+runs beside it.
 """
-
-from __future__ import annotations
 
 import math
 import os
@@ -20,7 +18,8 @@ from ..basics import GRAVITY, Refused
 from ..read.bilinear import pushover
 from ..read.files import filesOf, readRun
 
-
+#: Entries of run.json in which a run and a domain of the same pier agree, and what they are.
+ALIKE = {"units": "bricks", "joint_count": "joints", "joints": "properties of joints"}
 #: Names in a JSON file of attributes that have a unit.
 ENTRIES = {
     "normal": "normal_kN",
@@ -76,12 +75,8 @@ class Domain:
 
     def entries(self) -> dict[str, Any]:
         """The domain as an entry of a JSON file, with units in the names."""
-        named = lambda one: {ENTRIES.get(n, n): v for n, v in asdict(one).items()}
-        return {
-            "bounds": [*map(named, self.bounds)],
-            "runs": [*map(named, self.runs)],
-            "notes": self.notes,
-        }
+        named = lambda ones: [{ENTRIES.get(n, n): v for n, v in asdict(one).items()} for one in ones]  # fmt: skip
+        return dict(bounds=named(self.bounds), runs=named(self.runs), notes=self.notes)
 
 
 @validated
@@ -98,8 +93,7 @@ def runPoint(directory: FilePath) -> RunPoint:
     at = push.data.peak()
     normal, source = _normal(push, at)
     name = os.path.basename(os.path.normpath(push.directory))
-    peak = float(push.force[at]), float(push.displacement[at])
-    return RunPoint(name, normal, *peak, source)
+    return RunPoint(name, normal, float(push.force[at]), float(push.displacement[at]), source)  # fmt: skip
 
 
 def _normal(push, at):
@@ -119,9 +113,8 @@ def _normal(push, at):
             )
         area = wall["length_m"] * wall["thickness_m"]
         weight = material["density_kg_per_m3"] * GRAVITY * area * wall["height_m"]
-        pressed = wall["precompression_Pa"] * area
         source = "precompression and weight in run.json, with a top that moves freely up and down"
-        return 1e-3 * (pressed + weight), source
+        return 1e-3 * (wall["precompression_Pa"] * area + weight), source
 
 
 @validated
@@ -155,16 +148,8 @@ def domain(
     points = []
     for one in runs:
         points.append(runPoint(one))
-        unlike = _unlike(run, readRun(one))
+        other = readRun(one)
+        unlike = [what for key, what in ALIKE.items() if key in run and key in other and run[key] != other[key]]  # fmt: skip
         if unlike:
             notes.append(f"{points[-1].name}: its {' and its '.join(unlike)} are not those of the domain: is it the same pier?")  # fmt: skip
     return Domain(sorted(bounds, key=lambda one: one.normal), points, notes)
-
-
-#: Entries of run.json in which a run and a domain of the same pier agree, and what they are.
-ALIKE = {"units": "bricks", "joint_count": "joints", "joints": "properties of joints"}
-
-
-def _unlike(one, other):
-    """What differs in two runs, as words."""
-    return [what for key, what in ALIKE.items() if key in one and key in other and one[key] != other[key]]  # fmt: skip

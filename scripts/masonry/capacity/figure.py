@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Pictures of capacity and demand, and of an N-V domain, by matplotlib without a window. This module needs no YADE."""
-
-from __future__ import annotations
+"""Pictures of capacity and demand, and of an N-V domain, by matplotlib without a window."""
 
 import math
 
@@ -17,10 +15,10 @@ DPI = 110
 CURVE, IDEAL, SPECTRUM, TARGET = "0.45", "tab:blue", "tab:green", "tab:red"
 
 
-def _corners(curve, one=1.0):
-    """Displacements and forces of a bilinear curve, over a factor."""
-    moved = np.array([0, curve.yieldDisplacement, curve.ultimateDisplacement]) / one
-    return moved, np.array([0, curve.yieldForce, curve.yieldForce]) / one
+def _corners(curve):
+    """Displacements and forces of a bilinear curve."""
+    moved = [0, curve.yieldDisplacement, curve.ultimateDisplacement]
+    return np.array(moved), np.array([0, curve.yieldForce, curve.yieldForce])
 
 
 def forces(push: Pushover, curve: Bilinear, path: FilePath) -> None:
@@ -36,9 +34,8 @@ def forces(push: Pushover, curve: Bilinear, path: FilePath) -> None:
         axes.plot(*_corners(curve), color=IDEAL, lw=1.8, label=label)
         axes.set_ylim(bottom=min(0, 1.1 * float(push.force.min())))
         axes.set_title(str(push.run.get("title", "")))
-        drawing.finish(
-            axes, "displacement [mm]", "force carried at both ends [kN]", fontsize=9
-        )
+        labels = "displacement [mm]", "force carried at both ends [kN]"
+        drawing.finish(axes, *labels, fontsize=9)
 
 
 def capacity(push: Pushover, found: Demand, path: FilePath) -> None:

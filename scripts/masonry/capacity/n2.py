@@ -1,10 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The target displacement of a structure by the N2 method, EN 1998-1:2004, annex B. This module needs no YADE.
+"""The target displacement of a structure by the N2 method, EN 1998-1:2004, annex B.
 
 Equations have the numbers of the annex. Units are those of curve.csv: mm, kN, and accelerations in m/s².
 """
-
-from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
@@ -134,12 +132,12 @@ class Demand:
 
     def numbers(self) -> list[Number]:
         """All numbers, each with its unit, its meaning and its source."""
-        b = lambda *equations: f"{ANNEX}, equation {' and '.join(f'(B.{n})' for n in equations)}"  # fmt: skip
+        b = lambda equation: f"{ANNEX}, equation (B.{equation})"
         curve, gamma = self.curve, self.system.gamma
         end = "" if curve.reached else "the push was not taken to its ultimate displacement: the end of the curve stands for it"  # fmt: skip
         return [
-            Number("equivalent_mass_kg", self.system.mass, "kg", "Mass m* of the equivalent system.", f"{self.system.source}"),
-            Number("participation_factor", gamma, "-", "Factor by which displacements and forces of the structure are those of the equivalent system.", f"{self.system.source}"),
+            Number("equivalent_mass_kg", self.system.mass, "kg", "Mass m* of the equivalent system.", self.system.source),
+            Number("participation_factor", gamma, "-", "Factor by which displacements and forces of the structure are those of the equivalent system.", self.system.source),
             Number("equivalent_yield_force_kN", curve.yieldForce / gamma, "kN", "Yield force Fy* of the equivalent system.", b(4)),
             Number("equivalent_yield_displacement_mm", curve.yieldDisplacement / gamma, "mm", "Yield displacement dy* of the equivalent system.", b(5)),
             Number("equivalent_period_s", self.period, "s", "Period T* of the equivalent system.", b(7)),
@@ -184,7 +182,7 @@ def demand(
     elastic = spectrum.displacement(period)
     ratio, corner = needed / strength, spectrum.corner
     short = period < corner
-    target, branch, notes = elastic, "B.12" if not short else "B.9", []
+    target, branch, notes = elastic, "B.9" if short else "B.12", []
     if short and ratio > 1:
         branch = "B.10"
         target = max(elastic, elastic / ratio * (1 + (ratio - 1) * corner / period))
@@ -199,9 +197,7 @@ def demand(
     ultimate = curve.ultimateDisplacement / gamma
     scale = _scale(ultimate / yields, corner / period if short else 1.0, limited) / ratio  # fmt: skip
     moved = gamma * target
-    holds: bool | None = curve.ultimateDisplacement >= moved
-    if not holds and not curve.reached:
-        holds = None
+    enough = curve.ultimateDisplacement >= moved
     return Demand(
         curve=curve,
         system=system,
@@ -216,7 +212,7 @@ def demand(
         reduction=ratio,
         branch=branch,
         scale=scale,
-        holds=holds,
+        holds=enough or (False if curve.reached else None),
         notes=(*notes, *_remarks(curve, moved, ratio)),
     )
 

@@ -1,12 +1,10 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Capacity and demand of a run, as files in its folder: capacity.json and capacity.png, or domain.json and domain.png. This
-module needs no YADE."""
-
-from __future__ import annotations
+"""Capacity and demand of a run, as files in its folder: capacity.json and capacity.png, or domain.json and domain.png."""
 
 import json
 import os
 import sys
+from functools import partial
 from typing import Annotated, Any, Sequence
 
 from ..common import folders
@@ -63,16 +61,14 @@ def assess(
             "iterate: it is of the rule en1998 with a spectrum, and finds the mechanism itself: leave rule= and mechanism= away"
         )
     push = bilinear.pushover(directory, column)
-    needs = None
     if spectrum:
-        known = system or n2.ofRun(push.run, push.directory)
-    if spectrum and iterate:
-        needs = n2.iterated(push, known, spectrum, limited)
+        system = system or n2.ofRun(push.run, push.directory)
+    if iterate:
+        needs = n2.iterated(push, system, spectrum, limited)
         curve = needs.curve
     else:
         curve = bilinear.ofRun(push, rule, mechanism=mechanism)
-    if spectrum and not needs:
-        needs = n2.demand(curve, known, spectrum, limited)
+        needs = n2.demand(curve, system, spectrum, limited) if spectrum else None
     numbers, notes = curve.numbers(), list(curve.notes)
     try:
         numbers += bilinear.drifts(push, height)
@@ -84,10 +80,8 @@ def assess(
         notes += needs.notes
         found.update(spectrum=needs.spectrum.name, holds=needs.holds, verdict=needs.verdict(), assumed=ASSUMED)  # fmt: skip
     found.update(numbers=[one.entry() for one in numbers], notes=notes)
-    folder = out or directory
-    data, picture = (os.path.join(folder, name) for name in CAPACITY)
-    draw = lambda: figure.capacity(push, needs, picture) if needs else figure.forces(push, curve, picture)  # fmt: skip
-    _write(folder, data, found, draw)
+    draw = partial(figure.capacity, push, needs) if needs else partial(figure.forces, push, curve)  # fmt: skip
+    _write(out or directory, CAPACITY, found, draw)
     return found
 
 
@@ -104,14 +98,13 @@ def assessDomain(
     :raises Refused: as in :func:`masonry.capacity.domain`; nothing is written then
     """
     found = domain(directory, runs)
-    folder = out or directory
-    data, picture = (os.path.join(folder, name) for name in DOMAIN)
-    _write(folder, data, found.entries(), lambda: figure.domain(found, picture))
+    _write(out or directory, DOMAIN, found.entries(), partial(figure.domain, found))
     return found
 
 
-def _write(folder, path, entries, draw):
+def _write(folder, names, entries, draw):
     """Write a JSON file and a picture. Raises Refused if the disk refuses."""
+    path, picture = (os.path.join(folder, name) for name in names)
     try:
         os.makedirs(folder, exist_ok=True)
         folders.check(folder)
@@ -119,7 +112,7 @@ def _write(folder, path, entries, draw):
             json.dump(entries, file, indent=2, allow_nan=False)
             file.write("\n")
         try:
-            draw()
+            draw(picture)
         except Missing as missing:
             say(f"the picture is not drawn: {missing}", sys.stderr)
     except OSError as error:

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Elastic response spectra: those of EN 1998-1:2004, and any that a file has. This module needs no YADE."""
-
-from __future__ import annotations
+"""Elastic response spectra: those of EN 1998-1:2004, and any that a file has."""
 
 import math
 import re
@@ -91,10 +89,9 @@ def elastic(
     :param parameters: S [-], TB, TC and TD [s] of a National Annex; None: the recommended values of tables 3.2 and 3.3
     :raises Refused: with what is wrong
     """
-    factor = UNITS[unit]
     soil, tb, tc, td = PARAMETERS[type][ground] if parameters is None else _four(parameters)  # fmt: skip
     correction = max(math.sqrt(10 / (5 + damping)), LEAST_CORRECTION)
-    peak = ag * factor * importance
+    peak = ag * UNITS[unit] * importance
     if peak > 3 * GRAVITY:
         raise Refused(
             f"elastic: a ground acceleration of {peak:.4g} m/s² is more than 3 g: is ag {ag:g} {unit} in another unit?"
@@ -153,7 +150,6 @@ def readSpectrum(
     :param corner: TC, the upper limit of the periods with constant acceleration, which the target displacement needs [s]
     :raises Refused: if the file cannot be read, is no such table, or if the corner is missing
     """
-    factor = UNITS[unit]
     rows: list[list[float]] = []
     names = False
     text = readText(path).removeprefix("\ufeff")  # which some editors write
@@ -177,8 +173,7 @@ def readSpectrum(
         rows.append(row)
     if len(rows) < 2:
         raise Refused(f"{path}: there must be two rows at least")
-    periods, accelerations = np.array(rows).T
-    accelerations = factor * accelerations
+    periods, accelerations = np.array(rows).T * [[1], [UNITS[unit]]]
     if not 0 < accelerations.max() < 100 * GRAVITY:
         raise Refused(
             f"{path}: the largest acceleration is {accelerations.max():.4g} m/s², which must be above 0 and below 100 g: is the unit "
@@ -193,7 +188,7 @@ def readSpectrum(
             f"{path}: the corner, {corner:g} s, must be within the periods, {periods[0]:g} to {periods[-1]:g} s"
         )
     return Spectrum(
-        name=f"{path}",
+        name=str(path),
         source=f"the file {path}, accelerations in {unit}",
         periods=periods,
         accelerations=accelerations,

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What all parts of the package share: checks of arguments, and what they need of the machine.
+"""What all parts of the package share: checks of arguments, and what they need of the machine. None of it needs YADE.
 
 - :mod:`masonry.common.folders`: what is written in folders that others may have packed, and how
 - :mod:`masonry.common.background`: tasks in other processes, and programs, several at a time

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What a script says to a command is checked here: every argument, before the command does anything. This module needs no YADE.
+"""What a script says to a command is checked here: every argument, before the command does anything.
 
 Type hints say what a parameter takes::
 
@@ -16,6 +16,7 @@ in one error, and an argument that is not known is answered with the nearest nam
 
 from __future__ import annotations
 
+import contextlib
 import difflib
 import functools
 import inspect
@@ -72,14 +73,17 @@ def plain(value):
     if type(value) in (int, float) and abs(value) < 2**1000:
         return value
     try:
-        return float(value) if not isinstance(value, Integral) else _whole(value)
+        found = float(value)
     except OverflowError:
         return math.inf
+    return int(value) if isinstance(value, Integral) else found
 
 
-def _whole(value):
-    float(value)
-    return int(value)
+def must(be, fine, value):
+    """A value that is fine; of another one ValueError says what it must be."""
+    if not fine:
+        raise ValueError(f"{shown(value)} must be {be}")
+    return value
 
 
 def number(unit="", low=-math.inf, high=math.inf, above=False, below=False):
@@ -97,15 +101,12 @@ def number(unit="", low=-math.inf, high=math.inf, above=False, below=False):
         bounds = f"from {low:g} to {high:g}"
 
     def take(value, first=None):
-        if not isNumber(value):
-            raise ValueError(f"{shown(value)} must be a number{bounds and ' '}{bounds}{of}")  # fmt: skip
+        must(f"a number{bounds and ' '}{bounds}{of}", isNumber(value), value)
         found = plain(value)
         if not math.isfinite(found):
             raise ValueError(f"{shown(value)}{of} must be a finite number{bounds and ' '}{bounds}")  # fmt: skip
-        fine = (found > low if above else found >= low) and (
-            found < high if below else found <= high
-        )
-        if not fine:
+        outside = above and found == low or below and found == high
+        if outside or not low <= found <= high:
             raise ValueError(f"{shown(value)}{of} must be {bounds}")
         return found
 
@@ -119,9 +120,8 @@ def whole(low=0, high=None):
 
     def take(value, first=None):
         fine = isinstance(value, Integral) and not isinstance(value, bool)
-        if not fine or value < low or high is not None and value > high:
-            raise ValueError(f"{shown(value)} must be a whole number {bounds}")
-        return int(value)
+        fine = fine and low <= value and (high is None or value <= high)
+        return int(must(f"a whole number {bounds}", fine, value))
 
     vars(take).update(of=int)
     return take
@@ -129,20 +129,15 @@ def whole(low=0, high=None):
 
 def flag(value, first=None):
     """The kind of True and False."""
-    if not isinstance(value, (bool, np.bool_)):
-        raise ValueError(f"{shown(value)} must be True or False")
-    return bool(value)
+    return bool(must("True or False", isinstance(value, (bool, np.bool_)), value))
 
 
 def text(value, first=None):
     """The kind of a text that can be printed and written to a file."""
-    if not (isinstance(value, str) and value.strip()):
-        raise ValueError(f"{shown(value)} must be a text")
-    if len(value) > LONGEST_TEXT or not value.replace("\n", " ").isprintable():
-        raise ValueError(
-            f"{shown(value)} must be a text of characters that can be printed, at most {LONGEST_TEXT} of them"
-        )
-    return value
+    must("a text", isinstance(value, str) and value.strip(), value)
+    fine = len(value) <= LONGEST_TEXT and value.replace("\n", " ").isprintable()
+    be = f"a text of characters that can be printed, at most {LONGEST_TEXT} of them"
+    return must(be, fine, value)
 
 
 def label(value, first=None):
@@ -153,11 +148,8 @@ def label(value, first=None):
 def name(value, first=None):
     """The kind of a name that begins names of columns."""
     fine = isinstance(value, str) and value.isidentifier()
-    if not fine or len(value) > LONGEST_NAME:
-        raise ValueError(
-            f"{shown(value)} must be a name of letters, digits and underscores, at most {LONGEST_NAME} of them"
-        )
-    return value
+    be = f"a name of letters, digits and underscores, at most {LONGEST_NAME} of them"
+    return must(be, fine and len(value) <= LONGEST_NAME, value)
 
 
 def names(value, first=None):
@@ -167,33 +159,26 @@ def names(value, first=None):
 
 def path(value, first=None):
     """The kind of a name of a file."""
-    try:
+    with contextlib.suppress(TypeError, UnicodeEncodeError):
         found = os.fspath(value)
-        fine = isinstance(found, str) and found and "\0" not in found
-        fine = fine and len(os.fsencode(found)) < 4096
-    except (TypeError, UnicodeEncodeError):
-        fine = False
-    if not fine:
-        raise ValueError(f"{shown(value)} must be the name of a file")
-    return found
+        size = len(os.fsencode(found)) if isinstance(found, str) else 0
+        if 0 < size < 4096 and "\0" not in found:
+            return found
+    return must("the name of a file", False, value)
 
 
 def function(value, first=None):
     """The kind of a function."""
-    if not callable(value):
-        raise ValueError(f"{shown(value)} must be a function")
-    return value
+    return must("a function", callable(value), value)
 
 
 def oneOf(*choices):
     """The kind of one of some texts."""
 
     def take(value, first=None):
-        if not (isinstance(value, str) and value in choices):
-            close = nearest(value, choices) if isinstance(value, str) else ""
-            named = ", ".join(choices)
-            raise ValueError(f"{shown(value)} must be one of {named}{close}")
-        return value
+        fine = isinstance(value, str) and value in choices
+        close = nearest(value, choices) if isinstance(value, str) and not fine else ""
+        return must(f"one of {', '.join(choices)}{close}", fine, value)
 
     vars(take).update(choices=choices)
     return take
@@ -208,20 +193,15 @@ def isA(cls, what=None):
     classes = cls if isinstance(cls, tuple) else (cls,)
     what = what or " or ".join(one.__name__ for one in classes)
 
-    def take(value, first=None):
-        if not isinstance(value, cls):
-            raise ValueError(f"{shown(value)} must be a {what}")
-        return value
-
-    return take
+    return lambda value, first=None: must(f"a {what}", isinstance(value, cls), value)
 
 
 def byName(kind, *needed):
     """The kind of a dict from names to values of a kind, some of which are needed."""
 
     def take(value, first=None):
-        if not isinstance(value, dict) or not all(isinstance(n, str) for n in value):
-            raise ValueError(f"{shown(value)} must be a dict by name")
+        fine = isinstance(value, dict) and all(isinstance(n, str) for n in value)
+        must("a dict by name", fine, value)
         missing = [n for n in needed if n not in value]
         if missing:
             raise ValueError(f"{shown(value)} must have {', '.join(map(repr, missing))}")  # fmt: skip
@@ -245,13 +225,10 @@ def axes(letters, none=False):
     """
 
     def take(value, first=None):
-        listed = isinstance(value, (list, tuple, set, frozenset))
-        fine = isinstance(value, str) or (
-            listed and all(isinstance(a, str) and len(a) == 1 for a in value)
-        )
-        fine = fine and len(set(value)) == len(value) and (none or value)
-        if not fine or set(value) - set(letters):
-            raise ValueError(f"{shown(value)} must be some of the axes {letters!r}, each once")  # fmt: skip
+        fine = isinstance(value, (str, list, tuple, set, frozenset))
+        fine = fine and all(isinstance(a, str) and a in [*letters] for a in value)
+        fine = fine and len({*value}) == len(value) and (none or value)
+        must(f"some of the axes {letters!r}, each once", fine, value)
         ordered = sorted(value) if isinstance(value, (set, frozenset)) else value
         return "".join(ordered)
 
@@ -287,8 +264,8 @@ def vector(unit="", most=1e100):
         found = items(value)
         fine = found is not None and len(found) == 3 and all(map(isNumber, found))
         fine = fine and all(math.isfinite(plain(v)) and abs(v) <= most for v in found)
-        if not fine or not math.isfinite(math.hypot(*map(float, found))):
-            raise ValueError(f"{shown(value)} must be three finite numbers{bound}")
+        fine = fine and math.isfinite(math.hypot(*map(float, found)))
+        must(f"three finite numbers{bound}", fine, value)
         return value if all(type(v) in (int, float) for v in found) else tuple(map(plain, found))  # fmt: skip
 
     return take
@@ -296,13 +273,11 @@ def vector(unit="", most=1e100):
 
 def series(value, first=None):
     """The kind of a list of numbers in one dimension, as an array."""
-    try:
+    with contextlib.suppress(TypeError, ValueError, OverflowError):
         found = np.asarray(value, float)
-    except (TypeError, ValueError, OverflowError):
-        found = None
-    if found is None or found.ndim != 1:
-        raise ValueError(f"{shown(value)} must be a list of numbers")
-    return found
+        if found.ndim == 1:
+            return found
+    return must("a list of numbers", False, value)
 
 
 def direction(level=False):
@@ -314,11 +289,9 @@ def direction(level=False):
 
     def take(value, first=None):
         value = three(value)
-        if not SHORTEST <= math.hypot(*value) <= FARTHEST:
-            raise ValueError(f"{shown(value)} must be a direction, whose length is not zero")  # fmt: skip
-        if level and value[2]:
-            raise ValueError(f"{shown(value)} must be a horizontal direction")
-        return value
+        fine = SHORTEST <= math.hypot(*value) <= FARTHEST
+        must("a direction, whose length is not zero", fine, value)
+        return must("a horizontal direction", not (level and value[2]), value)
 
     return take
 
@@ -328,18 +301,16 @@ def listOf(kind, least=1):
 
     def take(value, first=None):
         found = items(value)
-        if found is None or len(found) < least:
-            raise ValueError(f"{shown(value)} must be a list with at least {least} value{'s' * (least > 1)}")  # fmt: skip
-        return [_inList(kind, n, one, first) for n, one in enumerate(found)]
+        be = f"a list with at least {least} value{'s' * (least > 1)}"
+        must(be, found is not None and len(found) >= least, value)
+        for n, one in enumerate(found):
+            try:
+                found[n] = kind(one, first)
+            except ValueError as error:
+                raise ValueError(f"(value {n} of the list) {error}") from None
+        return found
 
     return take
-
-
-def _inList(kind, n, one, first):
-    try:
-        return kind(one, first)
-    except ValueError as error:
-        raise ValueError(f"(value {n} of the list) {error}") from None
 
 
 def orNone(kind):
@@ -380,13 +351,6 @@ def kindOf(hint: Any) -> Kind | None:
     return PLAIN.get(hint)
 
 
-def kindsOf(act: Callable[..., Any]) -> dict[str, Kind]:
-    """The kinds of the parameters of a function by their names."""
-    hints = get_type_hints(act, include_extras=True)
-    hints.pop("return", None)
-    return {n: kind for n, hint in hints.items() if (kind := kindOf(hint))}
-
-
 def validated(act: F) -> F:
     """Let a function, or a class, check its arguments by the kinds of its hints.
 
@@ -400,8 +364,12 @@ def validated(act: F) -> F:
         return cast(F, act)
     signature = inspect.signature(act)
     called = act.__qualname__.removesuffix(".__init__").rpartition(".")[2]
-    # its hints name classes that are made later
-    kinds = functools.cache(lambda: kindsOf(act))
+
+    @functools.cache  # its hints name classes that are made later
+    def kinds() -> dict[str, Kind]:
+        hints = get_type_hints(act, include_extras=True)
+        hints.pop("return", None)
+        return {n: kind for n, hint in hints.items() if (kind := kindOf(hint))}
 
     def checked(args, settings):
         return _checked(called, signature, kinds(), args, settings)
@@ -417,7 +385,7 @@ def validated(act: F) -> F:
 
 def _checked(word, signature, kinds, args, settings):
     parameters, problems = signature.parameters, []
-    more = {p.name for p in parameters.values() if p.kind in (p.VAR_POSITIONAL, p.VAR_KEYWORD)}  # fmt: skip
+    more = {n for n, p in parameters.items() if p.kind in (p.VAR_POSITIONAL, p.VAR_KEYWORD)}  # fmt: skip
     known = {n: v for n, v in settings.items() if more or n in parameters}
     offered = [n for n in parameters if n not in more | {"self", "scene", "description"}]  # fmt: skip
     for unknown in settings.keys() - known.keys():
@@ -429,21 +397,18 @@ def _checked(word, signature, kinds, args, settings):
         problems.append(f"{word}: {error}; it takes {', '.join(offered)}")
         raise Refused("\n".join(problems)) from None
     first = args[0] if args else None
-    missing = [
-        n
-        for n, p in parameters.items()
-        if p.default is p.empty and n not in bound.arguments and n not in more
-    ]
+    given = bound.arguments
+    needed = [n for n, p in parameters.items() if p.default is p.empty]
+    missing = [n for n in needed if n not in {*given, *more}]
     if missing:
         problems.append(f"{word}: {', '.join(missing)} must be given")
-    for one, value in bound.arguments.items():
-        if one in kinds:
-            try:
-                if parameters[one].kind is inspect.Parameter.VAR_POSITIONAL:
-                    bound.arguments[one] = tuple(listOf(kinds[one], 0)(value, first))
-                else:
-                    bound.arguments[one] = kinds[one](value, first)
-            except ValueError as error:
-                problems.append(f"{word}: {one} {error}")
+    for one in [n for n in given if n in kinds]:
+        many = parameters[one].kind is inspect.Parameter.VAR_POSITIONAL
+        kind = listOf(kinds[one], 0) if many else kinds[one]
+        try:
+            found = kind(given[one], first)
+            given[one] = tuple(found) if many else found
+        except ValueError as error:
+            problems.append(f"{word}: {one} {error}")
     refuse(problems)
     return bound.args, bound.kwargs

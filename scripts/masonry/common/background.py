@@ -4,8 +4,6 @@
 A :class:`Task` begins with the scene as it is at that moment, so nothing need be packed for it, and what the run does then does
 not change what the copy sees. It takes no steps and ends without any clean-up. Where the system gives no process the work is
 done at once instead. :func:`carryOut` is the pool: it runs programs beside each other. Both end when this process does.
-
-This module needs no YADE.
 """
 
 from __future__ import annotations
@@ -14,14 +12,13 @@ import contextlib
 import ctypes
 import math
 import os
-import pickle
-import select
 import signal
 import subprocess
 import sys
 import time
 import traceback
-from typing import Any, Callable, Iterable, Iterator
+from multiprocessing.connection import Pipe
+from typing import Any, Callable, Iterable
 
 from ..basics import Interrupted, Refused
 
@@ -46,45 +43,36 @@ class Task:
 
     def __init__(self, work: Callable[[], Iterable[Any]], parts: int = 1) -> None:
         self._results: list[Any] = []
-        self._process = 0
-        self._files: list[int] = []  # of the results, and the end of a pipe
-        self._reads, writes = -1, -1
+        self._parts, self._process = parts, 0
         sys.stdout.flush(), sys.stderr.flush()
         old = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT, signal.SIGTERM})
         try:
-            for _ in range(parts):
-                self._files.append(os.memfd_create("task", os.MFD_CLOEXEC))
-            self._reads, writes = os.pipe2(os.O_CLOEXEC)
+            self._reads, writes = Pipe(duplex=False)
             self._process = os.fork()
             if not self._process:
-                _carryOut(work, self._files, self._reads, writes)
+                _carryOut(work, parts, writes)
+            writes.close()
         except OSError:  # no process or no file is to be had
             pass
         finally:
             signal.pthread_sigmask(signal.SIG_SETMASK, old)
-            _close([writes])
         if not self._process:
-            self.end()
             self._results = [*work()]
 
     def ready(self, part: int = 0, seconds: float = 0.0) -> bool:
         """Whether a result is there, or will never be, within some time [s]."""
         until = time.monotonic() + seconds
         while len(self._results) <= part and self._process:
-            poll = select.poll()
-            poll.register(self._reads, select.POLLIN)
             rest = max(0.0, until - time.monotonic())
-            if not poll.poll(1e3 * min(rest, LONGEST)):
+            if not self._reads.poll(min(rest, LONGEST)):
                 if rest > LONGEST:
                     continue
                 return False
-            if os.read(self._reads, 1):
-                with open(self._files[len(self._results)], "rb", closefd=False) as file:
-                    file.seek(0)
-                    self._results.append(pickle.load(file))
-                if len(self._results) == len(self._files):
-                    self.end()
-            else:
+            try:
+                self._results.append(self._reads.recv())
+            except (EOFError, OSError):
+                self.end()
+            if len(self._results) == self._parts:
                 self.end()
         return True
 
@@ -102,22 +90,15 @@ class Task:
         """End the process, if it is there."""
         process, self._process = self._process, 0
         if process:
-            if len(self._results) < len(self._files):
+            self._reads.close()
+            if len(self._results) < self._parts:
                 with contextlib.suppress(ProcessLookupError):
                     os.kill(process, signal.SIGKILL)
             with contextlib.suppress(ChildProcessError):
                 os.waitpid(process, 0)
-        _close([self._reads, *self._files])
-        self._files, self._reads = [], -1
 
 
-def _close(numbers):
-    for number in numbers:
-        if number >= 0:
-            os.close(number)
-
-
-def _carryOut(work, files, reads, writes):
+def _carryOut(work, parts, writes):
     """Do the work in the copy of the process, which ends here."""
     try:
         os.setsid()  # Ctrl-C is for the run
@@ -125,24 +106,14 @@ def _carryOut(work, files, reads, writes):
         for number in (signal.SIGINT, signal.SIGTERM):
             signal.signal(number, signal.SIG_DFL)
         signal.pthread_sigmask(signal.SIG_SETMASK, ())
-        os.close(reads)
-        results: Iterator[Any] = iter(())
-        for part, number in enumerate(files):
+        try:
+            for _, value in zip(range(parts), work()):
+                writes.send(value)
+        except BaseException as error:
             try:
-                results = results if part else iter(work())
-                value = next(results)
-                data = pickle.dumps(value)
-            except BaseException as error:
-                value = error
-                try:
-                    data = pickle.dumps(error)
-                except Exception:
-                    data = pickle.dumps(Failed(traceback.format_exception_only(error)[-1].strip()))  # fmt: skip
-            with open(number, "wb", closefd=False) as file:
-                file.write(data)
-            os.write(writes, b"1")
-            if isinstance(value, BaseException):
-                break
+                writes.send(error)
+            except Exception:
+                writes.send(Failed(traceback.format_exception_only(error)[-1].strip()))
     finally:
         os._exit(0)
 

@@ -3,7 +3,7 @@
 
 Results, studies and checkpoints are handed on as folders, and an archive keeps symbolic links. A file in such a folder is
 opened by :func:`inside` or :func:`replaced` alone, which write through no link, and :func:`check` names all links of a
-folder before anything is written there. ``scripts/README.md`` says what may be shared. This module needs no YADE.
+folder before anything is written there. ``scripts/README.md`` says what may be shared.
 """
 
 import contextlib
@@ -26,31 +26,20 @@ def check(*folders):
     """
     problems = []
     for folder in folders:
-        names = sorted(filter(None, map(_odd, _entries(folder))))
+        names = []
+        with contextlib.suppress(FileNotFoundError), os.scandir(folder) as entries:
+            for entry in entries:
+                if entry.is_symlink():
+                    names.append(f"{entry.name}, a symbolic link")
+                elif not (entry.is_file() or entry.is_dir()):
+                    names.append(f"{entry.name}, no regular file")
         if names:
-            more = " and more" * (len(names) > MOST)
+            named = ", ".join(sorted(names)[:MOST]) + " and more" * (len(names) > MOST)
             problems.append(
-                f"{folder} holds {', '.join(names[:MOST])}{more}: nothing is written where a name can lead elsewhere; "
-                "remove these, or name another folder"
+                f"{folder} holds {named}: nothing is written where a name can lead elsewhere; remove these, or name another "
+                "folder"
             )
     refuse(problems)
-
-
-def _entries(folder):
-    try:
-        with os.scandir(folder) as entries:
-            return list(entries)
-    except FileNotFoundError:
-        return []
-
-
-def _odd(entry):
-    """The name of an entry and what it is, or None for a file or a folder."""
-    if entry.is_symlink():
-        return f"{entry.name}, a symbolic link"
-    if not (entry.is_file() or entry.is_dir()):
-        return f"{entry.name}, no regular file"
-    return None
 
 
 def inside(path, flags):
@@ -70,13 +59,11 @@ def inside(path, flags):
             raise
         raise OSError(error.errno, why, path) from None
     found = os.fstat(number)
-    wrong = (
-        "it is no regular file"
-        if not stat.S_ISREG(found.st_mode)
-        else "it has a second name, a hard link"
-        if writes and found.st_nlink > 1
-        else ""
-    )
+    wrong = ""
+    if writes and found.st_nlink > 1:
+        wrong = "it has a second name, a hard link"
+    if not stat.S_ISREG(found.st_mode):
+        wrong = "it is no regular file"
     if wrong:
         os.close(number)
         raise OSError(errno.EINVAL, wrong, path)
@@ -97,9 +84,7 @@ def replaced(path, mode="w", **settings):
     path = os.fspath(path)
     temporary = path + ".new"
     if os.path.lexists(path) and not stat.S_ISREG(os.lstat(path).st_mode):
-        raise OSError(
-            errno.EINVAL, "it is a symbolic link or no regular file", path
-        ) from None
+        raise OSError(errno.EINVAL, "it is a symbolic link or no regular file", path)
     with open(temporary, mode, opener=inside, **settings) as file:
         try:
             yield file

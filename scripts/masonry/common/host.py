@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Finds the YADE of this machine in plain Python, and starts it when it is first needed. This module needs no YADE itself.
+"""Finds the YADE of this machine in plain Python, and starts it when it is first needed.
 
 The program ``yade`` puts the folder of YADE's modules on ``sys.path`` before it runs a script; ``/usr/bin/python3`` does not.
 After ``import masonry`` this module does it instead, as soon as anything imports ``yade``: a scene, a module of this
@@ -46,7 +46,8 @@ class Finder:
         """As of :class:`importlib.abc.MetaPathFinder`. Raises ModuleNotFoundError with a sentence if there is no YADE."""
         if name == YADE:
             found = self._byOthers() or _installed()
-            found.loader = Loader(found.loader, self._started)
+            found.loader = Loader(YADE, found.origin)
+            found.loader.started = self._started
             return found
         needs = name == PLUGIN or name.startswith(ASSEMBLY)
         if needs and YADE not in sys.modules:
@@ -65,60 +66,50 @@ class Finder:
         return None
 
 
-class Loader:
+class Loader(importlib.machinery.SourceFileLoader):
     """Imports YADE quietly, with one thread unless the user wants more."""
-
-    def __init__(self, loader, started):
-        self._loader, self._started = loader, started
-
-    def __getattr__(self, name):
-        return getattr(self._loader, name)
-
-    def create_module(self, spec):
-        return self._loader.create_module(spec)
 
     def exec_module(self, module):
         """Run the module. Raises ImportError with a sentence if this Python lacks what YADE needs."""
-        printed = io.StringIO()
-        asked = os.environ.get(THREADS)
+        printed, asked = io.StringIO(), THREADS in os.environ
+        os.environ.setdefault(THREADS, "1")  # OpenMP reads it when it is loaded
+        quietly = contextlib.redirect_stdout(printed)
         try:
-            if asked is None:
-                os.environ[THREADS] = "1"  # OpenMP reads it when it is loaded
-            with warnings.catch_warnings(), contextlib.redirect_stdout(
-                printed
-            ), _withoutShell():
+            with warnings.catch_warnings(), quietly, _withoutShell():
                 warnings.simplefilter("ignore", DeprecationWarning)
-                self._loader.exec_module(module)
+                super().exec_module(module)
         except ModuleNotFoundError as error:
-            if error.name and error.name.split(".")[0] != YADE:
-                raise _misses(error) from error
-            raise
+            if not error.name or error.name.split(".")[0] == YADE:
+                raise
+            path = interpreter()[0] or "/usr/bin/python3"
+            raise ImportError(
+                f"YADE needs the Python module {error.name!r}, which {sys.executable} does not find: run the script with "
+                f"{path}, or make the virtual environment with {path} -m venv --system-site-packages",
+                name=error.name,
+            ) from error
         finally:
-            if asked is None:
+            if not asked:
                 os.environ.pop(THREADS, None)
             found = printed.getvalue().replace(GREETING, "").strip()
             if found:
                 say(found)
-        _putLast(os.path.dirname(module.__file__))
-        self._started()
+        # YADE puts the folder of its own modules before the standard library, where its config.py, log.py or plot.py would
+        # hide modules of these names: it comes last.
+        own = os.path.realpath(os.path.dirname(module.__file__))
+        sys.path.sort(key=lambda folder: os.path.realpath(folder or ".") == own)
+        self.started()
 
 
 @contextlib.contextmanager
 def _withoutShell():
     """Let YADE find the version of IPython without importing it, which is all that it does with it in plain Python, and takes a
     third of its start."""
-    if SHELL in sys.modules:
-        yield
-        return
+    standIn = types.ModuleType(SHELL)
+    with contextlib.suppress(importlib.metadata.PackageNotFoundError):
+        standIn.__version__ = importlib.metadata.version(SHELL)
+        sys.modules.setdefault(SHELL, standIn)
     try:
-        version = importlib.metadata.version(SHELL)
-    except importlib.metadata.PackageNotFoundError:
-        yield  # YADE says what it misses
-        return
-    sys.modules[SHELL] = standIn = types.ModuleType(SHELL)
-    standIn.__version__ = version
-    try:
-        yield
+        yield  # without IPython YADE says what it misses
     finally:
         if sys.modules.get(SHELL) is standIn:
             del sys.modules[SHELL]
@@ -153,11 +144,9 @@ def folders():
 
 def _program():
     """The text of the program ``yade``, or an empty one."""
-    path = shutil.which(YADE)
-    if path:
-        with contextlib.suppress(OSError, UnicodeDecodeError):
-            with open(path, encoding="utf-8") as file:
-                return file.read(1 << 20)
+    with contextlib.suppress(OSError, UnicodeDecodeError, TypeError):
+        with open(shutil.which(YADE), encoding="utf-8") as file:
+            return file.read(1 << 20)
     return ""
 
 
@@ -173,8 +162,14 @@ def interpreter():
 
 
 def _installed():
-    """The spec of the YADE that is installed. Raises ModuleNotFoundError."""
-    _checkPython()
+    """The spec of the YADE that is installed. Raises ImportError if there is none, or if it is of another Python."""
+    path, version = interpreter()
+    if version and version != sys.version_info[:2]:
+        raise ImportError(
+            f"the YADE of this machine is built for Python {version[0]}.{version[1]}, and this is {sys.executable}, Python "
+            f"{sys.version_info[0]}.{sys.version_info[1]}: run the script with {path}",
+            name=YADE,
+        )
     places = folders()
     for folder in places:
         if os.path.isfile(os.path.join(folder, MARK)):
@@ -184,36 +179,6 @@ def _installed():
         f"masonry runs in YADE, which is not installed: {INSTALLED} (looked for {MARK} in {', '.join(places)})",
         name=YADE,
     )
-
-
-def _checkPython():
-    """Refuse an interpreter of another version than that of the installed YADE. Raises ImportError."""
-    path, version = interpreter()
-    if version and version != sys.version_info[:2]:
-        raise ImportError(
-            f"the YADE of this machine is built for Python {version[0]}.{version[1]}, and this is {sys.executable}, Python "
-            f"{sys.version_info[0]}.{sys.version_info[1]}: run the script with {path}",
-            name=YADE,
-        )
-
-
-def _misses(error):
-    """The error of a Python that lacks a module that YADE needs, as one of a virtual environment does."""
-    path = interpreter()[0] or "/usr/bin/python3"
-    return ImportError(
-        f"YADE needs the Python module {error.name!r}, which {sys.executable} does not find: run the script with {path}, or "
-        f"make the virtual environment with {path} -m venv --system-site-packages",
-        name=error.name,
-    )
-
-
-def _putLast(folder):
-    """Let the folder of YADE's own modules be the last of ``sys.path``: YADE puts it before the standard library, where its
-    ``config.py``, ``log.py`` or ``plot.py`` would hide modules of these names."""
-    same = [one for one in sys.path if os.path.realpath(one or ".") == os.path.realpath(folder)]  # fmt: skip
-    for one in same:
-        sys.path.remove(one)
-    sys.path.extend(same[:1])
 
 
 def install(started):

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What is different in a notebook: lines that are kept up to date, pictures and tables, and how a run that ends is shown.
 
-This module needs no YADE, and loads nothing of Jupyter: it uses what the kernel of a notebook has loaded.
+This module loads nothing of Jupyter: it uses what the kernel of a notebook has loaded.
 """
 
 import base64
@@ -32,19 +32,14 @@ class Line:
         """
         from IPython.display import display
 
-        data = {"text/plain": text, "text/html": _bar(text, fraction)}
+        done = min(max(fraction, 0.0), 1.0)
+        bar = f'<progress max="1" value="{done:.3f}"></progress> {html.escape(text)}'
+        page = f'<div style="font-family:monospace;white-space:pre">{bar}</div>'
+        data = {"text/plain": text, "text/html": page}
         if self._handle:
             self._handle.update(data, raw=True)
         else:
             self._handle = display(data, raw=True, display_id=True)
-
-
-def _bar(text, fraction):
-    done = min(max(fraction, 0.0), 1.0)
-    return (
-        f'<div style="font-family:monospace;white-space:pre"><progress max="1" value="{done:.3f}"></progress> '
-        f"{html.escape(text)}</div>"
-    )
 
 
 class Stopped(KeyboardInterrupt):
@@ -76,9 +71,6 @@ def ended(name, status, folder, error):
     return Failed(f"{name}: the run ended before its time{why}")
 
 
-# -- pieces of HTML ---------------------------------------------------------------------------------------------------
-
-
 def picture(figure, dpi):
     """A figure of matplotlib as an image that stands in the HTML itself. It has a palette of :data:`COLOURS` colours, which
     makes it a third as large."""
@@ -94,11 +86,8 @@ def picture(figure, dpi):
 def table(rows, heads=()):
     """Rows of texts as a table; the first of each row is its head."""
     cell = lambda text, kind="td": f'<{kind} style="text-align:left">{html.escape(str(text))}</{kind}>'  # fmt: skip
-    lines = []
-    if heads:
-        lines.append("".join(cell(head, "th") for head in heads))
-    for first, *others in rows:
-        lines.append(cell(first, "th") + "".join(map(cell, others)))
+    lines = ["".join(cell(head, "th") for head in heads)] * bool(heads)
+    lines += [cell(first, "th") + "".join(map(cell, others)) for first, *others in rows]
     return f"<table>{''.join(f'<tr>{line}</tr>' for line in lines)}</table>"
 
 

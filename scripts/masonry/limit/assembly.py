@@ -15,7 +15,7 @@ from ..common.arguments import Numbers
 from ..basics import Refused, refuse
 from . import slipping
 from .bound import Bound
-from .programme import FACETS, Programme, solve
+from .programme import FACETS, Programme
 from .solver import Late, Unsolved
 
 TURNS = 6  # how often the facets of friction are turned at most
@@ -221,14 +221,11 @@ class Assembly:
         scale = np.array([1, 1, 1, 1 / size, 1 / size, 1 / size]) / force
         growing, still = (live * scale)[free], (dead * scale)[free]
         step = np.abs(growing).max()
-        last = programme.factor(sense * growing / step, most and most * step)
-        cost = np.zeros(programme.columns)
-        cost[last] = -1
+        programme.factor(sense * growing / step, most and most * step)
         try:
-            loads = np.append(-still, np.zeros(programme.links))
             left = self.deadline - time.monotonic()
-            values, dual = solve(programme, cost, loads, left)
-            if most is None and values[last] / step > self._endless(live, dead):
+            factor, values, dual = programme.solve(still, left)
+            if most is None and factor / step > self._endless(live, dead):
                 raise Unsolved(
                     "no largest load was found; is a joint so strong that it never fails?"
                 )
@@ -240,10 +237,10 @@ class Assembly:
             raise self._why(live, dead, sense, turn, unsolved) from None
         speed = np.zeros(self.held.shape)
         # The dual of equilibrium, with which the live load has the power of its unit.
-        speed[free] = -dual[: len(still)] / step
+        speed[free] = -dual / step
         speed *= scale * sense
         solution = programme.read(values)
-        return Bound(self, values[last] / step, speed, live, dead, *solution)
+        return Bound(self, factor / step, speed, live, dead, *solution)
 
     def _endless(self, live, dead):
         """A factor that no strength explains: a million times all strengths and loads over the live load."""
@@ -254,11 +251,10 @@ class Assembly:
 
     def _why(self, live, dead, sense, turn, unsolved):
         """Why the programme could not be solved, as the error to raise."""
-        nothing = np.zeros_like(dead)
         message = "limit analysis: "
         try:
             if np.abs(dead[~self.held]).max(initial=0) > 0:
-                carried = self._solve(dead, nothing, 1, turn, most=1.0)
+                carried = self._solve(dead, 0 * dead, 1, turn, most=1.0)
                 if carried.value < 1 - 1e-6:
                     fast = carried.fastest()
                     at = ", ".join(f"{v:.3g}" for v in self.centres[fast])
@@ -281,8 +277,7 @@ class Assembly:
     def _tangents(self):
         """Two unit vectors in the plane of every joint (m, 2, 3); in the x-z plane the first lies in it."""
         first = np.cross(self.normals, [0, 1, 0])
-        length = np.linalg.norm(first, axis=1)
-        flat = length < 0.1
+        flat = np.linalg.norm(first, axis=1) < 0.1
         first[flat] = np.cross(self.normals[flat], [1, 0, 0])
         first /= np.linalg.norm(first, axis=1)[:, None]
         return np.stack([first, np.cross(self.normals, first)], axis=1)
@@ -301,11 +296,10 @@ class Assembly:
     def _contacts(self):
         """The points on which forces act: corners of dry joints, else the points of the engine."""
         at, area, joint = [np.zeros((0, 3))], [np.zeros(0)], []
-        starts = np.searchsorted(self.joint, np.arange(1, len(self.pairs)))
-        parts = (np.split(values, starts) for values in (self.points, self.areas))
-        for j, (points, areas) in enumerate(zip(*parts)):
-            if self.elastic[j]:
-                continue
+        starts = np.searchsorted(self.joint, np.arange(len(self.pairs) + 1))
+        for j in np.flatnonzero(~self.elastic):
+            own = slice(*starts[j : j + 2])
+            points, areas = self.points[own], self.areas[own]
             if self.dry[j]:
                 points = np.asarray(self.polygons[j])
                 if self.plane:

@@ -18,6 +18,7 @@ from .programme import FACETS
 SLIDES = 1e-4  # share of the power of a mechanism that is friction, from which its joints slide [-]
 GIVES = 0.02  # less than this share of the largest motion between two blocks of the mechanism is not listed [-]
 
+LOST = "cohesion", "tension", "crushing"  # strengths that a joint can lose
 MECHANISM = "mechanism_blocks.vtu", "mechanism_joints.vtu"  # files for ParaView
 SHOWN = 0.06  # how far the fastest corner is drawn to move, over the size of the structure [-]
 
@@ -69,14 +70,12 @@ class Bound:
     def overstressed(self) -> float:
         """How far forces along the joints are above friction and cohesion, as a share of all of them [-]."""
         a, c = self.assembly, self.assembly.contacts
-        joint = c.joint
-        strength = a.cohesion[joint] * c.area + a.friction[joint] * self.normal
+        strength = a.cohesion[c.joint] * c.area + a.friction[c.joint] * self.normal
         along = np.linalg.norm(self.along, axis=1)
         if a.plane:  # one force along each joint
-            one = (self.along * a.tangents[joint, 0]).sum(axis=1)
-            count = len(a.pairs)
-            along = np.abs(np.bincount(joint, one, count))
-            strength = np.bincount(joint, strength, count)
+            one = (self.along * a.tangents[c.joint, 0]).sum(axis=1)
+            along = np.abs(np.bincount(c.joint, one))
+            strength = np.bincount(c.joint, strength)
         return float(np.maximum(along - strength, 0).sum() / max(along.sum(), 1e-300))
 
     # -- the mechanism --------------------------------------------------------------------------------------------
@@ -101,42 +100,40 @@ class Bound:
     @property
     def powers(self) -> dict[str, float]:
         """Power of the mechanism by what takes it, with the live load at its factor and the dead loads, as a dict:
-        ``friction``, ``cohesion``, ``tension``, ``crushing``, and ``loads``, which is the sum of what the loads do, all counted
-        positive.
+        ``friction``, ``cohesion``, ``tension``, ``crushing``, and ``loads``, the sum of what the loads do, all counted positive.
         """
         a, c = self.assembly, self.assembly.contacts
         opening, slide = self.jumps(c.joint, c.at)
-        speed = np.linalg.norm(slide, axis=1)
-        pressed = np.maximum(self.normal, 0)
-        cohesion = (a.cohesion[c.joint] * c.area * speed).sum()
-        shear = -(self.along * slide).sum()
-        if a.plane:  # the force along the joint stands at one of its points
-            shear = np.abs((self.along * slide).sum(axis=1)).sum()
-        shear = abs(shear)
+        cohesive = a.cohesion[c.joint] * c.area * np.linalg.norm(slide, axis=1)
+        cohesion, shear = float(cohesive.sum()), self.along * slide
+        # in the plane the force along a joint stands at one of its points
+        shear = np.abs(shear.sum(axis=1)).sum() if a.plane else abs(shear.sum())
         closing = np.where(np.isfinite(a.crushing[c.joint]), np.maximum(-opening, 0), 0)
-        tension = (a.tension[c.joint] * c.area * np.maximum(opening, 0)).sum()
+        tension = a.tension[c.joint] * c.area * np.maximum(opening, 0)
         live = abs((self.factor * self.live * self.velocities).sum())
         dead = np.abs((self.dead * self.velocities).sum(axis=1)).sum()
         return {
             "friction": max(0.0, shear - cohesion),
-            "cohesion": float(cohesion),
-            "tension": float(tension),
-            "crushing": float((pressed * closing).sum()),
+            "cohesion": cohesion,
+            "tension": float(tension.sum()),
+            "crushing": float((np.maximum(self.normal, 0) * closing).sum()),
             "loads": float(live + dead),
         }
+
+    def _takes(self, *kinds):
+        """Whether strengths take power of the mechanism, all together."""
+        powers = self.powers
+        return sum(powers[kind] for kind in kinds) > SLIDES * powers["loads"]
 
     @property
     def slides(self) -> bool:
         """Whether friction takes part in the mechanism."""
-        powers = self.powers
-        return powers["friction"] > SLIDES * powers["loads"]
+        return self._takes("friction")
 
     @property
     def rigid(self) -> bool:
         """Whether no joint slides in the mechanism, and none has a strength there that it could lose."""
-        powers = self.powers
-        lost = sum(powers[kind] for kind in ("cohesion", "tension", "crushing"))
-        return not self.slides and lost <= SLIDES * powers["loads"]
+        return not self.slides and not self._takes(*LOST)
 
     @property
     def exact(self) -> bool:
@@ -151,14 +148,13 @@ class Bound:
         opening, slide = self.jumps(c.joint, c.at)
         speed = np.linalg.norm(slide, axis=1)
         least = GIVES * max(np.abs(opening).max(initial=0), speed.max(initial=0))
-        for kind, size in (("crushes", -opening), ("slides", speed), ("opens", opening)):  # fmt: skip
-            if kind == "crushes":
-                size = np.where(np.isinf(a.crushing[c.joint]), 0, size)
-            # what slides as friction tells opens by the friction coefficient of it
-            over = size > least
-            if kind == "opens":
-                over &= opening > 1.001 * a.friction[c.joint] * speed + 1e-9 * least
-            states[c.joint[over]] = kind
+        states[
+            c.joint[(-opening > least) & np.isfinite(a.crushing[c.joint])]
+        ] = "crushes"
+        states[c.joint[speed > least]] = "slides"
+        # what slides as friction tells opens by the friction coefficient of it
+        ofSlide = 1.001 * a.friction[c.joint] * speed + 1e-9 * least
+        states[c.joint[(opening > least) & (opening > ofSlide)]] = "opens"
         return states
 
     def sentence(self, load: str, unit: str, digits: int = 4) -> str:
@@ -168,8 +164,7 @@ class Bound:
         :param unit: of the factor
         """
         verbs = {"opens": "open", "slides": "slide", "crushes": "crush"}
-        moving = {verbs[kind]: n for kind, n in self._counts().items() if n}
-        counts = ", ".join(f"{count} {verb}" for verb, count in moving.items())
+        counts = ", ".join(f"{n} {verbs[k]}" for k, n in self._counts().items() if n)
         if self.dilates and self.exact:
             what = "no joint slides, so this is what rigid blocks carry"
         elif self.dilates:
@@ -182,19 +177,15 @@ class Bound:
 
     def _counts(self):
         """How many joints do what in the mechanism."""
-        states = self.joints()
-        kinds = "opens", "slides", "crushes"
-        return {kind: int((states == kind).sum()) for kind in kinds}
+        states = [*self.joints()]
+        return {kind: states.count(kind) for kind in ("opens", "slides", "crushes")}
 
     def _reason(self):
-        powers, reasons = self.powers, []
-        takes = lambda *kinds: any(powers[k] > SLIDES * powers["loads"] for k in kinds)
+        reasons = []
         if self.weaker is not None:
             reasons.append(f"open joints slip at {self.weaker:.4g} already")
-        if takes("friction"):
-            reasons.append("joints slide")
-        if takes("cohesion", "tension", "crushing"):
-            reasons.append("joints lose strength")
+        reasons += ["joints slide"] * self.slides
+        reasons += ["joints lose strength"] * self._takes(*LOST)
         return " and ".join(reasons) or "joints that are open may slip"
 
     def describe(self) -> dict[str, Any]:
@@ -268,24 +259,20 @@ class Bound:
         faces, body = [], []
         for number, nodes in zip(blocks["body"], blocks["cells"]):
             hull = ConvexHull(blocks["points"][nodes])
-            faces.append(nodes[hull.simplices])
+            faces += nodes[hull.simplices].tolist()
             body += [number] * len(hull.simplices)
-        Mesh(
-            blocks["points"],
-            [("triangle", np.concatenate(faces))],
-            point_data={"displacement": blocks["displacement"]},
-            cell_data={"body": [np.array(body)]},
-        ).write(os.path.join(directory, MECHANISM[0]))
-        cells = joints["cells"]
-        fans = [(c[0], *two) for c in cells for two in zip(c[1:], c[2:])]
-        owner = np.repeat(np.arange(len(cells)), [len(c) - 2 for c in cells])
+        fans, owner = [], []
+        for number, (first, *others) in enumerate(joints["cells"]):
+            fans += [(first, *two) for two in zip(others, others[1:])]
+            owner += [number] * (len(others) - 1)
         names = ("opening", "slide", "crushing", "normal", "damage_tension", "damage_shear")  # fmt: skip
-        Mesh(
-            joints["points"],
-            [("triangle", np.array(fans))],
-            point_data={n: joints[n] for n in ("displacement", "second_displacement")},
-            cell_data={name: [joints[name][owner]] for name in names},
-        ).write(os.path.join(directory, MECHANISM[1]))
+        values = {"body": [np.array(body)]}, {n: [joints[n][owner]] for n in names}
+        found = zip(MECHANISM, (blocks, joints), (faces, fans), values)
+        for name, frame, triangles, ofCells in found:
+            moves = {n: v for n, v in frame.items() if n.endswith("displacement")}
+            cells = [("triangle", np.array(triangles))]
+            mesh = Mesh(frame["points"], cells, moves, ofCells)
+            mesh.write(os.path.join(directory, name))
 
     def draw(
         self,

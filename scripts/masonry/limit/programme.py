@@ -21,10 +21,13 @@ class Programme:
         self.assembly, self.rows, self.size, self.force = assembly, rows, size, force
         self.columns, self.low, self.high = 0, [], []
         self._equal, self._unequal = [], []
+        self._parts = (
+            []
+        )  # of the forces on contacts: which, columns, share that is normal, direction along the joint
         self.limits = np.zeros(0)
 
     def factor(self, load, most):
-        """The factor on a load. Returns its number.
+        """The factor on a load.
 
         A variable that acts on many blocks would couple them all in the solver. So it has one copy for every :data:`SHARE`
         entries of the load, and each copy equals the one before.
@@ -39,26 +42,25 @@ class Programme:
         links = int(self.rows.max()) + 1 + np.arange(copies[-1])
         for column, sign in ((columns[:-1], 1.0), (columns[1:], -1.0)):
             self._equal.append((links, column, np.full(len(links), sign)))
-        self.links = len(links)
-        return columns[-1]
+        self._links, self._last = len(links), columns[-1]
 
-    def _new(self, count, low, high):
+    def _new(self, count, low=-np.inf, high=np.inf):
         first = self.columns
         self.columns += count
         self.low = np.append(self.low, np.broadcast_to(low, count))
         self.high = np.append(self.high, np.broadcast_to(high, count))
         return first + np.arange(count)
 
-    def _forces(self, joint, at, direction, columns, moment=None):
-        """Let variables act as forces in a direction, or as moments, on both blocks of a joint."""
-        centres, pairs = self.assembly.centres, self.assembly.pairs
+    def _forces(self, joint, at, direction, columns, turns=False):
+        """Let variables act as forces in a direction, or as moments about it, on both blocks of a joint."""
         for side, sign in ((0, -1), (1, 1)):
-            block = pairs[joint, side]
-            if moment is None:
-                arm = (at - centres[block]) / self.size
-                six = np.hstack([direction, np.cross(arm, direction)])
-            else:
-                six = np.hstack([np.zeros_like(moment), moment])
+            block = self.assembly.pairs[joint, side]
+            moment = np.cross(
+                (at - self.assembly.centres[block]) / self.size, direction
+            )
+            six = np.hstack(
+                [0 * direction, direction] if turns else [direction, moment]
+            )
             rows = self.rows[block]
             kept = (rows >= 0) & (six != 0)
             which = np.broadcast_to(columns[:, None], rows.shape)
@@ -66,7 +68,7 @@ class Programme:
 
     def joints(self, turn, fixed):
         """All joints, props, ties and springs. Parameters as in :meth:`Assembly._solve`."""
-        a = self.assembly
+        a, c = self.assembly, self.assembly.contacts
         self._rigid()
         props = [([(b, a.force(b, *prop)[b])], -np.inf, np.inf) for b, *prop in a.props]
         for loads, least, most in [*props, *a.links]:
@@ -76,67 +78,53 @@ class Programme:
                 kept = (self.rows[block] >= 0) & (load != 0)
                 rows = self.rows[block][kept]
                 self._equal.append((rows, np.repeat(column, len(rows)), load[kept]))
-        c = a.contacts
         dry = a.dry[c.joint] & (fixed is None) & (not a.plane)
         self._dry(np.flatnonzero(dry), turn)
-        self._strong(np.flatnonzero(~dry), turn, fixed)
+        if not dry.all():
+            self._strong(np.flatnonzero(~dry), turn, fixed)
 
     def _rigid(self):
         """Joints that never give way: any force and moment."""
         a = self.assembly
         which = np.flatnonzero(a.elastic)
-        if not len(which):
-            return
         areas = np.bincount(a.joint, a.areas, len(a.pairs))
         moments = [np.bincount(a.joint, a.areas * x, len(a.pairs)) for x in a.points.T]
         middle = np.column_stack(moments)[which] / areas[which][:, None]
-        forces, turns = (np.eye(3)[[0, 2]], np.eye(3)[[1]]) if a.plane else (np.eye(3),) * 2  # fmt: skip
-        tiled = lambda axis: np.tile(axis, (len(which), 1))
-        for axis in forces:
-            columns = self._new(len(which), -np.inf, np.inf)
-            self._forces(which, middle, tiled(axis), columns)
-        for axis in turns:
-            columns = self._new(len(which), -np.inf, np.inf)
-            self._forces(which, middle, None, columns, tiled(axis))
+        free = ("xz", "y") if a.plane else ("xyz", "xyz")  # along and about which axes
+        for turns, axes in enumerate(free):
+            for axis in axes:
+                along = np.tile(np.eye(3)["xyz".index(axis)], (len(which), 1))
+                self._forces(which, middle, along, self._new(len(which)), turns)
 
     def _dry(self, which, turn):
         """Contacts of dry joints in space: forces within the friction cone, as sums of its edges."""
         a, c = self.assembly, self.assembly.contacts
-        self._edges = []
         joint, at = c.joint[which], c.at[which]
-        normal, (one, two) = a.normals[joint], a.tangents[joint].swapaxes(0, 1)
-        friction = a.friction[joint][:, None]
-        sides = _polygon(turn[which], one, two)
-        for side in sides:
-            columns = self._new(len(which), 0, np.inf)
-            self._forces(joint, at, normal + friction * side, columns)
-            self._edges.append((which, columns, friction * side))
+        one, two = a.tangents[joint].swapaxes(0, 1)
+        for side in _polygon(turn[which], one, two):
+            columns = self._new(len(which), 0)
+            along = a.friction[joint][:, None] * side
+            self._forces(joint, at, a.normals[joint] + along, columns)
+            self._parts.append((which, columns, 1, along))
 
     def _strong(self, which, turn, fixed):
         """Contacts of the other joints: a normal force within bounds, and forces along the joint below the strength."""
         a, c = self.assembly, self.assembly.contacts
-        self._shear, self._normal = [], None
-        if not len(which):
-            return
         joint, at, area = c.joint[which], c.at[which], c.area[which] / self.force
         one, two = a.tangents[joint].swapaxes(0, 1)
         low, high = -a.tension[joint] * area, a.crushing[joint] * area
         columns = self._new(len(which), low, high)
-        self._normal = which, columns
+        self._parts.append((which, columns, 1, 0))
         self._forces(joint, at, a.normals[joint], columns)
         # what shares a shear strength: in the plane all points of a joint, in space a point
-        if a.plane:
-            groups, first, group = np.unique(joint, return_index=True, return_inverse=True)  # fmt: skip
-        else:
-            groups, first = joint, np.arange(len(which))
-            group = first
+        shared = joint if a.plane else which
+        groups, first, group = np.unique(shared, return_index=True, return_inverse=True)
         strength = np.bincount(group, a.cohesion[joint] * area)
-        slope = a.friction[groups]
+        slope = a.friction[joint[first]]
         if fixed is not None:
             pressed, share = fixed
-            pressed = pressed[groups if a.plane else which] / self.force
-            strength = strength + (1 - share) * slope * np.maximum(pressed, 0)
-            slope = share * slope
+            pressed = np.maximum(pressed[groups] / self.force, 0)
+            strength, slope = strength + (1 - share) * slope * pressed, share * slope
         # the force along the joint is a sum of forces to the corners of a polygon, and their sum is below the strength
         limits = len(self.limits) + np.arange(len(first))
         self.limits = np.append(self.limits, strength)
@@ -145,39 +133,49 @@ class Programme:
             [one[first], -one[first]] if a.plane else _polygon(turn[which], one, two)
         )
         for direction in directions:
-            along = self._new(len(first), 0, np.inf)
+            along = self._new(len(first), 0)
             self._forces(joint[first], at[first], direction, along)
             self._unequal.append((limits, along, np.ones(len(first))))
-            self._shear.append((which[first], along, direction))
+            self._parts.append((which[first], along, 0, direction))
 
-    def matrices(self):
-        """Matrices of equilibrium and of strength."""
+    def solve(self, still, seconds):
+        """The largest factor, the values of all variables, and the multipliers of equilibrium.
+
+        :param still: what stays, entries of equilibrium
+        :raises Unsolved:
+        """
         from scipy.sparse import csc_matrix
 
-        def matrix(entries, count):
-            if not entries:
-                return csc_matrix((count, self.columns))
-            rows, columns, values = (np.concatenate(x) for x in zip(*entries))
-            return csc_matrix((values, (rows, columns)), (count, self.columns))
-
-        return (
-            matrix(self._equal, int(self.rows.max()) + 1 + self.links),
-            matrix(self._unequal, len(self.limits)),
-        )
+        if seconds <= 0:
+            raise Late
+        loads = np.append(-still, np.zeros(self._links))
+        count, sides = len(loads), np.append(loads, self.limits)
+        entries = self._equal + [(count + r, *others) for r, *others in self._unequal]
+        rows, columns, parts = (np.concatenate(x) for x in zip(*entries))
+        if not (np.isfinite(parts).all() and np.isfinite(loads).all()):
+            raise Unsolved("the programme has numbers that are not finite")
+        whole = csc_matrix((parts, (rows, columns)), (len(sides), self.columns))
+        cost = np.zeros(self.columns)
+        cost[self._last] = -1
+        least = np.append(loads, np.full(len(self.limits), -np.inf))
+        limits = self.low, self.high, cost, least, sides
+        values, dual = solver.solve(whole, limits, seconds)
+        over = whole @ values - sides
+        off, over = np.abs(over[:count]).max(), over[count:].max(initial=0)
+        if max(off, over) > KEPT * max(1, np.abs(values).max()):
+            raise Unsolved(
+                f"its solution misses equilibrium by {off:.1g} and strength by {over:.1g} of a block's usual load"
+            )
+        return values[self._last], values, dual[: len(still)]
 
     def read(self, values):
         """Normal force, positive in compression, (one a contact) and force along the joint (contact, 3) [N]."""
         count = len(self.assembly.contacts.at)
         normal, along = np.zeros(count), np.zeros((count, 3))
-        for which, columns, side in self._edges:
+        for which, columns, share, direction in self._parts:
             force = self.force * values[columns]
-            normal[which] += force
-            along[which] += force[:, None] * side
-        if self._normal:
-            which, columns = self._normal
-            normal[which] = self.force * values[columns]
-        for which, columns, direction in self._shear:
-            along[which] += (self.force * values[columns])[:, None] * direction
+            normal[which] += share * force
+            along[which] += force[:, None] * direction
         return normal, along
 
 
@@ -190,34 +188,3 @@ def _polygon(turn, one, two):
     angles = turn + 2 * math.pi / FACETS * np.arange(FACETS)[:, None]
     cos, sin = np.cos(angles)[..., None], np.sin(angles)[..., None]
     return [radius * (x * one + y * two) for x, y in zip(cos, sin)]
-
-
-def solve(programme, cost, loads, left):
-    """Solve a programme.
-
-    :param programme: :class:`Programme`
-    :param cost: of each variable
-    :param loads: right-hand side of equilibrium
-    :param left: time that the solver may take [s]
-    :returns: the variables, and the multipliers of equilibrium
-    :raises Unsolved:
-    """
-    from scipy.sparse import vstack
-
-    if left <= 0:
-        raise Late
-    equal, unequal = programme.matrices()
-    if not (np.isfinite(equal.data).all() and np.isfinite(loads).all()):
-        raise Unsolved("the programme has numbers that are not finite")
-    whole = vstack([equal, unequal], "csc")
-    sides = np.append(loads, programme.limits)
-    values, dual = solver.solve(
-        whole, len(loads), programme.low, programme.high, cost, sides, left
-    )
-    off = np.abs(equal @ values - loads).max()
-    over = (unequal @ values - programme.limits).max(initial=0)
-    if max(off, over) > KEPT * max(1, np.abs(values).max()):
-        raise Unsolved(
-            f"its solution misses equilibrium by {off:.1g} and strength by {over:.1g} of a block's usual load"
-        )
-    return values, dual

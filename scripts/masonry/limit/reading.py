@@ -17,17 +17,13 @@ from .assembly import Assembly
 STOOD = 1e-3
 NEVER = 1e300  # strength of a tie that does not yield [N]
 AXES = "xyzXYZ"  # as blockedDOFs names the freedoms of a body
-
-
 #: Components of normals that are smaller are zero [-]. A structure at rest under its weight has such ones everywhere, and with
 #: them the solver takes up to a hundred times as long.
 SMALLEST = 1e-5
 
 
-def _cleared(normals):
-    """Unit normals without components that are nearly zero."""
-    kept = np.where(np.abs(normals) < SMALLEST, 0.0, normals)
-    return kept / np.linalg.norm(kept, axis=1)[:, None]
+def _unit(vectors):
+    return vectors / np.linalg.norm(vectors, axis=1)[:, None]
 
 
 def read() -> Assembly:
@@ -48,11 +44,10 @@ def read() -> Assembly:
     pairs = np.array([[numbers[i.id1], numbers[i.id2]] for i in joints])
     points = [_rows(g.centres) for g in geoms]
     polygons = [_rows(g.polygon) for g in geoms]
-    areas = [a for g in geoms for a in g.areas]
     place = _Placement(blocks)
     joint = np.repeat(np.arange(len(joints)), [len(p) for p in points])
     corner = np.repeat(np.arange(len(joints)), [len(p) for p in polygons])
-    normals = place.turned(pairs, np.array(_rows([g.normal for g in geoms])))
+    normals = _unit(place.turned(pairs, np.array(_rows([g.normal for g in geoms]))))
     moved = place.moved(pairs[corner], np.concatenate(polygons))
     strengths = np.array([_strengths(i.phys.joint) for i in joints], float).T
     return Assembly(
@@ -60,10 +55,10 @@ def read() -> Assembly:
         masses=np.array([b.state.mass for b in blocks], float),
         held=_held(blocks),
         pairs=pairs,
-        normals=_cleared(normals / np.linalg.norm(normals, axis=1)[:, None]),
+        normals=_unit(np.where(np.abs(normals) < SMALLEST, 0.0, normals)),
         joint=joint,
         points=place.moved(pairs[joint], np.concatenate(points)),
-        areas=np.array(areas, float),
+        areas=np.array([a for g in geoms for a in g.areas], float),
         tension=strengths[0],
         cohesion=strengths[1],
         friction=strengths[2],
@@ -88,29 +83,26 @@ def _links(numbers, place):
             continue
         ends = zip(engine.bodies1, engine.points1, engine.bodies2, engine.points2)
         for n, (one, at1, other, at2) in enumerate(ends):
-            sides = [(body, place.placed(numbers.get(body), at)) for body, at in ((one, at1), (other, at2))]  # fmt: skip
+            one, other = numbers.get(one), numbers.get(other)  # None: the ground
+            at1, at2 = place.placed(one, at1), place.placed(other, at2)
             if kind == "MasonryTies":
                 if engine.brokenAt and engine.brokenAt[n] >= 0:
                     continue
-                away = sides[1][1] - sides[0][1]
+                axis = (at2 - at1) / np.linalg.norm(at2 - at1)
                 most = engine.strength[n] if engine.strength[n] < NEVER else np.inf
-                least = -most if engine.compression[n] else 0.0
-                pairs = [(away / np.linalg.norm(away), False, least, most)]
+                bounds = -most if engine.compression[n] else 0.0, most
+                forces = [np.append(axis, np.zeros(3))]
             else:
-                pairs = [
-                    (axis, turns, -np.inf, np.inf)
-                    for turns, stiffness in ((False, engine.stiffness[n]), (True, engine.rotationalStiffness[n]))
-                    for k, axis in zip(stiffness, np.eye(3))
-                    if k > 0
-                ]  # fmt: skip
-            for axis, turns, least, most in pairs:
+                stiffness = [*engine.stiffness[n], *engine.rotationalStiffness[n]]
+                forces, bounds = np.eye(6)[np.array(stiffness) > 0], (-np.inf, np.inf)
+            for force in forces:
                 loads = []
-                for sign, (body, at) in zip((1, -1), sides):
-                    if body in numbers:
-                        arm = at - place.now[numbers[body]]
-                        six = [np.zeros(3), axis] if turns else [axis, np.cross(arm, axis)]  # fmt: skip
-                        loads.append((numbers[body], sign * np.concatenate(six)))
-                found.append((loads, least, most))
+                for sign, block, at in ((1, one, at1), (-1, other, at2)):
+                    if block is not None:
+                        moment = np.cross(at - place.now[block], force[:3]) + force[3:]
+                        load = sign * np.append(force[:3], moment)
+                        loads.append((block, load))
+                found.append((loads, *bounds))
     return found
 
 
@@ -159,28 +151,29 @@ class _Placement:
 
     def turned(self, pairs, vectors):
         """The mean of directions fixed to both blocks of pairs (k, 2), from the reference state (k, 3)."""
-        turn = lambda side: np.einsum("kij,kj->ki", self.turns[pairs[:, side]], vectors)
-        return 0.5 * (turn(0) + turn(1))
+        return 0.5 * (
+            self._turn(pairs[:, 0], vectors) + self._turn(pairs[:, 1], vectors)
+        )
+
+    def _turn(self, blocks, vectors):
+        return np.einsum("kij,kj->ki", self.turns[blocks], vectors)
 
     def moved(self, pairs, points):
         """The mean of points fixed to both blocks of pairs (k, 2), from the reference state (k, 3)."""
-        ways = []
-        for block in pairs.T:
-            arms = points - self.was[block]
-            ways.append(np.einsum("kij,kj->ki", self.turns[block], arms) + self.now[block])  # fmt: skip
-        return 0.5 * (ways[0] + ways[1])
+        at = lambda side: self._turn(side, points - self.was[side]) + self.now[side]
+        return 0.5 * (at(pairs[:, 0]) + at(pairs[:, 1]))
 
 
 def _strengths(p):
     """Tensile strength, cohesion, friction, compressive strength, and whether a joint never gives way."""
-    cohesion, friction = max(p.cohesion, p.residualCohesion), max(p.friction, p.residualFriction)  # fmt: skip
-    values = p.tensileStrength, cohesion, friction
-    if p.elastic or not p.cap:
-        return *values, math.inf, p.elastic
-    # of eq. (8c) without shear: Cnn σ² - Cn σ = fc²
-    half = p.capLinear / (2 * p.capNormal)
-    crushing = half + math.sqrt(half * half + p.compressiveStrength**2 / p.capNormal)
-    return *values, crushing, p.elastic
+    crushing = math.inf
+    if p.cap and not p.elastic:
+        # of eq. (8c) without shear: Cnn σ² - Cn σ = fc²
+        half, root = p.capLinear / (2 * p.capNormal), p.compressiveStrength**2 / p.capNormal  # fmt: skip
+        crushing = half + math.sqrt(half * half + root)
+    cohesion = max(p.cohesion, p.residualCohesion)
+    friction = max(p.friction, p.residualFriction)
+    return p.tensileStrength, cohesion, friction, crushing, p.elastic
 
 
 def _corners(body, stood):

@@ -15,8 +15,7 @@ import numpy as np
 from ..basics import Refused
 
 LOOSENED = 8  # rounds in which joints without pressure lose their friction, at most
-#: Force on a joint, over the largest, below which nothing presses it [-].
-UNPRESSED = 1e-6
+UNPRESSED = 1e-6  # force on a joint over the largest, below which it is open [-]
 UPRIGHT = 0.5  # cosine between the dead loads and the normal below which a joint is a head joint
 MISSED = 0.02  # share of a mechanism's power that the friction it misses may have [-]
 
@@ -27,9 +26,7 @@ def loosened(assembly, live, dead):
     It begins with the head joints. Then other joints that carry nothing lose their friction, too, and so on.
     """
     smooth, least = _smooth(assembly, dead), None
-    for _ in range(LOOSENED):
-        if smooth is None:
-            break
+    for _ in range(LOOSENED if smooth else 0):
         try:
             bound = smooth.associated(live, dead)
         except Refused:  # without that friction it does not stand, or time is over
@@ -88,12 +85,11 @@ def _smooth(assembly, dead):
     """The same structure without friction in its head joints, which the dead loads do not press together; None if it has
     none."""
     down = np.where(assembly.held[:, :3], 0, dead[:, :3]).sum(axis=0)
-    if not np.linalg.norm(down) > 0:
+    if not down.any():
         return None
     head = np.abs(assembly.normals @ (down / np.linalg.norm(down))) < UPRIGHT
-    if not head.any():
-        return None
-    return replace(assembly, friction=np.where(head, 0, assembly.friction))
+    smooth = replace(assembly, friction=np.where(head, 0, assembly.friction))
+    return smooth if head.any() else None
 
 
 def _belongs(assembly, bound):

@@ -16,8 +16,7 @@ from ..common.background import Failed, Task
 from ..basics import Refused
 
 LIBRARY = "libClp.so.1"
-INTERIOR_POINT = 4  # the number of this method in ClpSolve.hpp of Clp
-NO_PRESOLVE = 1  # the number of the choice not to presolve in ClpSolve.hpp of Clp
+INTERIOR_POINT, NO_PRESOLVE = 4, 1  # numbers of these choices in ClpSolve.hpp of Clp
 MISSED = 1e-7  # largest error of a row in a solution
 STOPPED = 3  # the status of Clp when it has reached its limit of time
 FOREVER = 1e9  # a limit of time that Clp never reaches [s]
@@ -33,22 +32,17 @@ class Late(Unsolved):
     """The time of the solver is over."""
 
 
-def solve(whole, equations, low, high, cost, rows, seconds):
+def solve(whole, limits, seconds):
     """Solve a linear programme in a copy of the process.
 
-    :param whole: its matrix, whose first rows are equations and whose others are limits (csc)
-    :param equations: how many rows are equations
-    :param low: least value of each variable; ``high``: largest; ``cost``: what is made as small as possible
-    :param rows: right-hand sides
-    :param seconds: time that it may take
-    :returns: the variables, and the multipliers of the equations
+    :param whole: its matrix (csc)
+    :param limits: least and largest value of each variable, what is made as small as possible, and the same two of each row
+    :returns: the variables, and the multipliers of the rows
     :raises Unsolved:
     :raises Refused: if Clp is missing, or its process has failed
     """
     seconds = min(seconds, FOREVER)
-    least = np.append(rows[:equations], np.full(len(rows) - equations, -np.inf))
-    limits = low, high, cost, least, rows
-    task = Task(lambda: [_solved(whole, equations, limits, seconds)])
+    task = Task(lambda: [_solved(whole, limits, seconds)])
     try:
         if not task.ready(seconds=seconds + GRACE):
             raise Late
@@ -59,7 +53,7 @@ def solve(whole, equations, low, high, cost, rows, seconds):
         task.end()
 
 
-def _solved(whole, equations, limits, seconds):
+def _solved(whole, limits, seconds):
     try:
         clp = ctypes.CDLL(LIBRARY)
     except OSError:
@@ -96,4 +90,4 @@ def _solved(whole, equations, limits, seconds):
     if status:
         reasons = {1: "it has no solution", 2: "it has no end"}
         raise Unsolved(reasons.get(status, f"Clp ended with status {status}"))
-    return values("Clp_primalColumnSolution"), values("Clp_dualRowSolution")[:equations]
+    return values("Clp_primalColumnSolution"), values("Clp_dualRowSolution")

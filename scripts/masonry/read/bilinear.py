@@ -20,10 +20,8 @@ du. There are two rules:
   forms; here that is at the peak, if nothing else is given. It has no rule for du, which is that of ``masonry``.
 
 The curve of a run is the force that both ends carry at once: in every row of curve.csv the smaller of the force at the supports and
-that at the loaded point, so its peak is ``peak_at_both_ends_kN`` of run.json. This module needs no YADE.
+that at the loaded point, so its peak is ``peak_at_both_ends_kN`` of run.json.
 """
-
-from __future__ import annotations
 
 import math
 import os
@@ -54,9 +52,8 @@ PLATEAU, LONG = 0.95, 0.5
 SMALL = 1e-9
 
 CONVENTION = "a convention for masonry walls"
-ANNEX_B = "EN 1998-1:2004, annex B.3, equation (B.6)"
 #: The rules, and where each comes from.
-RULES = {"masonry": CONVENTION, "en1998": ANNEX_B}
+RULES = {"masonry": CONVENTION, "en1998": "EN 1998-1:2004, annex B.3, equation (B.6)"}
 #: A rule, a share of the peak, and the displacement at which the plastic mechanism forms.
 Rule = Annotated[str, oneOf(*RULES)]
 Share = Annotated[float, number("-", 0, 1, above=True, below=True)]
@@ -110,17 +107,15 @@ class Bilinear:
         """K, Vy, dy, du, mu, and the peak, each with its unit, its meaning and its source."""
         source = RULES[self.rule]
         if self.rule == "masonry":
-            stiff = (
-                f"Secant stiffness at {self.secant:g} of the peak, on the way to it."
-            )
+            line = f"Secant stiffness at {self.secant:g} of the peak, on the way to it."
             force = "Force of the plateau for which both curves have the same area up to the ultimate displacement."
         else:
-            stiff = "Yield force over yield displacement."
+            line = "Yield force over yield displacement."
             force = f"Force at which the plastic mechanism forms, at {self.mechanism:.4g} mm."
         ultimate = f"Displacement after the peak at which the force has fallen to {self.fall:g} of it."
         missing = self.unreached
         return [
-            Number("bilinear_stiffness_kN_per_mm", self.stiffness, "kN/mm", stiff, source),
+            Number("bilinear_stiffness_kN_per_mm", self.stiffness, "kN/mm", line, source),
             Number("yield_force_kN", self.yieldForce, "kN", force, source),
             Number("yield_displacement_mm", self.yieldDisplacement, "mm", "Displacement at which the elastic line reaches the yield force.", source),
             Number("ultimate_displacement_mm", self.ultimateDisplacement, "mm", ultimate, CONVENTION, missing),
@@ -130,20 +125,20 @@ class Bilinear:
         ]  # fmt: skip
 
 
-def _crossing(moved, force, level, row):
-    """Displacement at which the line from the row before to this row has a force."""
-    if row == 0 or force[row] == force[row - 1]:
-        return float(moved[row])
+def _reached(moved, force, level):
+    """Displacement at which the force first reaches a level, on the line between rows."""
+    row = int((force >= level).argmax())
+    if row == 0:
+        return float(moved[0])
     share = (level - force[row - 1]) / (force[row] - force[row - 1])
     return float(moved[row - 1] + share * (moved[row] - moved[row - 1]))
 
 
 def _area(moved, force, end):
     """Area under a curve from its beginning to a displacement, and the force there."""
-    inside = moved < end
-    last = float(np.interp(end, moved, force))
-    d, f = np.append(moved[inside], end), np.append(force[inside], last)
-    return loops.area(f, d), last
+    inside, last = moved < end, float(np.interp(end, moved, force))
+    area = loops.area(np.append(force[inside], last), np.append(moved[inside], end))
+    return area, last
 
 
 def _checked(moved, force):
@@ -179,7 +174,7 @@ def _checked(moved, force):
 def _secant(moved, force, share):
     """The secant stiffness at a share of the peak, on the way to it."""
     level = share * float(force.max())
-    upper = _crossing(moved, force, level, int(np.flatnonzero(force >= level)[0]))
+    upper = _reached(moved, force, level)
     if upper <= 0:
         raise Refused(
             f"the curve has {share:g} of its peak at its first row: there is no stiffness"
@@ -300,8 +295,7 @@ def _annexB(moved, force, forms, end):
 def _onPlateau(moved, force, forms, stiffness):
     """A sentence if the curve is nearly at its peak long before, so that the stiffness of annex B.3 depends on where within the
     plateau the peak happens to be; else nothing."""
-    level = PLATEAU * float(force.max())
-    early = _crossing(moved, force, level, int(np.flatnonzero(force >= level)[0]))
+    early = _reached(moved, force, PLATEAU * float(force.max()))
     work, highest = _area(moved, force, early)
     yields = 2 * (early - work / highest)
     if early > LONG * forms or yields <= 0:
@@ -323,9 +317,6 @@ def _equalArea(stiffness, end, area):
             "another share of the peak (secant=)"
         )
     return stiffness * (end - math.sqrt(max(rest, 0.0)))
-
-
-# -- of a run ---------------------------------------------------------------------------------------------------------
 
 
 @dataclass(frozen=True)
@@ -365,19 +356,19 @@ def pushover(directory: FilePath, column: str | None = None) -> Pushover:
         raise Refused(
             f"{directory}: the run goes along a history of loading, there and back, and a bilinear curve is of one push"
         )
-    heads = (MOVED, BASE, TOP)
-    missing = [head for head in heads if data.column(head) is None]
+    missing = [head for head in (MOVED, BASE, TOP) if data.column(head) is None]
     with filesOf(directory):
         if missing or not data.isPush:
             why = f": curve.csv has no column {', '.join(missing)}" if missing else ""
             raise Refused(f"{directory}: the run has no push{why}")
-        notes = []
+        notes: tuple[str, ...] = ()
         if run.get("too_fast"):
-            notes.append(
-                f"the push was too fast: {100 * run['dynamic_imbalance']:.2g} % of the force did not reach the supports"
+            share = 100 * run["dynamic_imbalance"]
+            notes = (
+                f"the push was too fast: {share:.2g} % of the force did not reach the supports",
             )
         moved = np.array(data[MOVED])
-        return Pushover(str(directory), data, moved, data.carried(), tuple(notes))
+        return Pushover(str(directory), data, moved, data.carried(), notes)
 
 
 def _pushOf(value, first=None):
@@ -409,14 +400,14 @@ def ofRun(
         found = bilinear(*curve, rule, secant, fall, mechanism, push.data.pulse)
     except Refused as refused:
         raise Refused(f"{push.directory}: {refused}") from None
-    unreached = found.unreached
-    if unreached and push.data.collapse is not None:
-        unreached = (
-            f"not reached: the structure collapsed at {found.ultimateDisplacement:.4g} mm before the force had fallen to {fall:g} of its "
-            "peak, so the ultimate displacement is that of the collapse"
-        )
-    remarks = (*found.remarks, *push.notes)
-    return replace(found, unreached=unreached, remarks=remarks)
+    found = replace(found, remarks=(*found.remarks, *push.notes))
+    if not found.unreached or push.data.collapse is None:
+        return found
+    unreached = (
+        f"not reached: the structure collapsed at {found.ultimateDisplacement:.4g} mm before the force had fallen to {fall:g} of its "
+        "peak, so the ultimate displacement is that of the collapse"
+    )
+    return replace(found, unreached=unreached)
 
 
 @validated

@@ -1,13 +1,10 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Curves of several runs and of measured CSV files over each other, in one picture. This module needs no YADE."""
-
-from __future__ import annotations
+"""Curves of several runs and of measured CSV files over each other, in one picture."""
 
 import argparse
 import csv
 import math
 import os
-import sys
 from typing import Any, Sequence
 
 import numpy as np
@@ -15,7 +12,7 @@ import numpy as np
 from ..common.arguments import FilePath
 from ..basics import Refused, say
 from . import drawing
-from .files import readCurve, readRun
+from .files import program, readCurve, readRun
 
 #: Colours that differ in print, also for those who do not tell red from green (Okabe and Ito, 2008), and dashes.
 COLOURS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#555555"]
@@ -46,14 +43,11 @@ def readMeasured(text: str) -> tuple[np.ndarray, np.ndarray, list[str]]:
         raise Refused(f"{path}: there must be a line of names and two of numbers")
     mark = max(",;\t", key=lines[0].count)
     names = [name.strip() for name in next(csv.reader(lines[:1], delimiter=mark))]
-    places = []
+    numbered = {str(n + 1): n for n in range(len(names))}
     for name in wanted:
-        if name in names:
-            places.append(names.index(name))
-        elif name.isdigit() and 1 <= int(name) <= len(names):
-            places.append(int(name) - 1)
-        else:
+        if name not in names and name not in numbered:
             raise Refused(f"{path}: there is no column {name}, there are {', '.join(names)}")  # fmt: skip
+    places = [names.index(n) if n in names else numbered[n] for n in wanted]
     rows = []
     for number, row in enumerate(csv.reader(lines[1:], delimiter=mark), start=2):
         cells = [row[p].strip() if p < len(row) else "" for p in places]
@@ -61,10 +55,10 @@ def readMeasured(text: str) -> tuple[np.ndarray, np.ndarray, list[str]]:
             continue
         try:
             rows.append([float(cell) for cell in cells])
+            if not all(map(math.isfinite, rows[-1])):
+                raise ValueError("a number is not finite")
         except ValueError as error:
             raise Refused(f"{path}, row {number}: {error}") from None
-        if not all(map(math.isfinite, rows[-1])):
-            raise Refused(f"{path}, row {number}: a number is not finite")
     if len(rows) < 2:
         raise Refused(f"{path}: fewer than two rows have both columns")
     x, y = np.array(rows).T
@@ -73,7 +67,7 @@ def readMeasured(text: str) -> tuple[np.ndarray, np.ndarray, list[str]]:
 
 def readRuns(
     directories: Sequence[FilePath], x: str | None = None, y: str | None = None
-) -> tuple[list[Any], list[str]]:
+) -> tuple[list[Any], list[str] | None]:
     """Curves of runs: a list of (x, y) arrays, and the labels of both axes.
 
     :param directories: folders of runs
@@ -95,7 +89,7 @@ def readRuns(
             raise Refused(f'{directory}: run.json has no entry "figure": name the columns by --x and --y')  # fmt: skip
         if labels is None:
             x, y = x or spec["x"]["column"], y or spec["y"][0]["column"]
-            labels = [_label(name, run) for name in (x, y)]
+            labels = [_label(name, spec) for name in (x, y)]
         for name in (x, y):
             if name not in data:
                 raise Refused(f"{directory}: curve.csv has no column {name}, it has {', '.join(data)}")  # fmt: skip
@@ -103,15 +97,14 @@ def readRuns(
     return curves, labels
 
 
-def _label(column, run):
+def _label(column, spec):
     """Label of an axis: that of curve.png if it has the column, else what the column is called."""
-    spec = run.get("figure", {})
     if spec and spec["x"]["column"] == column:
         return spec["x"]["label"]
     if spec and spec["y"][0]["column"] == column and spec.get("y_label"):
         return spec["y_label"]
-    words = column.split("_")
-    return f"{' '.join(words[:-1])} [{words[-1]}]" if len(words) > 1 else column
+    words, _, unit = column.replace("_", " ").rpartition(" ")
+    return f"{words} [{unit}]" if words else column
 
 
 def compare(
@@ -191,8 +184,9 @@ def _names(directories, measured):
     return names
 
 
-def main(words: Sequence[str] | None = None) -> int:
-    """The program ``scripts/plot.py``. Returns its exit status."""
+@program
+def main(words: Sequence[str] | None = None) -> None:
+    """The program ``scripts/plot.py``."""
     parser = argparse.ArgumentParser(
         description="Draw curves of runs and of measured CSV files over each other."
     )
@@ -204,9 +198,4 @@ def main(words: Sequence[str] | None = None) -> int:
     parser.add_argument("--title", default="", help="of the picture")
     parser.add_argument("--out", default="plot.png", help=".png, .pdf or .svg file (default plot.png)")  # fmt: skip
     args = parser.parse_args(words)
-    try:
-        say(compare(args.result, args.csv, args.x, args.y, args.label, args.out, args.title))  # fmt: skip
-    except Refused as problem:
-        say(problem, sys.stderr)
-        return 2
-    return 0
+    say(compare(args.result, args.csv, args.x, args.y, args.label, args.out, args.title))  # fmt: skip

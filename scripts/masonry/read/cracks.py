@@ -2,11 +2,8 @@
 """Where joints are cracked, open, slid or crushed, and how a wall gave way: numbers of its joints at one moment.
 
 Joints are given as a frame, a dict of arrays: of a file for ParaView (:func:`masonry.read.frames.readFrame`), or of a scene
-that stands in YADE (``MasonryVtkRecorder().joints()``). Figures and numbers have their thresholds from here. This module
-needs no YADE.
+that stands in YADE (``MasonryVtkRecorder().joints()``). Figures and numbers have their thresholds from here.
 """
-
-from __future__ import annotations
 
 import math
 from typing import Any, Sequence
@@ -127,15 +124,9 @@ def centresOf(points: np.ndarray, cells: Sequence[np.ndarray]) -> np.ndarray:
     :param points: corners (n, 3) [m]
     :param cells: the numbers of the corners of each
     """
-    # cells with as many corners are looked at together
     counts = np.fromiter(map(len, cells), int, len(cells))
-    corners, starts = np.concatenate(cells), np.cumsum(counts) - counts
-    centres = np.empty((len(cells), 3))
-    for count in np.unique(counts):
-        alike = counts == count
-        members = corners[starts[alike, None] + np.arange(count)]
-        centres[alike] = points[members].mean(axis=1)
-    return centres
+    sums = np.add.reduceat(points[np.concatenate(cells)], np.cumsum(counts) - counts)
+    return sums / counts[:, None]
 
 
 def diagonalReach(bed: np.ndarray, upright: np.ndarray) -> int:

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """curve.png: what the entry ``figure`` of run.json says, and the energies. This module needs no YADE."""
 
-from __future__ import annotations
-
 import os
 import re
 from typing import Any
@@ -48,9 +46,7 @@ def energies(data: dict[str, Any]) -> tuple[dict[str, Any], Any]:
 
     :param data: dict of column name -> array; what has an energy ends in ``_J``
     """
-    since = {
-        k[:-2]: v - v[0] for k, v in data.items() if k.endswith("_J") and len(v) > 1
-    }
+    since = {k[:-2]: v - v[0] for k, v in data.items() if k[-2:] == "_J" and len(v) > 1}
     work = [since.pop(name) for name in ("external", "gravity") if name in since]
     elastic = [since.pop(name) for name in list(since) if name.startswith("elastic_")]
     stack = {"elastic": sum(elastic)} if elastic else {}

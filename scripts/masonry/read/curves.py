@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Numbers of a curve of force over displacement. This module needs no YADE."""
-
-from __future__ import annotations
+"""Numbers of a curve of force over displacement."""
 
 import math
 from typing import Any, Callable
@@ -66,21 +64,15 @@ def stiffness(displacement: Numbers, force: Numbers, ramp: int = 0) -> float:
     if not force:
         return 0.0
     before = force[0] if abs(force[0]) > 0.01 * max(force) else 0.0
-    moved = [u - displacement[0] for u in displacement]
     ramp = min(max(ramp, 1), len(force) - 1)
-    peak, grown = max(force) - before, moved[ramp]
-    first = [(u, f - before) for u, f in zip(moved[ramp:], force[ramp:])]
-    end = next(
-        (
-            n
-            for n, (u, f) in enumerate(first)
-            if (f > 0.25 * peak and u >= 2 * grown)
-            or (f > peak / 3 and u >= 1.1 * grown)
-        ),
-        len(first) - 1,
-    )
-    squares = sum(u * u for u, _ in first[: end + 1])
-    return sum(u * f for u, f in first[: end + 1]) / squares if squares else 0.0
+    peak, grown = max(force) - before, displacement[ramp] - displacement[0]
+    work = squares = 0.0
+    for u, f in zip(displacement[ramp:], force[ramp:]):
+        u, f = u - displacement[0], f - before
+        work, squares = work + u * f, squares + u * u
+        if (f > 0.25 * peak and u >= 2 * grown) or (f > peak / 3 and u >= 1.1 * grown):
+            break
+    return work / squares if squares else 0.0
 
 
 def suddenLoss(displacement: Numbers, top: Numbers, base: Numbers) -> tuple[float, float]:  # fmt: skip
@@ -106,23 +98,16 @@ def fallen(displacement: Any, force: Any, at: int, level: float, pulse: float) -
     :param at: number of the row
     :param pulse: a displacement
     """
-    below, row = force < level, at
-    while True:
-        under = np.flatnonzero(below[row:])
-        if not len(under):
-            return None
-        first = row + int(under[0])
-        back = np.flatnonzero(~below[first:])
-        last = first + int(back[0]) if len(back) else len(force) - 1
-        place = float(first)
+    below = (np.arange(len(force)) >= at) & (force < level)
+    changes = np.flatnonzero(np.diff(below, prepend=False, append=False))
+    for first, back in changes.reshape(-1, 2):
+        last, place = min(back, len(force) - 1), float(first)
         if first and force[first] != force[first - 1]:
             place += (level - force[first]) / (force[first] - force[first - 1])
         down = np.interp(place, np.arange(len(force)), displacement)
         if pulse == 0 or displacement[last] - down > pulse:
-            return place
-        if not len(back):
-            return None
-        row = last
+            return float(place)
+    return None
 
 
 def stillGrows(displacement: Numbers, force: Numbers) -> bool:
@@ -168,14 +153,12 @@ def firstCrack(
     :param column: function of the name of a column of curve.csv that gives its values
     :param rows: those of the push, a slice
     """
-    of = lambda *names: [sum(row) for row in zip(*(column(n)[rows] for n in names))]
-    lost = of("dissipated_tension_J", "dissipated_shear_J")
+    of = lambda *names: np.array([column(f"{n}_J")[rows] for n in names]).sum(axis=0)
+    lost = of("dissipated_tension", "dissipated_shear")
     parts = "tension", "shear", "compression", "units"
-    elastic = of(*(f"elastic_{part}_J" for part in parts))
-    for row, (taken, held) in enumerate(zip(lost, elastic)):
-        if taken - lost[0] > CRACKED * held:
-            return row + (rows.start or 0)
-    return None
+    elastic = of(*(f"elastic_{part}" for part in parts))
+    cracked = np.flatnonzero(lost - lost[:1] > CRACKED * elastic)
+    return int(cracked[0]) + (rows.start or 0) if len(cracked) else None
 
 
 def cycleNumbers(
@@ -200,21 +183,14 @@ def cycleNumbers(
     found = []
     for cycle in loops.cycles(moved, base, threshold):
         start, end = cycle.start, cycle.end
-        grown = lambda values: float(
-            loops.stretch(values, start, end)[[0, -1]] @ [-1, 1]
-        )
-        known = cycle._asdict()
-        del known["start"], known["end"]
-        numbers = {n: None if math.isnan(value) else value for n, value in known.items()}  # fmt: skip
-        found.append(
-            dict(
-                rows=[math.ceil(start), math.floor(end)],
-                **numbers,
-                top_work_J=loops.work(moved, top, start, end),
-                dissipated_J=grown(dissipated),
-                damped_J=grown(damping),
-            )
-        )
+        ends = lambda values: loops.stretch(values, start, end)[[0, -1]]
+        one: dict[str, Any] = {"rows": [math.ceil(start), math.floor(end)]}
+        for name, value in zip(cycle._fields[2:], cycle[2:]):
+            one[name] = None if math.isnan(value) else value
+        one["top_work_J"] = loops.work(moved, top, start, end)
+        one["dissipated_J"] = float(ends(dissipated) @ [-1, 1])
+        one["damped_J"] = float(ends(damping) @ [-1, 1])
+        found.append(one)
     return found
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Pictures by matplotlib without a window, written whole or not at all. This module needs no YADE."""
+"""Pictures by matplotlib without a window, written whole or not at all."""
 
 import contextlib
 import io
@@ -17,24 +17,21 @@ def empty(width, height):
     return Figure(figsize=(width, height))
 
 
-def style():
-    """The settings of matplotlib that all figures are drawn with, whatever the caller has set: a context."""
+def style(settings=()):
+    """The settings of matplotlib that all figures are drawn with, whatever the caller has set: a context.
+
+    :param settings: more of them, a dict
+    """
     needed("matplotlib")
     import matplotlib.style
 
-    return matplotlib.style.context("default")
+    return matplotlib.style.context(["default", dict(settings)])
 
 
 @contextlib.contextmanager
 def picture(path, width, height, dpi, settings=()):
-    """A figure [inch] that is written at the end of its block.
-
-    :param settings: of matplotlib, a dict, beside those of :func:`style`
-    """
-    with style():
-        import matplotlib
-
-        matplotlib.rcParams.update(settings)
+    """A figure [inch] that is written at the end of its block; ``settings`` are those of :func:`style`."""
+    with style(settings):
         figure = empty(width, height)
         yield figure
         figure.tight_layout()

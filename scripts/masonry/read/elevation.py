@@ -1,16 +1,14 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Elevations of a structure: what is built, cracks.png, and the mechanism of limit analysis. This module needs no YADE."""
-
-from __future__ import annotations
+"""Elevations of a structure: what is built, cracks.png, and the mechanism of limit analysis."""
 
 import copy
+import functools
 import os
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
-from ..common.arguments import FilePath
 from ..basics import Refused
 from ..bricks.geometry import Alike, Solids, boxCorners
 from . import drawing
@@ -20,16 +18,8 @@ from .files import readCurve, readRun
 from .frames import frameAt, frameTimes, readFrame
 
 from .painting import GHOST, MORTAR, SHADES, TIES, Painting, fromBackToFront  # fmt: skip
-from .views import (
-    FROM_ABOVE,
-    IN_SPACE,
-    REACH,
-    courseOf,
-    magnificationOf,
-    scaleText,
-    spaceViewOf,
-    viewOf,
-)
+from .views import FROM_ABOVE, IN_SPACE, REACH, courseOf, magnificationOf, scaleText
+from .views import spaceViewOf, viewOf
 
 #: A block of a part is in an elevation if it reaches into the depth of the façade by this share of its own depth or of the
 #: façade's; what belongs to no part, as a platen, if it touches this depth.
@@ -40,31 +30,24 @@ LONGEST = 80  # of the scale on paper [1/72 inch]
 
 @dataclass
 class Structure:
-    """Blocks and joints at one moment.
+    """Blocks and joints at one moment."""
 
-    - ``blocks``, ``joints``: as :func:`masonry.read.frames.readFrame` gives them; ``joints`` is None where there are none to show
-    - ``parts``: name -> ids of bodies, the façades first of all; all blocks are one part if it is empty
-    - ``shades``: key of :data:`SHADES` by the id of a body; others are bricks
-    - ``names``: texts that stand on bodies, by their ids
-    - ``sights``: directions of sight by part; ``ground``: the body on which blocks fall, or None: it is drawn as far as needed
-    - ``seams``: numbers of the kinds of joints inside units, which are not drawn unless they crack
-    - ``still``: displacement that is taken off all others [m]
-    - ``ties``: entries of run.json
-    """
-
-    blocks: dict[str, Any]
-    joints: dict[str, Any] | None
+    blocks: dict[str, Any]  #: as :func:`masonry.read.frames.readFrame` gives them
+    joints: dict[str, Any] | None  #: likewise; None where there are none to show
+    #: name -> ids of bodies, the façades first of all; all blocks are one part if it is empty
     parts: dict[str, list[int]] = field(default_factory=dict)
+    #: key of :data:`SHADES` by the id of a body; others are bricks
     shades: dict[int, str] = field(default_factory=dict)
-    names: dict[int, str] = field(default_factory=dict)
-    sights: dict[str, Any] = field(default_factory=dict)
-    ground: int | None = None
+    names: dict[int, str] = field(default_factory=dict)  #: texts that stand on bodies
+    sights: dict[str, Any] = field(default_factory=dict)  #: directions by part
+    ground: int | None = None  #: on which blocks fall; it is drawn as far as needed
+    #: numbers of the kinds of joints inside units, which are not drawn unless they crack
     seams: tuple[int, ...] = ()
-    still: Any = 0.0
-    ties: list[dict[str, Any]] = field(default_factory=list)
+    still: Any = 0.0  #: displacement that is taken off all others [m]
+    ties: list[dict[str, Any]] = field(default_factory=list)  #: entries of run.json
 
     def __post_init__(self):
-        cells: dict[int, list[Any]] = {}
+        cells = {}
         for body, cell in zip(self.blocks["body"], self.blocks["cells"]):
             cells.setdefault(int(body), []).append(cell)
         #: numbers of the points of every block, by the id of its body
@@ -72,7 +55,6 @@ class Structure:
         self.moved = self.blocks["displacement"] - self.still
         if self.ground in self.corners:
             self._lay()
-        self._cracks: dict[int, list[Any]] | None = None
 
     def _lay(self):
         """Let the ground be a slab that is as large as what stands and lies on it."""
@@ -101,23 +83,24 @@ class Structure:
 
         return own[np.sort(ConvexHull(self.blocks["points"][own]).vertices)]
 
-    def cracks(self, body):
-        """What is cracked or crushed on a block, or is a seam, with each point of its joints: the kind of crack, "seam" or None;
-        the crushing, or None [m]; the corners as built [m]; and their displacements with this block [m].
+    @functools.cached_property
+    def cracks(self):
+        """What is cracked or crushed on each block, or is a seam, by the id of its body, with each point of its joints: the kind of
+        crack, "seam" or None; the crushing, or None [m]; the corners as built [m]; and their displacements with this block [m].
         """
-        j = self.joints
-        if self._cracks is None:
-            self._cracks = {}
-            _, opened, cracked = widths(j) if j else ((), (), np.zeros(0, bool))
-            spoilt = crushed(j) if j else cracked
-            seam = np.isin(j["kind"], self.seams) & ~cracked if j and self.seams else spoilt & False  # fmt: skip
-            for i in np.flatnonzero(cracked | spoilt | seam):
-                kind = ("slid", "open")[int(opened[i])] if cracked[i] else "seam" if seam[i] else None  # fmt: skip
-                cell, closure = j["cells"][i], j["crushing"][i] if spoilt[i] else None
-                for own, name in zip(j["bodies"][i], ("displacement", "second_displacement")):  # fmt: skip
-                    crack = kind, closure, j["points"][cell], j[name][cell] - self.still
-                    self._cracks.setdefault(int(own), []).append(crack)
-        return self._cracks.get(body, [])
+        j, found = self.joints, {}
+        if not j:
+            return found
+        _, opened, cracked = widths(j)
+        spoilt = crushed(j)
+        seam = np.isin(j["kind"], self.seams) & ~cracked if self.seams else spoilt & False  # fmt: skip
+        for i in np.flatnonzero(cracked | spoilt | seam):
+            kind = ("slid", "open")[int(opened[i])] if cracked[i] else "seam" if seam[i] else None  # fmt: skip
+            cell, closure = j["cells"][i], j["crushing"][i] if spoilt[i] else None
+            for own, name in zip(j["bodies"][i], ("displacement", "second_displacement")):  # fmt: skip
+                crack = kind, closure, j["points"][cell], j[name][cell] - self.still
+                found.setdefault(int(own), []).append(crack)
+        return found
 
 
 class Elevation:
@@ -182,13 +165,10 @@ class Elevation:
             painting.block(g.corners[row], g.faces, g.normals[row], colour)
             planes = before.normals[row], before.offsets[row]
             near = 1e-4 * built.diagonal[n]
-            painting.cracks(
-                s.cracks(body), planes, g.normals[row], near, magnification, colour
-            )
+            cracks = s.cracks.get(body, ())
+            painting.cracks(cracks, planes, g.normals[row], near, magnification, colour)
         painting.finish(axes, self.flat, s.joints is not None)
-        for shade in sorted(
-            {s.shades[body] for body in self.bodies if body in s.shades}
-        ):
+        for shade in sorted({s.shades[b] for b in self.bodies if b in s.shades}):
             axes.add_collection(PolyCollection([], facecolor=SHADES[shade], edgecolor=MORTAR, label=shade))  # fmt: skip
         for body in set(s.names) & set(self.bodies):
             middle = self.flat(s.blocks["points"][s.corners[body]]).mean(axis=0)
@@ -221,8 +201,7 @@ class Elevation:
     def _tie(self, tie, magnification):
         s, ends = self.structure, []
         for body, end in zip(tie["bodies"], np.array(tie["ends_m"])):
-            moved = np.zeros(3)
-            # it moves with its corners; without one it is held by the ground
+            moved = np.zeros(3)  # it is held by the ground, or moves with its corners
             if body in s.corners:
                 nodes = s.corners[body]
                 arms = s.blocks["points"][nodes] - end
@@ -232,19 +211,16 @@ class Elevation:
         return ends
 
 
-def elevationsOf(structure: Structure) -> list[Elevation]:
+def elevationsOf(structure):
     """One elevation for each façade: the largest parts first, and none for a part that is seen in another one's or is held."""
     stands = lambda part: any(structure.shades.get(body) != "held" for body in part)
     parts = {n: part for n, part in structure.parts.items() if stands(part)} or {"": list(structure.corners)}  # fmt: skip
-    found: list[Elevation] = []
-    seen: set[int] = set()
+    found, seen = {}, set()
     for name, members in sorted(parts.items(), key=lambda part: -len(part[1])):
-        if len(seen & set(members)) > 0.5 * len(members):
-            continue
-        found.append(_facade(structure, name, members))
-        seen |= set(found[-1].bodies)
-    order = list(parts)
-    return sorted(found, key=lambda one: order.index(one.name))
+        if len(seen.intersection(members)) <= 0.5 * len(members):
+            found[name] = _facade(structure, name, members)
+            seen.update(found[name].bodies)
+    return [found[name] for name in parts if name in found]
 
 
 def _facade(structure, name, members):
@@ -252,24 +228,24 @@ def _facade(structure, name, members):
     points, joints = structure.blocks["points"], structure.joints
     normals, areas = np.zeros((0, 3)), np.zeros(0)
     if joints:
-        inside = np.isin(joints["bodies"], members).all(axis=1)
-        normals, areas = joints["normal"][inside], joints["area"][inside]
+        own = np.isin(joints["bodies"], members).all(axis=1)
+        normals, areas = joints["normal"][own], joints["area"][own]
     nodes = structure.points(members)
     view = viewOf(points[nodes], normals, areas, structure.sights.get(name))
     depth = points @ view.towards
     near, far = depth[nodes].max(), depth[nodes].min()
     parted = {body for part in structure.parts.values() for body in part}
-    bodies = []
-    for body, own in structure.corners.items():
+
+    def reaches(body, own):
         high, low = depth[own].max(), depth[own].min()
-        common = min(high, near) - max(low, far)
         inside = INSIDE if body in parted else -1e-6
-        if common >= inside * min(high - low, near - far):
-            bodies.append(body)
+        return min(high, near) - max(low, far) >= inside * min(high - low, near - far)
+
+    bodies = [body for body, own in structure.corners.items() if reaches(body, own)]
     return Elevation(structure, name, view, bodies, members)
 
 
-def figureOf(structure: Structure, title: str, magnification: float | None = None, later: Any = None) -> Any:  # fmt: skip
+def figureOf(structure, title, magnification=None, later=None):
     """A figure of all façades in one scale, to be drawn and saved in :func:`masonry.read.drawing.style`: the deformed structure,
     magnified, over the undeformed one, with its cracks. What moves across a façade, is seen from above or falls is seen in space,
     too.
@@ -287,10 +263,10 @@ def figureOf(structure: Structure, title: str, magnification: float | None = Non
     front = max(elevations, key=lambda one: (one.across, len(one.bodies))).view.towards
     names = {one.view.name for one in elevations}
     across = FROM_ABOVE in names or any(one.across for one in elevations)
-    inSpace = (
-        [("", structure, magnification)] if across and IN_SPACE not in names else []
-    )
-    for moment, one, m in [*inSpace, *([(*later, 1)] if later else [])]:
+    moments = [(*later, 1)] if later else []
+    if across and IN_SPACE not in names:
+        moments.insert(0, ("", structure, magnification))
+    for moment, one, m in moments:
         nodes = one.points(one.corners)
         view = spaceViewOf(front, one.blocks["points"][nodes], one.moved[nodes])
         elevations.append(Elevation(one, "", view, list(one.corners), moment=moment))
@@ -299,25 +275,22 @@ def figureOf(structure: Structure, title: str, magnification: float | None = Non
     sizes = np.array([high - low for low, high in boxes])
     columns = max(range(1, len(sizes) + 1), key=lambda n: _scale(sizes, n))
     scale = _scale(sizes, columns)
-    rows = [range(n, min(n + columns, len(sizes))) for n in range(0, len(sizes), columns)]  # fmt: skip
     wides = [scale * max(sizes[c::columns, 0]) for c in range(columns)]
-    highs = [scale * max(sizes[n, 1] for n in row) for row in rows]
+    highs = [scale * max(sizes[n : n + columns, 1]) for n in range(0, len(sizes), columns)]  # fmt: skip
     # inches for labels beside and below each, for the legend at the right, and for the title
     above = 0.85 if title else 0.3
-    width, height = max(sum(wides) + 0.85 * columns + 1.6, 7.0), sum(highs) + 0.75 * len(rows) + above  # fmt: skip
-    figure = drawing.empty(width, height)
-    y, handles = height - above, {}
-    for row, high in zip(rows, highs):
-        x, y = 0.7, y - high
-        for n, wide in zip(row, wides):
-            w, h = scale * sizes[n]
-            axes = figure.add_axes([x / width, y / height, w / width, h / height])
-            elevations[n].draw(axes, scales[n], 72 * scale)
-            head = f"{elevations[n].name if len(sizes) > 1 else ''} {elevations[n].note}"  # fmt: skip
-            axes.set_title(head.strip(), fontsize=9, pad=3)
-            handles.update((label, handle) for handle, label in zip(*axes.get_legend_handles_labels()))  # fmt: skip
-            x += wide + 0.85
-        y -= 0.75
+    width, height = max(sum(wides) + 0.85 * columns + 1.6, 7.0), sum(highs) + 0.75 * len(highs) + above  # fmt: skip
+    figure, handles = drawing.empty(width, height), {}
+    for n, one in enumerate(elevations):
+        row, column = divmod(n, columns)
+        x = 0.7 + sum(wides[:column]) + 0.85 * column
+        y = height - above - sum(highs[: row + 1]) - 0.75 * row
+        w, h = scale * sizes[n]
+        axes = figure.add_axes([x / width, y / height, w / width, h / height])
+        one.draw(axes, scales[n], 72 * scale)
+        head = f"{one.name if len(sizes) > 1 else ''} {one.note}".strip()
+        axes.set_title(head, fontsize=9, pad=3)
+        handles.update((label, handle) for handle, label in zip(*axes.get_legend_handles_labels()))  # fmt: skip
     if title:
         if structure.joints is not None:  # else nothing has moved
             title = title.replace("{}", scaleText(structure.joints, magnification))
@@ -335,10 +308,7 @@ def _scale(sizes, columns):
     return min((10.0 - 0.85 * columns) / wide, (9.5 - 0.75 * rows) / high, 7.2 / wide if len(sizes) == 1 else np.inf)  # fmt: skip
 
 
-# -- of a run ---------------------------------------------------------------------------------------------------------
-
-
-def structureOf(run: dict[str, Any], blocks: dict[str, Any], joints: dict[str, Any] | None, directory: FilePath) -> Structure:  # fmt: skip
+def structureOf(run, blocks, joints, directory):
     """The blocks and joints of a frame with what run.json says of them. Raises Refused.
 
     :param run: entries of run.json: ``parts``, ``views``, ``targets``, ``ties``, ``reference_body`` and ``ground_body``
@@ -346,7 +316,8 @@ def structureOf(run: dict[str, Any], blocks: dict[str, Any], joints: dict[str, A
     """
     bodies = set(map(int, blocks["body"]))
     parts, reference = run.get("parts") or {}, run.get("reference_body")
-    wrong = {body for part in parts.values() for body in part} - bodies
+    members = {body for part in parts.values() for body in part}
+    wrong, ground = members - bodies, run.get("ground_body")
     still = np.zeros(3)
     if reference is not None:
         nodes = [c for b, c in zip(blocks["body"], blocks["cells"]) if b == reference]
@@ -356,43 +327,29 @@ def structureOf(run: dict[str, Any], blocks: dict[str, Any], joints: dict[str, A
             wrong.add(reference)
     if wrong:
         raise Refused(f"{directory}: run.json names bodies {sorted(wrong)[:10]}, which are not in the ParaView files")  # fmt: skip
-    for name, members in parts.items():
-        if not members:
+    for name, part in parts.items():
+        if not part:
             raise Refused(f"{directory}: parts: {name} has no bodies")
-    masonry = {body for part in parts.values() for body in part} or bodies
-    held = {one["body"]: "held" for one in run.get("targets") or [] if one.get("held")}
-    return Structure(
-        blocks,
-        joints,
-        parts,
-        {
-            **held,
-            **dict.fromkeys(bodies - masonry - {run.get("ground_body")}, "platen"),
-        },
-        sights=run.get("views") or {},
-        ground=run.get("ground_body"),
-        seams=tuple(
-            n for n, kind in enumerate(run.get("kinds") or []) if kind == CRACK_SURFACE
-        ),  # fmt: skip
-        still=still,
-        ties=run.get("ties") or [],
-    )
+    targets, kinds = run.get("targets") or [], run.get("kinds") or []
+    shades = {one["body"]: "held" for one in targets if one.get("held")}
+    shades.update(dict.fromkeys(bodies - (members or bodies) - {ground}, "platen"))
+    seams = tuple(n for n, kind in enumerate(kinds) if kind == CRACK_SURFACE)
+    more = dict(sights=run.get("views") or {}, ties=run.get("ties") or [], still=still)
+    return Structure(blocks, joints, parts, shades, ground=ground, seams=seams, **more)
 
 
-def cracksOf(run: dict[str, Any], blocks: dict[str, Any], joints: dict[str, Any], when: str, directory: FilePath, later: Any = None) -> Any:  # fmt: skip
+def cracksOf(run, blocks, joints, when, directory, later=None):
     """The figure of cracks.png. Cracks are red, joints that slid are blue, and crushed spots are black. Raises Refused.
 
     :param when: text that names the moment of the frame; ``later`` is as in :func:`figureOf`; the others are those of
         :func:`structureOf`
     """
-    title = (
-        f"{run['title']}\n{when}\n{{}}; "
-        f"open or slid more than {1e3 * CRACK:g} mm, crushed more than {1e3 * CRUSHED:g} mm"
-    )
+    limits = f"open or slid more than {1e3 * CRACK:g} mm, crushed more than {1e3 * CRUSHED:g} mm"
+    title = f"{run['title']}\n{when}\n{{}}; {limits}"
     return figureOf(structureOf(run, blocks, joints, directory), title, later=later)
 
 
-def cracksOfFrame(run: dict[str, Any], directory: FilePath, number: int | None = None) -> Any:  # fmt: skip
+def cracksOfFrame(run, directory, number=None):
     """The figure of cracks.png of a frame that a run has left; of a run that followed a collapse, with its end beside it.
 
     :param run: entries of run.json
@@ -400,15 +357,15 @@ def cracksOfFrame(run: dict[str, Any], directory: FilePath, number: int | None =
     """
     last = len(frameTimes(directory)) - 1
     chosen = frameOfCracks(run, directory) if number is None else number % (last + 1)
-    later, of = None, lambda kind, frame: readFrame(directory, kind, frame)
+    later, frames = None, lambda n: [readFrame(directory, k, n) for k in ("blocks", "joints")]  # fmt: skip
     if number is None and chosen != last:
-        end = structureOf(run, of("blocks", last), of("joints", last), directory)
+        end = structureOf(run, *frames(last), directory)
         later = f"{whenOf(run, directory, last)}, true to scale", end
     when = whenOf(run, directory, chosen)
-    return cracksOf(run, of("blocks", chosen), of("joints", chosen), when, directory, later)  # fmt: skip
+    return cracksOf(run, *frames(chosen), when, directory, later)
 
 
-def cracks(directory: FilePath, number: int | None = None) -> None:
+def cracks(directory, number=None):
     """Draw cracks.png; ``number`` is as in :func:`cracksOfFrame`."""
     with drawing.style():
         figure = cracksOfFrame(readRun(directory), directory, number)
@@ -429,7 +386,7 @@ def _moments(run, directory):
     return [(frameAt(directory, time), text) for time, text in found]
 
 
-def frameOfCracks(run: dict[str, Any], directory: FilePath) -> int:
+def frameOfCracks(run, directory):
     """Number of the frame whose cracks are drawn, from 0: the last one, or, of a run that followed a collapse to the ground, that
     when the collapse was noticed or the first block had fallen.
 
@@ -439,7 +396,7 @@ def frameOfCracks(run: dict[str, Any], directory: FilePath) -> int:
     return moments[0][0] if moments else len(frameTimes(directory)) - 1
 
 
-def whenOf(run: dict[str, Any], directory: FilePath, number: int) -> str:
+def whenOf(run, directory, number):
     """Which moment a frame shows: what it is, its time, and the x of curve.png."""
     times = frameTimes(directory)
     names = {len(times) - 1: "at the end", **dict(reversed(_moments(run, directory)))}

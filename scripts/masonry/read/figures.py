@@ -9,8 +9,6 @@ What curve.png shows is said by the entry ``figure`` of run.json, and what the p
 :mod:`masonry.run.results`.
 """
 
-from __future__ import annotations
-
 import glob
 import os
 import sys

@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""curve.csv and run.json of a run, read again; :mod:`masonry.run.results` lists what is in them. This module needs no YADE."""
-
-from __future__ import annotations
+"""curve.csv and run.json of a run, read again; :mod:`masonry.run.results` lists what is in them."""
 
 import contextlib
 import csv
+import functools
 import math
 import os
 import sys
@@ -12,7 +11,7 @@ from typing import Any, Callable, Iterator, Sequence
 
 from ..common import memory
 from ..common.arguments import FilePath
-from ..basics import Refused, say
+from ..basics import Refused, refuse, say
 from ..common.folders import fromJson, inside
 
 
@@ -41,18 +40,14 @@ def readCurve(directory: FilePath) -> dict[str, list[float]]:
     columns, rows, problems = lines[0], [], []
     for number, line in enumerate(lines[1:], start=2):
         try:
-            rows.append([float(v) for v in line])
+            rows.append(list(map(float, line)))
+            if len(line) != len(columns):
+                raise ValueError(f"{len(line)} numbers in {len(columns)} columns")
+            if not all(map(math.isfinite, rows[-1])):
+                raise ValueError("a number is not finite")
         except ValueError as error:
             problems.append(f"{path}, line {number}: {error}")
-        else:
-            if len(line) != len(columns):
-                problems.append(
-                    f"{path}, line {number}: {len(line)} numbers in {len(columns)} columns"
-                )
-            elif not all(map(math.isfinite, rows[-1])):
-                problems.append(f"{path}, line {number}: a number is not finite")
-    if problems:
-        raise Refused("\n".join(problems[:10]))
+    refuse(problems[:10])
     return {c: [row[i] for row in rows] for i, c in enumerate(columns)}
 
 
@@ -80,19 +75,29 @@ def filesOf(directory: FilePath) -> Iterator[None]:
         ) from problem
 
 
-def onFolder(act: Callable[[str], object], words: Sequence[str]) -> int:
-    """Main program of what reads a run: calls ``act`` with the folder that is the only word. Returns the exit status."""
+def program(act: Callable[..., int | None]) -> Callable[..., int]:
+    """Let a main program return its exit status, and say on the terminal what ends it."""
+
+    @functools.wraps(act)
+    def main(*words):
+        try:
+            return act(*words) or 0
+        except (Refused, OSError) as problem:
+            say(problem, sys.stderr)
+            return 2
+        except MemoryError:
+            say(memory.FULL, sys.stderr)
+            return 1
+
+    return main
+
+
+@program
+def onFolder(act: Callable[[str], object], words: Sequence[str]) -> None:
+    """Main program of what reads a run: calls ``act`` with the folder that is the only word."""
+    if len(words) != 1:
+        raise Refused("name one folder of results, for example results/wall_comp4")
     try:
-        if len(words) != 1:
-            raise Refused("name one folder of results, for example results/wall_comp4")
         act(words[0])
-    except Refused as problem:
-        say(problem, sys.stderr)
-        return 2
     except OSError as error:
-        say(f"cannot write to {words[0]}: {error.strerror}", sys.stderr)
-        return 2
-    except MemoryError:
-        say(memory.FULL, sys.stderr)
-        return 1
-    return 0
+        raise Refused(f"cannot write to {words[0]}: {error.strerror}") from None

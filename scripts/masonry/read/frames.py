@@ -6,8 +6,6 @@ either can end a process in which YADE runs with a VTK of its own. MasonryVtkRec
 numbers appended in base64 and compressed by zlib, and that kind is read here.
 """
 
-from __future__ import annotations
-
 import base64
 import glob
 import os
@@ -134,19 +132,17 @@ def _surfaces(root):
     sides = np.array([(0, 2, 1), (0, 1, 3), (1, 2, 3), (0, 3, 2)])
     first = np.append(0, ends[:-1])
     zones = np.flatnonzero(~rigid)
-    triangles = [corners[first[zones, None, None] + sides].reshape(-1, 3)]
-    owners = [np.repeat(zones, len(sides))]
+    ofZones = corners[first[zones, None, None] + sides].reshape(-1, 3)
+    found = [(ofZones, np.repeat(zones, len(sides)))]
     if "face_offsets" in cells:
-        faces = [_newFaces(cells)]
+        found.append(_newFaces(cells))
     else:
-        faces = _oldFaces(cells, np.flatnonzero(rigid))
-    for found, owning in faces:
-        triangles.append(found)
-        owners.append(owning)
-    triangles = np.concatenate(triangles).astype(int)
+        found += _oldFaces(cells, np.flatnonzero(rigid))
+    triangles, owners = map(np.concatenate, zip(*found))
+    triangles = triangles.astype(int)
     if triangles.min() < 0 or triangles.max() >= int(piece.get("NumberOfPoints")):
         raise ValueError("its faces have points that are not there")
-    return triangles, np.concatenate(owners), rigid
+    return triangles, owners, rigid
 
 
 def _oldFaces(cells, polyhedra):
@@ -193,10 +189,8 @@ def _frame(root):
             frame[array.get("Name")] = read(array)
     frame["cells"] = []
     for kind in ("Verts", "Lines", "Polys") if root.get("type") == "PolyData" else ("Cells",):  # fmt: skip
-        ends, corners = (
-            read(piece.find(f"{kind}/DataArray[@Name='{name}']"))
-            for name in ("offsets", "connectivity")
-        )
+        of = {a.get("Name"): a for a in piece.findall(f"{kind}/DataArray")}
+        ends, corners = read(of["offsets"]), read(of["connectivity"])
         if not len(ends):
             continue
         if ends[-1] != len(corners) or corners.max() >= len(frame["points"]):

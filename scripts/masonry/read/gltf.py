@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""A run as a glTF 2.0 file (.glb) for Blender, PowerPoint and what else shows 3-D models. This module needs no YADE.
+"""A run as a glTF 2.0 file (.glb) for Blender, PowerPoint and what else shows 3-D models.
 
 Such a file has metres as its unit, and y is up in it: a node above all others turns z up to that.
 """

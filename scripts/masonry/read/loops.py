@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Numbers of loops of force over displacement, simulated or measured. This module needs no YADE.
+"""Numbers of loops of force over displacement, simulated or measured.
 
 Displacements are in mm and forces in kN, so that their products are in J. Both are given as one-dimensional sequences of
 the same length, in the order of time. Rows may be any distance apart and may repeat. Wrong input raises ValueError.
@@ -12,11 +12,9 @@ cycles in a row, one to either side. A place in a curve is given as a row number
 the way from row 7 to row 8, with straight lines between rows.
 """
 
-from __future__ import annotations
-
 import math
 from collections import namedtuple
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -27,45 +25,42 @@ from ..common.arguments import Numbers
 HalfCycle = namedtuple("HalfCycle", "start end extreme side complete")
 
 
-class Cycle(
-    namedtuple(
-        "Cycle",
-        "start end largest_mm smallest_mm amplitude_mm work_J largest_kN smallest_kN stiffness_kN_per_mm damping "
-        "residual_positive_mm residual_negative_mm",
-    )
-):
-    """A cycle and its numbers. What cannot be found is NaN.
+class Cycle(NamedTuple):
+    """A cycle and its numbers. What cannot be found is NaN."""
 
-    - ``start``, ``end``: its places in the curve
-    - ``largest_mm``, ``smallest_mm``: its extreme displacements
-    - ``amplitude_mm``: half of their difference
-    - ``work_J``: the integral of the force over the displacement from start to end
-    - ``largest_kN``, ``smallest_kN``: its extreme forces, wherever they are
-    - ``stiffness_kN_per_mm``: :func:`secantStiffness` between the extreme displacements
-    - ``damping``: :func:`equivalentDamping` [-]
-    - ``residual_positive_mm``, ``residual_negative_mm``: :func:`residualDisplacement` after the largest and after the
-      smallest displacement
-    """
-
-    __slots__ = ()
+    start: float  #: its place in the curve
+    end: float
+    largest_mm: float  #: its extreme displacements
+    smallest_mm: float
+    amplitude_mm: float  #: half of their difference
+    work_J: float  #: integral of the force over the displacement from start to end
+    largest_kN: float  #: its extreme forces, wherever they are
+    smallest_kN: float
+    stiffness_kN_per_mm: float  #: :func:`secantStiffness` between these displacements
+    damping: float  #: :func:`equivalentDamping` [-]
+    residual_positive_mm: float  #: :func:`residualDisplacement` after the largest
+    residual_negative_mm: float  #: and after the smallest displacement
 
 
-def _curve(displacement, force=None):
-    """The sequences as arrays of finite numbers, or ValueError."""
-    arrays = [np.asarray(displacement, float)]
-    if force is not None:
-        arrays.append(np.asarray(force, float))
-    for name, values in zip(("displacement", "force"), arrays):
-        if values.ndim != 1 or not len(values):
-            raise ValueError(f"{name} must be a row of numbers, at least one")
-        if not np.isfinite(values).all():
-            first = int(np.flatnonzero(~np.isfinite(values))[0])
-            raise ValueError(f"{name} in row {first} is {values[first]}")
-    if len(arrays) == 2 and len(arrays[0]) != len(arrays[1]):
+def _row(values, name="displacement"):
+    """A sequence as an array of finite numbers, or ValueError."""
+    values = np.asarray(values, float)
+    if values.ndim != 1 or not len(values):
+        raise ValueError(f"{name} must be a row of numbers, at least one")
+    if not np.isfinite(values).all():
+        first = int(np.isfinite(values).argmin())
+        raise ValueError(f"{name} in row {first} is {values[first]}")
+    return values
+
+
+def _curve(displacement, force):
+    """Both sequences as arrays of finite numbers, or ValueError."""
+    moved, force = _row(displacement), _row(force, "force")
+    if len(moved) != len(force):
         raise ValueError(
-            f"there are {len(arrays[0])} displacements and {len(arrays[1])} forces"
+            f"there are {len(moved)} displacements and {len(force)} forces"
         )
-    return arrays if force is not None else arrays[0]
+    return moved, force
 
 
 def _noise(threshold):
@@ -80,31 +75,25 @@ def turningPoints(displacement: Numbers, threshold: float = 0.0) -> np.ndarray:
     more. The first row of the array is where the first swing begins: row 0, or one that is not more than the threshold
     away from it. The last one is where the last swing ends: the last row of the curve, or one from which the curve has
     turned back by no more than the threshold. A curve without such a swing has row 0 alone.
-
-    :param displacement: [mm]
-    :param threshold: [mm], 0 or more
     """
-    moved = _curve(displacement)
+    moved = _row(displacement)
     _noise(threshold)
-    rows, high, low, upwards, downwards = [0], 0, 0, True, True
+    rows: list[int] = []
+    high, low, upwards, downwards = 0, 0, True, True
     for row, x in enumerate(moved):
         if upwards and x > moved[high]:
             high = row
         if downwards and x < moved[low]:
             low = row
         if upwards and moved[high] - x > threshold:
-            if downwards:
-                rows.clear()
             rows.append(high)
             upwards, downwards, low = False, True, row
         elif downwards and x - moved[low] > threshold:
-            if upwards:
-                rows.clear()
             rows.append(low)
             upwards, downwards, high = True, False, row
     if upwards != downwards:
         rows.append(high if upwards else low)
-    return np.array(rows)
+    return np.array(rows or [0])
 
 
 def halfCycles(
@@ -117,31 +106,26 @@ def halfCycles(
     last one is complete if the curve ends within the threshold of zero; it then ends at the last passage through zero,
     or at the last row if there is none.
 
-    :param displacement: [mm]
-    :param threshold: [mm], 0 or more
     :param zero: the displacement from which excursions are counted [mm]
     """
-    moved = _curve(displacement) - zero
+    moved = _row(displacement) - zero
     _noise(threshold)
     last = len(moved) - 1
-    starts, sides = [], []
     beyond = np.flatnonzero(np.abs(moved) > threshold)
-    for row in beyond[np.diff(np.sign(moved[beyond]), prepend=0) != 0]:
-        sides.append(1 if moved[row] > 0 else -1)
-        starts.append(_lastPassage(moved[: row + 1]))
+    turned = beyond[np.diff(np.sign(moved[beyond]), prepend=0) != 0]
+    starts = [_lastPassage(moved[: row + 1]) for row in turned]
+    passage, ends = _lastPassage(moved), abs(moved[last]) <= threshold
+    if not ends or passage is None or not len(beyond) or passage <= beyond[-1]:
+        passage = float(last)
     found = []
-    for n, (start, side) in enumerate(zip(starts, sides)):
+    for row, start, end in zip(turned, starts, [*starts[1:], None]):
         begins = start is not None or abs(moved[0]) <= threshold
-        start = start or 0.0
-        ends, end = True, starts[n + 1] if n + 1 < len(starts) else None
-        if end is None:
-            ends, end = abs(moved[last]) <= threshold, float(last)
-            passage = _lastPassage(moved)
-            if ends and passage is not None and passage > beyond[-1]:
-                end = passage
+        complete = bool(begins and (end is not None or ends))
+        start, end = start or 0.0, passage if end is None else end
         rows = slice(math.ceil(start), math.floor(end) + 1)
+        side = int(np.sign(moved[row]))
         extreme = rows.start + int(np.argmax(side * moved[rows]))
-        found.append(HalfCycle(start, end, extreme, side, bool(begins and ends)))
+        found.append(HalfCycle(start, end, extreme, side, complete))
     return found
 
 
@@ -223,10 +207,8 @@ def residualDisplacement(
     moved, force = _curve(displacement, force)
     end = len(moved) - 1 if end is None else end
     side = np.sign(force[extreme])
-    if not side:
-        return math.nan
     gone = np.flatnonzero(side * force[extreme : end + 1] <= 0)
-    if not len(gone):
+    if not side or not len(gone):
         return math.nan
     at = extreme + int(gone[0]) - 1
     share = force[at] / (force[at] - force[at + 1])
@@ -240,10 +222,7 @@ def cycles(
 
     Complete half cycles are joined in pairs from the first one on. One that is left over at the end is no cycle.
 
-    :param displacement: [mm]
-    :param force: [kN]
-    :param threshold: [mm], 0 or more
-    :param zero: the displacement from which excursions are counted [mm]
+    :param zero: as in :func:`halfCycles`
     """
     moved, force = _curve(displacement, force)
     halves = [h for h in halfCycles(moved, threshold, zero) if h.complete]
@@ -286,9 +265,6 @@ def envelope(displacement: Numbers, zero: float = 0.0) -> tuple[np.ndarray, ...]
 
     :returns: two arrays of rows in order of time, of the positive and of the negative side
     """
-    moved = _curve(displacement) - zero
-    sides = []
-    for side in (1, -1):
-        before = np.maximum.accumulate(np.append(0.0, side * moved))[:-1]
-        sides.append(np.flatnonzero(side * moved > before))
-    return tuple(sides)
+    moved = _row(displacement) - zero
+    before = lambda side: np.maximum.accumulate(np.append(0.0, side * moved))[:-1]
+    return tuple(np.flatnonzero(side * moved > before(side)) for side in (1, -1))

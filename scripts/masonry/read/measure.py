@@ -5,10 +5,7 @@
 right: the compressed corners are the toe at the bottom right and the top left, and a diagonal crack falls to the right.
 Of a wall that follows a history the numbers of cracks and crushing are those of the way to the right, and once more, with
 ``_mirrored`` at the end of the name, those of the way to the left. It has a table of its cycles, too.
-This module needs no YADE.
 """
-
-from __future__ import annotations
 
 import glob
 import os
@@ -17,7 +14,7 @@ from typing import Annotated, Any, Iterator
 
 import numpy as np
 
-from ..common.arguments import FilePath, label, validated
+from ..common.arguments import FilePath, isNumber, label, validated
 from ..basics import Refused, say
 from . import cracks, loops, quantities
 from .files import filesOf, onFolder, readCurve, readRun
@@ -35,11 +32,10 @@ def wallNumbers(directory: FilePath) -> dict[str, Any]:
     top, base, times = (data[n] for n in (TOP, BASE, "time_s"))
     more = {"top_less_base_shear_kN": top[at] - base[at]}
     if glob.glob(os.path.join(directory, "joints_*.vtp")):
-        frame = lambda number: readFrame(directory, "joints", number)
-        data.joints = frame(-1)
-        atPeak = cracks.layOut(frame(frameAt(directory, times[at])), data.run["wall"])
-        more["diagonal_reach_at_peak"] = cracks.diagonal(*atPeak)["diagonal_reach"]
-        more.update(data.pattern)
+        data.joints = readFrame(directory, "joints")
+        peak = readFrame(directory, "joints", frameAt(directory, times[at]))
+        found = cracks.diagonal(*cracks.layOut(peak, data.run["wall"]))
+        more.update(diagonal_reach_at_peak=found["diagonal_reach"], **data.pattern)
     return {**quantities.known(data), **more}
 
 
@@ -53,17 +49,14 @@ def jointNumbers(directory: FilePath, name: Annotated[str, label]) -> dict[str, 
     - softening_work_J_per_m2: under the shear stress over the slide, above the shear stress at the end
     """
     curve, prefix = readCurve(directory), name + "_" if name else ""
-    opening, slide, normal, shear = (
-        np.array(curve[prefix + end])
-        for end in ("opening_mm", "slide_mm", "normal_stress_MPa", "shear_stress_MPa")
-    )
+    heads = "opening_mm", "slide_mm", "normal_stress_MPa", "shear_stress_MPa"
+    opening, slide, normal, shear = (np.array(curve[prefix + head]) for head in heads)
     area = lambda stress, mm: 1e3 * loops.area(np.maximum(stress, 0), mm)
-    found = {
-        "opening_work_J_per_m2": area(normal, opening),
-        "closure_work_J_per_m2": area(-normal, -opening),
-        "softening_work_J_per_m2": area(shear - shear[-1], slide),
+    return {
+        f"{prefix}opening_work_J_per_m2": area(normal, opening),
+        f"{prefix}closure_work_J_per_m2": area(-normal, -opening),
+        f"{prefix}softening_work_J_per_m2": area(shear - shear[-1], slide),
     }
-    return {prefix + end: value for end, value in found.items()}
 
 
 @validated
@@ -72,33 +65,25 @@ def measure(directory: FilePath) -> dict[str, Any]:
 
     ``balance_error`` is the ``energy_balance_error`` of run.json.
     """
-    run = readRun(directory)
+    numbers = readRun(directory)
     with filesOf(directory):
-        numbers = {**run, "balance_error": run["energy_balance_error"]}
-        del numbers["energy_balance_error"]
-        if "wall" in run:
+        numbers["balance_error"] = numbers.pop("energy_balance_error")
+        if "wall" in numbers:
             numbers.update(wallNumbers(directory))
-        for joint in run.get("recorded_joints", []):
+        for joint in numbers.get("recorded_joints", []):
             numbers.update(jointNumbers(directory, joint))
-    return {
-        name: value
-        for name, value in numbers.items()
-        if isinstance(value, (int, float)) and not isinstance(value, bool) or name == "failure_mode"
-    }  # fmt: skip
+    return {n: v for n, v in numbers.items() if isNumber(v) or n == "failure_mode"}
 
 
 def cycleTable(cycles: list[dict[str, Any]]) -> Iterator[str]:
     """The cycles of run.json as lines of a table, with the numbers of :data:`masonry.read.quantities.OF_CYCLES`."""
     columns = quantities.OF_CYCLES
     heads = [name if unit == "-" else f"{name} [{unit}]" for _, name, unit, *_ in columns]  # fmt: skip
-    wide = [max(len(head), 9) + 2 for head in heads]
-    yield " cycle" + "".join(f"{head:>{w}}" for head, w in zip(heads, wide))
+    line = lambda texts: "".join(f"{t:>{max(len(h), 9) + 2}}" for t, h in zip(texts, heads))  # fmt: skip
+    yield " cycle" + line(heads)
     for n, cycle in enumerate(cycles, 1):
-        texts = (
-            "-" if cycle[key] is None else f"{cycle[key]:.{digits}f}"
-            for key, _, _, digits, _ in columns
-        )
-        yield f"{n:6}" + "".join(f"{text:>{w}}" for text, w in zip(texts, wide))
+        values = [(cycle[key], digits) for key, _, _, digits, _ in columns]
+        yield f"{n:6}" + line("-" if v is None else f"{v:.{d}f}" for v, d in values)
 
 
 def show(directory: FilePath) -> None:

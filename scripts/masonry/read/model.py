@@ -1,13 +1,11 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The model of the 3-D picture of a run: its blocks, how they move, and what its joints do. This module needs no YADE.
+"""The model of the 3-D picture of a run: its blocks, how they move, and what its joints do.
 
 The page (:mod:`masonry.read.page`), glTF files (:mod:`masonry.read.gltf`), the report and ParaView's pictures show this.
 """
 
-from __future__ import annotations
-
 import os
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -24,8 +22,6 @@ OPEN, SLID, CRUSHED_TOO = 1, 2, 4
 #: Kinds of blocks.
 PLATEN, BRICK, GROUND = 0, 1, 2
 LOOKS = "platen", "brick", "ground"  # their names
-VALUES = "opening", "slide", "closure", "damage", "kind"
-OLDER = "its frames were written by an older version of the plugin, which did not say how blocks turn; run the scene again"
 
 
 class Sight(NamedTuple):
@@ -145,7 +141,7 @@ class Model:
         for k, number in enumerate(self.numbers):
             blocks, joints = (readFrame(self.directory, kind, number) for kind in ("blocks", "joints"))  # fmt: skip
             if "rotation" not in blocks or "second_displacement" not in joints:
-                raise Refused(f"{self.directory}: {OLDER}")
+                raise Refused(f"{self.directory}: its frames were written by an older version of the plugin, which did not say how blocks turn; run the scene again")  # fmt: skip
             if len(blocks["points"]) != len(self.points):
                 raise Refused(f"{self.directory}: frame {number} has other blocks than frame {self.numbers[0]}")  # fmt: skip
             for frame in (blocks, joints):
@@ -253,10 +249,10 @@ class Joints:
 
     def __init__(self, model):
         self._model = model
-        self._numbers: dict[Any, int] = {}  # of points of joints, by bodies and corners
-        self._known: list[Any] = []  # of each its bodies and corners
-        self._frames: list[Any] = []  # numbers, values and displacements of every frame
-        self._last: Any = None
+        self._numbers = {}  # of points of joints, by bodies and corners
+        self._known = []  # of each its bodies and corners
+        self._frames = []  # numbers, values and displacements of every frame
+        self._last = None
 
     def add(self, frame, still):
         """Add the joints of the next frame.
@@ -279,22 +275,24 @@ class Joints:
             np.where(cracked, np.where(opened, OPEN, SLID), 0) + CRUSHED_TOO * crushed(frame),
         ])  # fmt: skip
         shown = (values[0] > CRACK) | (values[1] > CRACK) | (values[2] > CRACK) | (values[3] > DAMAGED)  # fmt: skip
-        moved = None
+        moved = cells = None
         if not self._model.rigid.all():
-            moved = [(frame["displacement"] - still, frame["second_displacement"] - still), frame["cells"]]  # fmt: skip
-        self._frames.append((self._last[1], values, shown, moved))
+            sides = "displacement", "second_displacement"
+            moved = np.array([frame[side] for side in sides]) - still
+            cells = frame["cells"]
+        self._frames.append((self._last[1], values, shown, moved, cells))
         self.count = len(frame["cells"])
 
     def end(self):
         """Keep the points that do something in one of the frames."""
         total = np.zeros(len(self._known), bool)
-        for numbers, _, shown, _ in self._frames:
+        for numbers, _, shown, *_ in self._frames:
             total[numbers[shown]] = True
         kept = np.flatnonzero(total)
         place = np.full(len(total), -1)
         place[kept] = np.arange(len(kept))
-        found = np.zeros((len(VALUES), len(self._frames), len(kept)))
-        for k, (numbers, values, _, _) in enumerate(self._frames):
+        found = np.zeros((5, len(self._frames), len(kept)))
+        for k, (numbers, values, *_) in enumerate(self._frames):
             mine = place[numbers] >= 0
             found[:, k, place[numbers[mine]]] = values[:, mine]
         self.opening, self.slide, self.closure, self.damage, kind = found
@@ -308,20 +306,18 @@ class Joints:
         if not self._model.rigid[self.between].all():
             self.moved = np.zeros((2, len(self._frames), len(self.corners), 3))
             starts = np.cumsum([0, *sizes])
-            for k, (numbers, _, _, (sides, cells)) in enumerate(self._frames):
+            for k, (numbers, _, _, moved, cells) in enumerate(self._frames):
                 for n, cell in zip(place[numbers], cells):
                     if n >= 0:
-                        for side in range(2):
-                            self.moved[side, k, starts[n] : starts[n + 1]] = sides[side][cell]  # fmt: skip
+                        self.moved[:, k, starts[n] : starts[n + 1]] = moved[:, cell]
         del self._numbers, self._known, self._frames, self._last
 
     def displacements(self, k):
         """Displacements of all corners with the first and with the second block in the k-th frame, an array (2, n, 3) [m]."""
         if self.moved is not None:
             return self.moved[:, k]
-        return np.array([
-            self._model.displacementsOf(k, self.between[self.owner, side], self.corners) for side in range(2)
-        ])  # fmt: skip
+        of = self._model.displacementsOf
+        return np.array([of(k, self.between[self.owner, n], self.corners) for n in (0, 1)])  # fmt: skip
 
 
 #: From where on a value of a joint is drawn; the same for all frames.
@@ -357,7 +353,7 @@ MOST_PLACES = 80_000  # frames times blocks; reading them takes seconds, and the
 FEWEST = 10  # frames that are shown all the same, if there are as many
 
 
-def chosenFrames(count: int, blocks: int) -> list[int]:
+def chosenFrames(count, blocks):
     """Numbers of the frames of a long or large run that are shown, the first and the last among them, evenly spaced."""
     many = max(FEWEST, MOST_PLACES // max(blocks, 1))
     return sorted({round(n) for n in np.linspace(0, count - 1, min(count, many))})

@@ -1,13 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Pages from templates of jinja2. Texts of files of a run are text in them: none becomes a tag or a script. This module needs
-no YADE."""
-
-from __future__ import annotations
+"""Pages from templates of jinja2. Texts of files of a run are text in them: none becomes a tag or a script."""
 
 import os
-from typing import Any
 
-from ..common.arguments import FilePath
 from ..basics import plain
 from ..common.folders import replaced
 from ..common.packages import needed
@@ -16,7 +11,7 @@ from ..common.packages import needed
 POLICY = "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data:"
 
 
-def rendered(path: str, **values: Any) -> str:
+def rendered(path, **values):
     """A page, or a part of one, from a template of this folder, with control characters of texts written out.
 
     :param path: of the template; texts of other files beside it are ``own("name")`` there
@@ -36,13 +31,13 @@ def rendered(path: str, **values: Any) -> str:
     return environment.get_template(path).render(own=own, policy=POLICY, **values)
 
 
-def write(path: FilePath, text: str) -> None:
+def write(path, text):
     """Write a page, whole or not at all. Raises OSError, also if its name is that of a symbolic link."""
     with replaced(path, encoding="utf-8") as file:
         file.write(text)
 
 
-def asScript(code: str) -> Any:
+def asScript(code):
     """A text that can stand in a script element: nothing in it ends or comments out the element."""
     from markupsafe import Markup  # jinja2 has it
 

@@ -1,12 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The one style of all pictures of blocks: its colours, which pages, models and ParaView have, too, and how matplotlib draws faces,
-light and cracks. This module needs no YADE."""
-
-from __future__ import annotations
+light and cracks."""
 
 import heapq
-from typing import Any
-
 import numpy as np
 
 from .views import LEVEL
@@ -29,12 +25,12 @@ MOST = 5e-3  # [m] closure from which the sign of a crushed point is no larger
 TIES = {"elastic": ("#333333", "-"), "yielded": ("#ff7f0e", "-"), "broken": ("#9467bd", ":")}  # fmt: skip
 
 
-def rgb(colour: str) -> np.ndarray:
+def rgb(colour):
     """Red, green and blue of a colour "#rrggbb", from 0 to 255."""
     return np.array(list(bytes.fromhex(colour[1:])))
 
 
-def mixed(first: str, share: float, second: str) -> str:
+def mixed(first, share, second):
     """A colour that has this share of a first one, and of a second one the rest."""
     parts = np.rint(share * rgb(first) + (1 - share) * rgb(second)).astype(int)
     return "#" + bytes(parts.tolist()).hex()
@@ -44,7 +40,7 @@ def mixed(first: str, share: float, second: str) -> str:
 FACES = {kind: mixed(colour, 0.45, SHADES["brick"]) for kind, colour in CRACKS.items()}
 
 
-def fromBackToFront(solids: Any, sight: np.ndarray) -> list[int]:
+def fromBackToFront(solids, sight):
     """Numbers of convex blocks in the order in which they are drawn, so that each hides what is behind it.
 
     Of two blocks whose pictures overlap, that is in front which lies on the viewer's side of a face that parts them.
@@ -59,16 +55,15 @@ def fromBackToFront(solids: Any, sight: np.ndarray) -> list[int]:
         low[group.index], high[group.index] = seen.min(axis=1), seen.max(axis=1)
     slack = 1e-3 * np.median(high - low)
     of = {n: one for group in solids.groups for n, *one in zip(group.index.tolist(), group.corners, group.normals, group.offsets)}  # fmt: skip
-    after: list[list[int]] = [[] for _ in range(solids.count)]
+    after = [[] for _ in range(solids.count)]
     for a in range(solids.count):
         over = (low[a, :2] < high[a + 1 :, :2] - slack) & (low[a + 1 :, :2] < high[a, :2] - slack)  # fmt: skip
         for b in (a + 1 + np.flatnonzero(over.all(axis=1))).tolist():
             nearer = _nearer(of[a], of[b], sight[2], slack)
             if nearer:
                 after[a if nearer > 0 else b].append(b if nearer > 0 else a)
-    pending = np.bincount(
-        [n for fronts in after for n in fronts], minlength=solids.count
-    )
+    hidden = [n for fronts in after for n in fronts]
+    pending = np.bincount(hidden, minlength=solids.count)
     depth, left, order = (low + high)[:, 2], set(range(solids.count)), []
     ready = [(depth[n], n) for n in np.flatnonzero(pending == 0).tolist()]
     heapq.heapify(ready)
@@ -153,9 +148,8 @@ class Painting:
                     edge = CRACKS.get(kind) or self.lit(colour, side)
                     self.add(ends, "none", edge, self.bold if kind in CRACKS else 2 * self.thin)  # fmt: skip
                 if closure is not None:
-                    self.spots.append(
-                        (ends.mean(axis=0), 12 + 8e3 * min(closure, MOST))
-                    )
+                    size = 12 + 8e3 * min(closure, MOST)
+                    self.spots.append((ends.mean(axis=0), size))
 
     def finish(self, axes, flat, legend):
         """Put it into axes, with names for the legend.

@@ -6,10 +6,8 @@
 A run starts it early: it loads what it needs while the run goes on. Then it reads the folder from the standard input, up to a zero
 byte, when the files of the run are there. It draws curve.png and cracks.png in a copy of the process, and reads the frames for
 the report meanwhile. When the standard input ends, all figures that the run itself writes are there, too, and it writes
-report.html. It ends without a word if it is given no folder. This module needs no YADE.
+report.html. It ends without a word if it is given no folder.
 """
-
-from __future__ import annotations
 
 import contextlib
 import math
@@ -30,24 +28,17 @@ END = b"\0"  # of the name of the folder
 NO_REPORT = 3
 
 
-def _load() -> None:
-    with contextlib.suppress(ImportError):  # it is said when something is drawn
-        import matplotlib.backends.backend_agg  # noqa: F401
-        import matplotlib.style  # noqa: F401
-
-
-def _folder() -> str:
+def _folder():
     """The folder from the standard input, or an empty text if it ends before."""
     name = b""
-    while not name.endswith(END):
-        byte = os.read(STDIN, 1)
-        if not byte:
-            return ""
+    for byte in iter(lambda: os.read(STDIN, 1), b""):
+        if byte == END:
+            return os.fsdecode(name)
         name += byte
-    return os.fsdecode(name[:-1])
+    return ""
 
 
-def _draw(folder: str) -> int:
+def _draw(folder):
     """Draw the figures. Returns the exit status."""
     with contextlib.suppress(OSError):  # it is said when it is drawn
         if len(readWhole(os.path.join(folder, "curve.csv")).splitlines()) < 2:
@@ -60,16 +51,18 @@ def _draw(folder: str) -> int:
     return onFolder(figures.draw, [folder])
 
 
-def main() -> int:
+def main():
     """The program. Returns its exit status."""
-    _load()
+    with contextlib.suppress(ImportError):  # it is said when something is drawn
+        import matplotlib.backends.backend_agg  # noqa: F401
+        import matplotlib.style  # noqa: F401
     folder = _folder()
     if not folder:
         return 0
     drawing = Task(lambda: [_draw(folder)])
     written = NO_REPORT
 
-    def write(directory: str) -> None:
+    def write(directory):
         memory.reserve()
         check(directory)
         record = report.read(directory)

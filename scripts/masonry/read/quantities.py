@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The numbers that a run answers with: one list, which run.json and its documentation, the terminal, the report, notebooks, studies
-and capacity read. This module needs no YADE.
+and capacity read.
 
 To add a number is to add a :class:`Quantity` to :data:`QUANTITIES`: its entry in run.json, its name, its unit, what it is, where it
 comes from, and the function that finds it from a :class:`RunData`. That is what a run has at its end, and what its folder has later, so
@@ -10,15 +10,13 @@ A *push* below is the last one of the run, with those before it along the same l
 all supports (``base_shear_kN``) and that of the drive (``top_shear_kN``).
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import Any, Callable, NamedTuple
 
-
+from ..common.arguments import isNumber
 from . import cracks, curves, loops
-from .run_data import BASE, MASONRY, MOVED, TOP, RunData
+from .run_data import BASE, FALL, MASONRY, MOVED, TOP, RunData
 
 IMBALANCE = 0.1  # a push with a larger dynamic imbalance is too fast: its peak is off by 1 to 5 % and more
 
@@ -68,39 +66,25 @@ class Number(NamedTuple):
 
 @dataclass(frozen=True)
 class Quantity:
-    """A number of a run.
+    """A number of a run."""
 
-    :param key: its entry in run.json
-    :param name: in words; empty: only run.json has it
-    :param unit: ``"-"`` if it has none
-    :param meaning: what it is, a sentence
-    :param source: columns of curve.csv, an equation or a function
-    :param of: function of :class:`RunData`, or of a function that gives the columns of a joint; None: the run itself writes it
-    :param group: one of :data:`GROUPS`, which says in which runs it is
-    :param brief: whether it is among the few that a notebook shows, and that stand first in study.csv
-    :param share: whether it is shown in per cent
-    """
-
-    key: str
-    name: str
-    unit: str
-    meaning: str
-    source: str
+    key: str  #: its entry in run.json
+    name: str  #: in words; empty: only run.json has it
+    unit: str  #: ``"-"`` if it has none
+    meaning: str  #: what it is, a sentence
+    source: str  #: columns of curve.csv, an equation or a function
+    #: function of :class:`RunData`, or of a function that gives the columns of a joint; None: the run itself writes it
     of: Callable[[Any], Any] | None = None
-    group: str = "push"
+    group: str = "push"  #: one of :data:`GROUPS`, which says in which runs it is
+    #: whether it is among the few that a notebook shows, and that stand first in study.csv
     brief: bool = False
-    share: bool = False
+    share: bool = False  #: whether it is shown in per cent
 
-    def shown(self, value: Any) -> Number:
+    def shown(self, value):
         """The number as it is shown."""
-        percent = self.share and isinstance(value, (int, float))
-        return Number(
-            self.name,
-            100 * value if percent else value,
-            "%" if self.share else self.unit,
-            self.meaning,
-            f"run.json: {self.key}",
-        )
+        unit = "%" if self.share else self.unit
+        value = 100 * value if self.share else value
+        return Number(self.name, value, unit, self.meaning, f"run.json: {self.key}")
 
 
 class State(NamedTuple):
@@ -121,7 +105,7 @@ STATES = (
           "The first row at which the joints have dissipated, in tension and shear since the push began, more than 1e-5 of the elastic energy; of dry joints it is where slip begins to count.",
           "no crack was seen in the push"),
     State("peak", "displacement_at_peak_mm", "drift_at_peak_mrad", lambda d: d.peak(), "The largest force that both ends carry at once."),
-    State("0.8 of the peak", "displacement_at_fall_mm", "drift_at_fall_mrad", lambda d: d.fallen,
+    State("0.8 of the peak", "displacement_at_fall_mm", "drift_at_fall_mrad", lambda d: d.fallenTo(FALL),
           "Where the force that both ends carry at once has fallen to 0.8 of its peak, after it, for longer than a first period; of cycles on the envelope.",
           "the force never falls to 0.8 of its peak", True),
     State("collapse", "collapse_displacement_mm", "drift_at_collapse_mrad", lambda d: d.collapse, "The last row of a push that ended in a collapse.",
@@ -154,7 +138,7 @@ GROUPS: dict[str, tuple[str, Callable[[RunData], bool]]] = {
 }  # fmt: skip
 
 
-def _ofPattern(key: str) -> Callable[[RunData], Any]:
+def _ofPattern(key):
     return lambda data: data.pattern[key]
 
 
@@ -235,7 +219,7 @@ def _damping(data):
     return [one["damping"] for one in data.cycles if one["damping"] is not None]
 
 
-def found(data: RunData) -> dict[str, Any]:
+def found(data):
     """All numbers that can be found from what a run has, by their entries in run.json. What needs a column that curve.csv does not
     have, or a cycle of a run without one, is left out."""
     entries = {}
@@ -248,7 +232,7 @@ def found(data: RunData) -> dict[str, Any]:
     return entries
 
 
-def ofJoint(column: Callable[[str], Any], prefixed: Callable[[str], str], brief: bool = False) -> dict[str, Any]:  # fmt: skip
+def ofJoint(column, prefixed, brief=False):
     """Numbers of a joint whose means are recorded, by their entries in run.json.
 
     :param column: function of the name of a column of curve.csv that gives its values
@@ -256,33 +240,28 @@ def ofJoint(column: Callable[[str], Any], prefixed: Callable[[str], str], brief:
     :param brief: whether only those are wanted that the terminal shows
     """
     own = lambda head: column(prefixed(head))
-    return {
-        prefixed(one.key): one.of(own)  # type: ignore[arg-type]
-        for one in QUANTITIES
-        if one.group == "joint" and one.of and (one.brief or not brief)
-    }
+    ones = [q for q in QUANTITIES if q.group == "joint" and q.brief >= brief]
+    return {prefixed(one.key): one.of(own) for one in ones if one.of}
 
 
-def known(data: RunData) -> dict[str, Any]:
+def known(data):
     """All numbers of a run: those of run.json and, where it does not have them, those that can be found."""
     return {**found(data), **{k: v for k, v in data.run.items() if k in BY_KEY}}
 
 
-def shown(entries: dict[str, Any], *groups: str, brief: bool = False) -> list[Number]:
+def shown(entries, *groups, brief=False):
     """Those of some groups that have a name and a value, as they are shown.
 
     :param entries: of :func:`known`, or of run.json
     :param brief: whether only those are wanted that a notebook shows
     """
-    fine = lambda v: isinstance(v, (int, float)) and not isinstance(v, bool) and math.isfinite(v)  # fmt: skip
-    return [
-        one.shown(entries[one.key])
-        for one in QUANTITIES
-        if one.name and (not groups or one.group in groups) and (one.brief or not brief) and fine(entries.get(one.key))
-    ]  # fmt: skip
+    fine = lambda v: isNumber(v) and math.isfinite(v)
+    named = [q for q in QUANTITIES if q.name and q.brief >= brief]
+    named = [q for q in named if not groups or q.group in groups]
+    return [q.shown(entries[q.key]) for q in named if fine(entries.get(q.key))]
 
 
-def measures(run: dict[str, Any]) -> dict[str, Any]:
+def measures(run):
     """Entries of run.json that measure the structure, for a row of study.csv: how it ended, and the numbers of this list, those
     first that a notebook shows."""
     names = ["failure_mode", "collapsed", "ended"]
@@ -295,7 +274,7 @@ def measures(run: dict[str, Any]) -> dict[str, Any]:
     return {name: run[name] for name in names if name in run}
 
 
-def headline(run: dict[str, Any], end: bool = False) -> str:
+def headline(run, end=False):
     """The peak of a push and its bound in a line, from the entries of run.json; empty if there was no push.
 
     :param end: whether the force at the end stands there, too, and how many cycles there were
@@ -317,17 +296,16 @@ def headline(run: dict[str, Any], end: bool = False) -> str:
     return text
 
 
-def described() -> str:
+def described():
     """What run.json has of these, for its documentation: a list of reStructuredText for every group."""
     text = ""
     for group, (title, _) in GROUPS.items():
-        ones = [one for one in QUANTITIES if one.group == group]
-        lines = (f"- ``{one.key}``: {one.meaning} Source: {one.source} [{one.unit}]" for one in ones)  # fmt: skip
+        lines = (f"- ``{q.key}``: {q.meaning} Source: {q.source} [{q.unit}]" for q in QUANTITIES if q.group == group)  # fmt: skip
         text += "\n".join(["", f"{title}:", "", *lines, ""])
     return text
 
 
-def loadsOf(stages: Any) -> dict[int, str]:
+def loadsOf(stages):
     """The name of its load, by the number of a stage that has one, from the entries ``stages`` of run.json."""
     named = ((number, one.get("load")) for number, one in enumerate(stages, 1))
     return {number: load[1] for number, load in named if load}

@@ -1,8 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What the numbers of a run are found from: its rows, its force, its peak, its drift and the states of its push. This module needs no
-YADE."""
-
-from __future__ import annotations
+"""What the numbers of a run are found from: its rows, its force, its peak, its drift and the states of its push."""
 
 import functools
 import math
@@ -30,17 +27,11 @@ class RunData:
     :param height: of the recorded point above the base [m], in place of what run.json says
     """
 
-    def __init__(
-        self,
-        run: dict[str, Any],
-        column: Callable[[str], Any],
-        joints: dict[str, Any] | None = None,
-        height: float | None = None,
-    ) -> None:
+    def __init__(self, run, column, joints=None, height=None):
         self.run, self.column, self.joints, self._height = run, column, joints, height
 
     @classmethod
-    def read(cls, directory: FilePath, moved: str | None = None) -> RunData:
+    def read(cls, directory: FilePath, moved: str | None = None) -> "RunData":
         """That of a folder of results. Raises Refused.
 
         :param moved: name of a column of curve.csv whose displacements are those of the push, from where it began; None: those of the
@@ -62,19 +53,14 @@ class RunData:
         columns: dict[str, Any] = {**curve, MOVED: along * values, MASONRY: None}
         return cls({**data.run, **unknown}, columns.get)
 
-    # -- which rows
-
     @functools.cached_property
     def _stages(self):
         """Loads of the stages, and their rows: lists of the load, the first row and the row after the last."""
         found = self.run.get("stages") or []
-        ends = [*(one["first_row"] for one in found[1:]), self._count]
-        return [(one.get("load"), one["first_row"], end) for one, end in zip(found, ends)]  # fmt: skip
-
-    @functools.cached_property
-    def _count(self):
         columns = (self.column(name) for name in (MOVED, "time_s"))
-        return len(next((values for values in columns if values is not None), ()))
+        count = len(next((values for values in columns if values is not None), ()))
+        ends = [*(one["first_row"] for one in found[1:]), count]
+        return [(one.get("load"), one["first_row"], end) for one, end in zip(found, ends)]  # fmt: skip
 
     @functools.cached_property
     def pushes(self) -> list[tuple[int, int]]:
@@ -106,8 +92,6 @@ class RunData:
         values = self.whole(name)
         return [values[n] for n in self.rows]
 
-    # -- what kind of run it is
-
     @property
     def isPush(self) -> bool:
         """Whether the run has a push with rows."""
@@ -117,8 +101,6 @@ class RunData:
     def isLooped(self) -> bool:
         """Whether the push goes there and back."""
         return "history" in self.run
-
-    # -- force, peak and drift: each is found here and nowhere else
 
     def carried(self, side: int = 1) -> np.ndarray:
         """The force of the push [kN]: what both ends carry at once, in every row the one that is less along the side. A wave that
@@ -164,11 +146,10 @@ class RunData:
 
     def at(self, values: Sequence[float], place: float | None) -> float | None:
         """A value between rows, along a straight line. ``place``: a number of a row with a fraction, or None."""
-        if place is None:
-            return None
-        return float(np.interp(place, np.arange(len(values)), values))
+        rows = np.arange(len(values))
+        return None if place is None else float(np.interp(place, rows, values))
 
-    def place(self, find: Callable[[RunData], float | None]) -> float | None:
+    def place(self, find: Callable[..., float | None]) -> float | None:
         """Where a state is in the rows of the push, None if it is not reached or curve.csv does not have its columns.
 
         :param find: function that finds it
@@ -183,22 +164,14 @@ class RunData:
         moved = self.at(self.ofDrift, place)
         return moved / self.height if moved is not None and self.height else None
 
-    # -- states of a push: places in its rows, or None
-
     @functools.cached_property
     def firstCrack(self) -> int | None:
         """Where the first crack of the push is seen."""
         found = (curves.firstCrack(self.whole, slice(*push)) for push in self.pushes)
-        row = next((row for row in found if row is not None), None)
-        return None if row is None else self.rows.index(row)
-
-    @functools.cached_property
-    def fallen(self) -> float | None:
-        """Where the force has fallen to :data:`FALL` of its peak, after it."""
-        return self.fallenTo(FALL)
+        return next((self.rows.index(row) for row in found if row is not None), None)
 
     def fallenTo(self, share: float) -> float | None:
-        """As :attr:`fallen`, of another share; in loops on the envelope of the positive side."""
+        """Where the force has fallen to a share of its peak, after it; in loops on the envelope of the positive side."""
         moved, force = np.array(self[MOVED]), self.carried(1)
         rows = loops.envelope(moved)[0] if self.isLooped else np.arange(len(moved))
         if not len(rows) or force[rows].max() <= 0:
@@ -214,8 +187,6 @@ class RunData:
         load = self._stages[-1][0] if self._stages else None
         fell = self.run.get("collapsed") and load and load[0] == "push"
         return len(self.rows) - 1 if fell else None
-
-    # -- what several numbers share
 
     @functools.cached_property
     def sudden(self) -> tuple[float, float]:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The curve and the folder of a run as objects that show themselves in a notebook. This module needs no YADE.
+"""The curve and the folder of a run as objects that show themselves in a notebook.
 
     from masonry.read.shown import RunFolder
 
@@ -32,11 +32,13 @@ def unitOf(head, meaning):
 
     :param head: its name in curve.csv; ``meaning``: its line in the entry ``columns`` of run.json
     """
-    found = re.search(r"\[([^\[\]]+)\]$", meaning)
-    if found:
-        return found[1]
-    last = head.rpartition("_")[2]
-    return last if last in UNITS else "-"
+    found, last = re.search(r"\[([^\[\]]+)\]$", meaning), head.rpartition("_")[2]
+    return found[1] if found else last if last in UNITS else "-"
+
+
+def bare(meaning):
+    """The meaning of a column without its unit."""
+    return re.sub(r" *\[[^\[\]]+\]$", "", str(meaning))
 
 
 #: Units at the end of names of columns that a script adds, whose meaning need not have them.
@@ -68,9 +70,6 @@ class Curve:
     def __iter__(self):
         return iter(self._columns)
 
-    def __contains__(self, name):
-        return name in self._columns
-
     def __len__(self):
         """How many rows there are."""
         return max(map(len, self._columns.values()), default=0)
@@ -101,7 +100,8 @@ class Curve:
 
     def _repr_html_(self):
         title = f"{len(self)} rows, {len(self._columns)} columns"
-        rows = [(n, self.units[n], *self._ends(n), self._about(n)) for n in self]
+        ends = lambda v: [f"{x:.4g}" for x in (v[0], v[-1], v.min(), v.max())] if len(v) else [""] * 4  # fmt: skip
+        rows = [(n, self.units[n], *ends(v), bare(self.meanings[n])) for n, v in self._columns.items()]  # fmt: skip
         heads = "column", "unit", "first", "last", "smallest", "largest", "meaning"
         table = notebook.table(rows, heads)
         return notebook.titled(title, self.picture(), notebook.folded("columns", table))  # fmt: skip
@@ -109,15 +109,6 @@ class Curve:
     def picture(self):
         """What curve.png shows as HTML; nothing where there are less than two rows, or no figure."""
         return _drawn(self._draws) if len(self) > 1 else ""
-
-    def _ends(self, name):
-        values = self._columns[name]
-        if not len(values):
-            return [""] * 4
-        return [f"{v:.4g}" for v in (values[0], values[-1], values.min(), values.max())]
-
-    def _about(self, name):
-        return re.sub(r" *\[[^\[\]]+\]$", "", self.meanings[name])
 
 
 def _drawn(draws):
@@ -136,10 +127,8 @@ def curveOf(columns, run, directory):
     :param run: entries of run.json: ``columns``, and ``figure`` and ``title`` if it is to be drawn
     :param directory: folder, for messages
     """
-    draws = None
-    if "figure" in run:
-        draws = lambda: curve_figure.figureOf(run, columns, directory)
-    return Curve(columns, run.get("columns", {}), draws)
+    draws = lambda: curve_figure.figureOf(run, columns, directory)
+    return Curve(columns, run.get("columns", {}), draws if "figure" in run else None)
 
 
 def cracksOf(run, blocks, joints, when, directory):

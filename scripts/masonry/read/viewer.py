@@ -5,27 +5,24 @@ ParaView. No YADE is needed.
 ``scripts/view.py`` is the program. In ParaView's own Python works :mod:`masonry.read.paraview_macro`.
 """
 
-from __future__ import annotations
-
 import argparse
 import json
 import os
 import re
 import shutil
 import subprocess
-import sys
 import tempfile
 from typing import Any, Sequence
 
 import numpy as np
 
-from ..common import folders, memory
+from ..common import folders
 from ..common.arguments import FilePath
 from ..basics import Refused, say
 from . import gltf, page, painting
 from .cracks import CRACK, DAMAGED
 from .elevation import whenOf
-from .files import filesOf, readCurve, readRun
+from .files import filesOf, program, readCurve, readRun
 from .frames import frameAt, frameTimes
 from .model import GROUND, OPEN, PLATEN, Model
 
@@ -210,8 +207,9 @@ def _handOn(args):
         raise Refused(f"cannot write {path}: {problem.strerror}") from None
 
 
-def main(words: Sequence[str] | None = None) -> int:
-    """The program ``scripts/view.py``. Returns its exit status."""
+@program
+def main(words: Sequence[str] | None = None) -> None:
+    """The program ``scripts/view.py``."""
     parser = argparse.ArgumentParser(
         description="Open runs in ParaView, draw them to a picture or a film without a display, or write them for a browser or as a 3-D model."
     )
@@ -226,32 +224,23 @@ def main(words: Sequence[str] | None = None) -> int:
     parser.add_argument("--size", default="1500x1000", help="of picture and film in pixels (default 1500x1000)")  # fmt: skip
     parser.add_argument("--rate", type=int, default=10, help="frames of the film or of the animation of --gltf a second (default 10)")  # fmt: skip
     args = parser.parse_args(words)
-    try:
-        size = re.fullmatch(r"(\d+)x(\d+)", args.size)
-        if not size or not all(200 <= int(n) <= 10000 for n in size.groups()):
-            raise Refused(f"--size: '{args.size}' must be WIDTHxHEIGHT, each from 200 to 10000 pixels")  # fmt: skip
-        if args.magnify is not None and not 0 <= args.magnify < float("inf"):
-            raise Refused(f"--magnify: {args.magnify:g} must be at least 0")
-        if not 1 <= args.rate <= 100:
-            raise Refused(f"--rate: {args.rate} must be from 1 to 100 frames a second")
-        for directory in args.result:
-            readRun(directory)
-        with filesOf(", ".join(args.result)):
-            if args.html is not False or args.gltf:
-                _handOn(args)
-            elif args.frame is not None:
-                raise Refused("--frame is for --html and --gltf; --at names a frame for ParaView")  # fmt: skip
-            else:
-                pixels = tuple(map(int, size.groups()))
-                for path, isFilm in ((args.picture, False), (args.film, True)):
-                    if path:
-                        inParaView(args.result, args.at, args.magnify, _drawn(path, isFilm), isFilm, pixels, args.rate)  # fmt: skip
-                if not args.picture and not args.film:
-                    inParaView(args.result, args.at, args.magnify)
-    except (Refused, OSError) as problem:
-        say(problem, sys.stderr)
-        return 2
-    except MemoryError:
-        say(memory.FULL, sys.stderr)
-        return 1
-    return 0
+    size = re.fullmatch(r"(\d+)x(\d+)", args.size)
+    if not size or not all(200 <= int(n) <= 10000 for n in size.groups()):
+        raise Refused(f"--size: '{args.size}' must be WIDTHxHEIGHT, each from 200 to 10000 pixels")  # fmt: skip
+    if args.magnify is not None and not 0 <= args.magnify < float("inf"):
+        raise Refused(f"--magnify: {args.magnify:g} must be at least 0")
+    if not 1 <= args.rate <= 100:
+        raise Refused(f"--rate: {args.rate} must be from 1 to 100 frames a second")
+    for directory in args.result:
+        readRun(directory)
+    with filesOf(", ".join(args.result)):
+        if args.html is not False or args.gltf:
+            return _handOn(args)
+        if args.frame is not None:
+            raise Refused("--frame is for --html and --gltf; --at names a frame for ParaView")  # fmt: skip
+        pixels = tuple(map(int, size.groups()))
+        for path, isFilm in ((args.picture, False), (args.film, True)):
+            if path:
+                inParaView(args.result, args.at, args.magnify, _drawn(path, isFilm), isFilm, pixels, args.rate)  # fmt: skip
+        if not args.picture and not args.film:
+            inParaView(args.result, args.at, args.magnify)

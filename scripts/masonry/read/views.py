@@ -1,11 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""From where a structure is seen in a picture, and how much its displacements are magnified. This module needs no YADE."""
-
-from __future__ import annotations
+"""From where a structure is seen in a picture, and how much its displacements are magnified."""
 
 from collections import namedtuple
-from typing import Any
-
 import numpy as np
 
 from .cracks import widths
@@ -57,15 +53,13 @@ def viewOf(points, normals, areas, sight=None):
     if second > 1.05 * first or second > first / 1.05 and towardsX:
         first, second, along, across = second, first, across, along
     if sight is not None:
-        away = -np.array(sight, float) / np.linalg.norm(sight)
-    else:
-        away = np.array([0, 0, 1.0])
-        total = areas.sum()
-        stands = lambda side: areas @ (normals[:, :2] @ side) ** 2 < 1e-6 * total
-        standing = [side for side in (across, along) if total and stands(side)]
-        if standing or second <= height:
-            away = np.append(standing[0] if standing else across, 0)
-    return _viewFrom(away, points, sight is None)
+        return _viewFrom(-np.array(sight, float) / np.linalg.norm(sight), points, False)
+    total = areas.sum()
+    stands = lambda side: areas @ (normals[:, :2] @ side) ** 2 < 1e-6 * total
+    standing = [side for side in (across, along) if total and stands(side)]
+    if standing or second <= height:
+        return _viewFrom(np.append([*standing, across][0], 0), points, True)
+    return _viewFrom(np.array([0, 0, 1.0]), points, True)
 
 
 def spaceViewOf(front, points, moved):
@@ -93,8 +87,7 @@ def spaceViewOf(front, points, moved):
 def _viewFrom(away, points, either):
     """The view of points by a viewer in this direction; ``either``: or opposite, if that turns x or y to the right."""
     if abs(away[2]) > 1 - 1e-6:
-        right, up = np.eye(3)[:2]
-        name = FROM_ABOVE
+        (right, up), name = np.eye(3)[:2], FROM_ABOVE
     else:
         up = np.array([0, 0, 1]) - away[2] * away
         up /= np.linalg.norm(up)
@@ -116,7 +109,7 @@ def _viewFrom(away, points, either):
     return View(right, up, towards, start, labels, name)
 
 
-def magnificationOf(joints: Any, moved: Any, blocks: Any) -> int:
+def magnificationOf(joints, moved, blocks):
     """How much displacements are magnified: as usual, or less where blocks would be drawn far away or over each other, and not
     at all where no joint is cracked, as rigid motion and elastic shortening alone would then be drawn.
 
@@ -128,19 +121,17 @@ def magnificationOf(joints: Any, moved: Any, blocks: Any) -> int:
         return 1
     size = np.ptp(np.concatenate(blocks), axis=0).max()
     far = np.linalg.norm(moved, axis=1).max()
-    closed = max(-joints["opening"].min(), 0)
-    fits = lambda m: m * far <= FARTHEST * size and m * closed <= OVERLAP * courseOf(
-        blocks
-    )
-    return next((m for m in MAGNIFICATIONS if fits(m)), 1)
+    closed, most = max(-joints["opening"].min(), 0), OVERLAP * courseOf(blocks)
+    fits = lambda m: m * far <= FARTHEST * size and m * closed <= most
+    return next(filter(fits, MAGNIFICATIONS), 1)
 
 
-def courseOf(blocks: Any) -> float:
+def courseOf(blocks):
     """The usual height of a block [m]: the median of their shortest sides, of arrays of their corners (n, 3) [m]."""
     return float(np.median([np.ptp(corners, axis=0).min() for corners in blocks]))
 
 
-def scaleText(joints: Any, magnification: float) -> str:
+def scaleText(joints, magnification):
     """What a picture says of its magnification and, where no joint of a frame is cracked, of that."""
     parted = "" if widths(joints)[2].any() else "no joint is cracked, "
     return parted + ("true to scale" if magnification == 1 else f"displacements × {magnification:g}")  # fmt: skip

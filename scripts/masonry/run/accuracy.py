@@ -13,16 +13,13 @@ with the same words takes those that are over.
 This module needs no YADE.
 """
 
-from __future__ import annotations
-
 import contextlib
 import hashlib
 import json
 import os
+import pathlib
 import shutil
 import sys
-from typing import Any
-
 from ..common import background
 from ..basics import NotAccurate, Refused, say
 from ..common.folders import check, inside, replaced
@@ -58,10 +55,9 @@ STAGES = ("settle", "push", "hold", "release", "move")
 # -- what runs say ----------------------------------------------------------------------------------------------------
 
 
-def shown(source: Any, values: dict[str, float], scale: float) -> float | None:
+def shown(source, values, scale):
     """What a source of error changes, over a scale [-]; None if a run of it is missing.
 
-    :param source: :class:`masonry.run.presets.Source`
     :param values: of the runs that are there, by name
     :param scale: the value of the run that is judged
     """
@@ -70,23 +66,18 @@ def shown(source: Any, values: dict[str, float], scale: float) -> float | None:
     found = [values[name] / scale for name in source.runs]
     if source.chance:
         return BY_CHANCE * (max(found) - min(found))
-    last = abs(found[-1] - found[-2])
-    if len(found) > 2:
-        before = abs(found[-2] - found[-3])
-        same = (found[-1] - found[-2]) * (found[-2] - found[-3]) > 0
-        if same and BEHAVES[0] < before / last < BEHAVES[1]:
-            return last / (before / last - 1)
-    return source.share * last
+    *before, last = (b - a for a, b in zip(found, found[1:]))
+    ratio = before[-1] / last if before and last else 0.0
+    if BEHAVES[0] < ratio < BEHAVES[1]:
+        return abs(last) / (ratio - 1)
+    return source.share * abs(last)
 
 
-def halfWidth(
-    number: int, quantity: str, values: dict[str, float], scale: float
-) -> tuple[float, dict[str, float]]:
+def halfWidth(number, quantity, values, scale):
     """Half the width of the interval of a quantity, over a scale [-], and its parts by their names.
 
     :param number: of the fidelity in :data:`masonry.run.presets.FIDELITIES`
     :param values: of the runs that are there by name; the run itself is :data:`masonry.run.presets.MAIN`
-    :param scale: of the values
     """
     fidelity = FIDELITIES[number]
     parts = {"not shown by companions": fidelity.error[quantity]}
@@ -100,7 +91,7 @@ def halfWidth(
     return sum(parts.values()), parts
 
 
-def needed(number: int) -> list[str]:
+def needed(number):
     """Names of the companions of a fidelity, by its number, without those of the ones before."""
     of = lambda fidelity: [n for s in fidelity.sources for n in s.runs if n != MAIN]
     before = {name for fidelity in FIDELITIES[:number] for name in of(fidelity)}
@@ -113,22 +104,21 @@ def needed(number: int) -> list[str]:
 class AuxiliaryRuns:
     """Runs of a scene beside the run itself, in the folder ``accuracy`` of its results.
 
-    :param folder: of the results of the run
     :param command: words that run the scene with the options of the user
     """
 
-    def __init__(self, folder: str, command: list[str]) -> None:
-        self.folder = os.path.join(folder, FOLDER)
-        self.command = command
-        self.numbers: dict[str, dict[str, Any]] = {}  # of the runs that are over
+    def __init__(self, folder, command):
+        self.folder, self.command = os.path.join(folder, FOLDER), command
+        self.numbers = {}  # of the runs that are over
         self.failed = False  # whether a run was not refused, but failed
+        self.percent = self.fidelity = None  # what was asked for [%], what was chosen
 
-    def folderOf(self, name: str) -> str:
+    def folderOf(self, name):
         """The folder of results of a companion."""
         plain = "".join(c if c.isalnum() or c == "." else "_" for c in name)
         return os.path.join(self.folder, plain.replace("__", "_"))
 
-    def begin(self, key: str) -> None:
+    def begin(self, key):
         """Make the folder, or take up what an interrupted run with this key left there. Raises Refused."""
         try:
             check(os.path.dirname(self.folder), self.folder)
@@ -153,7 +143,7 @@ class AuxiliaryRuns:
         except OSError as error:
             raise Refused(f"--out: cannot write to {self.folder}: {error.strerror}") from None  # fmt: skip
 
-    def clear(self) -> None:
+    def clear(self):
         """Remove the folder of a scene of which nothing can be said, but not the log of a run that failed."""
         if self.numbers or self.failed:
             return
@@ -161,52 +151,53 @@ class AuxiliaryRuns:
         with contextlib.suppress(OSError):
             os.rmdir(os.path.dirname(self.folder))
 
-    def over(self) -> None:
+    def over(self):
         """The run itself has come to its end: the next one makes its companions anew."""
         with contextlib.suppress(OSError):
             os.remove(os.path.join(self.folder, PLAN))
 
-    def read(self) -> None:
+    def read(self):
         """Read the numbers of all companions that are over."""
         for name in COMPANIONS:
             self._take(name)
 
     def _take(self, name):
         """Read the numbers of a companion. Returns whether it is over."""
-        try:
-            run = readRun(self.folderOf(name))
-        except Refused:
+        run = batch.ended(self.folderOf(name))
+        if run is None:
             return False
-        if run.get("interrupted") or "error" in run:
-            return False
-        missing = [key for _, key, _ in QUANTITIES if not run.get(key)]
-        if missing:
+        if not all(run.get(key) for _, key, _ in QUANTITIES):
             raise Refused(
                 "--accuracy: it is about the peak and the work of a push, and this scene has no push of one target that takes force"
             )
         found = {what: run[key] for what, key, _ in QUANTITIES}
-        found.update(seconds=run["wall_clock_s"], collapsed=run["collapsed"])
-        self.numbers[name] = found
+        costs = dict(seconds=run["wall_clock_s"], collapsed=run["collapsed"])
+        self.numbers[name] = {**found, **costs}
         return True
 
-    def run(self, names: list[str]) -> None:
+    def valuesOf(self, quantity):
+        """A quantity of all runs that are over, by their names."""
+        return {name: numbers[quantity] for name, numbers in self.numbers.items()}
+
+    def run(self, names):
         """Run companions that are not over yet, as many at a time as there are cores.
 
         :raises Refused: with what a companion said, if it could not be run
-        :raises Interrupted: after Ctrl-C and SIGTERM, when all of them have ended
         """
         due = [name for name in names if name not in self.numbers]
-        cores = len(os.sched_getaffinity(0))
-        background.carryOut(due, self._start, self._ended, cores)
+        background.carryOut(due, self._start, self._ended, len(os.sched_getaffinity(0)))
 
     def _start(self, name):
         options = {**CHOSEN, **COMPANIONS[name]}
         words = [f"{asOption(option)}={value}" for option, value in options.items() if value is not None]  # fmt: skip
         folder = self.folderOf(name)
         command = [*self.command, *words, "--lean", "--checkpoint-every=0", f"--out={folder}"]  # fmt: skip
-        env = {**os.environ, "OMP_NUM_THREADS": "1", COMPANION: "1"}
-        for other in (batch.VARIABLE, batch.PROBE):
-            env.pop(other, None)
+        env = {
+            n: v
+            for n, v in os.environ.items()
+            if n not in (batch.VARIABLE, batch.PROBE)
+        }
+        env.update({"OMP_NUM_THREADS": "1", COMPANION: "1"})
         try:
             with open(folder + ".log", "wb", opener=inside) as log:
                 return background.Program(command, log, env)
@@ -219,80 +210,56 @@ class AuxiliaryRuns:
             if kind == NotAccurate.__name__:
                 raise Refused(reason)
             self.failed = True
-            log, lines = self.folderOf(name) + ".log", []
-            with contextlib.suppress(OSError):
-                with open(log, errors="replace") as file:
-                    lines = [line.strip() for line in file if line.strip()]
-            last = lines[-1] if lines else f"exit status {program.returncode}"
+            log, last = (
+                self.folderOf(name) + ".log",
+                f"exit status {program.returncode}",
+            )
+            with contextlib.suppress(OSError), open(log, errors="replace") as file:
+                last = [line.strip() for line in [last, *file] if line.strip()][-1]
             raise Refused(f"--accuracy: the run {name} did not come to its end: {last}; see {log}")  # fmt: skip
         found = self.numbers[name]
         fell = ", collapsed" if found["collapsed"] else ""
         say(f"accuracy: {name}: peak {found['peak']:.4g} kN, work {found['work']:.4g} J, {found['seconds']:.0f} s{fell}")  # fmt: skip
 
+    def choose(self, percent):
+        """Run companions until a fidelity is good enough, or until there is no better one.
 
-# -- what is chosen and reported --------------------------------------------------------------------------------------
-
-
-def choose(companions: AuxiliaryRuns, percent: float) -> Any:
-    """Run companions until a fidelity is good enough, or until there is no better one. Returns the :class:`Fidelity`.
-
-    :param percent: the half-width that is wanted [%]
-    """
-    for number, fidelity in enumerate(FIDELITIES):
-        companions.run(needed(number))
-        widths = []
-        for quantity, _, _ in QUANTITIES:
-            values = {name: n[quantity] for name, n in companions.numbers.items()}
-            scale = max(abs(value) for value in values.values())
-            widths.append(100 * halfWidth(number, quantity, values, scale)[0])
-        enough = max(widths) <= percent
-        about = ", ".join(f"{q[0]} ± {w:.2g} %" for q, w in zip(QUANTITIES, widths))
-        last = number == len(FIDELITIES) - 1
-        verdict = "chosen" if enough else "the finest there is" if last else "not enough"  # fmt: skip
-        say(f"accuracy: {fidelity.name}: {about} expected: {verdict}")
-        if enough or last:
-            return fidelity
-    raise AssertionError
-
-
-class AccuracyResult:
-    """What ``--accuracy`` found for a run: its fidelity and the companions beside it.
-
-    :param percent: that was asked for [%]
-    :param fidelity: :class:`masonry.run.presets.Fidelity`
-    :param companions: :class:`AuxiliaryRuns`, which have run
-    """
-
-    def __init__(
-        self, percent: float, fidelity: Any, companions: AuxiliaryRuns
-    ) -> None:
-        self.percent, self.fidelity, self.companions = percent, fidelity, companions
-
-    def report(self, run: dict[str, Any]) -> dict[str, Any]:
-        """The entries of run.json for the numbers of a run: ``accuracy`` and the half-widths beside the values.
-
-        :param run: entries of run.json, with those of :data:`QUANTITIES`
+        :param percent: the half-width that is wanted [%]
         """
+        for number, fidelity in enumerate(FIDELITIES):
+            self.run(needed(number))
+            widths = {}
+            for quantity, _, _ in QUANTITIES:
+                values = self.valuesOf(quantity)
+                scale = max(map(abs, values.values()))
+                widths[quantity] = 100 * halfWidth(number, quantity, values, scale)[0]
+            enough, last = max(widths.values()) <= percent, fidelity is FIDELITIES[-1]
+            about = ", ".join(
+                f"{name} ± {width:.2g} %" for name, width in widths.items()
+            )
+            verdict = "chosen" if enough else "the finest there is" if last else "not enough"  # fmt: skip
+            say(f"accuracy: {fidelity.name}: {about} expected: {verdict}")
+            if enough:
+                break
+        self.percent, self.fidelity = percent, fidelity
+
+    def report(self, run):
+        """The entries of run.json for the numbers of a run: ``accuracy`` and the half-widths beside the values."""
         number = FIDELITIES.index(self.fidelity)
         found, entries = [], {}
         for quantity, key, unit in QUANTITIES:
             value = run[key]
-            values = {name: n[quantity] for name, n in self.companions.numbers.items()}
-            scale = abs(value) or 1.0
-            share, parts = halfWidth(number, quantity, {**values, MAIN: value}, scale)
-            how = ", ".join(f"{name} {100 * part:.2g} %" for name, part in parts.items())  # fmt: skip
-            found.append(
-                {
-                    "name": quantity,
-                    "unit": unit,
-                    "value": value,
-                    "half_width": share * abs(value),
-                    "half_width_percent": 100 * share,
-                    "parts_percent": {n: 100 * part for n, part in parts.items()},
-                    "how": f"the sum of what companions of this run differ by and of what they do not show: {how}",
-                }
-            )
+            values = {**self.valuesOf(quantity), MAIN: value}
+            share, parts = halfWidth(number, quantity, values, abs(value) or 1.0)
+            parts = {name: 100 * part for name, part in parts.items()}
+            how = ", ".join(f"{name} {part:.2g} %" for name, part in parts.items())
+            how = f"the sum of what companions of this run differ by and of what they do not show: {how}"
             entries[f"{quantity}_half_width_{unit}"] = share * abs(value)
+            one = dict(
+                name=quantity, unit=unit, value=value, parts_percent=parts, how=how
+            )
+            one.update(half_width=share * abs(value), half_width_percent=100 * share)
+            found.append(one)
         entries["accuracy"] = {
             "asked_percent": self.percent,
             "reached": max(f["half_width_percent"] for f in found) <= self.percent,
@@ -300,61 +267,50 @@ class AccuracyResult:
             "quantities": found,
             "not_covered": NOT_COVERED,
             "companions": [
-                {"name": n, "options": COMPANIONS[n], **numbers, "folder": self.companions.folderOf(n)}
-                for n, numbers in self.companions.numbers.items()
+                {"name": n, "options": COMPANIONS[n], **numbers, "folder": self.folderOf(n)}
+                for n, numbers in self.numbers.items()
             ],
         }  # fmt: skip
         return entries
 
 
-def answers(entry: dict[str, Any]) -> list[dict[str, Any]]:
+# -- what is reported and asked ---------------------------------------------------------------------------------------
+
+
+def answers(entry):
     """The entry ``accuracy`` of run.json as answers of the push: dicts with ``name``, ``unit``, ``value``, ``uncertainty``, ``how``."""
+    lacks = f". It does not cover {entry['not_covered']}"
     return [
-        {
-            "name": q["name"],
-            "unit": q["unit"],
-            "value": q["value"],
-            "how": f"{q['how']}. It does not cover {entry['not_covered']}",
-            "uncertainty": q["half_width"],
-        }
+        {n: q[n] for n in ("name", "unit", "value")}
+        | {"how": q["how"] + lacks, "uncertainty": q["half_width"]}
         for q in entry["quantities"]
     ]
 
 
-def lines(entry: dict[str, Any]) -> list[str]:
+def lines(entry):
     """The entry ``accuracy`` of run.json as lines to read."""
     values = ", ".join(
         f"{q['name']} {q['value']:.4g} ± {q['half_width']:.2g} {q['unit']} ({q['half_width_percent']:.2g} %)"
         for q in entry["quantities"]
     )
-    sentences = [f"accuracy: {values}, by {entry['fidelity']} and {len(entry['companions'])} runs beside it"]  # fmt: skip
+    yield f"accuracy: {values}, by {entry['fidelity']} and {len(entry['companions'])} runs beside it"
     fell = [one["name"] for one in entry["companions"] if one["collapsed"]]
     if fell:
-        sentences.append(
-            f"accuracy: collapsed: {'; '.join(fell)}; the work of a run that collapses ends there"
-        )
+        yield f"accuracy: collapsed: {'; '.join(fell)}; the work of a run that collapses ends there"
     if not entry["reached"]:
         finest = entry["fidelity"] == FIDELITIES[-1].name
         which = "finest fidelity there is" if finest else "fidelity that was chosen"
-        sentences.append(
-            f"accuracy: {entry['asked_percent']:g} % is not reached by the {which}: the ± is what was found"
-        )
-    sentences.append(f"accuracy: the ± does not cover {entry['not_covered']}")
-    return sentences
+        yield f"accuracy: {entry['asked_percent']:g} % is not reached by the {which}: the ± is what was found"
+    yield f"accuracy: the ± does not cover {entry['not_covered']}"
 
 
-def ask(
-    name: str, args: Any, script: str | None, words: list[str]
-) -> AccuracyResult | None:
+def ask(name, args, script, words):
     """Carry out ``--accuracy``: run companions, and give the options the values of the fidelity that was chosen.
 
-    :param name: of the scene
     :param args: the options of the run, which are changed
     :param script: path of the script of the scene, if it takes its options from the command line; else None
-    :param words: of the command line
-    :returns: None for a companion, a probe, and runs without ``--accuracy``
+    :returns: :class:`AuxiliaryRuns`; None for a companion, a probe, and runs without ``--accuracy``
     :raises Refused: if it means nothing here
-    :raises Interrupted: after Ctrl-C and SIGTERM
     """
     if not args.accuracy or _isCompanion or batch.PROBE in os.environ:
         return None
@@ -365,7 +321,6 @@ def ask(
         raise Refused(f"--accuracy: it chooses block model, mesh, rate, points, damping and time step itself: leave {' and '.join(unwanted)} away")  # fmt: skip
     if args.history:
         raise Refused("--accuracy: it is about a push in one direction, not about the loops of --history")  # fmt: skip
-    folder = args.out or os.path.join("results", name)
     if args.resume:
         return _resumed(args)
     if script is None:
@@ -373,23 +328,24 @@ def ask(
             f"--accuracy: scene {name} must be a script that takes its options from the command line, since it is run several times"
         )
     program = ["yade", "-n", "-x"] if hasattr(sys, "yade_argv") else [sys.executable]
+    folder = args.out or os.path.join("results", name)
     companions = AuxiliaryRuns(folder, [*program, script, *words])
-    with open(script, "rb") as file:
-        text = file.read()
     command = json.dumps([os.path.abspath(script), words, sorted(COMPANIONS)])
-    companions.begin(hashlib.sha256(text + command.encode()).hexdigest())
+    text = pathlib.Path(script).read_bytes() + command.encode()
+    companions.begin(hashlib.sha256(text).hexdigest())
     try:
-        fidelity = choose(companions, args.accuracy)
+        companions.choose(args.accuracy)
     except Refused:
         companions.clear()
         raise
-    vars(args).update({**CHOSEN, **fidelity.options})
-    return AccuracyResult(args.accuracy, fidelity, companions)
+    vars(args).update({**CHOSEN, **companions.fidelity.options})
+    return companions
 
 
 def _resumed(args):
     """As :func:`ask`, of a run that is resumed: its companions are those of its beginning."""
     companions, fidelity = AuxiliaryRuns(args.resume, []), fidelityOf(args)
+    companions.percent, companions.fidelity = args.accuracy, fidelity
     companions.read()
     number = FIDELITIES.index(fidelity) if fidelity else 0
     due = [name for k in range(number + 1) for name in needed(k)]
@@ -399,4 +355,4 @@ def _resumed(args):
     if any(readRun(companions.folderOf(n))["options"]["until"] != args.until for n in due):  # fmt: skip
         say("note: --accuracy: the run goes on to a longer push than its companions: there will be no ±")  # fmt: skip
         return None
-    return AccuracyResult(args.accuracy, fidelity, companions)
+    return companions

@@ -40,14 +40,13 @@ UNWRITTEN = os.EX_IOERR  # exit status if that file cannot be written
 def readTable(path):
     """The rows of a table by the number of their line, from 1: dicts of texts. Raises Refused if it is not one."""
     text = readText(path)
-    lines = [re.sub(r"\s*#.*", "", line).split() for line in text.split("\n")]
-    used = [number for number, words in enumerate(lines, 1) if words]
+    lines = (re.sub(r"\s*#.*", "", line).split() for line in text.split("\n"))
+    used = [(number, words) for number, words in enumerate(lines, 1) if words]
     if not used:
         raise Refused(f"{path}: there is no row")
-    heads = [h[:-1] if h[-1] == "!" else h for h in lines[used[0] - 1]]
+    heads = [head.removesuffix("!") for head in used[0][1]]
     rows, before = {}, {}
-    for number in used[1:]:
-        words = lines[number - 1]
+    for number, words in used[1:]:
         if len(words) != len(heads):
             raise Refused(
                 f"{path}, line {number}: {len(words)} values in {len(heads)} columns"
@@ -95,10 +94,9 @@ def isColumn(name):
 
     Columns that begin with ``!`` are orders to yade-batch: ``!EXEC`` is a program that it runs.
     """
-    one = r"[A-Za-z_]\w*(\.\w+)?"
-    names = name.removeprefix(FIELD)
-    whole = re.fullmatch(rf"{one}(\+{one})*", names, re.ASCII)
-    return bool(whole) and not OWN.intersection(names.split("+"))
+    names = name.removeprefix(FIELD).split("+")
+    fits = lambda one: re.fullmatch(r"[A-Za-z_]\w*(\.\w+)?", one, re.ASCII)
+    return all(map(fits, names)) and not OWN.intersection(names)
 
 
 def place(text):
@@ -153,17 +151,17 @@ def present():
         return None
     path, line = place(text)
     rows = readTable(path)
+    words = optionWords(rows.get(line, {}))
     if PROBE in os.environ:
-        return optionWords(rows.get(line, {}))
+        return words
     if line not in rows:
         raise Refused(f"{path} has no row in line {line}")
     out = folder(path, rows[line], line)
     if ended(out):
         raise Done(out)
-    if os.path.exists(os.path.join(out, "run.checkpoint")):
-        # the values of the table are compared with those of the checkpoint
-        return [*optionWords(rows[line]), f"--resume={out}"]
-    return [*optionWords(rows[line]), f"--out={out}"]
+    # the values of the table are compared with those of the checkpoint
+    resumes = os.path.exists(os.path.join(out, "run.checkpoint"))
+    return [*words, f"--resume={out}" if resumes else f"--out={out}"]
 
 
 class Done(Exception):

@@ -96,15 +96,10 @@ def alike(value: Any, example: Any) -> bool:
         listed = isinstance(value, list)
         return value is None or listed and alike(value, [0.0] * len(value))
     if isinstance(example, (list, tuple)):
-        return isinstance(value, list) and (
-            not example
-            or len(value) == len(example)
-            and all(map(alike, value, example))
-        )
+        fits = lambda: len(value) == len(example) and all(map(alike, value, example))
+        return isinstance(value, list) and (not example or fits())
     if isinstance(example, (bool, str, dict)):
         return isinstance(value, type(example))
-    if isinstance(value, bool) or not isinstance(value, (int, float)):
-        return False
     if isinstance(example, int):
-        return isinstance(value, int) and 0 <= value < 2**63
-    return abs(value) <= LARGEST
+        return type(value) is int and 0 <= value < 2**63
+    return type(value) in (int, float) and abs(value) <= LARGEST

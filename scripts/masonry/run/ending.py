@@ -29,9 +29,7 @@ def end(run, scene, error):
     small, or if the structure has fallen while its dead loads grew, before its test began; 2 for refused input; 130 after
     Ctrl-C or SIGTERM. Another error is for the caller when the results are finished.
 
-    :param run: :class:`masonry.run.run.Run`
     :param scene: gives ``model``, ``columns`` and ``outcome``
-    :param error: an exception, or None
     """
     try:
         return _end(run, scene, error)
@@ -222,14 +220,12 @@ def _options(run):
 def _warnings(run, scene):
     """Sentences on what the numbers of a run suffer from, for run.json and the terminal."""
     entries = run.results.run
-    off, made = entries.get("energy_balance_error", 0), entries.get("energy_made", 0)
-    wrong = []
-    if off > OFF:
-        wrong.append(f"the energy balance is off by {100 * off:.1f} % of the work done")
-    if made > OFF:
-        wrong.append(
-            f"joints that open or close within a step made {100 * made:.1f} % of the work done"
-        )
+    shares = {
+        "energy_balance_error": "the energy balance is off by",
+        "energy_made": "joints that open or close within a step made",
+    }
+    found = [(what, entries.get(name, 0)) for name, what in shares.items()]
+    wrong = [f"{what} {100 * n:.1f} % of the work done" for what, n in found if n > OFF]
     if wrong:
         yield f"{', and '.join(wrong)}: a smaller --dt-fraction or --rate or more --damping helps"
     if run.results.rows:

@@ -14,9 +14,8 @@ SLOW_FRAME = 0.02
 
 
 class Frames:
-    """Writes frames: beside the run if the last one was slow.
+    """Writes frames into the folder of a run: beside the run if the last one was slow.
 
-    :param directory: folder of the run
     :param at: :class:`masonry.run.run_state.RunState`, whose ``frames`` are the times of the frames that are whole or being written
     """
 
@@ -38,14 +37,11 @@ class Frames:
             self._recorder.collect()
 
     def add(self, final):
-        """Write a frame of the scene as it stands. Raises Unwritable.
-
-        :param final: whether it is the last one, which is whole when this returns
-        """
+        """Write a frame of the scene as it stands; the ``final`` one is whole when this returns. Raises Unwritable."""
         self.wait()
         self._recorder.times = self._at.frames
         if self._took > SLOW_FRAME and not final:
-            self._task = Task(self._writeBeside)
+            self._task = Task(lambda: [self._write()])
             self._at.frames = [*self._at.frames, O.time]
         else:
             began = time.perf_counter()
@@ -58,11 +54,6 @@ class Frames:
             self._recorder()
         except RuntimeError as error:
             raise Unwritable(str(error)) from None
-
-    def _writeBeside(self):
-        """In a copy of the process."""
-        self._write()
-        yield True
 
     def wait(self):
         """Wait until the frame is whole that is written beside the run. Raises Unwritable if it could not be written: then

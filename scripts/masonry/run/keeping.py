@@ -18,19 +18,12 @@ ASIDE = ("resume", "out", "saved")
 
 def hostNow():
     """What the last digits of a run can depend on."""
-    return {
-        "build": commit,
-        "masonry": version,
-        "YADE": yade.config.version,
-        "threads": threads.ofYade(),
-    }
+    software = {"build": commit, "masonry": version, "YADE": yade.config.version}
+    return {**software, "threads": threads.ofYade()}
 
 
 class Checkpoints:
-    """Notes what a checkpoint keeps beside the scene, and writes it.
-
-    :param run: :class:`masonry.run.run.Run`
-    """
+    """Notes what a checkpoint keeps beside the scene, and writes it."""
 
     def __init__(self, run):
         self._run = run
@@ -80,15 +73,12 @@ class Checkpoints:
             seconds=run.results.seconds(),
             host=hostNow(),
         )
-        self.since = time.perf_counter()
-        path = run.results.path(NAME)
+        self.since, path = time.perf_counter(), run.results.path(NAME)
         try:
             saveCheckpoint(path, progress)
             return True
         except (OSError, ValueError, MemoryError) as error:
             stays = "; an earlier one stays" if os.path.exists(path) else ""
-            say(
-                f"warning: no checkpoint could be written to {path}: {error}{stays}",
-                sys.stderr,
-            )
+            why = f"no checkpoint could be written to {path}: {error}{stays}"
+            say(f"warning: {why}", sys.stderr)
             return False

@@ -35,8 +35,6 @@ class Lock:
     The file ``run.lock`` says who holds it. It stays after a kill, and then says that the files beside it are those of a
     run. Where the file system has no locks, its text alone counts.
 
-    :param directory: folder, which must be there
-    :param scene: name of the scene that runs
     :raises Held: if another run holds the folder; the message names its host and process
     :raises OSError: if the folder cannot be written
     """
@@ -52,11 +50,7 @@ class Lock:
         try:
             #: whether the files in the folder are those of a run: it was killed, or it is this one
             self.ours = bool(self._file.read())
-            record = {
-                "scene": scene,
-                "host": socket.gethostname(),
-                "process": os.getpid(),
-            }
+            record = dict(scene=scene, host=socket.gethostname(), process=os.getpid())
             self._file.seek(0)
             self._file.truncate()
             self._file.write(json.dumps(record).encode())
@@ -75,11 +69,14 @@ class Lock:
                 try:
                     fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
                 except BlockingIOError:
-                    self._refuse(file.read())
+                    self._refuse(_object(file.read()))
                 except OSError as error:
                     if error.errno not in NO_LOCKS:
                         raise
-                    self._trust(file.read())
+                    # then the text alone counts, if the run that wrote it may be alive
+                    record = _object(file.read())
+                    if record and not _isGone(record):
+                        self._refuse(record)
                     file.seek(0)
                 with contextlib.suppress(FileNotFoundError):
                     if os.path.samestat(os.fstat(file.fileno()), os.stat(self.path)):
@@ -89,14 +86,8 @@ class Lock:
                 raise
             file.close()
 
-    def _trust(self, text):
-        """Refuse a folder by the text of its lock alone, if the run that wrote it may be alive."""
-        record = _object(text)
-        if record and not _isGone(record):
-            self._refuse(text)
-
-    def _refuse(self, text):
-        record, who = _object(text), "another run"
+    def _refuse(self, record):
+        who = "another run"
         if record:
             known = {"scene": "?", "host": "?", "process": "?", **record}
             who = "a run of {scene} on host {host}, process {process},".format(**known)
@@ -136,15 +127,15 @@ def held(directory):
     except OSError:
         return False
     with file:
-        if _isGone(_object(file.read())):
+        record = _object(file.read())
+        if _isGone(record):
             return False  # a lock that is tried for a moment would be in the way of a run that begins
-        file.seek(0)
         try:
             fcntl.flock(file, fcntl.LOCK_SH | fcntl.LOCK_NB)
         except BlockingIOError:
             return True
         except OSError:
-            return bool(_object(file.read()))
+            return bool(record)
         return False
 
 

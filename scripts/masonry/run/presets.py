@@ -9,20 +9,15 @@ from .options import USUAL, asOption
 
 #: Options by preset, the same for all walls. A scene of one's own may take them from here.
 PRESETS: dict[str, dict[str, Any]] = {
-    "fast": {"blocks": "rigid", "divisions": 1, "rate": 100.0},
-    "accurate": {
-        "blocks": "deformable",
-        "divisions": 2,
-        "rate": 50.0,
-        "mass_scaling": "auto",
-    },
+    "fast": dict(blocks="rigid", divisions=1, rate=100.0),
+    "accurate": dict(blocks="deformable", divisions=2, rate=50.0, mass_scaling="auto"),
 }
 for _preset in PRESETS.values():
     _preset.update(damping=0.8, damping_kind="combined", dt_fraction=0.8)
 
-#: The preset of limit analysis alone, without a run: see masonry.limit.
-BOUND = "bound"
+BOUND = "bound"  # the preset of limit analysis alone, without a run: see masonry.limit
 
+_WALLS = "wall_comp0a", "wall_comp1", "wall_comp4", "wall_comp6"
 #: What a preset promises. ``peak_error``, ``work_error`` and ``stiffness_error`` are the most that the peak, the work over the
 #: push and the initial stiffness differ from those of a fine and slow run [-]. ``walls`` has how far each wall was pushed for
 #: that [mm], and the time that it takes with ``yade -j2`` on two idle server cores [s]. validation/trade measures all of them.
@@ -30,27 +25,13 @@ BOUND = "bound"
 #: ``missed`` lay within them. Any wall in their :data:`RANGE` gets this promise.
 PROMISES: dict[str, dict[str, Any]] = {
     "fast": {
-        "peak_error": 0.02,
-        "work_error": 0.02,
-        "stiffness_error": 0.1,
-        "walls": {
-            "wall_comp0a": (30, 8),
-            "wall_comp1": (30, 8),
-            "wall_comp4": (12, 8),
-            "wall_comp6": (16, 9),
-        },
-        "elsewhere": {"peak_error": 0.06, "work_error": 0.07, "walls": 44, "missed": 1},
+        **dict(peak_error=0.02, work_error=0.02, stiffness_error=0.1),
+        "walls": dict(zip(_WALLS, ((30, 8), (30, 8), (12, 8), (16, 9)))),
+        "elsewhere": dict(peak_error=0.06, work_error=0.07, walls=44, missed=1),
     },
     "accurate": {
-        "peak_error": 0.02,
-        "work_error": 0.02,
-        "stiffness_error": 0.05,
-        "walls": {
-            "wall_comp0a": (30, 30),
-            "wall_comp1": (30, 25),
-            "wall_comp4": (12, 30),
-            "wall_comp6": (16, 40),
-        },
+        **dict(peak_error=0.02, work_error=0.02, stiffness_error=0.05),
+        "walls": dict(zip(_WALLS, ((30, 30), (30, 25), (12, 30), (16, 40)))),
     },
 }
 
@@ -73,47 +54,35 @@ RANGE: dict[str, tuple[float, float]] = {
 class Source:
     """A source of error of a fidelity, and the runs that show how large it is.
 
-    :param name: of the source
-    :param runs: names in :data:`COMPANIONS`, from the coarsest to the finest, or :data:`MAIN`, the run itself. The difference
-        of the last two counts. Of three, each with half the step of the one before, it counts less if their differences
-        shrink as those of a method of an order do (Richardson)
-    :param share: what counts of the difference of two [-]
-    :param chance: whether the runs differ in nothing that matters, so that their spread is chance
+    The difference of the last two runs counts. Of three, each with half the step of the one before, it counts less if their
+    differences shrink as those of a method of an order do (Richardson).
     """
 
     name: str
-    runs: tuple
-    share: float = 1.0
-    chance: bool = False
+    runs: tuple  # names in COMPANIONS, from the coarsest to the finest, or MAIN, the run itself
+    share: float = 1.0  # what counts of the difference of two [-]
+    chance: bool = False  # whether they differ in nothing that matters, so that their spread is chance
 
 
 @dataclass(frozen=True)
 class Fidelity:
     """Options of a run, and what is known of their error.
 
-    :param name: as the terminal says it
-    :param options: option -> value; those of :data:`CHOSEN` that are not named are as without options
-    :param cost: wall-clock time of a run over that of the first fidelity, about [-]
-    :param error: by quantity, the error against a fine and slow run that no companion shows [-]; validation/trade has the
-        runs from which it was taken, and validation/accuracy measures what it is worth
-    :param sources: what companions show, a tuple of :class:`Source`
+    validation/trade has the runs from which ``error`` was taken, and validation/accuracy measures what it is worth.
     """
 
-    name: str
-    options: dict
-    cost: float
-    error: dict
-    sources: tuple
+    name: str  # as the terminal says it
+    options: dict  # those of CHOSEN that are not named are as without options
+    cost: float  # wall-clock time of a run over that of the first fidelity, about [-]
+    error: dict  # by quantity, against a fine and slow run, what no companion shows [-]
+    sources: tuple  # what companions show
 
 
 #: The run itself among those of a :class:`Source`. Before it has been made, the source counts as in the fidelity before.
 MAIN = "this run"
 
-_ONE: dict[str, Any]
-_TWO: dict[str, Any]
-_THREE: dict[str, Any]
 _ONE, _TWO, _THREE = (
-    {"blocks": "deformable", "divisions": n, "mass_scaling": "auto"} for n in (1, 2, 3)
+    dict(blocks="deformable", divisions=n, mass_scaling="auto") for n in (1, 2, 3)
 )
 
 #: Runs beside a run, by name: options that replace those without options. They are cheap beside the run that they judge.
@@ -184,8 +153,7 @@ FIDELITIES = (
     ),
 )
 
-#: Options that --accuracy chooses, as they are without any.
-CHOSEN = USUAL
+CHOSEN = USUAL  # options that --accuracy chooses, as they are without any
 
 
 def fidelityOf(args):
@@ -218,17 +186,13 @@ def presetOf(args, scene, properties):
     ``promise`` is None if there are any of both. Else it holds ``peak_error`` and ``work_error`` [-]; of a wall on which
     it was measured also ``stiffness_error`` [-], ``until_mm`` and ``seconds``; of another one that is like these
     ``walls``, how many these are, and ``missed``, how many of them had larger errors.
-
-    :param args: the parsed options
-    :param scene: name of the scene
-    :param properties: of the scene, as :func:`outsideOf` takes them
     """
     if not args.preset:
         return None
     known, promise, outside = PROMISES.get(args.preset, {}), None, []
     if scene in known.get("walls", {}):
         until, seconds = known["walls"][scene]
-        promise = {name: known[name] for name in ("peak_error", "work_error", "stiffness_error")}  # fmt: skip
+        promise = {name: error for name, error in known.items() if "error" in name}
         promise.update(until_mm=until, seconds=seconds)
     elif "elsewhere" in known:
         promise, outside = known["elsewhere"], outsideOf(properties)
@@ -244,26 +208,26 @@ def presetOf(args, scene, properties):
 
 def presetNote(preset):
     """What :func:`presetOf` returned, as a line to read."""
-    name, promise = preset["name"], preset["promise"]
-    if promise and "walls" in promise:
+    name, promise = preset["name"], preset["promise"] or {}
+    percent = {what: f"{100 * v:g} %" for what, v in promise.items() if "error" in what}
+    if "walls" in promise:
         return (
             f"preset {name}: of {promise['walls']} walls whose properties are like these, pushed once, all but "
-            f"{promise['missed']} had their peak within {100 * promise['peak_error']:g} % and their work within "
-            f"{100 * promise['work_error']:g} % of a fine and slow run"
+            f"{promise['missed']} had their peak within {percent['peak_error']} and their work within "
+            f"{percent['work_error']} of a fine and slow run"
         )
     if promise:
         return (
-            f"preset {name}: promises the peak within {100 * promise['peak_error']:g} %, the work over "
-            f"{promise['until_mm']:g} mm within {100 * promise['work_error']:g} % and the initial stiffness within "
-            f"{100 * promise['stiffness_error']:g} % of a fine and slow run, in about {promise['seconds']:g} s"
+            f"preset {name}: promises the peak within {percent['peak_error']}, the work over {promise['until_mm']:g} mm within "
+            f"{percent['work_error']} and the initial stiffness within {percent['stiffness_error']} of a fine and slow run, in "
+            f"about {promise['seconds']:g} s"
         )
     if name == BOUND:
         return "preset bound: limit analysis of rigid blocks alone; there is no run"
+    reason = "; ".join(preset["outside"])
     if preset["overrides"]:
         reason = ", ".join(map(asOption, preset["overrides"])) + " beside it"
-        return f"preset {name} without its promise: {reason}"
-    others, reason = PROMISES[name].get("elsewhere"), "; ".join(preset["outside"])
-    if others:
+    elif others := PROMISES[name].get("elsewhere"):
         reason = (
             f"unlike the {others['walls']} walls on which it was measured: {reason}"
         )

@@ -23,7 +23,6 @@ class Progress:
     def show(self, stage, fraction, detail, stepsPerSecond, final=False):
         """Show a stage, if it is time to.
 
-        :param stage: name of the stage
         :param fraction: how much of the stage is done, 0 to 1 [-]
         :param detail: function without arguments that gives the text to show; it is called only if the text is shown
         :param stepsPerSecond: time steps in a second of wall-clock time; None: what is shown takes no steps

@@ -13,8 +13,6 @@ class Readings:
     """Readings that are not in curve.csv yet. They wait for 0.2 s of wall-clock time at most, and not beyond a checkpoint or the
     end, so only a kill can lose them, and a run that is resumed after a kill makes them again.
 
-    :param columns: :class:`masonry.assembly.columns.Column` objects
-    :param results: :class:`masonry.run.results.Results`
     :param live: function that adds a row to yade.plot, or None
     """
 
@@ -42,10 +40,8 @@ class Readings:
     def isDue(self):
         """Whether the rows should be written, after one was added: the next one is expected as long after it as it came after the
         last."""
-        now = time.perf_counter()
-        due = now - self._written + now - self._read > FLUSH_EVERY
-        self._read = now
-        return due
+        before, self._read = self._read, time.perf_counter()
+        return 2 * self._read - self._written - before > FLUSH_EVERY
 
     def write(self):
         """Write the rows that wait. Raises as :meth:`masonry.run.results.Results.append` does."""

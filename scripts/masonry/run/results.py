@@ -115,6 +115,7 @@ Numbers, one a line with its source and unit, are those of :mod:`masonry.read.qu
 """
 
 import contextlib
+import itertools
 import json
 import math
 import os
@@ -138,7 +139,6 @@ class Results:
     names that no run has left are refused.
 
     :param directory: folder, made if it is missing
-    :param columns: names of the columns of curve.csv
     :param resumed: whether to leave everything as it is, until :meth:`takeUp`
     :param scene: name of the scene, for others that want the folder
     """
@@ -257,14 +257,13 @@ class Results:
         if not rows:
             return
         self.begin()
-        fine = 0
-        while fine < len(rows) and all(map(math.isfinite, rows[fine])):
-            fine += 1
-        self.rows += rows[:fine]
+        isFine = lambda row: all(map(math.isfinite, row))
+        fine = [*itertools.takewhile(isFine, rows)]
+        self.rows += fine
         with folders.writing(self.path("curve.csv")):
-            self._write("".join(self._line % tuple(row) for row in rows[:fine]))
-        if fine < len(rows):
-            numbers = zip(self.columns, rows[fine])
+            self._write("".join(self._line % tuple(row) for row in fine))
+        if len(fine) < len(rows):
+            numbers = zip(self.columns, rows[len(fine)])
             broken = [name for name, number in numbers if not math.isfinite(number)]
             raise FloatingPointError(
                 f"the run has left finite numbers in {', '.join(broken)}; see curve.csv up to here"

@@ -57,15 +57,11 @@ class Run:
         self.kept = False  # whether it was interrupted and left a checkpoint at its end
         self.progress = Progress()
         self.advanced = False  # whether this process has taken steps of it
-        self.entered = 0  # number of the stage that was entered last
-        #: whether the present stage is that in which the checkpoint of a resumed run was made
-        self.redoes = False
-        #: whether the present stage ends when a block has fallen, in a scene whose collapse is followed
-        self.endsAtFall = False
-        #: whether the present stage lets the dead loads grow, and is no test yet
-        self.loading = False
-        #: what the stage remembers that was entered last
-        self.memory = SimpleNamespace()
+        # of the stage that was entered last: its number, and what it remembers
+        self.entered, self.memory = 0, SimpleNamespace()
+        self.redoes = False  # whether the checkpoint of a resumed run was made in it
+        self.endsAtFall = False  # whether it ends when a block has fallen, where a collapse is followed
+        self.loading = False  # whether it lets the dead loads grow, and is no test yet
         #: function that takes what is found beside the run: with True it waits for that
         self.takeFound = lambda wait: None
         self.checkpoints = Checkpoints(self)
@@ -77,11 +73,9 @@ class Run:
     def open(self, columns, properties):
         """Open the folder, and read the checkpoint of a run that is resumed. No file is written yet.
 
-        :param columns: :class:`masonry.assembly.columns.Column` objects
         :param properties: of the scene, as :func:`masonry.scene.facts.properties` gives them
         """
-        args = self.args
-        heads = [column.head for column in columns]
+        args, heads = self.args, [column.head for column in columns]
         folder = args.out or os.path.join("results", self.name)
         if batch.PROBE in os.environ:  # there is no run, and nothing shall be left
             folder = os.environ[batch.PROBE] + ".results"
@@ -107,7 +101,6 @@ class Run:
     def start(self, model, space, state):
         """Take up the model that now stands in YADE, in the state of the checkpoint if the run is resumed.
 
-        :param model: :class:`masonry.assembly.structure.Structure`
         :param space: bytes that the run writes at least, and those that it will probably write
         :param state: what a checkpoint keeps of the scene beside its state in YADE:
             :class:`masonry.scene.resuming.State`
@@ -159,11 +152,8 @@ class Run:
         return self.saved is not None and not self.advanced
 
     def continueFrom(self, number, redoes):
-        """In a run that is resumed and has taken no steps yet, let rows and frames be those of the beginning of a stage; of the
-        stage of the checkpoint, those of the checkpoint.
-
-        :param number: of the stage
-        :param redoes: whether it is the stage of the checkpoint
+        """In a run that is resumed and has taken no steps yet, let rows and frames be those of the beginning of the stage of a
+        number; of the stage of the checkpoint, which ``redoes`` says, those of the checkpoint.
         """
         at, rows = self.at, self.saved.rows
         self.redoes = redoes
@@ -180,10 +170,10 @@ class Run:
         if self.saved:
             at = self.at
             # a stage acts before it advances: that was done before the steps of the checkpoint
-            if self.redoes and str(at.begun) not in at.ended:
+            again = self.redoes and str(at.begun) not in at.ended
+            if again:
                 self.saved.load()
-                self.state.put(at.now)
-            elif not self.state.restored:
+            if again or not self.state.restored:
                 self.state.put(at.now)
             try:
                 rows = [*self.results.rows]
@@ -212,10 +202,9 @@ class Run:
                 raise otherVersion(f"stage '{self.at.stage}'")
             memory = restored(memory, self.at.memory)
         else:
-            self.at.number, self.at.stage = self.entered, name
-            rows = self.readings.count
-            before = [name, self.at.steps, self.at.seconds["steps"], rows]
-            self.at.stages = [*self.at.stages, before]
+            at, rows = self.at, self.readings.count
+            at.number, at.stage = self.entered, name
+            at.stages = [*at.stages, [name, at.steps, at.seconds["steps"], rows]]
         self.memory = memory
         return memory
 
@@ -227,21 +216,18 @@ class Run:
 
         Raises Interrupted after Ctrl-C and SIGTERM, and Collapsed if a block has fallen (help(masonry.MasonryEnergy)).
 
-        :param steps: how many
         :param one: function that makes one step, of its number in this call, from 0; None: YADE makes it
         """
         at = self.at
         self.model.loading.keepLoadLine()
-        if not self.takesUp:
+        takesUp = self.takesUp
+        # the scene of a checkpoint is that after some of the steps or all
+        if takesUp and self.redoes and at.left > steps:
+            raise otherVersion(f"{at.left} of {steps} steps are left")
+        if takesUp:
+            self.takeUp()
+        if not (takesUp and self.redoes):
             self.advanced, at.left = True, steps
-        elif self.redoes:
-            # the scene of a checkpoint is that after some of the steps or all
-            if at.left > steps:
-                raise otherVersion(f"{at.left} of {steps} steps are left")
-            self.takeUp()
-        else:
-            self.takeUp()
-            at.left = steps
         while True:
             self._take(steps, one)
             self.checkpoints.keep()
@@ -296,10 +282,7 @@ class Run:
             self.takeFound(False)
 
     def frame(self, final=False):
-        """Write a frame for ParaView, if the user wants any.
-
-        :param final: whether it is the last one, which is whole when this returns
-        """
+        """Write a frame for ParaView, if the user wants any; the ``final`` one is whole when this returns."""
         if self.frames:
             self.flush()
             self.results.begin()
@@ -307,12 +290,7 @@ class Run:
                 self.frames.add(final)
 
     def show(self, fraction, detail, final=False):
-        """Show on the terminal how far the present stage has come, if it is time to.
-
-        :param fraction: how much of the stage is done, 0 to 1 [-]
-        :param detail: function without arguments that gives the text to show
-        :param final: whether the stage ends here; this is always shown
-        """
+        """Show on the terminal how far the present stage has come, if it is time to: :meth:`masonry.run.progress.Progress.show`."""
         if final or self._now - self._shown > SHOW_EVERY:
             at = self.at
             rate = at.steps / at.seconds["steps"] if at.steps else 0.0

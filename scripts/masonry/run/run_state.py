@@ -72,12 +72,18 @@ class RunState:
 
     def listed(self):
         """The entry ``stages`` of run.json."""
-        listed, end = [], ["", self.steps, self.seconds["steps"], 0]
-        for number, (name, steps, seconds, row) in enumerate(self.stages, start=1):
-            _, stepsAfter, secondsAfter, _ = [*self.stages, end][number]
-            entry = dict(stage=name, steps=stepsAfter - steps)
-            entry.update(seconds=secondsAfter - seconds, first_row=row)
-            listed.append({**entry, "load": self.loads.get(str(number))})
+        listed, ends = [], [
+            *self.stages[1:],
+            ["", self.steps, self.seconds["steps"], 0],
+        ]
+        for (name, steps, seconds, row), (_, after, secondsAfter, _) in zip(
+            self.stages, ends
+        ):
+            entry = dict(
+                stage=name, steps=after - steps, seconds=secondsAfter - seconds
+            )
+            load = self.loads.get(str(len(listed) + 1))
+            listed.append({**entry, "first_row": row, "load": load})
         return listed
 
 
@@ -89,14 +95,14 @@ def otherVersion(why):
 def restored(example, values):
     """A dataclass object with the values of a checkpoint. Raises Refused if these are not of the kind of the example's."""
     before = vars(example)
-    wrong = [
-        name
-        for name, value in values.items()
-        if name not in before or not alike(value, before[name])
-    ]
-    if wrong:
-        raise otherVersion(f"its {', '.join(wrong)}")
+    fits = lambda name: name in before and alike(values[name], before[name])
+    _refuseUnlike(name for name in values if not fits(name))
     return type(example)(**{**before, **values})
+
+
+def _refuseUnlike(names):
+    if wrong := ", ".join(names):
+        raise otherVersion(f"its {wrong}")
 
 
 class Saved:
@@ -107,7 +113,6 @@ class Saved:
     - ``seconds`` of wall-clock time; ``host``: what it was made with, as in
       :func:`masonry.run.keeping.hostNow`
 
-    :param directory: folder of the run
     :raises Refused: if no run can be taken up there
     """
 
@@ -138,14 +143,12 @@ class Saved:
         """How far the run had come: a :class:`RunState`. Raises Refused."""
         at = restored(RunState(), self.at)
         values = lambda held: held.values() if isinstance(held, dict) else held
-        wrong = [
+        _refuseUnlike(
             one.name
             for one in fields(at)
             for example in one.metadata.values()
             if not all(alike(v, example) for v in values(getattr(at, one.name)))
-        ]
-        if wrong:
-            raise otherVersion(f"its {', '.join(wrong)}")
+        )
         return at
 
     def load(self):

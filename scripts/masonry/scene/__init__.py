@@ -13,13 +13,12 @@
 - :mod:`masonry.scene.fields`: random fields; :mod:`masonry.scene.history`: displacements there and back;
   :mod:`masonry.scene.ground`: ground motion and Rayleigh damping; :mod:`masonry.scene.accelerograms`: files of records;
   :mod:`masonry.scene.spectrum`: spectral acceleration
-- :mod:`masonry.scene.options`: the options of the command line, which :mod:`masonry.scene.parsing` reads;
-  :mod:`masonry.scene.settings`: ``--set``; :mod:`masonry.scene.keywords`: options that the script gives to ``Scene``
-- :mod:`masonry.scene.bounds`: limit analysis beside a run, with :mod:`masonry.scene.limit_loads` and
-  :mod:`masonry.scene.bound_texts`; :mod:`masonry.scene.bounding`: the commands that ask for it
-- :mod:`masonry.scene.outcome`: what comes out; :mod:`masonry.scene.drawing_program`: the program that draws it; :mod:`masonry.scene.figure`: what curve.png shows; :mod:`masonry.scene.wall`: of a wall in running bond
-- :mod:`masonry.scene.facts`: what a scene is, in words
-- :mod:`masonry.scene.showing`: a scene in a notebook, and its curve as arrays
+- :mod:`masonry.scene.options`: the options of the command line, which :mod:`masonry.scene.parsing` reads, with those that
+  the script gives to ``Scene``; :mod:`masonry.scene.settings`: ``--set``
+- :mod:`masonry.scene.bounds`: limit analysis beside a run, with :mod:`masonry.scene.limit_loads`;
+  :mod:`masonry.scene.bounding`: the commands that ask for it
+- :mod:`masonry.scene.outcome`: what comes out, and what curve.png shows; :mod:`masonry.scene.drawing_program`: the program that
+  draws it; :mod:`masonry.scene.facts`: what a scene is, in words and in a notebook, and its curve as arrays
 - :mod:`masonry.scene.words`: the words of a script, as data; :mod:`masonry.scene.resuming`: what a resumed run finds in place
   of the stages that were over
 - :mod:`masonry.scene.probing`: what a study must know of a scene

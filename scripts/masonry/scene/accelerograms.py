@@ -4,8 +4,8 @@
 The format is found from the contents, not from the name of the file:
 
 - **PEER NGA** (``.AT2``): some lines of header, of which one has the number of samples and the time between them,
-  ``NPTS= 4000, DT= .0050 SEC`` or ``4000 .0050 NPTS, DT``, and one the unit, ``ACCELERATION TIME SERIES IN UNITS OF G``.
-  The samples follow, any number of them a line.
+  ``NPTS= 4000, DT= .0050 SEC`` or ``4000 .0050 NPTS, DT``, and one the unit, ``ACCELERATION TIME SERIES IN UNITS OF G``; then
+  the samples, any number of them a line.
 - **ESM**, the Engineering Strong-Motion database, and ITACA (DYNA, ``.ASC``): 64 lines of header, each a key, a colon and a
   value, among them ``SAMPLING_INTERVAL_S``, ``NDATA``, ``UNITS`` (``cm/s^2``) and ``DATA_TYPE``. One sample a line follows.
 - **Text**: one column, accelerations, or two, time [s] and acceleration, with blanks or commas between them. Lines that
@@ -62,28 +62,21 @@ class Accelerogram:
 
 
 def read(path: FilePath) -> Accelerogram:
-    """Read a file of accelerations.
-
-    :raises Refused: with the file, the line and the value that is wrong
-    """
+    """Read a file of accelerations. Raises Refused with the file, the line and the value that is wrong."""
     try:
-        text = readWhole(path)
+        data = readWhole(path)
     except OSError as error:
         raise Refused(f"cannot read {path}: {error.strerror}") from None
-    lines = text.decode("utf-8-sig", errors="replace").splitlines()
+    lines = data.decode("utf-8-sig", errors="replace").splitlines()
     file = _File(path, lines)
-    counts = file.peerCount()
-    if counts:
-        return file.peer(counts)
-    first = next((line for line in lines if line.strip()), "")
-    if re.match(r"[A-Z][A-Z0-9_^/]*:", first):
-        return file.esm()
-    return file.text()
+    for line, text in enumerate(lines[:HEADER], 1):
+        if re.search(r"\bNPTS\b", text, re.I) and not text.strip().startswith("#"):
+            return file.peer(line)
+    first = next(filter(str.strip, lines), "")
+    return file.esm() if re.match(r"[A-Z][A-Z0-9_^/]*:", first) else file.text()
 
 
 class _File:
-    """A file that is read: its path and its lines."""
-
     def __init__(self, path, lines):
         self.path, self.lines = os.fspath(path), lines
 
@@ -107,9 +100,8 @@ class _File:
         """The unit that a word of a line stands for."""
         found = WRITTEN.get(word.strip().lower().rstrip("."))
         if not found:
-            raise self.refused(
-                f"unit {shown(word.strip())} must be one of {', '.join(UNITS)}", line
-            )
+            named = shown(word.strip())
+            raise self.refused(f"unit {named} must be one of {', '.join(UNITS)}", line)
         return found
 
     def interval(self, word, line):
@@ -122,55 +114,47 @@ class _File:
         return every
 
     def counted(self, values, expected, key, line):
+        """Values of which there are as many as the file says, and enough."""
         if len(values) != expected:
             raise self.refused(
                 f"{key} is {expected}, and the file has {len(values)} values: is it cut off, or were lines added?",
                 line,
             )
+        return self.enough(values)
+
+    def enough(self, values):
+        if len(values) < 2:
+            raise self.refused(
+                f"it must have two lines of samples at least, of one or two numbers each, and has {len(values)}"
+            )
         return values
 
-    # -- PEER ---------------------------------------------------------------------------------------------------------
-
-    def peerCount(self):
-        """The number of the line with NPTS, or None if this is no file of PEER."""
-        for line, text in enumerate(self.lines[:HEADER], 1):
-            if re.search(r"\bNPTS\b", text, re.I) and not text.strip().startswith("#"):
-                return line
-        return None
-
     def peer(self, at):
-        unit = None
+        """The record of a file of PEER, whose line ``at`` has NPTS."""
+        unit, head = None, self.lines[at - 1]
         for line, text in enumerate(self.lines[:at], 1):
-            found = re.search(r"\bUNITS\s+OF\s+(\S+)", text, re.I)
-            if not found:
-                continue
-            if not re.search(r"\bACC", text, re.I):
-                raise self.refused(
-                    f"it must hold accelerations, and says {shown(text.strip())}", line
-                )
-            unit = self.unit(found[1].rstrip(",;"), line)
-        text = self.lines[at - 1]
+            if found := re.search(r"\bUNITS\s+OF\s+(\S+)", text, re.I):
+                if not re.search(r"\bACC", text, re.I):
+                    said = shown(text.strip())
+                    raise self.refused(f"it must hold accelerations, and says {said}", line)  # fmt: skip
+                unit = self.unit(found[1].rstrip(",;"), line)
         number = r"((?:\d+\.?\d*|\.\d+)(?:[ED][+-]?\d+)?)"
-        count = re.search(r"\bNPTS\s*=\s*(\d+)", text, re.I)
-        every = re.search(rf"\bDT\s*=\s*{number}", text, re.I)
-        if not (count and every):
-            both = re.match(rf"\s*(\d+)\s*,?\s+{number}\s*,?\s+NPTS\s*,\s*DT\b", text, re.I)  # fmt: skip
-            if not both:
-                raise self.refused(
-                    f"the line must have NPTS and DT, as in NPTS= 4000, DT= .0050 SEC, and is {shown(text.strip())}",
-                    at,
-                )
-            count, every = both[1], both[2]
-        else:
-            count, every = count[1], every[1]
-        every = self.interval(every.upper().replace("D", "E"), at)
+        count = re.search(r"\bNPTS\s*=\s*(\d+)", head, re.I)
+        every = re.search(rf"\bDT\s*=\s*{number}", head, re.I)
+        both = re.match(rf"\s*(\d+)\s*,?\s+{number}\s*,?\s+NPTS\s*,\s*DT\b", head, re.I)
+        if count and every:
+            both = ..., count[1], every[1]
+        elif not both:
+            raise self.refused(
+                f"the line must have NPTS and DT, as in NPTS= 4000, DT= .0050 SEC, and is {shown(head.strip())}",
+                at,
+            )
+        every = self.interval(both[2].upper().replace("D", "E"), at)
         values = []
         for line, text in enumerate(self.lines[at:], at + 1):
             values += self.numbers(text.split(), line)
-        self.counted(values, int(count), "NPTS", at)
-        return Accelerogram(self._enough(values), every, unit, "PEER")
-
-    # -- ESM ----------------------------------------------------------------------------------------------------------
+        values = self.counted(values, int(both[1]), "NPTS", at)
+        return Accelerogram(values, every, unit, "PEER")
 
     def esm(self):
         known, values, begins = {}, [], None
@@ -178,14 +162,11 @@ class _File:
             key, colon, value = text.partition(":")
             if begins is None and colon and key[:1].isalpha():
                 known.setdefault(key, (value.strip(), line))
-            elif text.strip():
+            elif words := text.split():
                 begins = begins or line
-                found = self.numbers(text.split(), line)
-                if len(found) != 1:
-                    raise self.refused(
-                        f"{len(found)} numbers, there must be one a line", line
-                    )
-                values += found
+                values += self.numbers(words, line)
+                if len(words) != 1:
+                    raise self.refused(f"{len(words)} numbers, there must be one a line", line)  # fmt: skip
         needed = ("SAMPLING_INTERVAL_S", "NDATA", "UNITS", "DATA_TYPE")
         missing = [key for key in needed if not known.get(key, ("", 0))[0]]
         if missing:
@@ -200,10 +181,8 @@ class _File:
         count, line = known["NDATA"]
         if not count.isdecimal():
             raise self.refused(f"NDATA {shown(count)} must be a whole number", line)
-        self.counted(values, int(count), "NDATA", line)
-        return Accelerogram(self._enough(values), every, unit, "ESM")
-
-    # -- text ---------------------------------------------------------------------------------------------------------
+        values = self.counted(values, int(count), "NDATA", line)
+        return Accelerogram(values, every, unit, "ESM")
 
     def text(self):
         rows, at, known = [], [], {}
@@ -220,7 +199,7 @@ class _File:
                         f"{len(words)} numbers, and the lines must have one or two numbers each, all alike, or three below # components: x y z",
                         line,
                     )
-        values = self._enough([row if len(row) == 3 else row[-1] for row in rows])
+        values = self.enough([row if len(row) == 3 else row[-1] for row in rows])
         every = known.get("every")
         if len(rows[0]) == 2:
             times = self._evenly([row[0] for row in rows], at)
@@ -232,22 +211,19 @@ class _File:
         return Accelerogram(values, every, known.get("unit"), "text")
 
     def _comment(self, text, line, known):
-        found = re.fullmatch(
-            r"\s*#\s*(unit|every|components)\s*[:=]\s*(.*?)\s*", text, re.I
-        )
-        if not found:
+        keys = r"\s*#\s*(unit|every|components)\s*[:=]\s*(.*?)\s*"
+        if not (found := re.fullmatch(keys, text, re.I)):
             return
         key, word = found[1].lower(), found[2]
         if key in known:
             raise self.refused(f"it says {key} twice", line)
+        if key == "components" and word.split() != ["x", "y", "z"]:
+            raise self.refused(f"components {shown(word)} must be x y z", line)
         if key == "unit":
-            known[key] = self.unit(word, line)
-        elif key == "components":
-            if word.split() != ["x", "y", "z"]:
-                raise self.refused(f"components {shown(word)} must be x y z", line)
-            known[key] = True
-        else:
-            known[key] = self.interval(re.sub(r"\s*s$", "", word), line)
+            word = self.unit(word, line)
+        elif key == "every":
+            word = self.interval(re.sub(r"\s*s$", "", word), line)
+        known[key] = word
 
     def _evenly(self, times, at):
         """The time between two of them [s]."""
@@ -255,24 +231,13 @@ class _File:
         mean = sum(steps) / len(steps)
         for step, one, line in zip(steps, times[1:], at[1:]):
             if not step > 0:
-                raise self.refused(
-                    f"its times are not evenly apart: {one:g} s must be after {one - step:g} s",
-                    line,
-                )
-            if abs(step - mean) > UNEVEN * mean:
-                raise self.refused(
-                    f"its times are not evenly apart: {one:g} s is {step:g} s after the one before, and the mean is "
-                    f"{mean:g} s",
-                    line,
-                )
+                why = f"must be after {one - step:g} s"
+            elif abs(step - mean) > UNEVEN * mean:
+                why = f"is {step:g} s after the one before, and the mean is {mean:g} s"
+            else:
+                continue
+            raise self.refused(f"its times are not evenly apart: {one:g} s {why}", line)
         return mean
-
-    def _enough(self, values):
-        if len(values) < 2:
-            raise self.refused(
-                f"it must have two lines of samples at least, of one or two numbers each, and has {len(values)}"
-            )
-        return values
 
 
 def components(values: Any) -> Any:
@@ -290,9 +255,6 @@ def written(values: Any, every: float, title: str) -> str:
     columns = components(values).tolist()
     head += "# components: x y z\n" if len(columns) == 3 else ""
     return head + "".join(" ".join(map(repr, row)) + "\n" for row in zip(*columns))
-
-
-# -- drift --------------------------------------------------------------------------------------------------------------
 
 
 @dataclass(frozen=True)
@@ -314,17 +276,16 @@ class Drift:
     def sentence(self) -> str | None:
         """What is wrong with the record, with its numbers, or None."""
         found = []
-        if abs(self.endVelocity) > ENDS * self.peakVelocity:
+        end, rise = abs(self.endVelocity), abs(self.rise)
+        if end > ENDS * self.peakVelocity:
             found.append(
-                f"its velocity at the end is {self.endVelocity:.3g} m/s, {100 * abs(self.endVelocity) / self.peakVelocity:.0f} % "
-                f"of its largest (a record that ends at rest: below {100 * ENDS:g} %), as under a constant acceleration of "
-                f"{self.lean:.2g} m/s²"
+                f"its velocity at the end is {self.endVelocity:.3g} m/s, {100 * end / self.peakVelocity:.0f} % of its largest "
+                f"(a record that ends at rest: below {100 * ENDS:g} %), as under a constant acceleration of {self.lean:.2g} m/s²"
             )
-        if abs(self.rise) > RISES * self.peakDisplacement:
+        if rise > RISES * self.peakDisplacement:
             found.append(
                 f"a straight line through its displacements rises by {self.rise:.3g} m, "
-                f"{100 * abs(self.rise) / self.peakDisplacement:.0f} % of the largest (a motion about one place: below "
-                f"{100 * RISES:g} %)"
+                f"{100 * rise / self.peakDisplacement:.0f} % of the largest (a motion about one place: below {100 * RISES:g} %)"
             )
         return " and ".join(found) or None
 
@@ -332,12 +293,11 @@ class Drift:
 def drift(values: Numbers, every: float) -> Drift:
     """How far a record drifts: velocity and displacement, integrated from rest.
 
-    A motion of the ground ends at rest, so the velocity at its end is 0; the criterion is 5 % of the largest velocity
-    (``ENDS``). A motion about one place has displacements to both sides, and a line of least squares through them hardly
-    rises. An offset of the accelerations or of the velocity alone gives displacements whose line rises by all of the
-    largest displacement, so the criterion is half of that (``RISES``). A record with a permanent displacement of the ground,
-    near a fault, exceeds the second one rightly. Nothing is corrected: processed records of both databases need none, and
-    what is right for another one depends on why it drifts.
+    A motion of the ground ends at rest, so the velocity at its end is 0; the criterion is 5 % of the largest velocity. A motion
+    about one place has displacements to both sides, and a line of least squares through them hardly rises. An offset of the
+    accelerations or of the velocity gives displacements whose line rises by all of the largest one, so the criterion is half of
+    that. A record with a permanent displacement of the ground, near a fault, exceeds it rightly. Nothing is corrected:
+    processed records of both databases need none, and what is right for another one depends on why it drifts.
 
     The integrals are exact for accelerations that change evenly between samples.
 

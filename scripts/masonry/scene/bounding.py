@@ -30,14 +30,12 @@ def bound(
 
     :param target: what is pushed, or a pattern, as in :meth:`push`, along ``direction``; its factor is the force of the push [kN]
     :param towards: horizontal direction of an acceleration, whose factor is in g; give this or ``target``
-    :returns: the entry of run.json: a dict with ``factor``, ``exact`` and the others that :mod:`masonry.run.results`
-        lists
+    :returns: the entry of run.json: a dict with what :mod:`masonry.run.results` lists
     """
     if (target is None) == (towards is None):
         raise ValueError("bound: give either target or towards")
 
     def find():
-        _begin(scene, "bound")
         before = saidBefore(scene, "bound", target=asData(target) or "")
         if target is not None:
             along = vector(direction, "bound: direction").normalized()
@@ -79,7 +77,6 @@ def domain(
         )
 
     def find():
-        _begin(scene, "domain")
         isDriven = scene.model.loading.isDriven(target, "z")
         if "z" in (target.freedom or "") or isDriven:
             raise ValueError(
@@ -97,19 +94,15 @@ def domain(
 
 
 def _inOrder(scene, find, command, *arguments):
-    """What a function finds, noted as a command of the script; Ctrl-C ends the run in order."""
+    """What a function finds of a scene that is built, noted as a command of the script; Ctrl-C ends the run in order."""
     try:
         with scene.noted(command, *arguments), scene.running.listening():
+            scene.begin()
+            scene.bounds.take(True)
+            if scene.collapsed:
+                raise ValueError(
+                    f"{command.__name__}: the structure has fallen; stepBack() goes back to its last state at rest"
+                )
             return find()
     except Interrupted as error:
         return scene.failed(error)
-
-
-def _begin(scene, name):
-    """Build the scene if it does not stand yet. Raises ValueError if it has fallen."""
-    scene.begin()
-    scene.bounds.take(True)
-    if scene.collapsed:
-        raise ValueError(
-            f"{name}: the structure has fallen; stepBack() goes back to its last state at rest"
-        )

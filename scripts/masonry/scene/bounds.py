@@ -12,7 +12,6 @@ import sys
 import tempfile
 import time
 from dataclasses import dataclass
-from functools import partial
 from typing import Callable
 
 import numpy as np
@@ -45,6 +44,8 @@ GIVEN_UP = (
 )
 #: The note of one that was not found when the run came to its end, or to a checkpoint.
 LATE = "limit analysis: it was not solved in time; scene.bound() takes its time"
+#: By how much a run may be above its bound [-]: joints of finite stiffness, and displacements that are not small.
+TOLERANCE = 0.02
 SILENT = 0.3  # so long something beside the run is waited for without a word [s]
 SOON = 1.0  # [s] in which a run that is interrupted waits for its bound
 
@@ -83,8 +84,10 @@ class Bounds:
         self.last = None
         # beside the run: finds a bound, then the files of its mechanism
         self._task = None
-        self._looksFor = ""  # name of the load whose bound it has not found yet
-        self._since = 0.0  # since when it looks [s]
+        self._looksFor, self._since = (
+            "",
+            0.0,
+        )  # the load whose bound it finds, since [s]
         self.endless = set()  # names of loads under which nothing gives way
 
     @property
@@ -92,52 +95,38 @@ class Bounds:
         """What was found, by the load: entries of run.json. A checkpoint keeps them."""
         return self.place.bounds
 
-    def push(self, target, direction, both=False, lowerUpTo=0, background=False):
+    def push(self, target, direction, both=False, **how):
         """Find the bound of a push [kN], without what acts beside it. Returns its entry of run.json, the last one if there are two.
 
         :param target: what is pushed, or a :class:`masonry.assembly.loading.Pattern`
-        :param direction: unit vector of the push
-        :param both: whether it goes there and back
-        :param lowerUpTo: up to so many joints a collapse without dilatancy is looked for, too, if the bound is not exact
-        :param background: whether it is found beside the run, and the entry gets its numbers by :meth:`take`
+        :param direction: unit vector of the push; ``both``: whether it goes back, too
+        :param how: as in :meth:`find`
         """
-        for sign in (1, -1) if both else (1,):
-            along = sign * direction
-            live = partial(self._pushed, target, along)
-            load = Load(nameOfPush(target, along), "kN", live, pushed=(target, direction))  # fmt: skip
-            entry = self._find(load, lowerUpTo, background)
+        for along in (direction, -1 * direction) if both else (direction,):
+            load = Load(nameOfPush(target, along), "kN", _pushOf(target, along), pushed=(target, direction))  # fmt: skip
+            entry = self.find(load, **how)
         return entry
 
-    def _pushed(self, target, direction, assembly):
-        return limit_loads.push(assembly, target, direction)
-
-    def domain(self, target, normals, direction, lowerUpTo=0, background=False):
+    def domain(self, target, normals, direction, **how):
         """Find the bounds of a push under several normal forces. Returns their entries of run.json.
 
         :param target: a platen with a press, whose vertical force is replaced
         :param normals: with which it presses on what is below, its weight included [kN]
         :param direction: unit vector of the push, horizontal
-        :param lowerUpTo: and ``background``: as in :meth:`push`
+        :param how: as in :meth:`find`
         """
-        live, pushed = partial(self._pushed, target, direction), (target, direction)
-        loads = [
-            Load(
-                nameInDomain(target, direction, normal),
-                "kN",
-                live,
-                pushed=pushed,
-                pressed=(target, normal),
-            )
-            for normal in normals
-        ]
-        return [self._find(load, lowerUpTo, background) for load in loads]
+        names = [nameInDomain(target, direction, normal) for normal in normals]
+        live = _pushOf(target, direction)
+        of = dict(unit="kN", live=live, pushed=(target, direction))
+        loads = [Load(n, pressed=(target, k), **of) for n, k in zip(names, normals)]
+        return [self.find(load, **how) for load in loads]
 
-    def lean(self, towards, tilts=False, lowerUpTo=0, background=False):
+    def lean(self, towards, tilts=False, **how):
         """Find the bound of a horizontal acceleration [g]. Returns its entry of run.json.
 
         :param towards: unit vector
         :param tilts: whether gravity turns, and does not grow; the factor is then the horizontal over the vertical part
-        :param lowerUpTo: and ``background``: as in :meth:`push`
+        :param how: as in :meth:`find`
         """
         scaled = GRAVITY / self.model.args.density_scaling
         # of a tilt, the weight is that of the scene at every angle
@@ -145,41 +134,42 @@ class Bounds:
         live = lambda a: share * a.weights(scaled * np.array(towards))
         down = (0, 0, -self.model.gravity)  # it replaces another acceleration
         name, unit = nameOfLean(towards, tilts), "" if tilts else "g"
-        load = Load(name, unit, live, tilts, gravity=down)
-        return self._find(load, lowerUpTo, background)
+        return self.find(Load(name, unit, live, tilts, gravity=down), **how)
 
-    def forces(self, what, unit, loads, lowerUpTo=0, background=False):
+    def forces(self, what, unit, loads, **how):
         """Find the bound of forces that grow together. Returns its entry of run.json.
 
         :param what: name of the load
         :param unit: of its factor
         :param loads: pairs of a MasonryLoad and its force at a factor of 1 [N]
-        :param lowerUpTo: and ``background``: as in :meth:`push`
+        :param how: as in :meth:`find`
         """
+        acting = [(load.body, load.point, force) for load, force in loads]
+        live = lambda a: limit_loads.sumOf(a, acting)
+        return self.find(Load(what, unit, live), **how)
 
-        live = lambda a: limit_loads.sumOf(a, loads)
-        return self._find(Load(what, unit, live), lowerUpTo, background)
+    def find(self, load, lowerUpTo=0, background=False):
+        """Find the bound of a :class:`Load`. Returns its entry of run.json.
 
-    def _find(self, load, lowerUpTo, background):
+        :param lowerUpTo: up to so many joints a collapse without dilatancy is looked for, too, if the bound is not exact
+        :param background: whether it is found beside the run, and the entry gets its numbers by :meth:`take`
+        """
         self.take(True)
-        what, model = load.name, self.model
+        what, model, place = load.name, self.model, self.place
         known = self.entries.get(what)
         acting = limit_loads.beside(model, load.gravity or model.scheme.now)
-        same = self.place.beside.get(what, acting) == acting
-        self.place.beside = {**self.place.beside, what: acting}
+        same = place.beside.get(what, acting) == acting
+        place.beside = {**place.beside, what: acting}
         if known and same and not lowerUpTo and known.get("note") != GIVEN_UP:
             return known
         if not same:  # what was held before was held beside other loads
-            self.place.held = {k: v for k, v in self.place.held.items() if k != what}
+            place.held = {k: v for k, v in place.held.items() if k != what}
         entry = self.entries[what] = {"load": what, "unit": load.unit}
         if load.pressed:
             entry["pressed_kN"] = load.pressed[1]
         self.endless.discard(what)
-        if self.place.supportsMoved:
-            reason = (
-                "supports have moved, and joints that are open would be taken as closed"
-            )
-            entry["note"] = f"no limit analysis: {reason}"
+        if place.supportsMoved:
+            entry["note"] = "no limit analysis: supports have moved, and joints that are open would be taken as closed"  # fmt: skip
             return entry
         count = len(model.interactions)
         if count > JOINTS and not lowerUpTo:
@@ -206,7 +196,7 @@ class Bounds:
 
     def _found(self, load, lowerUpTo, seconds):
         """Find a bound. Returns what its entry gets, lines to say, whether nothing gives way, and the :class:`limit.Bound`."""
-        entry, lines, what, unit = {}, [], load.name, load.unit
+        entry, lines = {}, []
         try:
             assembly = limit.read()
             assembly.deadline = time.monotonic() + seconds
@@ -222,12 +212,12 @@ class Bounds:
 
             bound = found(assembly.largest, 0.0)
             entry.update(bound.describe())
-            lines.append(bound.sentence(what, unit))
+            lines.append(bound.sentence(load.name, load.unit))
             if not bound.exact and len(self.model.interactions) <= lowerUpTo:
                 least = found(assembly.withoutDilatancy, math.atan(bound.factor))
                 entry["without_dilatancy"] = least.factor
                 entry["without_dilatancy_settled"] = least.settled
-                lines.append(least.sentence(what, unit))
+                lines.append(least.sentence(load.name, load.unit))
             return entry, lines, False, bound
         except Refused as refused:
             note, endless = str(refused), isinstance(refused, Endless)
@@ -235,7 +225,7 @@ class Bounds:
             note, endless = f"limit analysis: {FULL}", False
         return {**entry, "note": note}, [*lines, f"note: {note}"], endless, None
 
-    def _note(self, what, found, lines, endless, bound):
+    def _note(self, what, found, lines, endless=False, bound=None):
         self.entries[what].update(found)
         for line in lines:
             # no notes: the entry has them, and when they are found depends on the machine
@@ -252,7 +242,7 @@ class Bounds:
         *found, bound = work()
         yield (*found, None)
         files, model = {}, self.model
-        self._note(what, found[0], [], False, bound)
+        self._note(what, found[0], [], bound=bound)
         views = model.description.views
         try:
             with tempfile.TemporaryDirectory() as folder:
@@ -268,28 +258,23 @@ class Bounds:
         yield files
 
     def take(self, wait, givesUp=lambda: False):
-        """Take the bound that is found beside the run, if it is there.
-
-        :param wait: whether to wait for it
-        :param givesUp: function that says while it is waited for whether to do without it
-        """
+        """Take the bound that is found beside the run, if it is there; ``wait`` says whether to wait for it, and ``givesUp`` while it is
+        waited for whether to do without it."""
         task, what = self._task, self._looksFor
         if not what or not (wait or task.ready()):
             return
-        if not task.ready(0, SILENT) and time.monotonic() - self._since < UNASKED:
+        since, note = lambda: time.monotonic() - self._since, ""
+        if not task.ready(0, SILENT) and since() < UNASKED:
             say("waiting for limit analysis")
-        while not task.ready(0, SILENT):
-            late = time.monotonic() - self._since > UNASKED
-            if late or givesUp():
-                note = LATE if late else GIVEN_UP
-                self._note(what, {"note": note}, [f"note: {note}"], False, None)
-                self.drop()
-                return
+        while not note and not task.ready(0, SILENT):
+            note = LATE if since() > UNASKED else GIVEN_UP if givesUp() else ""
         try:
-            self._note(what, *task.result())
+            if not note:
+                self._note(what, *task.result())
         except Failed as failed:
             note = f"limit analysis: {failed}"
-            self._note(what, {"note": note}, [f"note: {note}"], False, None)
+        if note:
+            self._note(what, {"note": note}, [f"note: {note}"])
         self._looksFor = ""
         if "factor" in self.entries[what]:
             self.last = None
@@ -326,20 +311,25 @@ class Bounds:
 
     def _writeFound(self, directory, draws):
         """Write the files that were made beside the run; if they are not to be drawn, those that are there."""
-        if not draws and not self._task.ready(1):
-            self.drop()
-            return
-        if not self._task.ready(1, SILENT):
+        if not self._task.ready(1, SILENT * draws):
+            if not draws:
+                return self.drop()
             say("waiting for the mechanism")
         try:
             files = self._task.result(1)
         except Failed as failed:
-            say(f"the mechanism is left out: {failed}", sys.stderr)
-            return
+            return say(f"the mechanism is left out: {failed}", sys.stderr)
         for name, data in files.items():
             if draws or name != FIGURE:
                 with replaced(os.path.join(directory, name), "wb") as file:
                     file.write(data)
+
+
+def _pushOf(target, direction):
+    """The live load of a push of a target, or in a pattern: 1 kN along a direction."""
+    along = np.array(direction)
+    acting = [(body, at, 1e3 * share * along) for body, at, share in target.parts]
+    return lambda assembly: limit_loads.sumOf(assembly, acting)
 
 
 def _tilted(find, first):
@@ -350,8 +340,8 @@ def _tilted(find, first):
     :raises Endless: if there is no such tilt below :data:`STEEPEST`
     """
     bound = find(math.cos(first))
-    last, off = first, math.atan(bound.factor) - first
     angle = math.atan(bound.factor)
+    last, off = first, angle - first
     for _ in range(TILTS):
         angle = min(max(angle, 0.0), STEEPEST)
         if abs(angle - last) < SAME_TILT:
@@ -367,7 +357,7 @@ def _tilted(find, first):
 
 
 def findBy(scene, kind, *load, **how):
-    """Find a bound, which Ctrl-C and SIGTERM end at once: a method of :class:`masonry.scene.bounds.Bounds`."""
+    """Find a bound by a method of :class:`Bounds`, which Ctrl-C and SIGTERM end at once."""
     with scene.running.breakable():
         return getattr(scene.bounds, kind)(*load, **how)
 
@@ -388,7 +378,7 @@ def findBound(scene, kind, *load):
     missing = any(e.get("note") == GIVEN_UP for e in scene.bounds.entries.values())
     if scene.args.lean and not scene.only or resumed and not missing:
         return  # in a stage that goes on it was found when that began
-    upTo = SMALL if scene.only else 0
+    upTo = SMALL * scene.only
     findBy(scene, kind, *load, lowerUpTo=upTo, background=not scene.only)
 
 
@@ -413,3 +403,67 @@ def nameOf(direction):
         if abs(value) > 1 - 1e-9:
             return ("-" if value < 0 else "") + axis
     return "(" + ", ".join(f"{v:.3g}" for v in direction) + ")"
+
+
+# -- what a run says of its bounds ---------------------------------------------------------------------------------------
+
+
+def inRunJson(entries, pushes=()):
+    """Entries of run.json, from those of :class:`Bounds`.
+
+    :param pushes: names of the pushes that its numbers are of: there, and back
+    """
+    if not entries:
+        return {}
+    found = {"bounds": list(entries.values())}
+    known = {what: e for what, e in entries.items() if "factor" in e}
+    signs = (1, "bound_base_shear_kN"), (-1, "negative_bound_base_shear_kN")
+    for what, (sign, key) in zip(pushes, signs):
+        if what in known:
+            found[key] = sign * known[what]["factor"]
+    leans = [e["factor"] for e in known.values() if e["unit"] in ("g", "")]
+    if leans:
+        found["bound_acceleration"] = leans[0]
+    return found
+
+
+def linesOfPush(entries, pushes):
+    """Horizontal lines of curve.png, for a push. Parameters as in :func:`inRunJson`."""
+    found = inRunJson(entries, pushes)
+    for key in ("bound_base_shear_kN", "negative_bound_base_shear_kN"):
+        if key in found:
+            text = f"limit analysis: {abs(found[key]):.1f} kN at most"
+            yield {"y": found[key], "text": text}
+
+
+def linesOfGrowth(entry):
+    """Horizontal lines of curve.png, for a load that grows, from the entry of its bound."""
+    words = {"factor": "at most", "without_dilatancy": "without dilatancy"}
+    for key, text in words.items():
+        if key in entry:
+            what = f"limit analysis: {entry[key]:.4g} {entry['unit']} {text}"
+            yield {"y": entry[key], "text": " ".join(what.split())}
+
+
+def over(entries, held, run):
+    """Sentences about what is above its bound.
+
+    :param held: load factors under which the structure came to rest, by the name of the load
+    :param run: the entries of run.json
+    """
+    found = []
+    for side in ("", "negative_"):
+        pair = [run.get(f"{side}{of}_base_shear_kN") for of in ("peak", "bound")]
+        if None not in pair:
+            found.append((*map(abs, pair), "kN", "the largest force of the push"))
+    for what, factor in held.items():
+        entry = entries.get(what, {})
+        if "factor" in entry:
+            name = f"{what}: the load that was held"
+            found.append((factor, entry["factor"], entry["unit"], name))
+    for reached, bound, unit, what in found:
+        if reached > (1 + TOLERANCE) * bound:
+            yield (
+                f"{what}, {reached:.4g} {unit}, is {100 * (reached / bound - 1):.1f} % above the upper bound of "
+                f"limit analysis, {bound:.4g} {unit}: is the run too fast, or does the structure move far?"
+            )

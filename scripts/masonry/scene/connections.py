@@ -13,22 +13,21 @@ from ..assembly.blocks import vector
 from ..basics import Refused, refuse
 from ..bricks import Block, Bricks
 from .supports import Point
-from .targets import Part, Target, brick
+from .targets import Part, Target, brick, isOwn
 from .ties import MOST, OF_OVERLAY, OF_TIE, End, Overlay, Spring, Tie
 from .words import describes
 
 
-def end(value: Any, first: Any) -> Any:
+def _end(value, first):
     """The kind of an end: a target of the scene, or a brick as in :func:`masonry.scene.targets.brick`."""
-    if isinstance(value, Target):
-        description = getattr(first, "description", first)
-        if description.targets.get(value.name) is not value:
-            raise ValueError(f"{value.name!r}, which is of another scene, must be of this one")  # fmt: skip
-        return value
-    return brick(value, first)
+    if not isinstance(value, Target):
+        return brick(value, first)
+    if not isOwn(value, first):
+        raise ValueError(f"{value.name!r}, which is of another scene, must be of this one")  # fmt: skip
+    return value
 
 
-EndAt = Annotated[Union[Target, Numbers, int, Block], end]
+EndAt = Annotated[Union[Target, Numbers, int, Block], _end]
 
 
 def _endOf(description, where):
@@ -36,16 +35,6 @@ def _endOf(description, where):
         return End(tuple(where.point), where, where.brick)
     index, point = description.find(where)
     return End(tuple(point or description.middle(index)), None, index)
-
-
-def _inPlane(description, ends):
-    """In a scene in the x-z plane the ends stand in the plane of the first one's middle."""
-    if description.plane:
-        level = ends[0].point[1]
-        if ends[0].brick is not None:
-            level = description.middle(ends[0].brick)[1]
-        for one in ends:
-            one.point = (one.point[0], level, one.point[2])
 
 
 @describes
@@ -67,8 +56,8 @@ def tie(
     """A bar between a point of a brick and another one, or the ground: a tie rod, an anchor, a strut.
 
     It has no mass, does not bend, and pulls along the line between its ends, however far they move. Its columns in curve.csv
-    are its force [kN] and the elongation between its ends [mm]; when it yields or breaks, the terminal says so. Bricks at its
-    ends are rigid also with ``--blocks deformable``.
+    are its force [kN] and the elongation [mm]; when it yields or breaks, the terminal says so. Bricks at its ends are rigid
+    also with ``--blocks deformable``.
 
     :param one: a point (x, y, z) [m] in a brick or near it, at which the tie is fixed to it; the index of a brick, or the
         block itself: its middle; or a platen, a handle, a brick that is held or watched: the point on which loads act
@@ -88,32 +77,29 @@ def tie(
         raise Refused("tie: give either other or anchor")
     at = None if anchor is None else tuple(vector(anchor, "tie: anchor [m]"))
     ends = _endOf(description, one), End(at) if at else _endOf(description, other)
-    _inPlane(description, ends)
-    if _samePlace(*ends):
-        raise Refused(f"tie: its ends, {ends[0].words} and {ends[1].words}, are on one brick")  # fmt: skip
-    number = len(description.connectorsOf(Tie))
-    made = Tie(name or f"tie{number}", ends, stiffness, strength, prestress, slack, breaking, compression)  # fmt: skip
+    if description.plane:  # both ends are in the plane of the first one's middle
+        level = ends[0].point[1]
+        if ends[0].brick is not None:
+            level = description.middle(ends[0].brick)[1]
+        for end in ends:
+            end.point = (end.point[0], level, end.point[2])
+    name = name or f"tie{len(description.connectorsOf(Tie))}"
+    made = Tie(name, ends, stiffness, strength, prestress, slack, breaking, compression)
+    problems = [*_onOneBrick(*ends), *made.problems()]
     if not made.length > 0:
-        raise Refused(f"tie: its ends are both at {ends[0].point} m")
-    problems = made.problems()
-    refuse([f"tie: {one}" for one in problems])
-    _checkName(description, made.name, "tie")
-    description.connectors.append(made)
-    return made
+        problems = [f"its ends are both at {ends[0].point} m"]
+    return _take(description, "tie", made, problems)
 
 
-SPRINGS = numbers("", MOST)
-
-
-def springs(value: Any, first: Any = None) -> Any:
+def _springs(value, first=None):
     """The kind of the stiffnesses of springs along or about three axes, of which none is negative."""
-    found = SPRINGS(value)
+    found = numbers("", MOST)(value)
     if min(found) < 0:
         raise ValueError(f"{value!r} must be three numbers of at least 0")
     return tuple(found)
 
 
-Springs = Annotated[Numbers, springs]
+Springs = Annotated[Numbers, _springs]
 
 
 @describes
@@ -144,18 +130,13 @@ def spring(
     first = _endOf(description, one)
     second = End(first.point) if other is None else _endOf(description, other)
     second.point = first.point
-    problems = []
+    problems = [*_onOneBrick(first, second)]
     if not any((*stiffness, *rotation)):
-        problems.append("spring: a stiffness must be above 0")
+        problems.append("a stiffness must be above 0")
     if description.plane and (stiffness[1] or rotation[0] or rotation[2]):
-        problems.append("spring: the scene is in the x-z plane: stiffness along x and z, and rotation about y, are what it can have; Scene(..., plane=False) is in space")  # fmt: skip
-    if _samePlace(first, second):
-        problems.append(f"spring: its ends, {first.words} and {second.words}, are on one brick")  # fmt: skip
-    refuse(problems)
-    _checkName(description, name, "spring")
+        problems.append("the scene is in the x-z plane: stiffness along x and z, and rotation about y, are what it can have; Scene(..., plane=False) is in space")  # fmt: skip
     made = Spring(name, (first, second), tuple(stiffness), tuple(rotation))
-    description.connectors.append(made)
-    return made
+    return _take(description, "spring", made, problems)
 
 
 #: Places of two bundles of fibres along the edge of a joint, which have the force and the moment of a layer whose strain is
@@ -198,13 +179,11 @@ def overlay(
     if description.plane:
         raise Refused("overlay: the scene is in the x-z plane, in which a layer on one face would bend it; Scene(..., plane=False) is in space")  # fmt: skip
     name = name or f"overlay{len(description.overlays)}"
-    _checkName(description, name, "overlay")
     outward = np.asarray(vector(side, "overlay: side").normalized(), float)
-    bricks = Bricks(description.bricks)
     size = max(b - a for a, b in zip(description.low, description.high))
     fronts = [max(np.dot(c, outward) for c in b.corners) for b in description.bricks]
     made = []
-    for joint in bricks.joints():
+    for joint in Bricks(description.bricks).joints():
         pair, normal = (joint.first, joint.second), np.array(joint.normal)
         level = abs(normal[2]) > 0.5**0.5
         if abs(normal @ outward) > 0.5 or fibres == ("horizontal" if level else "vertical"):  # fmt: skip
@@ -230,18 +209,25 @@ def overlay(
             made.append(Tie(f"{name}_{len(made)}", ends, 0.5 * width * stiffness / gauge, 0.5 * width * strength, 0.0, 0.0, strain, False, overlay=name))  # fmt: skip
     if not made:
         raise Refused(f"overlay: no joint ends at a face that looks along {tuple(side)}")  # fmt: skip
+    layer = Overlay(name, made, stiffness, strength, gauge, strain)
+    _take(description, "overlay", layer, [])
     description.connectors += made
-    description.overlays.append(Overlay(name, made, stiffness, strength, gauge, strain))
-    return description.overlays[-1]
+    return layer
 
 
-def _samePlace(one, other):
-    """Whether two ends are on the same brick or platen."""
+def _onOneBrick(one, other):
+    """A sentence, if two ends are on the same brick or platen."""
     same = one.target is not None and one.target is other.target
-    return same or one.brick is not None and one.brick == other.brick
+    if same or one.brick is not None and one.brick == other.brick:
+        yield f"its ends, {one.words} and {other.words}, are on one brick"
 
 
-def _checkName(description, name, word):
-    taken = {one.name for one in (*description.connectors, *description.overlays)}
-    if name in {*taken, *description.targets, *description.materials.joints}:
-        raise Refused(f"{word}: there is a {name!r} already; give one of them another name")  # fmt: skip
+def _take(description, word, made, problems):
+    """Take a tie, springs or a layer of fibres that has no problems, and whose name is its own. Raises Refused."""
+    refuse([f"{word}: {one}" for one in problems])
+    connectors, overlays = description.connectors, description.overlays
+    taken = {one.name for one in (*connectors, *overlays)}
+    if made.name in {*taken, *description.targets, *description.materials.joints}:
+        raise Refused(f"{word}: there is a {made.name!r} already; give one of them another name")  # fmt: skip
+    (overlays if isinstance(made, Overlay) else connectors).append(made)
+    return made

@@ -9,7 +9,7 @@ from typing import Any
 from ..common.arguments import Name, validated
 from .supports import Coordinate
 from ..basics import Refused
-from .settings import Factor, Property, Settable
+from .settings import Property, Settable
 from .targets import Target
 from .words import describes
 
@@ -31,63 +31,41 @@ class Contact(Settable):
     - ``restitution``: speed after over before a central impact of two faces [-]
     """
 
-    WORD = "contact"
+    WORD = name = "contact"
+    normalStiffness = tangentialRatio = friction = None
+    restitution = RESTITUTION
+    known = {
+        "normalStiffness": Property("Pa/m", 0, 1e18, True),
+        "tangentialRatio": Property("-", 0, 1, True),
+        "friction": Property("-", 0, 10),
+        "restitution": Property("-", 0.1, 1),
+    }
 
-    def __init__(self) -> None:
-        self.name = "contact"
-        self.normalStiffness: float | None = None
-        self.tangentialRatio: float | None = None
-        self.friction: float | None = None
-        self.restitution: float | None = RESTITUTION
-
-    def known(self) -> dict[str, Property]:
-        """As of :class:`masonry.scene.settings.Settable`, and so are those that follow."""
-        return {
-            "normalStiffness": Property("Pa/m", 0, 1e18, True),
-            "tangentialRatio": Property("-", 0, 1, True),
-            "friction": Property("-", 0, 10),
-            "restitution": Property("-", 0.1, 1),
-        }
-
-    def values(self) -> dict[str, float | None]:
-        return {name: getattr(self, name) for name in self.known()}
-
-    def copied(self) -> Contact:
-        made = Contact()
-        vars(made).update(vars(self))
-        return made
-
-    def scatter(self, name: str, factor: Factor) -> None:
+    def scatter(self, name, factor):
         raise ValueError(f"contact: {name} is the same all over; --set contact.{name}=... changes it")  # fmt: skip
 
-    def of(self, bed: Any) -> dict[str, float]:
-        """The attributes of MasonryContacts.
-
-        :param bed: the bed joint, a MasonryJoint
-        """
+    def of(self, bed):
+        """The attributes of MasonryContacts, where ``bed`` is the bed joint, a MasonryJoint."""
         defaults = {
             "normalStiffness": bed.normalStiffness,
             "tangentialRatio": min(1.0, bed.shearStiffness / bed.normalStiffness),
             "friction": FRICTION if bed.elastic else bed.residualFriction,
         }
-        given = {name: value for name, value in self.values().items() if value is not None}  # fmt: skip
-        return {**defaults, **given}
+        return {n: defaults.get(n) if v is None else v for n, v in self.values().items()}  # fmt: skip
 
 
-def problems(description: Any, args: Any) -> list[str]:
-    """What does not go together with ``collapse="follow"``: a list of sentences."""
-    found = []
+def problems(description, args):
+    """What does not go together with ``collapse="follow"``, or with functors: sentences."""
+    if args.points and description.functors:
+        yield f"--points {args.points}: with functors joints keep three points; leave functors=False"
+    if not description.contact:
+        return
     if description.functors:
-        found.append("collapse='follow': the functors go on with joints whose blocks have come apart; leave functors=False")  # fmt: skip
+        yield "collapse='follow': the functors go on with joints whose blocks have come apart; leave functors=False"
     if args.blocks == "deformable":
-        found.append(
-            "collapse='follow': deformable bricks have no contacts; choose --blocks rigid, or a preset with it, or collapse='end'"
-        )
+        yield "collapse='follow': deformable bricks have no contacts; choose --blocks rigid, or a preset with it, or collapse='end'"
     if args.density_scaling != 1:
-        found.append(
-            f"--density-scaling {args.density_scaling:g}: with collapse='follow' blocks fall in real time, with true masses"
-        )
-    return found
+        yield f"--density-scaling {args.density_scaling:g}: with collapse='follow' blocks fall in real time, with true masses"
 
 
 @describes
@@ -106,18 +84,15 @@ def ground(description: Any, level: Coordinate, name: Name | None = None) -> Tar
     return addGround(description, level, name or "ground")
 
 
-def addGround(
-    description: Any, level: float | None = None, name: str | None = None
-) -> Target:
+def addGround(description, level=None, name=None):
     """Add the ground on which blocks fall.
 
     :param level: as in :func:`ground`; None: just below everything else
-    :param name: in curve.csv; None: ground, or another one if a target has that name
+    :param name: None: ground, or another one if a target has that name
     """
-    taken = {target.name for target in description.targets.values()}
+    targets = description.targets
     names = itertools.chain(["ground"], (f"ground{k}" for k in itertools.count(2)))
-    free = (one for one in names if one not in taken)
-    boxes = [target.box for target in description.targets.values() if target.box]
+    boxes = [target.box for target in targets.values() if target.box]
     lowest = min([description.low[2], *(box[0][2] for box in boxes)])
     height = description.high[2] - description.low[2]
     top = lowest - BELOW * height if level is None else level
@@ -126,14 +101,15 @@ def addGround(
             f"ground: level {top:g} m must be at most {lowest:g} m, where the lowest of what is built ends"
         )
     reach = BEYOND * (description.high[2] - top)
-    low = [description.low[i] - reach for i in range(2)]
-    high = [description.high[i] + reach for i in range(2)]
+    low = [v - reach for v in description.low[:2]]
+    high = [v + reach for v in description.high[:2]]
+    middle = (0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1]), top)
     return description.add(
         Target(
-            name or next(free),
+            name or next(one for one in names if one not in targets),
             fixed=True,
-            point=(0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1]), top),
-            recorded=(0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1]), top),
+            point=middle,
+            recorded=middle,
             box=((*low, top - THICK * height), (*high, top)),
             freedom="xyzXYZ",
             loaded=False,

@@ -18,9 +18,8 @@ class DrawingProgram:
         self._begun = False  # whether it knows the folder
 
     def draw(self, directory):
-        """Wait until the figures of a run that has ended are drawn and its report is written, in a program of their own. Raises
-        Unwritable if one of them fails. Without matplotlib a note says that the figures are left out.
-        """
+        """Wait until the figures of a run that has ended are drawn and its report is written. Raises Unwritable if one fails; without
+        matplotlib a note says that the figures are left out."""
         try:
             self.begin(directory)
             self._program.communicate()
@@ -34,9 +33,8 @@ class DrawingProgram:
             raise Unwritable("the figures are not drawn")
 
     def begin(self, directory):
-        """Name the folder to that program, which then begins; the report waits until :meth:`draw` is called, because figures
-        that the run itself writes stand in it. Raises OSError if there is no process.
-        """
+        """Name the folder to the program, which then begins; the report waits until :meth:`draw` is called, because figures that the run
+        itself writes stand in it. Raises OSError if there is no process."""
         if not self._begun:
             self.start()
             self._program.stdin.write(os.fsencode(directory) + postprocess.END)
@@ -44,8 +42,7 @@ class DrawingProgram:
             self._begun = True
 
     def start(self):
-        """Start the program that draws the figures and writes the report, which loads its libraries while the run goes on, and
-        then waits. Raises OSError if there is no process."""
+        """Start the program, which loads its libraries while the run goes on. Raises OSError if there is no process."""
         if not self._program:
             # -P: nothing of the present folder is run; in a session of its own, since Ctrl-C is for the run
             command = [sys.executable, "-P", "-m", "masonry.read.postprocess"]
@@ -54,7 +51,7 @@ class DrawingProgram:
             )
 
     def end(self):
-        """End that program. Returns its exit status, or None if it was not started."""
+        """End the program. Returns its exit status, or None if it was not started."""
         program, self._program = self._program, None
         if not program:
             return None

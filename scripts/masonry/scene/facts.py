@@ -1,25 +1,41 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What a scene is, in words: what is built, and what is held, loaded and watched. Notebooks show it, and run.json has it."""
+"""What a scene is: what is built, held, loaded and watched, in words, which run.json has; whether it is a wall in running bond; and how
+it shows itself in a notebook."""
 
 import collections
 import statistics
+import tempfile
 
-from ..basics import say
-from ..bricks import Bricks, summary
+import numpy as np
+from yade.wrapper import MasonryVtkRecorder
+
+from ..common import notebook
+from ..common.arguments import validated
+from ..assembly import columns
+from ..assembly.blocks import units
+from ..basics import Refused, say
+from ..bricks import Bricks, boxCorners, summary
+from ..read import drawing
+from ..read.elevation import Structure, figureOf
+from ..read.frames import readFrame
+from ..read.shown import DPI, RunFolder, Curve, cracksOf, curveOf, resultsOf
 
 MOST_SIZES = 4  # of blocks that are listed
+MOST_COUNTED = 20_000  # blocks whose joints are counted before the scene is built
+#: Properties of joints and units that the table shows.
+OF_JOINTS = "normalStiffness", "shearStiffness", "tensileStrength", "cohesion", "friction", "compressiveStrength"  # fmt: skip
+OF_UNITS = "density", "young", "poisson"
 
 
 def sizes(description):
     """What is built: pairs of texts, what and how much."""
-    bricks = Bricks(description.bricks)
-    found = summary(bricks)
+    found = summary(Bricks(description.bricks))
     kinds = ", ".join(f"{count} {kind}" for kind, count in found["kinds"].items())
-    size = " × ".join(f"{b - a:.4g}" for a, b in zip(found["low_m"], found["high_m"]))
-    blocks = collections.Counter(_size(block) for block in description.bricks)
+    by = lambda low, high, unit: " × ".join(f"{unit * (b - a):.4g}" for a, b in zip(low, high))  # fmt: skip
+    blocks = collections.Counter(by(b.low, b.high, 1e3) for b in description.bricks)
     most = blocks.most_common(MOST_SIZES)
     sizes = "; ".join(f"{count} of {text} mm" for text, count in most)
-    sizes += "; and others" * (len(blocks) > len(most))
+    size = by(found["low_m"], found["high_m"], 1)
     yield "blocks", f"{found['blocks']:,} in {found['bricks']:,} bricks ({kinds})"
     if len(found["parts"]) > 1:
         parts = found["parts"].items()
@@ -27,22 +43,14 @@ def sizes(description):
     if found["courses"]:
         yield "courses", f"{found['courses']}"
     yield "size", f"{size} m (x × y × z), {found['volume_m3']:.4g} m³"
-    yield "sizes of blocks", sizes
+    yield "sizes of blocks", sizes + "; and others" * (len(blocks) > len(most))
     yield "moves", "in the x-z plane" if description.plane else "in space"
-    model = "deformable" if description.deformable else "rigid"
-    yield "block model", model
-
-
-def _size(block):
-    return " × ".join(f"{1e3 * (b - a):.4g}" for a, b in zip(block.low, block.high))
+    yield "block model", "deformable" if description.deformable else "rigid"
 
 
 def properties(description, masonry):
     """What decides whether a scene is like the walls on which a preset was measured: values by the names in
-    :data:`masonry.run.presets.RANGE`; None for a scene in space.
-
-    :param masonry: its materials
-    """
+    :data:`masonry.run.presets.RANGE`; None for a scene in space."""
     if not description.plane:
         return None
     length, _, height = (b - a for a, b in zip(description.low, description.high))
@@ -68,14 +76,9 @@ def properties(description, masonry):
 def held(description):
     """What is held, loaded and watched before the first stage: pairs of texts, its name and what is done to it."""
     for target in description.targets.values():
-        where = (
-            "the ground"
-            if not target.joined
-            else "platen"
-            if target.box
-            else f"brick {target.brick}"
-        )
-        what = [f"{where}, {_freedom(target)}"]
+        where = "platen" if target.box else f"brick {target.brick}"
+        where = where if target.joined else "the ground"
+        what = [f"{where}, {_freedom(target.freedom or '')}"]
         if target.pressed:
             what.append(f"pressed by {1e-6 * target.pressed:.4g} MPa")
         if target.force:
@@ -86,20 +89,18 @@ def held(description):
     if description.winds:
         force = [sum(w.force[i] for w in description.winds) for i in range(3)]
         yield "pressure on faces", "({:.4g}, {:.4g}, {:.4g}) N in all".format(*force)
-    recorded = [thing.name for thing in (*description.joints, *description.drifts, *[one for one in description.sections if not one.isBase])]  # fmt: skip
+    sections = [one for one in description.sections if not one.isBase]
+    recorded = [*description.joints, *description.drifts, *sections]
     if recorded:
-        yield "recorded, too", ", ".join(recorded)
+        yield "recorded, too", ", ".join(one.name for one in recorded)
 
 
-def _freedom(target):
-    """What a target can do, in words."""
-    freedom = target.freedom or ""
-    along = [axis for axis in "xyz" if axis in freedom]
-    about = [axis.lower() for axis in "XYZ" if axis in freedom]
-    if len(along + about) == 6:
+def _freedom(freedom):
+    every = {"along": "xyz", "about": "XYZ"}
+    axes = {how: [a for a in of if a in freedom] for how, of in every.items()}
+    held = [f"{how} {', '.join(of).lower()}" for how, of in axes.items() if of]
+    if set(freedom) >= {*"xyzXYZ"}:
         return "held"
-    held = [f"along {', '.join(along)}"] * bool(along)
-    held += [f"about {', '.join(about)}"] * bool(about)
     return f"held {' and '.join(held)}" if held else "free"
 
 
@@ -113,3 +114,176 @@ def noteCourse(description):
             f"note: the joints are for courses of {1e3 * course:.4g} mm, mortar included, and the bricks have {sizes} mm: "
             "give bricks the same unit= and joint= as the materials"
         )
+
+
+def wallOf(description, loading):
+    """The entry ``wall`` of run.json, or None if the structure is no whole wall in running bond in the x-z plane, of which crack
+    patterns are measured, or if no platen pushes it.
+
+    :param loading: :class:`masonry.assembly.loading.Loading`, which knows what is pushed, and where to
+    """
+    target, bricks = loading.target, description.bricks
+    (left, front, bottom), (right, back, top) = description.low, description.high
+    boxes = [[(min(c), max(c)) for c in zip(*block.corners)] for block in bricks]
+    sizes = [[high - low for low, high in box] for box in boxes]
+    height, half = sizes[0][2], min(size[0] for size in sizes)
+    courses, columns = round((top - bottom) / height), round((right - left) / half)
+    steps = [round(size[0] / half) for size in sizes]
+    if (
+        not description.plane
+        or not (description.halves or {1, 2} == set(steps))
+        or target.brick is not None
+        or loading.push.others
+        or max(steps) > 2
+        or any(abs(size[0] - n * half) > 1e-6 * half for size, n in zip(sizes, steps))
+        or any(abs(size[2] - height) > 1e-6 * height for size in sizes)
+        or sum(steps) != courses * columns
+        or any(len(block.corners) != 8 for block in bricks)
+    ):
+        return None
+    return {
+        "corner_m": [left, bottom],
+        "length_m": right - left,
+        "height_m": top - bottom,
+        "thickness_m": back - front,
+        "courses": courses,
+        "half_units": columns,
+        "unit_m": [2 * half, back - front, height],
+        "precompression_Pa": target.pressed or 0.0,
+        "load_height_m": None if "Y" in target.freedom else target.point[2] - bottom,
+        "measure_height_m": target.recorded[2] - bottom,
+        "pushed_towards": -1 if loading.direction[0] < 0 else 1,
+        "load_line_fixed": not target.riding,
+    }
+
+
+# -- in a notebook ----------------------------------------------------------------------------------------------------
+
+
+@validated
+def curve(scene):
+    """The columns of curve.csv so far: a :class:`masonry.read.shown.Curve`, arrays of numpy by name with their units.
+
+    :raises ValueError: before the first stage, since there is no row yet
+    """
+    if not scene.model:
+        raise ValueError(
+            f"curve: scene {scene.name} has no rows before its first stage"
+        )
+    results = scene.results
+    run = results.run
+    if not scene.finished:
+        scene.running.flush()
+        run = {"columns": columns.meanings(scene.columns)}
+        if results.rows:
+            run.update(scene.outcome.figure())
+    values = {head: results.column(head) for head in results.columns}
+    if not results.rows or "figure" not in run:
+        return Curve(values, run["columns"])
+    return curveOf(values, run, results.directory)
+
+
+def asHtml(scene):
+    """A scene as HTML: what is built, or what has come out of it."""
+    if not scene.model:
+        return _built(scene)
+    if scene.finished and scene.results.begun and not scene.running.interrupted:
+        return RunFolder(scene.results.directory)._repr_html_()
+    if scene.finished or scene.isGone:
+        title = f"{scene.description.title}: {_state(scene)}"
+        parts = [curve(scene)._repr_html_()] if scene.results.rows else []
+        return notebook.titled(title, *parts)
+    return _standing(scene)
+
+
+def _state(scene):
+    if scene.running.interrupted and scene.finished:
+        return f"interrupted; its results so far are in {scene.results.directory}"
+    return scene.ended or "no stage has ended"
+
+
+def _standing(scene):
+    title, views, at = scene.description.title, scene.description.views, scene.running.at  # fmt: skip
+    run = {"parts": scene.model.parts, "views": views, "title": title, "answers": scene.answers}  # fmt: skip
+    with tempfile.TemporaryDirectory() as folder:
+        MasonryVtkRecorder(directory=folder)()
+        blocks, joints = (readFrame(folder, kind) for kind in ("blocks", "joints"))
+    when = f"after {at.stage}" if at.stage else "as built"
+    return notebook.titled(
+        f"{title}: {_state(scene)}",
+        cracksOf(run, blocks, joints, when, scene.name),
+        curve(scene).picture(),
+        notebook.table(resultsOf(run) + [("so far", _state(scene), "")]),
+    )
+
+
+def _built(scene):
+    description = scene.description
+    with drawing.style():
+        figure = figureOf(_structure(description), description.title, 0)
+        drawn = notebook.picture(figure, DPI)
+    return notebook.titled(
+        f"{description.title}: before its first stage",
+        drawn,
+        notebook.table([*_counted(description), *held(description)]),
+        notebook.folded("materials", _materials(scene)),
+    )
+
+
+def _structure(description):
+    """Whole bricks of every part, with blocks that are held, loaded or watched in their shades."""
+    targets, bricks = description.targets.values(), Bricks(description.bricks)
+    parts, shades, corners = {}, {}, []
+
+    def add(block, shade=None):
+        if shade:
+            shades[len(corners)] = shade
+        corners.append(np.array(list(map(tuple, block)), float))
+        return len(corners) - 1
+
+    for block in bricks.whole() if description.halves else bricks:
+        parts.setdefault(block.part, []).append(add(block.corners))
+    for target in targets:
+        if target.brick is not None:
+            block = bricks[target.brick]
+            parts[block.part].append(add(block.corners, _shade(target)))
+        elif target.box:
+            add(boxCorners(*target.box), _shade(target))
+    points = np.concatenate(corners)
+    cells = np.split(np.arange(len(points)), np.cumsum(list(map(len, corners)))[:-1])
+    blocks = {"points": points, "displacement": 0 * points, "body": range(len(corners)), "cells": cells}  # fmt: skip
+    return Structure(blocks, None, parts, shades, sights=description.views)
+
+
+def _shade(target):
+    return "held" if target.fixed else "loaded" if target.loaded else "watched"
+
+
+def _counted(description):
+    """Rows of the table: what is built, with the number of its joints."""
+    yield from sizes(description)
+    bricks = Bricks(description.bricks)
+    if len(bricks) <= MOST_COUNTED:
+        platens = any(target.box for target in description.targets.values())
+        yield "joints", f"{len(bricks.joints()):,} between blocks" + "; platens are not counted" * platens  # fmt: skip
+
+
+def _materials(scene):
+    connectors = scene.description.settable(copies=True)
+    masonry = scene.description.materials.variant(scene.args, [*connectors])
+    try:
+        masonry.apply(scene.args.set, connectors)
+    except Refused as refused:
+        return notebook.table([("refused", str(refused))])
+    joints, blocks = masonry.joints, {"brick": masonry.unit, **masonry.units}
+    return _properties("joint", joints, OF_JOINTS) + _properties("unit", blocks, OF_UNITS)  # fmt: skip
+
+
+def _properties(what, things, names):
+    """A table of properties: a row each, with its unit, and a column for every thing."""
+    known = {"density": "kg/m³", **units(type(next(iter(things.values()))))}
+    rows = [
+        (name, known.get(name, "-"), *(f"{getattr(t, name):.4g}" for t in things.values()))
+        for name in names
+    ]  # fmt: skip
+    return notebook.table(rows, (what, "unit", *things))

@@ -13,11 +13,12 @@ from __future__ import annotations
 
 import math
 import re
-from typing import Annotated, Any, Callable
+from typing import Annotated, Any
 
 import numpy as np
 
 from ..common.arguments import number, shown, validated, whole
+from .settings import Factor
 
 WAVES = 512  # cosines of a field: its moments are off by some 1/sqrt(WAVES) at most
 
@@ -47,9 +48,7 @@ Seed = Annotated[int, whole()]
 
 
 @validated
-def lognormal(
-    cov: Cov, length: Correlation = 0.0, seed: Seed = 0
-) -> Callable[[float, float, float], float]:
+def lognormal(cov: Cov, length: Correlation = 0.0, seed: Seed = 0) -> Factor:
     """Factors that are lognormally distributed about the mean 1.
 
     :param cov: coefficient of variation, standard deviation over mean [-]
@@ -69,13 +68,13 @@ def normal(
     length: Correlation = 0.0,
     seed: Seed = 0,
     least: Annotated[float, number("", 0, 1, above=True, below=True)] = LEAST,
-) -> Callable[[float, float, float], float]:
+) -> Factor:
     """Factors that are normally distributed about the mean 1, but not below ``least``. Other parameters: :func:`lognormal`."""
     field = _standard(length, seed)
     return lambda x, y, z: max(least, 1 + cov * field(x, y, z))
 
 
-KINDS: dict[str, Callable[..., Any]] = {"lognormal": lognormal, "normal": normal}
+KINDS: dict[str, Any] = {"lognormal": lognormal, "normal": normal}
 _TEXT = re.compile(
     r"(?P<names>[^=]+)=(?P<kind>lognormal|normal)\(cov=(?P<cov>[^,]+),length=(?P<length>[^,]+),seed=(?P<seed>\d+)\)"
 )
@@ -96,7 +95,7 @@ def parts(text: str) -> tuple[Any, ...]:
     return names, found["kind"], *numbers, int(found["seed"])
 
 
-def read(text: str) -> tuple[list[str], Callable[[float, float, float], float]]:
+def read(text: str) -> tuple[list[str], Factor]:
     """The names of the properties and the function of a field that is written as the option ``--field`` takes it.
 
     :param text: for example ``bed.cohesion+bed.tensileStrength=lognormal(cov=0.3,length=0.5,seed=1)``

@@ -81,18 +81,13 @@ def readRecord(
             raise Refused(f"{', '.join(map(str, accelerations))}: components of a record must be alike, not {sizes}")  # fmt: skip
         return np.transpose([values for values, _ in parts]).tolist(), parts[0][1]
     if isinstance(accelerations, (str, os.PathLike)):
-        named = accelerations
-        found = accelerograms.read(named)
-        if found.every is not None:
-            if every is not None and abs(every - found.every) > UNEVEN * found.every:
-                raise Refused(
-                    f"{named}: its samples are {found.every:g} s apart, not {every:g} s"
-                )
-            every = found.every
-        if found.unit is not None:
-            if unit is not None and unit != found.unit:
-                raise Refused(f"{named}: it is in {found.unit}, not in {unit}")
-            unit = found.unit
+        named, found = accelerations, accelerograms.read(accelerations)
+        of = found.every
+        if None not in (every, of) and abs(every - of) > UNEVEN * of:
+            raise Refused(f"{named}: its samples are {of:g} s apart, not {every:g} s")
+        if None not in (unit, found.unit) and unit != found.unit:
+            raise Refused(f"{named}: it is in {found.unit}, not in {unit}")
+        every, unit = of or every, found.unit or unit
         accelerations = found.values
     values = np.asarray(accelerations, float)
     if len(values) < 2 or not np.isfinite(values).all():
@@ -105,8 +100,9 @@ def readRecord(
         )
     missing = np.argwhere(np.isin(values, MISSING))
     if len(missing):
+        first = tuple(missing[0])
         raise Refused(
-            f"{len(missing)} samples stand for missing values, the first is number {missing[0][0]}, {values[tuple(missing[0])]:g}"
+            f"{len(missing)} samples stand for missing values, the first is number {first[0]}, {values[first]:g}"
         )
     peak = abs(scale) * float(abs(values).max())
     if unit is None and peak > 0 and not LOWEST_PEAK <= peak <= HIGHEST_PEAK:
@@ -115,10 +111,11 @@ def readRecord(
             f"the peak of the record is {peak:g}, which is {peak / 9.81:.2g} g if it is in m/s²: is it in {other}? "
             f"Say unit='{other}', or unit='m/s²' if it is"
         )
-    strongest = UNITS[unit or "m/s²"] * peak
+    unit = unit or "m/s²"
+    strongest = UNITS[unit] * peak
     if strongest > LARGEST_PEAK:
         raise Refused(
-            f"the peak of the record, {strongest / 9.81:.3g} g in {unit or 'm/s²'}, must be at most {LARGEST_PEAK / 9.81:.2g} g: "
+            f"the peak of the record, {strongest / 9.81:.3g} g in {unit}, must be at most {LARGEST_PEAK / 9.81:.2g} g: "
             "is it in another unit?"
         )
-    return (UNITS[unit or "m/s²"] * values).tolist(), every
+    return (UNITS[unit] * values).tolist(), every

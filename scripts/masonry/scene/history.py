@@ -96,13 +96,8 @@ def _readFile(path):
         points = _column(lines, path)
     except csv.Error as error:
         raise ValueError(f"{path}, line {lines.line_num}: {error}") from None
-    fingerprint = hashlib.sha256(data).hexdigest()
-    return {
-        "text": path,
-        "file": os.path.abspath(path),
-        "sha256": fingerprint,
-        "points_mm": points,
-    }
+    found = {"text": path, "file": os.path.abspath(path)}
+    return {**found, "sha256": hashlib.sha256(data).hexdigest(), "points_mm": points}
 
 
 def _column(lines, path):
@@ -114,20 +109,15 @@ def _column(lines, path):
             f"{path}: its first line must name one column {COLUMN}, it has {found}"
         )
     at, problems, points = heads.index(COLUMN), [], []
-    for line in lines:
-        if not line:
-            continue
-        text = line[at].strip() if at < len(line) else ""
+    for line in filter(None, lines):
+        text, where = "".join(line[at : at + 1]).strip(), f"{path}, line {lines.line_num}"  # fmt: skip
         try:
-            value = _number(text)
+            points.append(_number(text))
         except ValueError:
-            problems.append(f"{path}, line {lines.line_num}: '{text}' is not a number")
+            problems.append(f"{where}: '{text}' is not a number")
             continue
-        if not abs(value) <= MOST:
-            problems.append(
-                f"{path}, line {lines.line_num}: {text} mm must be from {-MOST:g} to {MOST:g} mm"
-            )
-        points.append(value)
+        if not abs(points[-1]) <= MOST:
+            problems.append(f"{where}: {text} mm must be from {-MOST:g} to {MOST:g} mm")
     _refuse(problems)
     if len(points) < 2:
         raise ValueError(
@@ -139,24 +129,22 @@ def _column(lines, path):
 
 
 def targets(points, stops=False, start=0.0):
-    """The points of a history as the drive sees them: a list of :class:`Target`.
-
-    A point that repeats the one before lies in the same direction.
+    """The points of a history as the drive sees them: a list of :class:`Target`. One that repeats the one before lies in the same direction.
 
     :param points: displacements [mm]
     :param stops: whether the drive brakes for the last point
     :param start: where the path begins [mm]
     """
-    directions, last = [], start
-    for point in points:
-        same = directions[-1] if directions else 1
+    directions = [1]
+    for last, point in zip([start, *points], points):
+        same = directions[-1]
         directions.append(1 if point > last else -1 if point < last else same)
-        last = point
-    found, brake = [], points[-1] if stops else None
-    for n in reversed(range(len(points))):
-        if n + 1 < len(points) and directions[n] != directions[n + 1]:
-            brake = points[n]
-        found.append(Target(points[n], directions[n], brake))
+    found, brake, after = [], points[-1] if stops else None, directions[-1]
+    for point, direction in zip(reversed(points), reversed(directions)):
+        if direction != after:
+            brake = point
+        found.append(Target(point, direction, brake))
+        after = direction
     return found[::-1]
 
 
@@ -168,8 +156,8 @@ def pathLength(points, start=0.0):
 def aim(args, start=0.0):
     """The targets of a run: those of ``--history``, or one at ``--until``.
 
-    The drive stops at the end of a file. At the end of a list of amplitudes and of a push it does not brake, because
-    both go on in the same direction if the run is resumed and extended.
+    The drive stops at the end of a file. At the end of amplitudes and of a push it does not brake, because both go on in the same
+    direction if the run is resumed and extended.
 
     :param args: the options of :func:`masonry.scene.options.parser`
     :param start: where the path begins [mm]
@@ -198,13 +186,8 @@ def extends(new, old):
 
 
 def describe(history):
-    """What run.json says of a history: the dict without its points, but with their number and the length of the path."""
+    """What run.json says of a history: the dict with number of points and length of the path in place of the points."""
     points = history["points_mm"]
     found = {name: value for name, value in history.items() if name != "points_mm"}
-    return dict(
-        found,
-        points=len(points),
-        turning_points=turns(points),
-        path_mm=pathLength(points),
-        noise_mm=noise(history),
-    )
+    more = dict(points=len(points), turning_points=turns(points))
+    return dict(found, **more, path_mm=pathLength(points), noise_mm=noise(history))

@@ -26,7 +26,8 @@ def forces(model, assembly, pushed=None, pressed=None):
     """
     loads = np.zeros_like(assembly.held, float)
     for load, force in model.loading.deadLoads():
-        block, point = assembly.ids.index(load.body), pointOf(load, assembly)
+        block = assembly.ids.index(load.body)
+        point = placeOf(assembly, load.body, load.point)
         if pressed and load.label == f"{pressed[0].name}_force":
             own = model.supports.weightOf(pressed[0])
             force = Vector3(force[0], force[1], own - 1e3 * pressed[1])
@@ -44,37 +45,26 @@ def forces(model, assembly, pushed=None, pressed=None):
     return loads
 
 
-def push(assembly, pushed, direction):
-    """The live load of a push of a target, or in a pattern: 1 kN along a direction."""
+def sumOf(assembly, acting):
+    """The live load of some forces.
+
+    :param acting: triples of a body, a point of it in the structure as built, and the force [N]
+    """
     found = np.zeros_like(assembly.held, float)
-    for body, point, share in pushed.parts:
-        at = np.array(point if assembly.stood else placeOf(body, point))
-        force = 1e3 * share * np.array(direction)
-        found += assembly.force(assembly.ids.index(body), force, at)
+    for body, point, force in acting:
+        block, at = assembly.ids.index(body), placeOf(assembly, body, point)
+        found += assembly.force(block, np.array(force), at)
     return found
 
 
-def placeOf(body, point):
-    """Where a point of a body is now [m]: ``point`` is its place in the structure as built."""
+def placeOf(assembly, body, point):
+    """Where a point of a body is on blocks as the assembly has them [m]: ``point`` is its place in the structure as built."""
+    if assembly.stood:
+        return np.array(point)
     state = O.bodies[body].state
-    return state.pos + state.ori * state.refOri.conjugate() * (Vector3(*point) - state.refPos)  # fmt: skip
-
-
-def sumOf(assembly, loads):
-    """The live load of pairs of a MasonryLoad and its force [N]."""
-    found = np.zeros_like(assembly.held, float)
-    for load, force in loads:
-        block = assembly.ids.index(load.body)
-        found += assembly.force(block, np.array(force), pointOf(load, assembly))
-    return found
-
-
-def pointOf(load, assembly):
-    """Where a MasonryLoad acts, on blocks as the assembly has them [m]."""
-    return load.point if assembly.stood else placeOf(load.body, load.point)
+    return np.array(state.pos + state.ori * state.refOri.conjugate() * (Vector3(*point) - state.refPos))  # fmt: skip
 
 
 def carriedBy(assembly, dead):
-    """Vertical force of dead loads on all blocks that are free to move down, compression is positive [kN]: the supports carry
-    it."""
+    """Vertical force of dead loads on all blocks that are free to move down: the supports carry it, compression is positive [kN]."""
     return -1e-3 * float(dead[~assembly.held[:, 2], 2].sum())

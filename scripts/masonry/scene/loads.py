@@ -12,8 +12,7 @@ from ..assembly.blocks import vector
 from ..basics import say
 from .pressures import LEAST, FaceForce, facesAgainst, pressures
 from .targets import Loaded, MovingPlaten, Part
-from .words import describes
-
+from .words import checkPlane, describes
 
 #: A mean stress, a force and the pressure of a wind. More than these would crush or throw over any masonry.
 Stress = Annotated[float, number("Pa", 0, 1e12)]
@@ -31,10 +30,7 @@ def doubtPress(stress: float, name: str) -> None:
 def checkedForce(description: Any, force: Numbers, name: str) -> Any:
     """A force as a vector [N]. Raises ValueError."""
     force = vector(force, f"{name}: force [N]")
-    if description.plane and force[1]:
-        raise ValueError(
-            f"{name}: the scene is in the x-z plane; Scene(..., plane=False) is in space"
-        )
+    checkPlane(description, force, name)
     return force
 
 
@@ -50,12 +46,9 @@ def windForces(
     description: Any, pressure: float, towards: Any, part: str | None, name: str
 ) -> list[FaceForce]:
     """The forces of a wind, one on each face. Raises ValueError."""
-    return [
-        FaceForce(
-            face.block, [-pressure * face.area * n for n in face.normal], face.middle
-        )
-        for face in facesAgainst(description, towards, part, name)
-    ]
+    on = lambda face: [-pressure * face.area * n for n in face.normal]
+    faces = facesAgainst(description, towards, part, name)
+    return [FaceForce(face.block, on(face), face.middle) for face in faces]
 
 
 @describes
@@ -63,8 +56,8 @@ def windForces(
 def press(
     description: Any, platen: MovingPlaten, stress: Stress, riding: bool = True
 ) -> None:
-    """Press a platen on the bricks below it. The load grows in :meth:`settle`, and stays. A platen has one press, as its stress is
-    the whole that the bricks feel; dead loads and winds add up.
+    """Press a platen on the bricks below it. The load grows in :meth:`settle`, and stays. A platen has one press; dead loads and
+    winds add up.
 
     :param stress: mean vertical stress that the bricks feel [Pa]; the weight of the platen is part of it
     :param riding: whether the load moves with the platen; else it keeps its line in space, as over rollers
@@ -72,8 +65,8 @@ def press(
     doubtPress(stress, "press")
     if platen.pressed is not None:
         raise ValueError(
-            f"press: {platen.name} is pressed already, with {platen.pressed:g} Pa: say the whole stress once, or press it again after "
-            "the first stage"
+            f"press: {platen.name} is pressed already, with {platen.pressed:g} Pa: say the whole stress once, or press it again "
+            "after the first stage"
         )
     platen.pressed, platen.riding = float(stress), riding
 
@@ -118,13 +111,14 @@ def pressure(
     :returns: the sum of the forces [N]
     """
     forces = pressures(description, value, towards, part, normal)
-    largest = max(math.hypot(*one.force) for one in forces)
-    if not largest > 0:
+    sizes = [math.hypot(*one.force) for one in forces]
+    if not max(sizes) > 0:
         raise ValueError(
             "pressure: it is 0 on all faces that look against it; places are in m"
         )
-    description.winds.extend(f for f in forces if math.hypot(*f.force) > LEAST * largest)  # fmt: skip
-    x, y, z = (math.fsum(one.force[i] for one in forces) for i in range(3))
+    loaded = (f for f, size in zip(forces, sizes) if size > LEAST * max(sizes))
+    description.winds.extend(loaded)
+    x, y, z = map(math.fsum, zip(*(one.force for one in forces)))
     return x, y, z
 
 

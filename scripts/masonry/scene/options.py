@@ -15,9 +15,9 @@ from ..basics import Interrupted, Refused, refuse, say
 from ..run import accuracy, batch, options
 from ..run.options import USUAL, reading
 from ..run.presets import BOUND, PRESETS
-from . import fields, history, keywords
+from . import fields, history
 from .ground import readRecord
-from .parsing import Parser
+from .parsing import Parser, checked, keep
 from .settings import scatterAll, setting
 
 #: The options of a scene: those of the table, with the laws of the plugin and the presets.
@@ -33,16 +33,10 @@ OPTIONS = {
 }
 
 
-def ofField(text):
-    """The text of ``--field``, if it can be read. Raises ValueError."""
-    fields.read(text)
-    return text
-
-
 #: What is made of the text of an option where it is used.
 READ = {
     "history": reading(history.parse),
-    "field": reading(ofField),
+    "field": reading(lambda text: fields.read(text) and text),
     "set": reading(setting),
 }
 
@@ -77,44 +71,39 @@ def parser(description, until, rate=USUAL["rate"], loops=True):
 
 
 def ofScene(name, arguments, sceneOptions):
-    """The options of a scene: those of its own parser, or of the common one.
+    """The options of a scene. Raises Refused with all problems.
 
     :param arguments: what a parser found; a list of words; or None: those of the command line
-    :param sceneOptions: what the script says, which holds unless the command line gives the same option: :mod:`.keywords`
-    :raises Refused: with all problems
+    :param sceneOptions: what the script says, which holds unless the command line gives the same option:
+        :func:`masonry.scene.parsing.keep`
     """
     if arguments is None and (not sys.argv or notebook.isHere()):
         arguments = []  # words of a kernel, or of YADE's importer, are not the scene's
-    if isinstance(arguments, str):
-        raise Refused(
-            f"scene {name}: arguments must be a list of words, such as {arguments.split()!r}, got {arguments!r}"
-        )
-    if not isinstance(arguments, (argparse.Namespace, type(None))):
-        words = arguments if isinstance(arguments, (list, tuple)) else [arguments]
-        wrong = [one for one in words if not isinstance(one, str)]
-        if wrong:
-            raise Refused(f"scene {name}: arguments must be a list of words, got {shown(wrong[0])}")  # fmt: skip
-    if arguments is None or isinstance(arguments, (list, tuple)):
+    if not isinstance(arguments, argparse.Namespace):
+        words = arguments if isinstance(arguments, (list, tuple, type(None))) else [arguments]  # fmt: skip
+        must = f"scene {name}: arguments must be a list of words"
+        if isinstance(arguments, str):
+            raise Refused(f"{must}, such as {arguments.split()!r}, got {arguments!r}")
+        for wrong in (one for one in words or () if not isinstance(one, str)):
+            raise Refused(f"{must}, got {shown(wrong)}")
         main = sys.modules.get("__main__")
         own = parser(getattr(main, "__doc__", None), until=None)
-        own.set_defaults(**keywords.checked(own, name, sceneOptions))
-        arguments = own.parse_args(arguments)
-    keywords.keep(arguments, name, sceneOptions)
+        own.set_defaults(**checked(own, name, sceneOptions))
+        arguments = own.parse_args(words)
+    keep(arguments, name, sceneOptions)
     return arguments
 
 
-def check(args, masonry, more=(), plane=False, connectors=None):
-    """Apply ``--set`` to what is in a scene, and ``--field`` to ties, springs and fibre layers. Refuse options that do not go
-    together, and materials that lack something.
+def check(args, masonry, connectors, more=()):
+    """Apply ``--set`` and ``--field`` to what is in a scene. Refuse options that do not go together, and materials that lack something.
 
     :param args: the parsed options
     :param masonry: :class:`masonry.scene.materials.Masonry` for these options
-    :param plane: whether blocks move in the x-z plane only
-    :param more: problems that the caller has found, to be named with the others
     :param connectors: ties, springs and fibre layers by name
+    :param more: problems that the caller has found, to be named with the others
     :raises Refused: with all problems at once
     """
-    problems = list(more)
+    problems = [*more]
     if args.blocks == "rigid" and args.divisions > 1:
         problems.append("--divisions: rigid units are not divided")
     if args.mass_scaling not in (0, "auto") and args.blocks == "rigid":
@@ -123,23 +112,19 @@ def check(args, masonry, more=(), plane=False, connectors=None):
         problems.append(
             f"--points {args.points}: joints of deformable units have the points of their cells; --divisions makes more of them"
         )
-    connectors = connectors or {}
-    try:
-        masonry.apply(args.set, connectors)
-    except Refused as refused:
-        problems.append(str(refused))
-    if args.record is not None:
+
+    def attempt(before, act, *arguments):
         try:
-            readRecord(batch.beside(args.record), None, args.scale)
-        except Refused as refused:
-            problems.append(f"--record: {refused}")
-    for text in args.field:
-        try:
-            scatterAll(connectors, *fields.read(text))
+            act(*arguments)
         except ValueError as error:
-            problems.append(f"--field {text}: {error}")
-    problems += masonry.missing()
-    refuse(problems)
+            problems.append(f"{before}{error}")
+
+    attempt("", masonry.apply, args.set, connectors)
+    if args.record is not None:
+        attempt("--record: ", readRecord, batch.beside(args.record), None, args.scale)
+    for text in args.field:
+        attempt(f"--field {text}: ", scatterAll, connectors, *fields.read(text))
+    refuse(problems + masonry.missing())
 
 
 def askAccuracy(name, args):

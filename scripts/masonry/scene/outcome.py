@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What comes out of a scene: entries of run.json, and the lines at the end on the terminal."""
+"""What comes out of a scene: entries of run.json, what curve.png shows, and the lines at the end on the terminal."""
 
 import collections
 import functools
@@ -10,8 +10,7 @@ from yade import O
 from yade.wrapper import MasonryVtkRecorder
 
 from ..common.arguments import isNumber
-from ..assembly import blocks
-from ..assembly.blocks import units
+from ..assembly import blocks, columns
 from ..assembly.engines import LAWS
 from ..basics import say, withoutCollector
 from ..common.memory import FULL
@@ -20,13 +19,12 @@ from ..read import cracks, curves, quantities
 from ..read.frames import asFrame
 from ..read.run_data import RunData
 from ..run import accuracy
-from . import bound_texts, facts, history
-from .drawing_program import DrawingProgram
-from .figure import figureOf
 from ..run.options import UNITS
+from . import facts, history
+from .bounds import inRunJson, linesOfGrowth, linesOfPush, over
+from .drawing_program import DrawingProgram
 from .stages import pushing
 from .stages.answers import answersText
-from .wall import wallOf
 
 FRAMES = 20  # for ParaView in a stage that is no push
 REPORT = 2e6  # [bytes] of report.html, of which three.js takes nearly half
@@ -34,24 +32,18 @@ MOST_NUMBERS = 24  # of a list that the script said, as run.json has it
 
 
 class Outcome:
-    """What comes out of a scene that stands in YADE.
-
-    :param scene: :class:`masonry.scene.scene.Scene`
-    """
+    """What comes out of a :class:`masonry.scene.scene.Scene` that stands in YADE."""
 
     def __init__(self, scene):
         self.scene, self.model = scene, scene.model
         self.description, self.args = scene.description, scene.args
         self.results = scene.running.results
         self.drawing = DrawingProgram()
-        self._facts = self._inWords()
-
-    def _inWords(self):
-        """Entries of run.json that say in words what is built and held, as it is before the first stage."""
-        if self.args.lean:
-            return {}
-        built, held = facts.sizes(self.description), facts.held(self.description)
-        return {"built": [*map(list, built)], "held_and_loaded": [*map(list, held)]}
+        #: entries of run.json that say in words what is built and held, as it is before the first stage
+        self._facts = {}
+        if not self.args.lean:
+            of = {"built": facts.sizes, "held_and_loaded": facts.held}
+            self._facts = {n: [*map(list, f(self.description))] for n, f in of.items()}  # fmt: skip
 
     @property
     def pushed(self):
@@ -71,50 +63,51 @@ class Outcome:
         return pushes[-1] if pushes else []
 
     def _freeVibration(self):
-        """Of the first of the pushes that count, as in :class:`masonry.run.run_state.RunState`: the first period, the weight of the base in
-        the shear force, and when the velocity of the drive had grown."""
-        at = self.scene.running.at
-        first = self.data.rows[0] if self.data.rows else math.inf
+        """The first period, the weight of the base in the shear force, and when the velocity of the drive had grown, of the first of the
+        pushes that count."""
+        at, rows = self.scene.running.at, self.data.rows
         for number in sorted(map(int, at.freeVibrations)):
-            if at.stages[number - 1][3] >= first:
+            if rows and at.stages[number - 1][3] >= rows[0]:
                 return at.freeVibrations[str(number)]
         return 0.0, 0.0, 0.0
 
     def space(self):
         """Bytes that a run writes at least, and those that it will probably write."""
         model, args, frames, rows = self.model, self.args, FRAMES, 0
-        nodes = len(model.zones.displacements) if model.zones else 0
-        frame = 50 * model.subcontacts + 150 * len(O.bodies) + 100 * nodes
+        frame = 50 * model.subcontacts + 150 * len(O.bodies) + 100 * self._nodes
         if args.history or args.until:
             frames = pushing.pathOf(args) / pushing.frameSpacing(args) + 2
             rows = pushing.rowCount(args)
-        frames = 0 if args.no_vtk or args.lean else frames
-        figures = 50e3 if args.lean else 400e3
-        least = figures + frame * min(frames, 2)  # and the first and last frame
-        report = 0 if args.lean else REPORT
-        return least, least + report + frame * frames + 250 * rows
+        frames *= not (args.no_vtk or args.lean)
+        # and the first and last frame
+        least = (50e3 if args.lean else 400e3) + frame * min(frames, 2)
+        return least, least + REPORT * (not args.lean) + frame * frames + 250 * rows
+
+    @property
+    def _nodes(self):
+        zones = self.model.zones
+        return len(zones.displacements) if zones else 0
 
     # -- run.json -------------------------------------------------------------------------------------------------
 
     def describe(self):
         """Entries of run.json that say what is built, and how it is held and drawn."""
-        model, scene = self.model, self.scene
-        kinds = {}
-        for interaction in model.interactions:
-            name = interaction.phys.joint.name
-            kinds[name] = kinds.get(name, 0) + 1
+        model, scene, description = self.model, self.scene, self.description
+        kinds = collections.Counter(i.phys.joint.name for i in model.interactions)
         joints = {name: joint.dict() for name, joint in model.joints.items()}
         for properties in joints.values():
             properties["direction"] = list(properties["direction"])
+        known = blocks.properties(type(next(iter(model.joints.values()))))
+        targets = description.targets.values()
         entries = dict(
-            title=self.description.title,
+            title=description.title,
             option_units=UNITS,
             joints=joints,
-            joint_units=units(type(next(iter(model.joints.values())))),
-            joint_meanings=_meanings(type(next(iter(model.joints.values())))),
+            joint_units={p["name"]: p["unit"] for p in known if p["unit"]},
+            joint_meanings={p["name"]: p["meaning"] for p in known},
             properties_of_laws={
-                name: sorted(law["properties"]) for name, law in LAWS.items()
-            },  # fmt: skip
+                n: sorted(law["properties"]) for n, law in LAWS.items()
+            },
             unit_material={
                 "young_Pa": model.unit.young,
                 "poisson": model.unit.poisson,
@@ -124,33 +117,31 @@ class Outcome:
             time_step_s=O.dt,
             time_step_limit_s=model.scheme.limit,
             units=len(model.bricks),
-            nodes=len(model.zones.displacements) if model.zones else 0,
+            nodes=self._nodes,
             joint_count=len(model.interactions),
-            joints_by_kind=kinds,
+            joints_by_kind=dict(kinds),
             subcontacts=model.subcontacts,
             parts=model.parts,
             figure=figureOf(self),
-            held=sorted(t.name for t in self.description.targets.values() if t.fixed),
+            held=sorted(t.name for t in targets if t.fixed),
             targets=[
-                {"name": t.name, "body": t.body, "held": t.fixed}
-                for t in self.description.targets.values()
+                {"name": t.name, "body": t.body, "held": t.fixed} for t in targets
             ],
             **self._ground(),
-            recorded_joints=[joint.name for joint in self.description.joints],
-            recorded_drifts=self._columnsOf(self.description.drifts, "mrad"),
-            recorded_sections=self._columnsOf(self.description.sections, "kN", "kNm"),
+            recorded_joints=[joint.name for joint in description.joints],
+            recorded_drifts=self._columnsOf(description.drifts, "mrad"),
+            recorded_sections=self._columnsOf(description.sections, "kN", "kNm"),
             **self._connections(),
             script=shortened(scene.script.words),
             **self._facts,
-            **bound_texts.describe(scene.bounds.entries, self.pushes),
+            **inRunJson(scene.bounds.entries, self.pushes),
         )
-        if self.description.views:
-            entries["views"] = self.description.views
+        if description.views:
+            entries["views"] = description.views
         return {**entries, **self._wall()}
 
     def _wall(self):
-        """The entry ``wall``, if a whole wall in running bond is pushed."""
-        wall = self.pushed and wallOf(self.description, self.model.loading)
+        wall = self.pushed and facts.wallOf(self.description, self.model.loading)
         return {"wall": wall} if wall else {}
 
     def _columnsOf(self, records, *units):
@@ -163,7 +154,7 @@ class Outcome:
         ground, engine = self.description.ground(), self.model.contacts
         if not (ground and engine):
             return {}
-        names = self.description.contact.known()
+        names = self.description.contact.known
         return {"ground_body": ground.body, "contact": {n: getattr(engine, n) for n in names}}  # fmt: skip
 
     @property
@@ -186,20 +177,18 @@ class Outcome:
         if not scene.only:
             run.update(self._cracks())
         data = self.data
-        if not self.pushed:
-            run.update(quantities.found(data))
-        else:
+        if self.pushed:
             run.update(self._ofPush(data))
             if self.args.lean and "wall" in run:
                 with withoutCollector():
                     data.joints = asFrame(MasonryVtkRecorder().joints(), cracks.NEEDED)
             data.run = run
-            run.update(quantities.found(data))
-            if data.isLooped:
-                run["cycles"] = data.cycles
-            if scene.accuracy and not scene.running.interrupted:
-                # a push that is not over is shorter than those of its companions
-                self._addAccuracy(run)
+        run.update(quantities.found(data))
+        if self.pushed and data.isLooped:
+            run["cycles"] = data.cycles
+        if self.pushed and scene.accuracy and not scene.running.interrupted:
+            # a push that is not over is shorter than those of its companions
+            self._addAccuracy(run)
         run["answers"] = scene.answers
 
     def _ofPush(self, data):
@@ -221,8 +210,7 @@ class Outcome:
 
     def _cracks(self):
         """Entries for the widest cracks, of all joints and by kind of joint and part."""
-        bricks = self.description.bricks
-        parts = {body: f"part {b.part}" for body, b in zip(self.model.ids, bricks)}
+        parts = {body: f"part {b.part}" for body, b in zip(self.model.ids, self.description.bricks)}  # fmt: skip
         groups = lambda i: {i.phys.joint.name, *(parts[b] for b in (i.id1, i.id2) if b in parts)}  # fmt: skip
         width, point, bodies, found = cracks.widest(
             ((i.id1, i.id2), groups(i), i.phys.opening, i.geom.centres)
@@ -230,13 +218,12 @@ class Outcome:
         )
         return {
             "largest_crack_mm": 1e3 * width,
-            "largest_crack_at_m": None if point is None else [round(v, 9) + 0.0 for v in point],
-            "largest_crack_bodies": None if bodies is None else list(bodies),
+            "largest_crack_at_m": point and [round(v, 9) + 0.0 for v in point],
+            "largest_crack_bodies": bodies and list(bodies),
             "largest_cracks_mm": {name: 1e3 * found[name] for name in sorted(found)},
-        }  # fmt: skip
+        }
 
     def _connections(self):
-        """Entries for ties and springs, if there are any."""
         description = self.description
         kinds = collections.defaultdict(list, overlays=description.overlays)
         for one in description.connectors:
@@ -254,7 +241,7 @@ class Outcome:
         stage = {"stage": "push", "number": int(number)}
         others = [a for a in at.answers.get(number, []) if a["name"] not in names]
         at.answers = {**at.answers, number: [*({**stage, **one} for one in own), *others]}  # fmt: skip
-        asked.companions.over()
+        asked.over()
 
     # -- files and terminal ---------------------------------------------------------------------------------------
 
@@ -264,13 +251,10 @@ class Outcome:
         return {**found, **self._wall()}
 
     def write(self, directory, draws=True):
-        """Write what the scene has beside rows and frames: the mechanism of limit analysis, with its picture if it is to be
-        drawn."""
-        description = self.description
+        """Write what the scene has beside rows and frames: the mechanism of limit analysis, with its picture if ``draws``."""
+        title, views = self.description.title, self.description.views
         try:
-            self.scene.bounds.write(
-                directory, description.title, self.model.parts, description.views, draws
-            )
+            self.scene.bounds.write(directory, title, self.model.parts, views, draws)
         except Missing as missing:
             say(f"mechanism.png is left out: {missing}", sys.stderr)
         except (OSError, MemoryError, ImportError) as error:
@@ -291,7 +275,7 @@ class Outcome:
     def warnings(self, run):
         """Sentences on what the numbers of a run suffer from, from the entries of run.json."""
         bounds = self.scene.bounds
-        yield from bound_texts.over(bounds.entries, bounds.place.held, run)
+        yield from over(bounds.entries, bounds.place.held, run)
         if not self.pushed:
             return
         if run.get("too_fast"):
@@ -302,12 +286,8 @@ class Outcome:
             yield pushing.tooSudden(self.pushed, run)
 
 
-def _meanings(cls):
-    return {p["name"]: p["meaning"] for p in blocks.properties(cls)}
-
-
 def shortened(entry):
-    """What a script said, with long lists, as a record of an earthquake, as a text that says how long they are."""
+    """What a script said; long lists, as a record of an earthquake, as a text that says how long they are."""
     if isinstance(entry, dict):
         return {name: shortened(value) for name, value in entry.items()}
     if isinstance(entry, (list, tuple)):
@@ -315,3 +295,115 @@ def shortened(entry):
             return f"{len(entry):,} numbers from {min(entry):.6g} to {max(entry):.6g}"
         return [shortened(value) for value in entry]
     return entry
+
+
+# -- curve.png --------------------------------------------------------------------------------------------------------
+
+
+def figureOf(outcome):
+    """The entry ``figure`` of run.json, by which curve.png is drawn, of an :class:`Outcome`."""
+    scene, model, loads = outcome.scene, outcome.model, outcome.loads
+    if loads and loads[-1][1][0] != "push" and model.loading.followed:
+        return _ofLoad(outcome, *loads[-1])
+    if outcome.pushed:
+        return _ofPush(outcome)
+    if outcome.description.joints:
+        return _ofJoint(outcome, outcome.description.joints[0])
+    heads = columns.heads(scene.columns)
+    moving = [t.name for t in outcome.description.targets.values() if not t.fixed]
+    y = [f"{n}_{a}_mm" for n in moving for a in "xyz" if f"{n}_{a}_mm" in heads]
+    y = y or [n for n in heads if n.endswith("_kN") and "force" in n][:3]
+    what = "displacement [mm]" if moving else "force [kN]"
+    return _entry("time_s", "time [s]", {n: n.rsplit("_", 1)[0] for n in y}, what)
+
+
+def _entry(x, label, y, what, marks=(), looped=False, **more):
+    """An entry of one column over another.
+
+    :param y: labels of the columns by their names; ``what``: label of their axis
+    """
+    return {
+        "x": {"column": x, "label": label},
+        "y": [{"column": column, "label": text} for column, text in y.items()],
+        "y_label": what,
+        "looped": looped,
+        "marks": [*marks],
+        **more,
+    }
+
+
+def _ofPush(outcome):
+    target, data = outcome.model.loading.target, outcome.data
+    height = f"{target.recorded[2] - outcome.description.low[2]:.3g} m above the base"
+    looped, marks = bool(outcome.pushed.history), []
+    if data.rows:
+        moved, sides = data["displacement_mm"], (1, -1) if looped else (1,)
+        ends = [(moved[data.peak(side)], data.peakForce(side)) for side in sides]
+        marks = [{"x": x, "y": y, "text": f"{y:.1f} kN at {x:.2f} mm"} for x, y in ends]
+    return _entry(
+        "displacement_mm",
+        f"displacement of {target.name}, {height} [mm]",
+        {"base_shear_kN": "supports", "top_shear_kN": "loaded point"},
+        "force along the push [kN]",
+        marks,
+        looped,
+        bounds=[*linesOfPush(outcome.scene.bounds.entries, outcome.pushes)],
+        **_rowsOf(outcome, data.rows),
+    )
+
+
+def _rowsOf(outcome, rows):
+    """The entry of the figure that says which rows it shows, if these are not all in their order."""
+    every = list(range(len(outcome.results.rows)))
+    return {} if list(rows) == every else {"rows": list(rows)}
+
+
+def _ofLoad(outcome, number, load):
+    """What is drawn of a load that grew, or was put on step by step: its factor over the displacement of what is watched."""
+    kind, name, _ = load
+    at, entry = outcome.scene.running.at, outcome.scene.bounds.entries.get(name, {})
+    rows = range(at.stages[number - 1][3], len(outcome.results.rows))
+    if kind == "lean":
+        rows = restsUnder(outcome, name)
+    found = {a["name"]: a["value"] for a in at.answers.get(str(number), [])}
+    marks = []
+    for end in ("held", "not_held"):
+        x, y = (found.get(f"{of}_{end}") for of in ("displacement", "factor"))
+        if x is not None:
+            text = f"{end.replace('_', ' ')} at {y:.4g}"
+            marks.append({"x": x, "y": y, "text": text, "below": end == "held"})
+    return _entry(
+        "displacement_mm",
+        f"displacement of {outcome.model.loading.followed.name} along the load [mm]",
+        {"load_factor": "load"},
+        f"load{' while it grows' * (kind == 'growth')} [{entry.get('unit') or '-'}]",
+        marks,
+        bounds=[*linesOfGrowth(entry)],
+        **_rowsOf(outcome, rows),
+    )
+
+
+def restsUnder(outcome, name):
+    """Rows at the ends of the stages that put on a load and came to rest, by its factor, after the row before them."""
+    at, results = outcome.scene.running.at, outcome.results
+    ends = [stage[3] - 1 for stage in at.stages[1:]] + [len(results.rows) - 1]
+    numbers = [n for n, load in outcome.loads if load[:2] == ["lean", name]]
+    answers = {n: at.answers.get(str(n), []) for n in numbers}
+    held = {ends[n - 1] for n in numbers if any(a["value"] is not None for a in answers[n])}  # fmt: skip
+    before = at.stages[numbers[0] - 1][3] - 1
+    factors = results.column("load_factor")
+    return [before] * (before >= 0) + sorted(held, key=lambda row: factors[row])
+
+
+def _ofJoint(outcome, joint):
+    column = lambda head: outcome.results.column(joint.prefixed(head))
+    reach = lambda head: max(map(abs, column(head)), default=0)
+    what = "slide" if reach("slide_mm") > reach("opening_mm") else "opening"
+    stresses = {
+        joint.prefixed("normal_stress_MPa"): "normal, positive in tension",
+        joint.prefixed("shear_stress_MPa"): "shear",
+    }
+    if what == "slide":
+        stresses = dict(reversed(stresses.items()))
+    x, label = joint.prefixed(f"{what}_mm"), f"mean {what} of the joint [mm]"
+    return _entry(x, label, stresses, "mean stress [MPa]")

@@ -1,25 +1,34 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""How the command line of a scene is read: presets, and the options of a run that is resumed."""
+"""How the options of a scene are read: from the command line, from presets, from a run that is resumed, and from what a script gives
+to ``Scene`` as keywords, which holds unless the command line gives the same option."""
 
 import argparse
+import difflib
+import os
 import re
 
+from ..common.arguments import flag, isNumber, oneOf, shown
+from ..common.arguments import plain as plainNumber
 from ..common.background import reportRefusal
-from ..basics import NotResumed, Refused, plain
+from ..basics import NotResumed, Refused, plain, refuse, say
 from ..run import batch
 from ..run.run_state import Saved
-from ..run.options import asOption, those
+from ..run.options import OPTIONS, asOption, those
 from ..run.presets import PRESETS
 from . import history
+
+#: What a script cannot say: it is about the run at hand.
+OF_THE_RUN = {"help", *OPTIONS} - those("ofScript")
+#: Names that a scene takes beside its options.
+BESIDE = "title plane gravity columns functors arguments allowGaps collapse".split()
 
 
 class Options(argparse.Namespace):
     """The options that a :class:`Parser` has read.
 
     Beside the options there are, and no part of what ``vars`` gives: ``parser``, which has read them; ``given``, those of the
-    command line, as a dict, or None in a run that is resumed; ``defaults``, those of the parser; ``replaced``, what
-    :func:`masonry.scene.keywords.keep` has changed.
-    """
+    command line, or None in a run that is resumed; ``defaults``, those of the parser; ``replaced``, what :func:`keep` has
+    changed."""
 
     __slots__ = ("parser", "given", "defaults", "replaced")
 
@@ -112,41 +121,26 @@ class Parser(argparse.ArgumentParser):
         nothing = argparse.Namespace(**{action.dest: None for action in self._actions})
         given = vars(super().parse_args(args, nothing))
         given = {name: value for name, value in given.items() if value is not None}
-        defaults = self._withoutWords()
+        defaults = {**vars(found), **{name: self.get_default(name) for name in given}}
         presetOptions = {**defaults, **PRESETS.get(found.preset, {})}
         vars(found).update(presetOptions, **given)
         if isinstance(found, Options):
             found.given, found.defaults = given, defaults
         if found.history:
             found.until = None
-        found.overrides = [
-            name
-            for name, value in given.items()
-            if name not in those("harmless") and value != presetOptions[name]
-        ]
+        found.overrides = _overrides(given, presetOptions)
         return found
-
-    def _withoutWords(self):
-        """The values of all options that are not given; of those that a scene requires None."""
-        required = [action for action in self._actions if action.required]
-        for action in required:
-            action.required = False
-        try:
-            return vars(super().parse_args([]))
-        finally:
-            for action in required:
-                action.required = True
 
     def _checkKnown(self, known, folder):
         """Refuse options of a checkpoint that this scene could not have had."""
         acting = {action.dest for action in self._actions}
-        names = acting | set(self._defaults)
-        wrong = [asOption(name) for name in known if name not in names | {"overrides"}]
+        names = {*acting, *self._defaults, "overrides"}
+        wrong = [asOption(name) for name in known if name not in names]
         for name in set(self._defaults) - acting:
             if known.get(name) != self._defaults[name]:
                 wrong.append(f"{asOption(name)} {known.get(name)!r}")
-        asked = acting - {"help", "out", "resume"}
-        wrong += [f"no {asOption(name)}" for name in sorted(asked - known.keys())]
+        lacks = acting - {"help", "out", "resume", *known}
+        wrong += [f"no {asOption(name)}" for name in sorted(lacks)]
         if wrong:
             raise NotResumed(
                 f"--resume: {folder} was left by another scene or version: {', '.join(wrong)}"
@@ -184,3 +178,120 @@ class Parser(argparse.ArgumentParser):
             self._refuse(NotResumed(why))
         given.saved = saved
         return given
+
+
+def _overrides(given, expected):
+    """Names of the options that were given and drop the promise of a preset."""
+    harmless = those("harmless")
+    return [o for o, v in given.items() if o not in harmless and v != expected[o]]
+
+
+# -- keywords of a scene ----------------------------------------------------------------------------------------------
+
+
+def checked(parser, name, options):
+    """The values of keywords of a scene of this name, of the kind that the command line would give. Raises Refused with all problems.
+
+    :param parser: :class:`Parser` whose options they are; ``options``: values by option
+    """
+    actions = {a.dest: a for a in parser._actions if a.dest not in OF_THE_RUN}
+    found, problems = {}, []
+    for option, value in options.items():
+        if option in actions:
+            try:
+                found[option] = _value(actions[option], value)
+            except (argparse.ArgumentTypeError, ValueError) as error:
+                problems.append(f"{option}: {error}")
+            continue
+        hint = "there are " + ", ".join(sorted(actions))
+        for close in difflib.get_close_matches(option, [*actions, *BESIDE], 1):
+            hint = f"did you mean {close}?"
+        if option in OF_THE_RUN:
+            hint = f"{asOption(option)} is for the command line alone"
+        problems.append(f"no option {option}; {hint}")
+    if options.get("until") is not None and options.get("history") is not None:
+        problems.append("until and history: give one of them")
+    refuse([f"scene {name}: {one}" for one in problems])
+    return found
+
+
+def _value(action, value):
+    """The value of an option from that of a keyword. Raises ValueError or argparse.ArgumentTypeError."""
+    if value is None and (action.default is None or action.dest == "until"):
+        return None
+    if action.choices:
+        return oneOf(*action.choices)(value)
+    if action.nargs == 0:
+        return flag(value)
+    if not isinstance(action.default, list):
+        return _typed(action, value)
+    value = [value] if isinstance(value, str) else value
+    if not isinstance(value, (list, tuple)):
+        raise ValueError(f"{shown(value)} must be a list of texts")
+    return [_typed(action, one) for one in value]
+
+
+def _typed(action, value):
+    if isNumber(value):
+        value = str(plainNumber(value))
+    elif isinstance(value, os.PathLike):
+        value = os.fspath(value)
+    if not isinstance(value, str):
+        raise ValueError(f"{shown(value)} must be a number or a text")
+    return action.type(value) if action.type else value
+
+
+def keep(args, name, options):
+    """Let options have the values that a script gives as keywords, but for those that the command line gives.
+
+    A line on the terminal names the others. A preset wins over what the script says of the options that it chooses, and says so.
+    Options of a run that is resumed are those with which it began, and stay.
+
+    :param args: :class:`Options`, which are changed
+    :param name: of the scene; ``options``: values by option
+    :raises Refused: with all problems
+    """
+    if not isinstance(args, Options):
+        if options:
+            raise Refused(
+                f"scene {name}: arguments that go with {', '.join(options)} must be those of "
+                "masonry.scene.options.parser(...).parse_args(), or a list of words"
+            )
+        return
+    vars(args).update(args.replaced)  # by another scene with the same options
+    args.replaced, given = {}, args.given
+    options = checked(args.parser, name, options)
+    if given is None or not options:
+        return
+    chosen = given.get("preset", options.get("preset", args.preset))
+    preset = PRESETS.get(chosen, {})
+    first = {**options, **preset}
+    now = {option: given.get(option, value) for option, value in first.items()}
+    # by which
+    beaten = {o: o for o, value in options.items() if given.get(o, value) != value}
+    for option, value in options.items():
+        if isinstance(value, list):  # what the command line adds comes last
+            now[option] = [*value, *given.get(option, [])]
+            beaten.pop(option, None)
+    # of which there is one
+    for option, other in (("until", "history"), ("history", "until")):
+        if given.get(option) is not None:
+            now.update({option: given[option], other: None})
+            if options.get(other) is not None:
+                beaten[other] = option
+        elif options.get(option) is not None and other not in given:
+            now[other] = None
+    now["overrides"] = _overrides(given, {**args.defaults, **first})
+    args.replaced = {option: getattr(args, option) for option in now}
+    vars(args).update(now)
+    text = lambda value: value["text"] if isinstance(value, dict) else str(value)
+    if beaten:
+        words = dict.fromkeys(beaten.values())
+        ofLine = ", ".join(f"{asOption(o)} {text(given[o])}" for o in words)
+        ofScene = ", ".join(f"{o} {text(options[o])}" for o in beaten)
+        say(f"note: the command line wins: {ofLine}; the scene has {ofScene}")
+    for option, value in preset.items():
+        if option not in given and options.get(option, value) != value:
+            say(
+                f"note: --preset {chosen}: {option} is {value}, the scene has {options[option]}"
+            )

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Pressures on faces of bricks as forces at points of them. This module needs no YADE."""
 
-from __future__ import annotations
-
+import itertools
 import math
+from collections import Counter
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -12,6 +12,7 @@ from ..common.arguments import number
 from ..basics import Refused
 from ..bricks import Bricks
 from ..bricks.checks import LOOKING
+from .words import checkPlane
 
 GRAZING = 0.01  # least cosine of the angle between a face and what presses on it [-]
 PARTS = 4  # of each side of a triangle: it is integrated in the square of this number of triangles
@@ -27,16 +28,13 @@ class FaceForce(NamedTuple):
     point: Any
 
 
-def facesAgainst(description: Any, towards: Any, part: Any, name: str, least: float = LOOKING) -> list[Any]:  # fmt: skip
+def facesAgainst(description, towards, part, name, least=LOOKING):
     """What joints leave free of the faces that look against a direction: :class:`masonry.bricks.checks.FreePart`.
 
     :param least: cosine of the largest angle between both [-]
     :raises ValueError: if there are none, or the scene can have none
     """
-    if description.plane and towards[1]:
-        raise ValueError(
-            f"{name}: the scene is in the x-z plane; Scene(..., plane=False) is in space"
-        )
+    checkPlane(description, towards, name)
     if description.deformable:
         raise Refused(f"{name}: it loads rigid bricks; choose --blocks rigid")
     faces = [
@@ -49,12 +47,12 @@ def facesAgainst(description: Any, towards: Any, part: Any, name: str, least: fl
     return faces
 
 
-def pressures(description: Any, value: Any, towards: Any, part: Any, normal: bool, name: str = "pressure") -> list[FaceForce]:  # fmt: skip
-    """The forces of a pressure: on each face at its middle and at one more point, or at two more of a scene in space, which do not
-    depend on the pressure. Parameters as in :func:`masonry.scene.loads.pressure`. Raises ValueError.
+def pressures(description, value, towards, part, normal):
+    """The forces of a pressure: on each face at its middle and at one more point, or at two more of a scene in space, which do not depend
+    on the pressure. Parameters as in :func:`masonry.scene.loads.pressure`. Raises ValueError.
     """
     forces, along = [], np.array(towards, float) / np.linalg.norm(towards)
-    for face in facesAgainst(description, towards, part, name, GRAZING):
+    for face in facesAgainst(description, towards, part, "pressure", GRAZING):
         outward, arm = np.array(face.normal), face.area**0.5 / 4
         # two directions in the face, of which the first is in the plane of a scene in a plane
         side = np.cross(outward, (0, 1, 0) if abs(outward[1]) < 0.9 else (0, 0, 1))
@@ -71,14 +69,13 @@ def pressures(description: Any, value: Any, towards: Any, part: Any, normal: boo
 def _corners():
     """The middles of the sides of parts of a triangle, as shares of its corners, and the share of the area that each has: exact for
     polynomials of degree two."""
-    found: dict[Any, int] = {}
-    for i in range(PARTS):
-        for j in range(PARTS - i):
-            one = [(i, j), (i + 1, j), (i, j + 1)]
-            other = [(i + 1, j + 1), (i, j + 1), (i + 1, j)] if i + j + 1 < PARTS else []  # fmt: skip
-            for corners in filter(None, (one, other)):
-                for (a, b), (c, d) in zip(corners, corners[1:] + corners[:1]):
-                    found[a + c, b + d] = found.get((a + c, b + d), 0) + 1
+    found = Counter()
+    for i, j in itertools.product(range(PARTS), repeat=2):
+        one = [(i, j), (i + 1, j), (i, j + 1)]
+        other = [(i + 1, j + 1), (i, j + 1), (i + 1, j)]
+        for corners in (one, other)[: max(0, PARTS - i - j)]:
+            for (a, b), (c, d) in zip(corners, corners[1:] + corners[:1]):
+                found[a + c, b + d] += 1
     places = np.array([*found]) / (2 * PARTS)
     shares = np.column_stack([1 - places.sum(axis=1), places])
     return shares, np.array([*found.values()]) / (3 * PARTS**2)
@@ -90,27 +87,21 @@ SHARES, WEIGHTS = _corners()
 def _integral(face, value, axes):
     """Integrals of a pressure over the free part of a face [N]: of itself, and times the distance from the middle along each axis, over
     the length of that axis."""
+    at = lambda p: atPlace(value, p, MOST, "pressure") if callable(value) else value
     total = np.zeros(1 + len(axes))
     for sign, polygon in ((1, face.face), *((-1, cover) for cover in face.covers)):
         corners = np.asarray(polygon, float)
+        first = corners[0]
         for second, third in zip(corners[1:], corners[2:]):
-            triangle = np.array([corners[0], second, third])
-            area = 0.5 * np.linalg.norm(np.cross(second - corners[0], third - corners[0]))  # fmt: skip
-            points = SHARES @ triangle
-            forces = sign * area * WEIGHTS * [_at(value, place) for place in points.tolist()]  # fmt: skip
+            area = 0.5 * np.linalg.norm(np.cross(second - first, third - first))
+            points = SHARES @ [first, second, third]
+            forces = sign * area * WEIGHTS * [at(place) for place in points.tolist()]
             arms = [(points - face.middle) @ axis / (axis @ axis) for axis in axes]
             total += [forces.sum(), *(forces @ arm for arm in arms)]
     return total.tolist()
 
 
-def _at(value, place):
-    """A pressure at a place [Pa]. Raises ValueError."""
-    if not callable(value):
-        return value
-    return atPlace(value, place, MOST, "pressure")
-
-
-def atPlace(value: Any, place: Any, kind: Any, name: str) -> float:
+def atPlace(value, place, kind, name):
     """What a function of the place gives there, by its kind. Raises ValueError, whatever goes wrong in it."""
     try:
         return kind(value(*place))
@@ -119,14 +110,9 @@ def atPlace(value: Any, place: Any, kind: Any, name: str) -> float:
         raise ValueError(f"{name}: its value at ({where}) m: {error}") from None
 
 
-def placesBelow(
-    description: Any, points: Any
-) -> list[tuple[int, tuple[float, float, float]]]:
+def placesBelow(description, points):
     """Where loads stand that are let down from some points: pairs of the number of a brick, and the point on the highest of its faces
-    that look up [m].
-
-    :raises ValueError: if nothing is below a point
-    """
+    that look up [m]. Raises ValueError if nothing is below a point."""
     faces, found = Bricks(description.bricks).freeFaces((0, 0, 1), GRAZING), []
     near = 1e-6 * math.dist(description.low, description.high)
     for x, y, z in points:

@@ -9,24 +9,21 @@ import sys
 
 from yade.wrapper import MasonryJoint
 
+from ..common.folders import replaced
 from ..run import batch
 from . import fields
 from ..basics import Refused, firstOf, say
 from .materials import withResidual
 from .options import check
 from .parsing import Parser
-from .settings import copiedAll, valuesOf
+from .settings import valuesOf
 from ..assembly.blocks import properties
 
 #: How far a random field is looked at to either side, in standard deviations of its normal: beyond lies one joint in a
 #: million.
 FAR = 4.75
 MOST = 20  # problems that are named of rows
-
-
-def asked():
-    """Whether the scene shall say what it knows, and not run."""
-    return batch.PROBE in os.environ
+PLAIN = bool, int, float, str  # values of properties that are written
 
 
 def probe(scene, stage, traits, arguments):
@@ -47,72 +44,54 @@ def probe(scene, stage, traits, arguments):
     """
     if traits and traits.grows:
         return "at rest"
-    used = traits.options if traits else ()
+    used = set(traits.options) if traits else set()
     parser, found = Parser.last
-    model, heard = scene.model, scene.args is found
+    joints, heard = scene.model.joints, scene.args is found
+    options = {action.dest for action in parser._actions} if heard else set()
+    counts = scene.outcome.describe()["joints_by_kind"]
+    doubtful = {"record", "scale"} - used
+    if not {"until", "history"} & used:
+        doubtful |= {"rate", "until", "history"} - used
     entries = {
         "scene": scene.name,
         "heard": heard,
-        "options": _options(parser) if heard else [],
+        "options": sorted(options - {"help", "out", "resume", "set", "field"}),
         "unused": {},
-        "doubtful": {},
-        "joints": {name: _plain(joint.dict()) for name, joint in model.joints.items()},
-        "counts": _counts(scene),
-        "bounds": {p["name"]: _bounds(p) for p in properties(MasonryJoint)},
-        "connectors": _ofConnectors(scene),
+        "doubtful": dict.fromkeys(doubtful, f"its first stage is {stage}()"),
+        "joints": {
+            name: {n: v for n, v in joint.dict().items() if isinstance(v, PLAIN)}
+            for name, joint in joints.items()
+        },
+        "counts": {kind: counts.get(one.name, 0) for kind, one in joints.items()},
+        "bounds": {p["name"]: _bounds(**p) for p in properties(MasonryJoint)},
+        "connectors": {
+            name: {n: _bounds(**p._asdict()) for n, p in one.known.items()}
+            for name, one in scene.description.settable().items()
+        },
         "problems": _rows(scene, parser) if heard else [],
         "room": scene.outcome.space()[1],
     }
     if "rate" in used and arguments.get("rate") is not None:
         entries["unused"]["rate"] = f"{stage}() has a rate of its own"
-    if not {"until", "history"} & set(used):
-        for name in {"rate", "until", "history"} - set(used):
-            entries["doubtful"][name] = f"its first stage is {stage}()"
-    for name in {"record", "scale"} - set(used):
-        entries["doubtful"][name] = f"its first stage is {stage}()"
     path = os.environ[batch.PROBE]
     scene.finished = True
     scene.results.release()
     try:
-        with open(path + ".new", "w") as f:
+        with replaced(path, "w") as f:
             json.dump(entries, f)
-        os.replace(path + ".new", path)
     except OSError as error:
         say(f"cannot write {path}: {error.strerror}", sys.stderr)
         raise SystemExit(batch.UNWRITTEN) from None
     raise SystemExit(0)
 
 
-def _options(parser):
-    elsewhere = {"help", "out", "resume", "set", "field"}
-    return sorted({action.dest for action in parser._actions} - elsewhere)
-
-
-def _counts(scene):
-    counts = scene.outcome.describe()["joints_by_kind"]
-    joints = scene.model.joints
-    return {kind: counts.get(joint.name, 0) for kind, joint in joints.items()}
-
-
-def _plain(values):
-    return {n: v for n, v in values.items() if isinstance(v, (bool, int, float, str))}
-
-
-def _ofConnectors(scene):
-    """Bounds of the properties of ties, springs and fibre layers, by name and property."""
-    of = lambda p: {"low": p.low, "high": p.high, "unit": p.unit}
-    connectors = scene.description.settable()
-    return {name: {n: of(p) for n, p in one.known().items()} for name, one in connectors.items()}  # fmt: skip
-
-
-def _bounds(p):
+def _bounds(low, high, unit, **more):
     """The bounds of a property; what JSON has no number for is None."""
     finite = lambda v: v if v is not None and math.isfinite(v) else None
-    return {"low": finite(p["low"]), "high": finite(p["high"]), "unit": p["unit"]}
+    return {"low": finite(low), "high": finite(high), "unit": unit}
 
 
 def _rows(scene, parser):
-    """Sentences on the rows of the table that cannot be run, as the scene itself tells them."""
     path, _ = batch.place(os.environ[batch.VARIABLE])
     problems = {}
     known = {action.dest for action in parser._actions}
@@ -136,9 +115,9 @@ def _refused(scene, parser, words):
     if refusals:
         return refusals
     try:
-        connectors = copiedAll(scene.description.settable())
+        connectors = scene.description.settable(copies=True)
         masonry = scene.description.materials.variant(args, [*connectors])
-        check(args, masonry, connectors=connectors)
+        check(args, masonry, connectors)
         for text in args.field:
             _far(text, masonry.joints, connectors)
     except ValueError as refused:
@@ -147,22 +126,20 @@ def _refused(scene, parser, words):
 
 
 def _far(text, joints, connectors):
-    names, kind, cov, length, seed = fields.parts(text)
-    names = withResidual(names, joints)
-    joints = {**joints, **connectors}
-    ends = fields.ends(kind, cov, FAR)
-    for factor in ends:
-        changes = {}
-        for name in names:
-            joint, _, attribute = name.partition(".")
-            value = factor * valuesOf(joints[joint])[attribute]
-            changes.setdefault(joint, {})[attribute] = value
-        for joint, values in changes.items():
-            before = {a: valuesOf(joints[joint])[a] for a in values}
+    """Refuse a field whose values are refused far from its mean."""
+    names, kind, cov, *_ = fields.parts(text)
+    of = {}
+    for name in withResidual(names, joints):
+        thing, _, attribute = name.partition(".")
+        of.setdefault(thing, []).append(attribute)
+    for factor in fields.ends(kind, cov, FAR):
+        for name, attributes in of.items():
+            thing = {**joints, **connectors}[name]
+            before = {a: valuesOf(thing)[a] for a in attributes}
             try:
-                joints[joint].updateAttrs(values)
+                thing.updateAttrs({a: factor * v for a, v in before.items()})
             except ValueError as error:
                 raise Refused(
                     f"--field {text}: where the field is {factor:.3g} of the mean: {error}"
                 ) from None
-            joints[joint].updateAttrs(before)
+            thing.updateAttrs(before)

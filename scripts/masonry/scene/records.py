@@ -16,7 +16,7 @@ from .targets import AnyTarget, BrickAt, Drift, JointRecord, Part
 from .words import describes
 
 
-def nameOrNothing(value: Any, first: Any = None) -> Any:
+def _nameOrNothing(value, first=None):
     """The kind of a name, or of an empty text."""
     return value if isinstance(value, str) and not value else nameOf(value)
 
@@ -35,11 +35,9 @@ def drift(
     """
     if not upper.recorded[2] - lower.recorded[2] > 0:
         raise ValueError(
-            f"drift: {upper.name} at z = {upper.recorded[2]:g} m must be above {lower.name} at "
-            f"{lower.recorded[2]:g} m"
+            f"drift: {upper.name} at z = {upper.recorded[2]:g} m must be above {lower.name} at {lower.recorded[2]:g} m"
         )
-    name = name or f"{upper.name}_drift"
-    description.drifts.append(Drift(name, lower, upper))
+    description.drifts.append(Drift(name or f"{upper.name}_drift", lower, upper))
 
 
 @describes
@@ -70,7 +68,7 @@ def joint(
     description: Any,
     one: BrickAt,
     two: BrickAt,
-    name: Annotated[str, nameOrNothing] | None = None,
+    name: Annotated[str, _nameOrNothing] | None = None,
 ) -> JointRecord:
     """Record the means of a joint: opening, slide, normal and shear stress, as columns of curve.csv.
 
@@ -94,8 +92,7 @@ def section(
     """Record what a horizontal section transmits: normal force, shear force and moment, as columns of curve.csv.
 
     They are the resultant of the joints between the blocks, platens too, whose centroid is above ``z`` when the scene is
-    built, and those whose centroid is not: exact statics in any bond. At rest they are the weight of the blocks above
-    and the loads on them. All are of the structure above on the part below:
+    built, and those whose centroid is not: exact statics in any bond. All are of the structure above on the part below:
 
     - ``N`` [kN]: normal force, positive in tension
     - ``V_x``, in space also ``V_y`` [kN]: shear force along x and y
@@ -120,37 +117,30 @@ def section(
 
 
 def _middleAt(description, z, part, name):
-    """The middle of the box around the bricks that reach a height [m]. Raises ValueError if there is none."""
-    points = [b.corners for b in description.bricks if part in (None, b.part)]
-    near = 1e-6 * (1 + abs(z))
-    cut = [
-        corner
-        for corners in points
-        if min(c[2] for c in corners) - near <= z <= max(c[2] for c in corners) + near
-        for corner in corners
+    """The middle of the box around the bricks that reach a height [m]. Raises ValueError."""
+    boxes = [
+        [[*map(f, zip(*b.corners))] for f in (min, max)]
+        for b in description.bricks
+        if part in (None, b.part)
     ]
+    near = 1e-6 * (1 + abs(z))
+    cut = [box for box in boxes if box[0][2] - near <= z <= box[1][2] + near]
+    ends = lambda of, i: (min(low[i] for low, _ in of), max(high[i] for _, high in of))
     if not cut:
-        heights = [corner[2] for corners in points for corner in corners]
+        least, most = ends(boxes, 2)
         raise ValueError(
             f"section {name}: no brick{f' of part {part!r}' if part else ''} reaches z = {z:g} m; they are from "
-            f"{min(heights):g} to {max(heights):g} m"
+            f"{least:g} to {most:g} m"
         )
-    middle = [(min(c[i] for c in cut) + max(c[i] for c in cut)) / 2 for i in range(2)]
-    return (*middle, float(z))
+    return (*(sum(ends(cut, i)) / 2 for i in range(2)), float(z))
 
 
 def recordBase(description: Any) -> None:
-    """Record the section at the base of a structure that stands on platens, as :func:`section` does, unless the scene has one
-    there."""
-    z = float(description.low[2])
-    platens = [
-        one
-        for one in description.targets.values()
-        if one.box and one.fixed and one.joined
-    ]
+    """Record the section at the base of a structure that stands on platens, unless the scene has one there."""
+    z, targets = float(description.low[2]), description.targets.values()
     near = 1e-6 * (1 + abs(z))
-    own = [one for one in description.sections if one.part is None and abs(one.z - z) < near]  # fmt: skip
-    if not platens or own:
+    own = (s.part is None and abs(s.z - z) < near for s in description.sections)
+    if any(own) or not any(t.box and t.fixed and t.joined for t in targets):
         return
     taken = {one.name for one in (*description.sections, *description.extra)}
     free = lambda name: not {name, *(f"{name}_{end}" for end in ENDS)} & taken
@@ -179,7 +169,6 @@ def view(description: Any, direction: Direction, part: Part | None = None) -> No
 
     :param part: name of a part of the bricks; None: all
     """
-    sight = vector(direction, "view: direction")
-    names = {block.part for block in description.bricks}
-    for name in [part] if part is not None else names:
-        description.views[name] = [float(v) for v in sight]
+    sight = [float(v) for v in vector(direction, "view: direction")]
+    parts = {block.part for block in description.bricks} if part is None else [part]
+    description.views.update(dict.fromkeys(parts, sight))

@@ -19,16 +19,12 @@ from .words import PUSHES, asData
 
 def stateOf(scene):
     """What stages have set of a scene, beside what YADE keeps: a dict of values that JSON can hold."""
-    pushed = scene.pushed
+    of = ("until", "history", "rate") if scene.pushed else ()
     return {
         "model": scene.model.state(),
         "grown": scene.grown,
         "loadUnit": scene.loadUnit,
-        "pushed": (
-            {name: getattr(pushed, name) for name in ("until", "history", "rate")}
-            if pushed
-            else {}
-        ),
+        "pushed": {name: getattr(scene.pushed, name) for name in of},
     }
 
 
@@ -49,27 +45,20 @@ def _alike(state, like):
 
 
 class State:
-    """What a checkpoint keeps of a scene beside its state in YADE.
-
-    :param scene: :class:`masonry.scene.scene.Scene`, when it is built
-    """
+    """What a checkpoint keeps of a scene that is built, beside its state in YADE."""
 
     def __init__(self, scene):
-        self._scene = scene
+        self._scene, self._model = scene, scene.model
         self._rest = None, ""  # the last state at rest, and it as text
         self.restored = False  # whether the scene has the state of a checkpoint again
 
     def kept(self):
         """Entries of :class:`masonry.run.run_state.RunState`."""
-        atRest = self._scene.model.atRest
+        atRest, motion = self._model.atRest, self._model.motion
         if atRest is not self._rest[0]:
             self._rest = atRest, base64.b64encode(atRest).decode()
-        return {
-            "now": stateOf(self._scene),
-            "atRest": self._rest[1],
-            "places": self._scene.model.motion.places,
-            "far": self._scene.model.motion.far,
-        }
+        of = {"places": motion.places, "far": motion.far}
+        return {"now": stateOf(self._scene), "atRest": self._rest[1], **of}
 
     def put(self, state):
         """Give the scene the state of a checkpoint."""
@@ -77,14 +66,10 @@ class State:
         self.restored = True
 
     def takeRest(self, at):
-        """Take the last state at rest from a checkpoint.
-
-        :param at: :class:`masonry.run.run_state.RunState`
-        """
-        model = self._scene.model
+        """Take the last state at rest from a checkpoint: :class:`masonry.run.run_state.RunState`."""
         if at.atRest:
-            model.atRest = base64.b64decode(at.atRest)
-        model.motion.places, model.motion.far = at.places, at.far
+            self._model.atRest = base64.b64decode(at.atRest)
+        self._model.motion.places, self._model.motion.far = at.places, at.far
 
 
 def enter(scene, number, farther):
@@ -111,10 +96,9 @@ def enter(scene, number, farther):
 
 def _optionsDiffer(scene):
     """Whether the command line says something else about how far the push goes in which the checkpoint was made."""
-    if not scene.script.isFirst(PUSHES):
-        return False
     was, now = scene.running.saved.options, asData(vars(scene.args))
-    return any(was.get(name) != now[name] for name in ("until", "history"))
+    differs = any(was.get(name) != now[name] for name in ("until", "history"))
+    return differs and scene.script.isFirst(PUSHES)
 
 
 def saidBefore(scene, word, **arguments):

@@ -26,6 +26,7 @@ import atexit
 import contextlib
 import functools
 import math
+import os
 from typing import Annotated, Any, Callable, Iterable, Iterator, Sequence
 
 from ..common.arguments import LONGEST_NAME
@@ -34,24 +35,24 @@ from ..common import notebook
 from ..assembly.structure import Structure
 from ..basics import GRAVITY, Interrupted, say, withoutCollector
 from ..bricks import Bricks
+from ..run import batch
 from ..run.ending import end
 from ..run.presets import BOUND
 from ..run.results import Results
 from ..run.run import Run
 from . import bounding, connections, contact, facts, loads, options, probing, records
-from . import showing, stages, supports
+from . import stages, supports
 from .bounds import Bounds, takeFound
 from .description import Description
 from .materials import Masonry, linesOf, loadingBlock
 from .outcome import Outcome
 from .resuming import State, resume
-from .stages import STAGES, gravity, prepare, rest
-from .stages import answers
+from .stages import STAGES, answers, gravity, prepare, rest
 from .targets import Target
 from .words import SHAKES, Call, Script, either
 
 
-def ofFolder(value: Any, first: Any = None) -> str:
+def _ofFolder(value, first=None):
     """The kind of a name of a scene, which names a folder, too."""
     fine = isinstance(value, str) and value.strip(". ") and value.isprintable()
     if not fine or "/" in value or len(value.encode()) > LONGEST_NAME:
@@ -59,7 +60,7 @@ def ofFolder(value: Any, first: Any = None) -> str:
     return value
 
 
-def blocksOf(value: Any, first: Any = None) -> list[Any]:
+def _blocksOf(value, first=None):
     """The kind of the bricks of a scene."""
     try:
         found = list(value)
@@ -105,8 +106,8 @@ class Scene:
     @validated
     def __init__(
         self,
-        name: Annotated[str, ofFolder],
-        bricks: Annotated[Iterable[Any], blocksOf],
+        name: Annotated[str, _ofFolder],
+        bricks: Annotated[Iterable[Any], _blocksOf],
         materials: Annotated[Masonry, isA(Masonry, "masonry.materials.Masonry")],
         title: str | None = None,
         plane: bool | None = None,
@@ -124,7 +125,7 @@ class Scene:
         self.description = Description(*made, allowGaps=allowGaps, collapse=collapse)
         arguments = options.ofScene(name, arguments, sceneOptions)
         self.name, self.args = name, arguments
-        #: what --accuracy found, :class:`masonry.run.accuracy.AccuracyResult`, or None
+        #: what --accuracy found, :class:`masonry.run.accuracy.AuxiliaryRuns`, or None
         self.accuracy = options.askAccuracy(name, arguments)
         if arguments.crack_surfaces == "off":
             self.description.bricks = list(Bricks(self.description.bricks).whole())
@@ -135,8 +136,7 @@ class Scene:
         # whether bracket() looks for a load, so that no collapse is followed
         self.bracketing = False
         self.running = Run(name, arguments, self.script.words)
-        # when it is built
-        self.model: Any = None
+        self.model: Any = None  # when it is built, and so are the next two
         self.bounds: Any = None
         self.outcome: Any = None
         self.columns: list[Any] = []  # of curve.csv
@@ -153,14 +153,11 @@ class Scene:
         self.only = arguments.preset == BOUND
         self._entered = False  # whether a ``with`` block ends it
 
-    # -- what describes it ----------------------------------------------------------------------------------------
-
     platen, watch, handle = supports.platen, supports.watch, supports.handle
     drift, column = records.drift, records.column
     joint, section, view = records.joint, records.section, records.view
-    tie, spring = connections.tie, connections.spring
+    tie, spring, overlay = connections.tie, connections.spring, connections.overlay
     ground = contact.ground
-    overlay = connections.overlay
     # Their names are those of stages, too, which are meant after the first stage.
     hold = either(supports.hold, stages.hold)
     press = either(loads.press, stages.press)
@@ -173,8 +170,6 @@ class Scene:
         """Platens and bricks that are held, loaded or watched, by their names."""
         return self.description.targets
 
-    # -- how it goes ----------------------------------------------------------------------------------------------
-
     settle, release, move = stages.settle, stages.release, stages.move
     push, cycle, follow = stages.push, stages.cycle, stages.follow
     drive, pressJoint = stages.drive, stages.pressJoint
@@ -185,12 +180,7 @@ class Scene:
     shakeAgain = stages.shakeAgain
     bracket, stepBack, resume = gravity.bracket, rest.stepBack, resume
     bound, domain, result = bounding.bound, bounding.domain, answers.result
-
-    curve = showing.curve
-
-    def _repr_html_(self) -> str:
-        """The scene in a notebook: what is built before the first stage, else cracks, curve and results."""
-        return showing.asHtml(self)
+    curve, probe, _repr_html_ = facts.curve, probing.probe, facts.asHtml
 
     @property
     def isGone(self) -> bool:
@@ -235,8 +225,7 @@ class Scene:
             raise ValueError(f"{name}: the scene is finished")
         if self.model and self.isGone:
             raise ValueError(
-                f"{name}: scene {self.name} is gone, because another one was built since; finish one scene before "
-                "the next begins"
+                f"{name}: scene {self.name} is gone, because another one was built since; finish one scene before the next begins"
             )
 
     @functools.cached_property
@@ -245,11 +234,8 @@ class Scene:
         connectors = self.description.settable()
         masonry = self.description.materials.variant(self.args, [*connectors])
         problems = self.description.problems(masonry)
-        if self.args.points and self.description.functors:
-            problems.append(f"--points {self.args.points}: with functors joints keep three points; leave functors=False")  # fmt: skip
-        if self.description.contact:
-            problems += contact.problems(self.description, self.args)
-        options.check(self.args, masonry, problems, self.description.plane, connectors)
+        problems += contact.problems(self.description, self.args)
+        options.check(self.args, masonry, connectors, problems)
         self.assumed = masonry.assumed()
         return masonry
 
@@ -273,31 +259,22 @@ class Scene:
         self.outcome = Outcome(self)
         with self.running.clock("setup"), self.running.breakable(), withoutCollector():
             model.build(loadingBlock())
-            self._prepare()
+            # the engines that stages had made before the checkpoint of a run that is resumed
+            names, begun = {stage.__name__ for stage in STAGES}, False
+            for word, arguments in self.running.scriptBefore:
+                begun = begun or word in names
+                if begun:
+                    prepare(self, word, arguments)
         facts.noteCourse(description)
         self.running.start(model, self.outcome.space(), State(self))
         Scene.present = self
         atexit.unregister(self._remind)  # of a run that goes on
         atexit.register(self._remind)
 
-    def _prepare(self):
-        """Make the engines that stages had made before the checkpoint of a run that is resumed."""
-        names, begun = {stage.__name__ for stage in STAGES}, False
-        for word, arguments in self.running.scriptBefore:
-            begun = begun or word in names
-            if begun:
-                prepare(self, word, arguments)
-
-    def probe(self, stage: str, traits: Any, arguments: Any) -> Any:
-        """Say what a study must know of the scene, and end; see :func:`masonry.scene.probing.probe`."""
-        return probing.probe(self, stage, traits, arguments)
-
-    # -- the end --------------------------------------------------------------------------------------------------
-
     def finish(self) -> None:
         """End the run: the last frame, run.json, the figures. A run that was not in order exits with its status."""
-        if probing.asked() and self.model:
-            probing.probe(self, "finish", None, {})
+        if batch.PROBE in os.environ and self.model:
+            self.probe("finish", None, {})
         if not (self.finished or self._entered):
             self.__exit__(None, None, None)
 
@@ -312,9 +289,9 @@ class Scene:
         if not error and not self.model:
             return False
         if not (error or self.only or any(word in SHAKES for word, _ in self.script.words)):  # fmt: skip
-            given = [o for o, default in (("record", None), ("scale", 1)) if getattr(self.args, o, default) != default]  # fmt: skip
-            for option in given:
-                say(f"warning: --{option} was not used: the scene was not shaken")
+            for option, default in (("record", None), ("scale", 1)):
+                if getattr(self.args, option, default) != default:
+                    say(f"warning: --{option} was not used: the scene was not shaken")
         with self.running.listening():
             done = end(self.running, self, error)
         if self.status and (done or not error):

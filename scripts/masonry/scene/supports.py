@@ -12,7 +12,7 @@ from ..assembly.blocks import vector
 from ..basics import refuse
 from .targets import BrickAt, Part, Target
 from .ties import MOST, End, Spring, Tie
-from .words import describes
+from .words import IN_PLANE, describes
 
 PLATEN = 0.2  # [m] height of a platen
 #: Bars along each side of a platen on a soil without tension, in a plane and in space.
@@ -66,7 +66,7 @@ def platen(
     :param upTo: z of its outer side [m], in place of ``height``: where a testing machine pushes
     :param recorded: z of the point whose displacement is recorded [m], on the line through ``point``; None: that of
         ``point``
-    :param drive: axes along which a drive holds the one at the top from the beginning: ``"x"``, or ``"xz"``; None of
+    :param drive: axes along which a drive holds the one at the top from the beginning: ``"x"``, or ``"xz"``; none of
         them: it is free until it is pushed
     :param springs: of the one at the bottom, a soil or a rig that gives way: a dict from axes, xyz along and XYZ about, to
         stiffness [N/m], [N m/rad], at the middle of its outer side, for example ``{"x": 37e6}``; along and about the others it
@@ -75,38 +75,27 @@ def platen(
     :param uplift: whether the soil carries no tension. Then ``z`` of ``springs`` is spread over the side of the platen, so that it also
         turns on it, and each part of the soil has compression alone
     """
-    bottom = where == "bottom"
+    bottom, plane = where == "bottom", description.plane
     level = description.low[2] if bottom else description.high[2]
-    springs = springs or {}
-    problems = _problems(description, bottom, rotation, guided, drive, springs)
+    springs = {**(springs or {})}
+    problems = [*_problems(plane, bottom, rotation, guided, drive, springs)]
     if uplift and ("z" not in springs or {"X", "Y"} & {*springs}):
-        problems.append("platen: uplift needs springs with z, from which X and Y follow, and which have neither")  # fmt: skip
+        problems.append("uplift needs springs with z, from which X and Y follow, and which have neither")  # fmt: skip
     if upTo is not None and not 0 < (level - upTo if bottom else upTo - level):
         side = "below" if bottom else "above"
-        problems.append(
-            f"platen: upTo {upTo} m must be {side} the bricks, which end at {level:g} m"
-        )
-    refuse(problems)
+        problems.append(f"upTo {upTo} m must be {side} the bricks, which end at {level:g} m")  # fmt: skip
+    refuse([f"platen: {one}" for one in problems])
     low, high = _sideAt(description, level, where, part)
-    outer = level - height if bottom else level + height
-    outer = outer if upTo is None else upTo
-    box = ((*low, min(level, outer)), (*high, max(level, outer)))
+    outer = level + (-height if bottom else height) if upTo is None else upTo
+    begins, ends = sorted((level, outer))
     middle = ((low[0] + high[0]) / 2, (low[1] + high[1]) / 2, outer)
-    plane = description.plane
-    if bottom:
-        freedom = "xyzXYZ"
-    elif rotation == "free":
-        freedom = "yXZ" if plane else ""
-    else:
-        freedom = "yXYZ" if plane else "XYZ"
-    freedom += "".join(axis for axis in guided if axis not in freedom)
-    free = {*springs, *(("Y" if plane else "XY") * uplift)}
-    freedom = "".join(axis for axis in freedom if axis not in free)
-    point = middle if point is None else point
-    point = tuple(vector(point, "platen: point [m]"))
-    if recorded is not None and not min(level, outer) <= recorded * (1 + 1e-12):
+    held = {*guided, *("yXZ" * plane)}
+    held |= {*("xyzXYZ" if bottom else "" if rotation == "free" else "XYZ")}
+    held -= {*springs, *(("Y" if plane else "XY") * uplift)}
+    point = middle if point is None else tuple(vector(point, "platen: point [m]"))
+    if recorded is not None and not begins <= recorded * (1 + 1e-12):
         raise ValueError(
-            f"platen: recorded {recorded:g} m is not on the platen, which begins at {min(level, outer):g} m"
+            f"platen: recorded {recorded:g} m is not on the platen, which begins at {begins:g} m"
         )
     target = description.add(
         Target(
@@ -114,35 +103,34 @@ def platen(
             fixed=bottom,
             point=point,
             recorded=point if recorded is None else (*point[:2], recorded),
-            box=box,
-            freedom=freedom,
+            box=((*low, begins), (*high, ends)),
+            freedom="".join(axis for axis in "xyzXYZ" if axis in held),
             loaded=not bottom,
             drives="".join(drive),
         )
     )
     if uplift:
-        _standLoose(description, target, springs["z"], (*low, outer), (*high, outer))
-    springs = {axis: k for axis, k in springs.items() if not (uplift and axis == "z")}
+        k = springs.pop("z")
+        _standLoose(description, target, k, (*low, outer), (*high, outer))
     if springs:
-        _standOn(description, target, springs, middle)
+        of = lambda axes: tuple(float(springs.get(axis, 0)) for axis in axes)
+        to = End(middle, target), End(middle)
+        made = Spring(f"{target.name}_spring", to, of("xyz"), of("XYZ"))
+        description.connectors.append(made)
     return target
 
 
-def _problems(description, bottom, rotation, guided, drive, springs):
-    """Sentences on what a platen at the bottom, at the top or in the plane cannot have."""
-    found = []
+def _problems(plane, bottom, rotation, guided, drive, springs):
     if bottom and rotation == "free":
-        found.append("platen: the one at the bottom is fixed and cannot turn")
+        yield "the one at the bottom is fixed and cannot turn"
     for name, value in {"guided": guided, "drive": drive}.items():
         if bottom and value:
-            found.append(f"platen: {name} {value!r} is for the one at the top")
+            yield f"{name} {value!r} is for the one at the top"
     if springs and not bottom:
-        found.append("platen: springs are for the one at the bottom; spring() is for any")  # fmt: skip
-    inSpace = {"springs": springs if set(springs) & set("yXZ") else "", "drive": drive if "y" in drive else ""}  # fmt: skip
-    for name, value in inSpace.items():
-        if description.plane and value:
-            found.append(f"platen: {name} {value!r}: the scene is in the x-z plane; Scene(..., plane=False) is in space")  # fmt: skip
-    return found
+        yield "springs are for the one at the bottom; spring() is for any"
+    for name, value, out in (("springs", springs, "yXZ"), ("drive", drive, "y")):
+        if plane and {*value} & {*out}:
+            yield f"{name} {value!r}: {IN_PLANE}"
 
 
 def _sideAt(description, level, where, part):
@@ -153,13 +141,12 @@ def _sideAt(description, level, where, part):
         for block in description.bricks
         if part in (None, block.part)
     ]
-    touching = [p for corners in blocks for p in corners]
+    touching = [p[:2] for corners in blocks for p in corners]
     if not touching:
         raise ValueError(
             f"platen: part {part!r} does not reach the {where}, z = {level:g} m"
         )
-    low = [min(p[i] for p in touching) for i in range(2)]
-    high = [max(p[i] for p in touching) for i in range(2)]
+    low, high = ([*map(f, zip(*touching))] for f in (min, max))
     # bricks that stand on an edge share no face with a platen
     if any(a == b for a, b in zip(low, high)) or max(map(len, blocks)) < 3:
         raise ValueError(
@@ -167,14 +154,6 @@ def _sideAt(description, level, where, part):
             "so hold bricks, or blocks with an inclined side on which these stand"
         )
     return low, high
-
-
-def _standOn(description, target, springs, point):
-    """Let a platen stand on springs to the ground."""
-    of = lambda axes: tuple(float(springs.get(axis, 0)) for axis in axes)
-    ends = End(point, target), End(point)
-    name = f"{target.name}_spring"
-    description.connectors.append(Spring(name, ends, of("xyz"), of("XYZ")))
 
 
 def _standLoose(description, target, stiffness, low, high):
@@ -185,16 +164,17 @@ def _standLoose(description, target, stiffness, low, high):
     """
     counts = (BARS[0], 1) if description.plane else (BARS[1], BARS[1])
     rows = [_spread(a, b, count) for a, b, count in zip(low, high, counts)]
+    name = f"{target.name}_soil"
     for (x, one), (y, other) in itertools.product(*rows):
         ends = End((x, y, low[2]), target), End((x, y, low[2] + HIGH))
-        name = f"{target.name}_soil"
         bar = Tie(name, ends, one * other * stiffness, None, 0.0, 0.0, None, False, overlay=name)  # fmt: skip
         bar.isSupport = True
         description.connectors.append(bar)
-    deep, wide = (high[i] - low[i] for i in (1, 0))
-    rotation = tuple(stiffness * side**2 / 12 for side in (deep, wide)) + (0.0,)
+    wide, deep = (b - a for a, b in zip(low[:2], high))
+    rotation = stiffness * deep**2 / 12, stiffness * wide**2 / 12, 0.0
     middle = tuple((a + b) / 2 for a, b in zip(low, high))
-    description.soils.append(Spring(f"{target.name}_soil", (End(middle, target), End(middle)), (0.0, 0.0, stiffness), rotation))  # fmt: skip
+    ends = End(middle, target), End(middle)
+    description.soils.append(Spring(name, ends, (0.0, 0.0, stiffness), rotation))
 
 
 def _spread(low, high, count):
@@ -225,10 +205,8 @@ def hold(
         raise ValueError(
             f"hold: in the x-z plane no block moves along {axes} anyway; Scene(..., plane=False) is in space"
         )
-    target = _brick(description, where, name, fixed=True)
-    target.freedom = (
-        "".join(axes) if not description.plane else "".join({*axes, *"yXZ"})
-    )
+    target = _brick(description, where, name, fixed=True, loaded=False)
+    target.freedom = "".join({*axes, *"yXZ"} if description.plane else axes)
     return target
 
 
@@ -244,19 +222,20 @@ def watch(description: Any, where: BrickAt, name: Name | None = None) -> Target:
 def handle(description: Any, where: BrickAt, name: Name | None = None) -> Target:
     """A brick that loads act on, at its centre or at the point that is given. It is rigid, also where bricks are deformable. Parameters
     as in :meth:`hold`."""
-    return _brick(description, where, name, fixed=False)
+    return _brick(description, where, name, fixed=False, loaded=True)
 
 
-def _brick(description, where, name, fixed, loaded=None):
+def _brick(description, where, name, fixed, loaded):
     index, point = description.find(where)
+    point = point or description.middle(index)
     return description.add(
         Target(
             name or f"brick{index}",
             fixed=fixed,
-            point=point or description.middle(index),
-            recorded=point or description.middle(index),
+            point=point,
+            recorded=point,
             brick=index,
             freedom="xyzXYZ" if fixed else None,
-            loaded=not fixed if loaded is None else loaded,
+            loaded=loaded,
         )
     )

@@ -45,31 +45,28 @@ class Target:
 
         :param plane: whether the scene moves in the x-z plane only
         """
-        name, axes = self.name, [*enumerate("xyz")]
-        if plane:
-            del axes[1]
+        name, axes = self.name, "xz" if plane else "xyz"
+        supports = lambda r: r.structure.supports
 
-        def forceAlong(i, axis, on, force):
-            what = f"force of the structure on {on} along {axis}"
-            return Column(f"{name}_force_{axis}", "kN", what, lambda r: force(r)[i])
+        def force(axis, on, vector):
+            i, what = "xyz".index(axis), f"force of the structure on {on} along {axis}"
+            return Column(f"{name}_force_{axis}", "kN", what, lambda r: vector(r)[i])
 
-        for i, axis in axes:
-            what = f"displacement of {name} along {axis}"
+        for axis in axes:
+            what, i = f"displacement of {name} along {axis}", "xyz".index(axis)
             moved = lambda r, i=i: 1e3 * r.moved(self)[0][i]
             yield Column(f"{name}_{axis}", "mm", what, moved)
             if self.fixed or axis in (self.freedom or ""):
-                yield forceAlong(i, axis, name, lambda r: 1e-3 * r.forces[name])
+                yield force(axis, name, lambda r: 1e-3 * r.forces[name])
         if self.brick is not None and self.loaded and not self.fixed:
-            force = lambda r: -1e-3 * r.structure.supports.forceFrom(self)
-            for i, axis in axes:
+            for axis in axes:
                 on = f"what loads, drives or holds {name}"
-                yield forceAlong(i, axis, on, force)
+                yield force(axis, on, lambda r: -1e-3 * supports(r).forceFrom(self))
         elif self.box and not self.fixed and "z" not in self.drives + (self.freedom or ""):  # fmt: skip
-            force = lambda r: 1e-3 * r.structure.supports.jointsOn(self)
-            yield forceAlong(2, "z", name, force)
+            yield force("z", name, lambda r: 1e-3 * supports(r).jointsOn(self))
         for axis in self.drives:
             own = lambda r, a=axis: -1e-3 * r.structure.loading.driveForce(self, a)
-            yield forceAlong("xyz".index(axis), axis, f"the drive of {name}", own)
+            yield force(axis, f"the drive of {name}", own)
         if not self.fixed:
             what = f"rotation of {name}" + (" about y" if plane else ", its angle")
             turned = lambda r: 1e3 * r.moved(self)[1]
@@ -87,18 +84,13 @@ class Drift:
     def columns(self, plane: bool) -> Iterator[Column]:
         """The difference of the displacements, and that over the height between both points."""
         height = self.upper.recorded[2] - self.lower.recorded[2]
-        away = lambda r, i: r.moved(self.upper)[0][i] - r.moved(self.lower)[0][i]
         for i, axis in enumerate("x" if plane else "xy"):
+            name = f"{self.name}_{axis}"
             what = f"displacement of {self.upper.name} along {axis} less that of {self.lower.name}"
-            yield Column(
-                f"{self.name}_{axis}", "mm", what, lambda r, i=i: 1e3 * away(r, i)
-            )
-            yield Column(
-                f"{self.name}_{axis}",
-                "mrad",
-                f"{what}, over the height between them",
-                lambda r, i=i: 1e3 * away(r, i) / height,
-            )
+            away = lambda r, i=i: 1e3 * (r.moved(self.upper)[0][i] - r.moved(self.lower)[0][i])  # fmt: skip
+            turned = lambda r, away=away: away(r) / height
+            yield Column(name, "mm", what, away)
+            yield Column(name, "mrad", f"{what}, over the height between them", turned)
 
 
 @dataclass
@@ -152,12 +144,8 @@ class JointRecord:
         """What is recorded of it."""
         between = "the joint between bricks {} and {}".format(*self.bricks)
         for name, unit, meaning, factor, mean in OF_JOINTS:
-            yield Column(
-                self.prefixed(name),
-                unit,
-                meaning.format(between),
-                lambda r, factor=factor, mean=mean: factor * mean(self),
-            )
+            value = lambda r, factor=factor, mean=mean: factor * mean(self)
+            yield Column(self.prefixed(name), unit, meaning.format(between), value)
 
 
 #: What is recorded of a joint: name, unit, meaning, the factor from SI units, and the mean.
@@ -169,12 +157,14 @@ OF_JOINTS = (
 )  # fmt: skip
 
 
-# -- kinds of arguments, as in masonry.common.arguments ----------------------------------------------------------------------
-
-
 def _descriptionOf(first):
     """The description of a scene, which is the first argument of a word, or belongs to it."""
     return getattr(first, "description", first)
+
+
+def isOwn(target: Any, first: Any) -> bool:
+    """Whether a target is of this scene."""
+    return _descriptionOf(first).targets.get(target.name) is target
 
 
 def _target(what, fits):
@@ -182,7 +172,7 @@ def _target(what, fits):
 
     def take(value, first):
         known = isinstance(value, Target)
-        own = known and _descriptionOf(first).targets.get(value.name) is value
+        own = known and isOwn(value, first)
         if not (own and fits(value)):
             got = repr(value.name) if known else shown(value)
             other = ", which is of another scene" if known and not own else ""
@@ -192,17 +182,16 @@ def _target(what, fits):
     return take
 
 
-def recordedJoint(value: Any, first: Any) -> Any:
+def _recordedJoint(value, first):
     """The kind of a joint of the scene, as :meth:`masonry.scene.scene.Scene.joint` gave it."""
     if not any(value is one for one in _descriptionOf(first).joints):
         raise ValueError(f"{shown(value)} must be a joint of this scene, as joint() gave it")  # fmt: skip
     return value
 
 
-def part(value: Any, first: Any) -> Any:
+def _part(value, first):
     """The kind of the name of a part of the bricks."""
-    parts = {block.part for block in _descriptionOf(first).bricks}
-    return oneOf(*sorted(parts))(value)
+    return oneOf(*sorted({block.part for block in _descriptionOf(first).bricks}))(value)
 
 
 def brick(value: Any, first: Any) -> Any:
@@ -212,24 +201,15 @@ def brick(value: Any, first: Any) -> Any:
 
 
 #: What the user says to a command of a scene, as type hints name it.
-AnyTarget = Annotated[
-    Target,
-    _target(
-        "a target of this scene, as platen(), hold(), watch() or handle() give it",
-        lambda target: True,
-    ),
-]
+_any = _target("a target of this scene, as platen(), hold(), watch() or handle() give it", lambda t: True)  # fmt: skip
 kindOfLoaded = _target("a platen that moves, or a handle(), of this scene", lambda t: t.loaded)  # fmt: skip
-Loaded = Annotated[Target, kindOfLoaded]
-MovingPlaten = Annotated[
-    Target,
-    _target("a platen of this scene that moves", lambda t: t.box and not t.fixed),
-]
+_moving = _target("a platen of this scene that moves", lambda t: t.box and not t.fixed)
 _held = _target("a platen or brick of this scene that is held", lambda t: t.fixed)
-HeldTargets = Annotated[
-    Union[Target, Sequence[Target]],
-    lambda value, first: listOf(_held)(value if isListed(value) else [value], first),
-]
-RecordedJoint = Annotated[JointRecord, recordedJoint]
-Part = Annotated[str, part]
+_allHeld = lambda v, first: listOf(_held)(v if isListed(v) else [v], first)
+AnyTarget = Annotated[Target, _any]
+Loaded = Annotated[Target, kindOfLoaded]
+MovingPlaten = Annotated[Target, _moving]
+HeldTargets = Annotated[Union[Target, Sequence[Target]], _allHeld]
+RecordedJoint = Annotated[JointRecord, _recordedJoint]
+Part = Annotated[str, _part]
 BrickAt = Annotated[Union[Numbers, int, Block], brick]

@@ -3,15 +3,14 @@
 
 from __future__ import annotations
 
-import copy
 from dataclasses import dataclass, replace
-from typing import Any, Iterator
+from typing import Any
 
 from yade import Vector3
 from yade.wrapper import MasonrySprings, MasonryTies
 
 from ..assembly.columns import Column
-from .settings import Factor, Property, Settable
+from .settings import Property, Settable
 from .targets import Target
 
 MOST = 1e15  # of stiffness [N/m], [N m] and force [N]: more has no structure
@@ -34,34 +33,30 @@ GROUND = -1  # in place of the id of a body
 
 @dataclass
 class End:
-    """An end of a tie or a spring.
+    """An end of a tie or a spring; without target and brick it is on the ground.
 
     :param point: where it is fixed [m]
     :param target: a platen or brick, or None
-    :param brick: index of a brick, or None. If both are None, the end is on the ground
+    :param brick: index of a brick, or None
     """
 
     point: tuple
     target: Target | None = None
     brick: int | None = None
 
-    def bodyIn(self, ids: list[int]) -> int:
-        """YADE's id of its body, -1 for the ground.
-
-        :param ids: of the bricks, in their order
-        """
+    def bodyIn(self, ids):
+        """YADE's id of its body, -1 for the ground; ``ids`` are those of the bricks, in their order."""
         if self.target:
-            assert self.target.body is not None
             return self.target.body
         return GROUND if self.brick is None else ids[self.brick]
 
     @property
-    def isGround(self) -> bool:
+    def isGround(self):
         """Whether it does not move."""
         return self.target is None and self.brick is None
 
     @property
-    def words(self) -> str:
+    def words(self):
         """Where it is, in words."""
         if self.target:
             return self.target.name
@@ -69,8 +64,17 @@ class End:
         return f"the ground at ({at}) m" if self.isGround else f"brick {self.brick} at ({at}) m"  # fmt: skip
 
 
+class Connector(Settable):
+    """What ties and springs share: their ``number`` among those of an ``engine``."""
+
+    def _now(self, name, before):
+        """What the engine has of it, which has no numbers before its first step."""
+        values = getattr(self.engine, name)
+        return values[self.number] if len(values) else before
+
+
 @dataclass
-class Tie(Settable):
+class Tie(Connector):
     """A bar between two points; ``scene.tie`` makes it and says what the values mean."""
 
     name: str
@@ -88,12 +92,11 @@ class Tie(Settable):
     WORD, PLURAL = "tie", "ties"  # in messages, and in run.json
     isSupport = False  # whether its force on a platen is one of a support
 
-    @staticmethod
-    def engineOf(records: list[Tie], **ends: Any) -> Any:
-        """The engine of all ties of a scene.
+    known = OF_TIE
 
-        :param ends: their bodies and points
-        """
+    @staticmethod
+    def engineOf(records, **ends):
+        """The engine of all ties of a scene; ``ends`` are their bodies and points."""
         never = lambda value: NEVER if value is None else value
         breaks = lambda one: one.breaking and one.breaking * one.length
         return MasonryTies(
@@ -107,47 +110,36 @@ class Tie(Settable):
         )
 
     @staticmethod
-    def grow(records: list[Tie], engine: Any, share: float) -> None:
+    def grow(records, engine, share):
         """Tighten ties to a share of their prestress [-]."""
         engine.rest = [one.rest(share) for one in records]
 
     @staticmethod
-    def events(
-        records: list[Tie], engine: Any, since: int
-    ) -> Iterator[tuple[Tie, str]]:
+    def events(records, engine, since):
         """Ties to which something has happened since a time step, and what."""
         for what, steps in (("yields", engine.yieldedAt), ("breaks", engine.brokenAt)):
             for one, step in zip(records, steps):
                 if step >= since:
                     yield one, what
 
-    def known(self) -> dict[str, Property]:
-        """As of :class:`Settable`, and so are those that follow."""
-        return OF_TIE
-
-    def values(self) -> dict[str, float | None]:
-        return {name: getattr(self, name) for name in OF_TIE}
-
-    def copied(self) -> Tie:
-        return copy.copy(self)
-
-    def place(self) -> tuple[float, ...]:
+    def place(self):
+        """The middle between its ends [m]."""
         a, b = (end.point for end in self.ends)
         return tuple(0.5 * (x + y) for x, y in zip(a, b))
 
-    def problems(self) -> list[str]:
-        found = []
-        if self.prestress and self.slack:
-            found.append(f"a prestress of {self.prestress:g} N and a slack of {self.slack:g} m exclude each other")  # fmt: skip
-        if self.strength is not None and self.prestress >= self.strength:
-            found.append(f"prestress {self.prestress:g} N must be below its strength, {self.strength:g} N")  # fmt: skip
-        breaks = None if self.breaking is None else self.breaking * self.length * self.stiffness  # fmt: skip
-        if breaks is not None and self.prestress >= breaks > 0:
-            found.append(f"prestress {self.prestress:g} N must be below the force at which it breaks, {breaks:g} N")  # fmt: skip
+    def problems(self):
+        prestress, found = self.prestress, []
+        if prestress and self.slack:
+            found.append(f"a prestress of {prestress:g} N and a slack of {self.slack:g} m exclude each other")  # fmt: skip
+        if self.strength is not None and prestress >= self.strength:
+            found.append(f"prestress {prestress:g} N must be below its strength, {self.strength:g} N")  # fmt: skip
+        breaks = (self.breaking or 0) * self.length * self.stiffness
+        if prestress >= breaks > 0:
+            found.append(f"prestress {prestress:g} N must be below the force at which it breaks, {breaks:g} N")  # fmt: skip
         return found
 
     @property
-    def bodies(self) -> tuple[int, int]:
+    def bodies(self):
         """YADE's ids of the bodies of its ends, -1 for the ground."""
         return self.engine.bodies1[self.number], self.engine.bodies2[self.number]
 
@@ -158,10 +150,7 @@ class Tie(Settable):
         return sum((x - y) ** 2 for x, y in zip(a, b)) ** 0.5
 
     def rest(self, share: float) -> float:
-        """Elongation without force when so much of the prestress has grown [m].
-
-        :param share: 0 to 1 [-]
-        """
+        """Elongation without force when a share of the prestress, 0 to 1, has grown [m]."""
         return self.slack - share * self.prestress / self.stiffness
 
     @property
@@ -172,9 +161,9 @@ class Tie(Settable):
     @property
     def elongation(self) -> float:
         """Present elongation of the distance between its ends [m]."""
-        return self.engine.elongations[self.number] if len(self.engine.elongations) else 0.0  # fmt: skip
+        return self._now("elongations", 0.0)
 
-    def on(self, end: End, connectors: Any) -> Any:
+    def on(self, end, connectors):
         """Force [N] and moment [N m] on one of its ends: two vectors.
 
         :param connectors: :class:`masonry.assembly.connectors.Connectors`
@@ -183,7 +172,7 @@ class Tie(Settable):
         away = connectors.placeOf(other) - connectors.placeOf(end)
         return self.force * away.normalized(), 0 * away
 
-    def columns(self, plane: bool) -> Iterator[Column]:
+    def columns(self, plane):
         """What is recorded of it."""
         if self.overlay:
             return
@@ -192,21 +181,19 @@ class Tie(Settable):
         yield Column(f"{self.name}_elongation", "mm", f"elongation of the distance between {where}", lambda r: 1e3 * self.elongation)  # fmt: skip
 
     @property
-    def isListed(self) -> bool:
+    def isListed(self):
         """Whether run.json has an entry of it: of a fibre only when it is no longer elastic."""
         return not self.overlay or self.state != "elastic"
 
     @property
     def state(self) -> str:
         """``elastic``, ``yielded`` or ``broken``."""
-        engine, n = self.engine, self.number
-        if not len(engine.forces):
-            return "elastic"
-        return "broken" if engine.brokenAt[n] >= 0 else "yielded" if engine.yieldedAt[n] >= 0 else "elastic"  # fmt: skip
+        if self._now("brokenAt", -1) >= 0:
+            return "broken"
+        return "yielded" if self._now("yieldedAt", -1) >= 0 else "elastic"
 
-    def entry(self) -> dict[str, Any]:
+    def entry(self):
         """What run.json says of it."""
-        engine, n = self.engine, self.number
         return {
             "name": self.name,
             "ends_m": [list(end.point) for end in self.ends],
@@ -220,12 +207,12 @@ class Tie(Settable):
             "compression": self.compression,
             "state": self.state,
             "force_N": self.force,
-            "plastic_elongation_m": engine.flows[n] if len(engine.flows) else 0.0,
+            "plastic_elongation_m": self._now("flows", 0.0),
         }
 
 
 @dataclass
-class Spring(Settable):
+class Spring(Connector):
     """Springs at a point; ``scene.spring`` makes them and says what the values mean."""
 
     name: str
@@ -239,7 +226,7 @@ class Spring(Settable):
     isSupport, isListed, overlay = True, True, ""
 
     @staticmethod
-    def engineOf(records: list[Spring], **ends: Any) -> Any:
+    def engineOf(records, **ends):
         """The engine of all springs of a scene, as that of ties, and so are those that follow."""
         return MasonrySprings(
             label="springs",
@@ -249,33 +236,31 @@ class Spring(Settable):
         )
 
     @staticmethod
-    def grow(records: list[Spring], engine: Any, share: float) -> None:
+    def grow(records, engine, share):
         pass
 
     @staticmethod
-    def events(records: list[Spring], engine: Any, since: int) -> Iterator[Any]:
-        return iter(())
+    def events(records, engine, since):
+        return ()
 
-    def known(self) -> dict[str, Property]:
-        """As of :class:`Settable`, and so are those that follow. A direction without a spring gets none."""
-        units = (("stiffness", "N/m"), ("rotation", "N m/rad"))
+    @property
+    def known(self):
+        """As of :class:`Settable`. A direction without a spring gets none."""
         return {
             f"{what}_{axis}": Property(unit, 0, MOST, True)
-            for what, unit in units
+            for what, unit in (("stiffness", "N/m"), ("rotation", "N m/rad"))
             for axis, value in zip("xyz", getattr(self, what))
             if value > 0
         }
 
-    def values(self) -> dict[str, float | None]:
-        return {n: getattr(self, n[:-2])["xyz".index(n[-1])] for n in self.known()}
+    def values(self):
+        return {n: getattr(self, n[:-2])["xyz".index(n[-1])] for n in self.known}
 
-    def copied(self) -> Spring:
-        return copy.copy(self)
-
-    def place(self) -> tuple[float, ...]:
+    def place(self):
+        """Where they are [m]."""
         return self.ends[0].point
 
-    def take(self, values: dict[str, float]) -> None:
+    def take(self, values):
         for name, value in values.items():
             what, axis = name.split("_")
             present = dict(zip("xyz", getattr(self, what))) | {axis: value}
@@ -284,29 +269,30 @@ class Spring(Settable):
     @property
     def force(self) -> Any:
         """Present force on the first end [N]."""
-        return self.engine.forces[self.number] if len(self.engine.forces) else (0.0, 0.0, 0.0)  # fmt: skip
+        return self._now("forces", (0.0, 0.0, 0.0))
 
     @property
     def moment(self) -> Any:
         """Present moment on the first end, about its point [N m]."""
-        return self.engine.moments[self.number] if len(self.engine.moments) else (0.0, 0.0, 0.0)  # fmt: skip
+        return self._now("moments", (0.0, 0.0, 0.0))
 
-    def on(self, end: End, connectors: Any) -> Any:
+    def on(self, end, connectors):
         """As :meth:`Tie.on`."""
         sign = 1 if end is self.ends[0] else -1
         return sign * Vector3(*self.force), sign * Vector3(*self.moment)
 
-    def columns(self, plane: bool) -> Iterator[Column]:
+    def columns(self, plane):
         """What is recorded of it."""
         where = f"the spring between {self.ends[0].words} and {self.ends[1].words}"
-        for i, axis in enumerate("xyz"):
-            if self.stiffness[i] and not (plane and axis == "y"):
-                yield Column(f"{self.name}_force_{axis}", "kN", f"force of the first on {where}, along {axis}", lambda r, i=i: -1e-3 * self.force[i])  # fmt: skip
-        for i, axis in enumerate("xyz"):
-            if self.rotation[i]:
-                yield Column(f"{self.name}_moment_{axis}", "kNm", f"moment of the first on {where}, about {axis}", lambda r, i=i: -1e-3 * self.moment[i])  # fmt: skip
+        for what, unit, along in (("force", "kN", "along"), ("moment", "kNm", "about")):
+            stiff = self.stiffness if what == "force" else self.rotation
+            for i, axis in enumerate("xyz"):
+                if stiff[i] and not (plane and what == "force" and axis == "y"):
+                    value = lambda r, i=i, what=what: -1e-3 * getattr(self, what)[i]
+                    meaning = f"{what} of the first on {where}, {along} {axis}"
+                    yield Column(f"{self.name}_{what}_{axis}", unit, meaning, value)
 
-    def entry(self) -> dict[str, Any]:
+    def entry(self):
         """What run.json says of it."""
         return {
             "name": self.name,
@@ -331,18 +317,12 @@ class Overlay(Settable):
     strain: float | None  # at which they break [-]
 
     WORD = "fibre layer"
+    known = OF_OVERLAY
 
-    def known(self) -> dict[str, Property]:
-        """As of :class:`Settable`, and so are those that follow."""
-        return OF_OVERLAY
-
-    def values(self) -> dict[str, float | None]:
-        return {name: getattr(self, name) for name in OF_OVERLAY}
-
-    def copied(self) -> Overlay:
+    def copied(self):
         return replace(self, ties=[one.copied() for one in self.ties])
 
-    def take(self, values: dict[str, float]) -> None:
+    def take(self, values):
         for name, value in values.items():
             for one in self.ties:
                 if name == "strain":
@@ -352,30 +332,23 @@ class Overlay(Settable):
                     setattr(one, name, getattr(one, name) * share)
             setattr(self, name, value)
 
-    def scatter(self, name: str, factor: Factor) -> None:
+    def vary(self, name, factor):
         """Every bundle has the value of the field at its own place; the layer keeps the mean."""
-        if getattr(self, name) is None:
-            raise ValueError(f"{self.name}: {name} was not given, so nothing can vary about it")  # fmt: skip
         for one in self.ties:
             one.scatter("breaking" if name == "strain" else name, factor)
 
-    def columns(self, plane: bool) -> Iterator[Column]:
+    def columns(self, plane):
         """What is recorded of it."""
-        for n, what in enumerate(("yielded", "broken")):
+        for what in ("yielded", "broken"):
             meaning = f"how many of the {len(self.ties)} bundles of fibres of {self.name} have {what}"
-            yield Column(f"{self.name}_{what}", "-", meaning, lambda r, n=n: self._count()[n])  # fmt: skip
+            yield Column(f"{self.name}_{what}", "-", meaning, lambda r, what=what: self._count(what))  # fmt: skip
 
-    def _count(self):
-        engine = self.ties[0].engine
-        if not len(engine.forces):
-            return 0, 0
-        numbers = [one.number for one in self.ties]
-        count = lambda steps: sum(steps[n] >= 0 for n in numbers)
-        return count(list(engine.yieldedAt)), count(list(engine.brokenAt))
+    def _count(self, what):
+        steps = list(getattr(self.ties[0].engine, f"{what}At"))
+        return sum(steps[one.number] >= 0 for one in self.ties) if steps else 0
 
-    def entry(self) -> dict[str, Any]:
+    def entry(self):
         """What run.json says of it."""
-        yielded, broken = self._count()
         return {
             "name": self.name,
             "stiffness_N_per_m": self.stiffness,
@@ -383,6 +356,6 @@ class Overlay(Settable):
             "gauge_m": self.gauge,
             "breaking_strain": self.strain,
             "bundles": len(self.ties),
-            "yielded": yielded,
-            "broken": broken,
+            "yielded": self._count("yielded"),
+            "broken": self._count("broken"),
         }

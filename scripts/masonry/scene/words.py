@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import functools
 import inspect
 import math
@@ -19,6 +20,14 @@ S = TypeVar("S", covariant=True)
 RESULT = "result"  # the word that keeps a number of the script's own
 PUSHES = "push", "cycle", "follow"  # to the first of them --until and --history apply
 SHAKES = ("shake",)  # to the first of them --record and --scale apply
+#: What a word says that cannot be done in a scene in a plane.
+IN_PLANE = "the scene is in the x-z plane; Scene(..., plane=False) is in space"
+
+
+def checkPlane(description, along, name):
+    """Refuse what has a part along y in a scene in the x-z plane. Raises ValueError."""
+    if description.plane and along[1]:
+        raise ValueError(f"{name}: {IN_PLANE}")
 
 
 @dataclass
@@ -42,8 +51,7 @@ def describes(
 ) -> Callable[Concatenate[Any, P], R]:
     """A word that describes a scene: it comes before the first stage, and is noted.
 
-    :param act: function of a :class:`masonry.scene.description.Description` and what the user says. As a method of the scene
-        it takes what the user says
+    :param act: function of a :class:`masonry.scene.description.Description` and what the user says
     """
 
     @functools.wraps(act)
@@ -92,9 +100,8 @@ def either(
         word: Any = stage if scene.model else describes
         return word(scene, *args, **settings)
 
-    command.__doc__ = (
-        f"{describes.__doc__}\n\n    After the first stage: {stage.__doc__}"
-    )
+    doc = f"{describes.__doc__}\n\n    After the first stage: {stage.__doc__}"
+    command.__doc__ = doc
     said: Any = command
     return said
 
@@ -107,7 +114,7 @@ def argumentsOf(act, first, args, settings):
 
 
 def asData(value):
-    """A value as JSON can hold it: numbers, texts and lists as they are, targets and recorded joints by their names."""
+    """A value as JSON can hold it: targets and recorded joints by their names."""
     if value is None or isinstance(value, (bool, str, int)):
         return value
     if isinstance(value, float):
@@ -118,10 +125,8 @@ def asData(value):
         return {str(asData(key)): asData(one) for key, one in value.items()}
     if isinstance(getattr(value, "name", None), str):
         return value.name
-    try:
+    with contextlib.suppress(TypeError):
         return [asData(one) for one in value]
-    except TypeError:
-        pass
     try:
         return asData(float(value))
     except (TypeError, ValueError):
@@ -154,11 +159,10 @@ class Script:
         return last in words and not any(word in words for word, _ in before)
 
     def compare(self, before):
-        """Refuse a script that says something else than that of the run that is resumed.
+        """Refuse a script that says something else than that of the run that is resumed. Returns whether it goes farther.
 
-        :param before: ``words`` of that run, up to its checkpoint. The last of them, but for results, is the stage in which
-            that was made, which may go farther now
-        :returns: whether it does
+        :param before: ``words`` of that run, up to its checkpoint. The last of them, but for results, is the stage in which that was
+            made, which may go farther now
         """
         last = max((n for n, (word, _) in enumerate(before) if word != RESULT), default=-1)  # fmt: skip
         farther = False
@@ -170,13 +174,11 @@ class Script:
             changed = {n for n in {**old, **new} if old.get(n) != new.get(n)}
             if name != other or not changed <= may:
                 raise NotResumed(
-                    f"--resume: a run goes on as it began: the script said {spoken(was)}, now it says {spoken(now)}"
+                    f"--resume: a run goes on as it began: the script said {_spoken(*was)}, now it says {_spoken(*now)}"
                 )
             farther = True
         return farther
 
 
-def spoken(word):
-    """A word as a script writes it."""
-    name, arguments = word
+def _spoken(name, arguments):
     return f"{name}({', '.join(f'{n}={v!r}' for n, v in arguments.items())})"

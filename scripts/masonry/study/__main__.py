@@ -14,7 +14,6 @@ if __name__ == "__main__":
 from ..basics import Interrupted, Refused, Unwritable, say
 from . import slurm
 from .calibrate import Calibration
-from .continuing import checkRows, rowsOf
 from .gathering import CSV, Folder, gather
 from .local import Local
 from .plan import Study
@@ -22,8 +21,6 @@ from .start import NOTHING, begin
 
 
 KEPT = "what was computed is kept, and the same command goes on when there is space"
-
-
 SWITCHES = {
     "--slurm": "run the rows on a cluster: one job array",
     "--prepare": "check the study and make its folder; run nothing",
@@ -37,20 +34,12 @@ def parser():
         description="Run a scene many times with values that vary; go on with a study that was stopped; gather what came out.",
         epilog="With --slurm all other options, for example --partition=long --time=2:00:00, are those of sbatch.",
     )
-    p.add_argument(
-        "file",
-        metavar="FILE",
-        nargs="?",
-        help="Python file that makes one masonry.study.Study or Calibration; not needed to --gather",
-    )
+    file = "Python file that makes one masonry.study.Study or Calibration; not needed to --gather"
+    jobs = "runs at a time (default: %(default)s, all cores)"
+    cores = len(os.sched_getaffinity(0))
+    p.add_argument("file", metavar="FILE", nargs="?", help=file)
     p.add_argument("--out", metavar="DIR", required=True, help="folder of the study")
-    p.add_argument(
-        "--jobs",
-        metavar="N",
-        type=int,
-        default=len(os.sched_getaffinity(0)),
-        help="runs at a time (default: %(default)s, all cores)",
-    )
+    p.add_argument("--jobs", metavar="N", type=int, default=cores, help=jobs)
     for name, what in SWITCHES.items():
         p.add_argument(name, action="store_true", help=what)
     return p
@@ -61,8 +50,8 @@ def load(path):
     if not os.path.isfile(path):
         raise Refused(f"no file {path}")
     with interrupts.watched(NOTHING):
-        made = runpy.run_path(path)
-    studies = {id(v): v for v in made.values() if isinstance(v, (Study, Calibration))}
+        made = runpy.run_path(path).values()
+    studies = {id(v): v for v in made if isinstance(v, (Study, Calibration))}
     if len(studies) != 1:
         raise Refused(
             f"{path} must make one masonry.study.Study or Calibration, it makes {len(studies)}"
@@ -73,9 +62,7 @@ def load(path):
 def tell(folder):
     """Gather, and say what is there. Returns the exit status: 0 if all rows are ended."""
     folder.check()
-    table = rowsOf(folder)
-    checkRows(folder, table)
-    counts = gather(folder, table)
+    counts = gather(folder)
     summary = ", ".join(f"{n} {status}" for status, n in sorted(counts.items()))
     say(f"{summary}; see {folder.of(CSV)}")
     return 0 if set(counts) <= {"ended", "above collapse"} else 1

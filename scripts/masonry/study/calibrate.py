@@ -29,12 +29,11 @@ from ..common.packages import needed
 from ..read.comparison import readMeasured
 from ..read.files import readCurve
 from . import pictures
-from .continuing import checkRows, rowsOf
 from .designs import points, seeded
 from .gathering import Folder, gather, written
 from .local import Local
 from .plan import Study
-from .records import Record
+from .records import CURVE, Record
 from .start import begin
 from .variables import uniform
 
@@ -42,8 +41,7 @@ DRAWS, THINNING = 4000, 5  # of a chain
 BEGIN = 0.1  # steps of the first chain over the ranges [-]
 STEP = 2.38  # of a chain over the deviation of a draw, over the root of the dimension: Gelman, Roberts and Gilks (1996)
 STARTS = 2000  # points of which the most likely one begins the first chain
-#: Error of the surrogate over that of the test that needs no other round or check [-].
-FINE = 0.5
+FINE = 0.5  # error of the surrogate over that of the test that needs no other round or check [-]
 CHECKS = 4  # runs with the means of the draws that may be added to the rows
 SMALLER = 0.5  # volume of another round over the last one, above which it does not pay
 TAIL, MARGIN = 0.005, 0.25  # what a next round has outside, and its margin over width
@@ -75,25 +73,21 @@ class Specimen:
         scene: FilePath,
         measured: str | dict[str, tuple[float, float]],
         error: Annotated[float, number("", 0, above=True)] | None = None,
-        columns: Annotated[tuple[str, str], listOf(text, 2)] = (
-            "displacement_mm",
-            "base_shear_kN",
-        ),
+        columns: Annotated[tuple[str, str], listOf(text, 2)] = CURVE,
         count: Annotated[int, whole(2, 200)] = 12,
         options: Annotated[dict[str, Any], isA(dict)] | None = None,
     ) -> None:
         self.scene, self.measured, self.options = scene, measured, dict(options or {})
         self.columns, self.count, self.error = columns, count, error
-        problems, curve = [], isinstance(measured, str)
-        if isinstance(measured, dict):
-            problems += [
-                f"measured {name!r}: {pair!r} must be a value and a standard deviation above 0"
-                for name, pair in measured.items()
-                if not (isinstance(pair, (tuple, list)) and len(pair) == 2 and pair[1] > 0)
-            ]  # fmt: skip
+        pairs = measured.items() if isinstance(measured, dict) else ()
+        problems = [
+            f"measured {name!r}: {pair!r} must be a value and a standard deviation above 0"
+            for name, pair in pairs
+            if not (isinstance(pair, (tuple, list)) and len(pair) == 2 and pair[1] > 0)
+        ]
         if not measured or not isinstance(measured, (str, dict)):
             problems.append("measured must be 'FILE:X:Y' or a dict of columns")
-        if curve != (error is not None):
+        if isinstance(measured, str) != (error is not None):
             problems.append("error goes with a curve, and a curve needs it")
         refuse(problems, "specimen: ")
 
@@ -123,9 +117,8 @@ class Specimen:
             curve = readCurve(path)
         except Refused:
             return np.full(self.count, np.nan)
-        missing = [name for name in self.columns if name not in curve]
-        if missing:
-            raise Refused(f"{path}: curve.csv has no column {', '.join(missing)}; there are {', '.join(curve)}")  # fmt: skip
+        if missing := ", ".join(name for name in self.columns if name not in curve):
+            raise Refused(f"{path}: curve.csv has no column {missing}; there are {', '.join(curve)}")  # fmt: skip
         x, y = pictures.increasing(*(curve[name] for name in self.columns))
         reached = self.grid <= x[-1] + 0.01 * (x[-1] - x[0])
         return np.where(reached, np.interp(self.grid, x, y), np.nan)
@@ -168,10 +161,10 @@ class Calibration:
         for one in self.specimens:  # a study names all that is wrong
             self.names = [*self._study(one, self.low, self.high, runs, seed).vary]
 
-    def _study(self, specimen, low, high, runs, seed, options=None):
-        ends = zip(low.tolist(), high.tolist())
-        vary = {key: uniform(*one) for key, one in zip(self.keys, ends)}
-        every = {**specimen.options, **(options or {})}
+    def _study(self, specimen, low, high, runs, seed, options=()):
+        ends = zip(self.keys, low.tolist(), high.tolist())
+        vary = {key: uniform(*both) for key, *both in ends}
+        every = {**specimen.options, **dict(options)}
         return Study(specimen.scene, every, runs, seed, vary, "sobol")
 
     def find(self, place: FilePath, near: FilePath = ".", jobs: int = 1) -> Found:
@@ -184,79 +177,81 @@ class Calibration:
         """
         for one in self.specimens:
             one.read(near)
-        values, errors = (np.hstack([vars(s)[n] for s in self.specimens]) for n in ("values", "errors"))  # fmt: skip
-        where = place, near, jobs
-        model, sample = self._fitted(values, errors, where)
-        model, sample, run = self._checked(model, sample, values, errors, where)
+        self.values = np.hstack([one.values for one in self.specimens])
+        self.errors = np.hstack([one.errors for one in self.specimens])
+        self._place, self._near, self._jobs = place, near, jobs
+        model, sample, run = self._checked(*self._fitted())
         if self.accurate is not None:
-            ends = np.quantile(sample, ENDS, axis=0)
-            few = lambda s: self._study(s, ends[0], ends[1], self.few, self.seed, self.accurate)  # fmt: skip
-            x, y = self._rows(where, "accurate", few, 3)
+            low, high = np.quantile(sample, ENDS, axis=0)
+            few = lambda s: self._study(s, low, high, self.few, self.seed, self.accurate)  # fmt: skip
+            x, y = self._rows("accurate", few, 3)
             off = y - model(x)
             model.offset = model.offset + off.mean(axis=0)
             model.errors = off.std(axis=0, ddof=1) * math.sqrt(1 + 1 / len(off))
-            sample = posterior(model, values, errors, self.seed)
-            _, run = self._best(where, "best", sample, self.accurate)
-        found = Found(self, sample, model, values, errors, run)
+            sample = self._drawn(model)
+            _, run = self._best("best", sample, self.accurate)
+        found = Found(self, sample, model, run)
         written(os.path.join(place, RESULT), json.dumps(found.describe(), indent=1) + "\n")  # fmt: skip
         if any(one.grid is not None for one in self.specimens):
             pictures.calibration(os.path.join(place, PICTURE), found)
         return found
 
-    def _fitted(self, values, errors, where):
+    def _drawn(self, model):
+        return posterior(model, self.values, self.errors, self.seed)
+
+    def _fitted(self):
         """The surrogate of the last round, and draws of the properties."""
         low, high = self.low, self.high
-        x, y = np.empty((0, len(low))), np.empty((0, len(values)))
+        x, y = np.empty((0, len(low))), np.empty((0, len(self.values)))
         for turn in range(self.rounds):
             study = lambda s: self._study(s, low, high, self.runs, self.seed + turn)
-            more = self._rows(where, f"round{turn + 1}", study, 3 * len(low))
-            x, y = np.vstack([x, more[0]]), np.vstack([y, more[1]])
+            more = self._rows(f"round{turn + 1}", study, 3 * len(low))
+            x, y = map(np.vstack, zip((x, y), more))
             inside = ((x >= low) & (x <= high)).all(axis=1)
             model = Surrogate(x[inside], y[inside], low, high)
-            sample = posterior(model, values, errors, self.seed)
-            off = (model.errors / errors).max()
+            sample = self._drawn(model)
+            off = (model.errors / self.errors).max()
             say(f"round {turn + 1}: the error of the surrogate is at most {off:.2g} of that of the test")  # fmt: skip
-            ends = np.quantile(sample, (TAIL, 1 - TAIL), axis=0)
-            margin = MARGIN * (ends[1] - ends[0])
-            ends = np.maximum(ends[0] - margin, low), np.minimum(ends[1] + margin, high)
-            if off <= FINE or np.prod((ends[1] - ends[0]) / (high - low)) > SMALLER:
+            least, most = np.quantile(sample, (TAIL, 1 - TAIL), axis=0)
+            margin = MARGIN * (most - least)
+            least, most = np.maximum(least - margin, low), np.minimum(
+                most + margin, high
+            )
+            if off <= FINE or np.prod((most - least) / (high - low)) > SMALLER:
                 break
-            low, high = ends
+            low, high = least, most
         return model, sample
 
-    def _checked(self, model, sample, values, errors, where):
+    def _checked(self, model, sample):
         """Surrogate and draws after runs with the means of the draws, and what the last one of these says."""
         for turn in range(1, CHECKS + 2):
-            x, run = self._best(where, f"check{turn}", sample)
-            off = np.max(np.abs(run - model(x)) / errors, initial=0)
+            x, run = self._best(f"check{turn}", sample)
+            off = np.max(np.abs(run - model(x)) / self.errors, initial=0)
             if off <= FINE or turn > CHECKS:
                 break
             say(f"check {turn}: at the means of the draws the surrogate is off by {off:.2g} of the error of the test")  # fmt: skip
             rows = np.vstack([model.x, x]), np.vstack([model.y, run])
             model = Surrogate(*rows, model.low, model.high, turn)
-            sample = posterior(model, values, errors, self.seed)
+            sample = self._drawn(model)
         return model, sample, run
 
-    def _best(self, where, name, sample, options=None):
+    def _best(self, name, sample, options=()):
         """What a run with the means of the draws says, as in :meth:`_rows`."""
         means = dict(zip(self.keys, sample.mean(axis=0).tolist()))
-        study = lambda s: Study(s.scene, {**s.options, **(options or {})}, vary=means, design="grid")  # fmt: skip
-        return self._rows(where, name, study, 0)
+        study = lambda s: Study(s.scene, {**s.options, **dict(options)}, vary=means, design="grid")  # fmt: skip
+        return self._rows(name, study, 0)
 
-    def _rows(self, where, name, studyOf, least):
+    def _rows(self, name, studyOf, least):
         """Run a study of every specimen: the unknown properties of the rows, and what all specimens say of them.
 
-        :param where: folder of the results, folder of the scenes, runs at a time
         :param least: how many rows there must be
         """
-        (place, near, jobs), found = where, []
+        found = []
         for number, specimen in enumerate(self.specimens, 1):
-            study = studyOf(specimen)
-            folder = begin(study, os.path.join(place, f"specimen{number}_{name}"), near)
-            Local(folder, study.runs, jobs).run()
-            table = rowsOf(folder)
-            checkRows(folder, table)
-            gather(folder, table)
+            study, place = studyOf(specimen), f"specimen{number}_{name}"
+            folder = begin(study, os.path.join(self._place, place), self._near)
+            Local(folder, study.runs, self._jobs).run()
+            gather(folder)
             record = Record(folder.path)
             found.append(specimen.of(record))
             x = np.column_stack([record.numbers(n) for n in self.names])
@@ -281,12 +276,13 @@ class Surrogate:
     def __init__(self, x: np.ndarray, y: np.ndarray, low: np.ndarray, high: np.ndarray, checks: int = 0) -> None:  # fmt: skip
         self.x, self.y = x, y
         self.low, self.high, self.offset = low, high, y.mean(axis=0)
-        u, scale = (x - low) / (high - low), np.where(np.ptp(y, axis=0) > 0, y.std(axis=0), 1.0)  # fmt: skip
+        u = (x - low) / (high - low)
+        scale = np.where(np.ptp(y, axis=0) > 0, y.std(axis=0), 1.0)
         found = [_kriging(u, column) for column in ((y - self.offset) / scale).T]
         slopes, lengths, factors, missed = map(np.array, zip(*found))
         self.weights, self.factors = 0.5 / np.square(lengths), scale[:, None] * factors
         squares = np.square(missed.T)
-        near = squares[len(x) - checks :] if checks else squares
+        near = squares[-checks:]  # none: all
         self.slopes = scale * slopes.T
         self.errors = scale * np.sqrt(np.maximum(squares.mean(axis=0), near.mean(axis=0)))  # fmt: skip
         self.cross = 2 * np.einsum("jd,nd->djn", self.weights, u).reshape(len(low), -1)
@@ -338,11 +334,8 @@ def posterior(model: Surrogate, values: np.ndarray, errors: np.ndarray, seed: in
     starts = np.array(points("sobol", STARTS, size, seed))
     start, steps = starts[misfit(starts).argmax()].tolist(), BEGIN**2 * np.eye(size)
     with seeded(ot, seed):
-        for thinning in (
-            1,
-            1,
-            THINNING,
-        ):  # the first ones find how long the steps must be
+        # the first ones find how long the steps must be
+        for thinning in (1, 1, THINNING):
             walk = ot.Normal([0.0] * size, ot.CovarianceMatrix(steps.tolist()))
             chain = ot.RandomWalkMetropolisHastings(density, cube, start, walk)
             chain.setBurnIn(DRAWS)
@@ -357,18 +350,15 @@ def posterior(model: Surrogate, values: np.ndarray, errors: np.ndarray, seed: in
 class Found:
     """What the tests say of the unknown properties.
 
-    :param calibration: :class:`Calibration`
+    :param calibration: :class:`Calibration`, which has what was measured as ``values``, and its standard deviations as ``errors``
     :param sample: draws of the properties, a line each
     :param model: :class:`Surrogate`
-    :param values: what was measured, and ``errors``, its standard deviations
     :param run: what a run with the means of the draws says, one line; none if it failed
     """
 
     calibration: Calibration
     sample: np.ndarray
     model: Surrogate
-    values: np.ndarray
-    errors: np.ndarray
     run: np.ndarray
 
     @property
@@ -393,11 +383,11 @@ class Found:
     def doubts(self) -> list[str]:
         """Sentences on what speaks against the intervals."""
         of, found, matrix = self.calibration, [], self.correlation
-        off = (self.run - self.values) / np.hypot(self.errors, self.model.errors)
+        off = (self.run - of.values) / np.hypot(of.errors, self.model.errors)
         if not len(off) or stats.chi2.sf((off**2).sum(), off.size) < DOUBT:
             found.append("a run with these values does not follow the test within its errors: do not use them")  # fmt: skip
         missed = np.abs(self.run - self.model(self.sample.mean(axis=0)[None]))
-        if (missed > FINE * self.errors).any():
+        if (missed > FINE * of.errors).any():
             found.append("the surrogate differs from a run with these values: give more runs")  # fmt: skip
         for n, (name, low, high) in enumerate(zip(of.names, *self.intervals)):
             near = NEAR * (of.high[n] - of.low[n])
@@ -412,29 +402,35 @@ class Found:
             ]  # fmt: skip
         return found
 
-    def describe(self) -> dict[str, Any]:
-        """As JSON has it."""
+    @property
+    def properties(self) -> list[dict[str, Any]]:
+        """Of every property: ``name``, ``value``, ``low`` and ``high`` of its interval, and ``spread``."""
         columns = self.sample.mean(axis=0), *self.intervals, self.spread
         rows = zip(self.calibration.names, *(c.tolist() for c in columns))
+        return [dict(zip("name value low high spread".split(), row)) for row in rows]
+
+    def describe(self) -> dict[str, Any]:
+        """As JSON has it."""
         return {
-            "properties": [dict(zip("name value low high spread".split(), row)) for row in rows],
+            "properties": self.properties,
             "correlation": self.correlation.tolist(),
             "doubts": self.doubts(),
-        }  # fmt: skip
+        }
 
     def lines(self) -> Iterator[str]:
         """What is printed: properties, what was measured, doubts, and the properties as a study takes them."""
-        of, columns = self.calibration, (self.sample.mean(axis=0), *self.intervals, self.spread)  # fmt: skip
+        of = self.calibration
         wide = max(map(len, of.names))
         yield f"{'property':{wide}}  {'value':>10}  {'95 % interval':^23}  deviation over that of the range"
-        for name, value, low, high, spread in zip(of.names, *columns):
-            yield f"{name:{wide}}  {value:10.4g}  {low:10.4g} … {high:10.4g}  {spread:.2f}"
+        line = "{name:{wide}}  {value:10.4g}  {low:10.4g} … {high:10.4g}  {spread:.2f}"
+        for one in self.properties:
+            yield line.format(wide=wide, **one)
         yield "correlation, in this order"
         for line in self.correlation:
             yield "  " + " ".join(f"{v:5.2f}" for v in line)
         names = [name for one in of.specimens for name in one.names]
         run = self.run[0] if len(self.run) else np.full(len(names), np.nan)
-        for name, value, low, high, one in zip(names, self.values, *self.bands(), run):
+        for name, value, low, high, one in zip(names, of.values, *self.bands(), run):
             yield f"  {name}: measured {value:.4g}, draws {low:.4g} … {high:.4g}, run with their means {one:.4g}"
         yield from self.doubts()
         yield "for a study with these properties, whose report draws the band of all curves:"

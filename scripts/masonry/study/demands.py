@@ -28,9 +28,7 @@ QUANTILES = (0.16, 0.5, 0.84)
 class Demands:
     """The rows of an incremental dynamic analysis.
 
-    :param record: :class:`masonry.study.records.Record` of its folder
     :param measure: the column whose amount is the demand; None: the usual one
-    :raises Refused: if there is no such column
     """
 
     def __init__(self, record, measure=None):
@@ -40,20 +38,21 @@ class Demands:
         self.intensityName = chains.plan["measure"]
         self.directory = record.directory
         self.names = [one["name"] for one in chains.plan["records"]]
-        status = np.array(record.cells["status"])
-        fallen = np.array(record.cells.get("collapsed", [""] * len(record))) == "True"
+        byRecord = lambda values: np.reshape(values, (len(self.names), chains.each))
+        status = byRecord(record.cells["status"])
+        fallen = byRecord(record.cells.get("collapsed", [""] * len(record))) == "True"
         ended, above = status == "ended", status == "above collapse"
+        fell, stood = ended & fallen, ended & ~fallen
         self.measure = measure or _usual(record)
         found = np.full(len(record), np.nan)
         if self.measure:
             found = abs(record.numbers(self.measure))
-        found[~ended | fallen] = np.nan
-        found[ended & fallen | above] = math.inf
-        each = [chains.intensity(n + 1) for n in range(len(record))]
-        byRecord = lambda values: np.reshape(values, (len(self.names), chains.each))
-        levels, fell, stood = map(byRecord, (each, ended & fallen, ended & ~fallen))
+        found = np.where(
+            stood, byRecord(found), np.where(fell | above, math.inf, np.nan)
+        )
+        levels = byRecord([chains.intensity(n + 1) for n in range(len(record))])
         #: of every record its rows, the lowest level first: intensity and demand, NaN where it is not known
-        self.rows = [*zip(levels.tolist(), byRecord(found).tolist())]
+        self.rows = [*zip(levels.tolist(), found.tolist())]
         #: of every record the level at which the structure fell; infinite: it stood
         self.fell = np.where(fell, levels, math.inf).min(axis=1).tolist()
         #: of every record the intensities at which the structure stood, also where nothing was watched
@@ -72,9 +71,8 @@ class Demands:
         """Quantiles of the demand over the records at an intensity; NaN where fewer than three records are known."""
         values = self.at(intensity)
         values = np.sort(values[~np.isnan(values)])
-        if len(values) < fragility.FEWEST:
-            return [math.nan] * len(shares)
-        return [_quantile(values, share) for share in shares]
+        known = len(values) >= fragility.FEWEST
+        return [_quantile(values, share) if known else math.nan for share in shares]
 
     def intervals(self, limit=None):
         """Of every record that has a row: the highest intensity below the first at which a limit is reached (0: none), and
@@ -82,17 +80,15 @@ class Demands:
 
         :param limit: of the demand; None: the structure falls
         """
-        low, high, most = [], [], math.inf if limit is None else limit
+        ends, most = [], math.inf if limit is None else limit
         for (intensities, demands), stood in zip(self.rows, self.stood):
             found = [*zip(intensities, demands)]
-            reached = [i for i, demand in found if demand >= most]
-            first = min(reached, default=math.inf)
+            first = min((i for i, d in found if d >= most), default=math.inf)
             below = stood if limit is None else [i for i, d in found if d < limit]
-            below = [i for i in below if i < first]
-            if below or reached:
-                low.append(max(below, default=0.0))
-                high.append(first)
-        return np.array(low), np.array(high)
+            last = max((i for i in below if i < first), default=0.0)
+            if last or first < math.inf:
+                ends.append((last, first))
+        return tuple(np.reshape(ends, (-1, 2)).T)
 
     def counts(self, limit=None):
         """Of every level: the intensity, how many records have reached a limit at or below it, and of how many it is known."""
@@ -113,9 +109,10 @@ def _usual(record):
     """The largest displacement that the shake of a scene found, of the point and along the axis where it is largest; None if
     nothing was watched."""
     names = [m for m in record.measures if re.match(r"shake_\d+_largest_.*_mm$", m)]
-    sizes = {name: np.abs(record.numbers(name)) for name in names}
-    sizes = {name: v[np.isfinite(v)].max() for name, v in sizes.items() if np.isfinite(v).any()}  # fmt: skip
-    return max(sizes, key=lambda name: (sizes[name], name)) if sizes else None
+    values = ((np.abs(record.numbers(name)), name) for name in names)
+    sizes = [(v[np.isfinite(v)].max(initial=-1), name) for v, name in values]
+    size, name = max(sizes, default=(-1, None))
+    return name if size >= 0 else None
 
 
 def _between(intensities, demands, at):

@@ -49,8 +49,6 @@ def points(design, count, dimension, seed):
 def root(names, correlation):
     """The Cholesky factor of the normal copula of numbers with these rank correlations, or None if there are none.
 
-    :param names: of the numbers, in their order
-    :param correlation: dict of pairs of names -> rank correlation [-]
     :raises Refused: if no numbers have all these correlations at once
     """
     if not correlation:
@@ -77,23 +75,17 @@ def values(design, count, seed, vary, correlation):
         return [dict(zip(vary, row)) for row in rows]
     names = [n for n, v in vary.items() if isinstance(v, Distribution)]
     chosen = [n for n in vary if n not in names]
-    cube = points(design, count, len(vary), seed)
-    numbers = [point[: len(names)] for point in cube]
-    factor = root(names, correlation)
+    cube, factor = points(design, count, len(vary), seed), root(names, correlation)
     if factor is not None:
-        normals = needed("openturns").Normal()
-        numbers = [_tied(point, factor, normals) for point in numbers]
-    found = {}
-    for i, name in enumerate(names):
-        law = vary[name].law()
-        found[name] = [float(law.computeQuantile(point[i])[0]) for point in numbers]
-    for i, name in enumerate(chosen, len(names)):
-        found[name] = [vary[name].of(point[i]) for point in cube]
+        cube = [_tied(point, factor, needed("openturns").Normal()) for point in cube]
+    columns = zip([*names, *chosen], zip(*cube))
+    found = {name: vary[name].valuesAt(column) for name, column in columns}
     return [{name: found[name][row] for name in vary} for row in range(count)]
 
 
-def _tied(point, factor, normals):
-    """A point of the unit cube, with the dependence of a normal copula whose Cholesky factor this is."""
-    free = [normals.computeQuantile(u)[0] for u in point]
-    size = range(len(free))
-    return [normals.computeCDF(sum(factor[i, j] * free[j] for j in size)) for i in size]
+def _tied(point, factor, normal):
+    """A point of the unit cube, whose first numbers get the dependence of a normal copula with this Cholesky factor."""
+    size = range(factor.getNbRows())
+    free = [normal.computeQuantile(point[i])[0] for i in size]
+    tied = (sum(factor[i, j] * free[j] for j in size) for i in size)
+    return [*map(normal.computeCDF, tied), *point[len(size) :]]

@@ -34,23 +34,14 @@ import numpy as np
 from scipy import special, stats
 
 from ..basics import Refused, refuse
-from .statistics import CONFIDENCE
+from .statistics import CONFIDENCE, notFinite
 
 #: Fewest shared rows. With fewer, the slope, the residuals and their scatter are not known well enough for an interval.
 SHARED = 10
-
-#: Shared rows that must be expected on either side of a quantile that is found by an indicator.
-SIDE = 5
-
-#: The quantiles that :func:`estimate` gives [-].
-QUANTILES = (0.05, 0.5, 0.95)
-
-#: A doubt about the bridge is reported if its p-value is below this.
-DOUBT = 0.01
-
-#: A correlation that is as near to 1 leaves nothing to doubt [-].
-ROUNDING = 1e-9
-
+SIDE = 5  # shared rows that must be expected on either side of a quantile that is found by an indicator
+QUANTILES = (0.05, 0.5, 0.95)  # the quantiles that :func:`estimate` gives [-]
+DOUBT = 0.01  # a doubt about the bridge is reported if its p-value is below this
+ROUNDING = 1e-9  # a correlation that is as near to 1 leaves nothing to doubt [-]
 #: An estimate. ``name`` says of what, ``value``, ``low`` and ``high`` are in the unit of the numbers. ``expensive`` and
 #: ``cheap`` are A and B, and ``alone`` is the variance of one expensive row without any cheap ones; the three have one
 #: scale, which is that of probability for a quantile. ``shared`` and ``rows`` are N and M.
@@ -66,16 +57,15 @@ Allocation = namedtuple("Allocation", "shared rows cost alone share")
 # -- estimates --------------------------------------------------------------------------------------------------------
 
 
-def mean(expensive, cheap, confidence=CONFIDENCE):
+def mean(expensive, cheap):
     """The mean of the expensive number: an :class:`Estimate`.
 
     :param expensive: y of the shared rows
     :param cheap: x of all rows, those of the shared rows first, in the same order
     :raises Refused: if there are fewer than SHARED shared rows, or a number is not finite
     """
-    y, x = _rows(expensive, cheap)
-    found = _controlled(y, x)
-    half = _halfWidth(found, confidence)
+    found = _controlled(*_rows(expensive, cheap))
+    half = _halfWidth(found)
     ends = found.value - half, found.value + half
     return _estimate("mean", found, ends, found.expensive + found.cheap)
 
@@ -85,29 +75,27 @@ def _estimate(name, found, ends, alone):
     return Estimate(name, found.value, *ends, *sizes)
 
 
-def deviation(expensive, cheap, confidence=CONFIDENCE):
+def deviation(expensive, cheap):
     """The standard deviation of the expensive number: an :class:`Estimate`. Its logarithm is taken as normal.
 
     Parameters and errors are those of :func:`mean`.
     """
     y, x = _rows(expensive, cheap)
-    n, m = len(y), len(x)
-    bridge = _Bridge(y, x)
+    bridge, n, ofX = _Bridge(y, x), len(y), x.var(ddof=1)
     b, residuals = bridge.slope, bridge.residuals
     ofResiduals = residuals @ residuals / n
     squared = max(b**2 - ofResiduals / bridge.squares, 0)  # b² is too large by that
-    ofX = x.var(ddof=1)
     value = math.sqrt(squared * ofX + ofResiduals)
     shared = 4 * b**2 * ofX**2 * ofResiduals * n / bridge.squares
     shared += (residuals**2).var(ddof=1)
     many = (b**2 * (x - x.mean()) ** 2).var(ddof=1)
-    found = _Found(value, shared, many, n, m)
-    relative = _halfWidth(found, confidence) / value**2
+    found = _Found(value, shared, many, n, len(x))
+    relative = _halfWidth(found) / value**2
     ends = (value * math.exp(sign * relative / 2) for sign in (-1, 1))
     return _estimate("standard deviation", found, ends, shared + many)
 
 
-def quantile(expensive, cheap, share, method="bridge", confidence=CONFIDENCE):
+def quantile(expensive, cheap, share, method="bridge"):
     """The value below which a share of the expensive numbers lies: an :class:`Estimate`.
 
     Its interval is that of R. S. Woodruff, "Confidence intervals for medians and other position measures", Journal of
@@ -119,16 +107,14 @@ def quantile(expensive, cheap, share, method="bridge", confidence=CONFIDENCE):
     :raises Refused: as :func:`mean`; or if the share is not between 0 and 1, or the method is another, or an indicator
         would have fewer than SIDE shared rows to expect on one side
     """
-    problems = []
     if not 0 < share < 1:
-        problems.append(f"a quantile of {share:g}: it must be between 0 and 1")
+        raise Refused(f"a quantile of {share:g}: it must be between 0 and 1")
     if method not in ("bridge", "indicator"):
-        problems.append(f"method '{method}' must be 'bridge' or 'indicator'")
-    refuse(problems)
-    return _quantile(_Bridge(*_rows(expensive, cheap)), share, method, confidence)
+        raise Refused(f"method '{method}' must be 'bridge' or 'indicator'")
+    return _quantile(_Bridge(*_rows(expensive, cheap)), share, method)
 
 
-def _quantile(bridge, share, method, confidence):
+def _quantile(bridge, share, method):
     n, side = len(bridge.y), min(share, 1 - share)
     if method == "indicator" and n * side < SIDE:
         raise Refused(
@@ -136,22 +122,21 @@ def _quantile(bridge, share, method, confidence):
             "run more of them, or take the bridge"
         )
     value = _quantileAt(bridge, method, share)
-    probability = bridge.probability if method == "bridge" else bridge.controlled
-    found = probability(value)
-    half = _halfWidth(found, confidence)
+    found = (bridge.probability if method == "bridge" else bridge.controlled)(value)
+    half = _halfWidth(found)
     ends = (_quantileAt(bridge, method, share + sign * half) for sign in (-1, 1))
     name = f"{100 * share:g} % quantile"
     return _estimate(name, found._replace(value=value), ends, share * (1 - share))
 
 
-def estimate(expensive, cheap, method="bridge", confidence=CONFIDENCE):
+def estimate(expensive, cheap, method="bridge"):
     """Mean, standard deviation and the quantiles QUANTILES: a list of :class:`Estimate`.
 
     Parameters and errors are those of :func:`mean` and :func:`quantile`.
     """
-    found = [make(expensive, cheap, confidence) for make in (mean, deviation)]
     bridge = _Bridge(*_rows(expensive, cheap))
-    return found + [_quantile(bridge, share, method, confidence) for share in QUANTILES]
+    found = [make(expensive, cheap) for make in (mean, deviation)]
+    return found + [_quantile(bridge, share, method) for share in QUANTILES]
 
 
 def doubts(expensive, cheap):
@@ -162,27 +147,23 @@ def doubts(expensive, cheap):
     bridge holds that it does not.
     """
     y, x = _rows(expensive, cheap)
-    notes, x = [], x[: len(y)]
+    x = x[: len(y)]
     if 1 - abs(np.corrcoef(x, y)[0, 1]) < ROUNDING:
-        return notes  # what remains is rounding
+        return []  # what remains is rounding
     moved = (x - x.mean()) / x.std()
     (bend, *_), covariance = np.polyfit(moved, y, 2, cov=True)
-    scatter = covariance[0, 0]
-    if scatter > 0:
-        p = 2 * stats.t.sf(abs(bend) / math.sqrt(scatter), len(y) - 3)
-        if p < DOUBT:
-            notes.append(
-                f"the expensive numbers bend over the cheap ones (p = {p:.2g}): quantiles by the bridge are biased"
-            )
-    line = np.polyfit(moved, y, 1)
-    size = np.abs(y - np.polyval(line, moved))
-    p = stats.spearmanr(size, x).pvalue
-    if p < DOUBT:
-        notes.append(
-            f"the expensive numbers scatter about the cheap ones more at one end than at the other (p = {p:.2g}): quantiles by the "
-            "bridge are biased"
-        )
-    return notes
+    size = np.abs(y - np.polyval(np.polyfit(moved, y, 1), moved))
+    bends = 2 * stats.t.sf(abs(bend) / math.sqrt(covariance[0, 0]), len(y) - 3)
+    scatters = stats.spearmanr(size, x).pvalue
+    found = (
+        ("bend over the cheap ones", bends),
+        ("scatter about the cheap ones more at one end than at the other", scatters),
+    )
+    return [
+        f"the expensive numbers {what} (p = {p:.2g}): quantiles by the bridge are biased"
+        for what, p in found
+        if p < DOUBT
+    ]
 
 
 # -- how many runs ----------------------------------------------------------------------------------------------------
@@ -221,21 +202,20 @@ def allocate(pilot, prices, variance=None, budget=None):
     a, b = pilot.expensive, pilot.cheap
     ratio = math.sqrt(b * c / (a * d)) if a > 0 else math.inf
     ratio = max(1.0, min(ratio, 1e6))
-    per = a + b / ratio  # variance times N
-    shared = budget / (c + d * ratio) if variance is None else per / variance
-    shared = max(SHARED, math.floor(shared) if variance is None else math.ceil(shared))
     if variance is None:
-        rows = max(shared, math.floor((budget - shared * c) / d))
+        shared = max(SHARED, math.floor(budget / (c + d * ratio)))
+        rows = math.floor((budget - shared * c) / d)
     else:
+        shared = max(SHARED, math.ceil((a + b / ratio) / variance))
         left = variance - a / shared
-        rows = max(shared, math.ceil(b / left)) if left > 0 else shared
-    return saved(pilot._replace(shared=shared, rows=rows), prices)
+        rows = math.ceil(b / left) if left > 0 else shared
+    found = pilot._replace(shared=shared, rows=max(shared, rows))
+    return saved(found, prices)
 
 
 def saved(found, prices):
     """What an estimate cost, and what expensive runs alone would have cost for the same variance: an :class:`Allocation`.
 
-    :param found: an :class:`Estimate`
     :param prices: of an expensive and of a cheap run, in any one unit
     """
     c, d = prices
@@ -244,26 +224,23 @@ def saved(found, prices):
     return Allocation(found.shared, found.rows, cost, alone, cost / (c * alone))
 
 
-def sentence(
-    found, prices, unit="", names=("expensive", "cheap"), confidence=CONFIDENCE
-):
+def sentence(found, prices, unit="", names=("expensive", "cheap")):
     """An estimate and what it saved, in words.
 
     :param prices: of an expensive and of a cheap run [s]
-    :param unit: of the numbers
     :param names: of the expensive and of the cheap fidelity
     """
-    paid = saved(found, prices)
-    unit = f" {unit}" if unit else ""
+    paid, unit = saved(found, prices), unit and f" {unit}"
     end = lambda v: f"{v:.4g}{unit}" if math.isfinite(v) else "an unknown end"
     message = (
-        f"{found.name} {found.value:.4g}{unit}, with {100 * confidence:g} % confidence between {end(found.low)} and {end(found.high)}, "
+        f"{found.name} {found.value:.4g}{unit}, with {100 * CONFIDENCE:g} % confidence between {end(found.low)} and {end(found.high)}, "
         f"from {found.shared} runs of {names[0]} and {found.rows} of {names[1]} in {_time(paid.cost)}"
     )
     same = f"{names[0]} alone needs {paid.alone:.0f} runs and {_time(paid.cost / paid.share)} for this interval"
     if paid.share < 1:
-        share = f"{100 * (1 - paid.share):.0f} %"
-        return f"{message}; {same}, so {share} of the time is saved"
+        return (
+            f"{message}; {same}, so {100 * (1 - paid.share):.0f} % of the time is saved"
+        )
     return f"{message}; {same}, so nothing is saved: {names[1]} follows {names[0]} too little for its price"
 
 
@@ -283,27 +260,20 @@ _Found = namedtuple("_Found", "value expensive cheap shared rows")
 def _rows(expensive, cheap):
     """Both as arrays. Refuses what no interval can be made of, with all problems at once."""
     y, x = np.asarray(expensive, float).ravel(), np.asarray(cheap, float).ravel()
-    problems = []
-    if len(y) < SHARED:
-        problems.append(
-            f"{len(y)} shared rows are too few: run {SHARED} or more with both fidelities"
-        )
-    if len(x) < len(y):
-        problems.append(
-            f"{len(x)} cheap rows for {len(y)} expensive ones: every expensive row needs its cheap one"
-        )
-    for what, values in (("expensive", y), ("cheap", x)):
-        strange = np.flatnonzero(~np.isfinite(values))
-        if len(strange):
-            problems.append(
-                f"{what} rows {', '.join(str(i + 1) for i in strange[:10])} have no finite number"
-            )
-        elif len(values[: len(y)]) > 1 and np.ptp(values[: len(y)]) == 0:
-            problems.append(
-                f"the {what} numbers of all shared rows are {values[0]:g}: there is nothing to learn from them"
-            )
-    refuse(problems)
+    refuse([*_unfit(y, x)])
     return y, x
+
+
+def _unfit(y, x):
+    if len(y) < SHARED:
+        yield f"{len(y)} shared rows are too few: run {SHARED} or more with both fidelities"
+    if len(x) < len(y):
+        yield f"{len(x)} cheap rows for {len(y)} expensive ones: every expensive row needs its cheap one"
+    for what, values in (("expensive", y), ("cheap", x)):
+        yield from (f"{what} {why}" for why in notFinite(values))
+        shared = values[: len(y)]
+        if len(set(shared)) == 1 < len(shared):
+            yield f"the {what} numbers of all shared rows are {values[0]:g}: there is nothing to learn from them"
 
 
 def _controlled(g, z):
@@ -324,16 +294,13 @@ def _controlled(g, z):
     return _Found(float(g.mean() + away * slope), float(expensive), float(cheap), n, m)
 
 
-def _halfWidth(found, confidence):
+def _halfWidth(found):
     """Half of an interval: Student's t, with the degrees of freedom of Welch and Satterthwaite, times the deviation."""
     a, b = found.expensive / found.shared, found.cheap / found.rows
-    variance = a + b
-    if variance <= 0:
+    if a + b <= 0:
         return 0.0
-    freedom = variance**2 / (
-        a**2 / (found.shared - 2) + b**2 / max(found.rows - 1, 1)
-    )
-    return special.stdtrit(freedom, (1 + confidence) / 2) * math.sqrt(variance)
+    freedom = (a + b) ** 2 / (a**2 / (found.shared - 2) + b**2 / (found.rows - 1))
+    return special.stdtrit(freedom, (1 + CONFIDENCE) / 2) * math.sqrt(a + b)
 
 
 class _Bridge:
@@ -341,24 +308,27 @@ class _Bridge:
 
     def __init__(self, y, x):
         self.y, self.x, n = y, x, len(y)
-        near = x[:n] - x[:n].mean()
+        away = x - x[:n].mean()
+        self.near = near = away[:n]
         self.squares = near @ near
         self.slope = near @ y / self.squares
-        line = y.mean() + self.slope * (x - x[:n].mean())
+        self.line = y.mean() + self.slope * away
         # each residual is smaller than the error that it shows, by its leverage
         grown = 1 / np.sqrt(np.maximum(1 - 1 / n - near**2 / self.squares, 1 / n))
-        centred = lambda residuals: residuals - residuals.mean()
-        self.residuals = centred((y - line[:n]) * grown)
+        self.residuals = self._residuals(self.line, grown)
         error = math.sqrt(self.residuals @ self.residuals / (n - 2) / self.squares)
-        self.near, self.line = near, line
-        self.sortedLine, self.sortedResiduals = np.sort(line), np.sort(self.residuals)
-        self.sums = np.sort(np.add.outer(self.residuals, line), axis=None)
-        #: the same with the slope one standard error less and more, and the difference of both slopes
-        self.turned = [
-            np.sort(np.add.outer(centred((y - other[:n]) * grown), other), axis=None)
-            for other in (line + sign * error * (x - x[:n].mean()) for sign in (-1, 1))
-        ]
+        self.sortedLine = np.sort(self.line)
+        self.sortedResiduals = np.sort(self.residuals)
+        #: with the slope as it is, one standard error less and one more, and the difference of the last two
+        self.sums, *self.turned = (
+            np.sort(np.add.outer(self._residuals(line, grown), line), axis=None)
+            for line in (self.line + sign * error * away for sign in (0, -1, 1))
+        )
         self.turn = 2 * error
+
+    def _residuals(self, line, grown):
+        residuals = (self.y - line[: len(self.y)]) * grown
+        return residuals - residuals.mean()
 
     @staticmethod
     def _below(values, q):
@@ -380,9 +350,8 @@ class _Bridge:
 
     def controlled(self, q):
         """The probability that y is not above q, by the indicator: a :class:`_Found`."""
-        indicator = (self.y <= q).astype(float)
         ofLine = self._below(self.sortedResiduals, q - self.line)
-        return _controlled(indicator, ofLine)
+        return _controlled((self.y <= q).astype(float), ofLine)
 
 
 def _quantileAt(bridge, method, share):
@@ -394,8 +363,6 @@ def _quantileAt(bridge, method, share):
     low, high = bridge.sums[0], bridge.sums[-1]
     while high - low > 1e-7 * (bridge.sums[-1] - bridge.sums[0]):
         middle = (low + high) / 2
-        if bridge.controlled(middle).value < share:
-            low = middle
-        else:
-            high = middle
+        below = bridge.controlled(middle).value < share
+        low, high = (middle, high) if below else (low, middle)
     return (low + high) / 2

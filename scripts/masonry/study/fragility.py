@@ -57,19 +57,17 @@ class Fit:
     dispersion: Interval
     reached: int
     records: int
-    confidence: float
     _edge: tuple
 
     def probability(self, intensity: float) -> Interval:
         """Probability of reaching the limit at an intensity above 0, with its interval."""
-        place = math.log(intensity)
-        a, b = self._edge
+        place, (a, b) = math.log(intensity), self._edge
         ends = a * place - b
         value = (place - math.log(self.median.value)) / self.dispersion.value
-        return Interval(*(float(special.ndtr(z)) for z in (value, ends.min(), ends.max())))  # fmt: skip
+        return Interval(*special.ndtr([value, ends.min(), ends.max()]).tolist())
 
 
-def fit(low: Numbers, high: Numbers, confidence: float = CONFIDENCE) -> Fit:
+def fit(low: Numbers, high: Numbers) -> Fit:
     """The fragility with the largest likelihood.
 
     :param low: of every record the highest level at which the limit is not reached, below the first that reaches it; 0: none
@@ -80,8 +78,9 @@ def fit(low: Numbers, high: Numbers, confidence: float = CONFIDENCE) -> Fit:
     _check(low, high)
     n = len(low)
     with np.errstate(divide="ignore"):
-        ends = np.unique(np.column_stack([np.log(low), np.log(high)]), axis=0, return_counts=True)  # fmt: skip
-    (lower, upper), counts = ends[0].T, ends[1]
+        ends = np.log(np.column_stack([low, high]))
+    ends, counts = np.unique(ends, axis=0, return_counts=True)
+    lower, upper = ends.T
 
     def likelihood(a, b):
         """ln L for arrays of a and b."""
@@ -89,12 +88,11 @@ def fit(low: Numbers, high: Numbers, confidence: float = CONFIDENCE) -> Fit:
         with np.errstate(invalid="ignore"):
             return _logOfDifference(a * lower - b, a * upper - b) @ counts
 
-    inside = np.isfinite(lower) | np.isfinite(upper)
-    known = np.where(np.isfinite(lower), lower, upper)[inside]
-    start = [float(known.mean()), math.log(max(float(known.std()), 0.1))]
+    known = np.where(np.isfinite(lower), lower, upper)
+    known = known[np.isfinite(known)]
     found = optimize.minimize(
         lambda p: -float(likelihood(math.exp(-p[1]), p[0] * math.exp(-p[1]))),
-        start,
+        [known.mean(), math.log(max(known.std(), 0.1))],
         method="Nelder-Mead",
         bounds=[(-50, 50), (math.log(1e-4), math.log(1e3))],
         options=dict(xatol=1e-10, fatol=1e-12, maxiter=5000, maxfev=5000),
@@ -105,22 +103,16 @@ def fit(low: Numbers, high: Numbers, confidence: float = CONFIDENCE) -> Fit:
             "no fragility: the records reach the limit at their lowest level or not at all, so the dispersion has no bound; "
             "add lower and higher levels"
         )
-    t = stats.t.ppf((1 + confidence) / 2, n - 1)
+    t = stats.t.ppf((1 + CONFIDENCE) / 2, n - 1)
     drop = n * math.log1p(t * t / (n - 1))  # the module says why
-    edge = _edge(likelihood, 1 / spread, mean / spread, drop)
-    a, b = edge
+    a, b = edge = _edge(likelihood, 1 / spread, mean / spread, drop)
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         open = a <= NOTHING / spread
         medians = np.exp(np.where(open, np.sign(b) * math.inf, b / a))
         spreads = np.where(open, math.inf, 1 / a)
-    return Fit(
-        Interval(math.exp(mean), float(medians.min()), float(medians.max())),
-        Interval(spread, float(spreads.min()), float(spreads.max())),
-        int(np.isfinite(high).sum()),
-        n,
-        confidence,
-        edge,
-    )
+    median = Interval(math.exp(mean), float(medians.min()), float(medians.max()))
+    dispersion = Interval(spread, float(spreads.min()), float(spreads.max()))
+    return Fit(median, dispersion, int(np.isfinite(high).sum()), n, edge)
 
 
 def nrml(
@@ -217,17 +209,14 @@ def _edge(likelihood, a, b, drop):
 
 def _shape(likelihood, a, b):
     """A matrix that makes the likely values of a and b about as wide to all sides: from the second derivatives of ln L."""
-    step = 1e-4 * np.array([a, max(abs(b), a)])
+    sizes = np.array([a, max(abs(b), a)])
+    step = 1e-4 * sizes
     value = lambda i, j: float(likelihood(a + i * step[0], b + j * step[1]))
-    middle = value(0, 0)
+    bend = lambda i, j: value(i, j) - 2 * value(0, 0) + value(-i, -j)
     cross = (value(1, 1) - value(1, -1) - value(-1, 1) + value(-1, -1)) / 4
-    second = np.array(
-        [
-            [value(1, 0) - 2 * middle + value(-1, 0), cross],
-            [cross, value(0, 1) - 2 * middle + value(0, -1)],
-        ]
-    ) / np.outer(step, step)
+    second = np.array([[bend(1, 0), cross], [cross, bend(0, 1)]])
+    second /= np.outer(step, step)
     try:
         return np.linalg.inv(np.linalg.cholesky(-second)).T
     except np.linalg.LinAlgError:
-        return np.diag([a, max(abs(b), a)])
+        return np.diag(sizes)

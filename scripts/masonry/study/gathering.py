@@ -1,25 +1,38 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What came out of a study: which of its rows are done, and the table of their numbers.
+"""The folder of a study: which of its rows are done, whether they are those of the study, and the table of their numbers.
 
 ``study.csv`` has a row a run: ``run``, what varies (of a field its seed), ``status``, and the numbers of run.json. It is
 the same to the last digit whoever ran the rows. ``times.csv`` has what is not: host, seconds, what a failed row said.
+
+The folder may have been on other machines, and anybody may have written in it. So nothing in it is believed that can be
+compared: the table must be what the study draws, to the last digit; a row that has ended must have been run with the values
+that the table gives it; a row that goes on from a checkpoint is refused by the scene itself if the checkpoint has other values,
+and begins again. What a row has found cannot be compared with anything: whoever wants to be sure runs it again.
 """
 
+import collections
+import contextlib
 import csv
 import functools
 import io
 import os
 import re
+from itertools import zip_longest
 
-from ..run import batch
+from ..run import batch, presets
 from ..common import folders
-from ..basics import Refused
-from ..read.files import filesOf, readWhole
+from ..basics import Refused, firstOf, refuse
+from ..read.files import filesOf, readText, readWhole
 from ..read.quantities import measures
 from ..run.lock import held
 from .incremental import FOLDER, Chains, fell, isPlan, shaken
 
 TABLE, STUDY, CSV, TIMES = "table.txt", "study.json", "study.csv", "times.csv"
+SHOWN = 5  # differences that are named
+
+#: Options of which run.json has the value that the table gives.
+COMPARED = {*presets.USUAL, "until", "preset", "joints", "crack_surfaces"}
+COMPARED |= {"density_scaling", "quick", "record", "scale"}
 
 #: Why a run that has ended is no row of an incremental dynamic analysis.
 UNSHAKEN = "it was not shaken: the scene has no shake(), or fell before it"
@@ -31,7 +44,7 @@ class Folder:
     def __init__(self, path):
         self.path = os.path.abspath(path)
         #: whether the structure fell, by the numbers of rows that have ended
-        self._ended = {}
+        self._fell = {}
 
     def of(self, *names):
         return os.path.join(self.path, *names)
@@ -39,6 +52,9 @@ class Folder:
     def row(self, number):
         """The folder of the results of a row."""
         return self.of(batch.ROWS, batch.named(number))
+
+    def checkpoint(self, number):
+        return os.path.join(self.row(number), "run.checkpoint")
 
     def job(self, number):
         """The file that says how the last attempt at a row ended."""
@@ -82,12 +98,10 @@ class Folder:
 
     def hasFallen(self, number):
         """Whether a row has ended with a structure that fell when it was shaken."""
-        if number not in self._ended:
-            run = batch.ended(self.row(number))
-            if run is None:
-                return False
-            self._ended[number] = fell(run)
-        return self._ended[number]
+        run = None if number in self._fell else batch.ended(self.row(number))
+        if run is not None:
+            self._fell[number] = fell(run)
+        return self._fell.get(number, False)
 
     def isAboveCollapse(self, number):
         """Whether the structure fell at a lower level of the record of a row."""
@@ -106,8 +120,8 @@ class Folder:
             return "failed" if self.chains.plan and not shaken(run) else "ended"
         if self.isHeld(number):
             return "running"
-        status = self.lastJob(number).get("status", 0)
-        return "failed" if status not in (0, 130) else "missing"
+        stopped = self.lastJob(number).get("status", 0) in (0, 130)
+        return "missing" if stopped else "failed"
 
 
 def _isStudy(record):
@@ -126,9 +140,8 @@ def _isStudy(record):
 def _isJob(record):
     """Whether a record of an attempt is of the form that :mod:`masonry.study.row` gives it."""
     kinds = {"host": str, "status": int, "seconds": (int, float), "told": str}
-    return isinstance(record, dict) and all(
-        isinstance(record.get(name), kind) for name, kind in kinds.items()
-    )
+    fits = lambda name: isinstance(record.get(name), kinds[name])
+    return isinstance(record, dict) and all(map(fits, kinds))
 
 
 def written(path, text):
@@ -152,17 +165,99 @@ def reason(log):
     return lines
 
 
-def gather(folder, table):
-    """Write study.csv and times.csv. Returns how many rows have each status.
+def compareTable(folder, drawn):
+    """Refuse a table that is not ``drawn``, the text that the study draws."""
+    path = folder.of(TABLE)
+    texts = (text.split("\n") for text in (readText(path), drawn))
+    for number, (was, now) in enumerate(zip_longest(*texts, fillvalue="nothing"), 1):
+        if was != now:
+            raise Refused(
+                f"--out: {path} is not what the study draws; remove it, and it is drawn again. Line {number} is\n  {was}\n"
+                f"and the study draws\n  {now}"
+            )
 
-    :param table: the rows of the table, as in :func:`masonry.study.continuing.rowsOf`
+
+def rowsOf(folder):
+    """The rows of the table of a study, in turn, as dicts of texts: as many as it has runs, with its columns and names.
+
+    :raises Refused: if the table is another one
     """
+    study, path = folder.description()["study"], folder.of(TABLE)
+    rows = [*batch.readTable(path).values()]
+    needed = {"description", "lean", *study["options"], *study["vary"]}
+    needed |= {"record", "scale"} if study.get("ida") else set()
+    fields = [name for name in study["vary"] if name.startswith(batch.FIELD)]
+    known = needed | {name[len(batch.FIELD) :] for name in fields}
+    known = {n for n in known if n in ("description", "lean") or batch.isColumn(n)}
+    heads = [*rows[0]] if rows else []
+    foreign = [name for name in [*heads, *needed] if name not in known]
+    problems = [f"column {name} is not of the study" for name in foreign]
+    problems += [f"column {name} is missing" for name in needed.difference(heads)]
+    if len(rows) != study["runs"]:
+        problems.append(f"it has {len(rows)} rows, and the study {study['runs']}")
+    problems += [
+        f"row {batch.named(number)} is called {row['description']}"
+        for number, row in enumerate(rows, 1)
+        if row.get("description", "") != batch.named(number)
+    ]
+    refuse(problems[:SHOWN], f"{path} is not the table of its study:\n  ", "\n  ")
+    return rows
+
+
+def checkedRows(folder):
+    """As :func:`rowsOf`. Refuses rows that have ended with other values than the table gives them, as far as run.json tells."""
+    rows, problems = rowsOf(folder), []
+    for number, row in enumerate(rows, 1):
+        run = batch.ended(folder.row(number))
+        if run is not None:
+            problems += [
+                f"row {batch.named(number)} was run with {was}, and the table has {now}"
+                for was, now in _otherOptions(row, run.get("options"))
+            ]
+    if problems:
+        raise Refused(
+            f"{folder.of(batch.ROWS)}: remove the folders of these rows, and they are run again:\n  "
+            + "\n  ".join(firstOf(problems, SHOWN))
+        )
+    return rows
+
+
+def _otherOptions(row, options):
+    """What a row was run with and what the table says, pairs of texts, where they differ."""
+    if not isinstance(options, dict):
+        return [("options that run.json does not name", "its own")]
+    words = batch.optionWords(row)
+    pairs, settings = [], None
+    with contextlib.suppress(KeyError, TypeError, ValueError):
+        settings = [f"{joint}.{name}={value}" for joint, name, value in options["set"]]
+    for mark, was in (("--set=", settings), ("--field=", options.get("field"))):
+        now = [word[len(mark) :] for word in words if word.startswith(mark)]
+        if was != now:
+            pairs.append((f"{mark}{was}", now))
+    for name in COMPARED.intersection(row):
+        was, now = options.get(name), batch.value(row[name])
+        if now is not None and now is not False and now != "*" and not _same(was, now):
+            pairs.append((f"{name} {was}", now))
+    return pairs
+
+
+def _same(was, now):
+    if isinstance(was, bool) or isinstance(now, bool) or isinstance(was, str):
+        return str(was) == str(now)
+    try:
+        return float(was) == float(now)
+    except (TypeError, ValueError):
+        return False
+
+
+def gather(folder):
+    """Write study.csv and times.csv. Returns how many rows have each status. Refuses what :func:`checkedRows` refuses."""
     record, chains = folder.description()["study"], folder.chains
-    names, found, times, counts = list(record["vary"]), [], [], {}
+    names, found, times, counts = list(record["vary"]), [], [], collections.Counter()
     strengths = ["record", "scale", chains.plan["measure"]] if chains.plan else []
-    for number, row in enumerate(table, 1):
+    for number, row in enumerate(checkedRows(folder), 1):
         run, status = batch.ended(folder.row(number)) or {}, folder.status(number)
-        counts[status] = counts.get(status, 0) + 1
+        counts[status] += 1
         if status == "above collapse":
             run = {}  # somebody may have run it before the rows below
         strength = []
@@ -175,16 +270,17 @@ def gather(folder, table):
         begin = [batch.named(number), *(_varied(n, row[n]) for n in names), *strength, status]  # fmt: skip
         found.append((begin, {**numbers, **answers}))
         job = folder.lastJob(number)
-        why = job.get("told", "") if status == "failed" else ""
-        why = UNSHAKEN if status == "failed" and run else why
+        why = (UNSHAKEN if run else job.get("told", "")) if status == "failed" else ""
         host, cost = job.get("host", run.get("host", "")), run.get("wall_clock_s")
         times.append([batch.named(number), status, host, cost, job.get("seconds"), run.get("commit"), why])  # fmt: skip
     heads = list(dict.fromkeys(name for _, numbers in found for name in numbers))
     lines = [[*begin, *map(numbers.get, heads)] for begin, numbers in found]
     heads = ["run", *names, *strengths, "status", *heads]
-    written(folder.of(CSV), _csv(heads, lines))
     head = "run status host run_seconds job_seconds commit told".split()
-    written(folder.of(TIMES), _csv(head, times))
+    for name, table in ((CSV, [heads, *lines]), (TIMES, [head, *times])):
+        out = io.StringIO()
+        csv.writer(out, lineterminator="\n").writerows(table)  # all digits
+        written(folder.of(name), out.getvalue())
     return counts
 
 
@@ -197,14 +293,5 @@ def _answerName(answer):
 
 def _varied(name, text):
     """What a row has of something that varies, for study.csv; of a field its seed."""
-    value = batch.value(text)
-    if name.startswith(batch.FIELD):
-        return re.search(r"seed=(\d+)", value)[1]
-    return value
-
-
-def _csv(head, lines):
-    """Lines as text, in which numbers have all their digits."""
-    out = io.StringIO()
-    csv.writer(out, lineterminator="\n").writerows([head, *lines])
-    return out.getvalue()
+    value, isField = batch.value(text), name.startswith(batch.FIELD)
+    return re.search(r"seed=(\d+)", value)[1] if isField else value

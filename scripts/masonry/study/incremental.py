@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import glob
 import hashlib
+import itertools
 import math
 import os
 import re
@@ -80,13 +81,11 @@ class Motion:
     """A record that a study has read.
 
     :param name: its name in the study
-    :param path: of its file
     :param values: samples [m/s²]; ``every``: the time between two of them [s]
     :param intensity: the measure of the study [g]
     """
 
     name: str
-    path: str
     values: list[Any]
     every: float
     intensity: float
@@ -95,6 +94,12 @@ class Motion:
     def text(self) -> str:
         """As the folder of the study has it; every digit of the samples is in it."""
         return accelerograms.written(self.values, self.every, self.name)
+
+    @property
+    def entry(self) -> dict[str, Any]:
+        """As study.json has it."""
+        digest = hashlib.sha256(self.text.encode()).hexdigest()
+        return {"name": self.name, "sha256": digest, "intensity": self.intensity}
 
 
 class Incremental:
@@ -113,44 +118,42 @@ class Incremental:
         every: Any,
         problems: list[str],
     ) -> None:
-        self.files = self._files(records, problems)
         self.levels, self.scales = levels, scales
         self.measure = Measure() if measure in (None, "PGA") else measure
         self.unit, self.every = unit, every
         self._motions: list[Motion] | None = None
-        if not isinstance(self.measure, Measure):
-            problems.append(
-                f'measure {shown(measure)} must be "PGA" or Sa(period), a spectral acceleration, with a period from '
-                f"{SHORTEST:g} to {LONGEST:g} s"
-            )
-        if unit not in (None, *UNITS):
-            problems.append(f"unit {shown(unit)} must be one of {', '.join(UNITS)}")
-        if (levels is None) == (scales is None):
-            problems.append(
-                "give either levels, in g of the measure, or scales, factors on the records"
-            )
-            return
-        name, strengths = ("levels", levels) if scales is None else ("scales", scales)
-        try:
-            strengths = listOf(LEVEL)(strengths)
-        except ValueError as error:
-            problems.append(f"{name}: {error}")
-            return
-        if any(b <= a for a, b in zip(strengths, strengths[1:])):
-            problems.append(f"{name}: {shown(list(strengths))} must grow")
-        setattr(self, name, [float(s) for s in strengths])
+        problems += self._take(records)
 
-    def _files(self, records, problems):
+    def _take(self, records):
+        """Take the files and their strengths. Yields what is wrong with all of it."""
         if isinstance(records, (str, os.PathLike)):
             records = [records]
         if not isinstance(records, (list, tuple)) or not records:
-            problems.append("records: must be a list of files")
-            return []
+            yield "records: must be a list of files"
+            records = []
         try:
-            return [record(one) if isThree(one) else arguments.path(one) for one in records]  # fmt: skip
+            self.files = [record(one) if isThree(one) else arguments.path(one) for one in records]  # fmt: skip
         except ValueError as error:
-            problems.append(f"records: {error}")
-            return []
+            yield f"records: {error}"
+        if not isinstance(self.measure, Measure):
+            yield (
+                f'measure {shown(self.measure)} must be "PGA" or Sa(period), a spectral acceleration, with a period from '
+                f"{SHORTEST:g} to {LONGEST:g} s"
+            )
+        if self.unit not in (None, *UNITS):
+            yield f"unit {shown(self.unit)} must be one of {', '.join(UNITS)}"
+        if (self.levels is None) == (self.scales is None):
+            yield "give either levels, in g of the measure, or scales, factors on the records"
+            return
+        name = "levels" if self.scales is None else "scales"
+        try:
+            strengths = listOf(LEVEL)(getattr(self, name))
+        except ValueError as error:
+            yield f"{name}: {error}"
+            return
+        if any(b <= a for a, b in zip(strengths, strengths[1:])):
+            yield f"{name}: {shown(list(strengths))} must grow"
+        setattr(self, name, [float(s) for s in strengths])
 
     @property
     def steps(self) -> int:
@@ -183,7 +186,8 @@ class Incremental:
                 found.append(tuple(os.path.join(near, one) for one in pattern))
                 continue
             path = os.path.join(near, pattern)
-            several = sorted(glob.glob(path)) if re.search(r"[*?[]", pattern) and not os.path.exists(path) else [path]  # fmt: skip
+            isOne = os.path.exists(path) or not glob.has_magic(pattern)
+            several = [path] if isOne else sorted(glob.glob(path))
             if not several:
                 problems.append(f"records: no file {path}")
             found += several
@@ -196,19 +200,18 @@ class Incremental:
         # what a file says itself counts
         files = [path] if isinstance(path, str) else path
         said = accelerograms.read(files[0])
-        unit, every = (None if own else given for own, given in ((said.unit, self.unit), (said.every, self.every)))  # fmt: skip
+        unit, every = None if said.unit else self.unit, None if said.every else self.every  # fmt: skip
         values, every = readRecord(path, every, 1.0, unit)
         stems = [os.path.splitext(os.path.basename(one))[0] for one in files]
         stem = os.path.commonprefix(stems).rstrip("_-. ") or stems[0]
         stem = re.sub(r"[^A-Za-z0-9_-]+", "_", stem)[:60] or "record"
-        name, count, names = stem, 1, {motion.name.lower() for motion in before}
-        while name.lower() in names:
-            count += 1
-            name = f"{stem}_{count}"
+        known = {motion.name.lower() for motion in before}
+        names = itertools.chain([stem], (f"{stem}_{n}" for n in itertools.count(2)))
+        name = next(name for name in names if name.lower() not in known)
         intensity = self.measure.of(values, every)
         if not (intensity > 0 and math.isfinite(intensity)):
             raise Refused(f"{path}: its {self.measure.name} is {intensity:g}, it must be above 0")  # fmt: skip
-        return Motion(name, path, values, every, intensity)
+        return Motion(name, values, every, intensity)
 
     def rows(self) -> list[tuple[Motion, float]]:
         """What every row is shaken by, in turn: a record and the factor on it [-]. The records must have been read."""
@@ -224,12 +227,8 @@ class Incremental:
 
     def describe(self) -> dict[str, Any]:
         """As study.json has it. The records must have been read."""
-        digest = lambda text: hashlib.sha256(text.encode()).hexdigest()
         return {
-            "records": [
-                {"name": m.name, "sha256": digest(m.text), "intensity": m.intensity}
-                for m in self._known()
-            ],
+            "records": [motion.entry for motion in self._known()],
             "measure": self.measure.name,
             "levels": self.levels,
             "scales": self.scales,
@@ -237,12 +236,12 @@ class Incremental:
 
     def doubts(self) -> list[str]:
         """Sentences on records that drift."""
-        found = []
-        for motion in self._known():
-            for part in accelerograms.components(motion.values).tolist():
-                if doubt := accelerograms.drift(part, motion.every).sentence():
-                    found.append(f"note: the record {motion.name} drifts: {doubt}")
-        return found
+        return [
+            f"note: the record {motion.name} drifts: {doubt}"
+            for motion in self._known()
+            for part in accelerograms.components(motion.values).tolist()
+            if (doubt := accelerograms.drift(part, motion.every).sentence())
+        ]
 
 
 class Chains:
@@ -269,8 +268,7 @@ class Chains:
 
     def lowest(self, numbers: Iterable[int]) -> set[int]:
         """The lowest of some rows, of every record."""
-        lowest = {self.record(n): n for n in sorted(numbers, reverse=True)}
-        return set(lowest.values())
+        return set({self.record(n): n for n in sorted(numbers, reverse=True)}.values())
 
     def intensity(self, number: int) -> float:
         """The measure of a row [g]."""
@@ -298,7 +296,8 @@ def isPlan(plan: Any, runs: int) -> bool:
 def shaken(run: dict[str, Any]) -> bool:
     """Whether a run came to a shake: what falls under its own weight before does not."""
     stages = run.get("stages")
-    return isinstance(stages, list) and any(isinstance(s, dict) and s.get("stage") == "shake" for s in stages)  # fmt: skip
+    stages = stages if isinstance(stages, list) else []
+    return any(isinstance(s, dict) and s.get("stage") == "shake" for s in stages)
 
 
 def fell(run: dict[str, Any]) -> bool:

@@ -20,12 +20,7 @@ TRIES = 3  # starts of a row that was killed
 
 
 class Local:
-    """Runs rows until each is ended or has failed.
-
-    :param folder: :class:`masonry.study.gathering.Folder`
-    :param runs: how many rows there are
-    :param jobs: how many at a time
-    """
+    """Runs the rows of a :class:`masonry.study.gathering.Folder`, ``jobs`` at a time, until each is ended or has failed."""
 
     def __init__(self, folder, runs, jobs):
         self.folder, self.runs, self.jobs = folder, runs, jobs

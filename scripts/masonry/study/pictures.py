@@ -5,6 +5,8 @@ Each function takes numbers and writes one PNG file of 6 to 7 inches at 200 dots
 name of a varied property -> its values, one a row, and ``label`` says what the output is, with its unit in brackets.
 """
 
+import itertools
+
 import numpy as np
 from scipy import stats
 
@@ -18,9 +20,10 @@ BAND = 0.05, 0.95  # quantiles between which a fan is shaded
 POINTS = 400  # along the axis of a fan, and of a fragility curve
 SMALL = {"font.size": 8, "axes.titlesize": 9, "legend.fontsize": 7.5}
 SMALL["axes.axisbelow"] = True
-POINT, LINE, BARS = COLOURS[0], COLOURS[1], COLOURS[0]
-SHARES = [BARS, *COLOURS[2:], "#F0E442"]  # colours of the parts of bars
+POINT, LINE = COLOURS[:2]
+SHARES = [POINT, *COLOURS[2:], "#F0E442"]  # colours of the parts of bars
 BAND_STYLE = dict(color=POINT, alpha=0.2, lw=0)
+BAND_LABEL = f"{100 * statistics.CONFIDENCE:g} % confidence"
 ABOVE = dict(loc="lower center", bbox_to_anchor=(0.5, 1.01))  # of a legend
 
 
@@ -58,12 +61,11 @@ def scatter(path, inputs, output, label):
                     continue
                 x, y = columns[right], columns[down]
                 if i == j:
-                    axis.hist(x, bins=_bins(x), color=BARS, alpha=0.6)
+                    axis.hist(x, bins=_bins(x), color=POINT, alpha=0.6)
                     axis.set_yticks([])
                 else:
-                    colour = LINE if i == k - 1 else POINT
-                    style = dict(color=colour, lw=0, alpha=0.7, rasterized=True)
-                    axis.scatter(x, y, s=dot, **style)
+                    style = dict(color=LINE if i == k - 1 else POINT, lw=0, alpha=0.7)
+                    axis.scatter(x, y, s=dot, rasterized=True, **style)
                     rank = stats.spearmanr(x, y).statistic
                     axis.set_title(f"{rank:+.2f}", fontsize=7, pad=2)
                 axis.tick_params(labelsize=6)
@@ -86,21 +88,14 @@ def scatter(path, inputs, output, label):
 
 
 def tornado(path, effects, label):
-    """Change of the output by every property, largest on top, with its interval, and the correlations of ranks.
-
-    :param effects: what :func:`masonry.study.sensitivity.effects` returns
-    """
-    names = list(effects)[::-1]
-    with _picture(path, 6.8, 1.1 + 0.3 * len(names)) as figure:
+    """Change of the output by every property, largest on top, with its interval, and the correlations of ranks."""
+    effects = dict(reversed(effects.items()))
+    with _picture(path, 6.8, 1.1 + 0.3 * len(effects)) as figure:
         left, right = figure.subplots(1, 2, sharey=True, width_ratios=[3, 2])
-        rows = np.arange(len(names))
-        for axis, field in ((left, "change"), (right, "rank")):
-            found = [getattr(effects[name], field) for name in names]
-            colours = [LINE if interval.value < 0 else POINT for interval in found]
-            _bars(axis, rows, found, color=colours, height=0.65)
+        for axis, found in zip((left, right), zip(*effects.values())):
+            colours = [LINE if one.value < 0 else POINT for one in found]
+            _bars(axis, effects, found, color=colours, height=0.65)
             axis.axvline(0, color="black", lw=0.8)
-        left.set_yticks(rows, map(_shown, names))
-        left.set_ylim(-0.7, len(names) - 0.3)
         left.set_xlabel(
             f"change of {label}\nfrom the 5 % to the 95 % quantile of a property"
         )
@@ -109,22 +104,17 @@ def tornado(path, effects, label):
 
 
 def sobol(path, found, label):
-    """First and total Sobol indices with their intervals, largest on top.
-
-    :param found: what :func:`masonry.study.sensitivity.sobol` returns
-    """
-    names = list(found.indices)[::-1]
-    with _picture(path, 6.0, 1.3 + 0.38 * len(names)) as figure:
+    """First and total Sobol indices with their intervals, largest on top."""
+    indices = dict(reversed(found.indices.items()))
+    first, total = zip(*indices.values())
+    with _picture(path, 6.0, 1.3 + 0.38 * len(first)) as figure:
         axis = figure.subplots()
-        rows = np.arange(len(names))
-        for field, shift, colour, text in (
-            ("total", 0.18, LINE, "total, with all interactions"),
-            ("first", -0.18, POINT, "first, alone"),
+        for values, shift, colour, text in (
+            (total, -0.18, LINE, "total, with all interactions"),
+            (first, 0.18, POINT, "first, alone"),
         ):
-            values = [getattr(found.indices[name], field) for name in names]
-            _bars(axis, rows - shift, values, 2, color=colour, height=0.34, label=text)
-        axis.set_yticks(rows, map(_shown, names))
-        axis.set_ylim(-0.7, len(names) - 0.3)
+            style = dict(color=colour, height=0.34, label=text)
+            _bars(axis, indices, values, shift, cap=2, **style)
         axis.set_xlim(0, 1.05)
         axis.set_xlabel("share of the variance [-]")
         figure.suptitle(
@@ -134,16 +124,15 @@ def sobol(path, found, label):
         axis.legend(loc="lower right")
 
 
-def _bars(axis, rows, intervals, cap=2.5, **settings):
-    lengths = [[i.value - i.low, i.high - i.value] for i in intervals]
-    axis.barh(
-        rows,
-        [i.value for i in intervals],
-        xerr=np.maximum(lengths, 0).T,
-        alpha=0.75,
-        error_kw=dict(ecolor="black", elinewidth=0.8, capsize=cap),
-        **settings,
-    )
+def _bars(axis, names, intervals, shift=0.0, cap=2.5, **settings):
+    """A bar with its interval for every name, the last on top."""
+    rows = np.arange(len(names))
+    value, low, high = np.transpose(intervals)
+    ends = np.maximum([value - low, high - value], 0)
+    whiskers = dict(ecolor="black", elinewidth=0.8, capsize=cap)
+    axis.barh(rows + shift, value, xerr=ends, alpha=0.75, error_kw=whiskers, **settings)
+    axis.set_yticks(rows, map(_shown, names))
+    axis.set_ylim(-0.7, len(names) - 0.3)
     axis.grid(axis="x", alpha=0.3)
 
 
@@ -192,8 +181,8 @@ def fragility(path, capacities, label):
     probability, low, high = statistics.fragility(capacities, demands)
     with _picture(path, 6.0, 3.6) as figure:
         axis = figure.subplots()
-        band = f"{100 * statistics.CONFIDENCE:g} % confidence"
-        axis.fill_between(demands, low, high, **BAND_STYLE, step="post", label=band)
+        style = dict(**BAND_STYLE, step="post", label=BAND_LABEL)
+        axis.fill_between(demands, low, high, **style)
         rows = f"{len(capacities)} rows"
         axis.step(demands, probability, where="post", color=POINT, lw=1.3, label=rows)
         _lognormal(axis, capacities, demands, stats.lognorm.cdf, lw=1, ls=DASHES[1])
@@ -231,26 +220,26 @@ def ida(path, rows, fell, quantiles, xLabel, yLabel):
     :raises Refused: if no record has a demand
     """
     curves = [_standing(*one) for one in rows]
-    largest = max((d[-1] for d, _ in curves if len(d) > 1), default=0)
-    largest = max([largest, *(max(d) for d, _ in curves)])
+    largest = max(max(demands) for demands, _ in curves)
     if not largest > 0:
         raise Refused("no record has a demand at a level at which the structure stood")
     right = 1.15 * largest
+    stands = dict(color="0.55", lw=0.7, marker=".", ms=3)
+    falls = dict(color="0.55", lw=0.5, ls=DASHES[3])
     with _picture(path, 6.0, 4.2) as figure:
         axis = figure.subplots()
         for (demands, intensities), level in zip(curves, fell):
-            axis.plot(demands, intensities, color="0.55", lw=0.7, marker=".", ms=3)
+            axis.plot(demands, intensities, **stands)
             if np.isfinite(level):
-                ends = [demands[-1], right], [level, level]
-                axis.plot(*ends, color="0.55", lw=0.5, ls=DASHES[3])
+                axis.plot([demands[-1], right], [level, level], **falls)
         for (share, points), dashes in zip(quantiles.items(), (DASHES[1], "-", DASHES[2])):  # fmt: skip
             demands, intensities = _standing(*zip(*points)) if points else ([0], [0])
             axis.plot(demands, intensities, color=LINE, lw=1.8, ls=dashes, label=f"{100 * share:g} %")  # fmt: skip
             beyond = [x for x, demand in points if np.isinf(demand)]
             if beyond:
                 axis.plot([demands[-1], right], [beyond[0]] * 2, color=LINE, lw=1, ls=dashes)  # fmt: skip
-        axis.plot([], [], color="0.55", lw=0.7, marker=".", ms=3, label=f"{len(rows)} records")  # fmt: skip
-        axis.plot([], [], color="0.55", lw=0.5, ls=DASHES[3], label="falls at this level")  # fmt: skip
+        axis.plot([], [], **stands, label=f"{len(rows)} records")
+        axis.plot([], [], **falls, label="falls at this level")
         axis.set_xlim(0, right)
         axis.set_ylim(bottom=0)
         drawing.finish(axis, xLabel, yLabel, **ABOVE, ncols=3)
@@ -258,30 +247,27 @@ def ida(path, rows, fell, quantiles, xLabel, yLabel):
 
 def _standing(intensities, demands):
     """Demands and intensities from zero to the last level at which the structure stood; unknown ones are left out."""
-    found = [(0.0, 0.0)]
-    for intensity, demand in zip(intensities, demands):
-        if np.isinf(demand):
-            break
-        if not np.isnan(demand):
-            found.append((demand, intensity))
+    stood = itertools.takewhile(
+        lambda one: not np.isinf(one[0]), zip(demands, intensities)
+    )
+    found = [(0.0, 0.0), *(one for one in stood if not np.isnan(one[0]))]
     return tuple(map(list, zip(*found)))
 
 
 def fitted(path, fit, counts, xLabel, yLabel):
     """A fitted fragility with its band, and the shares of the records at every level.
 
-    :param fit: :class:`masonry.study.fragility.Fit`
     :param counts: list of (intensity, how many records have reached the limit, of how many)
     """
-    known = [(x, k, n) for x, k, n in counts if n]
-    ends = [x for x, _, _ in known] + [fit.median.value]
-    x = 1.3 * max(ends) * np.arange(1, POINTS + 1) / POINTS
-    bands = np.array([fit.probability(v) for v in x])
+    known = [(x, k / n) for x, k, n in counts if n]
+    x = max([fit.median.value, *(x for x, _ in known)])
+    x = 1.3 * x * np.arange(1, POINTS + 1) / POINTS
+    values, low, high = np.transpose([fit.probability(v) for v in x])
     with _picture(path, 6.0, 3.8) as figure:
         axis = figure.subplots()
-        axis.fill_between(x, bands[:, 1], bands[:, 2], **BAND_STYLE, label=f"{100 * fit.confidence:g} % confidence")  # fmt: skip
-        axis.plot(x, bands[:, 0], color="black", lw=1.2, label=f"lognormal: median {fit.median.value:.3g}, dispersion {fit.dispersion.value:.3g}")  # fmt: skip
-        axis.plot([v for v, _, _ in known], [k / n for _, k, n in known], ls="", marker="o", ms=4, color=LINE, label=f"share of {fit.records} records")  # fmt: skip
+        axis.fill_between(x, low, high, **BAND_STYLE, label=BAND_LABEL)
+        axis.plot(x, values, color="black", lw=1.2, label=f"lognormal: median {fit.median.value:.3g}, dispersion {fit.dispersion.value:.3g}")  # fmt: skip
+        axis.plot(*np.transpose(known or [(np.nan,) * 2]), ls="", marker="o", ms=4, color=LINE, label=f"share of {fit.records} records")  # fmt: skip
         axis.set_ylim(-0.02, 1.02)
         axis.set_xlim(0, x[-1])
         drawing.finish(axis, xLabel, yLabel, loc="lower right")
@@ -302,15 +288,13 @@ def fan(path, curves, xLabel, yLabel):
     curves = [increasing(*curve) for curve in curves]
     end = np.median([x[-1] for x, _ in curves])
     grid = np.linspace(min(x[0] for x, _ in curves), end, POINTS)
-    outside = dict(left=np.nan, right=np.nan)
-    values = np.array([np.interp(grid, x, y, **outside) for x, y in curves])
+    values = [np.interp(grid, *curve, left=np.nan, right=np.nan) for curve in curves]
     low, median, high = np.nanquantile(values, (BAND[0], 0.5, BAND[1]), axis=0)
     with _picture(path, 6.0, 4.0) as figure:
         axis = figure.subplots()
         alpha = float(np.clip(12 / len(curves), 0.05, 0.6))
-        lines = [np.column_stack(c) for c in curves]
-        thin = dict(color="0.35", lw=0.5)
-        axis.add_collection(LineCollection(lines, alpha=alpha, zorder=1, **thin))
+        lines, thin = map(np.column_stack, curves), dict(color="0.35", lw=0.5)
+        axis.add_collection(LineCollection([*lines], alpha=alpha, zorder=1, **thin))
         band = "between the 5 % and the 95 % quantile"
         style = {**BAND_STYLE, "alpha": 0.25}
         axis.fill_between(grid, low, high, **style, zorder=2, label=band)
@@ -321,10 +305,7 @@ def fan(path, curves, xLabel, yLabel):
 
 
 def calibration(path, found):
-    """Measured curves with the band of what the draws of the properties say, and a run with their means.
-
-    :param found: :class:`masonry.study.calibrate.Found`
-    """
+    """Measured curves with the band of what the draws of the properties say, and a run with their means."""
     of, (low, high), at = found.calibration.specimens, found.bands(), 0
     curves = [one for one in of if one.grid is not None]
     with _picture(path, 6.0, 3.2 * len(curves)) as figure:
@@ -357,9 +338,8 @@ def _bins(values):
 
 def _shown(name):
     """A varied name for readers: kinds of joints that share their properties stand together, ``bed, head: cohesion``."""
-    pairs = [part.partition(".") for part in name.split("+")]
-    kinds = list(dict.fromkeys(kind for kind, _, _ in pairs))
-    properties = list(dict.fromkeys(text for _, _, text in pairs))
+    pairs = [part.partition(".")[::2] for part in name.split("+")]
+    kinds, properties = map(dict.fromkeys, zip(*pairs))
     if not all(properties) or len(kinds) * len(properties) != len(pairs):
         return name.replace("+", ", ")
     return f"{', '.join(kinds)}: {', '.join(properties)}"

@@ -86,8 +86,8 @@ class Study:
             problems += [f'{name}: only a study with design="ida" has it' for name in given]  # fmt: skip
             if not self.vary:
                 problems.append("vary: nothing varies")
-        self._count(problems)
-        self._correlate(dict(correlation or {}), problems)
+        problems += self._count()
+        problems += self._correlate(dict(correlation or {}))
         refuse(problems, "study: ", "\n  ")
 
     def _take(self, key, what, problems):
@@ -95,62 +95,48 @@ class Study:
         if not isinstance(names, tuple) or not names or not all(isinstance(n, str) for n in names):  # fmt: skip
             problems.append(f"vary: {key!r} must be a name or a tuple of names")
             return
-        if isinstance(what, (bool, int, float, str)):
-            what = [what]
+        what = [what] if isinstance(what, (bool, int, float, str)) else what
         try:
             what = choice(*what) if isinstance(what, (list, tuple)) else what
+            if not isinstance(what, (Choice, Distribution, Field)):
+                raise Refused(f"{what!r} is no number, list, distribution or field")
         except Refused as refused:
             problems.append(f"vary {key!r}: {refused}")
             return
-        if not isinstance(what, (Choice, Distribution, Field)):
-            problems.append(
-                f"vary {key!r}: {what!r} is no number, list, distribution or field"
-            )
-            return
-        isField, properties = isinstance(what, Field), all("." in n for n in names)
-        wrong = []
-        if isField and not properties:
-            wrong.append("only a property of joints can be a field")
-        if isField and what.mean is not None and len(names) > 1:
-            wrong.append(
-                "a field of several properties is about their own values: field(cov=..., length=...)"
-            )
-        if not isField and len(names) > 1 and not properties:
-            wrong.append("only properties of joints can be tied in a tuple")
-        problems += [f"vary {key!r}: {why}" for why in wrong]
+        isField = isinstance(what, Field)
+        problems += [f"vary {key!r}: {why}" for why in _unfit(what, names)]
         values = what.values if isinstance(what, Choice) else [0]
         problems += [p for n in names for v in values for p in _wrongOption(n, v)]
         alike = [c for c, w in self.vary.items() if isinstance(w, Field) == isField]
-        given = {*self.options, *(n for column in alike for n in _namesOf(column))}
-        if given.intersection(names):
-            twice = ", ".join(n for n in names if n in given)
+        given = {*self.options, *(n for column in alike for n in namesOf(column))}
+        if twice := ", ".join(n for n in names if n in given):
             problems.append(f"{twice}: given twice")
         self.vary[batch.FIELD * isField + "+".join(names)] = what
 
-    def _count(self, problems):
+    def _count(self):
+        """Find how many rows there are. Yields what is wrong with the number."""
         if self.ida:
             if self.runs is not None:
-                problems.append(f"runs {self.runs!r}: there are as many as records times levels; leave it out")  # fmt: skip
+                yield f"runs {self.runs!r}: there are as many as records times levels; leave it out"
             return
         if self.design == "grid":
             odd = [c for c, w in self.vary.items() if isinstance(w, Distribution)]
             if odd:
-                problems.append(
-                    f"design 'grid': {', '.join(odd)} must be a list of values"
-                )
-            choices = [w for w in self.vary.values() if isinstance(w, Choice)]
+                yield f"design 'grid': {', '.join(odd)} must be a list of values"
+            choices = (w for w in self.vary.values() if isinstance(w, Choice))
             size = math.prod(len(w.values) for w in choices)
             if self.runs not in (None, size):
-                problems.append(f"runs {self.runs}: the grid has {size} points")
+                yield f"runs {self.runs}: the grid has {size} points"
             self.runs = size
         if self.runs is None or self.runs > MOST:
-            problems.append(f"runs {self.runs} must be a whole number from 1 to {MOST}")
+            yield f"runs {self.runs} must be a whole number from 1 to {MOST}"
 
-    def _correlate(self, correlation, problems):
+    def _correlate(self, correlation):
+        """Take correlations. Yields what is wrong with them."""
         joined = lambda key: "+".join(key) if isinstance(key, tuple) else key
         for pair, value in correlation.items():
             if not isinstance(pair, tuple) or len(pair) != 2:
-                problems.append(f"correlation {pair!r}: must be of two names")
+                yield f"correlation {pair!r}: must be of two names"
                 continue
             one, two = map(joined, pair)
             wrong = [reason for n in (one, two) if (reason := self._uncorrelated(n))]
@@ -160,7 +146,7 @@ class Study:
                 wrong.append("it must be above -1 and below 1")
             if (two, one) in self.correlation:
                 wrong.append("given twice")
-            problems += [f"correlation {pair!r} = {value!r}: {why}" for why in wrong]
+            yield from (f"correlation {pair!r} = {value!r}: {why}" for why in wrong)
             if not wrong:
                 self.correlation[one, two] = float(value)
 
@@ -172,7 +158,7 @@ class Study:
         if what:
             return f"{name} is a choice; only distributions have a correlation"
         for column, what in self.vary.items():
-            names = tuple(_namesOf(column))
+            names = tuple(namesOf(column))
             if name in names and isinstance(what, Field):
                 return f"{name} is a field; only distributions have a correlation"
             if name in names:
@@ -212,32 +198,28 @@ class Study:
 
         The records of an incremental analysis must have been read: :meth:`read`.
         """
-        if self.ida:
-            shaken = self.ida.rows()
-            drawn = self._drawn("random", len(shaken) // self.ida.steps)
-            return [
-                {
-                    **drawn[n // self.ida.steps],
-                    "record": f"{incremental.FOLDER}/{motion.name}.txt",
-                    "scale": scale,
-                }
-                for n, (motion, scale) in enumerate(shaken)
-            ]
-        return self._drawn(self.design, self.runs)
+        if not self.ida:
+            return self._drawn(self.design, self.runs)
+        shaken, rows = self.ida.rows(), []
+        drawn = self._drawn("random", len(shaken) // self.ida.steps)
+        for n, (motion, scale) in enumerate(shaken):
+            record = f"{incremental.FOLDER}/{motion.name}.txt"
+            rows.append(
+                {**drawn[n // self.ida.steps], "record": record, "scale": scale}
+            )
+        return rows
 
     def _drawn(self, design, count):
         """What is drawn for some rows, with the options that all have: a list of dicts."""
         fields = {n: w for n, w in self.vary.items() if isinstance(w, Field)}
         drawn = {n: w for n, w in self.vary.items() if n not in fields}
-        found = designs.values(design, count, self.seed, drawn, self.correlation)
+        rows = designs.values(design, count, self.seed, drawn, self.correlation)
         means = {n[len(batch.FIELD) :]: w.mean for n, w in fields.items() if w.mean is not None}  # fmt: skip
-        rows = []
-        for number, values in enumerate(found, 1):
-            seeds = {}
+        rows = [{"lean": True, **self.options, **means, **values} for values in rows]
+        for number, row in enumerate(rows, 1):
             for k, (name, what) in enumerate(fields.items()):
                 sequence = np.random.SeedSequence([self.seed, k, number])
-                seeds[name] = what.written(int(sequence.generate_state(1)[0]))
-            rows.append({"lean": True, **self.options, **means, **values, **seeds})
+                row[name] = what.written(int(sequence.generate_state(1)[0]))
         return rows
 
     def table(self) -> str:
@@ -253,36 +235,46 @@ class Study:
 
         :param near: folder of the study's file
         """
+        here = pathlib.Path(near)
         if self.scene.endswith(".py"):
-            places = [os.path.join(near, self.scene)]
+            places = [here / self.scene]
         else:
-            above = [near, *map(str, pathlib.Path(near).parents), os.getcwd()]
-            scripts = [os.path.join(folder, "scripts") for folder in above]
-            folders = [near, os.getcwd(), *scripts]
-            places = [os.path.join(f, self.scene + ".py") for f in folders]
-        path = next((os.path.abspath(p) for p in places if os.path.isfile(p)), None)
+            scripts = [f / "scripts" for f in (here, *here.parents, pathlib.Path.cwd())]
+            folders = [here, pathlib.Path.cwd(), *scripts]
+            places = [folder / (self.scene + ".py") for folder in folders]
+        path = next((os.path.abspath(p) for p in places if p.is_file()), None)
         if path is None:
             looked = dict.fromkeys(os.path.dirname(os.path.abspath(p)) for p in places)
             raise Refused(
                 f"study: no scene {self.scene}; looked in {', '.join(looked)}"
             )
-        with open(path, "rb") as f:
-            return path, hashlib.sha256(f.read()).hexdigest()
+        return path, hashlib.sha256(pathlib.Path(path).read_bytes()).hexdigest()
 
 
-def _namesOf(column):
+def _unfit(what, names):
+    """Why names cannot vary by that, sentences."""
+    isField, several = isinstance(what, Field), len(names) > 1
+    properties = all("." in name for name in names)
+    if isField and not properties:
+        yield "only a property of joints can be a field"
+    if isField and what.mean is not None and several:
+        yield "a field of several properties is about their own values: field(cov=..., length=...)"
+    if several and not (isField or properties):
+        yield "only properties of joints can be tied in a tuple"
+
+
+def namesOf(column: str) -> list[str]:
+    """The names that a column stands for."""
     return column.removeprefix(batch.FIELD).split("+")
 
 
 def _wrongOption(name, value):
-    """What is wrong with an option or a property, as a list."""
-    why = ""
+    """What is wrong with an option or a property."""
     if not isinstance(name, str) or not re.fullmatch(r"[A-Za-z_]\w*(\.\w+)?", name):
-        why = f"{name!r} must be an option, with underscores for dashes, or JOINT.PROPERTY"
+        yield f"{name!r} must be an option, with underscores for dashes, or JOINT.PROPERTY"
     elif name in batch.OWN:
-        why = f"option {name!r} is the study's own"
+        yield f"option {name!r} is the study's own"
     elif value is not None and not isinstance(value, (bool, int, float, str)):
-        why = f"{name}: {value!r} must be a number, a text, or True or False"
+        yield f"{name}: {value!r} must be a number, a text, or True or False"
     elif isinstance(value, str) and re.search(r"[\s#]|^[=*]?$", value):
-        why = f"{name}: {value!r} cannot stand in a table of YADE: it is empty or has a blank or #"
-    return [why] if why else []
+        yield f"{name}: {value!r} cannot stand in a table of YADE: it is empty or has a blank or #"

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The rows of a study, read from its folder as :mod:`masonry.study.gathering` leaves it. This module needs no YADE."""
 
+import contextlib
 import csv
 import os
 
@@ -14,22 +15,25 @@ from .gathering import CSV, TIMES, Folder
 
 def _table(path):
     """A CSV file as a dict of column -> texts. Raises Refused."""
-    lines = list(csv.reader(readText(path).splitlines()))
-    head = lines[0] if lines else []
+    head, *lines = [*csv.reader(readText(path).splitlines())] or [[]]
     if head[:1] != ["run"] or "status" not in head:
         raise Refused(
             f"{path}: this is no table of a study: it needs the columns run and status"
         )
-    wrong = [str(i) for i, line in enumerate(lines[1:], 2) if len(line) != len(head)]
+    wrong = [str(i) for i, line in enumerate(lines, 2) if len(line) != len(head)]
     if wrong:
         raise Refused(
             f"{path}: lines {', '.join(wrong[:10])} do not have {len(head)} cells, as the first has"
         )
-    if len(lines) < 2:
+    if not lines:
         raise Refused(f"{path}: there is no row yet")
-    return {name: [line[i] for line in lines[1:]] for i, name in enumerate(head)}
+    return dict(zip(head, map(list, zip(*lines))))
 
 
+CURVE = (
+    "displacement_mm",
+    "base_shear_kN",
+)  # columns of the curves that are usually compared
 #: Measures of every run, which nobody studies.
 IN_EVERY_RUN = {"collapsed", "ended", "energy_balance_error", "energy_made"}
 
@@ -37,7 +41,6 @@ IN_EVERY_RUN = {"collapsed", "ended", "energy_balance_error", "energy_made"}
 class Record:
     """The rows of a study.
 
-    :param directory: folder of the study
     :raises Refused: if there is no such table in it, or it is damaged
     """
 
@@ -57,9 +60,8 @@ class Record:
         """The measure that is reported if none is named: the usual one, or else the first answer of a stage or script."""
         if default in self.cells:
             return default
-        own = [m for m in self.measures if m not in IN_EVERY_RUN]
-        found = [m for m in own if np.isfinite(self.numbers(m)).any()]
-        return found[0] if found else default
+        own = (m for m in self.measures if m not in IN_EVERY_RUN)
+        return next((m for m in own if np.isfinite(self.numbers(m)).any()), default)
 
     def numbers(self, name):
         """A column as numbers, NaN where a cell has none. Raises Refused if there is no such column."""
@@ -80,7 +82,7 @@ class Record:
         rows = np.flatnonzero(np.isfinite(values))
         if not len(rows):
             raise Refused(f"{self.directory}: no row has a {measure}")
-        drawn = [name for name in self.varied if not name.startswith(batch.FIELD)]
+        drawn = (name for name in self.varied if not name.startswith(batch.FIELD))
         inputs = {name: self.numbers(name)[rows] for name in drawn}
         numbers = {k: v for k, v in inputs.items() if np.isfinite(v).all()}
         return rows, numbers, values[rows]
@@ -89,19 +91,15 @@ class Record:
         """Columns x and y of the curves of rows: a list of pairs. Rows without a curve are left out."""
         folder, found = Folder(self.directory), []
         for row in rows:
-            try:
+            with contextlib.suppress(Refused, KeyError):
                 curve = readCurve(folder.row(int(self.cells["run"][row])))
-            except Refused:
-                continue
-            if x in curve and y in curve:
                 found.append((curve[x], curve[y]))
         return found
 
     def price(self, rows):
         """Mean time of the jobs of rows [s], from times.csv; NaN if none tells."""
         times = _table(os.path.join(self.directory, TIMES))["job_seconds"]
-        known = [_number(times[row]) for row in rows]
-        known = [seconds for seconds in known if seconds > 0]
+        known = [t for t in (_number(times[row]) for row in rows) if t > 0]
         return float(np.mean(known)) if known else np.nan
 
 
@@ -116,23 +114,9 @@ def paired(expensive, cheap, measure, other=None):
     :returns: two arrays for :mod:`masonry.study.estimate`, and two lists: the rows of ``expensive`` and those of ``cheap``
     :raises Refused: if their scenes or options differ in more than FIDELITY, if something else varies in both, or rows of one study are the same
     """
-    problems = [
-        f"{expensive.directory} has {what} {one!r}, and {cheap.directory} {two!r}"
-        for what, one, two in _unlike(expensive, cheap)
-    ]
-    if sorted(expensive.varied) != sorted(cheap.varied):
-        problems.append(
-            f"{expensive.directory} varies {', '.join(expensive.varied)}, and {cheap.directory} {', '.join(cheap.varied)}"
-        )
-    else:
-        rowsOf = lambda study: [*zip(*(study.cells[n] for n in expensive.varied))]
-        keys = {study: rowsOf(study) for study in (expensive, cheap)}
-        problems += [
-            f"{study.directory}: rows have the same properties, so that it cannot be told which are shared"
-            for study, own in keys.items()
-            if len(set(own)) < len(own)
-        ]
-    refuse(problems)
+    rowsOf = lambda study: [*zip(*(study.cells.get(n, ()) for n in expensive.varied))]
+    keys = {study: rowsOf(study) for study in (expensive, cheap)}
+    refuse([*_unlike(expensive, cheap, keys)])
     y, x = expensive.numbers(measure), cheap.numbers(other or measure)
     place = {key: row for row, key in enumerate(keys[cheap]) if np.isfinite(x[row])}
     shared = [n for n, key in enumerate(keys[expensive]) if key in place and np.isfinite(y[n])]  # fmt: skip
@@ -145,17 +129,20 @@ def paired(expensive, cheap, measure, other=None):
 FIDELITY = {"preset", "density_scaling", "units", *presets.USUAL}
 
 
-def _unlike(one, two):
-    """What two studies differ in beside FIDELITY: name and both values, as far as their study.json tells."""
-    try:
-        folders = (Folder(study.directory) for study in (one, two))
-        studies = [folder.description()["study"] for folder in folders]
-    except Refused:
+def _unlike(one, two, keys):
+    """Why two studies share no rows. In what they differ beside FIDELITY their study.json tells, if there is one."""
+    with contextlib.suppress(Refused):
+        studies = [Folder(s.directory).description()["study"] for s in (one, two)]
+        first, second = ({"scene": s["scene"], **s["options"]} for s in studies)
+        for name in sorted({*first, *second} - FIDELITY):
+            if first.get(name) != second.get(name):
+                yield f"{one.directory} has {name} {first.get(name)!r}, and {two.directory} {second.get(name)!r}"
+    if sorted(one.varied) != sorted(two.varied):
+        yield f"{one.directory} varies {', '.join(one.varied)}, and {two.directory} {', '.join(two.varied)}"
         return
-    first, second = ({"scene": study["scene"], **study["options"]} for study in studies)
-    for name in sorted({*first, *second} - FIDELITY):
-        if first.get(name) != second.get(name):
-            yield name, first.get(name), second.get(name)
+    for study, own in keys.items():
+        if len(set(own)) < len(own):
+            yield f"{study.directory}: rows have the same properties, so that it cannot be told which are shared"
 
 
 def _number(text):

@@ -24,19 +24,18 @@ from . import estimate, pictures, sensitivity, statistics
 from .demands import QUANTILES, Demands
 from .fragility import nrml as nrmlOf
 from .gathering import Folder, written
-from .records import Record, paired
+from .records import CURVE, Record, paired
 
 MEASURE = "peak_base_shear_kN"
-CURVE = "displacement_mm", "base_shear_kN"
 MODE = "failure_mode"
 
 
 def label(name):
     """A column as the label of an axis: its unit, at the end of the name, goes into brackets."""
-    words = name.split("_")
-    if len(words) > 1 and words[-1] in ("kN", "mm", "J", "s", "m", "mrad", "g"):
-        return f"{' '.join(words[:-1])} [{words[-1]}]"
-    return " ".join(words)
+    *words, last = name.split("_")
+    if words and last in ("kN", "mm", "J", "s", "m", "mrad", "g"):
+        last = f"[{last}]"
+    return " ".join([*words, last])
 
 
 def table(record, measure):
@@ -49,12 +48,13 @@ def table(record, measure):
             f"  note: rows that have no {label(measure)} are left out. If they collapsed, or were refused for their values, "
             "the numbers below are on the unsafe side"
         )
-    finds = {"mean": statistics.mean, "standard deviation": statistics.deviation}
-    for q in estimate.QUANTILES:
-        finds[f"{100 * q:g} % quantile"] = lambda v, q=q: statistics.quantile(v, q)
-    for name, find in finds.items():
+    finds = [("mean", statistics.mean), ("standard deviation", statistics.deviation)]
+    finds += [
+        (f"{100 * q:g} % quantile", statistics.quantile, q) for q in estimate.QUANTILES
+    ]
+    for name, find, *share in finds:
         try:
-            yield line(name, find(values))
+            yield line(name, find(values, *share))
         except Refused as refused:
             yield f"  {name:20} {refused}"
     if statistics.isLognormal(values):
@@ -81,10 +81,9 @@ def modes(record):
 
 def statuses(record):
     """A line about rows that have no results, if there are some."""
-    others = [text for text in record.cells["status"] if text != "ended"]
-    if others:
-        counts = sorted(Counter(others).items())
-        names = (f"{count} {status or 'not run'}" for status, count in counts)
+    counts = Counter(text for text in record.cells["status"] if text != "ended")
+    if counts:
+        names = (f"{n} {status or 'not run'}" for status, n in sorted(counts.items()))
         yield f"rows that have not ended: {', '.join(names)}"
 
 
@@ -123,10 +122,9 @@ def _drawn(directory, makes):
         path = os.path.join(directory, name)
         try:
             make(path)
+            yield path
         except Refused as refused:
             yield f"no {name}: {refused}"
-        else:
-            yield path
 
 
 def compare(expensive, cheap, measure, other, method, prices=None):
@@ -138,8 +136,7 @@ def compare(expensive, cheap, measure, other, method, prices=None):
     y, x, shared, rows = paired(expensive, cheap, measure, other)
     found = estimate.estimate(y, x, method)
     prices = prices or (expensive.price(shared), cheap.price(rows))
-    folders = expensive.directory, cheap.directory
-    names = [os.path.basename(os.path.abspath(folder)) for folder in folders]
+    names = [os.path.basename(os.path.abspath(s.directory)) for s in (expensive, cheap)]
     if not all(math.isfinite(price) and price > 0 for price in prices):
         raise Refused(
             "the prices of the runs are unknown, since times.csv has none: give --prices"
@@ -162,12 +159,8 @@ def compare(expensive, cheap, measure, other, method, prices=None):
 
 
 def incremental(demands, limit, intensities):
-    """Lines of what an incremental dynamic analysis says: demands at every level, and the fragility.
-
-    :param demands: :class:`masonry.study.demands.Demands`
-    :param limit: of the demand; None: collapse
-    :param intensities: those at which the probability is printed, or an empty list
-    """
+    """Lines of what an incremental dynamic analysis says: demands at every level, and the fragility of a limit of the demand
+    (None: collapse), with its probability at some intensities."""
     measure, reaches = label(demands.intensityName), reached(demands, limit)
     yield f"incremental dynamic analysis of {len(demands.names)} records; the intensity is {measure}"
     if demands.measure:
@@ -189,7 +182,7 @@ def incremental(demands, limit, intensities):
     yield line(f"median {measure.partition('[')[2] and '[g]'}", fit.median)
     yield line("dispersion [-]", fit.dispersion)
     yield (
-        f"  maximum likelihood of the levels between which each record reaches the limit; {100 * fit.confidence:g} % intervals "
+        f"  maximum likelihood of the levels between which each record reaches the limit; {100 * statistics.CONFIDENCE:g} % intervals "
         "of the profile likelihood, records being independent"
     )
     if intensities:
@@ -229,10 +222,15 @@ def drawIncremental(demands, limit):
         pictures.fitted(path, fit, demands.counts(limit), measure, text)
 
     def nrml(path):
-        name, what = os.path.basename(os.path.abspath(demands.directory)), reached(demands, limit)  # fmt: skip
+        name = os.path.basename(os.path.abspath(demands.directory))
         state = "collapse" if limit is None else "limit"
-        fits = {name: demands.fragility(limit)}
-        written(path, nrmlOf(fits, demands.intensityName, state, what, demands.levels[-1]))  # fmt: skip
+        about = (
+            demands.intensityName,
+            state,
+            reached(demands, limit),
+            demands.levels[-1],
+        )
+        written(path, nrmlOf({name: demands.fragility(limit)}, *about))
 
     makes = {"ida.png": curves, "fragility.png": fragility, "fragility.xml": nrml}
     yield from _drawn(demands.directory, makes)
@@ -279,25 +277,9 @@ def main(words=None):
         check(args.study)
         record = Record(args.study)
         limit = _listed("--limit", args.limit)
-        if isIncremental(args.study):
-            return _sayIncremental(record, args, limit, demands)
-        if limit:
-            raise Refused("--limit: this is no incremental dynamic analysis")
-        args.measure = args.measure or record.measure(MEASURE)
-        for text in (*table(record, args.measure), *modes(record), *statuses(record)):
+        said = _ofIncremental if isIncremental(args.study) else _ofRows
+        for text in said(record, args, limit, demands, prices):
             say(text)
-        if demands:
-            values = record.complete(args.measure)[2]
-            say(f"probability that {label(args.measure)} is not above")
-            for demand, *found in zip(demands, *statistics.fragility(values, demands)):
-                say(line(f"{demand:g}", statistics.Interval(*found), "{:.3f}"))
-        if args.cheap:
-            how = args.measure, args.cheap_measure, args.method, prices
-            for text in compare(record, Record(args.cheap), *how):
-                say(text)
-        if not args.no_pictures:
-            for text in draw(record, args.measure):
-                say(text)
     except Refused as refused:
         say(refused, sys.stderr)
         return 2
@@ -315,8 +297,26 @@ def isIncremental(directory):
         return False
 
 
-def _sayIncremental(record, args, limit, intensities):
-    """Print and draw what an incremental dynamic analysis says. Returns the exit status."""
+def _ofRows(record, args, limit, demands, prices):
+    """Lines of what independent rows say, which are also drawn."""
+    if limit:
+        raise Refused("--limit: this is no incremental dynamic analysis")
+    measure = args.measure or record.measure(MEASURE)
+    yield from (*table(record, measure), *modes(record), *statuses(record))
+    if demands:
+        values = record.complete(measure)[2]
+        yield f"probability that {label(measure)} is not above"
+        for demand, *found in zip(demands, *statistics.fragility(values, demands)):
+            yield line(f"{demand:g}", statistics.Interval(*found), "{:.3f}")
+    if args.cheap:
+        how = measure, args.cheap_measure, args.method, prices
+        yield from compare(record, Record(args.cheap), *how)
+    if not args.no_pictures:
+        yield from draw(record, measure)
+
+
+def _ofIncremental(record, args, limit, intensities, prices):
+    """Lines of what an incremental dynamic analysis says, which are also drawn."""
     if args.cheap:
         raise Refused("--cheap: rows of an incremental dynamic analysis are not independent")  # fmt: skip
     if len(limit) > 1 or limit and not limit[0] > 0:
@@ -325,12 +325,9 @@ def _sayIncremental(record, args, limit, intensities):
         raise Refused(f"--demand {args.demand}: intensities must be above 0")
     limit = limit[0] if limit else None
     found = Demands(record, args.measure)
-    for text in (*incremental(found, limit, intensities), *statuses(record)):
-        say(text)
+    yield from (*incremental(found, limit, intensities), *statuses(record))
     if not args.no_pictures:
-        for text in drawIncremental(found, limit):
-            say(text)
-    return 0
+        yield from drawIncremental(found, limit)
 
 
 def _listed(option, text):

@@ -25,20 +25,17 @@ from ..run import batch
 from ..basics import Held, NotResumed, Refused, say
 from ..common.folders import inside
 from ..read.files import readRun, readWhole
-from .continuing import rowsOf
-from .gathering import STUDY, TABLE, Folder, reason
+from .gathering import STUDY, TABLE, Folder, reason, rowsOf
 from .incremental import FOLDER
 
 REFUSED = 2  # exit status of a scene that refuses its input
-#: Of a row at most, while its folder is still held or its checkpoint is refused.
-ATTEMPTS = 20
+ATTEMPTS = 20  # of a row at most, while its folder is held or its checkpoint refused
 TAIL = 4000  # bytes at the end of a log in which the reason of a failure stands
 
 
 class RowRunner:
     """Runs rows, and stops in order when it is asked to.
 
-    :param path: folder of the study
     :param scene: its file, as the user has named it; None: that of study.json, if it is in the folder
     :raises Refused: if the folder is not as a study leaves it, or the scene is another one
     """
@@ -68,24 +65,19 @@ class RowRunner:
         if folder.isHeld(number):
             return REFUSED  # somebody else runs it, and writes this log
         # what an attempt took that left a checkpoint belongs to the price of the row
-        checkpoint = os.path.join(folder.row(number), "run.checkpoint")
-        spent = folder.lastJob(number).get("seconds", 0)
-        spent = spent if os.path.exists(checkpoint) else 0
+        resumes = os.path.exists(folder.checkpoint(number))
+        spent = folder.lastJob(number).get("seconds", 0) if resumes else 0
         began = time.monotonic()
         with open(folder.row(number) + ".log", "wb", opener=inside) as log:
             status = self._attempts(number, log)
-        message = "" if status == 0 else self._reason(number)
-        record = {
-            "host": socket.gethostname(),
-            "status": status,
-            "seconds": round(spent + time.monotonic() - began, 3),
-            "told": message,
-        }
+        seconds = round(spent + time.monotonic() - began, 3)
+        record = dict(host=socket.gethostname(), status=status, seconds=seconds)
+        record["told"] = "" if status == 0 else self._reason(number)
         if status == 0 or not (folder.isHeld(number) or folder.isEnded(number)):
             path = folder.job(number) + f".{os.getpid()}"
             with open(path, "w", opener=inside) as f:
                 json.dump(record, f)
-            os.replace(f.name, folder.job(number))
+            os.replace(path, folder.job(number))
         return 0 if folder.isEnded(number) else status
 
     def _checkRecord(self, number):
@@ -100,8 +92,7 @@ class RowRunner:
 
     def _attempts(self, number, log):
         """Run it; once more from the beginning if its checkpoint is refused. Returns the exit status."""
-        folder = self.folder
-        checkpoint = os.path.join(folder.row(number), "run.checkpoint")
+        folder, checkpoint = self.folder, self.folder.checkpoint(number)
         for _ in range(ATTEMPTS):
             resumes = os.path.exists(checkpoint)
             status = self._yade(number, log)
@@ -124,8 +115,9 @@ class RowRunner:
         place = f"{self.folder.of(TABLE)}:{number + 1}"
         env = {**os.environ, batch.VARIABLE: place, "OMP_NUM_THREADS": "1"}
         command = ["yade", "-n", "--threads=1", "-x", self.script]
-        where = os.path.dirname(self.script)
-        self._child = background.Program(command, log, env, where)
+        self._child = background.Program(
+            command, log, env, os.path.dirname(self.script)
+        )
         if self.stopped:
             self._child.send_signal(signal.SIGTERM)
         return self._child.wait()
@@ -135,12 +127,11 @@ class RowRunner:
         with contextlib.suppress(Refused):
             if error := readRun(self.folder.row(number)).get("error"):
                 return error
-        _, refusal = self._child.refusal()
-        lines = [line.strip() for line in refusal.splitlines()]
-        with contextlib.suppress(OSError):
-            with open(self.folder.row(number) + ".log", "rb") as f:
-                f.seek(max(0, os.fstat(f.fileno()).st_size - TAIL))
-                lines = lines or reason(f.read().decode(errors="replace"))
+        lines = [line.strip() for line in self._child.refusal()[1].splitlines()]
+        log = self.folder.row(number) + ".log"
+        with contextlib.suppress(OSError), open(log, "rb") as f:
+            f.seek(max(0, os.fstat(f.fileno()).st_size - TAIL))
+            lines = lines or reason(f.read().decode(errors="replace"))
         return "; ".join(lines[-3:])
 
 
@@ -196,7 +187,7 @@ def _rows(words):
         raise Refused(f"no row {', '.join(beyond)}: {words[0]} has {runs}")
     say(f"note: this runs {runner.script}")
     worst, higher = 0, runner.folder.chains.higher
-    numbers = [n for word in words[1:] for n in (int(word), *higher(int(word)))]
+    numbers = [n for row in map(int, words[1:]) for n in (row, *higher(row))]
     for number in dict.fromkeys(numbers):
         status = runner.run(number)
         if status:

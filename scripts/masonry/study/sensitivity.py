@@ -5,6 +5,7 @@ Everything here is found from the rows that a study has, whatever their design, 
 independently of each other. OpenTURNS fits the polynomials.
 """
 
+import itertools
 import math
 from collections import namedtuple
 
@@ -34,7 +35,7 @@ RESAMPLES = 300  # of the rows, for the intervals of Sobol indices
 DEPENDENT = 1e-4  # probability that independent properties are taken as dependent ones, over all pairs
 
 
-def effects(inputs, output, confidence=CONFIDENCE):
+def effects(inputs, output):
     """What every varied property does: a dict of name -> :class:`Effect`, strongest change first.
 
     :param inputs: dict of name -> values, one a row; a property that has one value throughout is left out
@@ -52,12 +53,13 @@ def effects(inputs, output, confidence=CONFIDENCE):
     design = np.column_stack([np.ones(n), (x - x.mean(axis=0)) / scale])
     slopes, _, rank, _ = np.linalg.lstsq(design, y, rcond=None)
     if rank < k + 1:
-        why = "varied properties follow from each other, which cannot be told apart"
-        raise Refused(f"the sensitivity: {why}")
+        raise Refused(
+            "the sensitivity: varied properties follow from each other, which cannot be told apart"
+        )
     residuals = y - design @ slopes
     scatter = residuals @ residuals / free * np.linalg.inv(design.T @ design).diagonal()
-    t = stats.t.ppf((1 + confidence) / 2, free)
-    z = stats.norm.ppf((1 + confidence) / 2)
+    t = stats.t.ppf((1 + CONFIDENCE) / 2, free)
+    z = stats.norm.ppf((1 + CONFIDENCE) / 2)
     found = {}
     for i, name in enumerate(inputs):
         span = np.ptp(np.quantile(x[:, i], SPAN)) / scale[i]
@@ -74,7 +76,7 @@ def effects(inputs, output, confidence=CONFIDENCE):
     return dict(sorted(found.items(), key=lambda item: -abs(item[1].change.value)))
 
 
-def sobol(inputs, output, seed=1, confidence=CONFIDENCE):
+def sobol(inputs, output, seed=1):
     """First and total Sobol indices, from a polynomial chaos on the ranks of the varied properties: a :class:`Sobol`.
 
     Each property is replaced by its rank, which is uniform whatever its distribution; indices do not change by that.
@@ -88,51 +90,46 @@ def sobol(inputs, output, seed=1, confidence=CONFIDENCE):
     :raises Refused: if there are fewer than ten rows a property, or a number is not finite, or properties are dependent
     """
     inputs, x, y = _numbers(inputs, output)
-    n, k = x.shape
-    problems = []
-    if n < 10 * k:
-        problems.append(
-            f"Sobol indices of {k} properties need {10 * k} rows or more, there are {n}"
-        )
-    names = list(inputs)
-    for i, j in ((i, j) for i in range(k) for j in range(i)):
-        found = stats.spearmanr(x[:, i], x[:, j])
-        if found.pvalue < 2 * DEPENDENT / (k * (k - 1)):
-            problems.append(
-                f"Sobol indices need independent properties, {names[j]} and {names[i]} have a rank correlation of "
-                f"{found.statistic:.2f}"
-            )
-    if np.ptp(y) == 0:
-        problems.append("Sobol indices: all results are the same")
-    refuse(problems)
+    n = len(x)
+    refuse([*_unfit(inputs, x, y)])
     ranks = lambda rows: (stats.rankdata(x[rows], axis=0) - 0.5) / n
     u = ranks(np.arange(n))
     y = (y - y.mean()) / y.std()
     powers = _polynomials(u, y)
     terms = _terms(powers, u)
-    coefficients = _fit(terms, y)
+    coefficients = np.linalg.lstsq(terms, y, rcond=None)[0]
     hat = np.einsum("ij,ji->i", terms, np.linalg.pinv(terms))
     errors = (y - terms @ coefficients) / np.maximum(1 - hat, 1e-9)
-    explained = 1 - errors @ errors / n
     shares = _shares(powers, coefficients)
     generator, resampled = np.random.default_rng(seed), []
     for _ in range(RESAMPLES):
         rows = generator.integers(n, size=n)
-        resampled.append(_shares(powers, _fit(_terms(powers, ranks(rows)), y[rows])))
-    half = stats.norm.ppf((1 + confidence) / 2) * np.std(resampled, axis=0)
+        again = np.linalg.lstsq(_terms(powers, ranks(rows)), y[rows], rcond=None)[0]
+        resampled.append(_shares(powers, again))
+    half = stats.norm.ppf((1 + CONFIDENCE) / 2) * np.std(resampled, axis=0)
     low, high = np.clip([shares - half, shares + half], 0, 1)
     ends = np.stack([shares, low, high], axis=-1)  # (first and total, names, 3)
-    order = np.argsort(-shares[1], kind="stable")
-    indices = {names[i]: Indices(*(Interval(*v) for v in ends[:, i])) for i in order}
-    return Sobol(explained, indices)
+    found = {n: Indices(Interval(*f), Interval(*t)) for n, f, t in zip(inputs, *ends)}
+    found = dict(sorted(found.items(), key=lambda item: -item[1].total.value))
+    return Sobol(1 - errors @ errors / n, found)
+
+
+def _unfit(names, x, y):
+    """Sentences on why there are no Sobol indices of some rows."""
+    n, k = x.shape
+    if n < 10 * k:
+        yield f"Sobol indices of {k} properties need {10 * k} rows or more, there are {n}"
+    for (one, first), (two, second) in itertools.combinations(zip(names, x.T), 2):
+        found = stats.spearmanr(first, second)
+        if found.pvalue < 2 * DEPENDENT / (k * (k - 1)):
+            yield f"Sobol indices need independent properties, {one} and {two} have a rank correlation of {found.statistic:.2f}"
+    if np.ptp(y) == 0:
+        yield "Sobol indices: all results are the same"
 
 
 def _polynomials(u, y):
     """The Legendre polynomials that OpenTURNS chooses: their degrees, a line each, the first of which is the constant."""
-    ot = needed("openturns")
-
-    k = u.shape[1]
-    uniform = ot.IndependentCopula(k)
+    ot, k = needed("openturns"), u.shape[1]
     count = ot.HyperbolicAnisotropicEnumerateFunction(k, HYPERBOLIC)
     basis = ot.OrthogonalProductPolynomialFactory([ot.LegendreFactory()] * k, count)
     # no more candidates than half of the rows, else chance chooses
@@ -142,12 +139,11 @@ def _polynomials(u, y):
     chosen = ot.LeastSquaresMetaModelSelectionFactory(ot.LARS(), ot.CorrectedLeaveOneOut())  # fmt: skip
     how = ot.FixedStrategy(basis, size), ot.LeastSquaresStrategy(chosen)
     rows = ot.Sample(u), ot.Sample(y[:, None])
-    algorithm = ot.FunctionalChaosAlgorithm(*rows, uniform, *how)
+    algorithm = ot.FunctionalChaosAlgorithm(*rows, ot.IndependentCopula(k), *how)
     algorithm.run()
     # what every property does on its own stays in, so that an index of nothing has an interval, too
-    always = set(range(k + 1))
-    chosen = sorted(always.union(int(i) for i in algorithm.getResult().getIndices()))
-    return np.array([list(count(i)) for i in chosen])
+    chosen = {*range(k + 1), *map(int, algorithm.getResult().getIndices())}
+    return np.array([list(count(i)) for i in sorted(chosen)])
 
 
 def _terms(powers, u):
@@ -156,19 +152,11 @@ def _terms(powers, u):
     return (values * np.sqrt(2 * powers + 1)).prod(axis=2)
 
 
-def _fit(terms, y):
-    return np.linalg.lstsq(terms, y, rcond=None)[0]
-
-
 def _shares(powers, coefficients):
     """First and total shares of the variance: an array (2, properties)."""
-    squares = coefficients[1:] ** 2
-    involved = powers[1:] > 0
-    whole = squares.sum()
-    if whole == 0:
-        return np.zeros((2, powers.shape[1]))
+    squares, involved = coefficients[1:] ** 2, powers[1:] > 0
     alone = involved & (involved.sum(axis=1) == 1)[:, None]
-    return np.array([squares @ alone, squares @ involved]) / whole
+    return np.array([squares @ alone, squares @ involved]) / (squares.sum() or 1)
 
 
 def _numbers(inputs, output):
@@ -191,7 +179,5 @@ def _numbers(inputs, output):
             kept[name] = values
     if not np.isfinite(y).all():
         problems.append("a result is not finite")
-    if not kept and not problems:
-        problems.append("no property varies")
-    refuse(problems)
+    refuse(problems or ["no property varies"] * (not kept))
     return kept, np.column_stack(list(kept.values())), y

@@ -20,8 +20,7 @@ ARRAY = 1001  # tasks that an array has at most where Slurm does not say
 
 def check():
     """Refuse a machine without Slurm."""
-    needed = "sbatch", "squeue", "scontrol"
-    missing = [name for name in needed if not shutil.which(name)]
+    missing = [n for n in ("sbatch", "squeue", "scontrol") if not shutil.which(n)]
     if missing:
         raise Refused(
             f"--slurm: no {', '.join(missing)} here: run this where jobs are submitted, or apt-get install slurm-client"
@@ -34,13 +33,6 @@ def _asked(command):
         why = done.stderr.strip() or f"exit status {done.returncode}"
         raise Refused(f"--slurm: {command[0]}: {why}")
     return done.stdout
-
-
-def _largest():
-    """How many tasks an array may have."""
-    config = _asked(["scontrol", "show", "config"])
-    found = re.search(r"MaxArraySize\s*=\s*(\d+)", config)
-    return max(1, int(found[1] if found else ARRAY) - 1)
 
 
 def waiting(folder):
@@ -89,7 +81,10 @@ def submit(folder, runs, words):
     if not rows:
         say("all rows are ended: --gather writes study.csv")
         return 0
-    written(folder.of(SCRIPT), script(folder, rows, _largest()))
+    config = _asked(["scontrol", "show", "config"])
+    found = re.search(r"MaxArraySize\s*=\s*(\d+)", config)
+    largest = max(1, int(found[1] if found else ARRAY) - 1)
+    written(folder.of(SCRIPT), script(folder, rows, largest))
     log = f"--output={folder.of(batch.ROWS)}/slurm-%a.out"
     where = f"--chdir={folder.path}", *words, folder.of(SCRIPT)
     job = _asked(["sbatch", "--parsable", log, *where]).strip().split(";")[0]

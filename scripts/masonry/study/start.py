@@ -11,10 +11,10 @@ from ..run import batch
 from ..basics import Refused, Unwritable, refuse, say
 from ..common.folders import fromJson
 from ..read.files import readWhole
-from .continuing import checkRows, compareTable, rowsOf
-from .gathering import STUDY, TABLE, Folder, reason, written
+from .gathering import STUDY, TABLE, Folder, checkedRows, compareTable, reason, written
 from .incremental import FOLDER
 from .interrupts import watched
+from .plan import namesOf
 from .variables import NEVER, Distribution, Field
 
 NOTHING = "interrupted: nothing was run"  # while a study is looked at
@@ -26,10 +26,7 @@ PROBING = 600  # [s] after which a scene that should only be built is given up
 def begin(study, path, near):
     """The folder of a study: made if it is not there, else checked to be of the same study.
 
-    :param study: :class:`masonry.study.Study`
-    :param path: of the folder
     :param near: folder of the study's file, where its scene is looked for
-    :returns: :class:`masonry.study.gathering.Folder`
     :raises Refused: with all problems at once. Nothing is written then
     """
     folder = Folder(path)
@@ -43,12 +40,6 @@ def begin(study, path, near):
     if os.path.lexists(folder.of(STUDY)):
         known = folder.description()
         _compare(folder, known, now)
-        if os.path.lexists(folder.of(TABLE)):
-            compareTable(folder, table)
-        else:
-            written(folder.of(TABLE), table)
-        _putRecords(folder, study)
-        checkRows(folder, rowsOf(folder))
     else:
         _checkEmpty(folder, study)
         problems, needed = _look(study, script, table)
@@ -58,8 +49,13 @@ def begin(study, path, near):
             os.makedirs(folder.of(batch.ROWS), exist_ok=True)
         except OSError as error:
             raise Refused(f"--out: cannot write to {path}: {error.strerror}") from None
-        _putRecords(folder, study)
+    if known and os.path.lexists(folder.of(TABLE)):
+        compareTable(folder, table)
+    else:
         written(folder.of(TABLE), table)
+    _putRecords(folder, study)
+    if known:
+        checkedRows(folder)
     now["script"] = script
     if known != now:
         written(folder.of(STUDY), json.dumps(now, indent=2) + "\n")
@@ -73,9 +69,8 @@ def _recordsOf(study):
 
 def _putRecords(folder, study):
     """Write the records of a study into its folder. Those that are there must be what the study has read."""
-    if not study.ida:
-        return
-    os.makedirs(folder.of(FOLDER), exist_ok=True)
+    if study.ida:
+        os.makedirs(folder.of(FOLDER), exist_ok=True)
     for name, text in _recordsOf(study).items():
         path = folder.of(FOLDER, name)
         if not os.path.lexists(path):
@@ -127,14 +122,11 @@ def _checkSpace(folder, needed):
     at = folder.path
     while not os.path.isdir(at):
         at = os.path.dirname(at)
-    if not os.access(at, os.W_OK):
-        return [f"--out: {at} cannot be written"]
     free = shutil.disk_usage(at).free
-    if free < needed + SPARE:
-        return [
-            f"--out: {at} has {1e-6 * free:.0f} MB free, the study writes some {1e-6 * needed:.0f} MB and keeps {1e-6 * SPARE:.0f} MB free"
-        ]
-    return []
+    if not os.access(at, os.W_OK):
+        yield f"--out: {at} cannot be written"
+    elif free < needed + SPARE:
+        yield f"--out: {at} has {1e-6 * free:.0f} MB free, the study writes some {1e-6 * needed:.0f} MB and keeps {1e-6 * SPARE:.0f} MB free"
 
 
 def _look(study, script, table):
@@ -142,19 +134,16 @@ def _look(study, script, table):
     if not shutil.which("yade"):
         raise Refused("a study needs yade: apt-get install --no-install-recommends yade")  # fmt: skip
     with tempfile.TemporaryDirectory() as place:
-        os.mkdir(os.path.join(place, FOLDER))
-        records = {f"{FOLDER}/{n}": text for n, text in _recordsOf(study).items()}
-        for name, text in {TABLE: table, **records}.items():
-            with open(os.path.join(place, name), "w", encoding="utf-8") as f:
-                f.write(text)
-        paths = [os.path.join(place, name) for name in (TABLE, "probe.json")]
-        found = _probed(script, *paths)
+        place = Folder(place)
+        _putRecords(place, study)
+        written(place.of(TABLE), table)
+        found = _probed(script, place)
         if isinstance(found, str):  # the first row may be to blame
-            found = _probed(script, *paths, line=1) or found
+            found = _probed(script, place, line=1) or found
     if isinstance(found, str):
         return [f"its scene cannot be built: {found}"], 0
     with watched(NOTHING):
-        problems = _names(study, found) + _ranges(study, found) + found["problems"]
+        problems = [*_names(study, found), *_ranges(study, found), *found["problems"]]
     for name, why in found["doubtful"].items():
         if name in study.vary or study.ida and name == "record":
             say(f"warning: {name} varies, and the scene may not use it: {why}")
@@ -163,23 +152,19 @@ def _look(study, script, table):
     return problems, found["room"]
 
 
-def _probed(script, table, path, line=2):
+def _probed(script, place, line=2):
     """What :mod:`masonry.scene.probing` writes, as a dict, or why there is none.
 
     :param line: of the table: the options with which the scene is built; 1: it is built without options
     """
-    row = {batch.VARIABLE: f"{table}:{line}", batch.PROBE: path}
+    path = place.of("probe.json")
+    row = {batch.VARIABLE: f"{place.of(TABLE)}:{line}", batch.PROBE: path}
+    env = {**os.environ, **row, "OMP_NUM_THREADS": "1"}
+    where = dict(cwd=os.path.dirname(script), env=env, stdin=subprocess.DEVNULL)
+    said = dict(capture_output=True, text=True, errors="replace")
+    command = ["yade", "-n", "--threads=1", "-x", script]
     try:
-        done = subprocess.run(
-            ["yade", "-n", "--threads=1", "-x", script],
-            env={**os.environ, **row, "OMP_NUM_THREADS": "1"},
-            cwd=os.path.dirname(script),
-            stdin=subprocess.DEVNULL,
-            capture_output=True,
-            text=True,
-            errors="replace",
-            timeout=PROBING,
-        )
+        done = subprocess.run(command, **where, **said, timeout=PROBING)
     except subprocess.TimeoutExpired:
         return f"it is not built after {PROBING} s"
     try:
@@ -196,13 +181,12 @@ def _probed(script, table, path, line=2):
 def _names(study, found):
     """Names that the scene ignores."""
     if not found["heard"]:
-        why = "its scene takes no options from the command line (arguments=...), and would ignore all that varies"
-        return [why]
-    shaken = ["record", "scale"] if study.ida else []
-    columns = [*study.options, *study.vary, *shaken]
-    names = [n for c in columns for n in c.removeprefix(batch.FIELD).split("+")]
-    reasons = ((name, _ignored(found, name)) for name in names)
-    return [f"{name}: {why}" for name, why in reasons if why]
+        yield "its scene takes no options from the command line (arguments=...), and would ignore all that varies"
+        return
+    columns = [*study.options, *study.vary] + ["record", "scale"] * bool(study.ida)
+    for name in (name for column in columns for name in namesOf(column)):
+        if why := _ignored(found, name):
+            yield f"{name}: {why}"
 
 
 def _ignored(found, name):
@@ -220,34 +204,30 @@ def _ignored(found, name):
         return f"the scene has no {kind} joint and would ignore it"
     if joint.get("elastic") and "Stiffness" not in attribute:
         return f"{kind} joints of the scene are linear elastic and ignore it"
-    ofCap = attribute.startswith(("compressive", "peakRatio"))
-    if joint.get("cap") is False and ofCap:
+    if joint.get("cap") is False and attribute.startswith(("compressive", "peakRatio")):
         return f"{kind} joints of the scene do not crush and ignore it"
     return None
 
 
 def _ranges(study, found):
     """Distributions that can give what a property cannot be."""
-    problems = []
     for column, what in study.vary.items():
         if isinstance(what, Field):
             if what.kind == "normal" and what.mean is not None and what.mean < 0:
-                problems.append(f"{column}: mean {what.mean:g} must be above 0")
-        if not isinstance(what, Distribution):
-            continue
-        for name in column.split("+"):
+                yield f"{column}: mean {what.mean:g} must be above 0"
+        for name in namesOf(column) if isinstance(what, Distribution) else ():
             of, _, attribute = name.partition(".")
             bounds = found["connectors"].get(of, found["bounds"]).get(attribute)
+            bounds = bounds or {"low": None, "high": None}
             ends = [
                 f"{word} {bounds[end]:g}"
                 for end, word in (("low", "at least"), ("high", "at most"))
-                if bounds and bounds[end] is not None
+                if bounds[end] is not None
             ]
-            share = what.beyond(bounds["low"], bounds["high"]) if ends else 0
+            share = what.beyond(bounds["low"], bounds["high"])
             if share > NEVER:
                 unit = f" {bounds['unit']}" if bounds["unit"] not in ("", "-") else ""
-                problems.append(
+                yield (
                     f"{name}: {what} gives impossible values in {100 * share:.2g} % of all rows: it must be "
                     f"{' and '.join(ends)}{unit}; low=... or high=... cuts it off"
                 )
-    return problems

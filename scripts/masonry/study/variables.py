@@ -15,11 +15,8 @@ from ..basics import Refused
 from ..common.packages import needed
 
 LEAST_COV = 1e-6  # coefficient of variation below which nothing varies [-]
-
 #: What a distribution may give beyond a bound of a property: less than once in a thousand million draws.
 NEVER = 1e-9
-
-
 Finite = Annotated[float, number()]
 
 
@@ -44,19 +41,20 @@ class Distribution:
             made = ot.LogNormalMuSigma(mean, deviation, 0.0).getDistribution()
         else:
             made = ot.Normal(mean, abs(deviation))
-        low, high = p.get("low"), p.get("high")
-        if low is None and high is None:
+        if not {"low", "high"} & {*p}:
             return made
-        return ot.TruncatedDistribution(made, _interval(low, high))
+        return ot.TruncatedDistribution(made, _interval(p.get("low"), p.get("high")))
+
+    def valuesAt(self, probabilities: Sequence[float]) -> list[float]:
+        """The values that are not exceeded with these probabilities."""
+        law = self.law()
+        return [float(law.computeQuantile(u)[0]) for u in probabilities]
 
     def beyond(self, low: float | None, high: float | None) -> float:
         """Probability of a value below ``low`` or above ``high``; None is no bound [-]."""
-        law, found = self.law(), 0.0
-        if low is not None:
-            found += law.computeCDF(low)
-        if high is not None:
-            found += law.computeComplementaryCDF(high)
-        return found
+        law = self.law()
+        below = 0.0 if low is None else law.computeCDF(low)
+        return below + (0.0 if high is None else law.computeComplementaryCDF(high))
 
     def describe(self) -> dict[str, Any]:
         return {"kind": self.kind, **dict(self.parameters)}
@@ -74,22 +72,20 @@ def _interval(low, high):
 
 
 def _aboutMean(kind, mean, cov, low, high):
-    parameters = {"mean": mean, "cov": cov}
     ends = {n: v for n, v in (("low", low), ("high", high)) if v is not None}
+    whole = Distribution(kind, (("mean", mean), ("cov", cov)))
     if not cov >= LEAST_COV:
         raise Refused(f"{kind}: coefficient of variation {cov} must be above 0, and at least {LEAST_COV:g}")  # fmt: skip
     if not SHORTEST <= (mean if kind == "lognormal" else abs(mean)) <= FARTHEST:
         raise Refused(f"{kind}: mean {mean:g} must be above 0, from {SHORTEST:g} to {FARTHEST:g}")  # fmt: skip
     if low is not None and high is not None and not low < high:
         raise Refused(f"{kind}: low {low:g} must be below high {high:g}")
-    made = Distribution(kind, tuple({**parameters, **ends}.items()))
-    if ends:
-        whole = Distribution(kind, tuple(parameters.items())).law()
-        kept = whole.computeProbability(_interval(low, high))
-        if not kept > NEVER:
-            raise Refused(
-                f"{made}: its ends leave {kept:.3g} of the distribution, they must leave more than {NEVER:g}"
-            )
+    made = Distribution(kind, (*whole.parameters, *ends.items()))
+    kept = whole.law().computeProbability(_interval(low, high)) if ends else 1
+    if not kept > NEVER:
+        raise Refused(
+            f"{made}: its ends leave {kept:.3g} of the distribution, they must leave more than {NEVER:g}"
+        )
     return made
 
 
@@ -130,10 +126,10 @@ class Choice:
     values: tuple
     weights: tuple
 
-    def of(self, u: float) -> Any:
-        """The value at a probability from 0 to 1."""
-        place = bisect.bisect_right([*itertools.accumulate(self.weights)], u)
-        return self.values[min(place, len(self.values) - 1)]
+    def valuesAt(self, probabilities: Sequence[float]) -> list[Any]:
+        """The values at probabilities from 0 to 1."""
+        ends = [*itertools.accumulate(self.weights)][:-1]
+        return [self.values[bisect.bisect_right(ends, u)] for u in probabilities]
 
     def describe(self) -> dict[str, Any]:
         return {"kind": "choice", **asdict(self)}

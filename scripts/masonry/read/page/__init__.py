@@ -14,8 +14,6 @@ this module are ours. :mod:`masonry.read.page.data` turns frames into numbers fo
 finds three.js.
 """
 
-from __future__ import annotations
-
 import html
 from typing import Annotated
 
@@ -75,16 +73,6 @@ def write(directory: FilePath, path: FilePath, number: FrameNumber | None = None
     pages.write(path, page(directory, number, magnification))
 
 
-@validated
-def show(directory: FilePath, number: FrameNumber | None = None, height: Annotated[int, whole(200, 5000)] = HEIGHT) -> Picture:  # fmt: skip
-    """The picture of a run for a notebook, which shows what the last line of a cell returns.
-
-    :param height: of the picture [pixels], 200 to 5000; the others, and the errors, are those of :func:`fragment`
-    :returns: a :class:`Picture`
-    """
-    return Picture(directory, page(directory, number), height)
-
-
 class Picture:
     """A page that a notebook shows in a frame of its own, which may run the script of the page and nothing else: it does not
     reach the notebook. ``page`` is the whole page, a text."""
@@ -100,3 +88,13 @@ class Picture:
             f'<iframe sandbox="allow-scripts" style="width:100%;height:{self._height}px;border:0" '
             f'title="3-D picture" srcdoc="{html.escape(self.page)}"></iframe>'
         )
+
+
+@validated
+def show(directory: FilePath, number: FrameNumber | None = None, height: Annotated[int, whole(200, 5000)] = HEIGHT) -> Picture:  # fmt: skip
+    """The picture of a run for a notebook, which shows what the last line of a cell returns.
+
+    :param height: of the picture [pixels], 200 to 5000; the others, and the errors, are those of :func:`fragment`
+    :returns: a :class:`Picture`
+    """
+    return Picture(directory, page(directory, number), height)

@@ -2,18 +2,14 @@
 """The numbers of a run for ``viewer.js``: a JSON head, and arrays that are rounded, compressed and written in base64.
 
 A displacement is a whole number of steps of 1/32,767 of the largest, other values are whole numbers of 1/4,000 of the largest
-in the frames, and damage is in steps of 1/255. This module needs no YADE.
+in the frames, and damage is in steps of 1/255.
 """
-
-from __future__ import annotations
 
 import base64
 import zlib
-from typing import Any
 
 import numpy as np
 
-from ...common.arguments import FilePath
 from ...basics import plain
 from .. import painting
 from ..cracks import CRACK, CRUSHED, DAMAGED
@@ -27,7 +23,7 @@ class _Arrays:
     """Arrays on their way to a page one after the other, and what the page must know to read them."""
 
     def __init__(self):
-        self.known, self._bytes = {}, b""
+        self.known, self.bytes = {}, b""
 
     def add(self, name, values, kind, step=1.0, frames=False):
         """Append an array.
@@ -38,23 +34,16 @@ class _Arrays:
         """
         values = np.ascontiguousarray(values, "<" + kind)
         row = values[0].size if frames else 1
-        self.known[name] = {"kind": kind, "at": len(self._bytes), "count": values.size, "row": row, "step": float(step)}  # fmt: skip
-        self._bytes += values.tobytes() + bytes(-values.nbytes % 4)
+        self.known[name] = {"kind": kind, "at": len(self.bytes), "count": values.size, "row": row, "step": float(step)}  # fmt: skip
+        self.bytes += values.tobytes() + bytes(-values.nbytes % 4)
 
-    def addRounded(self, name, values, kind, levels):
-        """Append numbers of frames, rounded to so many steps up to the largest."""
+    def addRounded(self, name, values, kind="i2", levels=32767):
+        """Append numbers of frames, as displacements and rotations, rounded to so many steps up to the largest."""
         step = float(np.abs(values).max(initial=0.0)) / levels or 1.0
         self.add(name, np.rint(values / step), kind, step, frames=True)
 
-    def addMotion(self, name, values):
-        """Append displacements or rotations of frames."""
-        self.addRounded(name, values, "i2", 32767)
 
-    def text(self):
-        return base64.b64encode(zlib.compress(self._bytes, 9)).decode()
-
-
-def dataOf(directory: FilePath, number: int | None = None, magnification: float | None = None) -> tuple[dict[str, Any], str]:  # fmt: skip
+def dataOf(directory, number=None, magnification=None):
     """The head, a dict that can be written as JSON, and the arrays as a text in base64.
 
     :param directory: folder of results
@@ -67,7 +56,7 @@ def dataOf(directory: FilePath, number: int | None = None, magnification: float 
     return dataOfModel(Model(directory), number, magnification)
 
 
-def dataOfModel(model: Model, number: int | None = None, magnification: float | None = None, curve: Any = None) -> tuple[dict[str, Any], str]:  # fmt: skip
+def dataOfModel(model, number=None, magnification=None, curve=None):
     """As :func:`dataOf`, of a run whose frames have been read.
 
     :param number: of the frame that is shown first among those that were read, from 0
@@ -80,13 +69,13 @@ def dataOfModel(model: Model, number: int | None = None, magnification: float | 
     for name, kind in (("points", "f4"), ("owner", "u4"), ("triangles", "u4"), ("edges", "u4"), ("bodies", "u4"), ("looks", "u1"), ("centres", "f4"), ("free", "u4")):  # fmt: skip
         arrays.add(name, getattr(model, name), kind)
     for name in ("shift", "turn", "moved"):
-        arrays.addMotion(name, getattr(model, name))
+        arrays.addRounded(name, getattr(model, name))
     arrays.add("jointPoints", joints.corners, "f4")
     arrays.add("jointOwner", joints.owner, "u4")
     arrays.add("jointBlocks", joints.between, "u4")
     arrays.add("kind", joints.kind, "u1", frames=True)
     if joints.moved is not None:
-        arrays.addMotion("jointMoved", np.moveaxis(joints.moved, 0, 1))
+        arrays.addRounded("jointMoved", np.moveaxis(joints.moved, 0, 1))
     head["values"] = {}
     for name, least in LEAST.items():
         values = np.clip(getattr(joints, name), 0, None)
@@ -102,7 +91,7 @@ def dataOfModel(model: Model, number: int | None = None, magnification: float | 
         keptPoints=len(joints.between),
         arrays=arrays.known,
     )
-    return head, arrays.text()
+    return head, base64.b64encode(zlib.compress(arrays.bytes, 9)).decode()
 
 
 def _head(model, magnification, curve):
@@ -137,11 +126,11 @@ def _addTies(arrays, model):
     bars = [n for n, cell in enumerate(frames[0]["cells"]) if len(cell) == 2]
     ends = np.concatenate([frames[0]["cells"][n] for n in bars])
     arrays.add("tiePoints", frames[0]["points"][ends], "f4")
-    arrays.addMotion("tieMoved", np.array([one["displacement"][ends] for one in frames]))  # fmt: skip
+    arrays.addRounded("tieMoved", np.array([one["displacement"][ends] for one in frames]))  # fmt: skip
     arrays.add("tieCondition", np.array([one["condition"][bars] for one in frames]), "u1", frames=True)  # fmt: skip
 
 
-def nice(value: float) -> float:
+def nice(value):
     """The smallest number, of two digits at most and a power of ten, that is not below a value and has round quarters."""
     power = 10.0 ** np.floor(np.log10(value))
     steps = (1, 1.2, 1.6, 2, 2.4, 2.8, 3.2, 4, 5, 6, 8, 10)

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""three.js, as the Debian package libjs-three has it, and its licence. This module needs no YADE."""
+"""three.js, as the Debian package libjs-three has it, and its licence."""
 
 import os
+from pathlib import Path
 
 from ...basics import Refused
 
@@ -23,15 +24,11 @@ def three():
 
     :raises Refused: if it is not there, with the package that has it
     """
+    paths = [*(HERE + name for name in CODE), COPYRIGHT]
     for place in PLACES:
         try:
-            *code, copyright = (_read(place, path) for path in (*(HERE + name for name in CODE), COPYRIGHT))  # fmt: skip
+            *code, copyright = [Path(place, p).read_text("utf-8") for p in paths]
         except OSError:
             continue
         return code, copyright
     raise Refused(MISSING)
-
-
-def _read(place, path):
-    with open(os.path.join(place, path), encoding="utf-8") as file:
-        return file.read()

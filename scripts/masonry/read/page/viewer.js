@@ -15,8 +15,6 @@
       [name, { values: new READERS[kind](bytes, at, count), row, step }]));
   }
 
-  // -- colours ---------------------------------------------------------------------------------------------------------
-
   const RAMPS = {
     opening: ["#f5b335", "#ec6b1c", "#c8191c", "#5c0011"],
     slide: ["#7cc0ee", "#2f83cf", "#184a9a", "#0a1c4e"],
@@ -64,8 +62,6 @@
     "views. A click on a block says which it is and how it moved.";
   const LEAST_ZOOM = 0.2, MOST_ZOOM = 200;
   const ASIDE = 60; // how far the middle of the structure is beside that of a wide picture, for the legend [pixels]
-
-  // -- the picture -----------------------------------------------------------------------------------------------------
 
   class View {
     constructor(element, head, data) {
@@ -159,8 +155,6 @@
         make("details", {}, make("summary", {}, "Mouse, touch and keys"), KEYS +
           ` Of ${head.jointPoints.toLocaleString("en")} points of joints, the ${head.keptPoints.toLocaleString("en")} that crack, slide or close in some frame are drawn.`));
     }
-
-    // -- frames
 
     /** Shows a frame. */
     show(frame) {
@@ -321,8 +315,6 @@
       this.legend.hidden = !parts.length;
     }
 
-    // -- the viewer's place
-
     /** One of the standard views, with all in it. */
     look(name) {
       const { low, high, towards } = this.head;
@@ -406,8 +398,6 @@
       return `block ${bodies.values[block]} at (${text([...centres.values.subarray(3 * block, 3 * block + 3)])}) m has moved by (${text(mean.map((v) => 1e3 * v))}) mm`;
     }
 
-    // -- drawing
-
     /** Draws soon, once, however often it is asked. */
     ask() {
       if (!this.asked) this.asked = requestAnimationFrame(() => this.draw());
@@ -461,8 +451,6 @@
       this.axes.innerHTML = `<svg viewBox="-38 -38 76 76" aria-hidden="true">${lines.join("")}</svg>`;
     }
   }
-
-  // -- start -----------------------------------------------------------------------------------------------------------
 
   /** A sentence that says why this browser draws nothing in 3-D, or null. */
   function lacking() {

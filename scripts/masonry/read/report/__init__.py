@@ -15,10 +15,6 @@ has its unit, what it is, and its source. What the files do not have is said to 
 that of :mod:`masonry.read.page`, and needs the Debian package libjs-three; without it the report has a sentence in its place.
 """
 
-from __future__ import annotations
-
-from typing import Any, Callable, Iterable
-
 from ...common.arguments import FilePath, validated
 from ...basics import Refused
 from .. import pages
@@ -31,7 +27,7 @@ from .record import Record
 NAME = "report.html"  # in the folder of a run
 
 #: The parts of a report in their order: the name of the place, the heading, and a function of the record.
-PARTS: tuple[tuple[str, str, Callable[[Record], Iterable[Any]]], ...] = (
+PARTS = (
     ("built", "What was built", structure.built),
     ("loaded", "How it was held and loaded", structure.loaded),
     ("curve", "The curve", response.curve),

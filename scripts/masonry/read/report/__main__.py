@@ -1,20 +1,19 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The program ``python3 -m masonry.read.report``."""
 
-from __future__ import annotations
-
 import argparse
 import os
 import sys
-from typing import Sequence
 
 from ...common import folders, memory
 from ...basics import Refused, say
+from ..files import program
 from . import NAME, read, write
 
 
-def main(words: Sequence[str] | None = None) -> int:
-    """Write the report of a run. Returns the exit status."""
+@program
+def main(words=None):
+    """Write the report of a run."""
     parser = argparse.ArgumentParser(
         prog="masonry.read.report",
         description="Write the report of a run, one file that any browser opens, from the files in its folder.",
@@ -22,26 +21,18 @@ def main(words: Sequence[str] | None = None) -> int:
     parser.add_argument("result", help="folder of results")
     parser.add_argument("-o", "--out", metavar="FILE.html", help=f"where to write it (default: {NAME} in the folder of results)")  # fmt: skip
     args = parser.parse_args(words)
+    path = args.out or os.path.join(args.result, NAME)
+    if os.path.isdir(path) or not path.endswith((".html", ".htm")):
+        raise Refused(f"{path} must be a file whose name ends in .html or .htm")
+    if not args.out:
+        folders.check(args.result)
+    memory.reserve()
+    record = read(args.result)
     try:
-        path = args.out or os.path.join(args.result, NAME)
-        if os.path.isdir(path) or not path.endswith((".html", ".htm")):
-            raise Refused(f"{path} must be a file whose name ends in .html or .htm")
-        if not args.out:
-            folders.check(args.result)
-        memory.reserve()
-        record = read(args.result)
-        try:
-            write(record, path)
-        except OSError as problem:
-            raise Refused(f"cannot write {path}: {problem.strerror}") from None
-        say(f"{path}: {os.path.getsize(path) / 1e6:.2f} MB; any browser opens it")
-    except (Refused, OSError) as problem:
-        say(problem, sys.stderr)
-        return 2
-    except MemoryError:
-        say(memory.FULL, sys.stderr)
-        return 1
-    return 0
+        write(record, path)
+    except OSError as problem:
+        raise Refused(f"cannot write {path}: {problem.strerror}") from None
+    say(f"{path}: {os.path.getsize(path) / 1e6:.2f} MB; any browser opens it")
 
 
 if __name__ == "__main__":

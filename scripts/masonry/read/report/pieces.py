@@ -1,25 +1,22 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Pieces of a report, which its template turns into HTML, and numbers as a person writes them. This module needs no YADE."""
-
-from __future__ import annotations
+"""Pieces of a report, which its template turns into HTML, and numbers as a person writes them."""
 
 import math
-from typing import Any, Iterable, NamedTuple, Sequence
+from typing import Any, NamedTuple
 
 from ...common import arguments
-from ..quantities import Number
 
 UNKNOWN = "not known"
 DIGITS = 4
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
-def isNumber(value: Any) -> bool:
+def isNumber(value):
     """Whether a value is a finite number."""
     return arguments.isNumber(value) and math.isfinite(value)
 
 
-def written(value: Any, digits: int = DIGITS) -> str:
+def written(value, digits=DIGITS):
     """A number as a person writes it, with so many significant digits; what is no finite number is "not known"."""
     if not isNumber(value):
         return UNKNOWN
@@ -38,17 +35,12 @@ def written(value: Any, digits: int = DIGITS) -> str:
     return f"{text}\u202f·\u202f10{str(power).translate(_RAISED)}".replace("-", "−")
 
 
-def withUnit(value: Any, unit: str, digits: int = DIGITS) -> str:
+def withUnit(value, unit, digits=DIGITS):
     """A number with its unit; a text as it is."""
     if isinstance(value, str):
         return value
     text = written(value, digits)
     return text if unit == "-" or text == UNKNOWN else f"{text}\u00a0{unit}"
-
-
-def share(value: Any, digits: int = 2) -> str:
-    """A share as a percentage."""
-    return withUnit(100 * value if isNumber(value) else None, "%", digits)
 
 
 class Badged(NamedTuple):
@@ -65,7 +57,7 @@ class Piece(NamedTuple):
     about: dict[str, Any]
 
 
-def numbers(rows: Iterable[Number], caption: str) -> Piece:
+def numbers(rows, caption):
     """A table of numbers: what, value, definition and source."""
     lines = []
     for row in rows:
@@ -77,13 +69,13 @@ def numbers(rows: Iterable[Number], caption: str) -> Piece:
     return table(head, lines, caption, "numbers")
 
 
-def table(heads: Sequence[str], lines: Iterable[Sequence[Any]], caption: str, kind: str = "") -> Piece:  # fmt: skip
+def table(heads, lines, caption, kind=""):
     """A table with a caption; lines are sequences of cells, texts or :class:`Badged`, the first of which is the head of its
     line."""
     return Piece("table", {"heads": heads, "lines": list(map(tuple, lines)), "caption": caption, "kind": kind})  # fmt: skip
 
 
-def note(text: str, kind: str = "note", strong: str = "") -> Piece:
+def note(text, kind="note", strong=""):
     """A paragraph; ``kind`` is ``note``, ``lead``, ``warning`` or ``missing``.
 
     :param strong: what stands before the text in bold
@@ -91,12 +83,12 @@ def note(text: str, kind: str = "note", strong: str = "") -> Piece:
     return Piece("note", {"text": text, "kind": kind, "strong": strong})
 
 
-def missing(text: str) -> Piece:
+def missing(text):
     """A sentence in place of what a report would have and the run has not."""
     return note(text, "missing")
 
 
-def figure(picture: Any, caption: str, alt: str = "", frames: str = "") -> Piece:
+def figure(picture, caption, alt="", frames=""):
     """A picture, SVG or the address of an image, with its caption.
 
     :param alt: what it shows, for those who do not see it
@@ -105,12 +97,12 @@ def figure(picture: Any, caption: str, alt: str = "", frames: str = "") -> Piece
     return Piece("figure", {"picture": picture, "caption": caption, "alt": alt or caption, "frames": frames})  # fmt: skip
 
 
-def folded(title: str, *inside: Piece, kind: str = "", opened: bool = False) -> Piece:
+def folded(title, *inside, kind="", opened=False):
     """What is seen after a click on its title, and on paper; of the kind ``screen`` not on paper. ``opened``: it is seen at once,
     and a click hides it."""
     return Piece("folded", {"title": title, "inside": inside, "kind": kind, "opened": opened})  # fmt: skip
 
 
-def listed(texts: Iterable[Any], title: str = "", kind: str = "") -> Piece:
+def listed(texts, title="", kind=""):
     """A list with bullets below a title; of the kind ``script`` code without bullets, and ``warning``."""
     return Piece("listed", {"texts": list(texts), "title": title, "kind": kind})

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What a report is made of: the files of a run, as far as they can be read. This module needs no YADE."""
-
-from __future__ import annotations
+"""What a report is made of: the files of a run, as far as they can be read."""
 
 import base64
 import csv
@@ -9,16 +7,14 @@ import datetime
 import functools
 import math
 import os
-from typing import Any
 
 import numpy as np
 
-from ...common.arguments import FilePath
 from ...basics import Refused
 from .. import bilinear, quantities
 from ..cracks import CRACK_SURFACE
 from ..curve_figure import plan
-from ..files import filesOf, readCurve, readRun, readWhole
+from ..files import filesOf, readRun, readText, readWhole
 from .. import drawing, elevation
 from ..frames import readFrame
 from ..model import Model, chosenFrames
@@ -31,65 +27,49 @@ LARGEST_PICTURE = 600e3  # [bytes] of a figure that goes into a report
 
 
 class Record:
-    """The files of a run.
+    """The files of a run."""
 
-    - ``directory``; ``run``: entries of run.json; ``title``: its title, or the name of the folder
-    - ``columns``: arrays of curve.csv by name; what is no finite number there is NaN. Empty without rows
-    - ``problems``: sentences on what is damaged or missing in the files
-    - ``spec``: the entry ``figure`` of run.json as :func:`masonry.read.curve_figure.plan` completes it, or None
-    - ``rows``: numbers of the rows that it shows
-    - ``picture``: head and numbers of the 3-D picture, or None; ``missing``: why there is none
-    - ``elevation``: the drawing of what was built as SVG and a sentence about it, or None
-    - ``whenCracked``: the moment that cracks.png shows
-    """
-
-    def __init__(self, directory: FilePath):
-        """Read a folder of results.
-
-        :raises Refused: if it has no run.json
-        """
+    def __init__(self, directory):
+        """Read a folder of results. Raises Refused if it has no run.json."""
         self.directory = os.fspath(directory)
-        self.run = readRun(directory)
+        self.run = readRun(directory)  #: its entries
         name = os.path.basename(os.path.abspath(self.directory))
         self.title = str(self.run.get("title") or self.run.get("scene") or name)
-        self.problems: list[str] = []
+        #: sentences on what is damaged or missing in the files
+        self.problems = []
+        #: arrays of curve.csv by name; what is no finite number there is NaN. Empty without rows
         self.columns = self._columns()
+        #: the entry ``figure`` of run.json as :func:`masonry.read.curve_figure.plan` completes it, or None, and the rows that it shows
         self.spec, self.rows = None, np.zeros(0, int)
         self._plan()
-        self.picture: Any = None
-        self.missing, self.whenCracked = "", "of the run"
-        self.elevation: Any = None
-        self.frameTimes: list[float] = []
-        self.frameCount = 0
+        self.picture = None  #: head and numbers of the 3-D picture, or None
+        self.missing = ""  #: why there is none
+        self.whenCracked = "of the run"  #: the moment that cracks.png shows
+        #: the drawing of what was built as SVG and a sentence about it, or None
+        self.elevation = None
+        self.frameTimes, self.frameCount = [], 0
         self._frames()
 
-    # -- curve.csv
-
     def _columns(self):
+        """The columns of curve.csv without lines that are torn; what is left out is a problem."""
         try:
-            found = readCurve(self.directory)
+            text = readText(os.path.join(self.directory, "curve.csv"))
         except Refused as refused:
-            found = self._damaged(str(refused))
-        return {name: np.array(values, float) for name, values in found.items()}
-
-    def _damaged(self, why):
-        """The columns of a curve.csv with numbers that are not finite, or with lines that are torn; else no column."""
-        try:
-            text = readWhole(os.path.join(self.directory, "curve.csv")).decode()
-        except (OSError, UnicodeDecodeError):
-            self.problems.append(why)
+            self.problems.append(str(refused))
             return {}
         heads, *lines = [*csv.reader(text.splitlines())] or [[]]
         rows = [[*map(_finite, line)] for line in lines if len(line) == len(heads)]
         torn = len(lines) - len(rows)
         if torn:
             self.problems.append(f"curve.csv: {torn:,} lines do not have a number for every column, and are left out of this report")  # fmt: skip
-        found = {name: [row[n] for row in rows] for n, name in enumerate(heads)}
+        if not rows:
+            return {}
+        found = dict(zip(heads, np.array(rows, float).T))
         for name, values in found.items():
-            bad = sum(map(math.isnan, values))
+            bad = np.isnan(values).sum()
             if bad:
                 self.problems.append(f"curve.csv: {bad:,} of {len(values):,} values of {name} are no finite numbers, and are left out of this report")  # fmt: skip
-        return found if rows else {}
+        return found
 
     def _plan(self):
         if not self.columns:
@@ -109,12 +89,10 @@ class Record:
         good = np.isfinite([self.columns[name][rows] for name in shown[:2]]).all(axis=0)
         self.spec, self.rows = spec, rows[good]
 
-    def column(self, name: str) -> np.ndarray | None:
+    def column(self, name):
         """A column in the rows that the figure shows, or None."""
         values = self.columns.get(name)
         return None if values is None else values[self.rows]
-
-    # -- frames
 
     def _frames(self):
         try:
@@ -146,11 +124,10 @@ class Record:
             if len(targets) <= MOST_NAMES:
                 structure.names[one["body"]] = str(one["name"])
         size = " × ".join(written(float(v), 3) for v in high - low)
-        about = (
-            f"The {len(bricks):,} units of the masonry as built, {size} m (x × y × z)."
-        )
+        about = f"The {len(bricks):,} units of the masonry as built, {size} m"
         with drawing.style():
-            return drawing.svg(elevation.figureOf(structure, "", 0), "built"), about
+            drawn = drawing.svg(elevation.figureOf(structure, "", 0), "built")
+        return drawn, f"{about} (x × y × z)."
 
     def _whole(self, structure, joints):
         """A structure whose bricks are whole that the model has in halves: those on both sides of a crack surface."""
@@ -164,9 +141,7 @@ class Record:
         structure.parts = {n: [b for b in part if b in structure.corners] for n, part in structure.parts.items()}  # fmt: skip
         return structure
 
-    # -- figures, date
-
-    def image(self, name: str) -> str | None:
+    def image(self, name):
         """A figure of the folder as an address that holds it all, or None if it is not there."""
         try:
             data = readWhole(os.path.join(self.directory, name))
@@ -176,7 +151,7 @@ class Record:
             return None
         return "data:image/png;base64," + base64.b64encode(data).decode()
 
-    def date(self) -> tuple[str, str]:
+    def date(self):
         """When the run ended, and where that is from."""
         date = self.run.get("date")
         if isinstance(date, str):
@@ -188,57 +163,39 @@ class Record:
         when = datetime.datetime.fromtimestamp(seconds, datetime.timezone.utc)
         return when.strftime("%Y-%m-%d %H:%M:%S UTC"), "time of the file run.json"
 
-    # -- what kind of run it is
-
-    @property
-    def stages(self) -> list[dict[str, Any]]:
-        """Entries of the stages that can be used."""
-        found = self.run.get("stages")
-        return [s for s in found if isinstance(s, dict)] if isinstance(found, list) else []  # fmt: skip
-
     @functools.cached_property
-    def data(self) -> RunData:
+    def data(self):
         """What the numbers of the run are found from: rows whose forces are no finite numbers are left out."""
-        data = RunData(self.run, lambda name: self.columns.get(name))
-        heads = (MOVED, BASE, TOP)
+        data = RunData(self.run, self.columns.get)
+        known = [self.columns[h] for h in (MOVED, BASE, TOP) if h in self.columns]
         with filesOf(self.directory):
-            rows = [n for n in data.rows if all(math.isfinite(self.columns[head][n]) for head in heads if head in self.columns)]  # fmt: skip
+            rows = [n for n in data.rows if all(math.isfinite(v[n]) for v in known)]
         data.rows = rows  # type: ignore[misc]
         return data
 
     @functools.cached_property
-    def numbers(self) -> dict[str, Any]:
+    def numbers(self):
         """All numbers of the run, by their entries in run.json."""
         return quantities.known(self.data)
 
     @property
-    def pushes(self) -> list[int]:
-        """Numbers of the stages that push, from 1."""
-        loads = [stage.get("load") for stage in self.stages]
-        return [n for n, load in enumerate(loads, 1) if isinstance(load, list) and load[:1] == ["push"]]  # fmt: skip
-
-    @property
-    def isPush(self) -> bool:
+    def isPush(self):
         """Whether the numbers of a push are there."""
         return bool(self.data.pushes)
 
     @property
-    def isLooped(self) -> bool:
+    def isLooped(self):
         """Whether the push goes there and back."""
         return bool(self.spec and self.spec["looped"])
 
     @functools.cached_property
-    def ideals(self) -> dict[str, Any]:
+    def ideals(self):
         """The bilinear curve of the push by every rule of :mod:`masonry.read.bilinear`, or a text that says why there is none."""
-        try:
-            with filesOf(self.directory):
-                push = bilinear.pushover(self.directory)
-        except Refused as refused:
-            return dict.fromkeys(bilinear.RULES, self._bare(refused))
-        found: dict[str, Any] = {}
+        push, found = None, {}
         for rule in bilinear.RULES:
             try:
                 with filesOf(self.directory):
+                    push = push or bilinear.pushover(self.directory)
                     found[rule] = bilinear.ofRun(push, rule)
             except Refused as refused:
                 found[rule] = self._bare(refused)
@@ -247,6 +204,12 @@ class Record:
     def _bare(self, refused):
         """The text of a refusal without the folder at its beginning."""
         return str(refused).removeprefix(f"{self.directory}: ")
+
+
+def entriesOf(run, key):
+    """Those entries of a list of run.json that can be used."""
+    found = run.get(key)
+    return [one for one in found if isinstance(one, dict)] if isinstance(found, list) else []  # fmt: skip
 
 
 def _finite(text):

@@ -1,33 +1,27 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Parts of a report on what the structure did: its curve, drifts, bound, energies, cycles and forces at the base. This module
-needs no YADE."""
-
-from __future__ import annotations
-
-import re
-from typing import Any, Iterator
+"""Parts of a report on what the structure did: its curve, drifts, bound, energies, cycles and forces at the base."""
 
 import numpy as np
 
+from ...basics import Refused
 from .. import bilinear, curve_figure, drawing, quantities
 from ..curve_figure import energies, unitOf
+from ..shown import bare
 
-from .pieces import Badged, Number, figure, folded, isNumber, missing, note, numbers, share, table, withUnit, written  # fmt: skip
-from .record import Record
-from .structure import answersOf, nameOf, sought, valueOf
+from .pieces import Badged, figure, folded, isNumber, missing, note, numbers, table, withUnit, written  # fmt: skip
+from .record import entriesOf
+from .structure import firstUpper, nameOf, sought, valueOf
 
 MOST_ANSWERS = 12  # in the table of what stages found; all are in a folded one
 NOISE = 1e-6  # of the largest force of a column: what is below is round-off
-NO_PUSH = "The run has no push"
 
 
-def curve(record: Record) -> Iterator[Any]:
+def curve(record):
     """The curve of the run with its marks and bounds."""
     spec = record.spec
     if spec is None or not len(record.rows):
         why = "; ".join(p for p in record.problems if "curve" in p)
-        yield missing(f"There is no curve: {why or 'the run has no rows'}.")  # fmt: skip
-        return
+        raise Refused(f"There is no curve: {why or 'the run has no rows'}.")
     x = record.column(spec["x"]["column"])
     data = {name: values[record.rows] for name, values in record.columns.items()}
     ideal, line = record.ideals["masonry"], None
@@ -49,7 +43,8 @@ def curve(record: Record) -> Iterator[Any]:
     picture = record.image("capacity.png")
     if picture:
         yield figure(picture, "Capacity curve and demand of a spectrum, as masonry.capacity drew them. Source: capacity.png.")  # fmt: skip
-    pushes = record.pushes
+    loads = [stage.get("load") for stage in entriesOf(record.run, "stages")]
+    pushes = [n for n, load in enumerate(loads, 1) if isinstance(load, list) and load[:1] == ["push"]]  # fmt: skip
     if len(pushes) > 1:
         numbered = ", ".join(map(str, pushes))
         yield note(f"The run has {len(pushes)} pushes, the stages {numbered}. The curve and the numbers of the push are those of the last one, and of those before it along the same line.")  # fmt: skip
@@ -72,31 +67,25 @@ def _ideal(record):
     if all(isinstance(one, str) for one in ideals.values()):
         yield missing(f"There is no bilinear curve: {ideals['masonry']}.")
         return
-    known = {
-        rule: {n.name: n for n in one.numbers()}
-        for rule, one in ideals.items()
-        if not isinstance(one, str)
-    }
+    good = {rule: one for rule, one in ideals.items() if not isinstance(one, str)}
+    known = {rule: {n.name: n for n in one.numbers()} for rule, one in good.items()}
     lines = []
     for name, what in OF_IDEAL.items():
-        values = [_idealOf(known.get(rule, {}).get(name)) for rule in ideals]
-        meanings = dict.fromkeys(known[rule][name].meaning for rule in known)
-        lines.append((what, *values, " Or: ".join(meanings)))
+        values, meanings = dict.fromkeys(ideals, "none"), {}
+        for rule in known:
+            one = known[rule][name]
+            value = withUnit(one.value, one.unit)
+            # its curve ends before the force has fallen
+            values[rule] = Badged(value, "not reached") if one.note else value
+            meanings[one.meaning] = None
+        lines.append((what, *values.values(), " Or: ".join(meanings)))
     heads = ("quantity", *(bilinear.RULES[rule] for rule in ideals), "what it is")
     caption = "Bilinear idealisation of the force that both ends carry at once. Source: curve.csv: displacement_mm, base_shear_kN, top_shear_kN"
     yield table(heads, lines, caption, "ideal")
-    notes = dict.fromkeys(n for one in ideals.values() if not isinstance(one, str) for n in one.notes)  # fmt: skip
-    notes.update((f"{bilinear.RULES[rule]}: none, because {one}", None) for rule, one in ideals.items() if isinstance(one, str))  # fmt: skip
-    for text in notes:
-        yield note(f"{text[:1].upper()}{text[1:]}.")
-
-
-def _idealOf(number):
-    """A number of a bilinear curve; one that ends before the force has fallen is marked."""
-    if number is None:
-        return "none"
-    value = withUnit(number.value, number.unit)
-    return Badged(value, "not reached") if number.note else value
+    notes = [n for one in good.values() for n in one.notes]
+    notes += [f"{bilinear.RULES[rule]}: none, because {ideals[rule]}" for rule in ideals if rule not in good]  # fmt: skip
+    for text in dict.fromkeys(notes):
+        yield note(f"{firstUpper(text)}.")
 
 
 def _aboutCurve(spec, y):
@@ -104,7 +93,7 @@ def _aboutCurve(spec, y):
     label = str(spec["y_label"])
     unit = unitOf({"label": label, "column": spec["y"][0]["column"]})
     return (
-        f"{label[:1].upper() + label[1:]}, {spec['y'][0]['label']}, over {spec['x']['label']}: {len(y):,} rows, from {withUnit(float(y.min()), unit)} to "
+        f"{firstUpper(label)}, {spec['y'][0]['label']}, over {spec['x']['label']}: {len(y):,} rows, from {withUnit(float(y.min()), unit)} to "
         f"{withUnit(float(y.max()), unit)}."
     )
 
@@ -118,16 +107,13 @@ def _places(record, x, y):
     return [(float(x[n]), float(y[n])) for n in rows]
 
 
-# -- what the run found -----------------------------------------------------------------------------------------------
-
-
-def found(record: Record) -> Iterator[Any]:
+def found(record):
     """Drifts and other numbers of a push, drifts that were recorded, and what the stages were run for."""
     if record.isPush:
         yield from _states(record)
         yield numbers(quantities.shown(record.numbers, "push", "loops", "one way"), "Numbers of the push")  # fmt: skip
     else:
-        yield missing(f"{NO_PUSH}, so there are no drifts at a peak or at a first crack.")  # fmt: skip
+        yield missing("The run has no push, so there are no drifts at a peak or at a first crack.")  # fmt: skip
     yield from _drifts(record)
     yield from _answers(record.run)
 
@@ -136,13 +122,14 @@ def _states(record):
     """First crack, peak, loss of force and collapse: displacement, drift and force."""
     data, entries, lines = record.data, record.numbers, []
     for state in quantities.STATES:
-        moved, drift = entries.get(state.displacement), entries.get(state.drift)
-        source = f"run.json: {state.displacement}"
-        if not isNumber(moved):
-            lines.append((state.name, "none", "none", "none", f"{state.meaning} Here: {state.missing}.", source))  # fmt: skip
-            continue
-        carried = data.at(data.carried(), data.place(state.find))
-        lines.append((state.name, withUnit(moved, "mm"), withUnit(drift, "mrad"), withUnit(carried, "kN"), state.meaning, source))  # fmt: skip
+        moved, meaning = entries.get(state.displacement), state.meaning
+        found = ["none"] * 3
+        if isNumber(moved):
+            carried = data.at(data.carried(), data.place(state.find))
+            found = [withUnit(moved, "mm"), withUnit(entries.get(state.drift), "mrad"), withUnit(carried, "kN")]  # fmt: skip
+        else:
+            meaning += f" Here: {state.missing}."
+        lines.append((state.name, *found, meaning, f"run.json: {state.displacement}"))
     heads = ("state", "displacement", "drift", "force at both ends", "what it is", "source")  # fmt: skip
     yield table(heads, lines, "Drifts of the push", "states")
     if data.height:
@@ -158,19 +145,14 @@ def _drifts(record):
         values = record.columns.get(name, np.zeros(0))
         values = values[np.isfinite(values)]
         if len(values):
-            at = int(np.abs(values).argmax())
-            rows.append(Number(f"largest {name.removesuffix('_mrad')}", float(values[at]), "mrad", f"Of all rows the one with the largest size: {_bare(meanings.get(name))}.", f"curve.csv: {name}"))  # fmt: skip
+            largest = float(max(values, key=abs))
+            rows.append(quantities.Number(f"largest {name.removesuffix('_mrad')}", largest, "mrad", f"Of all rows the one with the largest size: {bare(meanings.get(name))}.", f"curve.csv: {name}"))  # fmt: skip
     if rows:
         yield numbers(rows, "Drifts that were recorded")
 
 
-def _bare(meaning):
-    """The meaning of a column without its unit."""
-    return re.sub(r" *\[[^\[\]]+\]$", "", str(meaning))
-
-
 def _answers(run):
-    answers = answersOf(run)
+    answers = entriesOf(run, "answers")
     if not answers:
         yield note("No stage was run for a number. Source: run.json: answers.")
         return
@@ -178,27 +160,24 @@ def _answers(run):
     heads = ("stage and number", "value", "how it was found")
     caption = "What the stages were run for. Source: run.json: answers"
     every = [line(a, nameOf(a)) for a in answers]
+    whole = table(heads, every, caption, "answers")
     if len(every) <= MOST_ANSWERS:
-        yield table(heads, every, caption, "answers")
+        yield whole
         return
     found = [line(a, what) for a, what in sought(run)]
     if found:
         yield table(heads, found, caption, "answers")
-    yield folded(f"All {len(every)} numbers of the stages", table(heads, every, caption, "answers"))  # fmt: skip
-
-
-# -- the bound --------------------------------------------------------------------------------------------------------
+    yield folded(f"All {len(every)} numbers of the stages", whole)
 
 
 WHAT_JOINTS_DO = {"opens": "open", "slides": "slide", "crushes": "crush"}
 
 
-def bound(record: Record) -> Iterator[Any]:
+def bound(record):
     """The bound by limit analysis."""
-    entries = [b for b in record.run.get("bounds") or [] if isinstance(b, dict)]
+    entries = entriesOf(record.run, "bounds")
     if not entries:
-        yield missing("There is no bound: limit analysis is made where a structure is pushed, leans or tilts, of up to 3,000 joints, and not with --lean. Source: run.json: bounds.")  # fmt: skip
-        return
+        raise Refused("There is no bound: limit analysis is made where a structure is pushed, leans or tilts, of up to 3,000 joints, and not with --lean. Source: run.json: bounds.")  # fmt: skip
     lines = []
     for one in entries:
         if not isNumber(one.get("factor")):
@@ -215,14 +194,11 @@ def bound(record: Record) -> Iterator[Any]:
         lines.append((one.get("load", "?"), withUnit(one["factor"], unit), joints or "–", "; ".join([kind, *further])))  # fmt: skip
     heads = ("load", "factor", "joints of the mechanism", "what it is")
     yield table(heads, lines, "Limit analysis of the same blocks, rigid and with small displacements. Source: run.json: bounds")  # fmt: skip
-    pairs = (
-        ("peak_at_both_ends_kN", "bound_base_shear_kN", "peak over bound"),
-        ("negative_peak_at_both_ends_kN", "negative_bound_base_shear_kN", "peak of the other side over its bound"),
-    )  # fmt: skip
     run, rows = record.numbers, []
-    for peak, limit, what in pairs:
+    for side, what in (("", "peak over bound"), ("negative_", "peak of the other side over its bound")):  # fmt: skip
+        peak, limit = f"{side}peak_at_both_ends_kN", f"{side}bound_base_shear_kN"
         if isNumber(run.get(peak)) and isNumber(run.get(limit)) and run[limit]:
-            rows.append(Number(what, abs(run[peak] / run[limit]), "-", "Of an upper bound it cannot be much above 1; a run warns where it is.", f"run.json: {peak}, {limit}"))  # fmt: skip
+            rows.append(quantities.Number(what, abs(run[peak] / run[limit]), "-", "Of an upper bound it cannot be much above 1; a run warns where it is.", f"run.json: {peak}, {limit}"))  # fmt: skip
     if rows:
         yield numbers(rows, "The run beside its bound")
     picture = record.image("mechanism.png")
@@ -230,32 +206,26 @@ def bound(record: Record) -> Iterator[Any]:
         yield figure(picture, "How the structure gives way in limit analysis. Source: mechanism.png.")  # fmt: skip
 
 
-# -- energies ---------------------------------------------------------------------------------------------------------
-
-
-def energy(record: Record) -> Iterator[Any]:
+def energy(record):
     """Where the work went: a table, a bar and a chart."""
     # a figure may show its rows in another order
     rows = np.arange(record.rows.min(), record.rows.max() + 1) if len(record.rows) else record.rows  # fmt: skip
     columns = {n: v[rows] for n, v in record.columns.items() if n.endswith("_J")}
     if not columns or not len(record.rows):
-        yield missing("There is no energy balance: curve.csv has no rows with energies.")  # fmt: skip
-        return
+        raise Refused("There is no energy balance: curve.csv has no rows with energies.")  # fmt: skip
     finite = np.isfinite(list(columns.values())).all(axis=0)
     columns = {n: v[finite] for n, v in columns.items()}
     if finite.sum() < 2:
-        yield missing("There is no energy balance: less than two rows have all energies.")  # fmt: skip
-        return
+        raise Refused("There is no energy balance: less than two rows have all energies.")  # fmt: skip
     stack, work = energies(columns)
     change = lambda name: float(columns[name][-1] - columns[name][0])
     known = {**quantities.ENERGIES, **quantities.OF_CONNECTORS, **quantities.OF_CONTACTS}  # fmt: skip
-    kinds = {f"{name}_J": kind for name, (_, kind) in known.items()}
     rare = ("refining_J", "handing_J")  # where joints get points, or turn into contacts
     columns = {n: v for n, v in columns.items() if n not in rare or v.any()}
-    of = lambda kind: [n for n in kinds if n in columns and kinds[n] == kind]
+    of = lambda kind: [f"{n}_J" for n in known if f"{n}_J" in columns and known[n][1] == kind]  # fmt: skip
     inputs, elastic, spent = of("in"), of("stored"), of("spent")
     total = sum(map(change, inputs))
-    part = lambda value: share(value / total) if total > 0 else written(None)
+    part = lambda value: withUnit(100 * value / total if total > 0 else None, "%", 2)
     line = lambda what, value, source: (what, withUnit(value, "J"), part(value), source)
     own = lambda n: line(known[n[:-2]][0], change(n), f"curve.csv: {n}")
     stored = sum(map(change, elastic))
@@ -281,9 +251,6 @@ def energy(record: Record) -> Iterator[Any]:
     yield figure(svg, f"{about} Source: curve.csv.")
 
 
-# -- cycles -----------------------------------------------------------------------------------------------------------
-
-
 ABOUT_CYCLES = (
     "W is the integral of the base shear over the displacement, K the secant stiffness from peak to peak, A half of the "
     "displacement from peak to peak, and ξ = W/(4π·½·K·A²), the ratio of the viscous damping that takes as much work in a cycle "
@@ -292,12 +259,11 @@ ABOUT_CYCLES = (
 )
 
 
-def cycles(record: Record) -> Iterator[Any]:
+def cycles(record):
     """Equivalent damping of cycles."""
     entries = record.run.get("cycles")
     if not entries:
-        yield missing("The run has no whole cycles, so there is no equivalent damping.")  # fmt: skip
-        return
+        raise Refused("The run has no whole cycles, so there is no equivalent damping.")
     columns = [one for one in quantities.OF_CYCLES if one[-1]]
     heads = [f"{name} [{'%' if key == 'damping' else unit}]" for key, name, unit, *_ in columns]  # fmt: skip
     lines = []
@@ -308,18 +274,15 @@ def cycles(record: Record) -> Iterator[Any]:
     yield note(ABOUT_CYCLES)
 
 
-# -- forces at the base -----------------------------------------------------------------------------------------------
-
-
-def base(record: Record) -> Iterator[Any]:
+def base(record):
     """Normal force, shear force and moment: of the sections that were recorded, else forces on what is held."""
     sections = record.run.get("recorded_sections") or []
     names = [n for n in sections if n in record.columns]
     if names:
         yield _forces(record, names, "Forces of the sections that were recorded")
         return
-    names = [f"{held}_force_{axis}_kN" for held in record.run.get("held") or [] for axis in "xyz"]  # fmt: skip
-    reactions = [name for name in names if name in record.columns]
+    held = record.run.get("held") or []
+    reactions = [n for one in held for axis in "xyz" if (n := f"{one}_force_{axis}_kN") in record.columns]  # fmt: skip
     yield missing("The moment at the base is not known: no section was recorded. scene.section(z) in the script records the normal force, the shear force and the moment of a horizontal section.")  # fmt: skip
     if not reactions and "base_shear_kN" in record.columns and record.isPush:
         reactions = ["base_shear_kN"]
@@ -329,21 +292,19 @@ def base(record: Record) -> Iterator[Any]:
 
 def _forces(record, names, caption):
     meanings = record.run.get("columns") or {}
-    places = {"first row": record.rows[0], "last row": record.rows[-1]}
+    places = {"first row": record.rows[0]}
     if record.isPush and record.data.rows:
-        at = record.data.rows[record.data.peak()]
-        places = {"first row": record.rows[0], "at the peak": at, "last row": record.rows[-1]}  # fmt: skip
+        places["at the peak"] = record.data.rows[record.data.peak()]
+    places["last row"] = record.rows[-1]
     lines = []
     for name in names:
         values, unit = record.columns[name], name.rpartition("_")[2]
         shown = values[record.rows]
         finite = shown[np.isfinite(shown)]
         ends = [finite.min(), finite.max()] if len(finite) else [np.nan] * 2
-        most = max(map(abs, ends))
-        texts = [
-            "≈ 0" if abs(v) < NOISE * most else withUnit(float(v), unit)
-            for v in [*(values[n] for n in places.values()), *ends]
-        ]
-        lines.append((name.removesuffix("_" + unit), *texts, _bare(meanings.get(name)), f"curve.csv: {name}"))  # fmt: skip
+        least = NOISE * max(map(abs, ends))
+        every = [*values[list(places.values())], *ends]
+        texts = ["≈ 0" if abs(v) < least else withUnit(float(v), unit) for v in every]
+        lines.append((name.removesuffix("_" + unit), *texts, bare(meanings.get(name)), f"curve.csv: {name}"))  # fmt: skip
     heads = ("force", *places, "smallest", "largest", "what it is", "source")
     return table(heads, lines, caption, "forces")

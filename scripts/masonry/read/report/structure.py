@@ -1,14 +1,11 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Parts of a report on what was built, and how it was held and loaded. This module needs no YADE."""
+"""Parts of a report on what was built, and how it was held and loaded."""
 
-from __future__ import annotations
-
-from typing import Any, Iterator
-
+from ...basics import Refused
 from .. import quantities
 
-from .pieces import Badged, Number, figure, folded, isNumber, listed, missing, note, numbers, table, withUnit, written  # fmt: skip
-from .record import Record
+from .pieces import Badged, figure, folded, isNumber, listed, missing, note, numbers, table, withUnit, written  # fmt: skip
+from .record import entriesOf
 
 #: Units in which properties are shown, and the factor from SI units.
 SHOWN = {"Pa": ("MPa", 1e-6), "Pa/m": ("N/mm³", 1e-9), "J/m²": ("N/mm", 1e-3), "m": ("mm", 1e3), "1/m": ("1/mm", 1e-3)}  # fmt: skip
@@ -30,14 +27,13 @@ MOST_LEADING = 3  # answers at the head of a report
 OLDER = "The run was made by an older version of the plugin, whose run.json does not say this."
 
 
-def facts(record: Record) -> list[tuple[str, str, str]]:
+def facts(record):
     """Name, value and source of what stands below the title."""
     run = record.run
     when, whence = record.date()
-    versions = run.get("versions")
-    versions = versions if isinstance(versions, dict) else {}
-    names = (("masonry", "masonry"), ("yade", "YADE"), ("python", "Python"))
-    made = [f"{name} {versions[key]}" for key, name in names if key in versions]
+    known = run.get("versions")
+    names = {"masonry": "masonry", "yade": "YADE", "python": "Python"}
+    made = [f"{name} {known[key]}" for key, name in names.items() if isinstance(known, dict) and key in known]  # fmt: skip
     return [
         ("scene", str(run.get("scene", "not known")), "run.json: scene"),
         ("run ended", when, whence),
@@ -46,7 +42,7 @@ def facts(record: Record) -> list[tuple[str, str, str]]:
     ]
 
 
-def head(record: Record) -> Iterator[Any]:
+def head(record):
     """How the run ended, and the numbers that it was run for."""
     run = record.run
     if run.get("error"):
@@ -60,37 +56,28 @@ def head(record: Record) -> Iterator[Any]:
     else:
         yield note("The run has no rows: it took no time steps, or ended before there was one.")  # fmt: skip
     lead = quantities.headline({**run, **record.numbers})
+    lead = lead or "; ".join(f"{what} {valueOf(one)}" for one, what in sought(run))
+    if not lead:
+        answers = [a for a in entriesOf(run, "answers") if isNumber(a.get("value"))]
+        lead = "; ".join(f"{nameOf(a)} {valueOf(a)}" for a in answers[-MOST_LEADING:])
     if lead:
-        yield note(f"{_firstUpper(lead)}.", "lead")
-    else:
-        found = [f"{what} {valueOf(one)}" for one, what in sought(run)]
-        if not found:
-            answers = [a for a in answersOf(run) if isNumber(a.get("value"))]
-            found = [f"{nameOf(a)} {valueOf(a)}" for a in answers[-MOST_LEADING:]]
-        if found:
-            yield note(_firstUpper("; ".join(found)) + ".", "lead")
+        yield note(f"{firstUpper(lead)}.", "lead")
     warnings = [str(w) for w in run.get("warnings") or []] + record.problems
     if warnings:
         more = f", and {len(warnings) - 1} more" if len(warnings) > 1 else ""
         yield note(f"{warnings[0]}{more}. The part “How far to trust it” has all.", "warning", "Warning:")  # fmt: skip
 
 
-def _firstUpper(text):
+def firstUpper(text):
     return text[:1].upper() + text[1:]
 
 
-def answersOf(run: dict[str, Any]) -> list[dict[str, Any]]:
-    """The entries ``answers`` that are ones."""
-    found = run.get("answers")
-    return [a for a in found if isinstance(a, dict)] if isinstance(found, list) else []  # fmt: skip
-
-
-def nameOf(answer: dict[str, Any]) -> str:
+def nameOf(answer):
     """The name of an answer in words."""
     return str(answer.get("name")).replace("_", " ")
 
 
-def valueOf(answer: dict[str, Any]) -> str:
+def valueOf(answer):
     """An answer with its uncertainty and unit."""
     if not isNumber(answer.get("value")):
         return "not found"
@@ -100,10 +87,10 @@ def valueOf(answer: dict[str, Any]) -> str:
     return text if unit == "-" else f"{text}\u00a0{unit}"
 
 
-def sought(run: dict[str, Any]) -> list[tuple[dict[str, Any], str]]:
+def sought(run):
     """The largest load that was held and the smallest that was not, as answers, of a run that looked for one load."""
     loads, found = quantities.loadsOf(run.get("stages") or []), []
-    ones = [a for a in answersOf(run) if a.get("name") in ("factor_held", "factor_not_held") and isNumber(a.get("value"))]  # fmt: skip
+    ones = [a for a in entriesOf(run, "answers") if a.get("name") in ("factor_held", "factor_not_held") and isNumber(a.get("value"))]  # fmt: skip
     if len({(a.get("stage"), a.get("unit"), loads.get(a.get("number"))) for a in ones}) != 1:  # fmt: skip
         return []
     for name, choose, what in (("factor_held", max, "largest load that was held"), ("factor_not_held", min, "smallest load that was not held")):  # fmt: skip
@@ -113,22 +100,18 @@ def sought(run: dict[str, Any]) -> list[tuple[dict[str, Any], str]]:
     return found
 
 
-# -- what was built ---------------------------------------------------------------------------------------------------
-
-
-def built(record: Record) -> Iterator[Any]:
+def built(record):
     """What was built: a drawing, counts, and materials with what was assumed."""
     run = record.run
     if record.elevation:
         yield figure(*record.elevation)
     else:
         yield missing(f"There is no drawing of what was built: {record.missing}")  # fmt: skip
-    rows = [(name, text, "run.json: built") for name, text in run.get("built") or []]
-    rows += [
-        (what, written(run[key]), f"run.json: {key}")
-        for key, what in COUNTS.items()
-        if run.get(key) and not (key == "units" and run.get("built"))
-    ]
+    built = run.get("built") or []
+    rows = [(name, text, "run.json: built") for name, text in built]
+    for key, what in COUNTS.items():
+        if run.get(key) and not (key == "units" and built):
+            rows.append((what, written(run[key]), f"run.json: {key}"))
     kinds = run.get("joints_by_kind")
     if kinds:
         text = ", ".join(f"{written(count)} {name}" for name, count in kinds.items())
@@ -145,15 +128,15 @@ def _units(run):
         return
     assumed = _namesOf(run)
     rows = (
-        ("Young's modulus of the units", "young", "young_Pa", 1e-6, "MPa", "Elastic modulus of the material of the bricks; rigid units have theirs in the stiffness of their joints."),
-        ("Poisson's ratio of the units", "poisson", "poisson", 1, "-", "Lateral over longitudinal strain of the material of the bricks."),
-        ("density of the units", "density", "density_kg_per_m3", 1, "kg/m³", "Mass of a brick over its volume."),
+        ("Young's modulus of the units", "young_Pa", 1e-6, "MPa", "Elastic modulus of the material of the bricks; rigid units have theirs in the stiffness of their joints."),
+        ("Poisson's ratio of the units", "poisson", 1, "-", "Lateral over longitudinal strain of the material of the bricks."),
+        ("density of the units", "density_kg_per_m3", 1, "kg/m³", "Mass of a brick over its volume."),
     )  # fmt: skip
     found = []
-    for what, name, key, factor, shown, meaning in rows:
+    for what, key, factor, shown, meaning in rows:
         value = factor * unit[key] if isNumber(unit.get(key)) else None
-        named, source = _marked(what, f"unit.{name}" in assumed), f"run.json: unit_material.{key}"  # fmt: skip
-        found.append(Number(named, value, shown, meaning, source))
+        named = _marked(what, f"unit.{key.partition('_')[0]}" in assumed)
+        found.append(quantities.Number(named, value, shown, meaning, f"run.json: unit_material.{key}"))  # fmt: skip
     yield numbers(found, "Units")
 
 
@@ -222,8 +205,7 @@ def _cell(joint, name, factor, isAssumed):
 def _assumed(run):
     entries = run.get("assumed")
     if entries is None:
-        yield missing(OLDER)
-        return
+        raise Refused(OLDER)
     if not entries:
         yield note("Nothing was assumed: every property of the materials was given. Source: run.json: assumed.")  # fmt: skip
         return
@@ -241,10 +223,7 @@ def _assumed(run):
     yield table(("of", "property and value", "where it is from"), lines, "What was not given, and is ASSUMED. Source: run.json: assumed")  # fmt: skip
 
 
-# -- how it was held and loaded ---------------------------------------------------------------------------------------
-
-
-def loaded(record: Record) -> Iterator[Any]:
+def loaded(record):
     """How it was held and loaded: targets, stages, the words of the script, and the options."""
     run = record.run
     pairs = run.get("held_and_loaded")
@@ -255,13 +234,10 @@ def loaded(record: Record) -> Iterator[Any]:
         yield note(f"Held: {held}. Source: run.json: held.")
     yield from _connections(run)
     lines = []
-    for number, stage in enumerate(record.stages, start=1):
+    answers = [a for a in entriesOf(run, "answers") if isNumber(a.get("value"))]
+    for number, stage in enumerate(entriesOf(run, "stages"), start=1):
         load = [str(one) for one in (stage.get("load") or [])[1:2] if one]
-        found = [
-            f"{nameOf(a)} {valueOf(a)}"
-            for a in answersOf(run)
-            if a.get("number") == number and isNumber(a.get("value"))
-        ]
+        found = [f"{nameOf(a)} {valueOf(a)}" for a in answers if a.get("number") == number]  # fmt: skip
         lines.append((number, stage.get("stage", "?"), ", ".join(load) or "–", written(stage.get("steps")), "; ".join(found) or "–"))  # fmt: skip
     if lines:
         yield table(("number", "stage", "load", "time steps", "what it found"), lines, "Stages in their order. Source: run.json: stages, answers", "stages")  # fmt: skip
@@ -269,10 +245,8 @@ def loaded(record: Record) -> Iterator[Any]:
     if words:
         script = listed((spoken(*word) for word in words), kind="script")
         about = note("Stresses are in Pa, forces in N, lengths in m, and displacements of pushes and supports in mm; help(masonry.Scene) describes the words. Source: run.json: script.")  # fmt: skip
-        few = len(words) <= MOST_WORDS
-        yield folded(
-            "The words of the script, in their order", script, about, opened=few
-        )
+        title, few = "The words of the script, in their order", len(words) <= MOST_WORDS
+        yield folded(title, script, about, opened=few)
     options = run.get("options")
     if isinstance(options, dict):
         units = run.get("option_units") or {}
@@ -287,10 +261,9 @@ ENDINGS = (("_N_per_m", "N/m"), ("_Nm", "N m"), ("_N", "N"), ("_m", "m"))
 def _connections(run):
     """Ties, springs and layers of fibres, if run.json has some."""
     for key in ("ties", "springs", "overlays"):
-        entries = [one for one in run.get(key) or [] if isinstance(one, dict)]
         lines = [
             (one.get("name", "?"), "; ".join(_named(n, v) for n, v in one.items() if n != "name"))
-            for one in entries
+            for one in entriesOf(run, key)
         ]  # fmt: skip
         if lines:
             yield table(("name", "what it is, and its state at the end"), lines, f"{key.capitalize()}. Source: run.json: {key}")  # fmt: skip
@@ -318,7 +291,7 @@ def _said(value):
     return written(value, 6) if isNumber(value) else str(value)
 
 
-def spoken(word: Any, arguments: Any) -> str:
+def spoken(word, arguments):
     """A word of a script as it was said, without the arguments that are nothing."""
     if not isinstance(arguments, dict):
         return f"{word}({arguments})"

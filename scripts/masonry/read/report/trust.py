@@ -1,17 +1,13 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Parts of a report on the pictures, and on how far to trust the numbers. This module needs no YADE."""
-
-from __future__ import annotations
-
-from typing import Any, Iterator
+"""Parts of a report on the pictures, and on how far to trust the numbers."""
 
 from .. import quantities
 
-from .pieces import UNKNOWN, Number, Piece, figure, isNumber, listed, missing, note, numbers, table, withUnit, written  # fmt: skip
-from .record import Record
+from .pieces import UNKNOWN, Piece, figure, isNumber, listed, missing, note, numbers, table, withUnit, written  # fmt: skip
+from .record import entriesOf
 
 
-def pictures(record: Record) -> Iterator[Any]:
+def pictures(record):
     """The turning picture, and the cracks at the end."""
     if record.picture:
         yield Piece("turning", {"picture": record.picture})
@@ -27,7 +23,7 @@ def pictures(record: Record) -> Iterator[Any]:
         yield figure(cracks, f"Cracks {record.whenCracked}: open joints red, slid joints blue, crushed joints black. Source: cracks.png.")  # fmt: skip
 
 
-def trust(record: Record) -> Iterator[Any]:
+def trust(record):
     """How far to trust it: errors that the run knows of itself, promises, warnings, and what is not known."""
     run = record.run
     warnings = run.get("warnings")
@@ -42,7 +38,7 @@ def trust(record: Record) -> Iterator[Any]:
     rows = quantities.shown(record.numbers, "every", "cost")
     step, limit = run.get("time_step_s"), run.get("time_step_limit_s")
     if isNumber(step) and isNumber(limit) and limit > 0:
-        rows.append(Number("time step", 1e6 * step, "µs", f"{written(100 * step / limit, 3)} % of the largest stable one.", "run.json: time_step_s, time_step_limit_s"))  # fmt: skip
+        rows.append(quantities.Number("time step", 1e6 * step, "µs", f"{written(100 * step / limit, 3)} % of the largest stable one.", "run.json: time_step_s, time_step_limit_s"))  # fmt: skip
     if rows:
         yield numbers(rows, "What the run knows of its own errors")
     yield from _accuracy(run)
@@ -64,11 +60,9 @@ def trust(record: Record) -> Iterator[Any]:
 
 
 def _said(run):
-    notes = run.get("notes")
-    lines = [one for one in notes if isinstance(one, dict)] if isinstance(notes, list) else []  # fmt: skip
-    if lines:
-        when = lambda one: (str(one.get("stage") or "before the first stage"), withUnit(one["time_s"], "s") if isNumber(one.get("time_s")) else UNKNOWN)  # fmt: skip
-        rows = [(*when(one), str(one.get("text", UNKNOWN))) for one in lines]
+    when = lambda one: (str(one.get("stage") or "before the first stage"), withUnit(one.get("time_s"), "s"))  # fmt: skip
+    rows = [(*when(one), str(one.get("text", UNKNOWN))) for one in entriesOf(run, "notes")]  # fmt: skip
+    if rows:
         yield table(("stage", "time in the scene", "text"), rows, "What the run said. Source: run.json: notes", "notes")  # fmt: skip
 
 

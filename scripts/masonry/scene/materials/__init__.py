@@ -22,24 +22,9 @@ from .published import DRY_GRANITE_MASONRY, calciumSilicate, calciumSilicateJoin
 from .published import calciumSilicateUnit, dry, dryGranite, dryGraniteJoints
 from .published import graniteUnit, loadingBlock
 
-__all__ = [
-    "DRY_GRANITE_MASONRY",
-    "Masonry",
-    "MasonryJoint",
-    "MasonryMat",
-    "calciumSilicate",
-    "calciumSilicateJoints",
-    "calciumSilicateUnit",
-    "compressiveFractureEnergy",
-    "dry",
-    "dryGranite",
-    "dryGraniteJoints",
-    "en1996",
-    "graniteUnit",
-    "leastEnergy",
-    "linesOf",
-    "loadingBlock",
-    "masonry",
-    "ntc2018",
-    "withResidual",
-]
+__all__ = """
+    DRY_GRANITE_MASONRY Masonry MasonryJoint MasonryMat calciumSilicate
+    calciumSilicateJoints calciumSilicateUnit compressiveFractureEnergy dry dryGranite
+    dryGraniteJoints en1996 graniteUnit leastEnergy linesOf loadingBlock masonry ntc2018
+    withResidual
+""".split()

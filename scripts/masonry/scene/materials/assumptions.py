@@ -35,11 +35,10 @@ AS_BED = "as of the bed joint"
 SUPPORT = "no joint 'support' was given: joints to platens take the bed joint, with its strength and friction"
 
 #: Properties that have no effect without the cap.
-OF_CAP = set(
-    "compressiveStrength elasticLimitRatio residualStrengthRatio peakRatio "
-    "compressiveFractureEnergy capNormal capShear capLinear compressionStiffnessLoss "
-    "bondLossByCrushing".split()
-)
+OF_CAP = """
+    compressiveStrength elasticLimitRatio residualStrengthRatio peakRatio compressiveFractureEnergy capNormal capShear capLinear
+    compressionStiffnessLoss bondLossByCrushing
+""".split()
 
 #: Properties that have no effect while another one is zero.
 OF_STRENGTH = {
@@ -87,7 +86,6 @@ def acts(joint: Any, name: str) -> bool:
 
 
 def _things(masonry):
-    """Joints and units of a masonry by name."""
     yield from masonry.joints.items()
     yield "unit", masonry.unit
     yield from masonry.units.items()
@@ -100,17 +98,15 @@ def entriesOf(masonry: Any) -> list[dict[str, Any]]:
     for name, thing in _things(masonry):
         sources = thing.assumed()
         if AS_BED in sources.values():
-            entry = {"name": name, "value": "bed", "unit": "", "source": SUPPORT}
-            found.append(entry)
+            found.append({"name": name, "value": "bed", "unit": "", "source": SUPPORT})
         for one, p in DESCRIBED[type(thing)].items():
             source, value = sources.get(one, AS_BED), getattr(thing, one)
             if source == AS_BED or isinstance(value, str):
                 continue
             switched = isinstance(value, bool) and not isDefault(thing, one)
-            if isinstance(thing, MasonryJoint) and not (switched or acts(thing, one)):
-                continue
-            entry = {"name": f"{name}.{one}", "value": value}
-            found.append({**entry, "unit": p["unit"], "source": source})
+            if switched or not isinstance(thing, MasonryJoint) or acts(thing, one):
+                entry = {"name": f"{name}.{one}", "value": value, "unit": p["unit"]}
+                found.append({**entry, "source": source})
     return found
 
 
@@ -118,19 +114,14 @@ def missing(masonry: Any) -> list[str]:
     """Sentences on properties that must be given, and are not."""
     problems = []
     for name, thing in _things(masonry):
-        joint = isinstance(thing, MasonryJoint)
-        names = [
-            f"{one} [{DESCRIBED[type(thing)][one]['unit']}]"
-            for one in NEEDED[type(thing)]
-            if isDefault(thing, one) and not (joint and not acts(thing, one))
-        ]
-        if names:
-            what = f"joint {name!r}" if joint else f"unit {name!r}"
-            hint = "; elastic=True makes a joint that never gives way, cap=False one that does not crush"
-            problems.append(
-                f"masonry: {what}: {', '.join(names)} must be given, since no value fits any masonry"
-                + hint * joint
-            )
+        kind, joint = type(thing), isinstance(thing, MasonryJoint)
+        lacks = [n for n in NEEDED[kind] if isDefault(thing, n) and (not joint or acts(thing, n))]  # fmt: skip
+        if not lacks:
+            continue
+        what = f"{'joint' if joint else 'unit'} {name!r}"
+        names = ", ".join(f"{n} [{DESCRIBED[kind][n]['unit']}]" for n in lacks)
+        hint = "; elastic=True makes a joint that never gives way, cap=False one that does not crush"
+        problems.append(f"masonry: {what}: {names} must be given, since no value fits any masonry" + hint * joint)  # fmt: skip
     return problems
 
 
@@ -150,16 +141,12 @@ def linesOf(
         ]
     kinds = {}
     for entry in entries:
-        kind, _, name = entry["name"].rpartition(".")
-        value = entry["value"]
-        text = f"{value:.4g}" if isinstance(value, float) else str(value)
-        unit = "" if entry["unit"] in ("", "-") else f" {entry['unit']}"
-        key = (
-            (f"{name} {text}{unit}", entry["source"])
-            if kind
-            else (name, entry["source"])
-        )
-        kinds.setdefault(key, []).append(kind)
+        kind, _, what = entry["name"].rpartition(".")
+        if kind:
+            value, unit = entry["value"], entry["unit"].strip("-")
+            text = f"{value:.4g}" if isinstance(value, float) else str(value)
+            what = f"{what} {text} {unit}".rstrip()
+        kinds.setdefault((what, entry["source"]), []).append(kind)
     lines = ["assumed, because it was not given (run.json: assumed):"]
     for (what, source), joints in kinds.items():
         of = f"{', '.join(joints)}: " if joints != [""] else ""

@@ -101,8 +101,9 @@ def en1996(
 ) -> dict[str, Any]:
     """Masonry of EN 1996-1-1:2005, with the values that the standard recommends; a national annex can have others.
 
-    E, G, fc, fv0 and friction. The factor 0.8 on K of a wall with a mortar joint along it, 3.6.1.2(6), is not applied. The standard has no direct tensile strength of bed joints: give ``ft`` or ``bond_wrench``. A
-    run with characteristic values is a characteristic answer and not the most likely one.
+    E, G, fc, fv0 and friction. The factor 0.8 on K of a wall with a mortar joint along it, 3.6.1.2(6), is not applied. The
+    standard has no direct tensile strength of bed joints: give ``ft`` or ``bond_wrench``. Characteristic values give a
+    characteristic answer and not the most likely one.
 
     :param unit: what the bricks are of
     :param fb: their normalised mean compressive strength [Pa]

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
 from types import SimpleNamespace
 from typing import Annotated, Any
 
@@ -25,6 +24,11 @@ WRENCH = 1.5
 #: recommends.
 TENSION_INDEX, SHEAR_INDEX = 0.029e-3, 0.093e-3
 INDEX_SOURCE = "ductility index of Lourenço (2008)"
+#: Of tension and shear: fracture energy, strength, and their index.
+MODES = (
+    ("modeIFractureEnergy", "tensileStrength", TENSION_INDEX),
+    ("modeIIFractureEnergy", "cohesion", SHEAR_INDEX),
+)
 
 #: Range of the compressive fracture energy of Model Code 90 [Pa], and energy over strength below and above it [m].
 MODEL_CODE = 12e6, 80e6
@@ -69,11 +73,8 @@ def compressiveFractureEnergy(fc: Crushing) -> tuple[float, str]:
         return BELOW_RANGE * fc, "1.6 mm·fc, Lourenço (2008) for fc below 12 MPa"
     if fc > high:
         return ABOVE_RANGE * fc, "0.33 mm·fc, Lourenço (2008) for fc above 80 MPa"
-    found = fc / 1e6
-    return (
-        1e3 * (15 + 0.43 * found - 0.0036 * found**2),
-        "15 + 0.43 fc - 0.0036 fc² N/mm, Model Code 90 after Lourenço (2008)",
-    )
+    found = 1e3 * (15 + 0.43 * (fc / 1e6) - 0.0036 * (fc / 1e6) ** 2)
+    return found, "15 + 0.43 fc - 0.0036 fc² N/mm, Model Code 90 after Lourenço (2008)"
 
 
 @validated
@@ -96,35 +97,31 @@ def leastEnergy(
     return strength**2 * max(1 / stiffness, lumped + 0.5 / stiffness)
 
 
-@dataclass
-class _Kind:
+class _Joint:
     """A joint while it is made: its properties, and the sources of those that are assumed."""
 
-    name: str
-    values: dict
-    sources: dict = field(default_factory=dict)
+    def __init__(self, name, **values):
+        self.name, self.values, self.sources = name, values, {}
 
-    def take(self, name, value, given, source):
-        """Take a property; ``given`` says whether the user gave it, else it is assumed by ``source``."""
-        self.values[name] = value
-        if not given:
+    def take(self, name, given, assumed, source):
+        """Take a property that the user gave; None: it is assumed by ``source``. Returns its value."""
+        self.values[name] = assumed if given is None else given
+        if given is None:
             self.sources[name] = source
+        return self.values[name]
 
-    def energy(self, name, strength, stiffness, lumped, given, index):
+    def energy(self, mode, strength, stiffness, lumped, given):
         """Take a fracture energy. One that is assumed is large enough; of one that is given and too small a warning."""
-        what = "GfII" if "II" in name else "GfI"
-        what = f"unit_{what}" if self.name == "crack" else what
+        name, _, index = mode
         least = leastEnergy(strength, stiffness, lumped)
-        if given is not None:
-            if given <= least:
-                elastic = strength**2 / (2 * stiffness)
-                say(
-                    f"warning: materials.masonry: {what} {given:.4g} J/m² of the {self.name} joint softens more steeply than "
-                    f"joint and rigid units are stiff and can snap back: it must be above {least:.4g} J/m² (the "
-                    f"elastic energy of the joint at its peak is {elastic:.4g} J/m²)"
-                )
-            self.values[name] = given
-            return
+        if given is not None and given <= least:
+            what = "unit_" * (self.name == "crack") + ("GfI" if mode is MODES[0] else "GfII")  # fmt: skip
+            elastic = strength**2 / (2 * stiffness)
+            say(
+                f"warning: materials.masonry: {what} {given:.4g} J/m² of the {self.name} joint softens more steeply than "
+                f"joint and rigid units are stiff and can snap back: it must be above {least:.4g} J/m² (the "
+                f"elastic energy of the joint at its peak is {elastic:.4g} J/m²)"
+            )
         typical = index * strength
         source = f"{1e3 * index:g} mm times the strength, {INDEX_SOURCE}"
         if typical < MARGIN * least:
@@ -132,7 +129,7 @@ class _Kind:
                 f"{MARGIN:g} times the least that does not snap back between rigid units; {source} would be "
                 f"{typical:.3g} J/m²"
             )
-        self.take(name, max(typical, MARGIN * least, 1e-3), False, source)
+        self.take(name, given, max(typical, MARGIN * least, 1e-3), source)
 
     def made(self):
         joint = MasonryJoint(name=self.name, **self.values)
@@ -208,8 +205,7 @@ def masonry(
         joints, and have their stiffness
     :param poisson: nu of the bricks [-]; default 0.2, usual for masonry units
     :param GfI: mode I fracture energy of bed joints [J/m²]; default 0.029 mm times ft, Lourenço (2008)
-    :param GfII: mode II fracture energy of bed joints without normal stress [J/m²]; default 0.093 mm times fv0, Lourenço
-        (2008)
+    :param GfII: mode II fracture energy of bed joints without normal stress [J/m²]; default 0.093 mm times fv0, likewise
     :param Gc: compressive fracture energy [J/m²]; default as in :func:`compressiveFractureEnergy`
     :param peak_strain: strain of the masonry at fc [-]; default 2 fc/E, that of a parabola which begins with the modulus
         E, the branch up to the peak of Kaushik, Rai and Jain (2007), J. Mater. Civ. Eng. 19(9)
@@ -217,59 +213,56 @@ def masonry(
     :param dilatancy: tan(psi) [-]; default 0
     :param head_share: strengths and energies of tension and shear of head joints over those of bed joints [-]; default 1
     :param unit_ft: direct tensile strength of the bricks [Pa]. Default: bricks do not crack
-    :param unit_GfI: mode I fracture energy of the bricks [J/m²]; default 0.029 mm times unit_ft, Lourenço (2008)
+    :param unit_GfI: mode I fracture energy of the bricks [J/m²]; default as GfI, of unit_ft
     :param unit_fv0: cohesion of the bricks [Pa]; default 2 unit_ft, as in the crack joints of :func:`calciumSilicate`
     :param unit_friction: coefficient of friction of cracks in bricks [-]; default 0.75, as in these
-    :param unit_GfII: mode II fracture energy of the bricks [J/m²]; default 0.093 mm times unit_fv0, Lourenço (2008)
+    :param unit_GfII: mode II fracture energy of the bricks [J/m²]; default as GfII, of unit_fv0
     :param clauses: of a code: by the name of an argument its value and what says it
     :raises Refused: with all problems at once
 
     Stiffness: bricks and joints in series have the modulus of the masonry, E of bed joints, head_E of head joints:
     1/kn = s (1/E - 1/unit_E). For bed joints s = height + joint; for head joints s = length + joint, the distance from one
-    to the next, also of bricks that are two rigid halves, because the halves together are as long. Their crack surface
-    is so stiff that it leaves 0.99 of the stiffness of a half. Blocks contain their mortar and have the modulus unit_E,
-    rigid ones lumped into their joints.
+    to the next, also of bricks that are two rigid halves, which together are as long. Their crack surface is so stiff that
+    it leaves 0.99 of the stiffness of a half. Blocks contain their mortar and have the modulus unit_E, rigid ones lumped
+    into their joints.
 
     Crushing: the closure of a joint at its strength is ucp = s (peak_strain - fc/unit_E), what the bricks leave of the
     strain, and the law's peak ratio n = kn ucp/fc. Head joints have the same strength and Gc.
 
     An assumed energy in tension or shear with which softening would snap back between rigid units is raised to 1.1 times
-    the least that does not, and its source says so; a given one that is too small is a warning with that least.
-    :func:`leastEnergy` has the formula. Joints to platens take the bed joint.
+    the least that does not, :func:`leastEnergy`, and its source says so; a given one that is too small is a warning with
+    that least. Joints to platens take the bed joint.
     """
     values = SimpleNamespace(**locals())
     given = {n: v for n, v in vars(values).items() if v is not None}
+    values.nu = 0.2 if poisson is None else poisson
+    #: the distances from one bed joint to the next, and from one head joint to the next [m]
+    values.height, values.length = unit[2] + joint, unit[0] + joint
     problems = []
     if ("fc" in given) == ("fk" in given):
         problems.append("give fc, the mean compressive strength of the masonry, or fk, the characteristic one")  # fmt: skip
     elif fk is not None:
         values.fc = given["fc"] = MEAN * fk
-    problems += _problems(given)
+    problems += _problems(values, given)
     refuse([f"materials.masonry: {one}" for one in problems])
     joints = {}
-    for kind in (*_mortarJoints(values), _crackJoint(values)):
+    for one in (*_mortarJoints(values), _crackJoint(values)):
         try:
-            joints[kind.name] = kind.made()
+            joints[one.name] = one.made()
         except ValueError as error:
-            problems += [
-                f"{one}; Gc and peak_strain, and fc and E, decide"
-                * ("too small for peak ratio" in one)
-                or one
-                for one in str(error).splitlines()
-            ]
+            for line in str(error).splitlines():
+                small = "too small for peak ratio" in line
+                problems.append(f"{line}; Gc and peak_strain, and fc and E, decide" if small else line)  # fmt: skip
     refuse([f"materials.masonry: {one}" for one in problems])
     if unit_ft is None:
         why = "unit_ft was not given: bricks do not crack"
         state(joints["crack"], **{**joints["crack"].assumed(), "elastic": why})
-    nu = _poisson(values)
-    brick = MasonryMat(label="brick", young=unit_E, poisson=nu, density=density)
+    brick = MasonryMat(label="brick", young=unit_E, poisson=values.nu, density=density)
     assumed = {"poisson": "usual for masonry units"} if poisson is None else {}
-    state(
-        joints["bed"],
-        **{**joints["bed"].assumed(), **_stated(clauses, given, OF_CLAUSES)},
-    )
-    assumed |= _stated(clauses, given, {"density": "density"})
-    return Masonry(state(brick, **assumed), joints, course=unit[2] + joint)
+    said = _stated(clauses or {}, given, OF_CLAUSES)
+    state(joints["bed"], **{**joints["bed"].assumed(), **said})
+    assumed |= _stated(clauses or {}, given, {"density": "density"})
+    return Masonry(state(brick, **assumed), joints, course=values.height)
 
 
 def _stated(clauses, given, names):
@@ -277,30 +270,19 @@ def _stated(clauses, given, names):
 
     :param names: of the properties by the arguments
     """
-    of = {n: clauses[n] for n in names if clauses and n in clauses}
+    of = {n: clauses[n] for n in names if n in clauses}
     return {names[n]: why for n, (value, why) in of.items() if given.get(n) == value}
 
 
-def _poisson(v):
-    return 0.2 if v.poisson is None else v.poisson
-
-
-def _spacings(v):
-    """The distances from one bed joint to the next, and from one head joint to the next [m]."""
-    return v.unit[2] + v.joint, v.unit[0] + v.joint
-
-
 def _mortarJoints(v):
-    bed, head = _Kind("bed", {}), _Kind("head", {})
+    bed, head = _Joint("bed"), _Joint("head")
     _stiffnesses(v, bed, head)
     _bond(v, bed, head)
-    lasting = v.friction if v.residual_friction is None else v.residual_friction
-    for kind in (bed, head):
-        kind.values["friction"] = v.friction
-        given = v.residual_friction is not None
-        kind.take("residualFriction", lasting, given, "the friction")
-        kind.take("residualCohesion", 0.0, False, "no cohesion is left of a bond")
-        kind.take("dilatancy", v.dilatancy or 0.0, v.dilatancy is not None, "none")
+    for joint in (bed, head):
+        joint.values["friction"] = v.friction
+        joint.take("residualFriction", v.residual_friction, v.friction, "the friction")
+        joint.take("residualCohesion", None, 0.0, "no cohesion is left of a bond")
+        joint.take("dilatancy", v.dilatancy, 0.0, "none")
     head.sources["friction"] = "like the bed joint"
     _crushing(v, bed, head)
     return bed, head
@@ -308,159 +290,125 @@ def _mortarJoints(v):
 
 def _stiffnesses(v, bed, head):
     """Stiffness of bed and head joints: bricks and joints in series."""
-    height, length = _spacings(v)
-    nu = _poisson(v)
-    shearing = 2 * (1 + nu)  # E/G of the bricks [-]
-    kn = 1 / (height * (1 / v.E - 1 / v.unit_E))
-    ks = kn / shearing
-    if v.G is not None:
-        ks = 1 / (height * (1 / v.G - shearing / v.unit_E))
-    bed.values["normalStiffness"] = kn
-    bed.take("shearStiffness", ks, v.G is not None, f"kn/(2 (1 + nu)), nu = {nu:g}")
+    shearing = 2 * (1 + v.nu)  # E/G of the bricks [-]
+    kn = bed.values["normalStiffness"] = 1 / (v.height * (1 / v.E - 1 / v.unit_E))
+    own = v.G and 1 / (v.height * (1 / v.G - shearing / v.unit_E))
+    why = f"kn/(2 (1 + nu)), nu = {v.nu:g}"
+    ks = bed.take("shearStiffness", own, kn / shearing, why)
+    own = v.head_E and 1 / (v.length * (1 / v.head_E - 1 / v.unit_E))
     same = "like the bed joint: the same mortar, as thick"
-    alike = v.head_E is None
-    headKn = kn if alike else 1 / (length * (1 / v.head_E - 1 / v.unit_E))
-    head.take("normalStiffness", headKn, not alike, same)
-    why = same if alike else "the bed joint's ratio to kn"
-    head.take("shearStiffness", headKn * ks / kn, False, why)
+    headKn = head.take("normalStiffness", own, kn, same)
+    why = "the bed joint's ratio to kn" if own else same
+    head.take("shearStiffness", None, headKn * ks / kn, why)
 
 
 def _bond(v, bed, head):
-    """Strength and energy of bed and head joints in tension and in shear."""
     ft = v.ft
     if ft is None:
         factor = WRENCH if v.bond_ratio is None else v.bond_ratio
         ft = v.bond_wrench / factor
         reason = f"bond_wrench {v.bond_wrench:g} Pa over {factor:g}: linear stresses of the test overestimate"
-        if v.bond_ratio is None:
-            reason += "; van der Pluijm (1999)"
+        reason += "; van der Pluijm (1999)" * (v.bond_ratio is None)
         bed.sources["tensileStrength"] = reason
-    height, length = _spacings(v)
     kn, ks = (bed.values[name] for name in ("normalStiffness", "shearStiffness"))
-    headKn, shearing = head.values["normalStiffness"], 2 * (1 + _poisson(v))
-    energies = (
-        ("modeIFractureEnergy", "tensileStrength", ft, kn, v.GfI, TENSION_INDEX, 1.0),
-        ("modeIIFractureEnergy", "cohesion", v.fv0, ks, v.GfII, SHEAR_INDEX, shearing),
-    )
+    headKn, shearing = head.values["normalStiffness"], 2 * (1 + v.nu)
     share = 1.0 if v.head_share is None else v.head_share
-    for name, strengthName, strength, stiffness, energy, index, soft in energies:
-        bed.values[strengthName] = strength
+    for mode, strength, stiffness, energy, soft in zip(
+        MODES, (ft, v.fv0), (kn, ks), (v.GfI, v.GfII), (1.0, shearing)
+    ):
+        bed.values[mode[1]] = strength
         if strength > 0:
-            lumped = soft * height / v.unit_E
-            bed.energy(name, strength, stiffness, lumped, energy, index)
-        given = v.head_share is not None
-        head.take(strengthName, share * strength, given, "like the bed joint")
-        if share * strength > 0:
-            own = stiffness * headKn / kn
+            bed.energy(mode, strength, stiffness, soft * v.height / v.unit_E, energy)
+        own = share * strength
+        given = None if v.head_share is None else own
+        head.take(mode[1], given, own, "like the bed joint")
+        if own > 0:
             energy = None if energy is None else share * energy
-            lumped = soft * length / v.unit_E  # of whole bricks
-            head.energy(name, share * strength, own, lumped, energy, index)
+            lumped = soft * v.length / v.unit_E  # of whole bricks
+            head.energy(mode, own, stiffness * headKn / kn, lumped, energy)
 
 
 def _crushing(v, bed, head):
-    """Strength, energy and peak ratio of bed and head joints in compression."""
     energy, source = (v.Gc, "") if v.Gc is not None else compressiveFractureEnergy(v.fc)
     if v.Gc is None and not MODEL_CODE[0] <= v.fc <= MODEL_CODE[1]:
         say(
             f"warning: materials.masonry: fc {v.fc / 1e6:g} MPa is outside of 12 to 80 MPa, the range of Model Code 90 for the "
             f"compressive fracture energy: Gc is {energy:.4g} J/m², {source}"
         )
-    height, length = _spacings(v)
+    given = None if v.fk else v.fc
+    bed.take("compressiveStrength", given, v.fc, f"{MEAN:g} fk, EN 1052-1")
+    head.take("compressiveStrength", None, v.fc, "like the bed joint")
     # without a modulus of its own the head joint is that of the bed
-    along = (v.E, height) if v.head_E is None else (v.head_E, length)
-    for kind, (modulus, spacing) in ((bed, (v.E, height)), (head, along)):
-        isGiven = kind is bed and v.fk is None
-        kind.take("compressiveStrength", v.fc, isGiven, f"{MEAN:g} fk, EN 1052-1" if kind is bed else "like the bed joint")  # fmt: skip
-        kind.take("compressiveFractureEnergy", energy, v.Gc is not None, source)
-        strain = 2 * v.fc / modulus if v.peak_strain is None else v.peak_strain
+    along = (v.head_E, v.length) if v.head_E else (v.E, v.height)
+    for joint, (modulus, spacing) in ((bed, (v.E, v.height)), (head, along)):
+        joint.take("compressiveFractureEnergy", v.Gc, energy, source)
+        strain = v.peak_strain or 2 * v.fc / modulus
         closure = spacing * (strain - v.fc / v.unit_E)
+        n = joint.values["normalStiffness"] * closure / v.fc
         why = "peak strain 2 fc/E, parabola of Kaushik, Rai and Jain (2007)"
-        n = kind.values["normalStiffness"] * closure / v.fc
-        kind.take("peakRatio", n, v.peak_strain is not None, why)
+        joint.take("peakRatio", v.peak_strain and n, n, why)
 
 
 def _crackJoint(v):
-    halves = 0.5 * _spacings(v)[1] / v.unit_E  # what is lumped into it [m/Pa]
-    shearing = 2 * (1 + _poisson(v))
-    crack = _Kind("crack", {"elastic": True})
+    halves = 0.5 * v.length / v.unit_E  # what is lumped into it [m/Pa]
+    shearing = 2 * (1 + v.nu)
     kn = 100 / halves
-    stiff = "100 times that of half a brick"
-    crack.take("normalStiffness", kn, False, stiff)
-    crack.take("shearStiffness", kn / shearing, False, stiff)
+    crack = _Joint("crack", elastic=v.unit_ft is None)
+    for name, stiffness in (("normal", kn), ("shear", kn / shearing)):
+        crack.take(f"{name}Stiffness", None, stiffness, "100 times that of half a brick")  # fmt: skip
     if v.unit_ft is None:
         return crack
     like = "as of the crack joints of calciumSilicate()"
-    crack.values.update(elastic=False, cap=False, tensileStrength=v.unit_ft)
-    cohesion = 2 * v.unit_ft if v.unit_fv0 is None else v.unit_fv0
-    slides = 0.75 if v.unit_friction is None else v.unit_friction
-    crack.take("cohesion", cohesion, v.unit_fv0 is not None, f"2 unit_ft, {like}")
+    crack.values.update(cap=False, tensileStrength=v.unit_ft)
+    cohesion = crack.take("cohesion", v.unit_fv0, 2 * v.unit_ft, f"2 unit_ft, {like}")
     for name in ("friction", "residualFriction"):
-        crack.take(name, slides, v.unit_friction is not None, like)
-    crack.take("residualCohesion", 0.0, False, "no cohesion is left of a bond")
-    crack.take("dilatancy", 0.0, False, "none")
-    for name, strength, stiffness, lumped, energy, index in (
-        ("modeIFractureEnergy", v.unit_ft, kn, halves, v.unit_GfI, TENSION_INDEX),
-        ("modeIIFractureEnergy", cohesion, kn / shearing, shearing * halves, v.unit_GfII, SHEAR_INDEX),
-    ):  # fmt: skip
-        crack.energy(name, strength, stiffness, lumped, energy, index)
+        crack.take(name, v.unit_friction, 0.75, like)
+    crack.take("residualCohesion", None, 0.0, "no cohesion is left of a bond")
+    crack.take("dilatancy", None, 0.0, "none")
+    crack.energy(MODES[0], v.unit_ft, kn, halves, v.unit_GfI)
+    crack.energy(MODES[1], cohesion, kn / shearing, shearing * halves, v.unit_GfII)
     return crack
 
 
-def _problems(given):
-    found = []
-    if ("ft" in given) == ("bond_wrench" in given):
-        found.append(
-            "give either ft, the direct tensile strength of bed joints, or bond_wrench, that of a bond wrench test"
-        )
-    n, length, height = given.get, given["unit"][0], given["unit"][2]
-    if max(given["unit"]) > 5:
-        found.append(f"unit {given['unit']} m must be at most 5 m: is it in m?")
-    elif given["joint"] >= min(length, height):
-        found.append(f"joint {given['joint']:g} m must be below length and height of the unit {given['unit']} m")  # fmt: skip
+def _problems(v, given):
+    if (v.ft is None) == (v.bond_wrench is None):
+        yield "give either ft, the direct tensile strength of bed joints, or bond_wrench, that of a bond wrench test"
+    if max(v.unit) > 5:
+        yield f"unit {v.unit} m must be at most 5 m: is it in m?"
+    elif v.joint >= min(v.unit[0], v.unit[2]):
+        yield f"joint {v.joint:g} m must be below length and height of the unit {v.unit} m"
     for one in ("E", "head_E"):
-        if n(one) is not None and n("unit_E") is not None and not n(one) < n("unit_E"):
-            found.append(
-                f"{one} {n(one):g} Pa must be below unit_E {n('unit_E'):g} Pa: bricks and joints are in series"
-            )
-    if n("G") and n("unit_E"):
-        most = n("unit_E") / (2 * (1 + n("poisson", 0.2)))
-        if not n("G") < most:
-            found.append(
-                f"G {n('G'):g} Pa must be below that of the bricks, unit_E/(2 (1 + nu)) = {most:g} Pa"
-            )
+        if given.get(one, 0) >= v.unit_E:
+            yield f"{one} {given[one]:g} Pa must be below unit_E {v.unit_E:g} Pa: bricks and joints are in series"
+    most = v.unit_E / (2 * (1 + v.nu))
+    if v.G and v.G >= most:
+        yield f"G {v.G:g} Pa must be below that of the bricks, unit_E/(2 (1 + nu)) = {most:g} Pa"
     pairs = [("residual_friction", "friction"), ("dilatancy", "residual_friction")]
     for one, other in pairs:
-        most = n(other, n("friction"))
-        if n(one) is not None and most is not None and n(one) > most:
-            found.append(f"{one} {n(one):g} must be at most {other} {most:g}")
-    found += _aboveCone(n)
-    strains = None not in (n("peak_strain"), n("fc"), n("E"))
-    if strains and n("peak_strain") < n("fc") / n("E"):
-        found.append(
-            f"peak_strain {n('peak_strain'):g} must be at least fc/E = {n('fc') / n('E'):g}, that of elastic masonry"
-        )
-    if "bond_ratio" in given and "bond_wrench" not in given:
-        found.append("bond_ratio goes with bond_wrench")
+        most = given.get(other, v.friction)
+        if given.get(one, 0) > most:
+            yield f"{one} {given[one]:g} must be at most {other} {most:g}"
+    yield from _aboveCone(v, given)
+    if v.peak_strain and v.fc and v.peak_strain < v.fc / v.E:
+        yield f"peak_strain {v.peak_strain:g} must be at least fc/E = {v.fc / v.E:g}, that of elastic masonry"
+    if v.bond_ratio and v.bond_wrench is None:
+        yield "bond_ratio goes with bond_wrench"
     alone = [one for one in ("unit_GfI", "unit_fv0", "unit_friction", "unit_GfII") if one in given]  # fmt: skip
-    if alone and "unit_ft" not in given:
-        found.append(f"{', '.join(alone)} without unit_ft: bricks do not crack then")
-    return found
+    if alone and v.unit_ft is None:
+        yield f"{', '.join(alone)} without unit_ft: bricks do not crack then"
 
 
-def _aboveCone(n):
-    """Sentences on tensile strengths above the apex of the Coulomb cone.
-
-    :param n: function of a name that gives what was given, or None
-    """
-    tensile, source = n("ft"), "ft"
-    if n("bond_wrench") is not None:
-        ratio = n("bond_ratio", WRENCH)
-        tensile, source = n("bond_wrench") / ratio, f"bond_wrench/{ratio:g} ="
-    bond = tensile, source, n("fv0"), n("friction"), "fv0/friction"
-    cracks = n("unit_ft"), "unit_ft", n("unit_fv0"), n("unit_friction", 0.75), "unit_fv0/unit_friction"  # fmt: skip
-    for strength, what, cohesion, slides, names in (bond, cracks):
-        known = None not in (strength, cohesion, slides)
-        if known and strength * slides > cohesion * (1 + 1e-12):
-            yield (
-                f"{what} {strength:g} Pa must be at most {names} = {cohesion / slides:g} Pa, the apex of the Coulomb cone"
-            )
+def _aboveCone(v, given):
+    """Sentences on tensile strengths above the apex of the Coulomb cone."""
+    tensile, source = v.ft, "ft"
+    if v.bond_wrench is not None:
+        ratio = given.get("bond_ratio", WRENCH)
+        tensile, source = v.bond_wrench / ratio, f"bond_wrench/{ratio:g} ="
+    slides = given.get("unit_friction", 0.75)
+    for strength, what, cohesion, friction, names in (
+        (tensile, source, v.fv0, v.friction, "fv0/friction"),
+        (v.unit_ft, "unit_ft", v.unit_fv0, slides, "unit_fv0/unit_friction"),
+    ):
+        known = strength is not None and cohesion is not None
+        if known and strength * friction > cohesion * (1 + 1e-12):
+            yield f"{what} {strength:g} Pa must be at most {names} = {cohesion / friction:g} Pa, the apex of the Coulomb cone"

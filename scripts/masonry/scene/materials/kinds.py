@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Bricks and joints of a structure, and which joint a pair of blocks gets."""
+"""Bricks and joints of a structure, which joint a pair of blocks gets, and what beams and floors are made of."""
 
 from __future__ import annotations
 
@@ -11,21 +11,13 @@ from typing import Annotated, Any, Callable, Iterable
 from yade.wrapper import MasonryJoint, MasonryMat
 
 from .. import fields
-from ...common.arguments import (
-    Names,
-    byName as dictOf,
-    isA,
-    isNumber,
-    nearest,
-    number,
-    shown,
-)
-from ...common.arguments import validated
+from ...common.arguments import Names, isA, isNumber, nearest, number, shown, validated
+from ...common.arguments import byName as dictOf
 from ...assembly.engines import LAWS
-from ...basics import Refused
-from ..settings import applySettings
+from ...basics import Refused, refuse
+from ...bricks import Bricks
+from ..settings import Factor, Property, Settable, applySettings, such
 from .assumptions import AS_BED, copied, entriesOf, isDefault, missing, state
-from .beams import OfBeam, isBeam, withBeam, withFloor
 
 FACTOR = number("", 0, above=True)  # the kind of what a variation gives
 
@@ -33,11 +25,10 @@ FACTOR = number("", 0, above=True)  # the kind of what a variation gives
 STEEP = math.cos(math.radians(45))
 
 
-def _slides(value, first=None):
-    """The kind of a joint that has friction."""
-    if not (hasattr(value, "friction") and hasattr(value, "residualFriction")):
-        raise ValueError(f"{shown(value)} must be a MasonryJoint")
-    return value
+_slides = such(lambda v: hasattr(v, "residualFriction"), "a MasonryJoint")
+_options = such(lambda v: hasattr(v, "joints"), "the options of a scene")
+_isVaried = lambda v: isinstance(v, tuple) and len(v) == 4
+_varied = such(lambda v: isinstance(v, list) and all(map(_isVaried, v)), "a list that vary() has made")  # fmt: skip
 
 
 @validated
@@ -51,22 +42,146 @@ def withResidual(
     """
     one = [n.partition(".")[0] for n in names if n.endswith(".friction")]
     alike = lambda n: n in joints and joints[n].friction == joints[n].residualFriction
-    one = [n for n in one if alike(n)]
-    return [*dict.fromkeys([*names, *(n + ".residualFriction" for n in one)])]
+    residual = [f"{n}.residualFriction" for n in one if alike(n)]
+    return [*dict.fromkeys([*names, *residual])]
 
 
-def _options(value, first=None):
-    """The kind of the options of a scene."""
-    if not hasattr(value, "joints"):
-        raise ValueError(f"{shown(value)} must be the options of a scene")
-    return value
+_fits = lambda value: isinstance(value, Bricks) and len(value)
+_pieces = such(_fits, "what bricks.Beam or bricks.Floor gives")
 
 
-def _varied(value, first=None):
-    """The kind of what :meth:`Masonry.vary` keeps."""
-    if not isinstance(value, list) or not all(isinstance(v, tuple) and len(v) == 4 for v in value):  # fmt: skip
-        raise ValueError(f"{shown(value)} must be a list that vary() has made")
-    return value
+def _bearing(value, first=None):
+    """The kind of what is between a beam or a floor and the masonry below."""
+    if isinstance(value, str) and value != "fixed":
+        raise ValueError(f"{shown(value)} must be 'fixed', a friction [-] or None")
+    if value is None or isinstance(value, str):
+        return value
+    return number("", 0, 5)(value)
+
+
+Modulus = Annotated[float, number("Pa", 0, 1e15, above=True)]
+Density = Annotated[float, number("kg/m³", 0, 1e6, above=True)]
+Poisson = Annotated[float, number("", -1, 0.5, above=True, below=True)]
+InPlane = Annotated[float, number("N/m", 0, 1e15, above=True)]  # a stiffness of a floor
+STIFFER = 1e4  # how much stiffer than the pieces of a beam the joints are that stand for nothing else [-]
+RIGID = 1e14  # Young's modulus of a piece that does not deform [Pa]
+
+
+@validated
+def withBeam(
+    masonry: Any,
+    beam: Annotated[Any, _pieces],
+    young: Modulus,
+    density: Density,
+    poisson: Poisson = 0.2,
+    bearing: Annotated[float | str | None, _bearing] = None,
+) -> Any:
+    """Say what a beam of :func:`masonry.bricks.Beam` is made of. It is elastic. Returns the same masonry.
+
+    Its pieces are joined by the joint of its name, with the bending stiffness E I and the shear stiffness 5/6 G A of the
+    beam. Torsion has G (Iy + Iz), which is too stiff for flat sections.
+
+    :param beam: its pieces
+    :param young: [Pa]; ``poisson``: [-]
+    :param density: [kg/m³]
+    :param bearing: what is between it and masonry: None: a bed joint; a number: a dry joint of this friction [-];
+        ``"fixed"``: an elastic joint. The joint is called NAME_bearing
+    """
+    name, pitch = _newKind(masonry, "withBeam", beam)
+    shear = young / (2 * (1 + poisson))
+    # in series with the pieces, whose elasticity is lumped into their joints: E / l, and 5/6 G / l
+    glue = MasonryJoint(name=name, elastic=True, normalStiffness=STIFFER * young / pitch, shearStiffness=5 * shear / pitch)  # fmt: skip
+    unit = MasonryMat(label=name, young=young, poisson=poisson, density=density)
+    return _take(masonry, name, unit, glue, bearing)
+
+
+@validated
+def withFloor(
+    masonry: Any,
+    floor: Annotated[Any, _pieces],
+    shear: InPlane,
+    mass: Annotated[float, number("kg/m²", 0, 1e6, above=True)],
+    across: InPlane | None = None,
+    bearing: Annotated[float | str | None, _bearing] = 0.5,
+) -> Any:
+    """Say what a floor of :func:`masonry.bricks.Floor` is. It shears elastically in its plane. Returns the same masonry.
+
+    :param floor: its strips
+    :param shear: shear stiffness G t of its plane [N/m]: a square floor of which one edge is held moves by V / (G t) when a
+        force V acts along the other one
+    :param mass: with what lies on it [kg/m²]
+    :param across: stiffness E t across the strips [N/m]; None: ten times ``shear``, which is assumed
+    :param bearing: as in :meth:`withBeam`; the default, a friction of 0.5, is of joists that lie on masonry
+    """
+    name, pitch = _newKind(masonry, "withFloor", floor)
+    low, high = floor[0].low, floor[0].high
+    height = high[2] - low[2]
+    # strips are nearly rigid, so their joints have all of the stiffness: forces are G t / pitch times the slip
+    area = pitch * height
+    stiff = dict(normalStiffness=(across or 10 * shear) / area, shearStiffness=shear / area)  # fmt: skip
+    glue = MasonryJoint(name=name, elastic=True, **stiff)
+    if across is None:
+        state(glue, normalStiffness="assumed by withFloor(): across its strips a floor is ten times as stiff as in shear")  # fmt: skip
+    unit = MasonryMat(label=name, young=RIGID, poisson=0.0, density=mass / height)
+    return _take(masonry, name, unit, glue, bearing)
+
+
+def _newKind(masonry, word, pieces):
+    """The kind of the pieces of a beam or a floor, and the distance of their middles [m]. Raises Refused."""
+    kinds, problems = sorted({block.kind for block in pieces}), []
+    name = kinds[0]
+    if len(kinds) > 1:
+        problems.append(f"the pieces are of the kinds {', '.join(kinds)}: give those of one beam or floor")  # fmt: skip
+    if name in masonry.units or name in masonry.joints:
+        problems.append(f"this masonry has {name!r} already; give the beam or floor another name")  # fmt: skip
+    if len(pieces) < 2:
+        problems.append(f"{name} is one piece, which is rigid: bricks.Beam(..., pieces=8) bends")  # fmt: skip
+    refuse([f"{word}: {one}" for one in problems])
+    return name, math.dist(pieces[0].middle, pieces[1].middle)
+
+
+def _take(masonry, name, unit, glue, bearing):
+    masonry.units[name], masonry.joints[name] = unit, glue
+    masonry.stiff = masonry.stiff | {name}
+    if bearing is not None:
+        bed, name = masonry.joints["bed"], f"{name}_bearing"
+        own = {"elastic": True} if bearing == "fixed" else slipping(bearing)
+        joint = masonry.joints[name] = MasonryJoint(name=name, **own)
+        joint.set(normalStiffness=bed.normalStiffness, shearStiffness=bed.shearStiffness)  # fmt: skip
+    return masonry
+
+
+def slipping(friction: float) -> dict[str, Any]:
+    """Properties of a joint that has friction alone."""
+    return dict(tensileStrength=0, cohesion=0, friction=friction, residualFriction=friction, cap=False)  # fmt: skip
+
+
+def _isBeam(masonry, name):
+    """Whether a name is that of a beam: pieces of a floor do not deform."""
+    return name in masonry.stiff and masonry.units[name].young < RIGID
+
+
+class _OfBeam(Settable):
+    """What ``--set`` changes of a beam: its material. The stiffness of its joints follows."""
+
+    WORD = "beam"
+    known = {
+        "young": Property("Pa", 0, RIGID, True),
+        "density": Property("kg/m³", 0, 1e6, True),
+    }
+
+    def __init__(self, name, masonry):
+        self.name = name
+        self.unit, self.joint = masonry.units[name], masonry.joints[name]
+
+    def values(self):
+        return {name: getattr(self.unit, name) for name in self.known}
+
+    def take(self, values):
+        share = values.get("young", self.unit.young) / self.unit.young
+        names = ("normalStiffness", "shearStiffness")
+        self.joint.updateAttrs({n: share * getattr(self.joint, n) for n in names})
+        self.unit.updateAttrs(values)
 
 
 @validated
@@ -80,9 +195,9 @@ class Masonry:
     of a structure, such as the wythes of a wall, get ``collar`` if there is one. Without ``head`` all are bed joints.
 
     Properties that were not given have the default of their class. A scene prints them once, and run.json has them under
-    ``assumed``; :mod:`masonry.scene.materials.assumptions` says what counts as given. What has no default that fits any masonry must be
-    given: the density of units, and strengths (tensileStrength, cohesion, friction, and compressiveStrength unless
-    cap=False) of joints that are not elastic.
+    ``assumed``; :mod:`masonry.scene.materials.assumptions` says what counts as given. These must be given: the density of
+    units, and strengths (tensileStrength, cohesion, friction, and compressiveStrength unless cap=False) of joints that are
+    not elastic.
 
     :param unit: MasonryMat of the bricks
     :param joints: dict of MasonryJoint by these names; ``bed`` must be there. ``support`` takes the bed joint if it is
@@ -121,10 +236,8 @@ class Masonry:
         """Give a support joint that takes the bed joint what the bed joint has now."""
         support, bed = self.joints["support"], self.joints["bed"]
         sources = support.assumed()
-        values = {n: getattr(bed, n) for n, s in sources.items() if s == AS_BED}
-        if values:
-            support.updateAttrs(values)
-            state(support, **sources)
+        support.updateAttrs({n: getattr(bed, n) for n, s in sources.items() if s == AS_BED})  # fmt: skip
+        state(support, **sources)
 
     def apply(
         self, settings: Iterable[tuple[str, str, str]], connectors: Any = None
@@ -134,26 +247,18 @@ class Masonry:
         :param settings: list of (name, property, text of the value)
         :param connectors: ties, springs and fibre layers of the scene by name, or None
         """
-        made = {name: OfBeam(name, self) for name in self.stiff if isBeam(self, name)}
+        made = {name: _OfBeam(name, self) for name in self.stiff if _isBeam(self, name)}
         applySettings({**self.joints, **made, **(connectors or {})}, settings)
         try:
             self._follow()
         except ValueError as error:
             raise Refused(str(error)) from None
 
-    def assumed(self) -> list[dict[str, Any]]:
-        """What was not given: a list of dicts, as in ``assumed`` of :mod:`masonry.run.results`."""
-        return entriesOf(self)
-
-    def missing(self) -> list[str]:
-        """Sentences on what must be given, and is not."""
-        return missing(self)
-
     @validated
     def vary(
         self,
         name: Names,
-        value: Callable[[float, float, float], float],
+        value: Factor,
         step: Annotated[float, number("", 1e-6, 1, below=True)] = 0.01,
     ) -> Masonry:
         """Let a property change from place to place. Returns the same masonry.
@@ -169,32 +274,26 @@ class Masonry:
         found, problems = [], []
         for one in [name] if isinstance(name, str) else name:
             joint, _, attribute = one.partition(".")
-            numbers = self._numbersOf(joint)
+            if _isBeam(self, joint):  # its stiffness is that of its pieces
+                problems.append(f"vary: {one!r}: a beam has its young and its density all over, which --set {joint}.young=... changes")  # fmt: skip
+                continue
+            values = self.joints[joint].dict() if joint in self.joints else {}
+            numbers = [n for n, v in values.items() if isNumber(v)]
             if attribute in numbers:
                 found.append((joint, attribute, value, step))
-            else:
-                if isBeam(self, joint):
-                    problems.append(f"vary: {one!r}: a beam has its young and its density all over, which --set {joint}.young=... changes")  # fmt: skip
-                    continue
-                close = nearest(one, [f"{joint}.{n}" for n in numbers])
-                problems.append(
-                    f"vary: no property {one!r}; joints are {', '.join(self.joints)}, help(masonry.MasonryJoint) lists "
-                    f"properties{close}"
-                )
+                continue
+            close = nearest(one, [f"{joint}.{n}" for n in numbers])
+            problems.append(
+                f"vary: no property {one!r}; joints are {', '.join(self.joints)}, help(masonry.MasonryJoint) lists "
+                f"properties{close}"
+            )
         if problems:
             raise ValueError("\n".join(problems))
         self.varied += found
         return self
 
-    def _numbersOf(self, joint):
-        """Names of the properties of a joint that are numbers, or none if there is no such joint, or if it is that of a beam,
-        whose stiffness is that of its pieces."""
-        if isBeam(self, joint):
-            return []
-        values = self.joints[joint].dict() if joint in self.joints else {}
-        return [n for n, v in values.items() if isNumber(v)]
-
     withBeam, withFloor = withBeam, withFloor
+    assumed, missing = entriesOf, missing
 
     @validated
     def variant(
@@ -204,23 +303,22 @@ class Masonry:
 
         :param connectors: names of ties, springs and fibre layers of the scene, whose fields are none of the joints, or None
         """
-        copies = {name: copied(joint) for name, joint in self.joints.items()}
+        joints = {name: copied(joint) for name, joint in self.joints.items()}
         if args.joints == "brittle":
-            copies = {name: _brittle(joint) for name, joint in copies.items()}
+            joints = {name: _brittle(joint) for name, joint in joints.items()}
         elif args.joints != next(iter(LAWS)):
-            for joint in copies.values():
+            for joint in joints.values():
                 joint.law = args.joints
         units = {kind: copied(mat) for kind, mat in self.units.items()}
-        made = dict(unit=copied(self.unit), joints=copies, units=units)
-        own = replace(self, **made, varied=[*self.varied])
+        own = replace(self, unit=copied(self.unit), joints=joints, units=units, varied=[*self.varied])  # fmt: skip
         own._follow()
+        known = list(connectors or ())
         for text in args.field:
             names, function = fields.read(text)
-            known = list(connectors or ())
             names = [n for n in names if n.partition(".")[0] not in known]
             try:
                 if names:
-                    own.vary(withResidual(names, copies), function)
+                    own.vary(withResidual(names, joints), function)
             except ValueError as error:
                 also = f"; ties, springs and fibre layers are {', '.join(known)}" if known else ""  # fmt: skip
                 raise Refused(f"--field {text}: {error}{also}") from None
@@ -248,18 +346,18 @@ class Masonry:
                 joint = self._at(name, joint, geom)
             halves = first and second and first.brick == second.brick and pieces[first.brick] == 2  # fmt: skip
             if joint.monolithic and not halves:
-                joint = self._inPieces(joint)
+                joint = self._changed(id(joint), joint, {"monolithic": False})
             return joint
 
         return rule
 
-    def _inPieces(self, joint):
-        """The same joint that is not monolithic."""
-        if id(joint) not in self._made:
+    def _changed(self, key, joint, values):
+        """A copy of a joint with other values, made once."""
+        if key not in self._made:
             own = copied(joint)
-            own.monolithic = False
-            self._made[id(joint)] = own
-        return self._made[id(joint)]
+            own.updateAttrs(values)
+            self._made[key] = own
+        return self._made[key]
 
     def _kind(self, first, second, normal):
         if first is None or second is None:
@@ -278,34 +376,24 @@ class Masonry:
 
     def _at(self, name, joint, geom):
         """The joint of a kind with the properties that it has at a place."""
-        changes, centres = {}, geom.centres
+        steps, values, centres = {}, {}, geom.centres
         centre = [sum(c[i] for c in centres) / len(centres) for i in range(3)]
         for kind, attribute, value, step in self.varied:
-            if kind == name:
-                try:
-                    factor = FACTOR(value(*centre))
-                except ValueError as error:
-                    raise ValueError(
-                        f"vary {kind}.{attribute}: the factor at {centre} m: {error}"
-                    ) from None
-                wide = math.log1p(step)
-                changes[attribute] = round(math.log(factor) / wide)
-        if not any(changes.values()):
-            return joint
-        key = name, tuple(sorted(changes.items()))
-        if key not in self._made:
-            steps = {a: s for k, a, _, s in self.varied if k == name}
-            own = copied(joint)
-            values = {
-                a: getattr(joint, a) * (1 + steps[a]) ** n for a, n in changes.items()
-            }
+            if kind != name:
+                continue
             try:
-                own.updateAttrs(values)
+                factor = FACTOR(value(*centre))
             except ValueError as error:
-                place = ", ".join(f"{v:.3g}" for v in centre)
-                raise ValueError(f"vary: at ({place}) m: {error}") from None
-            self._made[key] = own
-        return self._made[key]
+                raise ValueError(f"vary {kind}.{attribute}: the factor at {centre} m: {error}") from None  # fmt: skip
+            n = steps[attribute] = round(math.log(factor) / math.log1p(step))
+            values[attribute] = getattr(joint, attribute) * (1 + step) ** n
+        if not any(steps.values()):
+            return joint
+        try:
+            return self._changed((name, *sorted(steps.items())), joint, values)
+        except ValueError as error:
+            place = ", ".join(f"{v:.3g}" for v in centre)
+            raise ValueError(f"vary: at ({place}) m: {error}") from None
 
     _made = property(lambda self: self.__dict__.setdefault("_kept", {}))
 

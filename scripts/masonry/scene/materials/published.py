@@ -13,8 +13,7 @@ from yade.wrapper import MasonryJoint, MasonryMat
 
 from ...common.arguments import isNumber, number, shown, validated
 from .assumptions import state
-from .beams import Poisson
-from .kinds import Masonry, byName
+from .kinds import Masonry, Poisson, byName, slipping
 
 
 def calciumSilicate() -> Masonry:
@@ -47,13 +46,7 @@ def dryGranite(level: Level, height: Course) -> Masonry:
 MOST_FRICTION = 5.0  # [-] of a joint: a larger one is an angle
 Stiffness = Annotated[float, number("Pa/m", 0, 1e20, above=True)]
 #: What stones with dry joints have if nothing else is said.
-DRY = {
-    "friction": 0.7,
-    "normalStiffness": 5e9,
-    "density": 2600.0,
-    "young": 20e9,
-    "poisson": 0.2,
-}
+DRY = dict(friction=0.7, normalStiffness=5e9, density=2600.0, young=20e9, poisson=0.2)
 
 
 @validated
@@ -74,42 +67,22 @@ def dry(
     :param density: of the stones [kg/m³], default 2600; ``young`` [Pa], default 20e9, and ``poisson`` [-], default 0.2,
         count for deformable stones. Rigid ones have them lumped into the joints
     """
-    own = dict(
-        friction=friction,
-        normalStiffness=normalStiffness,
-        density=density,
-        young=young,
-        poisson=poisson,
-    )
-    sources = {n: f"default of dry(): {DRY[n]:g}" for n, v in own.items() if v is None}
-    found = {n: DRY[n] if v is None else v for n, v in own.items()}
+    ofStone = dict(density=density, young=young, poisson=poisson)
+    given = dict(ofStone, friction=friction, normalStiffness=normalStiffness)
+    sources = {n: f"default of dry(): {DRY[n]:g}" for n, v in given.items() if v is None}  # fmt: skip
+    found = {n: DRY[n] if v is None else v for n, v in given.items()}
+    stiffness = dict(normalStiffness=found["normalStiffness"], shearStiffness=shearStiffness)  # fmt: skip
     if shearStiffness is None:
         sources["shearStiffness"] = "default of dry(): 0.4 of the normal stiffness"
-        shearStiffness = 0.4 * found["normalStiffness"]
-    stated = lambda *names: {n: sources[n] for n in names if n in sources}
-    joints = {
-        name: state(
-            MasonryJoint(
-                name=name,
-                normalStiffness=found["normalStiffness"],
-                shearStiffness=shearStiffness,
-                tensileStrength=0,
-                cohesion=0,
-                friction=found["friction"],
-                residualFriction=found["friction"],
-                cap=False,
-            ),
-            **stated("friction", "normalStiffness", "shearStiffness"),
-        )
-        for name in ("bed", "support")
-    }
-    unit = MasonryMat(
-        label="stone",
-        young=found["young"],
-        poisson=found["poisson"],
-        density=found["density"],
-    )
-    return Masonry(state(unit, **stated("density", "young", "poisson")), joints)
+        stiffness["shearStiffness"] = 0.4 * found["normalStiffness"]
+    joints = {}
+    for name in ("bed", "support"):
+        joint = MasonryJoint(name=name, **stiffness, **slipping(found["friction"]))
+        said = {n: why for n, why in sources.items() if n not in ofStone}
+        joints[name] = state(joint, **said)
+    unit = MasonryMat(label="stone", **{n: found[n] for n in ofStone})
+    said = {n: why for n, why in sources.items() if n in ofStone}
+    return Masonry(state(unit, **said), joints)
 
 
 BED_DIRECTION, HEAD_DIRECTION = Vector3(0, 0, 1), Vector3(1, 0, 0)
@@ -117,14 +90,7 @@ BED_DIRECTION, HEAD_DIRECTION = Vector3(0, 0, 1), Vector3(1, 0, 0)
 
 def calciumSilicateUnit() -> MasonryMat:
     """Calcium-silicate brick of the TUD-COMP walls: the paper's table 2."""
-    unit = MasonryMat(
-        label="calcium silicate",
-        young=4.8e9,
-        poisson=0.16,
-        density=1800,
-        jointSet="brick",
-    )
-    return state(unit)
+    return state(MasonryMat(label="calcium silicate", young=4.8e9, poisson=0.16, density=1800, jointSet="brick"))  # fmt: skip
 
 
 DECIDED = "assumed by calciumSilicateJoints(); the paper gives no value"
@@ -153,8 +119,8 @@ def calciumSilicateJoints(brittle: bool = False) -> dict[str, MasonryJoint]:
     The paper gives no value for these, and yade_plugin/law/README.md (parameters; crack surfaces) says why they were
     chosen: residual cohesion 0, one value of friction, no dilatancy, a residual compressive strength of 0.2 of the peak,
     fracture energies of 16 J/m² in mode I and 160 J/m² in mode II, the shape of the cap, and all of the brick's crack
-    surface. The crack surface is ten times as stiff as a bed joint. In series with rigid half bricks, whose Young's
-    modulus is E and whose length is L, that leaves 0.99 E/L.
+    surface, which is ten times as stiff as a bed joint: in series with rigid half bricks of modulus E and length L, that
+    leaves 0.99 E/L.
 
     With eq. (26) the masonry is stiffer than the moduli of table 2 say: 4079 MPa across its bed joints and 4507 MPa across
     its head joints, not 3174 and 2212 MPa. The closure at the compressive strength is 1.54 mm for the bed joint and 1.21 mm
@@ -163,13 +129,8 @@ def calciumSilicateJoints(brittle: bool = False) -> dict[str, MasonryJoint]:
     :param brittle: whether to give the brittle Coulomb slip joints instead, for comparison
     """
     bed = MasonryJoint(name="bed", jointSet="brick", direction=BED_DIRECTION)
-    head = MasonryJoint(
-        name="head",
-        jointSet="brick",
-        direction=HEAD_DIRECTION,
-        compressiveStrength=5.93e6,
-        compressiveFractureEnergy=31500,
-    )
+    head = MasonryJoint(name="head", jointSet="brick", direction=HEAD_DIRECTION)
+    head.set(compressiveStrength=5.93e6, compressiveFractureEnergy=31500)
     crack = MasonryJoint(
         name="crack",
         jointSet="within one brick",
@@ -183,13 +144,8 @@ def calciumSilicateJoints(brittle: bool = False) -> dict[str, MasonryJoint]:
         residualFriction=0.75,
         cap=False,
     )
-    support = MasonryJoint(
-        name="support",
-        jointSet="support",
-        elastic=True,
-        normalStiffness=bed.normalStiffness,
-        shearStiffness=bed.shearStiffness,
-    )
+    support = MasonryJoint(name="support", jointSet="support", elastic=True)
+    support.set(normalStiffness=bed.normalStiffness, shearStiffness=bed.shearStiffness)
     for joint in (bed, head):
         state(joint, **dict.fromkeys(CALCIUM_SILICATE_ASSUMED, DECIDED))
     state(crack, **dict.fromkeys(CRACK_ASSUMED, DECIDED))
@@ -202,9 +158,8 @@ def graniteUnit() -> MasonryMat:
     Young's modulus is that of the data of Vanin et al. (2017), doi 10.1007/s10518-017-0188-5. Poisson's ratio 0.2 and
     density 2600 kg/m³ are not in the data; they are assumed, as usual for granite.
     """
-    unit = MasonryMat(
-        label="granite", young=20.2e9, poisson=0.2, density=2600, jointSet="granite"
-    )
+    unit = MasonryMat(label="granite", young=20.2e9, poisson=0.2, density=2600)
+    unit.jointSet = "granite"
     assumption = "assumed by graniteUnit(), usual for granite; not in the data"
     return state(unit, poisson=assumption, density=assumption)
 
@@ -227,15 +182,8 @@ def dryGraniteJoints(
     """
     young = graniteUnit().young
     stiffness = 1 / (height * (1 / DRY_GRANITE_MASONRY[level] - 1 / young))
-    dry = dict(
-        normalStiffness=stiffness,
-        shearStiffness=0.4 * stiffness,
-        tensileStrength=0,
-        cohesion=0,
-        friction=0.65,
-        residualFriction=0.65,
-        cap=False,
-    )
+    stiffnesses = dict(normalStiffness=stiffness, shearStiffness=0.4 * stiffness)
+    dry = {**stiffnesses, **slipping(0.65)}
     support = MasonryJoint(name="support", jointSet="support", **dry)
     bed = MasonryJoint(name="bed", direction=BED_DIRECTION, **dry)
     head = MasonryJoint(name="head", direction=HEAD_DIRECTION, **dry)
@@ -249,7 +197,4 @@ def dryGraniteJoints(
 
 def loadingBlock() -> MasonryMat:
     """A block that supports or loads a wall, section 4.1 of the paper: so stiff that only its joint gives way."""
-    block = MasonryMat(
-        label="loading block", young=1e16, poisson=0.0, density=1800, jointSet="support"
-    )
-    return state(block)
+    return state(MasonryMat(label="loading block", young=1e16, poisson=0.0, density=1800, jointSet="support"))  # fmt: skip
