@@ -41,7 +41,7 @@ def test_answers_have_the_sign_of_the_largest_displacement_and_the_first_fall():
     model = SimpleNamespace(fallen=lambda: {3: {"fell": 6.5}, 1: {"fell": 6.25}})
     scene = SimpleNamespace(collapsed=True, model=model)
     scene.description = SimpleNamespace(targets={1: SimpleNamespace(name="top", fixed=False)}, drifts=[])  # fmt: skip
-    found = displacements(scene, SimpleNamespace(column=columns.get))
+    found = displacements(scene, columns.get)
     assert [answer.value for answer in found] == [-3.0, 2.0, 1.25]
 
 

@@ -143,7 +143,7 @@ def row(name, slow=True):
     scene, at, seconds = grown(name)
     scene.finish()
     held, lost = at.held[0], at.lost[0]
-    search = scene.running.at.steps - scene.running.at.stages[-1][1] - at.steps
+    search = scene.running.at.steps - scene.running.at.stages[-1][1] - at.done
     moved = 0.0
     if slow:
         slower, again, _ = grown(name, slower=3.0)
@@ -157,7 +157,7 @@ def row(name, slow=True):
     cells = [name, f"{held:.4f}", f"{lost:.4f}", f"{most:.4f}", f"{least:.4f}"]
     cells.append(f"{held / most:.3f}, {held / least:.3f}")
     cells.append(f"{100 * moved:+.2f} %" if slow else "")
-    cells += [f"{search / at.steps:.2f}", f"{seconds:.1f}"]
+    cells += [f"{search / at.done:.2f}", f"{seconds:.1f}"]
     return cells, met
 
 

@@ -38,7 +38,7 @@ def soak(blocks, steps):
         rows, done, direction, leg = [], 0, 1, quarter
         for report in range(1, REPORTS + 1):
             while done < report * steps // REPORTS:
-                model.loading.loads["push"].velocity = direction * RATE * 1e-3
+                model.loading.push.velocity = direction * RATE * 1e-3
                 O.run(leg, True)
                 done, direction, leg = done + leg, -direction, 2 * quarter
             e = model.energy.balance()

@@ -25,6 +25,7 @@ import tempfile
 import numpy as np
 from masonry import COLLAPSED, Scene, bricks, materials
 from masonry.basics import Refused
+from masonry.assembly.columns import Reading
 from yade import O
 
 STAGES = (
@@ -237,7 +238,7 @@ def checkColumns(scene):
     before = _momenta(model)
     O.step()
     after = _momenta(model)
-    reading = model.read()
+    reading = Reading(model)
     values = {c.head: c.value(reading) for c in scene.columns}
     held = {t.body for t in model.supports.held if not set("xyz") - set(O.bodies[t.body].state.blockedDOFs)}  # fmt: skip
     gravity = np.array(model.scheme.now)

@@ -3,8 +3,7 @@
 
 - :mod:`masonry.assembly.blocks`: ``addBlock``; :mod:`masonry.assembly.engines`: ``engines`` and ``advance``;
   :mod:`masonry.assembly.connecting`: ``connect``: for scenes that are built body by body
-- :mod:`masonry.assembly.structure`: what a scene is in YADE; of it :mod:`masonry.assembly.loading`: loads,
-  :mod:`masonry.assembly.drives`: drives of pushes,
+- :mod:`masonry.assembly.structure`: what a scene is in YADE; of it :mod:`masonry.assembly.loading`: loads and drives,
   :mod:`masonry.assembly.connectors`: ties and springs, :mod:`masonry.assembly.supports`: what holds it,
   :mod:`masonry.assembly.scheme`: damping, masses and time step, :mod:`masonry.assembly.motion`: how its blocks move
 - :mod:`masonry.assembly.period`: the first period of a structure

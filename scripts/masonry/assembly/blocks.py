@@ -29,7 +29,7 @@ def properties(cls) -> list[dict[str, Any]]:
 
 
 def units(cls) -> dict[str, str]:
-    """Units of the properties of a class of the plugin: a dict of name -> unit, of those that have one."""
+    """Units of the properties of a class of the plugin by name, of those that have one."""
     return {p["name"]: p["unit"] for p in properties(cls) if p["unit"]}
 
 
@@ -48,6 +48,22 @@ def vector(value: Any, what: str) -> Any:
     except Exception:  # Boost.Python's ArgumentError has no name in Python
         pass
     raise ValueError(f"{what} must be three finite numbers, got {shown(value)}")
+
+
+def inPlane(description: Any, direction: Any, name: str) -> Any:
+    """A Vector3, which does not lead out of the plane of a scene that is in one. Raises ValueError."""
+    if description.plane and direction[1]:
+        raise ValueError(
+            f"{name}: the scene is in the x-z plane; Scene(..., plane=False) is in space"
+        )
+    return Vector3(*direction)
+
+
+def placeOf(body: int, point: Any) -> Any:
+    """Where a point of a body is now [m], by its place in the structure as built."""
+    state = O.bodies[body].state
+    turn = state.ori * state.refOri.conjugate()
+    return state.pos + turn * (Vector3(*point) - state.refPos)
 
 
 def _extent(points):
@@ -69,7 +85,6 @@ def addBlock(
     """Append a convex block to the scene. Returns its body id.
 
     :param vertices: corners [m], at least four, in global axes; every one a corner of the convex block
-    :param material: MasonryMat
     :param inPlane: only x, z and the rotation about y stay free: a wall in the x-z plane
     """
     return placeBlock(vertices, material, inPlane, color)
@@ -79,18 +94,16 @@ def placeBlock(
     vertices: Sequence[Any], material: Any, inPlane: bool, color: Any = PALE
 ) -> int:
     """As :func:`addBlock`, of arguments that are known to be such."""
-    problems = []
     points = [vector(v, f"block: corner {n} [m]") for n, v in enumerate(vertices)]
     length, thickness = _extent(points)
     if not thickness > THINNEST * length:
-        problems.append(
+        raise ValueError(
             f"block: its {len(points)} corners span {length:g} m but only {thickness:g} m out of a plane: no volume"
         )
-    elif length < 1e-8 * max(map(Vector3.norm, points)):
-        problems.append(
+    if length < 1e-8 * max(map(Vector3.norm, points)):
+        raise ValueError(
             f"block: {length:g} m is too small to be told so far from the origin, corner 0 at {vertices[0]} m"
         )
-    refuse(problems)
     shape, centroid, orientation = MasonryBlock.around(points)
     shape.color = color
     body = Body(shape=shape, material=material)
@@ -99,7 +112,7 @@ def placeBlock(
     state.mass = material.density * shape.volume
     state.inertia = material.density * shape.inertia
     state.pos, state.ori = centroid, orientation
-    hull = shape.v
+    hull, problems = shape.v, []
     for n, p in enumerate(points if len(hull) < len(points) else []):
         if p in points[:n]:
             problems.append(f"block: corner {n} {vertices[n]} m is given twice")
@@ -112,14 +125,12 @@ def placeBlock(
             f"block: {length:g} m long, its mass of {state.mass:g} kg and inertia are no numbers above 0"
         )
     refuse(problems)
-    body.state.refPos, body.state.refOri = body.state.pos, body.state.ori
+    state.refPos, state.refOri = state.pos, state.ori
     body.bounded = False  # no collider runs
     if inPlane:
         # with blocked rotations the integrator takes `inertia` in global axes
-        axes = body.state.ori.toRotationMatrix()
-        own = body.state.inertia
-        body.state.inertia = Vector3(
-            *(sum(axes[i, k] ** 2 * own[k] for k in range(3)) for i in range(3))
-        )
-        body.state.blockedDOFs = "yXZ"
+        axes, own = state.ori.toRotationMatrix(), state.inertia
+        turned = (sum(axes[i, k] ** 2 * own[k] for k in range(3)) for i in range(3))
+        state.inertia = Vector3(*turned)
+        state.blockedDOFs = "yXZ"
     return O.bodies.append(body)

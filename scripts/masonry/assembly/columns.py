@@ -8,7 +8,7 @@ Adding a column is adding a line here, to :meth:`masonry.scene.targets.Target.co
 from dataclasses import dataclass
 from typing import Callable
 
-from yade import O, Vector3
+from yade import O
 
 from ..read.quantities import ENERGIES, OF_CONNECTORS, OF_CONTACTS
 
@@ -52,21 +52,18 @@ class Reading:
     - ``goal``: number of the point of a history that the drive is going to, from 1, and its displacement [mm]
     - ``forces``: force of the structure on what is held, along the axes that are held now or that springs hold, by the name of
       the target [N]
-
-    :param structure: :class:`masonry.assembly.structure.Structure`
     """
 
     def __init__(self, structure):
         self.structure, self.time = structure, O.time
         self._moved = {}
         self.forces = {}
-        held = Vector3(0, 0, 0)
+        held = structure.connectors.onGround()
         for target in structure.supports.held:
             force = structure.supports.supportedBy(target)
             self.forces[target.name] = force + structure.connectors.onSpringsOf(target)
             for i in structure.axes:
                 held[i] += force[i]
-        held += structure.connectors.onGround()
         self.along = self.up = self.topShear = self.rotation = 0.0
         self.sunk = -0.0
         loading = structure.loading
@@ -76,7 +73,7 @@ class Reading:
             self.up = moved[2] - loading.origin[1]
         if loading.target:
             self.sunk = -self.moved(loading.target)[0][2]
-            self.topShear = loading.loads["push"].reaction
+            self.topShear = loading.push.reaction
         along, beside = loading.direction, loading.besideThePush()
         self.baseShear = held.dot(along) - beside.dot(along)
         self.energy = structure.energy.balance()
@@ -89,15 +86,10 @@ class Reading:
         return self._moved[target.name]
 
 
-def _energy(name):
-    return lambda reading: reading.energy[name]
-
-
 def _energies(names):
-    return [
-        Column(name, "J", f"{meaning} since the scene was built", _energy(name))
-        for name, (meaning, _) in names.items()
-    ]
+    for name, (meaning, _) in names.items():
+        value = lambda r, name=name: r.energy[name]
+        yield Column(name, "J", f"{meaning} since the scene was built", value)
 
 
 CRACKS = Column(
@@ -114,13 +106,13 @@ BALANCE = [
         "balance_error",
         "-",
         "error of the energy balance, relative to the largest work done until then",
-        _energy("error"),
+        lambda r: r.energy["error"],
     ),
 ]
-CONNECTORS = _energies(OF_CONNECTORS)
-CONTACTS = _energies(OF_CONTACTS)
+CONNECTORS = [*_energies(OF_CONNECTORS)]
 #: Of a scene whose collapse is followed.
-FALLS = [
+CONTACTS = [
+    *_energies(OF_CONTACTS),
     Column(
         "handed_joints",
         "-",

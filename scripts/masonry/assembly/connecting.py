@@ -63,20 +63,17 @@ def makeJoints(
     """:func:`connect` without its time step, for who chooses it by other rules."""
     engines = list(O.engines)
     loops = [e for e in engines if isinstance(e, (MasonryJointLoop, InteractionLoop))]
-    loop = loops[0] if loops else None
-    if loop is None:
+    if not loops:
         raise ValueError(
             "connect() needs the joints' engine in O.engines: call masonry.engines() first"
         )
-    if isinstance(loop, InteractionLoop):
-        geometry, physics = (
-            d.functors[0] if d.functors else None
-            for d in (loop.geomDispatcher, loop.physDispatcher)
-        )
-        functors = loop.geomDispatcher.functors
+    loop = loops[0]
+    ofYade = isinstance(loop, InteractionLoop)
+    if ofYade:
+        functors, ofPhysics = loop.geomDispatcher.functors, loop.physDispatcher.functors
     else:
-        geometry, physics = loop.geometry, loop.physics
-        functors = [geometry]
+        functors, ofPhysics = [loop.geometry], [loop.physics]
+    geometry, physics = [*functors, None][0], [*ofPhysics, None][0]
     if geometry is None or physics is None:
         raise ValueError(
             f"{type(loop).__name__} has no geometry or no physics: call masonry.engines()"
@@ -86,7 +83,7 @@ def makeJoints(
         for functor in functors:
             functor.tolerance = tolerance
         pairs, sizes = _pairs(tolerance, allowGaps)
-        if not isinstance(loop, InteractionLoop):
+        if not ofYade:
             # YADE makes interactions with the functors of an InteractionLoop: one stands in for a moment
             O.engines = [functorLoop(geometry, physics)]
         made, joints = _connect(pairs, physics, rule)
@@ -114,17 +111,12 @@ def _pairs(tolerance, allowGaps):
             )
     problems = []
     for one, two, gap, bound in misfits:
+        how = f"nearly share a face, with a gap of {1e3 * gap:g} mm"
         if gap < 0:
-            problems.append(
-                f"bodies {one} and {two} lie {-1e3 * gap:g} mm deep in each other"
-            )
-        elif not allowGaps:
-            problems.append(
-                f"bodies {one} and {two} nearly share a face, with a gap of {1e3 * gap:g} mm"
-            )
-        else:
-            continue
-        problems[-1] += f"; the tolerance is {1e3 * bound:.3g} mm"
+            how = f"lie {-1e3 * gap:g} mm deep in each other"
+        if gap < 0 or not allowGaps:
+            how += f"; the tolerance is {1e3 * bound:.3g} mm"
+            problems.append(f"bodies {one} and {two} {how}")
     refuse(
         problems,
         "move them, or allow gaps on purpose with allowGaps=True, of Scene or of connect; see help(masonry.connect) for its tolerance",
@@ -139,15 +131,14 @@ def _pairs(tolerance, allowGaps):
 
 def _connect(pairs, physics, rule):
     """Make the joints of all pairs, or none of them. Returns the interactions and the MasonryJoint objects."""
-    made, problems, joints = [], [], {id(j): j for j in physics.joints}
-    due = 256
+    made, problems, due = [], [], 256
+    joints = {id(j): j for j in physics.joints}
     try:
         for id1, id2 in pairs:
             try:
                 interaction = utils.createInteraction(id1, id2)
             except ValueError as error:
-                if str(error) not in problems:  # joints of a kind are refused alike
-                    problems.append(str(error))
+                problems.append(str(error))
                 continue
             made.append(interaction)
             # what joints leave when they move into columns is free for the next ones
@@ -164,7 +155,7 @@ def _connect(pairs, physics, rule):
                     problems.append(
                         f"rule must return a MasonryJoint or None, got {joint!r} for bodies {id1} and {id2}"
                     )
-        refuse(problems)
+        refuse([*dict.fromkeys(problems)])  # joints of a kind are refused alike
     except BaseException:
         for interaction in made:
             O.interactions.erase(interaction.id1, interaction.id2)
@@ -173,44 +164,43 @@ def _connect(pairs, physics, rule):
     return made, list(joints.values())
 
 
-def _isBlock(body):
-    return type(body.shape).__name__ in ("MasonryBlock", "Polyhedra")
-
-
 def _warn(pairs, joints, sizes, engines):
     """Print warnings of what looks like a mistake: other units, blocks without joints, properties without effect."""
-    bodies = {b.id: b for b in O.bodies if _isBlock(b)}
+    (thin, thickness), (large, size) = sizes
+    if thickness < 1e-3:
+        say(f"warning: body {thin} is {thickness:g} m thick: are corners in m?")
+    if size > 50:
+        say(f"warning: body {large} is {size:g} m long: are corners in m, not mm?")
+    kinds = "MasonryBlock", "Polyhedra"
+    bodies = {b.id: b for b in O.bodies if type(b.shape).__name__ in kinds}
     mats = {(b.mat.label, b.mat.young, b.mat.density): b.mat for b in bodies.values()}
-    hints = [
-        *_oddSizes(*sizes),
-        *_oddProperties([*mats.values(), *joints]),
-        *_idleProperties(joints),
-        *_oddWeights(mats, engines),
-    ]
+    _warnOfUnits([*mats.values(), *joints])
+    _warnOfIdle(joints)
+    kinds = MasonryIntegrator, NewtonIntegrator
+    gravity = next((e.gravity.norm() for e in engines if isinstance(e, kinds)), 0)
+    for label, _, density in mats:  # density scaling keeps the weight
+        if gravity and not 1e3 <= density * gravity <= 1e5:
+            say(
+                f'warning: MasonryMat "{label}": density {density:g} kg/m³ weighs {density * gravity:g} N/m³: is it in kg/m³?'
+            )
     alone = sorted(set(bodies).difference(*zip(*pairs)))
     if alone:
         more = " and more" * (len(alone) > 10)
-        hints.append(f"no joint holds bodies {alone[:10]}{more}")
+        say(f"warning: no joint holds bodies {alone[:10]}{more}")
     for engine in engines:
         if isinstance(engine, MasonryLoad) and engine.body in bodies:
-            hints += _farLoad(engine, bodies[engine.body])
+            body = bodies[engine.body]
+            away = (engine.point - body.state.refPos).norm()
+            if away > 20 * max(v.norm() for v in body.shape.v):
+                say(
+                    f"warning: MasonryLoad: its point lies {away:g} m from body {body.id}: is it in m?"
+                )
         if isinstance(engine, MasonryZones):
-            hints += _undivided(engine, bodies)
-    for hint in hints:
-        say("warning: " + hint)
+            _warnOfZones(engine, bodies)
 
 
-def _oddSizes(thinnest, largest):
-    """Sentences on blocks that are not in m, from pairs of a body and its size [m]."""
-    (thin, thickness), (large, size) = thinnest, largest
-    if thickness < 1e-3:
-        yield f"body {thin} is {thickness:g} m thick: are corners in m?"
-    if size > 50:
-        yield f"body {large} is {size:g} m long: are corners in m, not mm?"
-
-
-def _oddProperties(things):
-    """Sentences on properties of materials and joints that are usual in another unit."""
+def _warnOfUnits(things):
+    """Warn of properties of materials and joints that are usual in another unit."""
     for thing in things:
         name = thing.name if isinstance(thing, MasonryJoint) else thing.label
         for p in properties(type(thing)):
@@ -220,55 +210,37 @@ def _oddProperties(things):
                 what = f"{value:g}: is it a tangent, not an angle in {other}?"
                 if unit != "-":
                     what = f"{value:g} {unit}: is it in {unit}, not {other}?"
-                yield f'{type(thing).__name__} "{name}": {p["name"]} {what}'
+                say(f'warning: {type(thing).__name__} "{name}": {p["name"]} {what}')
 
 
-def _idleProperties(joints):
-    """Sentences on properties that were given and that the law of their joint does not read; of an elastic joint, those that one
-    law alone reads."""
+def _warnOfIdle(joints):
+    """Warn of properties that were given and that the law of their joint does not read; of an elastic joint, of those that one law
+    alone reads."""
     default, read = MasonryJoint(), [law["properties"] for law in LAWS.values()]
     readers = {p["name"]: sum(p["name"] in names for names in read) for p in properties(MasonryJoint)}  # fmt: skip
     for joint in joints:
-        own = LAWS[joint.law]["properties"]
-        idle = [
-            name
-            for name, count in readers.items()
-            if getattr(joint, name) != getattr(default, name)
-            and (count == 1 if joint.elastic else count and name not in own)
-        ]
+        own, idle = LAWS[joint.law]["properties"], []
+        for name, count in readers.items():
+            unread = count == 1 if joint.elastic else count and name not in own
+            if unread and getattr(joint, name) != getattr(default, name):
+                idle.append(name)
         if idle:
             why = "is elastic" if joint.elastic else f'follows the law "{joint.law}"'
-            yield f'MasonryJoint "{joint.name}" {why}: no effect of {", ".join(idle)}'
+            what = f"no effect of {', '.join(idle)}"
+            say(f'warning: MasonryJoint "{joint.name}" {why}: {what}')
 
 
-def _oddWeights(mats, engines):
-    """Sentences on densities that are not in kg/m³."""
-    kinds = MasonryIntegrator, NewtonIntegrator
-    integrator = next((e for e in engines if isinstance(e, kinds)), None)
-    gravity = integrator.gravity.norm() if integrator else 0
-    for label, _, density in mats:  # density scaling keeps the weight
-        if gravity and not 1e3 <= density * gravity <= 1e5:
-            yield f'MasonryMat "{label}": density {density:g} kg/m³ weighs {density * gravity:g} N/m³: is it in kg/m³?'
-
-
-def _farLoad(load, body):
-    """A sentence on a load that acts far from its body."""
-    away = (load.point - body.state.refPos).norm()
-    if away > 20 * max(v.norm() for v in body.shape.v):
-        yield f"MasonryLoad: its point lies {away:g} m from body {body.id}: is it in m?"
-
-
-def _undivided(zones, bodies):
-    """Sentences on zones without bodies, and on bodies that divisions do not divide."""
-    count = {i: len(range(*zones.nodesOf(i))) for i in zones.bodies}
-    if not count:
-        yield "MasonryZones has no bodies"
-    corners = {i: len(bodies[i].shape.v) for i in count}
+def _warnOfZones(zones, bodies):
+    """Warn of zones without bodies, and of bodies that divisions do not divide."""
+    if not zones.bodies:
+        say("warning: MasonryZones has no bodies")
     # of a plane unit that is no hexahedron the nodes are the corners of its base and one in the middle
-    stars = [
-        i
-        for i, n in corners.items()
-        if count[i] == n + 1 or n != 8 and count[i] == n // 2 + 1
-    ]
+    stars = []
+    for i in zones.bodies:
+        n, nodes = len(bodies[i].shape.v), len(range(*zones.nodesOf(i)))
+        if nodes == n + 1 or n != 8 and nodes == n // 2 + 1:
+            stars.append(i)
     if stars and zones.divisions != [1, 1, 1]:
-        yield f"MasonryZones: divisions do not apply to bodies {stars[:10]}, which are no hexahedra"
+        say(
+            f"warning: MasonryZones: divisions do not apply to bodies {stars[:10]}, which are no hexahedra"
+        )

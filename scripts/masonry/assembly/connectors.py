@@ -3,14 +3,14 @@
 
 from yade import O, Vector3
 
+from .blocks import placeOf
+
 
 class Connectors:
     """What connects blocks beside the joints, in YADE. A kind of connector is a class of records as those in
     :mod:`masonry.scene.ties`: one engine has all of a kind.
 
     - ``engines``: by their class of records, in the order in which the scene named them first
-
-    :param structure: :class:`masonry.assembly.structure.Structure`, whose bodies are there
     """
 
     def __init__(self, structure):
@@ -20,42 +20,34 @@ class Connectors:
         self.saidUntil = 0  # step from which ties that yield or break are news
         self.engines = {}
         for kind in dict.fromkeys(map(type, self.description.connectors)):
-            records = self.description.connectorsOf(kind)
-            self.engines[kind] = kind.engineOf(records, **self._endsOf(records))
+            records, ends = self.description.connectorsOf(kind), {}
+            for side in (0, 1):
+                those = [one.ends[side] for one in records]
+                ends[f"bodies{side + 1}"] = [end.bodyIn(self.ids) for end in those]
+                ends[f"points{side + 1}"] = [end.point for end in those]
+            self.engines[kind] = kind.engineOf(records, **ends)
             for number, one in enumerate(records):
                 one.engine, one.number = self.engines[kind], number
 
-    def _endsOf(self, records):
-        """Bodies and points of the ends of connectors of a kind, as all engines take them."""
-        first, second = ([one.ends[side] for one in records] for side in (0, 1))
-        return dict(
-            bodies1=[end.bodyIn(self.ids) for end in first],
-            points1=[end.point for end in first],
-            bodies2=[end.bodyIn(self.ids) for end in second],
-            points2=[end.point for end in second],
-        )
-
     def grow(self, share):
-        """Let forces grow with which connectors are tightened.
-
-        :param share: 0: nothing, 1: their whole [-]
-        """
+        """Let forces grow with which connectors are tightened, to a share of their whole [-]."""
         for kind, made in self.engines.items():
             kind.grow(self.description.connectorsOf(kind), made, share)
 
     def onGround(self):
         """Force of ties and springs on the ground, to which they are fixed, along the axes of the scene [N]."""
-        force = Vector3.Zero
-        for one in self.description.connectors:
-            if one.ends[1].isGround:
-                force -= one.on(one.ends[0], self)[0]
+        force = self._onGround(lambda one: True)
         return Vector3(*(force[i] if i in self.axes else 0.0 for i in range(3)))
 
     def onSpringsOf(self, target):
         """Force of a target on the springs on which it stands [N]."""
+        stands = lambda one: one.isSupport and one.ends[0].target is target
+        return self._onGround(stands)
+
+    def _onGround(self, counts):
         force = Vector3.Zero
         for one in self.description.connectors:
-            if one.isSupport and one.ends[0].target is target and one.ends[1].isGround:
+            if one.ends[1].isGround and counts(one):
                 force -= one.on(one.ends[0], self)[0]
         return force
 
@@ -63,9 +55,7 @@ class Connectors:
         """Where the end of a tie or a spring is now [m]."""
         if end.isGround:
             return Vector3(*end.point)
-        state = O.bodies[end.bodyIn(self.ids)].state
-        turn = state.ori * state.refOri.conjugate()
-        return state.pos + turn * (Vector3(*end.point) - state.refPos)
+        return placeOf(end.bodyIn(self.ids), end.point)
 
     def news(self):
         """Sentences on connectors that have yielded or broken since this was asked last."""

@@ -30,6 +30,7 @@ if hasattr(NewtonIntegrator, "rotAlgorithm"):
 
 
 Damping = Annotated[float, number("", 0, 0.99)]
+Connectors = Annotated[Sequence[Any], listOf(isA((MasonryTies, MasonrySprings)), 0)]
 
 
 @validated
@@ -45,9 +46,7 @@ def engines(
     zones: Annotated[Any, isA(MasonryZones)] | None = None,
     functors: bool = False,
     dampingKind: Annotated[str, oneOf("combined", "local")] | None = None,
-    connectors: Annotated[
-        Sequence[Any], listOf(isA((MasonryTies, MasonrySprings)), 0)
-    ] = (),  # fmt: skip
+    connectors: Connectors = (),
     contacts: Annotated[Any, isA(MasonryContacts)] | None = None,
 ) -> None:
     """Fill O.engines for a masonry scene: joints, loads, energy balance and integration. There is no collider.
@@ -61,18 +60,11 @@ def engines(
     :param gravity: [m/s²]
     :param points: points along a side of a joint between rigid blocks from when it is about to yield:
         ``MasonryJointLoop.points``. None: 8 where blocks move in a plane, 5 in space. Functors keep those of the next two
-    :param subcontacts: how many there are, until then, along a joint, that is, at right angles to its rows; None: 3. They are the points
-        of Gauss and Lobatto, so the ends of a joint are points, and a block rocks about its edge at the true moment. Where
-        neither ``inPlane`` nor the blocks' freedom says where rows lead, "along" is the direction of the longest edge of
-        the joint, of a bed joint that of the wall. From three on the elastic rotational
-        stiffness is exact; with two it is three times too large; with one, a joint does not resist rotation.
-    :param rows: rows of subcontacts across a joint, at the points of Gauss and Lobatto, too; None or 0: chosen for every
-        joint when it is made. It gets one row, in the middle, if its two blocks can turn about one and the same of the
-        global axes only, and if that axis lies in the joint: blocks of a wall in its plane, and fixed bodies. That is
-        exact there. Every other joint gets three rows. So block degrees of freedom before ``connect()``, and free none
-        later. One row where blocks are free in space would leave a joint without stiffness out of its plane; two rows make
-        it three times too stiff there. A joint in space that has not four corners has the points of triangles about its middle, which are the
-        finer the larger of both numbers is; a joint of deformable ``zones`` whose nodes cover it has those of their cells
+    :param subcontacts: how many there are, until then, along a joint, that is, at right angles to its rows; None: 3. The ends of a joint
+        are points, so a block rocks about its edge at the true moment
+    :param rows: rows of subcontacts across a joint; None or 0: chosen for every joint when it is made, one where its blocks can only turn
+        about an axis in the joint, else three. So block degrees of freedom before ``connect()``, and free none later. Two rows make
+        a joint in space three times too stiff out of its plane. ``Ig2_MasonryBlock_MasonryBlock_MasonryJointGeom`` says more of both
     :param inPlane: the rows follow each other along y, also where the blocks' freedom does not say so
     :param loads: MasonryLoad engines
     :param zones: MasonryZones of the deformable units, if there are any
@@ -86,39 +78,25 @@ def engines(
     """
     if functors and dampingKind == "combined":
         raise ValueError("engines: dampingKind must be local with functors")
-    integrator = MasonryIntegrator(
-        damping=damping,
-        dampingKind=dampingKind or ("local" if functors else "combined"),
-        gravity=gravity,
-        label="integrator",
-    )
-    counts = {"subcontacts": subcontacts, "rows": rows}
-    geometry = Ig2_MasonryBlock_MasonryBlock_MasonryJointGeom(
-        **{name: n for name, n in counts.items() if n is not None},
-        rowDirection=(0, 1, 0) if inPlane else (0, 0, 0),
+    geometry = _GEOMETRY(
+        subcontacts=subcontacts or 3, rows=rows or 0, rowDirection=(0, inPlane, 0)
     )
     physics = Ip2_MasonryMat_MasonryMat_MasonryJointPhys(joints=joints)
+    moving = dict(damping=damping, gravity=gravity, label="integrator")
     if zones:
-        zones.gravity = integrator.gravity
+        zones.gravity = gravity
         geometry.zones = zones
     if functors:
         loop = functorLoop(geometry, physics)
-        integrator = NewtonIntegrator(
-            damping=damping, gravity=integrator.gravity, label="integrator", **ROTATION
-        )
+        integrator = NewtonIntegrator(**moving, **ROTATION)
     else:
         loop = MasonryJointLoop(
             geometry=geometry, physics=physics, points=points or 0, label="joints"
         )
-    O.engines = [
-        ForceResetter(),
-        loop,
-        *([contacts] if contacts else []),
-        *connectors,
-        *loads,
-        MasonryEnergy(label="energy"),
-        integrator,
-    ] + ([zones] if zones else [])
+        integrator = MasonryIntegrator(**moving, dampingKind=dampingKind or "combined")
+    forces = loop, contacts, *connectors, *loads
+    made = ForceResetter(), *forces, MasonryEnergy(label="energy"), integrator, zones
+    O.engines = [one for one in made if one is not None]
 
 
 @validated
@@ -151,16 +129,8 @@ def functorLoop(geometry: Any, physics: Any) -> Any:
     laws = [joint.law for joint in physics.joints if not joint.elastic]
     law = LAWS[laws[0] if laws else next(iter(LAWS))]  # one functor takes all joints
     functor = getattr(wrapper, law["functor"])()
-    return InteractionLoop(
-        [geometry, *_forPolyhedra(geometry)], [physics], [functor], label="joints"
-    )
-
-
-def _forPolyhedra(geometry):
-    """Functors for the pairs of shapes that a geometry functor does not take, where this YADE has Polyhedra."""
     same = {p["name"]: getattr(geometry, p["name"]) for p in _GEOMETRY.properties()}
-    return [
-        cls(**same)
-        for cls in (_GEOMETRY, *_GEOMETRY.__subclasses__())
-        if cls is not type(geometry)
-    ]
+    # those of other pairs of shapes, where this YADE has Polyhedra
+    kinds = _GEOMETRY, *_GEOMETRY.__subclasses__()
+    others = [kind(**same) for kind in kinds if kind is not type(geometry)]
+    return InteractionLoop([geometry, *others], [physics], [functor], label="joints")

@@ -18,10 +18,7 @@ REST = 5e-3
 
 
 class Motion:
-    """Displacements of all bricks since the last state at rest, and their velocities.
-
-    :param structure: :class:`masonry.assembly.structure.Structure`, when it is built
-    """
+    """Displacements of all bricks since the last state at rest, and their velocities."""
 
     def __init__(self, structure):
         self.ids, self.zones = structure.ids, structure.zones
@@ -56,7 +53,6 @@ class Motion:
         """The weight of the base in the shear force of a push, as in :func:`masonry.read.curves.quasiStatic` [-].
 
         :param before: :meth:`positions` when the push began
-        :param direction: of the push, a unit vector
         :param moved: displacement of the driven point along it since then [m]
         :returns: None if the blocks have not moved with the push, so that there is none from above 0 to 1
         """
@@ -72,22 +68,18 @@ class Motion:
 
     def _speeds(self):
         """Velocity of every block [m/s]: of its centre, or, of deformable ones, the mean of their nodes."""
-        speeds = [state.vel.norm() for state in self._states]
+        speeds = {i: state.vel.norm() for i, state in zip(self.ids, self._states)}
         if self.zones:
             velocities = self.zones.velocities
-            deformable = set(self.zones.bodies)
-            for index, body in enumerate(self.ids):
-                if body in deformable:
-                    first, end = self.zones.nodesOf(body)
-                    mean = sum(velocities[first:end], Vector3.Zero) / (end - first)
-                    speeds[index] = mean.norm()
-        return speeds
+            for body in set(self.zones.bodies) & set(self.ids):
+                first, end = self.zones.nodesOf(body)
+                mean = sum(velocities[first:end], Vector3.Zero) / (end - first)
+                speeds[body] = mean.norm()
+        return [*speeds.values()]
 
     def fastest(self, far=0.0):
-        """Velocity of the fastest block over that of one that has fallen [-].
-
-        :param far: how far a block that counts has moved since the last state at rest, over its largest side [-]
-        """
+        """Velocity over that of a block that has fallen [-], of the fastest one that has moved so far since the last state at rest, over
+        its largest side [-]."""
         blocks = zip(self._speeds(), self._falling, self._moved(), self._sizes)
         return max((v / falling for v, falling, moved, size in blocks if moved.norm() >= far * size), default=0.0)  # fmt: skip
 
@@ -95,19 +87,15 @@ class Motion:
         return [state.pos - place for state, place in zip(self._states, self._places)]
 
     def checkFall(self, far=None):
-        """Raise Collapsed if a block has moved far since the last state at rest, and is fast.
-
-        :param far: over the largest side of the block [-]; None: :attr:`far`
-        """
-        speeds, far = None, self.far if far is None else far
-        for index, moved in enumerate(self._moved()):
-            if moved.norm() <= far * self._sizes[index]:
-                continue
-            speeds = speeds or self._speeds()
+        """Raise Collapsed if a block has moved far since the last state at rest, over its largest side [-], and is fast."""
+        far, moved = self.far if far is None else far, self._moved()
+        beyond = [n for n, v in enumerate(moved) if v.norm() > far * self._sizes[n]]
+        speeds = beyond and self._speeds()
+        for index in beyond:
             if speeds[index] >= self._falling[index]:
                 at = ", ".join(f"{v:.3g}" for v in self.description.middle(index))
-                moved, speed = 1e3 * moved, 1e3 * speeds[index]
+                x, y, z = 1e3 * moved[index]
                 raise Collapsed(
-                    f"brick {index} at ({at}) m has moved by ({moved[0]:.3g}, {moved[1]:.3g}, {moved[2]:.3g}) mm and falls "
-                    f"at {speed:.3g} mm/s"
+                    f"brick {index} at ({at}) m has moved by ({x:.3g}, {y:.3g}, {z:.3g}) mm and falls "
+                    f"at {1e3 * speeds[index]:.3g} mm/s"
                 )

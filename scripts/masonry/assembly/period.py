@@ -5,12 +5,10 @@ A uniform acceleration that begins at once and stays sets an elastic structure s
 Of its modes n, with the angular frequencies ω_n and the shares c_n of the mass, the momentum is then proportional to
 Σ c_n/ω_n sin(ω_n t). The first mode has nearly all of that, and in a bar in shear between two ends that are held the
 others pass through zero at the same moment. So half a period is over when the momentum is first back at zero. It is
-the integral over time of all forces on what can move: weights, loads, supports and drives. This needs nothing but
-these forces, so it is the same for rigid and deformable blocks, walls with openings and arches.
+the integral over time of all forces on what can move, so it is the same for rigid and deformable blocks, walls and arches.
 
-Where a load is near that at which the structure buckles, the stiffness against a push sideways vanishes. Then the momentum does
-not come back to zero: beyond that load it grows faster than that of a body that nothing holds, which is the force times the
-time.
+Near the load at which a structure buckles, the stiffness against a push sideways vanishes. The momentum does not come back to zero then:
+beyond that load it grows faster than that of a body that nothing holds, which is the force times the time.
 
 A structure that is said to be at rest still moves a little. So it is done to both sides, and the difference counts.
 """
@@ -39,7 +37,6 @@ def firstPeriod(structure, direction, longest):
     What drives hold stays where it is, and nothing is damped. Afterwards the scene is as before, to the last bit. It takes the
     steps of a period or some more.
 
-    :param structure: :class:`masonry.assembly.structure.Structure`
     :param direction: unit vector
     :param longest: the longest period that is looked for [s]
     """
@@ -48,18 +45,17 @@ def firstPeriod(structure, direction, longest):
     most = int(0.5 * longest / (every * O.dt))
     if most < FEWEST:
         return None
-    push = SHARE * GRAVITY / structure.args.density_scaling * direction
     try:
         for beyond in BEYOND:
             there, back, end = [], [], beyond * most
-            for momentum in _momenta(structure, direction, push, every):
+            for momentum in _momenta(structure, direction, SHARE, every):
                 there.append(momentum)
                 if momentum <= 0:
                     end = min(end, beyond * len(there))
                 if not math.isfinite(momentum) or len(there) >= end:
                     break
             loadScene(before)
-            for momentum in _momenta(structure, direction, -push, every):
+            for momentum in _momenta(structure, direction, -SHARE, every):
                 back.append(there[len(back)] - momentum)
                 if not back[-1] > 0 or len(back) >= min(most, len(there)):
                     break
@@ -89,11 +85,10 @@ def firstMode(structure, direction, longest):
     if period is None:
         return None
     before, sides = saveScene("null"), []
-    push = SHARE * GRAVITY / structure.args.density_scaling * direction
     steps = round(0.5 * period / O.dt)
     try:
-        for sign in (1, -1):
-            next(_momenta(structure, direction, sign * push, steps))
+        for share in (SHARE, -SHARE):
+            next(_momenta(structure, direction, share, steps))
             sides.append([body.state.pos.dot(direction) for body in O.bodies])
             loadScene(before)
     finally:
@@ -108,25 +103,20 @@ def buckles(structure, direction):
     springs if that is longer. Afterwards the scene is as before, to the last bit. It takes the steps of some periods.
 
     Seen are modes in which the structure moves to one side; the push is so small that no joint notices it.
-
-    :param structure: :class:`masonry.assembly.structure.Structure`, at rest
-    :param direction: unit vector
     """
     before = saveScene("null")
     scaling = structure.args.density_scaling**0.5
     every = max(1, round(LOOK * scaling / O.dt))
-    push = SMALL * GRAVITY / structure.args.density_scaling * direction
     longest = max(LONGEST * scaling, structure.supports.slowest())
     looks, most = FIRST_LOOKS, longest / (every * O.dt)
     try:
         while True:
             sides = []
-            for sign in (1, -1):
-                momenta = _momenta(structure, direction, sign * push, every)
+            for share in (SMALL, -SMALL):
+                momenta = _momenta(structure, direction, share, every)
                 sides.append([next(momenta) for _ in range(looks)])
                 loadScene(before)
-            there, back = sides
-            momentum = [a - b for a, b in zip(there, back)]
+            momentum = [there - back for there, back in zip(*sides)]
             if min(momentum) <= 0:
                 return False
             free = looks * momentum[0]  # of a body that nothing holds
@@ -139,8 +129,9 @@ def buckles(structure, direction):
         loadScene(before)
 
 
-def _momenta(structure, direction, acceleration, every):
-    """The momentum of a structure along a direction [N·s] after each ``every`` steps under an acceleration [m/s²]."""
+def _momenta(structure, direction, share, every):
+    """The momentum of a structure along a direction [N·s] after each ``every`` steps under a share of gravity [-] along it."""
+    acceleration = share * GRAVITY / structure.args.density_scaling * direction
     structure.scheme.damp(0.0, "local")
     supports = structure.supports
     force = lambda: (supports.applied() + supports.carried()).dot(direction)

@@ -1,12 +1,10 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The scheme in time of a structure: damping, masses, time step and gravity."""
 
-import math
-
 from yade import O
 
 from .._masonry import timeStepLimit
-from ..basics import GRAVITY, say
+from ..basics import say
 from .engines import engine
 
 MOST_SCALED = 50.0  # largest massScaling that is chosen by itself: more gained nothing in any wall
@@ -16,63 +14,42 @@ class Scheme:
     """Damping, masses, time step and gravity of a structure that is built.
 
     - ``limit``: the stable limit of the time step under the present damping [s]
-    - ``massScaling``: selective scaling of masses that the options say [-]
-
-    :param args: the options of :func:`masonry.scene.options.parser`
-    :param zones: MasonryZones, the engine of deformable units, or None
+    - ``massScaling``: selective scaling of masses that the options say [-]; ``joints``: the engine of the joints
     """
 
     def __init__(self, args, zones):
         self.args, self.zones = args, zones
         self.integrator, self.joints = engine("integrator"), engine("joints")
         self.damp(args.damping, args.damping_kind)
-        self.massScaling = 0.0
-        self._usualLimit = self.limit = 0.0
 
     def begin(self):
-        """Choose masses and time step, when all joints are there."""
-        self.massScaling = self._chosenMassScaling()
+        """Choose masses and time step, when all joints are there.
+
+        With ``--mass-scaling auto`` there are two limits of the time step: with true masses, and with deformation so slow that only the
+        rigid motions of bricks are left. Waves through a brick get slower by the root of 1 + massScaling, so the least that brings
+        their limit to the second one is known.
+        """
+        self.massScaling = self.args.mass_scaling if self.zones else 0.0
+        if self.massScaling == "auto":
+            limits = []
+            for scaling in (0.0, 1e8):
+                self.scaleMasses(scaling)
+                limits.append(timeStepLimit())
+            least = round((limits[1] / limits[0]) ** 2 - 1, 1)
+            self.massScaling = min(MOST_SCALED, max(0.0, least))
         self.scaleMasses(self.massScaling)
         self._usualLimit = self.chooseTimeStep()
 
     def damp(self, damping, kind, massDamping=0.0, stiffnessDamping=0.0):
         """Choose the damping from now on; :meth:`chooseTimeStep` follows it.
 
-        :param damping: numerical damping constant of what moves: deformable units, else rigid ones [-]
-        :param kind: of that, ``local`` or ``combined``
-        :param massDamping: viscous, of the motion [1/s]
-        :param stiffnessDamping: viscous, of the joints [s]
+        :param damping: numerical damping constant of deformable units, else of rigid ones [-]
+        :param massDamping: viscous, of the motion [1/s]; ``stiffnessDamping``: of the joints [s]
         """
-        if self.zones:
-            self.zones.damping, self.zones.dampingKind = damping, kind
-        else:
-            self.integrator.damping, self.integrator.dampingKind = damping, kind
+        damped = self.zones or self.integrator
+        damped.damping, damped.dampingKind = damping, kind
         self.integrator.massDamping = massDamping
         self.joints.stiffnessDamping = stiffnessDamping
-
-    def countImpacts(self, real):
-        """Let impacts of joints that close take energy from now on, or not.
-
-        :param real: whether what follows runs in real time
-        """
-        self.joints.impacts = real
-
-    def _chosenMassScaling(self):
-        """The scaling of masses that the options say, for this structure [-].
-
-        ``auto`` finds two limits of the time step: with true masses, and with deformation so slow that only the rigid motions
-        of bricks are left. Waves through a brick get slower by the root of 1 + massScaling, so the least that brings their
-        limit to the second one is known.
-        """
-        if not self.zones:
-            return 0.0
-        if self.args.mass_scaling != "auto":
-            return self.args.mass_scaling
-        limits = []
-        for scaling in (0.0, 1e8):
-            self.scaleMasses(scaling)
-            limits.append(timeStepLimit())
-        return min(MOST_SCALED, max(0.0, round((limits[1] / limits[0]) ** 2 - 1, 1)))
 
     def scaleMasses(self, scaling):
         """Choose the selective scaling of the masses of deformable units from now on [-]; :meth:`chooseTimeStep` follows it."""
@@ -80,18 +57,13 @@ class Scheme:
             self.zones.massScaling = scaling
 
     def trueMasses(self, stage):
-        """Have true masses from now on, because a stage runs in real time, and say so if the options say otherwise. Returns
-        whether they have changed; :meth:`chooseTimeStep` is then to follow.
-
-        :param stage: its name
-        """
-        if not (self.zones and self.massScaling):
-            return False
-        say(
-            f"note: {stage} runs in real time with true masses, without --mass-scaling {self.massScaling:g}"
-        )
-        self.scaleMasses(0.0)
-        return True
+        """Have true masses from now on, because a stage runs in real time, and say so if the options say otherwise;
+        :meth:`chooseTimeStep` follows it."""
+        if self.zones and self.massScaling:
+            say(
+                f"note: {stage} runs in real time with true masses, without --mass-scaling {self.massScaling:g}"
+            )
+            self.scaleMasses(0.0)
 
     def dampByOptions(self):
         """Choose the damping and the masses that the options say, for a stage that says nothing else, and its time step if a
@@ -124,8 +96,3 @@ class Scheme:
     def now(self):
         """Present gravity [m/s²]."""
         return self.integrator.gravity
-
-    def factor(self):
-        """Horizontal over vertical acceleration that acts on the blocks [-]."""
-        down = abs(self.now[2]) or GRAVITY / self.args.density_scaling
-        return math.hypot(self.now[0], self.now[1]) / down

@@ -1,14 +1,13 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What a scene is in YADE: its bodies, joints, loads and engines."""
 
-from yade import O, Vector3
+from yade import O
 from yade.wrapper import MasonryContacts, MasonryJoint, MasonryZones
 
 from ..basics import Collapsed, Refused, say
 from ..bricks import boxCorners
 from . import threads
 from .blocks import placeBlock
-from .columns import Reading
 from .connecting import makeJoints
 from .connectors import Connectors
 from .engines import engine, engines
@@ -21,20 +20,17 @@ from .supports import Supports
 class Structure:
     """What a scene is in YADE, and what acts on it.
 
-    It is made in two steps, so that what the user asks for can be refused before anything changes: ``__init__`` takes the
-    description, and :meth:`build` builds it in YADE. From then on it has
+    ``__init__`` takes the description, so that what the user asks for can be refused before anything changes. From :meth:`build` on it
+    has
 
     - ``ids``: body ids of the bricks, in their order; ``parts``: those of every part; ``bricks``: number of the brick by
       body id, for all bodies that are bricks or parts of bricks
     - ``widest``: width of the widest crack when it was looked for last [mm]
     - ``interactions``: the joints between blocks; ``subcontacts``: how many points they have
-    - ``loading``, ``connectors``, ``supports``, ``scheme``, ``motion``: loads and drives, ties and springs, what holds it,
-      its scheme in time, and how blocks move
+    - ``loading``, ``connectors``, ``supports``, ``scheme``, ``motion``: objects of the modules of these names
     - ``zones``, ``contacts``: the engines of deformable units and of contacts, or None; ``energy``: that of the balance
 
-    :param description: :class:`masonry.scene.description.Description`
-    :param masonry: its materials for these options: :class:`masonry.scene.materials.Masonry`
-    :param args: the options of :func:`masonry.scene.options.parser`
+    :param masonry: the materials for these options: :class:`masonry.scene.materials.Masonry`
     """
 
     def __init__(self, description, masonry, args):
@@ -50,20 +46,12 @@ class Structure:
         self.axes = (0, 2) if description.plane else (0, 1, 2)
         self.ids, self.parts, self.bricks = [], {}, {}
         self.zones = self.contacts = None
-        self._stiff = masonry.stiff  # kinds of blocks that are rigid in themselves
-        #: Indices of blocks that are rigid also where bricks are deformable.
-        self.rigid = description.pointLoaded() | {
-            n for n, b in enumerate(description.bricks) if b.kind in self._stiff
-        }
         self.atRest = None  # the last state at rest, as saveScene gave it
 
     # -- building -------------------------------------------------------------------------------------------------
 
     def build(self, loadingBlock):
-        """Build all of it in YADE.
-
-        :param loadingBlock: MasonryMat of the platens
-        """
+        """Build all of it in YADE, with a MasonryMat of the platens."""
         threads.beginScene(host=self.description.functors)
         O.reset()
         loadingBlock.density *= self.args.density_scaling
@@ -77,9 +65,8 @@ class Structure:
         self._addEngines()
         self.scheme = Scheme(self.args, self.zones)
         blocks = dict(zip(self.ids, self.description.bricks))
-        self.interactions = makeJoints(
-            self.masonry.rule(blocks), allowGaps=self.description.allowGaps
-        )
+        rule, allowGaps = self.masonry.rule(blocks), self.description.allowGaps
+        self.interactions = makeJoints(rule, allowGaps=allowGaps)
         self.widest = 0.0
         self.subcontacts = sum(len(i.geom.areas) for i in self.interactions)
         for target in self.description.targets.values():
@@ -88,7 +75,7 @@ class Structure:
         self.scheme.begin()
         self._joinRecords()
         self.supports = Supports(self)
-        self.loading.begin(self.supports)
+        self.loading.begin()
         self.motion = Motion(self)
 
     def _addBodies(self, loadingBlock):
@@ -100,8 +87,7 @@ class Structure:
             if target.box and target.fixed and target.joined:
                 self._addPlaten(target, loadingBlock)
         for block in description.bricks:
-            material = self.units[block.kind]
-            body = placeBlock(block.corners, material, description.plane)
+            body = placeBlock(block.corners, self.units[block.kind], description.plane)
             self.ids.append(body)
             self.bricks[body] = block.brick
             self.parts.setdefault(block.part, []).append(body)
@@ -124,12 +110,13 @@ class Structure:
 
     def _deformableUnits(self):
         args, description = self.args, self.description
-        rigid = [t.body for t in description.targets.values() if t.freedom]
-        for body in (*rigid, *(self.ids[index] for index in self.rigid)):
+        blocks, loaded = enumerate(description.bricks), description.pointLoaded()
+        stiff = {n for n, block in blocks if block.kind in self.masonry.stiff}
+        held = {t.body for t in description.targets.values() if t.freedom}
+        for body in held.union(self.ids[n] for n in loaded | stiff):
             self.bricks.pop(body, None)
-        held = [n for n in description.pointLoaded() if description.bricks[n].kind not in self._stiff]  # fmt: skip
-        if held:
-            say(f"note: {len(held)} of {len(description.bricks)} bricks are rigid, because ties, springs or fibre layers end at them")  # fmt: skip
+        if loaded - stiff:
+            say(f"note: {len(loaded - stiff)} of {len(description.bricks)} bricks are rigid, because ties, springs or fibre layers end at them")  # fmt: skip
         if args.mass_scaling and "crack" in self.joints:
             # the halves of a brick move as one, as far as masses are scaled, until their crack surface yields
             self.joints["crack"].monolithic = True
@@ -147,16 +134,17 @@ class Structure:
     def _addEngines(self):
         args, description = self.args, self.description
         points = [int(n) for n in args.points.split(",")] if args.points else []
+        points, along = (*points, None, None)[:2]
         engines(
             # the rule chooses; YADE wants a joint that fits any pair before it asks
             [MasonryJoint(name="any", elastic=True)],
             damping=args.damping,
             gravity=(0, 0, -self.gravity),
-            points=points[0] if points else None,
-            subcontacts=points[1] if len(points) > 1 else None,
-            rows=points[1] if len(points) > 1 and not description.plane else None,
+            points=points,
+            subcontacts=along,
+            rows=None if description.plane else along,
             inPlane=description.plane,
-            loads=self.loading.engines,
+            loads=list(self.loading.loads.values()),
             connectors=list(self.connectors.engines.values()),
             zones=self.zones,
             contacts=self.contacts,
@@ -171,9 +159,8 @@ class Structure:
         for joint in self.description.joints:
             joint.interaction = pairs.get(frozenset(self.ids[b] for b in joint.bricks))
             if joint.interaction is None:
-                raise Refused(
-                    "joint: bricks {} and {} share no face".format(*joint.bricks)
-                )
+                one, two = joint.bricks
+                raise Refused(f"joint: bricks {one} and {two} share no face")
         for section in self.description.sections:
             section.join(self)
 
@@ -181,28 +168,20 @@ class Structure:
         """The largest opening of a point of any joint now [mm], 0 if none is open."""
         return 1e3 * max(0.0, *(max(one.phys.opening) for one in self.interactions))
 
-    def read(self):
-        """What the columns are made of, measured now."""
-        return Reading(self)
-
     def fallen(self):
         """Blocks that have fallen, in a scene whose collapse is followed: a dict from the index of the block to a dict with
         ``since``, when it had come loose [s], ``fell`` [s], ``most``, its largest kinetic energy [J], and ``at``, when it had
         that [s]."""
         if not self.contacts:
             return {}
-        known = self.contacts.fallen()
-        return {
-            index: known[body]
-            for index, body in enumerate(self.ids)
-            if body in known and known[body]["fell"] is not None
-        }
+        known = {b: one for b, one in self.contacts.fallen().items() if one["fell"] is not None}  # fmt: skip
+        return {n: known[body] for n, body in enumerate(self.ids) if body in known}
 
     def checkFallen(self):
         """Raise Collapsed if a block has fallen, in a scene whose collapse is followed."""
         fallen = self.fallen()
         if fallen:
-            first = min(fallen, key=lambda index: (fallen[index]["fell"], index))
+            first = min(fallen, key=lambda index: fallen[index]["fell"])
             at = ", ".join(f"{v:.3g}" for v in self.description.middle(first))
             others = f", and so have {len(fallen) - 1} others since" if len(fallen) > 1 else ""  # fmt: skip
             raise Collapsed(
@@ -212,22 +191,16 @@ class Structure:
     def letFall(self):
         """From now on no drive and no support moves, no numerical damping brakes blocks that have come loose, and impacts of
         joints that close take energy."""
-        self.scheme.countImpacts(True)
+        self.scheme.joints.impacts = True
         for target in self.supports.held:  # one that was released moves on
             state = O.bodies[target.body].state
-            axes = zip("xyz", state.vel)
-            blocked = state.blockedDOFs
-            state.vel = Vector3(*(0.0 if a in blocked else v for a, v in axes))
-        for label, load in self.loading.loads.items():
-            if "_drive" in label:
-                load.velocity = load.ramp = 0
-                if load.others:  # forces in a pattern are loads, and end
-                    load.driven = False
+            for i, axis in enumerate("xyz"):
+                if axis in state.blockedDOFs:
+                    state.vel[i] = 0.0
+        for drive in self.loading.stopDrives():
+            if drive.others:  # forces in a pattern are loads, and end
+                drive.driven = False
         self.contacts.dampsLoose = False
-
-    def refinedJoints(self):
-        """How many joints have got more points during the run."""
-        return engine("joints").refinedJoints
 
     # -- what a checkpoint keeps beside the state in YADE ------------------------------------------------------------
 

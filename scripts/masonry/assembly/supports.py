@@ -6,7 +6,7 @@ import math
 from yade import O, Vector3
 
 from ..basics import GRAVITY
-from .drives import forceOn
+from .loading import forceOn, reactionOf
 from .motion import FALLEN
 
 #: Share of all loads above which the horizontal ones must be carried on their own at rest [-].
@@ -15,49 +15,53 @@ LOST = 0.5  # of its height [-]: a structure that would swing by more under its 
 FILLED = 1e-9  # of a platen's side: what may be free of bricks if it is said to be full
 
 
+class _Point:
+    """A point of a body, at ``arm`` from its centre as it was built, and how far it has moved since [m]."""
+
+    def __init__(self, body, at):
+        self.state = O.bodies[body].state
+        self.upright = self.state.refOri.conjugate()
+        self.arm = Vector3(*at) - self.state.refPos
+        self._own = self.upright * self.arm
+
+    def moved(self):
+        state = self.state
+        return state.pos + state.ori * self._own - state.refPos - self.arm
+
+
 class Supports:
     """Platens, and bricks that are held, loaded or watched, of a structure that is built.
 
     - ``held``: targets of which a direction is held
     - ``freeMass``: of all other blocks [kg]
-
-    :param structure: :class:`masonry.assembly.structure.Structure`
     """
 
     def __init__(self, structure):
         self.structure, self.description = structure, structure.description
         targets = self.description.targets.values()
         self.held = [target for target in targets if target.freedom]
+        zones = structure.zones
+        self._deformable = set(zones.bodies) if zones else set()
         # Rows are read at every few steps: what does not change is kept.
-        self._placed = {t.name: self._placeOf(t.body, t.recorded) for t in targets}
-        self._faces = {t.name: self._faceOf(t) for t in targets if t.box and not t.fixed}  # fmt: skip
-        self._forces = O.forces
+        self._points = {t.name: _Point(t.body, t.recorded) for t in targets}
+        self._faces = {t.name: [*self._faceOf(t)] for t in targets if t.box and not t.fixed}  # fmt: skip
         held = {target.body for target in self.held}
         self.freeMass = sum(b.state.mass for b in O.bodies if b.id not in held)
 
-    @staticmethod
-    def _placeOf(body, point):
-        """What the motion of a point of a body is found from."""
-        state = O.bodies[body].state
-        arm = Vector3(*point) - state.refPos
-        upright = state.refOri.conjugate()
-        return state, state.refPos, arm, upright * arm, upright
+    def _jointsOf(self, target):
+        return [i for i in self.structure.interactions if target.body in (i.id1, i.id2)]
 
     def _faceOf(self, target):
-        """The middles of a platen's joints, as points of the bricks there: pairs of what their motion is found from, and the share of
-        the platen's area. Of a deformable brick its own middle stands for that."""
-        zones, found = self.structure.zones, []
-        deformable = set(zones.bodies) if zones else ()
-        for one in self.structure.interactions:
-            if target.body not in (one.id1, one.id2):
-                continue
+        """The middles of a platen's joints, as points of the bricks there, each with its share of the platen's area. Of a deformable
+        brick its own middle stands for that."""
+        joints = self._jointsOf(target)
+        whole = sum(sum(one.geom.areas) for one in joints)
+        for one in joints:
             brick = one.id2 if one.id1 == target.body else one.id1
             areas, area = one.geom.areas, sum(one.geom.areas)
             middle = sum((a * c for a, c in zip(areas, one.geom.centres)), Vector3.Zero) / area  # fmt: skip
-            middle = O.bodies[brick].state.refPos if brick in deformable else middle
-            found.append((self._placeOf(brick, middle), area))
-        whole = sum(area for _, area in found)
-        return [(place, area / whole) for place, area in found]
+            middle = O.bodies[brick].state.refPos if brick in self._deformable else middle  # fmt: skip
+            yield area / whole, _Point(brick, middle)
 
     def holdAlso(self, target, axes):
         """Count a target as one that is held along more axes."""
@@ -69,7 +73,7 @@ class Supports:
 
     def forceOn(self, target):
         """Force of the structure on a target [N]."""
-        return self._forces.f(target.body, True)
+        return O.forces.f(target.body, True)
 
     def supportedBy(self, target):
         """Force of the structure on a target along the axes that are held now, 0 along the others [N]."""
@@ -78,18 +82,12 @@ class Supports:
 
     def forceFrom(self, target):
         """Force of what loads, drives and holds a target on it [N]."""
-        total, blocked = self._loadsOn(target), O.bodies[target.body].state.blockedDOFs
-        on = self.forceOn(target)
-        for i, axis in enumerate("xyz"):
-            if axis in blocked:
-                total[i] -= on[i]
-        return total
+        return self._loadsOn(target) - self.supportedBy(target)
 
     def _loadsOn(self, target):
         """Force of what loads and drives a target on it [N]."""
-        loads = self.structure.loading.loads.items()
-        ours = (forceOn(load, target.body) for label, load in loads if label != "push")
-        return sum(ours, Vector3.Zero)
+        loads = self.structure.loading.loads.values()
+        return sum((forceOn(load, target.body) for load in loads), Vector3.Zero)
 
     def jointsOn(self, target):
         """Force of the joints of a target on it [N]."""
@@ -98,54 +96,43 @@ class Supports:
     def moved(self, target):
         """Displacement of a target's recorded point since the scene was built [m], and its rotation, about y in a plane,
         else its angle [rad]."""
-        state, place, arm, ownArm, upright = self._placed[target.name]
-        turn = state.ori
-        axis, angle = (turn * upright).toAxisAngle()
-        if self.description.plane:
-            angle *= axis[1]
-        return state.pos + turn * ownArm - place - arm, angle
+        point = self._points[target.name]
+        axis, angle = (point.state.ori * point.upright).toAxisAngle()
+        return point.moved(), angle * axis[1] if self.description.plane else angle
 
     def masonryMoved(self, target, direction):
         """Displacement of the bricks at a platen along a direction since the scene was built [m]; of a brick, that of its point."""
         face = self._faces.get(target.name)
         if not face:
             return self.moved(target)[0].dot(direction)
-        return sum(
-            share * (state.pos + state.ori * ownArm - place - arm).dot(direction)
-            for (state, place, arm, ownArm, _), share in face
-        )
+        return sum(share * point.moved().dot(direction) for share, point in face)
 
     def driftHeight(self, target):
         """Height of the points of which :meth:`masonryMoved` is [m]."""
         face = self._faces.get(target.name)
         if not face:
             return target.recorded[2]
-        return sum(share * (place[2] + arm[2]) for (_, place, arm, *_), share in face)
+        return sum(share * (p.state.refPos[2] + p.arm[2]) for share, p in face)
 
     def applied(self):
         """Sum of the weights of what is free to follow them, and of the loads without drives [N]."""
-        applied = self.freeMass * self.structure.scheme.now
+        gravity = self.structure.scheme.now
+        applied = self.freeMass * gravity
         for target in self.held:
             state = O.bodies[target.body].state
             for i, axis in enumerate("xyz"):
                 if axis not in state.blockedDOFs:
-                    applied[i] += state.mass * self.structure.scheme.now[i]
-        for label, load in self.structure.loading.loads.items():
-            if label != "push":
-                applied += load.force
-        return applied
+                    applied[i] += state.mass * gravity[i]
+        loads = self.structure.loading.loads.values()
+        return sum((load.force for load in loads), applied)
 
     def carried(self):
         """Sum of the forces of supports and drives on the structure [N]."""
-        carried = Vector3(0, 0, 0)
+        carried = Vector3.Zero
         for target in self.held:
-            blocked, on = O.bodies[target.body].state.blockedDOFs, self.forceOn(target)
-            for i, axis in enumerate("xyz"):
-                if axis in blocked:
-                    carried[i] -= on[i]
-        for label, load in self.structure.loading.loads.items():
-            if label != "push":
-                carried += load.reaction * load.direction.normalized()
+            carried -= self.supportedBy(target)
+        for load in self.structure.loading.loads.values():
+            carried += reactionOf(load)
         return carried - self.structure.connectors.onGround()
 
     def unrest(self):
@@ -160,16 +147,12 @@ class Supports:
         if self.description.plane:
             applied[1] = carried[1] = 0
         size = applied.norm()
-        loads = sum(
-            load.force.norm()
-            for n, load in self.structure.loading.loads.items()
-            if n != "push"
-        )
+        loads = sum(one.force.norm() for one in self.structure.loading.loads.values())
         if size < 1e-6 * loads:  # loads that balance each other
             size = loads
         rest = applied + carried
         missing = rest.norm() / (size or 1.0)
-        across, flat = Vector3(applied[0], applied[1], 0).norm(), Vector3(rest[0], rest[1], 0).norm()  # fmt: skip
+        across, flat = (Vector3(v[0], v[1], 0).norm() for v in (applied, rest))
         if across > HORIZONTAL * size:  # else it is round-off of what is vertical
             missing = max(missing, flat / across)
         moving = abs(energy["kinetic"])
@@ -186,29 +169,26 @@ class Supports:
         load = structure.gravity * self.freeMass
         load -= sum(force[2] for _, force in structure.loading.deadLoads())
         height = description.high[2] - description.low[2]
-        sinking = max(0.0, load) * height / self._softest() / self._area(height)
+        bricks = (O.bodies[body] for body in structure.ids)
+        area = sum(b.state.mass / b.material.density for b in bricks) / height
+        sinking = max(0.0, load) * height / self._softest() / area
         least = min(description.size(n) for n in range(len(structure.ids)))
         if not FALLEN * least < 2 * sinking < LOST * height:
             return 0.0
-        scaled = sinking * structure.args.density_scaling
-        return 2 * math.pi * math.sqrt(scaled / GRAVITY)
+        return (
+            2 * math.pi * math.sqrt(sinking * structure.args.density_scaling / GRAVITY)
+        )
 
     def _softest(self):
         """The least modulus of the masonry across any of its joints [Pa]; deformable bricks add their own compliance."""
-        zones = self.structure.zones
-        deformable = set(zones.bodies) if zones else ()
         moduli = [math.inf]
         for one in self.structure.interactions:
             thickness = one.geom.distance1 + one.geom.distance2
             compliance = 1 / (one.phys.normalStiffness * thickness)
-            compliance += max((1 / O.bodies[b].material.young for b in (one.id1, one.id2) if b in deformable), default=0.0)  # fmt: skip
+            soft = self._deformable & {one.id1, one.id2}
+            compliance += max((1 / O.bodies[b].material.young for b in soft), default=0)
             moduli.append(1 / compliance)
         return min(moduli)
-
-    def _area(self, height):
-        """The mean horizontal section of the bricks over a height [m²]."""
-        bodies = (O.bodies[body] for body in self.structure.ids)
-        return sum(b.state.mass / b.material.density for b in bodies) / height
 
     def slowest(self):
         """The longest period of what is free [s]: as one rigid body on the springs of a platen, or of a structure that sinks so far
@@ -223,28 +203,24 @@ class Supports:
                 continue
             arms = [(s.mass, s.pos - Vector3(*one.ends[0].point)) for s in free]
             weight = self.structure.gravity * sum(m * r[2] for m, r in arms)  # lever
-            inertias = [
-                sum(m * (r.dot(r) - r[i] ** 2) for m, r in arms) for i in (0, 1)
-            ]
             pairs = [(self.freeMass, one.stiffness[i]) for i in range(3)]
-            pairs += [(inertia, k - weight) for inertia, k in zip(inertias, one.rotation) if k]  # fmt: skip
+            for i, k in enumerate(one.rotation[:2]):
+                if k:
+                    inertia = sum(m * (r.dot(r) - r[i] ** 2) for m, r in arms)
+                    pairs.append((inertia, k - weight))
             found += [2 * math.pi * math.sqrt(m / k) for m, k in pairs if k > 0]
         return max(found)
 
     def contactOf(self, target):
         """Area of a platen's joints [m²], and their middle [m]."""
-        area, middle = 0.0, Vector3.Zero
-        for interaction in self.structure.interactions:
-            if target.body in (interaction.id1, interaction.id2):
-                geom = interaction.geom
-                for a, c in zip(geom.areas, geom.centres):
-                    area += a
-                    middle += a * c
+        geoms = [one.geom for one in self._jointsOf(target)]
+        points = [point for one in geoms for point in zip(one.areas, one.centres)]
+        area = sum(a for a, _ in points)
         low, high = target.box
         side = (high[0] - low[0]) * (high[1] - low[1])
         if abs(area - side) < FILLED * side:
             return side, [(a + b) / 2 for a, b in zip(low, high)]
-        return area, middle / area
+        return area, sum((a * c for a, c in points), Vector3.Zero) / area
 
     def weightOf(self, target):
         """Weight of the body of a target [N]."""

@@ -69,8 +69,6 @@ def beginScene(host):
 
     YADE adds up forces for each of its threads, and sums these columns in every step, also where a single thread has
     added all of them.
-
-    :param host: whether they may. If not, they use one thread from now on
     """
     with contextlib.suppress(AttributeError):
         ctypes.CDLL(None).omp_set_num_threads(_ofYade if host else 1)
@@ -78,10 +76,8 @@ def beginScene(host):
 
 
 def used():
-    """What steps took on each number of threads: a list of dicts.
-
-    :returns: ``threads``; ``steps``, how many were taken on that number; ``microseconds_per_step``, the mean time of their
-        loops over joints and bodies [µs], None if there were none
+    """What steps took on each number of threads: a list of dicts with ``threads``; ``steps``, how many were taken on that number; and
+    ``microseconds_per_step``, the mean time of their loops over joints and bodies [µs], None if there were none.
     """
     return [
         {
@@ -102,8 +98,8 @@ def remark():
     most = max(each, key=lambda r: r["steps"])
     if most["threads"] == _allowed or most["steps"] < 0.5 * taken:
         return None
-    others = (one for one in each if one is not most)
-    others = [f"{r['microseconds_per_step']:.0f} µs on {r['threads']}" for r in others]
+    each.remove(most)
+    others = [f"{r['microseconds_per_step']:.0f} µs on {r['threads']}" for r in each]
     return (
         f"{_allowed} threads were allowed, and {100 * most['steps'] / taken:.0f} % of the steps used {most['threads']}, "
         f"which was quicker: a step took {most['microseconds_per_step']:.0f} µs"

@@ -59,8 +59,7 @@ def show(
     renderer.extraDrawers = [GlExtra_MasonryLegend()]
     if not any(e.label == _LABEL for e in O.engines):
         command = "import masonry; masonry.assembly.window.refresh()"
-        runner = PyRunner(command=command, realPeriod=0.1, label=_LABEL)
-        O.engines = [*O.engines, runner]
+        O.engines += [PyRunner(command=command, realPeriod=0.1, label=_LABEL)]
     _look(view, scale)
     refresh()
     return view
@@ -74,10 +73,7 @@ def _look(view, scale):
         for v in getattr(b.shape, "v", ())
     ]
     if corners:
-        low, high = (
-            Vector3(*(pick(p[i] for p in corners) for i in range(3)))
-            for pick in (min, max)
-        )
+        low, high = (Vector3(*map(pick, zip(*corners))) for pick in (min, max))
         view.sceneRadius = (high - low).norm()
         view.viewDir, view.upVector = (0.25, 0.95, -0.2), (0, 0, 1)
         view.fitAABB(low, high)

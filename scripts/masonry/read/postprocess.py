@@ -32,7 +32,8 @@ NO_REPORT = 3
 
 def _load():
     """Draw a figure that nobody sees: the first one of a process loads most of matplotlib."""
-    with contextlib.suppress(ImportError, Missing):  # it is said when something is drawn
+    # what is missing is said when something is drawn
+    with contextlib.suppress(ImportError, Missing):
         import jinja2  # noqa: F401
 
         with style():

@@ -200,7 +200,7 @@ def _describe(run, scene):
         entries["energy_made"] = energy.largestMade
         scene.outcome.summarise()
     if run.args.blocks == "rigid" and not scene.description.functors:
-        entries["refined_joints"] = scene.model.refinedJoints()
+        entries["refined_joints"] = scene.model.scheme.joints.refinedJoints
     if at.steps:
         perStep = at.seconds["steps"] / at.steps
         ofOne = 1e9 * perStep / scene.model.subcontacts

@@ -3,6 +3,7 @@
 
 import time
 
+from ..assembly.columns import Reading
 from ..basics import say
 
 FLUSH_EVERY = 0.2  # [s] of wall-clock time: rows are on the disk after it
@@ -29,7 +30,7 @@ class Readings:
 
     def add(self, model):
         """Read the model. Returns the reading."""
-        reading = model.read()
+        reading = Reading(model)
         for sentence in model.connectors.news():
             say(f"note: {sentence}")
         self.waiting.append([value(reading) for value in self._values])

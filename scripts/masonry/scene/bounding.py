@@ -11,7 +11,7 @@ from ..basics import Interrupted
 from .bounds import EVERY, SMALL, findBy, nameInDomain, nameOfLean, nameOfPush
 from .resuming import saidBefore
 from .stages import gravity
-from .stages.pattern import Pushed, patternOf
+from .stages.push import Pushed, patternOf
 from .targets import MovingPlaten
 from .words import asData
 

@@ -98,7 +98,7 @@ class Bounds:
     def push(self, target, direction, both=False, **how):
         """Find the bound of a push [kN], without what acts beside it. Returns its entry of run.json, the last one if there are two.
 
-        :param target: what is pushed, or a :class:`masonry.assembly.drives.Pattern`
+        :param target: what is pushed, or a :class:`masonry.assembly.loading.Pattern`
         :param direction: unit vector of the push; ``both``: whether it goes back, too
         :param how: as in :meth:`find`
         """

@@ -155,7 +155,7 @@ class Description:
         for one in (*self.sections, *self.connectors, *self.overlays):
             found += one.columns(self.plane)
         balance = columns.BALANCE + columns.CONNECTORS * bool(self.connectors)
-        balance += (columns.CONTACTS + columns.FALLS) * bool(self.contact)
+        balance += columns.CONTACTS * bool(self.contact)
         found += [columns.CRACKS, *self.extra, *balance, *columns.HISTORY * looped]
         heads = columns.heads(found)
         twice = sorted({n for n in heads if heads.count(n) > 1})

@@ -133,7 +133,7 @@ def wallOf(description, loading):
         not description.plane
         or not (description.halves or {1, 2} == set(steps))
         or target.brick is not None
-        or loading.loads["push"].others
+        or loading.push.others
         or max(steps) > 2
         or any(abs(size[0] - n * half) > 1e-6 * half for size, n in zip(sizes, steps))
         or any(abs(size[2] - height) > 1e-6 * height for size in sizes)

@@ -7,7 +7,7 @@
 import numpy as np
 from yade import O, Vector3
 
-from ..assembly.drives import bodiesOf
+from ..assembly.loading import bodiesOf
 from ..basics import Refused
 
 

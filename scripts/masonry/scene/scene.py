@@ -47,7 +47,7 @@ from .description import Description
 from .materials import Masonry, linesOf, loadingBlock
 from .outcome import Outcome
 from .resuming import State, resume
-from .stages import STAGES, again, answers, gravity, prepare, rest
+from .stages import STAGES, answers, gravity, prepare, rest
 from .targets import Target
 from .words import SHAKES, Call, Script, either
 
@@ -177,7 +177,7 @@ class Scene:
     growLoad, growWind = stages.growLoad, stages.growWind
     growPress, grow, travel = stages.growPress, stages.grow, stages.travel
     shake, run, period = stages.shake, stages.run, stages.period
-    shakeAgain = again.shakeAgain
+    shakeAgain = stages.shakeAgain
     bracket, stepBack, resume = gravity.bracket, rest.stepBack, resume
     bound, domain, result = bounding.bound, bounding.domain, answers.result
     curve, probe, _repr_html_ = facts.curve, probing.probe, facts.asHtml

@@ -37,7 +37,7 @@ class Target:
 
     @property
     def parts(self) -> tuple[tuple[Any, Any, float]]:
-        """What a push of it moves, as in :class:`masonry.assembly.drives.Pattern`."""
+        """What a push of it moves, as in :class:`masonry.assembly.loading.Pattern`."""
         return ((self.body, self.point, 1.0),)
 
     def columns(self, plane: bool) -> Iterator[Column]:

@@ -146,8 +146,8 @@ void ColumnsSideBySide<LawType>::advance(int point, int from, int count, const d
     std::fill_n(regime, count, Regime::Elastic);
     const auto waits = stayElastic(equations_, yielded ? nullptr : &neverYielded_, columns_, first, count, jumps,
                                    normalStress, pending);
-    Mask left = waits.all;
-    if (waits.open != 0)
+    Mask left = rest.all;
+    if (rest.open != 0)
         left -= slideOpen(equations_, law_->tension(), law_->shear(), columns_.from(first), regime, jumps, pending,
                           count, normalStress);
     if (left == 0) return;

@@ -126,7 +126,7 @@ MASONRY_INLINED Mask findOpen(const PiecewiseEquations& given, const Columns& co
         const auto moved = e.open(opening[i], irreversible[i], largestOpening[i], jumps.opening[i]);
         const double inTension = tensionDamage[i], inShear = shearDamage[i], holds = secant[i];
         const double bond = intact[i], strength = e.residualCohesion(moved.elastic) + e.cp * bond;
-        const Mask waits = pending[i];
+        const Mask isPending = pending[i];
         const bool carriesNothing = (moved.before > 0) & (moved.elastic > 0) & (holds == 0) & (strength == 0) &
                                     (inTension >= mostTension) & (inShear >= mostShear);
         s.total[i] = moved.total;
@@ -134,8 +134,8 @@ MASONRY_INLINED Mask findOpen(const PiecewiseEquations& given, const Columns& co
         s.farthest[i] = moved.farthest;
         s.trialA[i] = shearStressA[i] + e.ks * jumps.slideA[i]; // eq. (7)
         s.trialB[i] = shearStressB[i] + e.ks * jumps.slideB[i];
-        s.here[i] = carriesNothing ? waits : 0;
-        many += carriesNothing ? waits : 0;
+        s.here[i] = carriesNothing ? isPending : 0;
+        many += carriesNothing ? isPending : 0;
     }
     return many;
 }

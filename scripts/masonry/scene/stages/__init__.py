@@ -4,46 +4,30 @@
 A new stage is such a function (:func:`masonry.scene.stages.stage.stage`) and its place in :data:`STAGES`.
 
 - :mod:`masonry.scene.stages.rest`: ``settle``
-- :mod:`masonry.scene.stages.push`: ``push``, ``cycle`` and ``follow``, whose drive is in :mod:`masonry.scene.stages.pushing`;
-  :mod:`masonry.scene.stages.pattern`: forces in a fixed proportion
-- :mod:`masonry.scene.stages.drive`: ``drive`` and ``pressJoint``
-- :mod:`masonry.scene.stages.supports`: ``release`` and ``move``
+- :mod:`masonry.scene.stages.push`: ``push``, ``cycle`` and ``follow``, whose drive is in :mod:`masonry.scene.stages.pushing`
+- :mod:`masonry.scene.stages.supports`: ``drive``, ``pressJoint``, ``release`` and ``move``
 - :mod:`masonry.scene.stages.gravity`: ``tilt``, ``accelerate``, ``lean`` and ``bracket``
 - :mod:`masonry.scene.stages.loading`: ``load``, ``wind``, ``press``, ``pressure`` and ``hold`` after the first stage, and ``grow``
   with its simple cases ``growLoad``, ``growWind`` and ``growPress``; :mod:`masonry.scene.stages.travelling`: ``travel``
-- :mod:`masonry.scene.stages.growing`: how a load grows, and the search for the one that is held;
-  :mod:`masonry.scene.stages.acting`: what acts and can be changed
-- :mod:`masonry.scene.stages.shake`: ``shake`` and ``run``; :mod:`masonry.scene.stages.again`: ``period`` and ``shakeAgain``
+- :mod:`masonry.scene.stages.growing`: how a load grows, and the search for the one that is held
+- :mod:`masonry.scene.stages.shake`: ``shake``, ``run``, ``period`` and ``shakeAgain``
 - :mod:`masonry.scene.stages.falling`: ``fall``, which follows a collapse where the scene says so
-- :mod:`masonry.scene.stages.answers`: how stages end, and what they answer
-- :mod:`masonry.scene.stages.stage`: what all share; :mod:`masonry.scene.stages.timed`: what those share that last for a time
+- :mod:`masonry.scene.stages.answers`: how stages end, and what they answer; :mod:`masonry.scene.stages.stage`: what all share
 """
 
-from .drive import drive, pressJoint
 from .gravity import accelerate, lean, tilt
 
 from .loading import grow, growLoad, growPress, growWind, hold, load, prepare, press, pressure, wind  # fmt: skip
 from .push import cycle, follow, push
 from .rest import settle
-from .again import period
-from .shake import run, shake
+from .shake import period, run, shake, shakeAgain
 from .answers import AT_REST, COLLAPSED, DONE, MOVING
-from .supports import move, release
+from .supports import drive, move, pressJoint, release
 from .travelling import travel
 
 #: All stages. Each is a method of :class:`masonry.scene.scene.Scene`.
 STAGES = [settle, push, cycle, follow, drive, pressJoint, release, move, tilt]
-STAGES += [
-    accelerate,
-    lean,
-    shake,
-    run,
-    growLoad,
-    growWind,
-    growPress,
-    grow,
-    travel,
-    period,
-]
+STAGES += [accelerate, lean, shake, run, growLoad, growWind, growPress, grow, travel]
+STAGES += [period]
 #: Stages whose names are those of words that describe: they are meant after the first stage.
 LATER = (load, wind, press, pressure, hold)

@@ -59,18 +59,16 @@ def answersText(answers, stages=()):
     :param stages: entries of ``stages`` of run.json, which say what the loads are
     """
     loads = quantities.loadsOf(stages)
-    searches = lambda one: one["name"] in ("factor_held", "factor_not_held")
-    trial = (
-        lambda one: one["stage"] in ("lean", "load", "wind", "press", "pressure")
-        or one["number"]
-    )
-    alike = (
-        lambda one: (one["stage"], trial(one), one["unit"]) if searches(one) else None
-    )
-    shown = [a for a in answers if not a["name"].startswith("displacement_held")]
-    shown = [a for a in shown if not a["name"].startswith("displacement_not_held")]
+
+    def alike(one):
+        if one["name"] not in ("factor_held", "factor_not_held"):
+            return None
+        trials = one["stage"] in ("lean", "load", "wind", "press", "pressure")
+        return one["stage"], trials or one["number"], one["unit"]
+
+    hidden = "displacement_held", "displacement_not_held"
+    shown = [a for a in answers if not a["name"].startswith(hidden)]
     for kind, group in itertools.groupby(shown, alike):
-        group = list(group)
         if kind is None:
             yield from map(answerText, group)
             continue
@@ -83,19 +81,15 @@ def answersText(answers, stages=()):
 
 def _searchText(answers, what):
     """The line of stages that looked for one load."""
-    held = _furthest(answers, "factor_held", max)
-    lost = _furthest(answers, "factor_not_held", min)
-    found = [answerText(one, what) for one in (held, lost) if one]
+    texts = []
+    for name, choose in (("factor_held", max), ("factor_not_held", min)):
+        found = [one for one in answers if one["name"] == name]
+        known = [one for one in found if one["value"] is not None]
+        one = choose(known, key=lambda one: one["value"]) if known else found[-1]
+        texts.append(answerText(one, what))
     count = len({one["number"] for one in answers})
     stages = f" ({count} stages)" if count > 1 else ""
-    return "; ".join([found[0] + stages] + [t.partition(": ")[2] for t in found[1:]])
-
-
-def _furthest(answers, name, choose):
-    """The answer of a name with the largest or smallest value, or one without a value if there is no other."""
-    found = [one for one in answers if one["name"] == name]
-    known = [one for one in found if one["value"] is not None]
-    return choose(known, key=lambda one: one["value"]) if known else found[-1]
+    return f"{texts[0]}{stages}; {texts[1].partition(': ')[2]}"
 
 
 def finding(value: Any, first: Any = None) -> Any:

@@ -11,6 +11,7 @@ from typing import Any
 
 from yade import O, Vector3
 
+from ...assembly.blocks import placeOf
 from ...assembly.motion import REST
 from ...basics import GRAVITY, Unwritable, say
 from .answers import FALL, FALLEN_AT_REST, FALLEN_MOVING, Answer
@@ -37,9 +38,7 @@ class Falling:
 def followFall(scene: Any, tilted: bool) -> str:
     """Go on with what falls until it is at rest. Loads stay, but for a horizontal acceleration, which ends when the first block
     has fallen; drives and supports stand still, and the numerical damping of the options acts on what stands, not on what no
-    joint holds. Returns how that ended.
-
-    :param tilted: whether gravity is that of a ground that is tilted, which stays
+    joint holds. The gravity of a ground that is tilted stays. Returns how that ended.
     """
     model, running, box = scene.model, scene.running, scene.description
     at = running.stage(FALL, Falling())
@@ -50,18 +49,17 @@ def followFall(scene: Any, tilted: bool) -> str:
     model.scheme.dampByOptions()  # what stands comes to rest; blocks that are loose are not damped so
     model.scheme.keepStable()
     model.letFall()
-    gravity = abs(box.gravity) or GRAVITY
-    size = max(box.size(index) for index in range(len(box.bricks)))
-    every = max(1, round(LOOK * math.sqrt(size / gravity) / O.dt))
-    height = box.high[2] - box.low[2]
-    longest = LONGEST * (math.sqrt(2 * height / gravity) + math.sqrt(size / gravity))
+    gravity, height = abs(box.gravity) or GRAVITY, box.high[2] - box.low[2]
+    small = math.sqrt(max(map(box.size, range(len(box.bricks)))) / gravity)
+    every = max(1, round(LOOK * small / O.dt))
+    longest = LONGEST * (math.sqrt(2 * height / gravity) + small)
     most = max(LOOKS, int(longest / (every * O.dt)))
     while at.looks < most and at.quiet < LOOKS:
         running.advance(every)
         at.looks += 1
         running.record()
         missing, _ = model.supports.unrest()
-        rests = abs(missing) < REST and model.motion.fastest() < CALM
+        rests = missing < REST and model.motion.fastest() < CALM
         at.quiet = at.quiet + 1 if rests else 0
         if at.looks >= at.nextFrame:
             running.frame()
@@ -92,12 +90,8 @@ def followFall(scene: Any, tilted: bool) -> str:
 
 def cornersNow(model: Any, index: int) -> list[Any]:
     """Where the corners of a block are now [m]."""
-    state = O.bodies[model.ids[index]].state
-    turn = state.ori * state.refOri.conjugate()
-    return [
-        state.pos + turn * (Vector3(*corner) - state.refPos)
-        for corner in model.description.bricks[index].corners
-    ]
+    corners = model.description.bricks[index].corners
+    return [placeOf(model.ids[index], corner) for corner in corners]
 
 
 def volume(model: Any, index: int) -> float:
@@ -107,40 +101,31 @@ def volume(model: Any, index: int) -> float:
 
 
 def answers(scene: Any, ended: str, begun: float) -> list[Answer]:
-    """What fell, when, how fast, and where it lies.
-
-    :param ended: how the fall ended
-    :param begun: time when the collapse was noticed [s]
-    """
+    """What fell, when, how fast, and where it lies, by how the fall ended and when the collapse was noticed [s]."""
     model, box = scene.model, scene.description
-    fallen = model.fallen()
-    count, share = len(fallen), 0.0
+    fallen, atRest = model.fallen(), ended == FALLEN_AT_REST
     masses = [O.bodies[body].state.mass for body in model.ids]
-    if sum(masses):
-        share = sum(masses[index] for index in fallen) / sum(masses)
-    when = f"{ended}: " if ended != FALLEN_AT_REST else ""
+    mass = sum(masses[index] for index in fallen)
+    when = "" if atRest else f"{ended}: "
     what = "blocks that have turned by 60° or moved by their diameter since the scene was built"
     found = [
-        Answer("fallen_blocks", "-", count, f"{when}{what}, of {len(masses)}"),
-        Answer("fallen_share", "-", share, f"{when}mass of these over that of all blocks"),
+        Answer("fallen_blocks", "-", len(fallen), f"{when}{what}, of {len(masses)}"),
+        Answer("fallen_share", "-", mass / (sum(masses) or 1.0), f"{when}mass of these over that of all blocks"),
+        Answer("noticed_at", "s", begun, "when the collapse was noticed, since the scene was built"),
+        Answer("time_to_rest", "s", O.time - begun if atRest else None, "from then on until all was at rest"),
     ]  # fmt: skip
-    how = "when the collapse was noticed, since the scene was built"
-    found.append(Answer("noticed_at", "s", begun, how))
-    rest = O.time - begun if ended == FALLEN_AT_REST else None
-    how = "from then on until all was at rest"
-    found.append(Answer("time_to_rest", "s", rest, how))
     if not fallen:
         return found
     first = min(one["fell"] for one in fallen.values())
     energy = sum(one["most"] for one in fallen.values())
     corners = [c for index in fallen for c in cornersNow(model, index)]
-    low, high = ([f(c[i] for c in corners) for i in range(3)] for f in (min, max))
+    low, high = ([f(values) for values in zip(*corners)] for f in (min, max))
     ground = box.ground().box[1][2]
     beyond = [max(0.0, box.low[i] - low[i], high[i] - box.high[i]) for i in range(2)]
     lies = f"{when}of the corners of the fallen blocks"
     return [
         *found,
-        Answer("fallen_mass", "kg", sum(masses[index] for index in fallen), f"{when}of the fallen blocks"),
+        Answer("fallen_mass", "kg", mass, f"{when}of the fallen blocks"),
         Answer("rubble_volume", "m³", sum(volume(model, index) for index in fallen), f"{when}of the fallen blocks, without what lies between them"),
         Answer("rubble_length_x", "m", high[0] - low[0], f"{lies}, from the first to the last"),
         Answer("rubble_length_y", "m", high[1] - low[1], f"{lies}, from the first to the last"),

@@ -1,22 +1,89 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Horizontal acceleration and a tilting ground: ``tilt``, ``accelerate`` and ``lean``, and the search with ``bracket``."""
+"""Horizontal acceleration and a tilting ground: ``tilt``, ``accelerate`` and ``lean``, and the search with ``bracket``. What acts and can
+be changed is an :class:`Acting`."""
 
 from __future__ import annotations
 
 import math
 from typing import Annotated, Any, Callable
 
+from yade import Vector3
+
 from ...common.arguments import Level, number, validated
-from ...assembly.blocks import vector
+from ...assembly.blocks import inPlane
+from ...assembly.loading import smooth
+from ...basics import GRAVITY
 from ..bounds import findBound, nameOfLean
-from .acting import Acceleration, Tilting
 from .growing import TRIAL, WITHIN, ends, follow, found, grow
 from .rest import WAITED, Resting, waitForRest
 from .answers import AT_REST, MOVING
-from .stage import stage
-from .timed import Duration
+from .stage import Duration, stage
 
 LEAN_GROWS = 0.2  # [s] in which a lean grows
+
+
+class Acting:
+    """What acts. A share of 1 is the whole growth, and its factor is ``most`` [-].
+
+    Its kinds have ``now()``, their present values as a list of numbers, ``put(values)``, and ``at(began, share)``, their values when a
+    share of the growth is over, 0 to 1 [-], from those when it began.
+
+    :param name: under which its bound is found
+    :param unit: of the factor
+    :param towards: direction along which displacements are counted
+    """
+
+    target = None  # the platen or brick on which it acts, if it is one
+
+    def __init__(self, name, most, unit, towards=None):
+        self.name, self.most, self.unit, self.towards = name, most, unit, towards
+
+    def factor(self, share):
+        """The load factor at a share [-]."""
+        return share * self.most
+
+    def shareOf(self, factor):
+        """The share at which it has a load factor [-]."""
+        return factor / self.most
+
+
+class Acceleration(Acting):
+    """Gravity, with a horizontal acceleration that grows beside it, to ``most`` [g]."""
+
+    def __init__(self, model, most, towards, name, unit="g"):
+        super().__init__(name, most, unit, towards)
+        self.model = model
+
+    def now(self):
+        return list(self.model.scheme.now)
+
+    def put(self, values):
+        self.model.scheme.setGravity(Vector3(*values))
+
+    def at(self, began, share):
+        down = self.model.description.gravity * Vector3.UnitZ
+        whole = self.factor(share) * GRAVITY * self.towards - down
+        return list(whole / self.model.args.density_scaling)
+
+
+class Tilting(Acceleration):
+    """Gravity that turns to an angle [rad], as on a ground that is tilted. The factor is the horizontal over the vertical part."""
+
+    def __init__(self, model, angle, towards, name):
+        super().__init__(model, math.tan(angle), towards, name, "-")
+        self.angle = angle
+
+    def at(self, began, share):
+        down, angle = self.model.description.gravity, share * self.angle
+        turned = math.sin(angle) * self.towards - math.cos(angle) * Vector3.UnitZ
+        return list(down * turned / self.model.args.density_scaling)
+
+    def factor(self, share):
+        angle = share * self.angle
+        return math.tan(angle) if angle < math.pi / 2 else math.inf
+
+    def shareOf(self, factor):
+        return math.atan(factor) / self.angle
 
 
 def putOnAnswers(scene, rows):
@@ -31,21 +98,13 @@ def putOnAnswers(scene, rows):
 
 def sideways(scene, towards, name):
     """A horizontal direction as a unit vector. Raises ValueError."""
-    towards = vector(towards, f"{name}: direction")
-    if scene.description.plane and towards[1]:
-        raise ValueError(
-            f"{name}: the scene is in the x-z plane; Scene(..., plane=False) is in space"
-        )
-    return towards.normalized()
+    return inPlane(scene.description, towards, name).normalized()
 
 
-#: Kinds of arguments: a horizontal direction, the width of a bracket, and an acceleration.
-Width = Annotated[float, number("", 1e-4, 1, below=True)]
-InG = Annotated[float, number("g", 0, 1e3, above=True)]
+Width = Annotated[float, number("", 1e-4, 1, below=True)]  # of a bracket
 
 
 @stage(bounded=True, answers=found)
-@validated
 def tilt(
     scene: Any,
     degrees: Annotated[float, number("degrees", 0, 90, above=True, below=True)],
@@ -60,21 +119,20 @@ def tilt(
     :param rate: [degrees/s]
     :param within: width of the bracket that the search leaves, over its upper end [-]
     :returns: ``COLLAPSED`` if the structure fell, else ``AT_REST`` if it came to rest under the whole load, else ``DONE``.
-        ``scene.factor`` is the largest horizontal over vertical acceleration under which it came to rest in trials under a
-        constant load, see :mod:`masonry.scene.stages.growing`; the scene stays as it was at the end of the growth
+        ``scene.factor`` is the largest horizontal over vertical acceleration that it held, by :mod:`masonry.scene.stages.growing`; the
+        scene stays as it was at the end of the growth
     """
     towards = sideways(scene, towards, "tilt")
-    angle, duration = math.radians(degrees), degrees / rate
     findBound(scene, "lean", towards, True)
-    load = Tilting(scene.model, angle, towards, nameOfLean(towards, tilts=True))
-    return grow(scene, "tilt", load, duration, towards, within)
+    name = nameOfLean(towards, tilts=True)
+    load = Tilting(scene.model, math.radians(degrees), towards, name)
+    return grow(scene, "tilt", load, degrees / rate, within)
 
 
 @stage(bounded=True, answers=found)
-@validated
 def accelerate(
     scene: Any,
-    most: InG,
+    most: Annotated[float, number("g", 0, 1e3, above=True)],
     towards: Level = (1, 0, 0),
     rate: Annotated[float, number("g/s", 1e-6, 1e6)] = 0.5,
     within: Width = WITHIN,
@@ -84,19 +142,15 @@ def accelerate(
 
     :param most: [g]
     :param towards: horizontal direction of the force on the blocks
-    :param rate: [g/s]
-    :param within: as in :meth:`tilt`
-    :returns: as in :meth:`tilt`
+    :param rate: [g/s]; the rest as in :meth:`tilt`
     """
     towards = sideways(scene, towards, "accelerate")
-    duration = most / rate
     findBound(scene, "lean", towards)
     load = Acceleration(scene.model, most, towards, nameOfLean(towards))
-    return grow(scene, "accelerate", load, duration, towards, within)
+    return grow(scene, "accelerate", load, most / rate, within)
 
 
 @stage(bounded=True, answers=putOnAnswers)
-@validated
 def lean(
     scene: Any,
     factor: Annotated[float, number("g", 0, 1000)],
@@ -111,35 +165,27 @@ def lean(
     towards = sideways(scene, towards, "lean")
     findBound(scene, "lean", towards)
     load = Acceleration(scene.model, factor, towards, nameOfLean(towards))
-    if scene.only:
-        return boundAlone(scene, load)
-    return putOn(scene, "lean", load, towards, longest, LEAN_GROWS)
+    return putOn(scene, "lean", load, longest, LEAN_GROWS)
 
 
-def boundAlone(scene, load):
-    """How a stage of ``--preset bound`` ends that puts a load on, which stays if limit analysis finds that it is carried."""
-    carried = scene.bounds.entries.get(load.name, {}).get("factor", 0.0)
-    carried = math.inf if load.name in scene.bounds.endless else carried
-    scene.ended = AT_REST if load.most <= carried else MOVING
-    if scene.ended == AT_REST:
-        load.put(load.at(load.now(), 1.0))
-    return scene.ended
+def putOn(scene, name, load, longest, over=0.0):
+    """Let a load grow within a short time, and wait until the structure is at rest or falls. With ``--preset bound`` it stays if limit
+    analysis finds that it is carried.
 
-
-def putOn(scene, name, load, towards, longest, over=0.0):
-    """Let a load grow within a short time, and wait until the structure is at rest or falls.
-
-    :param name: of the stage
-    :param load: :class:`masonry.scene.stages.acting.Acting`
-    :param towards: direction along which displacements are counted
     :param longest: time in the scene after which it is given up [s]; None: :data:`masonry.scene.stages.growing.TRIAL`, and longer
         on soft springs
     :param over: time in which it grows at least [s]
     """
+    if scene.only:
+        carried = scene.bounds.entries.get(load.name, {}).get("factor", 0.0)
+        if load.name not in scene.bounds.endless and load.most > carried:
+            return MOVING
+        load.put(load.at(load.now(), 1.0))
+        return AT_REST
     running, model, scene.loadUnit = scene.running, scene.model, load.unit
     running.note("lean", load.name)
-    on = load.target.name if load.target else ""
-    follow(scene, f"{name} {on}{[round(v, 9) for v in towards]}", towards, load.target)
+    on, towards = load.target.name if load.target else "", load.towards
+    follow(scene, f"{name} {on}{[round(v, 9) for v in towards]}", load)
     at = running.stage(name, Resting())
     at.goal = load.factor(1.0)
     if at.begun is None:
@@ -147,12 +193,12 @@ def putOn(scene, name, load, towards, longest, over=0.0):
     first, ends = at.begun, load.at(at.begun, 1.0)
 
     def growing(x):
-        share = x * x * (3 - 2 * x)
+        share = smooth(x)
         load.put([was + share * (end - was) for was, end in zip(first, ends)])
         model.loading.loadFactor = share * at.goal
 
-    vertical = abs(towards[2]) > 0.5
     longest = longest or max(TRIAL, WAITED * model.supports.slowest())
+    vertical = abs(towards[2]) > 0.5
     ended = waitForRest(scene, at, longest, growing, over=over, buckling=vertical)
     if ended == AT_REST:
         scene.bounds.hold(load.name, at.goal)
@@ -182,27 +228,22 @@ def bracket(
         scene.stepBack()
     scene.bracketing = True
     try:
-        return _halve(scene, carries, low, high, within)
+        if not carries(low):
+            scene.stepBack()
+            raise ValueError(
+                f"bracket: the structure does not carry {low:g}, the lower end"
+            )
+        if carries(high):
+            raise ValueError(f"bracket: the structure carries {high:g}, the upper end")
+        scene.stepBack()
+        within = within if scene.share == 1 else max(within, 0.5)
+        while high - low > within * high:
+            middle = 0.5 * (low + high)
+            if carries(middle):
+                low = middle
+            else:
+                high = middle
+                scene.stepBack()
+        return low, high
     finally:
         scene.bracketing = False
-
-
-def _halve(scene, carries, low, high, within):
-    """As :func:`bracket`."""
-    if not carries(low):
-        scene.stepBack()
-        raise ValueError(
-            f"bracket: the structure does not carry {low:g}, the lower end"
-        )
-    if carries(high):
-        raise ValueError(f"bracket: the structure carries {high:g}, the upper end")
-    scene.stepBack()
-    within = within if scene.share == 1 else max(within, 0.5)
-    while high - low > within * high:
-        middle = 0.5 * (low + high)
-        if carries(middle):
-            low = middle
-        else:
-            high = middle
-            scene.stepBack()
-    return low, high

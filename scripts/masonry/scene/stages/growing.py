@@ -2,20 +2,20 @@
 """Loads that grow until the structure falls, and the search for the load that it holds.
 
 A structure under a growing load falls late: it must first move. It also begins to move early, where joints give way little
-by little. So neither moment says what it carries. The run finds that out by trials. During the growth it keeps states to go
-back to. Then it takes such a state, leaves the load as it is, and waits: the load is held if the structure comes to rest
-under it. Between the largest load that was held and the smallest that was not it goes on in halves, from the state at rest
-under the first. At the end the load that was not held is tried once more from that state, in which nothing moves: so it does
-not matter how fast the load grew.
+by little. So the run finds by trials what it carries. During the growth it keeps states to go back to. Then it takes such a state,
+leaves the load as it is, and waits: the load is held if the structure comes to rest under it. Between the largest load that was held
+and the smallest that was not it goes on in halves, from the state at rest under the first. At the end the load that was not held is
+tried once more from that state, in which nothing moves: so it does not matter how fast the load grew.
 
 A perfectly symmetric structure comes to rest under loads far above that at which it buckles. So the largest load that was held is
-looked at with a small push to the side (:func:`masonry.assembly.period.buckles`), which leaves no trace. If that grows, the load is
-not held, and every later trial is looked at so.
+looked at with a small push to the side (:func:`masonry.assembly.period.buckles`). If that grows, the load is not held, and every later
+trial is looked at so.
 """
 
 from __future__ import annotations
 
 import base64
+import bisect
 import statistics
 from dataclasses import dataclass
 from typing import Any, Sequence
@@ -23,17 +23,17 @@ from typing import Any, Sequence
 from yade import O
 
 from ..._masonry import loadScene, saveScene
+from ...assembly.loading import smooth
 from ...assembly.motion import FALLEN, REST
 from ...basics import Collapsed, say
-from .rest import CALM, EVERY, LOOKS, WAITED, buckles, rampTime
+from .rest import CALM, EVERY, LOOKS, WAITED, buckles, growthTime
 from .answers import AT_REST, DONE, Answer
-from .timed import Timed, timed
+from .stage import Timed, timed
 
 WITHIN = 0.005  # width of the bracket, over its upper end [-]
 LEAST = 0.05  # of the whole growth: the width of a bracket below this load is that of a bracket at it [-]
-TRIAL = (
-    4.0  # [s] in the scene after which a trial is given up, or later on soft springs
-)
+#: [s] in the scene after which a trial is given up, or later on soft springs
+TRIAL = 4.0
 MOST_KEPT, LEAST_KEPT = 128, 8  # states that are kept during a growth
 KEPT_BYTES = 100e6  # that they may have in all; a checkpoint during the growth or the search has them
 #: A trial is not held as soon as a block has moved as far as one that has fallen, has at least this share of its speed [-], and is
@@ -63,7 +63,6 @@ class Growing(Timed):
     fell: str = ""  # how the structure fell
     last: float = -1.0  # factor at the end of the growth, or below 0 before that [-]
     lastState: str = ""  # the state then, as text
-    steps: int = 0  # that the growth took
     # -- of the search
     over: int = 0  # 1 when it has ended, and only the last state at rest is kept
     #: 1 when the largest load that was held was seen to buckle; from then on every trial is looked at so.
@@ -86,21 +85,17 @@ class Growing(Timed):
     marks: Sequence[Any] = ()  # velocities after 1, 2, 4, ... looks [-]
 
 
-def grow(scene, name, load, duration, towards, within=WITHIN):
-    """Let a load grow evenly until the structure falls or the load has its whole, then search for the one that is held.
+def grow(scene, name, load, duration, within=WITHIN):
+    """Let a :class:`~masonry.scene.stages.gravity.Acting` grow evenly until the structure falls or it has its whole, then search for the one
+    that is held.
 
-    :param name: of the stage
-    :param load: :class:`masonry.scene.stages.acting.Acting`, with ``at(began, share)`` for its values and ``factor(share)``
-    :param duration: [s], with true masses
-    :param towards: direction along which displacements are counted
-    :param within: width of the bracket, over its upper end [-]
+    :param duration: [s], with true masses; ``within``: width of the bracket, over its upper end [-]
     """
     if scene.only:
-        scene.ended = DONE
         return DONE
     running, scene.loadUnit = scene.running, load.unit
     running.note("growth", load.name)
-    follow(scene, f"stage {running.entered + 1}", towards, load.target)
+    follow(scene, f"stage {running.entered + 1}", load)
     _noteDrives(scene, name)
     at = running.stage(name, Growing())
     if at.begun is None:
@@ -109,16 +104,15 @@ def grow(scene, name, load, duration, towards, within=WITHIN):
         _Growth(scene, at, load, duration).run()
     within = within if scene.share == 1 else max(within, 0.5)
     search = _Search(scene, at, load, within)
-    search.run(name)
+    search.run()
     if at.held:
         scene.bounds.take(True)
         scene.bounds.hold(load.name, at.held[0])
         _compare(scene, name, load, at)
     if at.lost and at.held:
-        low, high = at.held[0], at.lost[0]
         unit = "" if load.unit == "-" else f" {load.unit}"
         say(
-            f"{name}: held at {low:.5g}{unit}, not held at {high:.5g}{unit} ({WHY[at.lost[3]]})"
+            f"{name}: held at {at.held[0]:.5g}{unit}, not held at {at.lost[0]:.5g}{unit} ({WHY[at.lost[3]]})"
         )
     return search.end()
 
@@ -138,25 +132,21 @@ def _compare(scene, name, load, at):
     """Say that much less is held than rigid blocks would carry."""
     entry = scene.bounds.entries.get(load.name, {})
     if at.lost and entry.get("exact") and at.held[0] < FAR * entry["factor"]:
+        less = 100 * (1 - at.held[0] / entry["factor"])
         say(
-            f"note: {name}: rigid blocks would carry {entry['factor']:.4g}, and the run held {100 * (1 - at.held[0] / entry['factor']):.0f} % "
+            f"note: {name}: rigid blocks would carry {entry['factor']:.4g}, and the run held {less:.0f} % "
             "less: joints that are soft let the structure lean before it falls. Try stiffer joints (normalStiffness), and more "
             "points (--points)"
         )
 
 
-def follow(scene, name, towards, loaded):
-    """From now on record the displacement of what is watched along a load, from where it was when that began.
-
-    :param name: under which the run keeps where that was
-    :param loaded: the target on which the load is, or None
-    """
-    target, origins = scene.description.followed(loaded), scene.running.at.origins
+def follow(scene, name, load):
+    """From now on record the displacement of what is watched along a load, from where it was when that began, which the run keeps under a
+    name."""
+    target, origins = scene.description.followed(load.target), scene.running.at.origins
+    origin = scene.model.loading.follow(target, load.towards, origins.get(name))
     if target and name not in origins:
-        origin = scene.model.loading.follow(target, towards)
         scene.running.at.origins = {**origins, name: origin}
-    origin = scene.running.at.origins.get(name, (0, 0, 0))
-    scene.model.loading.followFrom(target, towards, origin)
 
 
 def found(scene, rows):
@@ -166,43 +156,43 @@ def found(scene, rows):
         return []
     what = "trials of the run itself, each under a constant load from a state at rest or of the growth"
     held = f"the largest load factor under which the structure came to rest; {what}"
+    lost = f"the load ended at {at.last:.4g} while the structure stood"
     if at.held is None:
         held = "the structure came to rest under no load that was tried"
         if at.trials:
-            least = min(factor for factor, _ in at.trials)
-            held += f", of {len(at.trials)} from {least:.4g} on"
-    why = f": {WHY[at.lost[3]]}" if at.lost else ""
-    lost = f"the smallest load factor under which it did not come to rest{why}; {what}"
-    if at.lost is None:
-        lost = f"the load ended at {at.last:.4g} while the structure stood"
+            held += f", of {len(at.trials)} from {min(at.trials)[0]:.4g} on"
+    if at.lost:
+        lost = f"the smallest load factor under which it did not come to rest: {WHY[at.lost[3]]}; {what}"
     return ends(scene, at.held, held, at.lost, lost)
 
 
 def ends(scene, held, whyHeld, lost, whyLost):
     """The answers of a stage that looks for the load that is held.
 
-    :param held: factor and displacement [mm] of a load that was held, or None; ``lost``: of one that was not
-    :param whyHeld: how it was found, or why it was not; ``whyLost``: likewise
+    :param held: factor and displacement [mm] of a load that was held, or None, and how it was found or why not; ``lost``: likewise
     """
-    answers, target = [], scene.model.loading.followed
+    target = scene.model.loading.followed
     for name, end, how, when in (
         ("held", held, whyHeld, "at rest"),
         ("not_held", lost, whyLost, "when it was seen not to come to rest"),
     ):
-        value = end[0] if end else None
-        answers.append(Answer(f"factor_{name}", scene.loadUnit, value, how))
+        yield Answer(f"factor_{name}", scene.loadUnit, end[0] if end else None, how)
         if end and target:
             how = f"of {target.name} along the load since that began, {when}"
-            answers.append(Answer(f"displacement_{name}", "mm", end[1], how))
-    return answers
+            yield Answer(f"displacement_{name}", "mm", end[1], how)
 
 
 def _text(state):
     return base64.b64encode(state).decode()
 
 
-def _state(text):
-    return base64.b64decode(text)
+def _present():
+    """The present state as text."""
+    return _text(saveScene("null"))
+
+
+def _load(text):
+    loadScene(base64.b64decode(text))
 
 
 class _Growth:
@@ -217,15 +207,15 @@ class _Growth:
         """Let the load grow."""
         at, scene, model = self.at, self.scene, self.model
         if not at.kept:
-            at.kept = [[0.0, _text(saveScene("null"))]]
+            at.kept = [[0.0, _present()]]
         try:
             timed(scene, at, scene.share * self.whole, self._before, self._after)
             self._put(scene.share)
         except Collapsed as collapse:
             at.fell = str(collapse)
-        at.steps, at.last = at.done, model.loading.loadFactor
+        at.last = model.loading.loadFactor
         try:
-            at.lastState = _text(saveScene("null"))
+            at.lastState = _present()
         except ValueError:  # a number of what has fallen may no longer be finite
             at.lastState = at.kept[-1][1]
 
@@ -241,7 +231,7 @@ class _Growth:
         # a checkpoint may hold the old lists
         at.rows = [*at.rows, [O.time, factor, self.model.motion.fastest()]]
         if len(at.rows) % at.spacing == 0:
-            at.kept = [*at.kept, [factor, _text(saveScene("null"))]]
+            at.kept = [*at.kept, [factor, _present()]]
             most = KEPT_BYTES / len(at.kept[-1][1])
             if len(at.kept) > min(MOST_KEPT, max(LEAST_KEPT, most)):
                 at.kept, at.spacing = at.kept[::2], 2 * at.spacing
@@ -255,7 +245,7 @@ class _Search:
         self.scene, self.at, self.load, self.within = scene, at, load, within
         self.model, self.running = scene.model, scene.running
 
-    def run(self, name):
+    def run(self):
         """Make trials until the bracket is narrow, or nothing is left to try."""
         at = self.at
         while not at.over:
@@ -270,13 +260,13 @@ class _Search:
                 at.source, at.goal, state, at.calm = chosen
                 at.taken, at.quiet, at.marks = 0, 0, []
                 if state is not None:
-                    loadScene(_state(state))
+                    _load(state)
             held = self._trial()
             if held and at.buckled and self._buckles():
                 held, at.ended = False, 3
             end = [at.goal, 1e3 * self.model.loading.alongNow()]
             if held:
-                at.held, at.heldState = end, _text(saveScene("null"))
+                at.held, at.heldState = end, _present()
                 at.climbs += bool(at.climbs)
                 if at.lost and at.goal >= at.lost[0]:
                     at.lost, at.climbs = None, 1
@@ -284,29 +274,29 @@ class _Search:
                 at.lost = [*end, at.calm, at.ended]
             at.trials = [*at.trials, [at.goal, int(held)]]
             at.goal = -1.0
-            self._show(name)
+            ends = [f"held {at.held[0]:.4g}"] if at.held else []
+            ends += [f"not held {at.lost[0]:.4g}"] if at.lost else []
+            detail = f"trial {len(at.trials)}: {', '.join(ends)}"
+            self.running.show(1, lambda: detail, True)
 
     def end(self):
         """Take the scene to where the stage ends, and return how it ended."""
-        at, scene = self.at, self.scene
+        at, running = self.at, self.running
+        stands = not at.fell and at.lost is None and at.held
         if at.held:
-            self.model.atRest = _state(at.heldState)
-        if not at.fell and at.lost is None and at.held:
-            if self.running.readings.time != O.time:
-                self.running.record()
-            self.running.flush()
+            self.model.atRest = base64.b64decode(at.heldState)
+        if stands:
+            if running.readings.time != O.time:
+                running.record()
+            running.flush()
+        else:
             if not at.over:
-                at.kept, at.lastState, at.over = [], "", 1
-            scene.ended = AT_REST
-            return scene.ended
-        if not at.over:
-            loadScene(_state(at.lastState))
-            at.kept, at.lastState, at.over = [], "", 1
-        self.model.loading.loadFactor = at.last
+                _load(at.lastState)
+            self.model.loading.loadFactor = at.last
+        at.kept, at.lastState, at.over = [], "", 1
         if at.fell:
             raise Collapsed(at.fell)
-        scene.ended = DONE
-        return DONE
+        return AT_REST if stands else DONE
 
     # -- which trial comes next -----------------------------------------------------------------------------------
 
@@ -315,6 +305,7 @@ class _Search:
         present one, and 1 if it is at rest, else 0. None if there is nothing left to try.
         """
         at = self.at
+        fromRest = lambda goal: (at.held[0], goal, at.heldState, 1)
         if not at.trials and not at.fell:
             return at.last, at.last, None, 0  # the structure still stands
         if not at.fell and at.held and at.held[0] >= at.last:
@@ -322,45 +313,37 @@ class _Search:
         if at.climbs and at.lost is None:
             goal = at.held[0] * (1 + self.within * 2**at.climbs)
             most = self.load.factor(1.0)
-            return self._fromRest(min(goal, most)) if at.held[0] < most else None
+            return fromRest(min(goal, most)) if at.held[0] < most else None
         chosen = None if at.climbs else self._ofGrowth()
         if chosen or at.held is None:
             return chosen
         if at.lost is None:
-            at.lost = [at.last, 1e3 * self._alongThen(), 0, 0]
-        width = self.within * max(at.lost[0], LEAST * at.last)
-        if at.lost[0] - at.held[0] > width:
-            return self._fromRest(0.5 * (at.held[0] + at.lost[0]))
-        return None if at.lost[2] else self._fromRest(at.lost[0])
+            _load(at.lastState)
+            at.lost = [at.last, 1e3 * self.model.loading.alongNow(), 0, 0]
+        if at.lost[0] - at.held[0] > self.within * max(at.lost[0], LEAST * at.last):
+            return fromRest(0.5 * (at.held[0] + at.lost[0]))
+        return None if at.lost[2] else fromRest(at.lost[0])
 
     def _ofGrowth(self):
         """The next trial from a state of the growth, or None if there is none between the ends of the bracket."""
         at = self.at
         factors, step = [factor for factor, _ in at.kept], 2 ** max(0, len(at.trials) - 1)  # fmt: skip
-        low, high = self._index(factors, at.held), self._index(factors, at.lost)
-        if at.held is None and at.lost is None:
-            return self._from(self._guess(factors))
-        if at.held is None:
-            return self._from(max(0, high - step)) if high else None
-        if at.lost is None:
-            return self._from(min(len(factors) - 1, low + step)) if low + 1 < len(factors) else None  # fmt: skip
-        wide = at.lost[0] - at.held[0] > self.within * at.lost[0]
-        return self._from((low + high) // 2) if wide and low + 1 < high else None
-
-    def _fromRest(self, goal):
-        return self.at.held[0], goal, self.at.heldState, 1
-
-    def _from(self, index):
-        factor, state = self.at.kept[index]
-        return factor, factor, state, 0
-
-    def _index(self, factors, end):
-        """Number of the last kept state up to an end of the bracket, or of the first one from it on."""
-        if end is None:
+        # numbers of the last state up to what was held, and of the first from what was not
+        low = at.held and bisect.bisect_right(factors, at.held[0]) - 1
+        high = at.lost and sum(factor < at.lost[0] for factor in factors)
+        if low is None and high is None:
+            index = self._guess(factors)
+        elif low is None:
+            index = max(0, high - step) if high else None
+        elif high is None:
+            index = min(len(factors) - 1, low + step) if low + 1 < len(factors) else None  # fmt: skip
+        else:
+            wide = at.lost[0] - at.held[0] > self.within * at.lost[0]
+            index = (low + high) // 2 if wide and low + 1 < high else None
+        if index is None:
             return None
-        if end is self.at.held:
-            return max(i for i, f in enumerate(factors) if f <= end[0])
-        return next((i for i, f in enumerate(factors) if f >= end[0]), len(factors))
+        factor, state = at.kept[index]
+        return factor, factor, state, 0
 
     def _guess(self, factors):
         """Number of the kept state with which the search begins: the last before the structure leaves rest."""
@@ -369,16 +352,12 @@ class _Search:
         while n > 0 and speeds[n] > SETTING_OFF * statistics.median(speeds[:n]):
             n -= 1
         reached = self.at.rows[n][1] if speeds else 0.0
-        return max(i for i, f in enumerate(factors) if f <= reached or i == 0)
-
-    def _alongThen(self):
-        loadScene(_state(self.at.lastState))
-        return self.model.loading.alongNow()
+        return max(0, bisect.bisect_right(factors, reached) - 1)
 
     def _buckles(self):
         """Whether the structure that is at rest under the load that was held last buckles."""
         if self.at.goal < 0:
-            loadScene(_state(self.at.heldState))
+            _load(self.at.heldState)
         return buckles(self.scene)
 
     # -- a trial --------------------------------------------------------------------------------------------------
@@ -386,15 +365,13 @@ class _Search:
     def _trial(self):
         """Hold a load, and wait. Returns whether the structure came to rest under it."""
         at, scene, model = self.at, self.scene, self.model
-        height = scene.description.high[2] - scene.description.low[2]
         slowest = model.supports.slowest()
-        ramp = max(rampTime(scene.args) * max(1.0, height / 3), slowest)
-        growing = max(1, int(ramp / O.dt))
+        growing = max(1, int(max(growthTime(scene), slowest) / O.dt))
         longest = max(TRIAL * scene.args.density_scaling**0.5, WAITED * slowest)
         most = int(longest / O.dt)
         while True:
             x = min(1.0, (at.taken + EVERY) / growing)
-            factor = at.source + x * x * (3 - 2 * x) * (at.goal - at.source)
+            factor = at.source + smooth(x) * (at.goal - at.source)
             self.load.put(self.load.at(at.begun, self.load.shareOf(factor)))
             model.loading.loadFactor = factor
             try:
@@ -405,15 +382,13 @@ class _Search:
                 at.ended = 0
                 return False
             missing, moving = model.supports.unrest()
-            rests = abs(missing) < REST and moving < CALM and x == 1
+            rests = missing < REST and moving < CALM and x == 1
             at.quiet = at.quiet + 1 if rests else 0
             if at.quiet == LOOKS:
                 return True
-            if self._accelerates(model.motion.fastest(FALLEN)):
-                at.ended = 1
-                return False
-            if at.taken >= most:
-                at.ended = 2
+            accelerates = self._accelerates(model.motion.fastest(FALLEN))
+            if accelerates or at.taken >= most:
+                at.ended = 1 if accelerates else 2
                 return False
 
     def _accelerates(self, speed):
@@ -424,9 +399,3 @@ class _Search:
             at.marks = [*at.marks, speed]
         before = at.marks[max(0, looks.bit_length() - 2)]
         return looks > 8 and speed > SURE and speed > 2 * before
-
-    def _show(self, name):
-        at = self.at
-        ends = [f"held {at.held[0]:.4g}"] if at.held else []
-        ends += [f"not held {at.lost[0]:.4g}"] if at.lost else []
-        self.running.show(1, lambda: f"trial {len(at.trials)}: {', '.join(ends)}", True)

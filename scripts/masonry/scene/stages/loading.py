@@ -10,33 +10,58 @@ from __future__ import annotations
 
 import math
 import re
+from types import SimpleNamespace
 from typing import Annotated, Any
 
 from yade import O, Vector3
 
-from ...common.arguments import Direction, Freedoms, Level, isNumber, kindOf, number, shown, validated  # fmt: skip
-from ...assembly.blocks import vector
+from ...common.arguments import Direction, Freedoms, Level, isNumber, kindOf, number, shown  # fmt: skip
 from ...basics import Refused
 from ..bounds import findBound, nameOf
 
 from ..loads import Field, Force, Pressure, Stress, checkedForce, doubtPress, doubtWind, windForces  # fmt: skip
 from ..pressures import pressures
 from ..targets import AnyTarget, Loaded, MovingPlaten, Part
-from .acting import Forces
-from .gravity import Width, boundAlone, putOn, putOnAnswers
+from .gravity import Acting, Width, putOn, putOnAnswers
 from .growing import WITHIN, found
 from .growing import grow as growTo
-from .answers import AT_REST
-from .stage import stage
-from .supports import atOnce
+from .answers import AT_REST, DONE
+from .stage import Duration, stage
 from ..words import PUSHES
-from .timed import Duration
 from .travelling import placed
 
 GROWS = 2.0  # [s] in which a load grows to its whole
 
 
-# -- forces on a target -------------------------------------------------------------------------------------------
+class Forces(Acting):
+    """Forces of MasonryLoad engines: of each the vector at a factor of 1 [N]."""
+
+    replaces = False  # whether the forces replace those that are there, and are not added to them
+    beside = 0, 0, 0  # a force that stays beside those that replace [N]
+    dead = False  # whether what was there grows by the factor, too
+
+    def __init__(self, loads, forces, name, unit, most, towards=None):
+        super().__init__(name, most, unit, towards)
+        self.loads, self.forces = loads, forces
+
+    def pairs(self):
+        """The engines and their forces at a factor of 1."""
+        pairs = zip(self.loads, self.forces)
+        return [(load, force + self.dead * load.force) for load, force in pairs]
+
+    def now(self):
+        return [value for load in self.loads for value in load.force]
+
+    def put(self, values):
+        for n, load in enumerate(self.loads):
+            load.force = Vector3(*values[3 * n : 3 * n + 3])
+
+    def at(self, began, share):
+        factor = self.factor(share)
+        whole = [factor * value for force in self.forces for value in force]
+        if self.replaces:
+            return [v + self.beside[n % 3] for n, v in enumerate(whole)]
+        return [was * (1 + factor * self.dead) + v for was, v in zip(began, whole)]
 
 
 def _forceOn(scene, target, force, name):
@@ -49,32 +74,28 @@ def _forceOn(scene, target, force, name):
     along = force if force.norm() > 0 else engine.force
     towards = along.normalized() if along.norm() > 0 else Vector3.UnitZ
     what = f"load on {target.name} along {nameOf(towards)}"
-    made = Forces([engine], [1e3 * towards], what, "kN", 1e-3 * force.norm())
+    made = Forces([engine], [1e3 * towards], what, "kN", 1e-3 * force.norm(), towards)
     made.target = target
-    return made, towards
+    return made
 
 
 @stage(bounded=True, answers=putOnAnswers)
-@validated
 def load(
     scene: Any, target: Loaded, force: Force, longest: Duration | None = None
 ) -> str:
     """Give a target another dead load, and wait until the structure is at rest or falls.
 
-    Before the first stage :meth:`load` describes a load that grows in :meth:`settle`. After it the force replaces the dead load
-    that the target has, described or put on; it changes within 0.02 s, and longer for tall structures. So
+    The force replaces the dead load that the target has, described or put on; it changes within 0.02 s, and longer for tall structures. So
     ``bracket(lambda f: scene.load(target, (0, 0, -f)) == AT_REST, 1e3, 9e3)`` finds the largest that is held.
 
     :param force: three numbers [N]; zeros take the load away
     :param longest: time in the scene after which it is given up [s]; None: 4 s
     :returns: ``AT_REST``, ``MOVING`` or ``COLLAPSED``
     """
-    made, towards = _forceOn(scene, target, force, "load")
-    return _putOn(scene, "load", made, towards, longest)
+    return _putOn(scene, "load", _forceOn(scene, target, force, "load"), longest)
 
 
 @stage(bounded=True, answers=found)
-@validated
 def growLoad(
     scene: Any,
     target: Loaded,
@@ -86,46 +107,45 @@ def growLoad(
 
     :param force: at the end, three numbers [N]
     """
-    made, towards = _forceOn(scene, target, force, "growLoad")
-    return _grow(scene, "growLoad", made, towards, over, within)
-
-
-# -- pressure on faces --------------------------------------------------------------------------------------------
+    made = _forceOn(scene, target, force, "growLoad")
+    return _grow(scene, "growLoad", made, over, within)
 
 
 def _windOn(scene, pressure, towards, part, name):
-    """The load of a wind, in kPa, and its direction. Raises ValueError."""
-    towards = vector(towards, f"{name}: direction")
+    """The load of a wind, in kPa. Raises ValueError."""
+    towards = Vector3(*towards)
     if name == "growWind" or pressure:  # 0 takes a wind away
         doubtWind(pressure, name)
-    sign = math.copysign(1e3, pressure)
-    forces = windForces(scene.description, sign, towards, part, name)
+    sign = math.copysign(1, pressure)
+    forces = windForces(scene.description, 1e3 * sign, towards, part, name)
     # suction has the engines of a pressure on the same faces, so that one replaces the other
     made = _onFaces(scene, forces, "wind", towards, part, "kPa", 1e-3 * abs(pressure))
-    return made, math.copysign(1, pressure) * towards.normalized()
+    made.towards *= sign
+    return made
 
 
 def _pressureOn(scene, value, towards, part, normal):
-    """The load of a pressure, of which 1 is the whole, and its direction. Raises ValueError."""
+    """The load of a pressure, of which 1 is the whole. Raises ValueError."""
     forces = pressures(scene.description, value, towards, part, normal)
-    towards = vector(towards, "pressure: direction").normalized()
     kind = "pressure" if normal else "pressure in plan"
-    return _onFaces(scene, forces, kind, towards, part, "-", 1.0), towards
+    return _onFaces(scene, forces, kind, Vector3(*towards), part, "-", 1.0)
 
 
 def _onFaces(scene, forces, kind, towards, part, unit, most):
     """The load of forces on faces, by what labels its engines and names it."""
-    axes = "_".join(f"{v + 0.0:.6g}".replace("-", "minus") for v in towards.normalized())  # fmt: skip
-    # YADE makes names of labels
-    label = re.sub(r"\W", "_", f"{kind}_towards_{axes}_{part or 'all'}")
+    along = towards.normalized()
+    axes = "_".join(f"{v + 0.0:.6g}".replace("-", "minus") for v in along)
+    label = re.sub(
+        r"\W", "_", f"{kind}_towards_{axes}_{part or 'all'}"
+    )  # a name in YADE
     places = [(one.brick, one.point) for one in forces]
     engines = scene.model.loading.onBricks(label, places)
     what = f"{kind} towards {nameOf(towards)}" + (f" on {part}" if part else "")
-    return Forces(engines, [Vector3(*one.force) for one in forces], what, unit, most)
+    whole = [Vector3(*one.force) for one in forces]
+    return Forces(engines, whole, what, unit, most, along)
 
 
 @stage(bounded=True, answers=putOnAnswers)
-@validated
 def wind(
     scene: Any,
     pressure: Pressure,
@@ -133,22 +153,17 @@ def wind(
     part: Part | None = None,
     longest: Duration | None = None,
 ) -> str:
-    """Give the faces that look against a horizontal direction another pressure, and wait until the structure is at rest or
-    falls.
+    """Give the faces that look against a horizontal direction another pressure, and wait as :meth:`load` does. It is added to the wind that
+    grew in :meth:`settle`; another :meth:`wind` of the same direction and part after the first stage replaces it.
 
-    Before the first stage :meth:`wind` describes a wind that grows in :meth:`settle`, and to which this one is added. Another
-    :meth:`wind` of the same direction and part after the first stage replaces it.
-
-    :param pressure: [Pa]; 0 takes the wind away; ``towards`` and ``part``: as before the first stage; ``longest``: as in
-        :meth:`load`
-    :returns: ``AT_REST``, ``MOVING`` or ``COLLAPSED``
+    :param pressure: [Pa]; 0 takes the wind away; ``towards`` and ``part``: as before the first stage
     """
-    made, towards = _windOn(scene, pressure, towards, part, "wind")
-    return _putOn(scene, "wind", made, towards, longest)
+    return _putOn(
+        scene, "wind", _windOn(scene, pressure, towards, part, "wind"), longest
+    )
 
 
 @stage(bounded=True, answers=found)
-@validated
 def growWind(
     scene: Any,
     pressure: Pressure,
@@ -161,12 +176,11 @@ def growWind(
 
     :param pressure: at the end [Pa]; ``towards`` and ``part``: as in :meth:`wind`
     """
-    made, towards = _windOn(scene, pressure, towards, part, "growWind")
-    return _grow(scene, "growWind", made, towards, over, within)
+    made = _windOn(scene, pressure, towards, part, "growWind")
+    return _grow(scene, "growWind", made, over, within)
 
 
 @stage(bounded=True, answers=putOnAnswers)
-@validated
 def pressure(
     scene: Any,
     value: Field,
@@ -175,18 +189,13 @@ def pressure(
     normal: bool = True,
     longest: Duration | None = None,
 ) -> str:
-    """Give faces another pressure, and wait until the structure is at rest or falls. It replaces another :meth:`pressure` of the
-    same direction, part and ``normal`` of a later stage, and is added to those that grew in :meth:`settle`.
+    """Give faces another pressure, and wait as :meth:`load` does. It is added to those that grew in :meth:`settle`; another
+    :meth:`pressure` of the same direction, part and ``normal`` after the first stage replaces it.
 
-    :param value: [Pa], or a function of the place; 0 takes it away; ``towards``, ``part`` and ``normal``: as before the first
-        stage; ``longest``: as in :meth:`load`
-    :returns: ``AT_REST``, ``MOVING`` or ``COLLAPSED``
+    :param value: [Pa], or a function of the place; 0 takes it away; ``towards``, ``part`` and ``normal``: as before the first stage
     """
-    made, towards = _pressureOn(scene, value, towards, part, normal)
-    return _putOn(scene, "pressure", made, towards, longest)
-
-
-# -- presses ------------------------------------------------------------------------------------------------------
+    made = _pressureOn(scene, value, towards, part, normal)
+    return _putOn(scene, "pressure", made, longest)
 
 
 def _pressOn(scene, platen, stress, name):
@@ -195,33 +204,26 @@ def _pressOn(scene, platen, stress, name):
         raise ValueError(f"{name}: stress {stress!r} Pa must be above 0")
     doubtPress(stress, name)
     engine, area = scene.model.loading.pressOf(platen)
-    down = -1e6 * area * Vector3.UnitZ
-    what = f"press of {platen.name}"
-    made = Forces([engine], [down], what, "MPa", 1e-6 * stress)
+    what, whole = f"press of {platen.name}", [-1e6 * area * Vector3.UnitZ]
+    made = Forces([engine], whole, what, "MPa", 1e-6 * stress, -Vector3.UnitZ)
     made.target = platen
     return made
 
 
 @stage(bounded=True, answers=putOnAnswers)
-@validated
 def press(
     scene: Any, platen: MovingPlaten, stress: Stress, longest: Duration | None = None
 ) -> str:
-    """Press a platen with another mean stress on the bricks below it, and wait until the structure is at rest or falls.
-
-    Before the first stage :meth:`press` describes a press that grows in :meth:`settle`. After it the stress replaces that.
+    """Press a platen with another mean stress on the bricks below it, which replaces that before, and wait as :meth:`load` does.
 
     :param stress: mean vertical stress that the bricks feel [Pa]; the weight of the platen is part of it
-    :param longest: as in :meth:`load`
-    :returns: ``AT_REST``, ``MOVING`` or ``COLLAPSED``
     """
     made = _pressOn(scene, platen, stress, "press")
     made.beside = [0, 0, scene.model.supports.weightOf(platen)]
-    return _putOn(scene, "press", made, -Vector3.UnitZ, longest)
+    return _putOn(scene, "press", made, longest)
 
 
 @stage(bounded=True, answers=found)
-@validated
 def growPress(
     scene: Any,
     platen: MovingPlaten,
@@ -234,10 +236,7 @@ def growPress(
     :param stress: what is added at the end [Pa]
     """
     made = _pressOn(scene, platen, stress, "growPress")
-    return _grow(scene, "growPress", made, -Vector3.UnitZ, over, within)
-
-
-# -- several loads ------------------------------------------------------------------------------------------------
+    return _grow(scene, "growPress", made, over, within)
 
 
 def together(value, first):
@@ -253,7 +252,6 @@ def together(value, first):
 
 
 @stage(bounded=True, answers=found)
-@validated
 def grow(
     scene: Any,
     loads: Annotated[dict[Any, Any], together],
@@ -282,13 +280,11 @@ def grow(
     :returns: as in :meth:`tilt`; ``scene.factor`` has no unit
     """
     made = [
-        _pressOn(scene, target, amount, "grow")
-        if isNumber(amount)
-        else _forceOn(scene, target, amount, "grow")[0]
+        (_pressOn if isNumber(amount) else _forceOn)(scene, target, amount, "grow")
         for target, amount in loads.items()
     ]
     if pressure is not None:
-        made.append(_pressureOn(scene, pressure, towards, part, normal)[0])
+        made.append(_pressureOn(scene, pressure, towards, part, normal))
     pairs = [(e, one.most * force) for one in made for e, force in one.pairs()]
     if dead:
         pairs += [(load, Vector3.Zero) for load, _ in scene.model.loading.deadLoads()]
@@ -299,42 +295,38 @@ def grow(
         forces[engine.label] = forces.get(engine.label, Vector3.Zero) + force
     engines = [scene.model.loading.loads[label] for label in forces]
     what = " and ".join([one.name for one in made] + ["the dead loads"] * dead)
-    whole = Forces(engines, [*forces.values()], what, "-", most)
+    total = sum(forces.values(), Vector3.Zero)
+    along = total.normalized() if total.norm() > 0 else -Vector3.UnitZ
+    whole = Forces(engines, [*forces.values()], what, "-", most, along)
     whole.dead = dead
     whole.target = next((one.target for one in made if one.target), None)
-    total = sum(whole.forces, Vector3.Zero)
-    along = total.normalized() if total.norm() > 0 else -Vector3.UnitZ
-    return _grow(scene, "grow", whole, along, over, within)
+    return _grow(scene, "grow", whole, over, within)
 
 
-# -- what they share ----------------------------------------------------------------------------------------------
-
-
-def _putOn(scene, name, made, towards, longest):
-    made.replaces, scene.loadUnit, before = True, made.unit, made.now()
+def _putOn(scene, name, made, longest):
+    made.replaces, before = True, made.now()
     if scene.only:  # what it replaces is no load beside it
         made.put(made.at(before, 0.0))
     if scene.only or not any(before):
-        findBound(scene, "forces", made.name, made.unit.strip("-"), made.pairs())
-    if scene.only:
-        ended = boundAlone(scene, made)
-        if ended != AT_REST:
-            made.put(before)
-        return ended
-    return putOn(scene, name, made, towards, longest)
+        _findBound(scene, made)
+    ended = putOn(scene, name, made, longest)
+    if scene.only and ended != AT_REST:
+        made.put(before)
+    return ended
 
 
-def _grow(scene, name, made, towards, over, within):
+def _grow(scene, name, made, over, within):
+    _findBound(scene, made)
+    return growTo(scene, name, made, over, within)
+
+
+def _findBound(scene, made):
     findBound(scene, "forces", made.name, made.unit.strip("-"), made.pairs())
-    return growTo(scene, name, made, over, towards, within)
 
 
 @stage()
-@validated
 def hold(scene: Any, target: AnyTarget, axes: Freedoms = "xyzXYZ") -> str:
     """Hold a target where it is now. What follows is the next stage's.
-
-    Before the first stage :meth:`hold` describes a brick that is held from the beginning.
 
     A platen that is pressed and then held along z keeps its height, and one held about Y does not turn: so does the top of many
     test rigs.
@@ -347,7 +339,7 @@ def hold(scene: Any, target: AnyTarget, axes: Freedoms = "xyzXYZ") -> str:
             f"hold: only a platen, a handle(), or what was held and released, can be held after the first stage: curve.csv has no "
             f"columns for the reaction of {target.name}"
         )
-    across = [a for a in axes if a in "xy"] if target.box and not target.fixed else []
+    across = [a for a in axes if a in "xy" and target.box and not target.fixed]
     if across:
         raise ValueError(
             f"hold: {target.name} is a platen, which can be held along z and about X, Y and Z after the first stage: curve.csv has no column for its "
@@ -363,32 +355,27 @@ def hold(scene: Any, target: AnyTarget, axes: Freedoms = "xyzXYZ") -> str:
         raise ValueError(
             f"hold: a drive holds {target.name} along {', '.join(driven)} already"
         )
-
-    def act():
-        scene.model.supports.holdAlso(target, axes)
-        state = O.bodies[target.body].state
-        blocked = {*state.blockedDOFs, *axes}
-        state.blockedDOFs = "".join(a for a in "xyzXYZ" if a in blocked)
-        free = [float(a not in blocked) for a in "xyzXYZ"]
-        state.vel = Vector3(*(v * f for v, f in zip(state.vel, free[:3])))
-        state.angVel = Vector3(*(v * f for v, f in zip(state.angVel, free[3:])))
-
-    return atOnce(scene, "hold", act)
+    scene.model.supports.holdAlso(target, axes)
+    state = O.bodies[target.body].state
+    blocked = {*state.blockedDOFs, *axes}
+    state.blockedDOFs = "".join(a for a in "xyzXYZ" if a in blocked)
+    for i, (axis, about) in enumerate(zip("xyz", "XYZ")):
+        state.vel[i] *= axis not in blocked
+        state.angVel[i] *= about not in blocked
+    scene.running.stage("hold", SimpleNamespace())
+    return DONE
 
 
 def prepare(scene, word, arguments):
-    """Make the engines of a load that the script puts on after the first stage, before a checkpoint is loaded that has them.
-
-    :param word: what the script said; ``arguments``: its arguments as data
-    """
+    """Make the engines of a load that the script puts on after the first stage, before a checkpoint is loaded that has them."""
     loading, get = scene.model.loading, arguments.get
     target = get("target") or get("platen")
     if word in PUSHES and (isinstance(target, dict) or target not in scene.targets):
         loading.patternDrive()
         return
-    loads = {target: None} if word in ("load", "growLoad") else {}
-    loads = {target: 0} if word in ("press", "growPress") else loads
-    for name, amount in get("loads", loads).items():
+    alone = {"load": None, "growLoad": None, "press": 0, "growPress": 0}
+    loads = {target: alone[word]} if word in alone else get("loads", {})
+    for name, amount in loads.items():
         if name in scene.targets:
             make = loading.pressOf if isNumber(amount) else loading.forceOf
             make(scene.targets[name])

@@ -22,16 +22,15 @@ SHORT = 0.05  # [mm]: a shorter push has rows that are closer together
 ARRIVED = 2e-3  # [mm] from a turning point of a history at which the drive turns: what remains of the path takes it there
 GROWING = 20  # rows at least while the velocity of the drive grows
 LONGEST = 20  # the longest first period that is looked for, over rampTime() [-]
-#: Likewise, over the time that the path takes at full speed: a shorter push is no slow one [-].
-SHARE = 1.0
-#: Frames for ParaView along a history, beside those at its turning points and zeros.
-FRAMES = 200
-SUDDEN = 0.1  # of the peak: a larger fall within a tenth of a millimetre is few bricks that give way at once
+FRAMES = (
+    200  # for ParaView along a history, beside those at its turning points and zeros
+)
 #: A push has collapsed by the mean of its force over so much of it [mm], and over its first period at least. If no period was
 #: found, it is over the longest that was looked for.
 AVERAGED = 1.0
 #: A push is over where the drive has gone so many times the path of the target whose displacement counts [-].
 UNFOLLOWED = 10
+SUDDEN = 0.1  # of the peak: a larger fall within a tenth of a millimetre is few bricks that give way at once
 DAMPED = 0.1  # of what loops lose: a larger share of damping is a warning, because the loops are too fat by it
 
 
@@ -39,24 +38,22 @@ DAMPED = 0.1  # of what loops lose: a larger share of damping is a warning, beca
 class Pushing:
     """What a push remembers. Pairs are of the negative and of the positive side, and positive outwards."""
 
-    # as in Structure.topDisplacement() when the push began [m]
-    origin: list | None = None
+    origin: list | None = None  # Loading.topDisplacement() when the push began [m]
     now: float = 0.0  # time of the last row [s]
     moved: float = 0.0  # displacement there [mm]
     passed: int = 0  # points of the history that lie behind
     last: float = 0.0  # displacement of the last of them [mm]
-    #: displacement when it began, if it counts from an earlier push [mm]
-    start: float = 0.0
-    path: float = 0.0  # length of the path to there [mm]
+    start: float = 0.0  # when it began, if it counts from an earlier push [mm]
+    path: float = 0.0  # length of the path to the last point [mm]
     driven: float = 0.0  # what the drive has gone, to and fro [mm]
     period: float = 0.0  # the first one when the push began [s]; 0 if none was found
     slowest: float = 0.0  # that period, or the longest that was looked for [s]
-    #: of the blocks then, while the velocity grows [m]
-    places: list = field(default_factory=list)
+    places: list = field(default_factory=list)  # of the blocks then, while it grows [m]
     turned: bool = False  # whether the drive has turned since the push began
     since: float = 0.0  # time from which the velocity grows [s]
-    #: velocity then, in the present direction, over the full one [-]
-    growth: float = 0.0
+    growth: float = (
+        0.0  # velocity then, in the present direction, over the full one [-]
+    )
     #: Of the last rows, as far as AVERAGED says: time [s] and base shear [kN]; their mean decides whether it has collapsed.
     recent: Sequence[Sequence[float]] = ()
     peaks: Sequence[float] = (0.0, 0.0)  # largest mean so far [kN]
@@ -72,16 +69,16 @@ class Pushing:
         """Keep the peaks, with the base shear of the last row [kN]. Returns its mean over a time [s], or None when that is not over:
         what vibrates dips below any share of its peak, and a spike when the drive begins is no strength.
         """
-        whole = bool(self.recent) and self.recent[0][0] <= self.now - span
-        before = [one for one in self.recent if one[0] > self.now - span]
-        self.recent = [*self.recent[: len(self.recent) - len(before)][-1:], *before, [self.now, shear]]  # fmt: skip
-        if not whole:
+        over = [one for one in self.recent if one[0] <= self.now - span]
+        self.recent = [*over[-1:], *self.recent[len(over) :], [self.now, shear]]
+        if not over:
             return None
         mean = sum(force for _, force in self.recent) / len(self.recent)
-        for side, sign in enumerate((-1, 1)):
-            if sign * mean > self.peaks[side]:
-                self.peaks = _exchanged(self.peaks, side, sign * mean)
-                self.peaksAt = _exchanged(self.peaksAt, side, sign * self.moved)
+        side = mean > 0
+        if abs(mean) > self.peaks[side]:
+            self.peaks = _exchanged(self.peaks, side, abs(mean))
+            outwards = self.moved if side else -self.moved
+            self.peaksAt = _exchanged(self.peaksAt, side, outwards)
         return mean
 
     def retreats(self, direction, whole):
@@ -89,27 +86,27 @@ class Pushing:
         return self.path - self.travelled(direction) > max(1.0, 0.1 * whole)
 
     def hasLost(self, direction, shear, top):
-        """Whether the wall is farther out than ever before, and has lost its force there: both a mean at its base, and what it
-        holds the drive with now [kN]. A slow wave can take the base alone below any share of a peak.
+        """Whether the wall is farther out than ever before, a millimetre beyond the peak, and less than a fifth of that is left: in a mean at
+        its base, and in what it holds the drive with now [kN]. A slow wave can take the base alone below any share of a peak.
         """
         side, out = direction > 0, direction * self.moved
-        beyond = out > self.reach[side] and out > self.peaksAt[side] + 1
-        least = 0.2 * self.peaks[side]
-        return beyond and shear is not None and max(direction * shear, direction * top) < least  # fmt: skip
+        if shear is None or out <= max(self.reach[side], self.peaksAt[side] + 1):
+            return False
+        return max(direction * shear, direction * top) < 0.2 * self.peaks[side]
 
     def passOn(self, goals):
         """Go on to the first point that is not reached yet. Returns whether there is one, and whether the drive turns."""
         turned = False
         while True:
             goal = goals[self.passed]
-            brakes = goal.brake is not None
-            near = brakes and abs(goal.brake - goal.displacement) <= ARRIVED
+            brake = math.inf if goal.brake is None else goal.brake
+            near = abs(brake - goal.displacement) <= ARRIVED
             missing = goal.direction * (goal.displacement - self.moved)
             if missing > (ARRIVED if near else 0):
                 return True, turned
             if self.passed + 1 == len(goals):
                 return False, turned
-            self.path = self.path + abs(goal.displacement - self.last)
+            self.path += abs(goal.displacement - self.last)
             self.passed, self.last = self.passed + 1, goal.displacement
             if goals[self.passed].direction != goal.direction:
                 side, out = goal.direction > 0, goal.direction * goal.displacement
@@ -125,40 +122,31 @@ def _exchanged(pair, side, value):
 def drivePush(scene, name, args, began, continued=False):
     """Drive the pushed target to ``--until`` or along ``--history``, with rows and frames.
 
-    The drive moves at ``--rate``. When it begins, its velocity grows evenly in time, from rest to ``--rate`` within one
-    first period of the structure, which is measured then: a motion that begins so leaves no swing of that period. If not all
-    blocks are driven, nothing is damped while it grows. Numerical damping would act as more mass. Where the history turns, the velocity changes within whole
-    periods, together :func:`rampTime` at least, because open joints make periods longer. Where no period is found both take
-    :func:`rampTime`. The drive brakes by the displacement that curve.csv has, so the wall turns within 0.01 mm of the
-    history's turning points. Points at which the history does not turn are passed at full speed, and so is the end, unless
-    it is that of a file.
+    When the drive begins, its velocity grows evenly in time, from rest to ``--rate`` within one first period of the structure, which is
+    measured then: a motion that begins so leaves no swing of that period. If not all blocks are driven, nothing is damped while it
+    grows: numerical damping would act as more mass. Where the history turns, the velocity changes within whole periods, together
+    :func:`rampTime` at least, because open joints make periods longer. Where no period is found both take :func:`rampTime`. The drive
+    brakes by the displacement that curve.csv has, so the wall turns within 0.01 mm of the history's turning points. Other points are
+    passed at full speed, and so is the end, unless it is that of a file.
 
-    Rows are 0.01 mm apart at full speed; where the drive is slower, the time between them is the same or less.
-    ParaView frames are :func:`frameSpacing` of the path apart. Those of a history are also at its turning points and where
-    it passes through zero, unless the frame before is less than half of this away.
+    Where the drive is slower than at full speed, the time between rows is the same or less. Frames of a history are also at its turning
+    points and where it passes through zero, unless the frame before is less than half of their spacing away. A wall has collapsed
+    as :func:`_lost` says, and a loop that unloads is no collapse.
 
-    A wall has collapsed if the loading block has come down by half a course, if less than a fifth of the peak of a side
-    is left in the mean over a first period or a millimetre, a millimetre or more beyond that peak and farther out than the wall has turned before, or
-    if it moves against its push by a tenth of the path, a millimetre or more. So a loop that unloads is no collapse.
-
-    :param name: of the stage
     :param args: the options of the run, with the ``until``, ``history`` and ``rate`` of this push
-    :param began: under this name the run keeps where the push began
-    :param continued: whether displacements count from where an earlier push of that name began
-    :raises Collapsed: with what was seen
+    :param began: under this name the run keeps where the push began; ``continued``: displacements count from there
     """
     run, model = scene.running, scene.model
-    drive = model.loading.loads["push"]
+    drive = model.loading.push
     at = run.stage(name, Pushing())
     goals = _entered(scene, name, args, at, began, continued)
     whole, spacing = pathOf(args, at.start), frameSpacing(args)
     every = max(1, int(rowSpacing(args) / (args.rate * O.dt)))
 
     def detail():
-        if not args.history:
-            return f"{at.moved:6.2f} of {args.until:g} mm  {shear:7.2f} kN"
-        path = f"{travelled:.1f} of {whole:g} mm"
-        return f"{path}, at {at.moved:6.2f} mm  {shear:7.2f} kN"
+        until = "" if args.history else f" of {args.until:g}"
+        path = f"{travelled:.1f} of {whole:g} mm, at " if args.history else ""
+        return f"{path}{at.moved:6.2f}{until} mm  {shear:7.2f} kN"
 
     moves, undamped = True, None
     while moves:
@@ -169,14 +157,22 @@ def drivePush(scene, name, args, began, continued=False):
         if free != undamped:
             undamped = free
             model.scheme.damp(0.0, "local") if free else model.scheme.dampByOptions()
-        _setVelocity(scene, goal.direction * args.rate * 1e-3, start, growth, steps)
+        full = goal.direction * args.rate * 1e-3  # [m/s]
+        drive.velocity = full * growth
+        # A velocity that grew in stairs would make the pushed block swing in time with them.
+        if start < growth:
+            drive.ramp = run.at.left or steps
+            drive.acceleration = full * (growth - start) / (steps * O.dt)
         run.advance(steps)
         at.driven += 0.5 * args.rate * (abs(start) + abs(growth)) * steps * O.dt
         reading = run.record()
         before = at.moved
         at.now, at.moved = reading.time, 1e3 * reading.along
         if at.places and not undamped:
-            _keepFreeVibration(run, model, at)
+            moved = model.loading.alongNow() - 1e-3 * at.start
+            weight = model.motion.baseWeight(at.places, model.loading.direction, moved)
+            _keepVibration(run, at.period, weight or 0.0, at.now)
+            at.places = []
         shear, travelled = 1e-3 * reading.baseShear, at.travelled(goal.direction)
         mean = at.note(shear, max(at.slowest, AVERAGED / args.rate))
         how = _lost(model, at, reading, goal.direction, mean, whole)
@@ -196,17 +192,14 @@ def drivePush(scene, name, args, began, continued=False):
 
 
 def _entered(scene, name, args, at, began, continued):
-    """Begin a push, with its first row and frame and the first period of the structure along it, or go on with it.
-
-    Parameters are those of :func:`drivePush`, and what the push remembers. Returns the points of its path.
-    """
+    """Begin a push, with its first row and frame and the first period of the structure along it, or go on with it. Returns the points of
+    its path. Parameters as in :func:`drivePush`."""
     run, model = scene.running, scene.model
     first, origin = at.origin is None, at.origin
     if first:
-        origin = here = list(model.loading.topDisplacement())
-        if continued:
-            origin = run.at.origins[began]
-            at.moved = at.last = at.start = 1e3 * (here[0] - origin[0])
+        here = list(model.loading.topDisplacement())
+        origin = run.at.origins[began] if continued else here
+        at.moved = at.last = at.start = 1e3 * (here[0] - origin[0])
     if not args.history and not args.until > at.moved:
         raise Refused(
             f"{name}: until {args.until:g} mm (--until {args.until:g}): the run is at {at.moved:.2f} mm already"
@@ -221,78 +214,56 @@ def _entered(scene, name, args, at, began, continued):
         at.now = at.since = O.time
         at.moved = 1e3 * run.record().along
         run.frame()
-        longest = min(LONGEST * rampTime(args), SHARE * pathOf(args, at.start) / args.rate)  # fmt: skip
+        # a push that is shorter than its first period is no slow one
+        longest = min(LONGEST * rampTime(args), pathOf(args, at.start) / args.rate)
         at.period = _measuredPeriod(scene, name, args, longest)
         at.slowest = at.period or longest
         at.places = model.motion.positions() if at.period else []
-        vibration = [at.period, 0.0, 0.0]
-        run.at.freeVibrations = {**run.at.freeVibrations, str(run.entered): vibration}
+        _keepVibration(run, at.period, 0.0, 0.0)
         at.nextFrame = frameSpacing(args)
     return goals
 
 
-def _setVelocity(scene, full, start, growth, steps):
-    """Let the velocity of the drive grow within the next steps, from one share of the full one [m/s] to another."""
-    loading = scene.model.loading
-    load = loading.loads["push"]
-    if load.velocity != full * growth:
-        load.velocity = full * growth
-    # A velocity that grew in stairs would make the pushed block swing in time with them.
-    if start < growth:
-        load.ramp = scene.running.at.left or steps
-        load.acceleration = full * (growth - start) / (steps * O.dt)
-
-
 def _lost(model, at, reading, direction, mean, whole):
-    """Why a wall has collapsed, or None.
-
-    :param mean: base shear over a time, as in :meth:`Pushing.note` [kN]
-    :param whole: length of the whole path [mm]
-    """
+    """Why a wall has collapsed, or None, by its mean base shear (:meth:`Pushing.note`) [kN] and the length of the whole path [mm]."""
+    loading = model.loading
     if at.hasLost(direction, mean, 1e-3 * reading.topShear):
         return "less than a fifth of the peak of its force is left"
-    sunk = reading.sunk + min(0.0, reading.along * model.loading.direction[2])
-    if model.loading.hasSunk(sunk):
+    if loading.hasSunk(reading.sunk + min(0.0, reading.along * loading.direction[2])):
         return "the pushed point has come down by half a course"
     if at.driven > UNFOLLOWED * whole:
-        return f"another part gives way: the drive has gone {at.driven:.0f} mm, and {model.loading.target.name} has not followed"
+        return f"another part gives way: the drive has gone {at.driven:.0f} mm, and {loading.target.name} has not followed"
     return "it moves against its push" if at.retreats(direction, whole) else None
 
 
 def _measuredPeriod(scene, name, args, longest):
     """The first period along a push that begins [s], or 0 with a note if none is found up to the longest [s]."""
-    run, model = scene.running, scene.model
-    push = model.loading.loads["push"]
+    run, loading = scene.running, scene.model.loading
     # a drive of all blocks would hold the momentum by which the period is found
-    push.driven = not push.damped
+    loading.push.driven = not loading.push.damped
     try:
         with run.clock("setup"), run.breakable():
-            period = firstPeriod(model, model.loading.direction, longest)
+            period = firstPeriod(scene.model, loading.direction, longest)
     finally:
-        push.driven = True
-    if not period:
-        say(
-            f"note: {name}: no first period up to {1e3 * longest:.3g} ms was found; the drive gets to its rate within "
-            f"{1e3 * rampTime(args):.3g} ms"
-        )
-        return 0.0
-    say(f"{name}: first period along it {1e3 * period:.3g} ms")
-    return period
+        loading.push.driven = True
+    if period:
+        say(f"{name}: first period along it {1e3 * period:.3g} ms")
+        return period
+    say(
+        f"note: {name}: no first period up to {1e3 * longest:.3g} ms was found; the drive gets to its rate within "
+        f"{1e3 * rampTime(args):.3g} ms"
+    )
+    return 0.0
 
 
-def _keepFreeVibration(run, model, at):
-    """Keep the period of a push whose velocity has grown, the weight of the base in its shear force, and the time."""
-    moved = model.loading.alongNow() - 1e-3 * at.start
-    weight = model.motion.baseWeight(at.places, model.loading.direction, moved)
-    vibration = [at.period, weight or 0.0, at.now]
-    run.at.freeVibrations = {**run.at.freeVibrations, str(run.entered): vibration}
-    at.places = []
+def _keepVibration(run, *values):
+    """Keep the period of a push, the weight of the base in its shear force when its velocity has grown, and the time then."""
+    run.at.freeVibrations = {**run.at.freeVibrations, str(run.entered): [*values]}
 
 
 def _rampOf(at, args, every, turns):
     """Time in which the velocity of the drive grows from 0 to the full one [s], and how many steps each row has then.
 
-    :param at: what the push remembers
     :param every: how many steps are between rows at full speed
     :param turns: whether the drive turns, and does not begin
     """
@@ -307,15 +278,11 @@ def _rampOf(at, args, every, turns):
 
 def _pace(at, goal, args, every):
     """Velocities of the drive at the end and at the beginning of the next row, over the full one, and how many steps the row
-    has, from what a push remembers.
+    has, from what a push remembers. Parameters as in :func:`_rampOf`.
 
     The velocity grows evenly to the full one, but is not more than what can be braked before the next turn: √(2·a·s) at
     the distance s with the deceleration a.
-
-    :param args: the options of the run, with the ``rate`` of this push
-    :param every: how many steps are between rows at full speed
     """
-    rate = args.rate
     growing, closer = _rampOf(at, args, every, at.turned)
     braking, _ = _rampOf(at, args, every, True)
     start = _sum(at.growth, (at.now - at.since) / growing)
@@ -324,12 +291,12 @@ def _pace(at, goal, args, every):
     if goal.brake is None:
         return growth, start, row
     distance = max(0.0, goal.direction * (goal.brake - at.moved))
-    slow = math.sqrt(2 * distance / (rate * braking))
+    slow = math.sqrt(2 * distance / (args.rate * braking))
     if slow < growth:
         start = growth = slow
-    if growth <= 0:
-        return growth, start, row
-    return growth, start, max(1, min(row, int(distance / (rate * growth * O.dt))))
+    if growth > 0:
+        row = max(1, min(row, int(distance / (args.rate * growth * O.dt))))
+    return growth, start, row
 
 
 def _sum(growth, more):
@@ -346,9 +313,7 @@ def pathOf(args, start=0.0):
 
 def rowSpacing(args):
     """Displacement between rows at full speed [mm]: :data:`ROW_EVERY`, or a twentieth of a shorter push."""
-    if args.history or args.until >= SHORT:
-        return ROW_EVERY
-    return args.until / 20
+    return ROW_EVERY if args.history or args.until >= SHORT else args.until / 20
 
 
 def rowCount(args):

@@ -10,13 +10,13 @@ from typing import Annotated, Any
 from yade import O, Vector3
 
 from ..._masonry import loadScene, saveScene
-from ...common.arguments import number, oneOf, validated
+from ...common.arguments import oneOf
 from ...assembly import period
 from ...assembly.motion import FAR, REST
 from ...basics import Collapsed, Refused, say
 from ..resuming import saidBefore
 from .answers import AT_REST, MOVING
-from .stage import stage
+from .stage import Duration, stage
 
 RAMP = 0.02  # [s] in which loads and velocities grow: some ten periods of a wave through the height of a wall
 CALM = 1e-5  # kinetic over elastic energy of a structure that is said to be at rest [-]
@@ -40,13 +40,18 @@ def rampTime(args: Any) -> float:
     return RAMP * args.density_scaling**0.5
 
 
+def growthTime(scene: Any) -> float:
+    """Time in which a load is put on a structure [s]: longer for tall ones."""
+    box = scene.description
+    return rampTime(scene.args) * max(1.0, (box.high[2] - box.low[2]) / 3)
+
+
 @dataclass
 class Resting:
     """What a stage remembers that waits for rest."""
 
     done: int = 0  # steps so far
     quiet: int = 0  # looks that found it at rest, one after the other
-    load: float = 0.0  # share of the load that has grown [-]
     begun: list | None = None  # the load when it began to be put on
     goal: float = 0.0  # factor of the load that is put on [-]
 
@@ -60,18 +65,16 @@ def buckles(scene: Any) -> bool:
 
 def isSlender(scene: Any) -> bool:
     """Whether a structure is so high over its width that it may buckle under its own weight, or stands on springs."""
-    wide, deep, high = (
-        b - a for a, b in zip(scene.description.low, scene.description.high)
-    )
-    least = wide if scene.description.plane else min(wide, deep)
+    box = scene.description
+    wide, deep, high = (b - a for a, b in zip(box.low, box.high))
+    least = wide if box.plane else min(wide, deep)
     return high >= SLENDER * least or scene.model.supports.slowest() > 0
 
 
 @stage(bounded=True, grows=True)
-@validated
 def settle(
     scene: Any,
-    longest: Annotated[float, number("s", 0, 86400, above=True)] | None = None,
+    longest: Duration | None = None,
     damping: Annotated[str, oneOf("local", "combined")] | None = None,
     record: bool = True,
 ) -> str:
@@ -90,32 +93,29 @@ def settle(
     """
     if scene.only:
         scene.model.loading.grow(1.0)
-        scene.grown, scene.ended = True, AT_REST
+        scene.grown = True
         return AT_REST
-    model, args = scene.model, scene.args
+    model = scene.model
     grow, scene.grown = (lambda x: None) if scene.grown else model.loading.grow, True
-    memory = scene.running.stage("settle", Resting())
+    at = scene.running.stage("settle", Resting())
     if damping:
         most = SETTLING if model.zones and damping == "local" else 1.0
-        model.scheme.damp(min(most, args.damping), damping)
-    return waitForRest(scene, memory, longest, grow, record=record, buckling=isSlender(scene))  # fmt: skip
+        model.scheme.damp(min(most, scene.args.damping), damping)
+    return waitForRest(scene, at, longest, grow, record=record, buckling=isSlender(scene))  # fmt: skip
 
 
 def waitForRest(scene, at, longest, grow, over=0.0, record=True, buckling=False):
     """Let something grow, then wait until the structure is at rest. Returns how that ended.
 
-    :param at: :class:`Resting`
     :param longest: time after which it is given up [s]; None: 20 times that in which it grows
     :param grow: function of how much of the time in which it grows is over, 0 to 1 [-]
     :param over: time in which it grows at least [s]
     :param record: whether the end is a row of curve.csv
     :param buckling: whether a structure at rest must not buckle, else it is ``MOVING``
     """
-    model, running, box = scene.model, scene.running, scene.description
-    ramp = rampTime(scene.args)
-    ramp *= max(1.0, (box.high[2] - box.low[2]) / 3)
+    model, running = scene.model, scene.running
     slowest = model.supports.slowest()
-    ramp = max(ramp, over, PERIODS * slowest)
+    ramp = max(growthTime(scene), over, PERIODS * slowest)
     growing = max(1, int(ramp / O.dt))
     every = max(n for n in SHORTER if n == 1 or n <= growing / 3)
     swinging = SWINGING * scene.args.density_scaling**0.5 * (model.motion.far == FAR)
@@ -131,13 +131,13 @@ def waitForRest(scene, at, longest, grow, over=0.0, record=True, buckling=False)
         load = min(1.0, (at.done + every) / growing)
         grow(load)
         running.advance(every)
-        at.load, at.done = load, at.done + every
+        at.done += every
         if at.done % EVERY:
             model.motion.checkFall(FAR)
             continue
         missing, moving = model.supports.unrest()
-        rests = abs(missing) < REST and moving < CALM
-        rests = rests and at.done > (1.2 if over else 1.1) * growing
+        grown = at.done > (1.2 if over else 1.1) * growing
+        rests = missing < REST and moving < CALM and grown
         at.quiet = at.quiet + 1 if rests else 0
         if load == 1:
             model.motion.checkFall()
@@ -154,43 +154,38 @@ def waitForRest(scene, at, longest, grow, over=0.0, record=True, buckling=False)
             f"note: the structure is not at rest after {at.done * O.dt:.2f} s: {100 * missing:.2f} % of the load is "
             f"missing at the supports, kinetic over elastic energy is {moving:.1e}; longest=... [s] waits longer"
         )
-    scene.ended = AT_REST if at.quiet == LOOKS else MOVING
-    if buckling and scene.ended == AT_REST and buckles(scene):
+    ended = AT_REST if at.quiet == LOOKS else MOVING
+    if buckling and ended == AT_REST and buckles(scene):
         say("note: the structure buckles under this load: a small push sideways grows, so it counts as moving")  # fmt: skip
-        scene.ended = MOVING
+        ended = MOVING
     if record:
         running.record()
     running.flush()
-    if scene.ended == AT_REST:
+    if ended == AT_REST:
         model.atRest = saveScene("null")  # for stepBack()
         model.motion.restart()
-    return scene.ended
+    return ended
 
 
 def stepBack(scene: Any) -> None:
     """Take the scene back to its last state at rest, also after a collapse. The load that was held then acts again, also the
     one that a growth or a bracket has found. Rows of curve.csv stay."""
     with scene.noted(stepBack):
-        _stepBack(scene)
-
-
-def _stepBack(scene):
-    if scene.only:
-        return
-    running, model = scene.running, scene.model
-    known = model is not None and model.atRest is not None
-    before, at = running.scriptBefore, len(scene.script.words)
-    if running.takesUp and at < len(before):  # it had none yet
-        known = before[at][1].get("known", known)
-    isEarlier = saidBefore(scene, "stepBack", known=known)
-    if not known:
-        raise ValueError(
-            "stepBack: the scene has not been at rest in this run of the script"
-        )
-    running.collapsed, scene.ended = False, AT_REST
-    scene.results.run.pop("collapse", None)
-    if isEarlier:
-        return
-    loadScene(model.atRest)
-    running.checkpoints.mark()
-    model.motion.restart()
+        if scene.only:
+            return
+        running, model = scene.running, scene.model
+        known = model is not None and model.atRest is not None
+        before, at = running.scriptBefore, len(scene.script.words)
+        if running.takesUp and at < len(before):  # it had none yet
+            known = before[at][1].get("known", known)
+        isEarlier = saidBefore(scene, "stepBack", known=known)
+        if not known:
+            raise ValueError(
+                "stepBack: the scene has not been at rest in this run of the script"
+            )
+        running.collapsed, scene.ended = False, AT_REST
+        scene.results.run.pop("collapse", None)
+        if not isEarlier:
+            loadScene(model.atRest)
+            running.checkpoints.mark()
+            model.motion.restart()

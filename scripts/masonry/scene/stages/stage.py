@@ -1,16 +1,17 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What all stages of a scene share: how they begin and end, and their traits."""
+"""What stages of a scene share: how they begin and end, their traits, and how time passes in those that last for a given time."""
 
 from __future__ import annotations
 
 import functools
 import os
 from dataclasses import dataclass
-from typing import Any, Callable, Concatenate, ParamSpec
+from typing import Annotated, Any, Callable, Concatenate, ParamSpec
 
 from yade import O
 
 from ...common import notebook
+from ...common.arguments import number, validated
 from ...basics import Collapsed, NotAccurate, say
 from ...run import batch
 from ...run.accuracy import STAGES
@@ -20,31 +21,16 @@ from .answers import COLLAPSED, DONE, FALL, FALLEN
 from .falling import followFall, writeTable
 from .falling import answers as answersOfFall
 
+ROWS = 500  # of curve.csv in a stage that lasts for a given time
+FRAMES = 20  # for ParaView in such a stage
+
+#: Kinds of arguments: a time that is not longer than a day, and one above 0 [s].
+Time = Annotated[float, number("s", 0, 86400)]
+Duration = Annotated[float, number("s", 0, 86400, above=True)]
+
 P = ParamSpec("P")
 #: A stage: a function of the scene and what the user says, which returns how it ended.
 Stage = Callable[Concatenate[Any, P], str]
-
-
-class Rows:
-    """The rows of curve.csv that a stage has made.
-
-    :param results: of the run
-    :param first: number of the first of them, from 0
-    """
-
-    def __init__(self, results, first):
-        self._results, self._first = results, first
-
-    def column(self, head):
-        """The values of a column, or an empty list if curve.csv does not have it."""
-        if head not in self._results.columns:
-            return []
-        return self._results.column(head)[self._first :]
-
-
-def nothing(scene, rows):
-    """The answers of a stage that is not run for a number."""
-    return []
 
 
 @dataclass(frozen=True)
@@ -57,8 +43,8 @@ class Traits:
     :param grows: whether presses, dead loads and wind grow in it
     :param real: whether it runs in real time, whatever falls, in a scene whose collapse is followed
     :param check: function of the scene and what the user says, which raises Refused before the scene is built
-    :param answers: function of the scene and the :class:`Rows` of the stage that gives a list of
-        :class:`~masonry.scene.stages.answers.Answer`
+    :param answers: function of the scene, and of one that gives the values of a column in the rows of the stage, or an empty list, by its
+        head; it gives some :class:`~masonry.scene.stages.answers.Answer`
     """
 
     bounded: bool = False
@@ -67,17 +53,19 @@ class Traits:
     grows: bool = False
     real: bool = False
     check: Callable | None = None
-    answers: Callable = nothing
+    answers: Callable = lambda scene, rows: []
 
 
 def stage(**traits: Any) -> Callable[[Stage[P]], Stage[P]]:
-    """Make a stage of a function of the scene and what the user says, which is
+    """Make a stage of a function of the scene and what the user says, which is checked as by
     :func:`masonry.common.arguments.validated`; the keywords are those of :class:`Traits`.
 
     The stage builds the scene if it is the first, is left out after a collapse, and ends the run in order on errors.
     """
 
-    def made(act: Stage[P]) -> Stage[P]:
+    def made(said: Stage[P]) -> Stage[P]:
+        act = validated(said)
+
         @functools.wraps(act)
         def staged(scene: Any, *args: P.args, **settings: P.kwargs) -> str:
             if scene.staging:  # it is a part of another stage
@@ -113,23 +101,20 @@ def _check(scene, act, traits, args, settings):
 
 
 def _carryOut(scene, act, traits, args, settings):
-    name = act.__name__
+    running, before, name = scene.running, None, act.__name__
     scene.checkOpen(name)
     loaded = scene.description.loaded()
     if not scene.model and loaded and not traits.grows:
         raise ValueError(
             f"{name}: the loads on {', '.join(loaded)} grow in settle(): call that first"
         )
-    running, before = scene.running, None
     try:
         args, settings = _check(scene, act, traits, args, settings)
         scene.begin()
         if batch.PROBE in os.environ:
             return scene.probe(name, traits, argumentsOf(act, scene, args, settings))
         scene.script.note(act, scene, args, settings, traits.farther)
-        farther = False
-        if not running.advanced:
-            farther = scene.script.compare(running.scriptBefore)
+        farther = not running.advanced and scene.script.compare(running.scriptBefore)
         if scene.collapsed:
             say(
                 f"note: {name} is left out, because the structure has fallen; stepBack() takes it to its last state at rest"
@@ -140,18 +125,22 @@ def _carryOut(scene, act, traits, args, settings):
             return DONE
         before = running.entered
         over = enter(scene, before + 1, farther)
-        if over:
-            return _asBefore(scene, over)
+        if over:  # before the run was resumed: it ends as it did then
+            if over in FALLEN:
+                running.collapsed = True
+                running.results.run["collapse"] = running.at.fall
+            scene.ended = over
+            return COLLAPSED if scene.collapsed else over
         running.loading = traits.grows and not scene.grown
-        scene.model.scheme.dampByOptions()
-        scene.model.scheme.countImpacts(traits.real)
-        follows = scene.description.contact is not None
+        scheme, follows = scene.model.scheme, scene.description.contact is not None
+        scheme.dampByOptions()
+        scheme.joints.impacts = traits.real
         if follows:
-            scene.model.scheme.keepStable()
+            scheme.keepStable()
         if follows and running.redoes and running.at.stage == FALL:
             return _follow(scene, name)
         running.endsAtFall = follows and not traits.real
-        ended = act(scene, *args, **settings)
+        scene.ended = ended = act(scene, *args, **settings)
         if follows:
             scene.model.checkFallen()
         _noteEnd(running, before, ended)
@@ -168,11 +157,7 @@ def _carryOut(scene, act, traits, args, settings):
 
 
 def _fall(scene, name, traits, before, what):
-    """End a stage in which the structure has fallen, or go on with the fall.
-
-    :param before: how many stages the run had entered before it
-    :param what: has fallen, and how far
-    """
+    """End a stage in which the structure has fallen, or go on with the fall; ``what`` has fallen, and how far."""
     running = scene.running
     scene.ended = COLLAPSED
     follows = scene.description.contact is not None and not scene.bracketing
@@ -188,16 +173,11 @@ def _fall(scene, name, traits, before, what):
         follows = False  # what has fallen may have left finite numbers
         _noteEnd(running, before, COLLAPSED)
     _answer(scene, name, traits, before)
-    if follows:
-        return _follow(scene, name)
-    return COLLAPSED
+    return _follow(scene, name) if follows else COLLAPSED
 
 
 def _follow(scene, name):
-    """Go on with a structure that has fallen until it is at rest, in a stage or in a run that is resumed while it falls.
-
-    :param name: of the stage
-    """
+    """Go on with a structure that has fallen until it is at rest, in a stage or in a run that is resumed while it falls."""
     running, begun = scene.running, scene.running.at.begun
     try:
         running.endsAtFall = False
@@ -209,10 +189,8 @@ def _follow(scene, name):
             scene.ended = followFall(scene, tilted=name == "tilt")
         except Collapsed as collapse:
             say(f"note: the fall is followed no farther: {collapse}")
-        number = running.entered
         found = answersOfFall(scene, scene.ended, running.memory.begun)
-        kept = [{"stage": FALL, "number": number, **vars(one)} for one in found]
-        running.at.answers = {**running.at.answers, str(number): kept}
+        _keepAnswers(running, FALL, running.entered, found)
         writeTable(scene)
         _noteEnd(running, begun - 1, scene.ended)
         running.checkpoints.mark()
@@ -225,26 +203,64 @@ def _noteEnd(running, before, ended):
     running.at.ended = {**running.at.ended, str(before + 1): [ended, running.entered]}
 
 
-def _asBefore(scene, ended):
-    """What a stage returns that was over before the run was resumed: how it ended then."""
-    running = scene.running
-    if ended in FALLEN:
-        running.collapsed, running.results.run["collapse"] = True, running.at.fall
-    scene.ended = ended
-    return COLLAPSED if running.collapsed else ended
-
-
 def _answer(scene, name, traits, before):
-    """Keep the answers of a stage that was carried out now, and not before the run was resumed.
-
-    :param before: how many stages the run had entered before it
-    """
+    """Keep the answers of a stage that was carried out now, and not before the run was resumed; ``before``: how many stages the run had
+    entered before it."""
     running = scene.running
     if scene.only or before is None or running.entered == before:
         return
-    rows = Rows(running.results, running.at.stages[before][3])
-    found = [
-        {"stage": name, "number": before + 1, **vars(answer)}
-        for answer in traits.answers(scene, rows)
-    ]
-    running.at.answers = {**running.at.answers, str(before + 1): found}
+    results, first = running.results, running.at.stages[before][3]
+    rows = lambda head: results.column(head)[first:] if head in results.columns else []
+    _keepAnswers(running, name, before + 1, traits.answers(scene, rows))
+
+
+def _keepAnswers(running, stage, number, answers):
+    kept = [{"stage": stage, "number": number, **vars(one)} for one in answers]
+    running.at.answers = {**running.at.answers, str(number): kept}
+
+
+@dataclass
+class Timed:
+    """What a stage remembers that lasts for a given time."""
+
+    done: int = 0  # steps so far
+    nextFrame: int = 0  # number of the step after which a frame is due
+
+
+def timed(scene, at, duration, before, after=None, each=None):
+    """Steps for a duration [s], with rows and frames evenly in time.
+
+    :param before: function of the number of steps so far and after the next stretch, called before each stretch
+    :param after: called after each row
+    :param each: steps of a stretch; None: 20, or fewer
+    """
+    running, step = scene.running, O.step
+    length = max(1, round(duration / O.dt))
+    stretch = each or max(1, min(20, length // ROWS))
+    perRow = max(stretch, length // ROWS // stretch * stretch)
+    perFrame = max(1, length // FRAMES)
+
+    def alone(number):  # a step with its own ``before``
+        before(at.done + number, at.done + number + 1)
+        step()
+
+    while at.done < length:
+        goal = min(length, (at.done // perRow + 1) * perRow)
+        beyond = min(goal, at.done + stretch)
+        before(at.done, beyond)
+        beyond = goal if stretch == 1 else beyond
+        running.advance(beyond - at.done, alone if stretch == 1 else None)
+        at.done = beyond
+        if at.done < goal:
+            continue
+        running.record()
+        text = lambda: f"{at.done * O.dt:.3f} of {duration:.3f} s"
+        running.show(at.done / length, text)
+        if at.done >= at.nextFrame:
+            running.frame()
+            at.nextFrame += perFrame
+        if after:
+            after()
+    running.show(1, lambda: f"{duration:.3f} s", final=True)
+    running.flush()
+    return DONE

@@ -9,14 +9,14 @@ from typing import Annotated, Any, Sequence
 
 from yade import Vector3
 
-from ...common.arguments import listOf, number, validated
+from ...common.arguments import listOf, number
 from ...common.arguments import vector as point
+from ...assembly.loading import smooth
 from ..bounds import SMALL, findBound
 from ..pressures import placesBelow
 from .answers import AT_REST, DONE, Answer
 from .rest import Resting, waitForRest
-from .stage import stage
-from .timed import Duration
+from .stage import Duration, stage
 
 
 TRAVELS = "load that travels, at "  # how the names of its bounds begin
@@ -27,35 +27,32 @@ class Travelling(Resting):
     """What the stage remembers."""
 
     place: int = 0  # at which the load arrives, from 0; behind the last place it leaves
-    labels: Sequence = ()  # of the engines at the places
     began: Sequence = ()  # vertical displacements of all places when the load came [mm]
     moved: Sequence = ()  # of each place where it stood, since then [mm]
+    after: float = 0.0  # largest amount of them when it has left [mm]
 
 
 def standings(scene, rows):
     """What a load did that travelled: how many places held it, where the structure gave way most, and the least bound."""
     at = scene.running.memory
     if not isinstance(at, Travelling):
-        return []
+        return
     how = "the load stood at so many of its places, one after the other, and the structure came to rest"
-    found = [Answer("places_held", "-", len(at.moved), how)]
+    yield Answer("places_held", "-", len(at.moved), how)
     if at.moved:
         least = min(at.moved)
         where = f"of the loaded point, upwards, since the load came, at place {at.moved.index(least) + 1} of {len(at.began)}"
-        found.append(Answer("largest_displacement", "mm", least, where))
+        yield Answer("largest_displacement", "mm", least, where)
     if at.place > len(at.began):
         last = "largest amount of the vertical displacement of a place since the load came, when it has left"
-        found.append(Answer("displacement_after", "mm", max(map(abs, _moved(scene, at))), last))  # fmt: skip
+        yield Answer("displacement_after", "mm", at.after, last)
     scene.bounds.take(True)
     entries = scene.bounds.entries.values()
     bounds = {e["load"]: e["factor"] for e in entries if e["load"].startswith(TRAVELS) and "factor" in e}  # fmt: skip
     if bounds:
-        name = min(bounds, key=lambda one: bounds[one])
-        why = (
-            f"limit analysis: the least load, at which an upper bound is found: {name}"
-        )
-        found.append(Answer("least_bound", "kN", bounds[name], why))
-    return found
+        name, least = min(bounds.items(), key=lambda one: one[1])
+        why = "limit analysis: the least load, at which an upper bound is found"
+        yield Answer("least_bound", "kN", least, f"{why}: {name}")
 
 
 def placed(scene, along):
@@ -66,7 +63,6 @@ def placed(scene, along):
 
 
 @stage(bounded=True, answers=standings)
-@validated
 def travel(
     scene: Any,
     force: Annotated[float, number("N", 0, 1e15, above=True)],
@@ -94,34 +90,26 @@ def travel(
             live = [(engine, Vector3(0, 0, -1e3))]
             findBound(scene, "forces", f"{TRAVELS}({where}) m", "kN", live)
     if scene.only:
-        scene.ended = DONE
         return DONE
     at = scene.running.stage("travel", Travelling())
-    if not at.began:
-        at.labels = [engine.label for engine in engines]
-        at.began = [1e3 * engine.displacement()[2] for engine in engines]
+    places = lambda: [1e3 * engine.displacement()[2] for engine in engines]
+    at.began = at.began or places()
     while at.place <= len(engines):
         place = at.place
 
         def arriving(x):
-            share = x * x * (3 - 2 * x)
+            share, loading.loadFactor = smooth(x), 0.0
             if place < len(engines):
                 engines[place].force = share * down
+                loading.loadFactor = place + share
             if place:
                 engines[place - 1].force = (1 - share) * down
-            loading.loadFactor = place + share if place < len(engines) else 0.0
 
         ended = waitForRest(scene, at, longest, arriving)
         if ended != AT_REST:
             return ended
-        if place < len(engines):
-            at.moved = [*at.moved, _moved(scene, at)[place]]
+        moved = [now - was for now, was in zip(places(), at.began)]
+        at.moved = [*at.moved, *moved[place : place + 1]]
+        at.after = max(abs(one) for one in moved)
         at.place, at.done, at.quiet = place + 1, 0, 0
-    scene.ended = DONE
     return DONE
-
-
-def _moved(scene, at):
-    """Vertical displacements of all places since the load came [mm]."""
-    loads = scene.model.loading.loads
-    return [1e3 * loads[label].displacement()[2] - was for label, was in zip(at.labels, at.began)]  # fmt: skip
