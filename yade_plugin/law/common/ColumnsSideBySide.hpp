@@ -144,8 +144,8 @@ void ColumnsSideBySide<LawType>::advance(int point, int from, int count, const d
     for (int n = 0; yielded && n < count; n += lanes)
         yieldFrom(point, from + n);
     std::fill_n(regime, count, Regime::Elastic);
-    const auto waits = stayElastic(equations_, yielded ? nullptr : &neverYielded_, columns_, first, count, jumps,
-                                   normalStress, pending);
+    const auto rest = stayElastic(equations_, yielded ? nullptr : &neverYielded_, columns_, first, count, jumps,
+                                  normalStress, pending);
     Mask left = rest.all;
     if (rest.open != 0)
         left -= slideOpen(equations_, law_->tension(), law_->shear(), columns_.from(first), regime, jumps, pending,
