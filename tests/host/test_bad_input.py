@@ -482,7 +482,7 @@ def test_the_command_line_ends_with_status_2_and_leaves_files(tmp_path, word):
     "name, words, most, lost",
     [
         ("couplet", ["--no-vtk"], 100e3, "curve.csv"),  # in the middle of the run
-        ("wall_comp0a", ["--until", "0.1"], 200e3, "joints_0001.vtp"),
+        ("wall_comp0a", ["--until", "0.1"], 215e3, "joints_0001.vtp"),
         ("wall_comp0a", ["--until", "0.05", "--no-vtk"], 60e3, "curve.png"),
     ],
 )

@@ -3,10 +3,9 @@
 
 from hosted import *
 from pathlib import Path
-from masonry.run import frames
+from masonry.run import frames, readings
 from masonry.run.results import Results
 from masonry.run.run import Run
-from masonry.assembly.structure import Structure
 from small import SMALL, Wall, carryOut, parsed, scene as runScript
 
 
@@ -136,15 +135,15 @@ def test_frames_can_begin_and_end_with_a_resumed_run(tmp_path, whole):
 
 @pytest.mark.parametrize("rows", [0, 29])
 def test_a_run_that_fails_is_taken_up_there(tmp_path, monkeypatch, rows, whole):
-    read, count = Structure.read, [rows + 1]
+    read, count = readings.Reading, [rows + 1]
 
-    def fail(self):
+    def fail(model):
         count[0] -= 1
         if count[0] == 0:
             raise OSError("a pipe that broke")
-        return read(self)
+        return read(model)
 
-    monkeypatch.setattr(Structure, "read", fail)
+    monkeypatch.setattr(readings, "Reading", fail)
     with pytest.raises(OSError, match="a pipe that broke"):
         run(tmp_path, *PUSH)
     assert len((tmp_path / "curve.csv").read_text().splitlines()) == 1 + rows

@@ -4,9 +4,8 @@
 from hosted import *
 import glob
 import masonry
-from masonry.assembly.structure import Structure
 from masonry.read.frames import readFrame
-from masonry.run import results
+from masonry.run import readings, results
 from masonry.scene import options
 from masonry.scene.stages import rest
 from small import SMALL, carryOut, parsed, settled
@@ -159,16 +158,16 @@ def test_a_push_that_is_too_fast_says_so_and_what_would_do(runScene, words, cure
 
 
 def test_a_reading_that_is_not_finite_ends_the_run(tmp_path, monkeypatch):
-    read, count = Structure.read, [20]
+    read, count = readings.Reading, [20]
 
-    def broken(self):
+    def broken(model):
         count[0] -= 1
-        reading = read(self)
+        reading = read(model)
         if not count[0]:
             reading.up = float("nan")
         return reading
 
-    monkeypatch.setattr(Structure, "read", broken)
+    monkeypatch.setattr(readings, "Reading", broken)
     with pytest.raises(FloatingPointError, match="finite numbers in vertical_mm"):
         carryOut(SMALL, parsed("--no-vtk", "--until", "0.5", "--out", str(tmp_path)))
     assert len(readCurve(tmp_path)["time_s"]) == 19

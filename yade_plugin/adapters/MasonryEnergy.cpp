@@ -227,7 +227,7 @@ void MasonryEnergy::action() {
 
 void MasonryEnergy::countBodies(const EngineScope& turn) {
     const Vector3r gravity = turn->gravity();
-    const BodyDamping damping{turn->damping(), turn->hostIntegrator != nullptr, nullptr};
+    const double damping = turn->damping();
     auto& forces = scene->forces();
     forces.sync();
     const double before = fallen;

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "BodyStep.hpp"
-#include "motion/Damping.hpp"
 #include <cmath>
 
 namespace masonry {
@@ -33,22 +32,11 @@ Vector3r inverseMass(const State& s) {
     return inverse;
 }
 
-BodyStep stepOf(const State& s, const BodyForces& on, const Vector3r& gravity, double dt, const BodyDamping& damping) {
-    BodyStep step{s.vel, s.angVel, on.torque, {}};
+BodyStep stepOf(const State& s, const BodyForces& on, const Vector3r& gravity, double dt, double damping) {
+    BodyStep step{s.vel, s.angVel, {}};
     auto& e = step.energies;
-    const double alpha = s.isDamped ? damping.alpha : 0, rate = 1 / dt;
-    const double steady = meanOverStep(s.isDamped ? damping.viscous : 0, dt);
-    const bool combined = damping.last != nullptr;
-    const double share = dampingShare(combined);
-    // What damping takes of an acceleration whose undamped value is `free`. `middle` is the velocity in the middle of
-    // the step divided by the time step; `before` is the undamped value of the step before, which is replaced, or null.
-    const auto drag = [&](double free, double middle, double* before) {
-        const double reach = alpha * std::abs(free);
-        if (damping.host) return reach * sign(middle);
-        const int trend = before ? sign(free - *before) : 0;
-        if (before) *before = free;
-        return dampingTaken(middle, share * reach, double(trend));
-    };
+    const double alpha = s.isDamped ? damping : 0, rate = 1 / dt;
+    const auto drag = [&](double free, double middle) { return alpha * std::abs(free) * sign(middle); };
     for (int i = 0; i < 3; ++i) {
         const double all = on.force[i] + s.mass * gravity[i];
         if (isBlocked(s, i)) {
@@ -56,21 +44,15 @@ BodyStep stepOf(const State& s, const BodyForces& on, const Vector3r& gravity, d
             continue;
         }
         const double free = on.force[i] / s.mass + gravity[i];
-        double taken = drag(free, rate * s.vel[i] + 0.5 * free, combined ? &damping.last->force[i] : nullptr);
-        taken += steady * (s.vel[i] + 0.5 * dt * (free - taken));
+        const double taken = drag(free, rate * s.vel[i] + 0.5 * free);
         step.vel[i] += dt * (free - taken);
         e.damped += 0.5 * dt * s.mass * taken * s.vel[i];
         e.pendingDamped += 0.5 * dt * s.mass * taken * step.vel[i];
         e.kinetic += 0.5 * s.mass * s.vel[i] * step.vel[i];
     }
-    // If a rotation is blocked, the integrator damps the accelerations about the global axes. If none is, it damps the
-    // components of the torque about the global axes. The torque that stops a rotation depends on the body's own axes;
-    // the smallest inertia gives a torque that never reverses it.
+    // If a rotation is blocked, the host damps the accelerations about the global axes. If none is, it damps the
+    // components of the torque about them.
     const bool restrained = rotationRestrained(s);
-    const Matrix3r inverse = restrained ? Matrix3r::Zero() : inverseInertia(s);
-    const bool damped = !restrained && !damping.host && alpha > 0;
-    const Vector3r gained = damped ? Vector3r(inverse * on.torque) : Vector3r::Zero();
-    const double least = s.inertia.minCoeff();
     Vector3r taken = Vector3r::Zero();
     for (int i = 0; i < 3; ++i) {
         if (isBlocked(s, 3 + i)) {
@@ -78,23 +60,19 @@ BodyStep stepOf(const State& s, const BodyForces& on, const Vector3r& gravity, d
             continue;
         }
         const double free = on.torque[i] / s.inertia[i];
-        const double middle = restrained ? rate * s.angVel[i] + 0.5 * free
-                                         : least / s.inertia[i] * (rate * s.angVel[i] + 0.5 * gained[i]);
-        taken[i] = s.inertia[i] * drag(free, middle, combined ? &damping.last->torque[i] : nullptr);
-        const double momentum = restrained ? s.inertia[i] * s.angVel[i] : s.angMom[i];
-        taken[i] += steady * (momentum + 0.5 * dt * (on.torque[i] - taken[i]));
+        taken[i] = s.inertia[i] * drag(free, restrained ? rate * s.angVel[i] + 0.5 * free : s.angVel[i]);
     }
-    step.torque -= taken;
     e.pendingExternal = e.external;
+    const Vector3r torque = on.torque - taken;
     if (restrained) {
         for (int i = 0; i < 3; ++i)
             if (!isBlocked(s, 3 + i)) {
-                step.angVel[i] += dt * step.torque[i] / s.inertia[i];
+                step.angVel[i] += dt * torque[i] / s.inertia[i];
                 e.kinetic += 0.5 * s.inertia[i] * s.angVel[i] * step.angVel[i];
             }
     } else {
         const Matrix3r axes = s.ori.toRotationMatrix();
-        step.angVel += dt * (inverse * step.torque);
+        step.angVel += dt * (inverseInertia(s) * torque);
         e.kinetic += 0.5 * (axes.transpose() * s.angVel).dot(s.inertia.cwiseProduct(axes.transpose() * step.angVel));
     }
     e.damped += 0.5 * dt * taken.dot(s.angVel);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A step of one rigid body, by the equations of NewtonIntegrator: the energies of bodies that the host moves, and the
-// reference for RigidMotion.
+// A step of one rigid body by NewtonIntegrator, for the energies of bodies that the host moves. RigidMotion makes the
+// same steps, but for its damping.
 #pragma once
 #include "host/Yade.hpp"
 #include "motion/EnergyLedger.hpp"
@@ -25,15 +25,6 @@ struct BodyForces {
     yade::Vector3r torque; // about the centre [N m]
 };
 
-struct BodyDamping {
-    double alpha = 0;  // damping constant of a body that is damped [-]
-    bool host = false; // whether the host's rule is used, which takes all of alpha |F| and may reverse a motion
-    // For combined damping: force per mass [m/s²] and torque per inertia [1/s²] in the step before, which stepOf()
-    // replaces by those of this step. Null for local damping.
-    BodyForces* last;
-    double viscous = 0; // mass-proportional damping [1/s]
-};
-
 // A step takes the velocity v- to v+ with the forces at the place x_n. Between x_n and x_n+1 a force does the work of
 // its mean over both ends: half of the force at x_n works with v-, before that place, and half with v+, after it. The
 // second half is pending until step n+1. With the kinetic energy m v-·v+ / 2 the energy balance at x_n is then an
@@ -41,9 +32,9 @@ struct BodyDamping {
 struct BodyStep {
     yade::Vector3r vel;    // after the step [m/s]
     yade::Vector3r angVel; // after the step [1/s]; of a body that turns in space to first order
-    yade::Vector3r torque; // without what damping takes [N m]
     EnergyLedger energies;
 };
-BodyStep stepOf(const yade::State&, const BodyForces&, const yade::Vector3r& gravity, double dt, const BodyDamping&);
+// `damping` is the host's constant [-]. Its damping takes all of alpha |F| and may reverse a motion.
+BodyStep stepOf(const yade::State&, const BodyForces&, const yade::Vector3r& gravity, double dt, double damping);
 
 } // namespace masonry
