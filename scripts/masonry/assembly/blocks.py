@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Blocks of a scene: bodies of YADE. Bad input raises ValueError, with all problems at once."""
 
-from __future__ import annotations
-
 import math
 from typing import Annotated, Any, Sequence
 

@@ -2,8 +2,6 @@
 """The joints of a scene: made of all pairs of blocks that share a face. Bad input raises ValueError, with all problems at
 once."""
 
-from __future__ import annotations
-
 from typing import Annotated, Any, Callable
 
 from yade import O, utils

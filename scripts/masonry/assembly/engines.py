@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The engines of a masonry scene, and how it takes steps. Bad input raises ValueError, with all problems at once."""
 
-from __future__ import annotations
-
 from typing import Annotated, Any, Sequence
 
 from yade import O, wrapper

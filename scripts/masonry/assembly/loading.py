@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The loads of a structure: what is driven, alone or with others in a fixed proportion, pressed and blown at, and whose displacement is followed."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 

@@ -9,8 +9,6 @@ The script must run in a YADE with its graphical interface (``yade my_scene.py``
 there is none, ``xvfb-run`` gives one that nobody sees, and :func:`picture` saves what it would show.
 """
 
-from __future__ import annotations
-
 import threading
 import time
 from typing import Any

@@ -2,8 +2,6 @@
 """Beams and floors as rows of boxes. What they are made of is said by ``withBeam`` and ``withFloor`` of
 :class:`masonry.scene.materials.Masonry`."""
 
-from __future__ import annotations
-
 from typing import Annotated
 
 from ..common.arguments import oneOf, validated, whole

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Closed outlines of a drawing: DXF, SVG, GeoJSON, or CSV with rows of name, x and z."""
 
-from __future__ import annotations
-
 import csv
 import json
 import os

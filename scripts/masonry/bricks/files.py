@@ -5,8 +5,6 @@ PLY and binary STL are read by meshio. It loses the names of groups (OBJ) and of
 triangles (OFF) and knows no COMPAS, so these are read here.
 """
 
-from __future__ import annotations
-
 import json
 import math
 import os

@@ -4,8 +4,6 @@
 Solids whose corners stand in the same order have the same faces, so the faces are looked for once for all of them.
 """
 
-from __future__ import annotations
-
 import itertools
 import math
 from math import dist

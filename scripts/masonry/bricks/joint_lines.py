@@ -5,8 +5,6 @@ Cells of a Voronoi diagram give lines of many short pieces, which meet at nodes.
 nearly straight are one line, so that a bed joint stays straight where head joints meet it.
 """
 
-from __future__ import annotations
-
 from collections import defaultdict
 
 import numpy as np

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Convex solids with mortar between them grow until they meet in the middle of it."""
 
-from __future__ import annotations
-
 from collections import defaultdict, namedtuple
 
 import numpy as np

@@ -6,8 +6,6 @@ make up what belongs to it. Joints are lines between two stones. They are straig
 keep the same line.
 """
 
-from __future__ import annotations
-
 import math
 from collections import namedtuple
 from typing import Annotated, Any

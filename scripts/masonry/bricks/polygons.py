@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Polygons in a plane, (n, 2) [m], counter-clockwise."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from .geometry import FLAT

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Walls of natural stone, squared or irregular, whose interlocking is as good as a surveyor found it."""
 
-from __future__ import annotations
-
 import math
 from random import Random
 from typing import Annotated, Any

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Arches, barrel vaults and domes from voussoirs with plane faces. Neighbours share whole faces, corner by corner."""
 
-from __future__ import annotations
-
 import math
 
 from typing import Annotated

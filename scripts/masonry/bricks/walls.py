@@ -5,8 +5,6 @@ A wall stands along x from the origin, its thickness along y, its height along z
 meet face to face. All positions along a wall are multiples of a quarter unit, except cuts at openings and junctions.
 """
 
-from __future__ import annotations
-
 import functools
 import itertools
 import math

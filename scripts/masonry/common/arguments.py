@@ -14,8 +14,6 @@ least 0". Kinds of numbers have their ``unit``, and ``of``, the type of Python; 
 in one error, and an argument that is not known is answered with the nearest name.
 """
 
-from __future__ import annotations
-
 import contextlib
 import difflib
 import functools

@@ -6,8 +6,6 @@ not change what the copy sees. It takes no steps and ends without any clean-up. 
 done at once instead. :func:`carryOut` is the pool: it runs programs beside each other. Both end when this process does.
 """
 
-from __future__ import annotations
-
 import contextlib
 import ctypes
 import math

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Rigid blocks, their joints and loads, and the bounds of what they carry."""
 
-from __future__ import annotations
-
 import math
 import time
 from collections import namedtuple

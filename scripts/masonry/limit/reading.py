@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The blocks and joints of the scene in YADE, as limit analysis takes them."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

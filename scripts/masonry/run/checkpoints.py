@@ -5,8 +5,6 @@
 :mod:`masonry.run.run_state` is what such a checkpoint tells of the run.
 """
 
-from __future__ import annotations
-
 import contextlib
 import json
 import os

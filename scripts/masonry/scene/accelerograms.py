@@ -16,8 +16,6 @@ g is 9.81 m/s². What a file says of itself is compared with what is in it: anot
 numbers that are not finite are refused with the file, the line and the value.
 """
 
-from __future__ import annotations
-
 import math
 import os
 import re

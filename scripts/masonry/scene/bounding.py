@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Commands of a scene that ask for limit analysis; :mod:`masonry.scene.bounds` carries it out."""
 
-from __future__ import annotations
-
 from typing import Annotated, Any
 
 from ..common.arguments import Direction, Level, Numbers, listOf, number, validated

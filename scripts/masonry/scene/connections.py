@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Ties and springs, which connect bricks and platens beside the joints: words that describe a scene."""
 
-from __future__ import annotations
-
 from typing import Annotated, Any, Union
 
 import numpy as np

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The contact of blocks that have lost their joints: its properties, and the ground on which they fall."""
 
-from __future__ import annotations
-
 import itertools
 from typing import Any
 

@@ -9,8 +9,6 @@ A random field is the sum of :data:`WAVES` cosines with random directions, lengt
 distance d apart have the correlation exp(-(d/length)²), as they stand before the exponential of a lognormal field.
 """
 
-from __future__ import annotations
-
 import math
 import re
 from typing import Annotated, Any

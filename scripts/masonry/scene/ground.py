@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Ground motion: records of acceleration, and viscous damping for it. This module needs no YADE."""
 
-from __future__ import annotations
-
 import math
 import os
 from typing import Annotated, Any

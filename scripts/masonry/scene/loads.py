@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What loads a structure from its first stage on: words that describe a scene."""
 
-from __future__ import annotations
-
 import math
 from typing import Annotated, Any, Callable, Union
 

@@ -12,8 +12,6 @@ y at the next of them follows in closed form from y at this one, with no error o
 America 59 (1969), in complex numbers.
 """
 
-from __future__ import annotations
-
 import cmath
 import math
 from typing import Annotated

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What holds a structure, and what of it is watched: words that describe a scene."""
 
-from __future__ import annotations
-
 import itertools
 from typing import Annotated, Any
 

@@ -2,8 +2,6 @@
 """What a scene records: platens and bricks that are held, loaded or watched, and joints. Plain records with their columns,
 and the kinds of arguments that name them."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Annotated, Any, Iterator, Sequence, Union
 

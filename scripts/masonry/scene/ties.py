@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Ties and springs of a scene: plain records with their columns, and their entries of run.json."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from typing import Any
 

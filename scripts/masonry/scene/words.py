@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The words of a script, noted as data: a run that is resumed can be compared with the script that began it."""
 
-from __future__ import annotations
-
 import contextlib
 import functools
 import inspect

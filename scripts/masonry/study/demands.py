@@ -11,8 +11,6 @@ Rows that failed or are missing are left out, and at a level at which fewer than
 This module needs no YADE.
 """
 
-from __future__ import annotations
-
 import math
 import re
 

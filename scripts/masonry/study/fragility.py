@@ -24,8 +24,6 @@ along rays. The probability Φ(a ln x - b) of reaching the limit at x has its ba
 This module needs no YADE.
 """
 
-from __future__ import annotations
-
 import html
 import math
 import re

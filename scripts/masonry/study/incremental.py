@@ -7,8 +7,6 @@ the structure falls: rows above it are ``above collapse``. That is found from th
 it does not matter who ran which row, nor in which order.
 """
 
-from __future__ import annotations
-
 import glob
 import hashlib
 import itertools

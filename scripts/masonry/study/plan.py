@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The description of a study, and the table of its rows."""
 
-from __future__ import annotations
-
 import hashlib
 import math
 import os

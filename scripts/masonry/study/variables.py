@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What varies in a study: distributions, choices, and random fields over the joints."""
 
-from __future__ import annotations
-
 import bisect
 import itertools
 from dataclasses import asdict, dataclass

@@ -6,8 +6,6 @@ object is made, set as an attribute or with ``set`` or ``updateAttrs`` later, co
 keep the note. An object that YADE has loaded from a file has none: everything counts as given.
 """
 
-from __future__ import annotations
-
 from typing import Annotated, Any
 
 from yade.wrapper import MasonryJoint, MasonryMat

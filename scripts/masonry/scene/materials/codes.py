@@ -10,8 +10,6 @@
 A value that is given in place of the code's loses its clause: ``{**materials.ntc2018("rubble", "LC1"), "E": 1e9}``.
 """
 
-from __future__ import annotations
-
 import re
 from typing import Annotated, Any, NamedTuple
 

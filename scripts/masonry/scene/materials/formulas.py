@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Masonry of one's own from what a data sheet and tests say of it: joints by stated formulas."""
 
-from __future__ import annotations
-
 from types import SimpleNamespace
 from typing import Annotated, Any
 

@@ -4,8 +4,6 @@
 The paper: see yade_plugin/law/README.md.
 """
 
-from __future__ import annotations
-
 from typing import Annotated, Any
 
 from yade import Vector3

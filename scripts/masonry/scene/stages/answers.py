@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """How stages end, and what they answer."""
 
-from __future__ import annotations
-
 import itertools
 import math
 from dataclasses import dataclass

@@ -2,8 +2,6 @@
 """What a scene does when the structure falls and ``Scene(..., collapse="follow")`` asks for it: it goes on until the rubble is
 at rest, and says what fell, when and where it lies."""
 
-from __future__ import annotations
-
 import csv
 import math
 from dataclasses import dataclass

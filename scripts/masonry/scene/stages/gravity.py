@@ -2,8 +2,6 @@
 """Horizontal acceleration and a tilting ground: ``tilt``, ``accelerate`` and ``lean``, and the search with ``bracket``. What acts and can
 be changed is an :class:`Acting`."""
 
-from __future__ import annotations
-
 import math
 from typing import Annotated, Any, Callable
 

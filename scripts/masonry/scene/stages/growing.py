@@ -12,8 +12,6 @@ looked at with a small push to the side (:func:`masonry.assembly.period.buckles`
 trial is looked at so.
 """
 
-from __future__ import annotations
-
 import base64
 import bisect
 import statistics

@@ -6,8 +6,6 @@ The first four give a load its new value, whatever it was before, and wait for r
 largest that is held. The others add to what is there until the structure falls, and search by themselves.
 """
 
-from __future__ import annotations
-
 import math
 import re
 from types import SimpleNamespace

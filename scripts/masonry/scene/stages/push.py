@@ -6,8 +6,6 @@ the mean of all points, by the shares of their forces, at a constant velocity. T
 work, so the push follows the structure beyond its peak. Displacements of the push are those of one target, its control.
 """
 
-from __future__ import annotations
-
 import zlib
 from dataclasses import replace
 from types import SimpleNamespace

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """How the drive of a push goes, row by row."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, field
 from typing import Sequence

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Real time: ``shake``, ``run``, and ``shakeAgain``, records one after the other with what is left after each: ``period``."""
 
-from __future__ import annotations
-
 import csv
 import itertools
 from dataclasses import dataclass

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What stages of a scene share: how they begin and end, their traits, and how time passes in those that last for a given time."""
 
-from __future__ import annotations
-
 import functools
 import os
 from dataclasses import dataclass

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Drives along an axis without a run-up, and supports that are taken away or that move: ``drive``, ``pressJoint``, ``release`` and ``move``."""
 
-from __future__ import annotations
-
 from types import SimpleNamespace
 from typing import Annotated, Any, Callable, Union, cast
 

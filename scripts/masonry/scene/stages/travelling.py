@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """``travel``: a load that goes over a structure, and stands at one place after the other."""
 
-from __future__ import annotations
-
 import zlib
 from dataclasses import dataclass
 from typing import Annotated, Any, Sequence
