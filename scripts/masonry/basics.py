@@ -92,6 +92,16 @@ class Refused(ValueError):
     """Input that cannot be run, with all problems at once. Nothing was changed."""
 
 
+#: What is said of anything that cannot be done in a scene in a plane.
+IN_PLANE = "the scene is in the x-z plane; Scene(..., plane=False) is in space"
+
+
+def checkPlane(description, along, name):
+    """Refuse what has a part along y in a scene in the x-z plane. Raises ValueError."""
+    if description.plane and along[1]:
+        raise ValueError(f"{name}: {IN_PLANE}")
+
+
 def refuse(problems, begin="", between="\n"):
     """Raise :class:`Refused` with all problems, if there are any."""
     if problems:

@@ -48,15 +48,6 @@ def vector(value: Any, what: str) -> Any:
     raise ValueError(f"{what} must be three finite numbers, got {shown(value)}")
 
 
-def inPlane(description: Any, direction: Any, name: str) -> Any:
-    """A Vector3, which does not lead out of the plane of a scene that is in one. Raises ValueError."""
-    if description.plane and direction[1]:
-        raise ValueError(
-            f"{name}: the scene is in the x-z plane; Scene(..., plane=False) is in space"
-        )
-    return Vector3(*direction)
-
-
 def placeOf(body: int, point: Any) -> Any:
     """Where a point of a body is now [m], by its place in the structure as built."""
     state = O.bodies[body].state

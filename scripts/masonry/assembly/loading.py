@@ -9,7 +9,7 @@ from yade import O, Vector3
 from yade.wrapper import MasonryLoad
 
 from .._masonry import loadScene, saveScene
-from .blocks import inPlane
+from ..basics import checkPlane
 
 PATTERN = "_drive"  # label of the drive of a push in a pattern: that of no target
 
@@ -272,7 +272,7 @@ class Pattern:
 def pushTo(loading, pushed, control, direction, name="push"):
     """From now on ``push`` moves a target, or all of a :class:`Pattern`, in a direction, and the displacement of a control is recorded. The
     other drives hold what they hold."""
-    inPlane(loading.description, direction, name)
+    checkPlane(loading.description, direction, name)
     for body, *_ in pushed.parts:
         blocked = O.bodies[body].state.blockedDOFs
         if not any(v and a not in blocked for a, v in zip("xyz", direction)):

@@ -42,7 +42,29 @@ from .domains import BoundPoint, Domain, RunPoint, domain, runPoint
 from .report import assess, assessDomain
 from .spectra import Spectrum, elastic, readSpectrum
 
-__all__ = """
-    Bilinear BoundPoint Demand Domain Equivalent Number Pushover RunPoint Spectrum assess assessDomain bilinear bilinearOf demand
-    domain drifts elastic equivalent iterated ofMasses ofRun pushover readSpectrum runPoint
-""".split()
+__all__ = [
+    "Bilinear",
+    "BoundPoint",
+    "Demand",
+    "Domain",
+    "Equivalent",
+    "Number",
+    "Pushover",
+    "RunPoint",
+    "Spectrum",
+    "assess",
+    "assessDomain",
+    "bilinear",
+    "bilinearOf",
+    "demand",
+    "domain",
+    "drifts",
+    "elastic",
+    "equivalent",
+    "iterated",
+    "ofMasses",
+    "ofRun",
+    "pushover",
+    "readSpectrum",
+    "runPoint",
+]

@@ -7,6 +7,7 @@
 import numpy as np
 from yade import O, Vector3
 
+from ..assembly.blocks import placeOf
 from ..assembly.loading import bodiesOf
 from ..basics import Refused
 
@@ -27,7 +28,7 @@ def forces(model, assembly, pushed=None, pressed=None):
     loads = np.zeros_like(assembly.held, float)
     for load, force in model.loading.deadLoads():
         block = assembly.ids.index(load.body)
-        point = placeOf(assembly, load.body, load.point)
+        point = _placeOf(assembly, load.body, load.point)
         if pressed and load.label == f"{pressed[0].name}_force":
             own = model.supports.weightOf(pressed[0])
             force = Vector3(force[0], force[1], own - 1e3 * pressed[1])
@@ -52,17 +53,14 @@ def sumOf(assembly, acting):
     """
     found = np.zeros_like(assembly.held, float)
     for body, point, force in acting:
-        block, at = assembly.ids.index(body), placeOf(assembly, body, point)
+        block, at = assembly.ids.index(body), _placeOf(assembly, body, point)
         found += assembly.force(block, np.array(force), at)
     return found
 
 
-def placeOf(assembly, body, point):
+def _placeOf(assembly, body, point):
     """Where a point of a body is on blocks as the assembly has them [m]: ``point`` is its place in the structure as built."""
-    if assembly.stood:
-        return np.array(point)
-    state = O.bodies[body].state
-    return np.array(state.pos + state.ori * state.refOri.conjugate() * (Vector3(*point) - state.refPos))  # fmt: skip
+    return np.array(point if assembly.stood else placeOf(body, point))
 
 
 def carriedBy(assembly, dead):

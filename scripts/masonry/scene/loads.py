@@ -7,10 +7,10 @@ from typing import Annotated, Any, Callable, Union
 from ..common.arguments import Direction, Level, Numbers, number, orFunction, validated
 from ..common.arguments import vector as numbers
 from ..assembly.blocks import vector
-from ..basics import say
+from ..basics import checkPlane, say
 from .pressures import LEAST, FaceForce, facesAgainst, pressures
 from .targets import Loaded, MovingPlaten, Part
-from .words import checkPlane, describes
+from .words import describes
 
 #: A mean stress, a force and the pressure of a wind. More than these would crush or throw over any masonry.
 Stress = Annotated[float, number("Pa", 0, 1e12)]

@@ -9,10 +9,9 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..common.arguments import number
-from ..basics import Refused
+from ..basics import Refused, checkPlane
 from ..bricks import Bricks
 from ..bricks.checks import LOOKING
-from .words import checkPlane
 
 GRAZING = 0.01  # least cosine of the angle between a face and what presses on it [-]
 PARTS = 4  # of each side of a triangle: it is integrated in the square of this number of triangles

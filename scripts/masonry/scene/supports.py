@@ -7,10 +7,10 @@ from typing import Annotated, Any
 from ..common.arguments import Axes, Freedoms, Name, Numbers, axes, byName, number, oneOf, shown, validated  # fmt: skip
 from ..common.arguments import vector as numbers
 from ..assembly.blocks import vector
-from ..basics import refuse
+from ..basics import IN_PLANE, refuse
 from .targets import BrickAt, Part, Target
 from .ties import MOST, End, Spring, Tie
-from .words import IN_PLANE, describes
+from .words import describes
 
 PLATEN = 0.2  # [m] height of a platen
 #: Bars along each side of a platen on a soil without tension, in a plane and in space.

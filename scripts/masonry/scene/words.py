@@ -18,14 +18,6 @@ S = TypeVar("S", covariant=True)
 RESULT = "result"  # the word that keeps a number of the script's own
 PUSHES = "push", "cycle", "follow"  # to the first of them --until and --history apply
 SHAKES = ("shake",)  # to the first of them --record and --scale apply
-#: What a word says that cannot be done in a scene in a plane.
-IN_PLANE = "the scene is in the x-z plane; Scene(..., plane=False) is in space"
-
-
-def checkPlane(description, along, name):
-    """Refuse what has a part along y in a scene in the x-z plane. Raises ValueError."""
-    if description.plane and along[1]:
-        raise ValueError(f"{name}: {IN_PLANE}")
 
 
 @dataclass

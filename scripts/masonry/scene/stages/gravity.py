@@ -8,9 +8,8 @@ from typing import Annotated, Any, Callable
 from yade import Vector3
 
 from ...common.arguments import Level, number, validated
-from ...assembly.blocks import inPlane
 from ...assembly.loading import smooth
-from ...basics import GRAVITY
+from ...basics import GRAVITY, checkPlane
 from ..bounds import findBound, nameOfLean
 from .growing import TRIAL, WITHIN, ends, follow, found, grow
 from .rest import WAITED, Resting, waitForRest
@@ -96,7 +95,8 @@ def putOnAnswers(scene, rows):
 
 def sideways(scene, towards, name):
     """A horizontal direction as a unit vector. Raises ValueError."""
-    return inPlane(scene.description, towards, name).normalized()
+    checkPlane(scene.description, towards, name)
+    return Vector3(*towards).normalized()
 
 
 Width = Annotated[float, number("", 1e-4, 1, below=True)]  # of a bracket

@@ -7,9 +7,8 @@ from typing import Annotated, Any, Callable, Union, cast
 from yade import O, Vector3
 
 from ...common.arguments import Freedoms, number, orFunction
-from ...assembly.blocks import inPlane
 from ...assembly.motion import FAR
-from ...basics import Refused
+from ...basics import Refused, checkPlane
 from ..history import MOST
 from ..loads import Force
 from ..pressures import atPlace
@@ -128,7 +127,8 @@ def move(
 def _path(scene, target, along):
     """The displacement of a target in :func:`move` [mm]. Raises ValueError."""
     values = [atPlace(v, target.recorded, millimetres, "move") if callable(v) else v for v in along]  # fmt: skip
-    path = scene.share * inPlane(scene.description, values, "move")
+    checkPlane(scene.description, values, "move")
+    path = scene.share * Vector3(*values)
     loose = [a for a, w in zip("xyz", path) if w and a not in target.freedom]
     if loose:
         raise ValueError(f"move: {target.name} is not held along {', '.join(loose)}")
