@@ -385,8 +385,7 @@ def _corners(points, faces, numbers, members, solid, problems):
     """Corners of one solid if it is convex, else None and a sentence. Points inside a face or an edge are left out."""
     used = sorted({n for face in members for n in faces[face]})
     own = points[used]
-    size = np.linalg.norm(np.ptp(own, axis=0))
-    width = FLAT * size
+    width = FLAT * np.linalg.norm(np.ptp(own, axis=0))
     planes, meeting = [], defaultdict(set)
     for face in members:
         polygon = points[list(faces[face])]

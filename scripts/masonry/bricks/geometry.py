@@ -77,8 +77,7 @@ def _around(members, corners, normal):
     """Corners of a face, counter-clockwise about its normal."""
     points = corners[members] - corners[members].mean(axis=0)
     first = points[0] / np.linalg.norm(points[0])
-    second = np.cross(normal, first)
-    angles = np.arctan2(points @ second, points @ first)
+    angles = np.arctan2(points @ np.cross(normal, first), points @ first)
     return tuple(int(n) for n in members[np.argsort(angles)])
 
 
@@ -123,8 +122,7 @@ class Alike:
 
     def volumes(self):
         """[m³]: a third of the sum of face area times its distance from the middle."""
-        middle = self.corners.mean(axis=1)
-        arms = self._centres - middle[:, None]
+        arms = self._centres - self.corners.mean(axis=1)[:, None]
         return np.einsum("nfk,nfk->n", self._areaVectors, arms) / 3
 
 

@@ -90,8 +90,7 @@ def BarrelVault(
     :param angle: at the centre [°], up to 180
     :param staggered: whether odd courses are shifted by half a stone, with half stones at their ends
     """
-    many = _few(stones * rows)
-    points = _ring("vault", stones, span, radius, angle, thickness, many)
+    points = _ring("vault", stones, span, radius, angle, thickness, _few(stones * rows))
     blocks = []
     for course in range(stones):
         shifted = 1 if staggered and course % 2 else 2

@@ -55,8 +55,7 @@ def capacity(push: Pushover, found: Demand, path: FilePath) -> None:
         axes.axvline(target, color=TARGET, lw=1.0, ls=(0, (6, 3)))
         height = min(found.strength, found.strength * found.ductility)
         axes.plot(target, height, "o", color=TARGET, ms=6, label=f"demand dt* = {target:.4g} mm")  # fmt: skip
-        last = max(target, moved[-1] / gamma, elastic[0])
-        axes.set_xlim(0, 1.25 * last)
+        axes.set_xlim(0, 1.25 * max(target, moved[-1] / gamma, elastic[0]))
         axes.set_ylim(0, 1.1 * max(spectrum.accelerations.max(), asAcceleration(push.force).max()))  # fmt: skip
         axes.set_title(f"{push.run.get('title', '')}\n{spectrum.name}", fontsize=9)
         drawing.finish(axes, "displacement of the equivalent system [mm]", "acceleration [m/s²]", fontsize=9)  # fmt: skip

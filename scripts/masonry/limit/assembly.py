@@ -237,8 +237,7 @@ class Assembly:
         # The dual of equilibrium, with which the live load has the power of its unit.
         speed[free] = -dual / step
         speed *= scale * sense
-        solution = programme.read(values)
-        return Bound(self, factor / step, speed, live, dead, *solution)
+        return Bound(self, factor / step, speed, live, dead, *programme.read(values))
 
     def _endless(self, live, dead):
         """A factor that no strength explains: a million times all strengths and loads over the live load."""

@@ -291,5 +291,4 @@ class Bound:
             masonry = {body for part in (parts or {}).values() for body in part}
             shades = {int(b): "platen" for b in blocks["body"] if masonry and b not in masonry}  # fmt: skip
             structure = Structure(blocks, joints, parts or {}, shades, sights=views or {}, seams=(1,))  # fmt: skip
-            figure = figureOf(structure, title, 1)
-            drawing.save(figure, path, 90)
+            drawing.save(figureOf(structure, title, 1), path, 90)

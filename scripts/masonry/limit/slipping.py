@@ -35,8 +35,7 @@ def loosened(assembly, live, dead):
             least = bound
         joint = assembly.contacts.joint
         pressed = np.bincount(joint, bound.normal, len(assembly.pairs))
-        bare = pressed < UNPRESSED * pressed.max()
-        friction = np.where(bare, 0, smooth.friction)
+        friction = np.where(pressed < UNPRESSED * pressed.max(), 0, smooth.friction)
         if (friction == smooth.friction).all():
             break
         smooth = replace(assembly, friction=friction)

@@ -80,8 +80,7 @@ def spaceViewOf(front, points, moved):
     if round(lean[:2] @ along / np.ptp(points, axis=0).max(), 3) < 0:
         along = -along
     plan = np.cos(turn) * side + np.sin(turn) * along
-    away = np.append(np.cos(rise) * plan, np.sin(rise))
-    return _viewFrom(away, points, False)
+    return _viewFrom(np.append(np.cos(rise) * plan, np.sin(rise)), points, False)
 
 
 def _viewFrom(away, points, either):

@@ -39,8 +39,7 @@ UNWRITTEN = os.EX_IOERR  # exit status if that file cannot be written
 
 def readTable(path):
     """The rows of a table by the number of their line, from 1: dicts of texts. Raises Refused if it is not one."""
-    text = readText(path)
-    lines = (re.sub(r"\s*#.*", "", line).split() for line in text.split("\n"))
+    lines = (re.sub(r"\s*#.*", "", line).split() for line in readText(path).split("\n"))
     used = [(number, words) for number, words in enumerate(lines, 1) if words]
     if not used:
         raise Refused(f"{path}: there is no row")

@@ -227,8 +227,7 @@ class Results:
 
     def _curve(self):
         """curve.csv, open to add to it."""
-        path = self.path("curve.csv")
-        return open(path, "ab", buffering=0, opener=folders.inside)
+        return open(self.path("curve.csv"), "ab", buffering=0, opener=folders.inside)
 
     def takeUp(self, rows, frames, seconds):
         """Go on after these rows, so many ParaView frames and seconds of wall-clock time. What came later is removed."""

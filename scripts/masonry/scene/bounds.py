@@ -378,8 +378,7 @@ def findBound(scene, kind, *load):
     missing = any(e.get("note") == GIVEN_UP for e in scene.bounds.entries.values())
     if scene.args.lean and not scene.only or resumed and not missing:
         return  # in a stage that goes on it was found when that began
-    upTo = SMALL * scene.only
-    findBy(scene, kind, *load, lowerUpTo=upTo, background=not scene.only)
+    findBy(scene, kind, *load, lowerUpTo=SMALL * scene.only, background=not scene.only)
 
 
 def nameInDomain(target, direction, normal):

@@ -86,8 +86,7 @@ def ofScene(name, arguments, sceneOptions):
             raise Refused(f"{must}, such as {arguments.split()!r}, got {arguments!r}")
         for wrong in (one for one in words or () if not isinstance(one, str)):
             raise Refused(f"{must}, got {shown(wrong)}")
-        main = sys.modules.get("__main__")
-        own = parser(getattr(main, "__doc__", None), until=None)
+        own = parser(getattr(sys.modules.get("__main__"), "__doc__", None), until=None)
         own.set_defaults(**checked(own, name, sceneOptions))
         arguments = own.parse_args(words)
     keep(arguments, name, sceneOptions)

@@ -135,8 +135,7 @@ class Script:
 
     def note(self, act, first, args, settings, farther=()):
         """Note a word. ``farther`` names those of its arguments that say how far a stage goes."""
-        arguments = asData(argumentsOf(act, first, args, settings))
-        self.add(act.__name__, arguments, farther)
+        self.add(act.__name__, asData(argumentsOf(act, first, args, settings)), farther)
 
     def add(self, word, arguments, farther=()):
         """Add a word and its arguments as data."""

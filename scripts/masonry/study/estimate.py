@@ -209,8 +209,7 @@ def allocate(pilot, prices, variance=None, budget=None):
         shared = max(SHARED, math.ceil((a + b / ratio) / variance))
         left = variance - a / shared
         rows = math.ceil(b / left) if left > 0 else shared
-    found = pilot._replace(shared=shared, rows=max(shared, rows))
-    return saved(found, prices)
+    return saved(pilot._replace(shared=shared, rows=max(shared, rows)), prices)
 
 
 def saved(found, prices):
