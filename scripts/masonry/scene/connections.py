@@ -83,8 +83,10 @@ def tie(
             end.point = (end.point[0], level, end.point[2])
     name = name or f"tie{len(description.connectorsOf(Tie))}"
     made = Tie(name, ends, stiffness, strength, prestress, slack, breaking, compression)
-    problems = [*_onOneBrick(*ends), *made.problems()]
-    if not made.length > 0:
+    problems = [*_onOneBrick(*ends)]
+    if made.length > 0:
+        problems += made.problems()
+    elif not problems:
         problems = [f"its ends are both at {ends[0].point} m"]
     return _take(description, "tie", made, problems)
 

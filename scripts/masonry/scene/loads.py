@@ -110,11 +110,12 @@ def pressure(
     """
     forces = pressures(description, value, towards, part, normal)
     sizes = [math.hypot(*one.force) for one in forces]
-    if not max(sizes) > 0:
+    largest = max(sizes)
+    if not largest > 0:
         raise ValueError(
             "pressure: it is 0 on all faces that look against it; places are in m"
         )
-    loaded = (f for f, size in zip(forces, sizes) if size > LEAST * max(sizes))
+    loaded = (f for f, size in zip(forces, sizes) if size > LEAST * largest)
     description.winds.extend(loaded)
     x, y, z = map(math.fsum, zip(*(one.force for one in forces)))
     return x, y, z

@@ -107,10 +107,12 @@ def quantile(expensive, cheap, share, method="bridge"):
     :raises Refused: as :func:`mean`; or if the share is not between 0 and 1, or the method is another, or an indicator
         would have fewer than SIDE shared rows to expect on one side
     """
+    problems = []
     if not 0 < share < 1:
-        raise Refused(f"a quantile of {share:g}: it must be between 0 and 1")
+        problems.append(f"a quantile of {share:g}: it must be between 0 and 1")
     if method not in ("bridge", "indicator"):
-        raise Refused(f"method '{method}' must be 'bridge' or 'indicator'")
+        problems.append(f"method '{method}' must be 'bridge' or 'indicator'")
+    refuse(problems)
     return _quantile(_Bridge(*_rows(expensive, cheap)), share, method)
 
 
