@@ -182,6 +182,7 @@ def test_what_is_no_convex_solid_is_refused(tmp_path, points, faces, said):
         ("a.stl", "solid a\nvertex 0 0 0\nendsolid", "a facet without three points"),
         ("a.stl", "solid a\nvertex 0 0 0", "solid a has no end"),
         ("a.ply", "hello", "meshio: "),
+        ("a.ply", "ply\n", "its head has no end"),
         ("a.json", "{", "cannot be read"),
         ("a.json", "{}", "no mesh"),
         ("a.json", '{"vertex": {"0": {}}, "face": {"0": [0, 1]}}', "vertex 1 that is"),
