@@ -4,7 +4,7 @@
 from usual import *
 from dataclasses import replace
 from masonry.bricks import Block, Bricks, Wall, block, stack
-from masonry.bricks.geometry import Solids, hull
+from masonry.bricks.geometry import FLAT, Solids, hull
 
 few = settings(max_examples=40)
 CUBE = ((0, 0, 0), (1, 1, 1))
@@ -44,7 +44,8 @@ def test_volume_of_any_convex_solid(count, seed):
         a, b, c = points[triangle]
         six = abs(np.dot(a, np.cross(b, c))) * np.sign(-plane[3])
         volume += six / 6
-    assert solids.volumes()[0] == approx(volume, rel=1e-6)
+    # a corner may lie FLAT of the diagonal, which is 2 at most, beside the plane of its face
+    assert solids.volumes()[0] == approx(volume, abs=FLAT * 2 * found.area)
 
 
 @mark.parametrize(

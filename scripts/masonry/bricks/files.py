@@ -200,7 +200,9 @@ def _byMeshio(path):
     with open(path, "rb") as file:
         content = file.read()
     if content.startswith(b"ply") and b"end_header" not in content:
-        raise ValueError("its head has no end")  # which meshio would look for without end
+        raise ValueError(
+            "its head has no end"
+        )  # which meshio would look for without end
     try:
         mesh = meshio.read(path)
     except (Exception, SystemExit) as error:  # meshio ends the program for some files
