@@ -144,8 +144,7 @@ void RigidMotion::pushInSpace(int n, const InSpace& given, const Around& around)
     MASONRY_INDEPENDENT
     for (int i = 0; i < n; ++i) {
         const bool mine = inSpace[i] != 0;
-        const Quaternion own =
-            Quaternion{c.orientation[0][i], {c.orientation[1][i], c.orientation[2][i], c.orientation[3][i]}};
+        const Quaternion own{c.orientation[0][i], {c.orientation[1][i], c.orientation[2][i], c.orientation[3][i]}};
         const double reach = share * alpha[i], steady = steady_[i];
         const Vector inertia{c.inertia[0][i], c.inertia[1][i], c.inertia[2][i]};
         const Vector on{torque[0][i], torque[1][i], torque[2][i]};
@@ -185,8 +184,7 @@ void RigidMotion::turnInSpace(int n, const InSpace& given, double dt) {
     MASONRY_INDEPENDENT
     for (int i = 0; i < n; ++i) {
         const bool mine = inSpace[i] != 0;
-        const Quaternion old =
-            Quaternion{c.orientation[0][i], {c.orientation[1][i], c.orientation[2][i], c.orientation[3][i]}};
+        const Quaternion old{c.orientation[0][i], {c.orientation[1][i], c.orientation[2][i], c.orientation[3][i]}};
         const Vector inertia{c.inertia[0][i], c.inertia[1][i], c.inertia[2][i]};
         const Vector on{torque[0][i], torque[1][i], torque[2][i]};
         const Vector before{momentum[0][i], momentum[1][i], momentum[2][i]}, after = before + dt * on;

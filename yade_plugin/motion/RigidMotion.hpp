@@ -31,7 +31,7 @@ struct RigidMotion {
     double force[6][most];    // input: force [N] and torque [N m]; no torque on bodies that turn in space
     double inSpace[most]{};   // input: 1 for bodies that turn in space, else 0
     double torque[3][most];   // input: torque on bodies that turn in space [N m]
-    double momentum[3][most]; // of these the angular momentum [kg m²/s], of which the step makes that after it
+    double momentum[3][most]; // input and output: angular momentum of these bodies [kg m²/s]
     double kinetic[most];     // output: kinetic energy [J]
     double work[most];        // output: half of the work of prescribed motions in the step [J]
     double damped[2][most];   // output: energy taken by damping with the velocity before and after the step [J]

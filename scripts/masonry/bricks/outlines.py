@@ -92,7 +92,8 @@ def fromOutlines(
     (polygons), and ``.csv`` with rows of name, x, z. The plane of the drawing is that of the wall. Stones meet in the
     middle of the mortar between them, and reach to the sides of the box around all of them where they are no farther from
     it than twice ``mortar``. Where a ball of the radius ``mortar`` has space there is no mortar, but a window, a door, or the air
-    around the wall. At a step of the box, as of a gable, stones get tongues of up to ``mortar``. Stones that are not convex are several blocks of one brick, whose joint is ``crack``.
+    around the wall. At a step of the box, as of a gable, stones get tongues of up to ``mortar``. Stones that are not convex
+    are several blocks of one brick, whose joint is ``crack``.
 
     :param thickness: of the wall [m]
     :param mortar: largest thickness of a joint [m]

@@ -10,10 +10,10 @@ namespace masonry {
 
 using Mask = std::int64_t; // a switch as wide as the numbers beside it, for the vector units
 
-// What a law leaves to do after the step of the subcontacts that stay elastic.
+// How many subcontacts have not made their step after those that stay elastic.
 struct Waiting {
-    Mask all;  // how many others there are
-    Mask open; // 0 if none of them has the short step of open ones that carry nothing
+    Mask all;
+    Mask open; // 0 if none of them is open and without bond, for which a law may have a shorter step
 };
 
 // What a column of a law means to those who do not know the law.

@@ -97,8 +97,7 @@ Waiting stayElastic(const PiecewiseEquations& e, const PiecewiseDerived* neverYi
                    : stayElasticAs<true, false>(e, ofAll, columns, at, count, jumps, normalStress, pending);
 }
 
-// ---- open subcontacts that carry nothing
-// -----------------------------------------------------------------------------
+// ---- open subcontacts that carry nothing ----------------------------------------------------------------------------
 
 namespace {
 
@@ -108,6 +107,7 @@ struct Open {                                          // scratch of a step
     Mask here[most];
 };
 
+// Marks those in `s.here`. Returns how many there are.
 MASONRY_INLINED Mask findOpen(const PiecewiseEquations& given, const Columns& columns, const Jumps& jumps, int count,
                               double mostTension, double mostShear, const Mask* pending, Open& s) {
     const PiecewiseEquations e = given;

@@ -133,9 +133,8 @@ def _onFaces(scene, forces, kind, towards, part, unit, most):
     """The load of forces on faces, by what labels its engines and names it."""
     along = towards.normalized()
     axes = "_".join(f"{v + 0.0:.6g}".replace("-", "minus") for v in along)
-    label = re.sub(
-        r"\W", "_", f"{kind}_towards_{axes}_{part or 'all'}"
-    )  # a name in YADE
+    # YADE makes names of labels
+    label = re.sub(r"\W", "_", f"{kind}_towards_{axes}_{part or 'all'}")
     places = [(one.brick, one.point) for one in forces]
     engines = scene.model.loading.onBricks(label, places)
     what = f"{kind} towards {nameOf(towards)}" + (f" on {part}" if part else "")
