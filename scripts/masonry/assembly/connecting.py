@@ -142,7 +142,7 @@ def _connect(pairs, physics, rule):
             # what joints leave when they move into columns is free for the next ones
             if len(made) == due:
                 gather()
-                due += 256 + due // 16
+                due += 256 + due // 12
             if rule:
                 bodies = O.bodies[interaction.id1], O.bodies[interaction.id2]
                 joint = rule(*bodies, interaction.geom)

@@ -63,7 +63,8 @@ def nearest(name, names):
 
 def isNumber(value):
     """Whether a value is a real number. True and False are not."""
-    return isinstance(value, Real) and not isinstance(value, bool)
+    kind = type(value)
+    return kind is float or kind is not bool and isinstance(value, Real)
 
 
 def plain(value):
@@ -242,6 +243,8 @@ def isListed(value):
 
 def items(value):
     """The values of a list, a tuple, an array or the like, or None if it is not one."""
+    if type(value) in (list, tuple):
+        return [*value]
     if not isListed(value):
         return None
     try:
@@ -261,10 +264,10 @@ def vector(unit="", most=1e100):
     def take(value, first=None):
         found = items(value)
         fine = found is not None and len(found) == 3 and all(map(isNumber, found))
-        fine = fine and all(math.isfinite(plain(v)) and abs(v) <= most for v in found)
-        fine = fine and math.isfinite(math.hypot(*map(float, found)))
+        numbers = tuple(map(plain, found)) if fine else ()
+        fine = fine and all(abs(v) <= most for v in numbers)  # NaN is not
         must(f"three finite numbers{bound}", fine, value)
-        return value if all(type(v) in (int, float) for v in found) else tuple(map(plain, found))  # fmt: skip
+        return numbers
 
     return take
 

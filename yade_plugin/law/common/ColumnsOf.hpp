@@ -14,6 +14,7 @@
 // Joints without strength (property `elastic`) are advanced here: the law is not asked.
 #pragma once
 #include "LawColumns.hpp"
+#include <typeinfo>
 
 namespace masonry {
 
@@ -80,9 +81,9 @@ public:
         set(point, joint, s);
     }
     void take(int point, int joint, const LawColumns& from, int otherPoint, int other) override {
-        const auto* same = dynamic_cast<const ColumnsOf*>(&from);
-        if (!same) return LawColumns::take(point, joint, from, otherPoint, other);
-        set(point, joint, same->get(otherPoint, other)); // the same law: no names need to be compared
+        if (typeid(from) != typeid(*this)) return LawColumns::take(point, joint, from, otherPoint, other);
+        const auto& same = static_cast<const ColumnsOf&>(from);
+        set(point, joint, same.get(otherPoint, other)); // the same law: no names need to be compared
         setDissipated(point, joint, from.dissipated(otherPoint, other));
     }
     void show(int point, int joint, const ShowField& shown) const override {

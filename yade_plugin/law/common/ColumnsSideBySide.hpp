@@ -124,7 +124,7 @@ private:
 template <class LawType>
 void ColumnsSideBySide<LawType>::advance(int point, int from, int count, const double* opening, const double* slideA,
                                          const double* slideB, double* normalStress) {
-    constexpr double none[most] = {}; // no slides
+    static constexpr double none[most] = {}; // no slides
     const std::size_t first = at(point, from);
     const Jumps jumps{opening, slideA, slideB ? slideB : none, slideB == nullptr};
     Regime* regime = &regime_[first];
@@ -152,18 +152,18 @@ void ColumnsSideBySide<LawType>::advance(int point, int from, int count, const d
                           count, normalStress);
     if (left == 0) return;
 
-    int waiting[most]; // the subcontacts that need the whole law
-    int many = 0;
-    for (int n = 0; n < count; ++n)
-        if (pending[n]) waiting[many++] = n;
-    const int begin = waiting[0] / lanes * lanes, end = std::min(waiting[many - 1] / lanes * lanes + lanes, count);
-    if (LawType::fasterOneByOne(many, (end - begin + lanes - 1) / lanes)) {
-        for (int n = 0; n < many; ++n) {
-            const int i = waiting[n];
-            normalStress[i] = advanceOne(point, from + i, {opening[i], {slideA[i], jumps.slideB[i]}});
-        }
+    int begin = 0, end = count; // of the subcontacts that need the whole law
+    while (!pending[begin])
+        ++begin;
+    while (!pending[end - 1])
+        --end;
+    if (LawType::fasterOneByOne(int(left), (end - 1) / lanes - begin / lanes + 1)) {
+        for (int i = begin; i < end; ++i)
+            if (pending[i]) normalStress[i] = advanceOne(point, from + i, {opening[i], {slideA[i], jumps.slideB[i]}});
         return;
     }
+    begin = begin / lanes * lanes;
+    end = std::min((end - 1) / lanes * lanes + lanes, count);
     for (int n = begin; n < end; n += lanes)
         yieldFrom(point, from + n);
     const Jumps theirs{jumps.opening + begin, jumps.slideA + begin, jumps.slideB + begin, jumps.plane};

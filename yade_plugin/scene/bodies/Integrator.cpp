@@ -127,17 +127,19 @@ Integrator::Sums Integrator::advancePiece(const yade::Scene& scene, BodyColumns&
     findWeights(bodies, first, count, all);
     if (axes != 0) {
         const RigidMotion::Around around{scene.dt, {gravity[0], gravity[1], gravity[2]}, combines_};
-        double unused[RigidMotion::most] = {}; // local damping does not use earlier forces
+        double unused[RigidMotion::most]; // local damping does not use earlier forces
+        if (!combines_) std::fill_n(unused, count, 0.0);
         double* last[6];
         for (int d = 0; d < 6; ++d) {
             last[d] = combines_ ? &last_[d][first] : unused;
             if (!(axes >> d & 1)) continue;
             const double* on = (d < 3 ? forces : torques)[first].data() + d % 3;
             for (int i = 0; i < count; ++i) {
-                const bool aside = d >= 3 && motion.inSpace[i] != 0;
-                motion.force[d][i] = aside ? 0 : on[3 * i];
-                motion.free[d][i] = aside || blocked[i] >> d & 1 ? 0.0 : 1.0;
+                motion.force[d][i] = on[3 * i];
+                motion.free[d][i] = blocked[i] >> d & 1 ? 0.0 : 1.0;
             }
+            for (int i = 0; turning && d >= 3 && i < count; ++i)
+                if (motion.inSpace[i] != 0) motion.force[d][i] = motion.free[d][i] = 0;
         }
         motion.advance(bodies, last, first, count, around, axes);
         for (int i = 0; i < count; ++i) {

@@ -478,7 +478,8 @@ bool JointPlan::advanceIntact(Run& run, double& taken) {
 bool JointPlan::endsIntact(Run& run, const IntactFaces& faces) const {
     auto& shapes = run.shapes();
     auto& frames = run.frames;
-    Mask yielding[most] = {};
+    Mask yielding[most];
+    std::fill_n(yielding, run.n, 0);
     const auto look = [&](int p) {
         plane_ ? jumpIntactInPlane(run.n, faces, run.offset(1, p), frames)
                : jumpIntact(run.n, faces, run.offset(1, p), run.offset(2, p), frames);
@@ -520,7 +521,7 @@ JointPlan::Taken JointPlan::advancePoints(Run& run) {
     const double times = run.stiffnessDamping / run.dt;
     const JointDamping damping{times * k.normal, times * k.shear, properties.elastic, states.isBonded(),
                                properties.friction};
-    constexpr double none[most] = {};
+    static constexpr double none[most] = {};
     double sumA[most], sumB[most]; // shear stresses of the law and of what is added to them
     Taken taken;
     int still[most], stills = 0; // joints that contacts have taken the place of: they keep their state

@@ -244,7 +244,8 @@ bool sameMoments(const Points& one, const Points& other) {
     return moments(one).isApprox(moments(other), 1e-6);
 }
 
-Refinement::Limit::Limit(const JointKind& kind, int wanted) : columns_(kind.states->columns.unsynchronised().get()) {
+Refinement::Limit::Limit(const JointKind& kind, int wanted)
+    : columns_(kind.states->columns.unsynchronised().get()), law_(&columns_->law()), convex_(columns_->isConvex()) {
     const auto& columns = *columns_;
     const auto& p = columns.law().properties();
     const auto& first = kind.shapes->joints[0];
@@ -271,7 +272,7 @@ Refinement::Limit::Limit(const JointKind& kind, int wanted) : columns_(kind.stat
 
 bool Refinement::Limit::isReached(double part, double sigma, double a, double b) const {
     const double squared = a * a + b * b, limit = part * elasticLimit_;
-    if (limit > 0 && columns_->law().squaredCapStress(sigma, squared) > limit * limit) return true;
+    if (limit > 0 && law_->squaredCapStress(sigma, squared) > limit * limit) return true;
     return cracks_ && (sigma > tension_ || squared > slip_ * slip_) && yields(sigma / part, a / part, b / part);
 }
 
@@ -285,12 +286,16 @@ bool Refinement::isDue(const JointKind& kind, const Limit& limit, double part, i
     const auto& shapes = *kind.shapes;
     const auto& columns = *kind.states->columns.unsynchronised();
     if (shapes.converted[j]) return false;
-    for (int p = 0; p < shapes.points && !shapes.pointwise[j]; ++p) {
+    if (!shapes.pointwise[j]) { // its stresses are linear: the outermost points reach a convex limit first
         const auto& k = columns.stiffness();
-        const Vector3r jump = shapes.intactJumpAt(p, j);
-        if (limit.isReached(part, k.normal * jump[0], k.shear * jump[1], k.shear * jump[2])) return true;
+        const bool outermost = limit.isConvex() && !shapes.rim.empty();
+        for (int n = 0; n < (outermost ? int(shapes.rim.size()) : shapes.points); ++n) {
+            const Vector3r jump = shapes.intactJumpAt(outermost ? shapes.rim[n] : n, j);
+            if (limit.isReached(part, k.normal * jump[0], k.shear * jump[1], k.shear * jump[2])) return true;
+        }
+        return false;
     }
-    for (int p = 0; p < shapes.points && shapes.pointwise[j]; ++p) {
+    for (int p = 0; p < shapes.points; ++p) {
         const double a = *columns.shearStressA(p, j), b = *columns.shearStressB(p, j);
         const double* damage = limit.cracks() ? columns.column(Role::BondDamage, p, j) : nullptr;
         if ((damage && *damage > 0) || *columns.regime(p, j) == Regime::Crushing) return true;
