@@ -5,7 +5,8 @@
     /usr/bin/python3 validation/benchmark/table.py SITE OLDER --rows fast wide    # two folders with a `masonry` package each, some rows
 
 The builds take turns, and of each the best of ``--repeat`` runs counts. Scenes are those of this repository. A row whose run fails, for
-example because an older build does not know one of its options, has a dash. ``plain.py`` compares with a plain program.
+example because an older build does not know one of its options, has a dash. ``plain`` and ``plain plane`` are the steps of the plain
+program beside those of ``rigid`` and ``deformable``, see ``plain.py``.
 """
 
 import argparse
@@ -43,6 +44,11 @@ def ofWide(folder, seconds, said):
     return float(re.search(r"([\d.]+) µs a step", said)[1]), "µs a step"
 
 
+def ofPlain(folder, seconds, said):
+    return float(re.search(r"plain program +([\d.]+) µs", said)[1]), "µs a step"
+
+
+PLAIN = [*PYTHON, "validation/benchmark/plain.py", "--rounds", "1"]
 IMPORT = "import time, masonry, yade; t = time.time(); from masonry import Scene; print(time.time() - t)"
 #: Rows: the command, and a function of the folder of results, the seconds of the run, and what it said that gives number and unit.
 ROWS = {
@@ -50,6 +56,8 @@ ROWS = {
     "lean": ([*YADE, COMP4, "--preset", "fast", "--lean"], ofRun),
     "rigid": ([*ONE, COMP4, "--until", "3", "--rate", "20", "--lean"], ofSteps),
     "deformable": ([*ONE, COMP4, "--preset", "accurate", "--until", "1", "--lean"], ofSteps),
+    "plain": (PLAIN, ofPlain),
+    "plain plane": ([*PLAIN, "--plane", "--until", "1"], ofPlain),
     "accurate": ([*YADE, COMP4, "--preset", "accurate"], ofRun),
     "facade": ([*ONE, "scripts/facade.py", "--lean"], ofSteps),
     "house": ([*ONE, "scripts/house.py", "--lean"], ofSteps),
