@@ -17,7 +17,7 @@ from .curve_figure import plan, unitOf
 from .files import readCurve, readRun
 from .frames import frameAt, frameTimes, readFrame
 
-from .painting import GHOST, MORTAR, SHADES, TIES, Painting, fromBackToFront  # fmt: skip
+from .painting import MORTAR, NONE, SHADES, TIES, Painting, fromBackToFront, rgb
 from .views import FROM_ABOVE, IN_SPACE, REACH, courseOf, magnificationOf, scaleText
 from .views import spaceViewOf, viewOf
 
@@ -47,11 +47,14 @@ class Structure:
     ties: list[dict[str, Any]] = field(default_factory=list)  #: entries of run.json
 
     def __post_init__(self):
-        cells = {}
-        for body, cell in zip(self.blocks["body"], self.blocks["cells"]):
-            cells.setdefault(int(body), []).append(cell)
         #: numbers of the points of every block, by the id of its body
-        self.corners = {body: np.unique(np.concatenate(c)) for body, c in cells.items()}
+        self.corners = {}
+        cells, count = self.blocks["cells"], len(self.blocks["points"])
+        both = np.repeat(self.blocks["body"].astype(int), [*map(len, cells)]) * count
+        both = np.unique(both + np.concatenate(cells))
+        for nodes in np.split(both, np.flatnonzero(np.diff(both // count)) + 1):
+            self.corners[int(nodes[0] // count)] = nodes % count
+        self._outer = {}  # by the shape of blocks
         self.moved = self.blocks["displacement"] - self.still
         if self.ground in self.corners:
             self._lay()
@@ -79,27 +82,35 @@ class Structure:
         own = self.corners[body]
         if len(own) <= 8:
             return own
-        from scipy.spatial import ConvexHull
+        points = self.blocks["points"][own]
+        shape = np.rint((points - points[0]) / (1e-6 * np.ptp(points))).astype(int).tobytes()  # fmt: skip
+        if shape not in self._outer:  # those of blocks of one shape are the same
+            from scipy.spatial import ConvexHull
 
-        return own[np.sort(ConvexHull(self.blocks["points"][own]).vertices)]
+            self._outer[shape] = np.sort(ConvexHull(points).vertices)
+        return own[self._outer[shape]]
 
     @functools.cached_property
     def cracks(self):
-        """What is cracked or crushed on each block, or is a seam, by the id of its body, with each point of its joints: the kind of
-        crack, "seam" or None; the crushing, or None [m]; the corners as built [m]; and their displacements with this block [m].
+        """Joints that are cracked or crushed, or are seams, in lists with as many corners and on one side: arrays of the bodies on this
+        side; the joints' numbers; their kinds, as in :mod:`masonry.read.painting`; how far they are crushed, or 0 [m]; the corners as
+        built [m]; and their displacements with these bodies [m].
         """
-        j, found = self.joints, {}
+        j, found = self.joints, []
         if not j:
             return found
         _, opened, cracked = widths(j)
         spoilt = crushed(j)
-        seam = np.isin(j["kind"], self.seams) & ~cracked if self.seams else spoilt & False  # fmt: skip
-        for i in np.flatnonzero(cracked | spoilt | seam):
-            kind = ("slid", "open")[int(opened[i])] if cracked[i] else "seam" if seam[i] else None  # fmt: skip
-            cell, closure = j["cells"][i], j["crushing"][i] if spoilt[i] else None
-            for own, name in zip(j["bodies"][i], ("displacement", "second_displacement")):  # fmt: skip
-                crack = kind, closure, j["points"][cell], j[name][cell] - self.still
-                found.setdefault(int(own), []).append(crack)
+        seam = np.isin(j["kind"], self.seams) if self.seams else spoilt & False
+        kinds = np.select([cracked & opened, cracked, seam], range(NONE), NONE)
+        closures = np.where(spoilt, j["crushing"], 0)
+        chosen = np.flatnonzero((kinds < NONE) | spoilt)
+        sizes = np.array([len(j["cells"][n]) for n in chosen])
+        for size in np.unique(sizes):
+            here = chosen[sizes == size]
+            cells = np.array([j["cells"][n] for n in here])
+            for own, name in zip(j["bodies"][here].T, ("displacement", "second_displacement")):  # fmt: skip
+                found.append((own, here, kinds[here], closures[here], j["points"][cells], j[name][cells] - self.still))  # fmt: skip
         return found
 
 
@@ -155,18 +166,24 @@ class Elevation:
         painting = Painting(self.view.towards, thin, bold)
         now = copy.copy(built)
         now.groups = [Alike(g.index, g.corners + magnification * s.moved[np.array([nodes[n] for n in g.index])], g.faces) for g in built.groups]  # fmt: skip
+        first = -built.count
         for g in built.groups if magnification else ():
-            for corners, normals in zip(g.corners, g.normals):
-                painting.block(corners, g.faces, normals, GHOST)
-        for n in fromBackToFront(now, sight):
-            body, row = self.bodies[n], now.rowOf[n]
-            g, before = (solids.groups[solids.groupOf[n]] for solids in (now, built))
-            colour = SHADES[s.shades.get(body, "brick")]
-            painting.block(g.corners[row], g.faces, g.normals[row], colour)
-            planes = before.normals[row], before.offsets[row]
-            near = 1e-4 * built.diagonal[n]
-            cracks = s.cracks.get(body, ())
-            painting.cracks(cracks, planes, g.normals[row], near, magnification, colour)
+            painting.blocks(first + np.arange(len(g.index)), g)
+            first += len(g.index)
+        colours = np.array([rgb(SHADES[s.shades.get(body, "brick")]) for body in self.bodies])  # fmt: skip
+        # a place for each block, behind those of its joints
+        places = np.empty(built.count, int)
+        places[fromBackToFront(now, sight)] = np.arange(built.count)
+        places *= 1 + (len(s.joints["cells"]) if s.joints else 0)
+        for g in now.groups:
+            painting.blocks(places[g.index], g, colours[g.index])
+        planes, normals = built.padded()[1:], now.padded()[1]
+        number = {body: n for n, body in enumerate(self.bodies)}
+        for own, joint, *crack, moved in s.cracks:
+            n = np.array([number.get(body, -1) for body in own.tolist()])
+            here, n = n >= 0, n[n >= 0]
+            crack = [values[here] for values in (*crack, crack[-1] + magnification * moved)]  # fmt: skip
+            painting.cracks(places[n] + 1 + joint[here], crack, [p[n] for p in planes], normals[n], 1e-4 * built.diagonal[n], colours[n])  # fmt: skip
         painting.finish(axes, self.flat, s.joints is not None)
         for shade in sorted({s.shades[b] for b in self.bodies if b in s.shades}):
             axes.add_collection(PolyCollection([], facecolor=SHADES[shade], edgecolor=MORTAR, label=shade))  # fmt: skip

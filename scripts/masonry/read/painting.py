@@ -26,18 +26,22 @@ TIES = {"elastic": ("#333333", "-"), "yielded": ("#ff7f0e", "-"), "broken": ("#9
 
 
 def rgb(colour):
-    """Red, green and blue of a colour "#rrggbb", from 0 to 255."""
-    return np.array(list(bytes.fromhex(colour[1:])))
+    """Red, green and blue of a colour "#rrggbb", from 0 to 1."""
+    return np.array(list(bytes.fromhex(colour[1:]))) / 255
 
 
-def mixed(first, share, second):
-    """A colour that has this share of a first one, and of a second one the rest."""
-    parts = np.rint(share * rgb(first) + (1 - share) * rgb(second)).astype(int)
-    return "#" + bytes(parts.tolist()).hex()
+def rounded(colours):
+    """Colours as a screen shows them."""
+    return np.rint(255 * colours) / 255
 
 
-#: Of the faces of cracked joints.
-FACES = {kind: mixed(colour, 0.45, SHADES["brick"]) for kind, colour in CRACKS.items()}
+#: Of the faces of cracked joints, in the order of CRACKS.
+FACES = rounded(np.array([0.45 * rgb(c) + 0.55 * rgb(SHADES["brick"]) for c in CRACKS.values()]))  # fmt: skip
+#: Number of the kind of a joint that is a seam, and of one that is only crushed; smaller ones are those of CRACKS.
+SEAM, NONE = 2, 3
+_CHUNK = (
+    10_000  # pairs of blocks that are compared at a time, so that memory stays small
+)
 
 
 def fromBackToFront(solids, sight):
@@ -49,22 +53,31 @@ def fromBackToFront(solids, sight):
     :param solids: :class:`masonry.bricks.geometry.Solids`
     :param sight: unit vectors of the picture: right, up and towards the viewer, the rows of an array
     """
-    low, high = np.zeros((2, solids.count, 3))
-    for group in solids.groups:
-        seen = group.corners @ sight.T
-        low[group.index], high[group.index] = seen.min(axis=1), seen.max(axis=1)
+    corners, normals, offsets = solids.padded()
+    seen = corners @ sight.T
+    low, high = seen.min(axis=1), seen.max(axis=1)
     slack = 1e-3 * np.median(high - low)
-    of = {n: one for group in solids.groups for n, *one in zip(group.index.tolist(), group.corners, group.normals, group.offsets)}  # fmt: skip
-    after = [[] for _ in range(solids.count)]
+    pairs, after = [], [[] for _ in range(solids.count)]
     for a in range(solids.count):
         over = (low[a, :2] < high[a + 1 :, :2] - slack) & (low[a + 1 :, :2] < high[a, :2] - slack)  # fmt: skip
-        for b in (a + 1 + np.flatnonzero(over.all(axis=1))).tolist():
-            nearer = _nearer(of[a], of[b], sight[2], slack)
-            if nearer:
-                after[a if nearer > 0 else b].append(b if nearer > 0 else a)
+        others = a + 1 + np.flatnonzero(over.all(axis=1))
+        pairs.append([np.full_like(others, a), others])
+    pairs = np.concatenate(pairs, axis=1)
+    for pair in np.array_split(pairs, pairs.shape[1] // _CHUNK + 1, axis=1):
+        # how far one is beyond the faces of the other, and how these face the viewer
+        gaps = [np.einsum("nfk,nck->nfc", normals[a], corners[b]).min(axis=2) - offsets[a] for a, b in (pair, pair[::-1])]  # fmt: skip
+        gaps = np.concatenate(gaps, axis=1)
+        facing = np.concatenate([normals[pair[0]], -normals[pair[1]]], axis=1) @ sight[2]  # fmt: skip
+        sides = facing > LEVEL, facing < -LEVEL, np.abs(facing) <= LEVEL
+        front, back, beside = (np.where(side, gaps, -np.inf).max(axis=1) for side in sides)  # fmt: skip
+        # no planes part them on both sides, or along the line of sight
+        hides = (beside <= -slack) & (np.minimum(front, back) <= -slack)
+        pair[:, back >= front] = pair[::-1, back >= front]
+        for behind, before in pair[:, hides].T.tolist():
+            after[behind].append(before)
     hidden = [n for fronts in after for n in fronts]
     pending = np.bincount(hidden, minlength=solids.count)
-    depth, left, order = (low + high)[:, 2], set(range(solids.count)), []
+    depth, left, order = (low + high)[:, 2].tolist(), set(range(solids.count)), []
     ready = [(depth[n], n) for n in np.flatnonzero(pending == 0).tolist()]
     heapq.heapify(ready)
     while left:
@@ -79,24 +92,6 @@ def fromBackToFront(solids, sight):
     return order
 
 
-def _nearer(first, second, towards, slack):
-    """1 if the second of two blocks can hide the first, -1 if the first can hide the second, 0 if none hides the other.
-
-    :param first: corners, normals and offsets of its faces
-    """
-    gaps, facing = [], []
-    for (_, normals, offsets), (corners, *_), sign in ((first, second, 1), (second, first, -1)):  # fmt: skip
-        gaps.append((corners @ normals.T).min(axis=0) - offsets)
-        facing.append(sign * (normals @ towards))
-    gaps, facing = np.concatenate(gaps), np.concatenate(facing)
-    sides = facing > LEVEL, facing < -LEVEL, np.abs(facing) <= LEVEL
-    front, back, beside = (gaps[side].max(initial=-np.inf) for side in sides)
-    # planes that part them on both sides, or along the line of sight
-    if beside > -slack or min(front, back) > -slack:
-        return 0
-    return 1 if front > back else -1
-
-
 class Painting:
     """Polygons and lines, which have two corners, from the back to the front, and where joints are crushed.
 
@@ -105,51 +100,70 @@ class Painting:
 
     def __init__(self, towards, thin, bold):
         self.towards, self.thin, self.bold = towards, thin, bold
-        self.polygons, self.looks, self.spots, self.kinds = [], [], [], set()
+        self.places, self.points, self.looks = [], [], []
+        self.spots, self.kinds = [], set()
 
-    def add(self, points, fill, edge, wide):
-        """A polygon or a line of points in space [m]."""
-        self.polygons.append(points)
-        self.looks.append((fill, edge, wide))
+    def add(self, places, points, fill, edge, wide):
+        """Polygons, or lines, with as many corners.
 
-    def block(self, corners, faces, normals, colour):
-        """The faces of a block that are seen, in a colour on which light falls from the viewer and from above."""
-        for face, normal in zip(faces, normals):
-            if normal @ self.towards > LEVEL:
-                edge = GHOST if colour == GHOST else MORTAR
-                self.add(corners[list(face)], self.lit(colour, normal), edge, self.thin)
-
-    def lit(self, colour, normal):
-        light = min(1, 0.55 + 0.45 * normal @ self.towards + 0.3 * max(normal[2], 0))
-        return mixed(colour, light, "#000000") if colour != GHOST else colour
-
-    def cracks(self, found, built, now, near, magnification, colour):
-        """Joints of a block that are open, slid or crushed: their faces that are seen, and their edges on its other faces, from
-        which the edges of seams are taken away.
-
-        :param found: as :meth:`masonry.read.elevation.Structure.cracks` gives them
-        :param built: normals and offsets of the faces of the block as it was built; ``now``: normals as it is drawn
-        :param colour: of the block; ``near``: how far a corner is from a face at most that it lies on [m]
+        :param places: numbers, from the back to the front; of equal ones, what is added first is farther back
+        :param points: their corners in space (n, corners, 3) [m]
+        :param fill: their colours (n, 3), one for all, or None, as ``edge``; ``wide``: widths of edges
         """
-        seen = now @ self.towards > LEVEL
-        normals, offsets = built[0][seen], built[1][seen]
-        for kind, closure, corners, moved in found:
-            drawn = corners + magnification * moved
-            on = np.abs(corners @ normals.T - offsets) < near
-            whole = on.all(axis=0)
-            for normal in now[seen][whole] if kind in CRACKS else ():
-                self.add(drawn, self.lit(FACES[kind], normal), "none", 0)
-                self.kinds.add(kind)
-            both = (on & np.roll(on, 1, axis=0))[:, ~whole].any(axis=1)
-            for k in np.flatnonzero(both):
-                ends = drawn[[k - 1, k]]
-                if kind:
-                    side = now[seen][(on[[k - 1, k]].all(axis=0) & ~whole).argmax()]
-                    edge = CRACKS.get(kind) or self.lit(colour, side)
-                    self.add(ends, "none", edge, self.bold if kind in CRACKS else 2 * self.thin)  # fmt: skip
-                if closure is not None:
-                    size = 12 + 8e3 * min(closure, MOST)
-                    self.spots.append((ends.mean(axis=0), size))
+        looks = np.zeros((len(points), 9))
+        looks[:, 8] = wide
+        for at, colour in ((0, fill), (4, edge)):
+            if colour is not None:
+                looks[:, at : at + 3], looks[:, at + 3] = colour, 1
+        self.places.append(places), self.points.append(points), self.looks.append(looks)
+
+    def blocks(self, places, alike, colours=None):
+        """The faces of blocks that are seen, in colours on which light falls from the viewer and from above.
+
+        :param places: of each, as in :meth:`add`; ``alike``: :class:`masonry.bricks.geometry.Alike`
+        :param colours: of each (n, 3); None: they are where blocks stood
+        """
+        for n, face in enumerate(alike.faces):
+            normals = alike.normals[:, n]
+            seen = normals @ self.towards > LEVEL
+            fill = edge = rgb(GHOST)
+            if colours is not None:
+                fill, edge = self.lit(colours[seen], normals[seen]), rgb(MORTAR)
+            self.add(places[seen], alike.corners[seen][:, face], fill, edge, self.thin)
+
+    def lit(self, colours, normals):
+        light = 0.55 + 0.45 * normals @ self.towards + 0.3 * np.maximum(normals[:, 2], 0)  # fmt: skip
+        return rounded(np.minimum(1, light)[:, None] * colours)
+
+    def cracks(self, places, crack, planes, normals, near, colours):
+        """Joints that are open, slid or crushed: their faces that are seen, and their edges on other faces of their blocks, from which
+        the edges of seams are taken away. Arrays have a row for each.
+
+        :param places: as in :meth:`add`
+        :param crack: kinds, closures and corners as :meth:`masonry.read.elevation.Structure.cracks` gives them, and corners as drawn
+        :param planes: normals and offsets of the faces of the block as it was built; ``normals``: as it is drawn
+        :param colours: of the block; ``near``: how far a corner is from a face at most that it lies on [m]
+        """
+        kinds, closures, corners, drawn = crack
+        heights = np.einsum("nck,nfk->ncf", corners, planes[0]) - planes[1][:, None]
+        seen = normals @ self.towards > LEVEL
+        on = (np.abs(heights) < near[:, None, None]) & seen[:, None]
+        whole = on.all(axis=1)
+        n, f = np.nonzero(whole & (kinds < SEAM)[:, None])
+        self.add(places[n], drawn[n], self.lit(FACES[kinds[n]], normals[n, f]), None, 0)
+        self.kinds.update(kinds[n].tolist())
+        both = on & np.roll(on, 1, axis=1) & ~whole[:, None]
+        n, c = np.nonzero(both.any(axis=2))
+        places, kinds, closures = places[n], kinds[n], closures[n]
+        ends = np.stack([drawn[n, c - 1], drawn[n, c]], axis=1)
+        edge = self.lit(colours[n], normals[n, both[n, c].argmax(axis=1)])
+        for kind, colour in enumerate(CRACKS.values()):
+            edge[kinds == kind] = rgb(colour)
+        line, spot = kinds < NONE, closures > 0
+        wide = np.where(kinds < SEAM, self.bold, 2 * self.thin)
+        self.add(places[line], ends[line], None, edge[line], wide[line])
+        if spot.any():
+            self.spots.append((places[spot], ends[spot].mean(axis=1), 12 + 8e3 * np.minimum(closures[spot], MOST)))  # fmt: skip
 
     def finish(self, axes, flat, legend):
         """Put it into axes, with names for the legend.
@@ -159,13 +173,17 @@ class Painting:
         """
         from matplotlib.collections import LineCollection, PolyCollection
 
-        fills, edges, wides = zip(*self.looks)
-        many = len(self.polygons) > 3000  # an SVG file has a picture of so many
-        axes.add_collection(PolyCollection(list(map(flat, self.polygons)), facecolors=fills, edgecolors=edges, linewidths=wides, rasterized=many))  # fmt: skip
-        for kind, colour in CRACKS.items() if legend else ():
+        order = np.argsort(np.concatenate(self.places), kind="stable")
+        polygons = [polygon for points in self.points for polygon in flat(points)]
+        fills, edges, wides = np.split(np.concatenate(self.looks)[order], (4, 8), axis=1)  # fmt: skip
+        many = len(polygons) > 3000  # an SVG file has a picture of so many
+        axes.add_collection(PolyCollection([polygons[n] for n in order], facecolors=fills, edgecolors=edges, linewidths=wides.ravel(), rasterized=many))  # fmt: skip
+        for n, (kind, colour) in enumerate(CRACKS.items() if legend else ()):
             axes.add_collection(LineCollection([], color=colour, lw=self.bold, label=kind))  # fmt: skip
-            if kind in self.kinds:
-                axes.add_collection(PolyCollection([], facecolor=FACES[kind], lw=0, label=kind + ", its face"))  # fmt: skip
+            if n in self.kinds:
+                axes.add_collection(PolyCollection([], facecolor=FACES[n], lw=0, label=kind + ", its face"))  # fmt: skip
         if self.spots:
-            points, wide = map(np.array, zip(*self.spots))
+            places, points, wide = map(np.concatenate, zip(*self.spots))
+            order = np.argsort(places, kind="stable")
+            points, wide = points[order], wide[order]
             axes.scatter(*flat(points).T, s=wide * min(1, self.bold / 1.8) ** 2, color=CRUSHED, marker="X", lw=0, label="crushed", zorder=5)  # fmt: skip
