@@ -47,13 +47,13 @@ class Structure:
     ties: list[dict[str, Any]] = field(default_factory=list)  #: entries of run.json
 
     def __post_init__(self):
-        #: numbers of the points of every block, by the id of its body
-        self.corners = {}
         cells, count = self.blocks["cells"], len(self.blocks["points"])
         both = np.repeat(self.blocks["body"].astype(int), [*map(len, cells)]) * count
         both = np.unique(both + np.concatenate(cells))
-        for nodes in np.split(both, np.flatnonzero(np.diff(both // count)) + 1):
-            self.corners[int(nodes[0] // count)] = nodes % count
+        nodes = np.split(both % count, np.flatnonzero(np.diff(both // count)) + 1)
+        found = dict(zip(np.unique(self.blocks["body"]).tolist(), nodes))
+        #: numbers of the points of every block, by the id of its body
+        self.corners = {body: found[body] for body in self.blocks["body"].tolist()}
         self._outer = {}  # by the shape of blocks
         self.moved = self.blocks["displacement"] - self.still
         if self.ground in self.corners:
