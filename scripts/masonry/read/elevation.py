@@ -25,6 +25,9 @@ from .views import spaceViewOf, viewOf
 #: façade's; what belongs to no part, as a platen, if it touches this depth.
 INSIDE = 0.25
 
+#: Arrays of frames of blocks and of joints that are drawn.
+NEEDED = ["area", "bodies", "body", "cells", "crushing", "damage_shear", "damage_tension", "displacement", "kind", "normal", "opening", "points", "second_displacement", "slide"]  # fmt: skip
+
 LONGEST = 80  # of the scale on paper [1/72 inch]
 
 
@@ -160,8 +163,8 @@ class Elevation:
 
         s, sight = self.structure, np.array([*self.to.T, self.view.towards])
         nodes = [s.outer(body) for body in self.bodies]
-        built = Solids([s.blocks["points"][own] for own in nodes])
-        course = scale * courseOf(s.blocks["points"][own] for own in nodes)
+        corners = [s.blocks["points"][own] for own in nodes]
+        built, course = Solids(corners), scale * courseOf(corners)
         thin, bold = np.clip(0.06 * course, 0.15, 0.5), np.clip(0.21 * course, 0.7, 1.8)
         painting = Painting(self.view.towards, thin, bold)
         now = copy.copy(built)
@@ -374,7 +377,7 @@ def cracksOfFrame(run, directory, number=None):
     """
     last = len(frameTimes(directory)) - 1
     chosen = frameOfCracks(run, directory) if number is None else number % (last + 1)
-    later, frames = None, lambda n: [readFrame(directory, k, n) for k in ("blocks", "joints")]  # fmt: skip
+    later, frames = None, lambda n: [readFrame(directory, k, n, NEEDED) for k in ("blocks", "joints")]  # fmt: skip
     if number is None and chosen != last:
         end = structureOf(run, *frames(last), directory)
         later = f"{whenOf(run, directory, last)}, true to scale", end

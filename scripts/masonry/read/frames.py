@@ -17,7 +17,7 @@ from typing import Annotated, Any, Sequence
 
 import numpy as np
 
-from ..common.arguments import FilePath, number, oneOf, validated, whole
+from ..common.arguments import FilePath, Names, number, oneOf, validated, whole
 from ..basics import Refused
 
 #: A kind of files.
@@ -64,16 +64,20 @@ def frameAt(directory: FilePath, time: Annotated[float, number("s")]) -> int:
 
 @validated
 def readFrame(
-    directory: FilePath, kind: Kind, number: FrameNumber = -1
+    directory: FilePath,
+    kind: Kind,
+    number: FrameNumber = -1,
+    names: Names | None = None,
 ) -> dict[str, Any]:
     """A frame of blocks, joints or connectors as a dict: ``points`` [m], ``cells`` (arrays of point numbers), and every data
     array.
 
     :param kind: ``blocks``, ``joints`` or ``connectors``, the ties and springs
     :param number: of the frame, from 0; negative numbers count from the end
+    :param names: of those arrays that are needed, ``points`` and ``cells`` among them; None: all
     :raises Refused: if there is no such frame, or if its file is damaged
     """
-    return _read(_pathOf(directory, kind, number), _frame)
+    return _read(_pathOf(directory, kind, number), lambda root: _frame(root, names))
 
 
 @validated
@@ -180,13 +184,15 @@ def _opened(root):
     return root[0].find("Piece"), lambda array: _array(array, text, size)
 
 
-def _frame(root):
+def _frame(root, names):
     """What :func:`readFrame` returns, of the parsed file."""
     piece, read = _opened(root)
-    frame = {"points": read(piece.find("Points/DataArray"))}
+    found = {"points": piece.find("Points/DataArray")}
     for place in ("PointData", "CellData"):
-        for array in piece.findall(f"{place}/DataArray"):
-            frame[array.get("Name")] = read(array)
+        found.update((a.get("Name"), a) for a in piece.findall(f"{place}/DataArray"))
+    frame = {n: read(a) for n, a in found.items() if names is None or n in names}
+    if names is not None and "cells" not in names:
+        return frame
     frame["cells"] = []
     for kind in ("Verts", "Lines", "Polys") if root.get("type") == "PolyData" else ("Cells",):  # fmt: skip
         of = {a.get("Name"): a for a in piece.findall(f"{kind}/DataArray")}

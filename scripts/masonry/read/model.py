@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..basics import Refused
-from .cracks import CRACK, DAMAGED, crushed, widths
+from .cracks import CRACK, DAMAGED, centresOf, crushed, widths
 from .curve_figure import plan, unitOf
 from .files import filesOf, readCurve, readRun
 from .frames import framePaths, frameTimes, readFrame, readSurfaces
@@ -73,7 +73,11 @@ class Model:
             if number is not None and not 0 <= number < count:
                 raise Refused(f"{directory}: there is no frame {number}; its frames are 0 to {count - 1}")  # fmt: skip
             self.numbers = list(range(count)) if number is None else [number]
-            self._build(readFrame(directory, "blocks", self.numbers[0]))
+            self._build(
+                readFrame(
+                    directory, "blocks", self.numbers[0], ["body", "cells", "points"]
+                )
+            )
             if chosen:
                 self.numbers = list(chosen(count, len(self.bodies)))
             self.times = [times[n] for n in self.numbers]
@@ -105,8 +109,9 @@ class Model:
         self.points = first["points"]
         self.bodies, block = np.unique(first["body"], return_inverse=True)
         self.owner = np.empty(len(self.points), int)
-        for cell, corners in enumerate(first["cells"]):
-            self.owner[corners] = block[cell]
+        self.owner[np.concatenate(first["cells"])] = np.repeat(
+            block, [*map(len, first["cells"])]
+        )
         self.rigid = np.bincount(block, rigid) > 0
         self.centres = self._means(self.points)
         parts = (self.run.get("parts") or {}).values()
@@ -119,7 +124,7 @@ class Model:
         _, where, often = np.unique(corners, axis=0, return_inverse=True, return_counts=True)  # fmt: skip
         outside = (often[where.ravel()] == 1) | rigid[cells]
         triangles, cells = triangles[outside], cells[outside]
-        inside = np.array([self.points[c].mean(axis=0) for c in first["cells"]])[cells]
+        inside = centresOf(self.points, first["cells"])[cells]
         a, b, c = (self.points[triangles[:, k]] for k in range(3))
         normals = np.cross(b - a, c - a)
         inward = ((a - inside) * normals).sum(axis=1) < 0
@@ -138,11 +143,18 @@ class Model:
         self.moved = np.zeros((len(self.numbers), len(self.free), 3))
         self.farthest = np.zeros(len(self.numbers))
         self.joints = Joints(self)
+        needed = {
+            "blocks": ["body", "displacement", "rotation"],
+            "joints": self.joints.needed,
+        }
         for k, number in enumerate(self.numbers):
-            blocks, joints = (readFrame(self.directory, kind, number) for kind in ("blocks", "joints"))  # fmt: skip
-            if "rotation" not in blocks or "second_displacement" not in joints:
+            blocks, joints = (
+                readFrame(self.directory, kind, number, names)
+                for kind, names in needed.items()
+            )
+            if "rotation" not in blocks:
                 raise Refused(f"{self.directory}: its frames were written by an older version of the plugin, which did not say how blocks turn; run the scene again")  # fmt: skip
-            if len(blocks["points"]) != len(self.points):
+            if len(blocks["displacement"]) != len(self.points):
                 raise Refused(f"{self.directory}: frame {number} has other blocks than frame {self.numbers[0]}")  # fmt: skip
             for frame in (blocks, joints):
                 for name, values in frame.items():
@@ -157,6 +169,14 @@ class Model:
             self.turn[k, np.searchsorted(self.bodies, blocks["body"])] = blocks["rotation"]  # fmt: skip
             self.joints.add(joints, still)
         self.joints.end()
+
+    def corners(self):
+        """Points of every block but the ground, a list of arrays (n, 3) [m]."""
+        order, ends = np.argsort(self.owner, kind="stable"), np.cumsum(
+            np.bincount(self.owner)
+        )
+        blocks = np.split(self.points[order], ends[:-1])
+        return [own for own, look in zip(blocks, self.looks) if look != GROUND]
 
     def _means(self, values):
         """Means of the rows of points by their blocks."""
@@ -180,15 +200,22 @@ class Model:
 
         :param magnification: of displacements; None: as in :func:`masonry.read.views.magnificationOf`
         """
-        joints = readFrame(self.directory, "joints", self.numbers[-1])
+        needed = [
+            "area",
+            "damage_shear",
+            "damage_tension",
+            "normal",
+            "opening",
+            "slide",
+        ]
+        joints = readFrame(self.directory, "joints", self.numbers[-1], needed)
         points = self.points[self.framed]
         towards = viewOf(points, joints["normal"], joints["area"]).towards
         low, high = points.min(axis=0), points.max(axis=0)
         size = float((high - low).max())
         moved = self.displacements(-1)[self.framed]
         if magnification is None:
-            own = [self.points[self.owner == n] for n in np.flatnonzero(self.looks != GROUND)]  # fmt: skip
-            magnification = magnificationOf(joints, moved, own)
+            magnification = magnificationOf(joints, moved, self.corners())
         seen = np.clip(points + magnification * moved, low - REACH * size, high + REACH * size)  # fmt: skip
         low, high = np.minimum(low, seen.min(axis=0)), np.maximum(high, seen.max(axis=0))  # fmt: skip
         if moved.mean(axis=0) @ towards < -0.1 * size:  # it fell to the other side
@@ -232,6 +259,13 @@ class Model:
         return stages[min(int(np.searchsorted(ends, time - 0.5 * step)), len(stages) - 1)]["stage"]  # fmt: skip
 
 
+SIDES = [
+    "displacement",
+    "second_displacement",
+]  # of the corners of a joint, with either block
+PAIR, POINT = 16, 24  # bytes of two numbers of bodies, and of a point
+
+
 class Joints:
     """What the joints of a run do in the frames of a :class:`Model`: all of their points that crack, slide or crush in one of
     them. P points, with n corners of their parts of the joints. What a joint that gets other points during the run does is
@@ -249,25 +283,42 @@ class Joints:
 
     def __init__(self, model):
         self._model = model
-        self._numbers = {}  # of points of joints, by bodies and corners
-        self._known = []  # of each its bodies and corners
+        self._numbers = {}  # of points of joints, by their bodies and corners as bytes
         self._frames = []  # numbers, values and displacements of every frame
         self._last = None
+        #: names of the arrays of a frame that :meth:`add` needs
+        self.needed = [
+            "bodies",
+            "cells",
+            "crushing",
+            "damage_shear",
+            "damage_tension",
+            "opening",
+            "points",
+            "slide",
+        ]
+        if not model.rigid.all():
+            self.needed += SIDES
 
     def add(self, frame, still):
         """Add the joints of the next frame.
 
         :param still: displacement that is taken off all others [m]
         """
-        if self._last is None or not np.array_equal(self._last[0], frame["points"]):
-            numbers = []
-            for pair, cell in zip(frame["bodies"], frame["cells"]):
-                corners = frame["points"][cell]
-                key = pair.tobytes() + corners.tobytes()
-                numbers.append(self._numbers.setdefault(key, len(self._known)))
-                if numbers[-1] == len(self._known):
-                    self._known.append((pair, corners))
-            self._last = frame["points"], np.array(numbers)
+        points, cells, known = frame["points"], frame["cells"], self._numbers
+        if self._last is None or not np.array_equal(self._last[0], points):
+            pairs, corners = (
+                frame["bodies"].astype(int).tobytes(),
+                points[np.concatenate(cells)].tobytes(),
+            )
+            ends = (POINT * np.cumsum([0, *map(len, cells)])).tolist()
+            keys = [
+                pairs[PAIR * n : PAIR * (n + 1)] + corners[a:b]
+                for n, (a, b) in enumerate(zip(ends, ends[1:]))
+            ]
+            self._last = points, np.array(
+                [known.setdefault(key, len(known)) for key in keys]
+            )
         _, opened, cracked = widths(frame)
         values = np.array([
             frame["opening"], np.linalg.norm(frame["slide"], axis=1), frame["crushing"],
@@ -275,17 +326,15 @@ class Joints:
             np.where(cracked, np.where(opened, OPEN, SLID), 0) + CRUSHED_TOO * crushed(frame),
         ])  # fmt: skip
         shown = (values[0] > CRACK) | (values[1] > CRACK) | (values[2] > CRACK) | (values[3] > DAMAGED)  # fmt: skip
-        moved = cells = None
+        moved = None
         if not self._model.rigid.all():
-            sides = "displacement", "second_displacement"
-            moved = np.array([frame[side] for side in sides]) - still
-            cells = frame["cells"]
+            moved = np.array([frame[side] for side in SIDES]) - still
         self._frames.append((self._last[1], values, shown, moved, cells))
-        self.count = len(frame["cells"])
+        self.count = len(cells)
 
     def end(self):
         """Keep the points that do something in one of the frames."""
-        total = np.zeros(len(self._known), bool)
+        total = np.zeros(len(self._numbers), bool)
         for numbers, _, shown, *_ in self._frames:
             total[numbers[shown]] = True
         kept = np.flatnonzero(total)
@@ -297,10 +346,15 @@ class Joints:
             found[:, k, place[numbers[mine]]] = values[:, mine]
         self.opening, self.slide, self.closure, self.damage, kind = found
         self.kind = kind.astype(int)
-        sizes = [len(self._known[n][1]) for n in kept]
-        self.corners = np.concatenate([np.zeros((0, 3)), *(self._known[n][1] for n in kept)])  # fmt: skip
+        known = [key for key, isKept in zip(self._numbers, total) if isKept]
+        sizes = [(len(key) - PAIR) // POINT for key in known]
+        self.corners = np.frombuffer(b"".join(key[PAIR:] for key in known)).reshape(
+            -1, 3
+        )
         self.owner = np.repeat(np.arange(len(kept)), sizes)
-        bodies = np.array([self._known[n][0] for n in kept], int).reshape(-1, 2)
+        bodies = np.frombuffer(b"".join(key[:PAIR] for key in known), int).reshape(
+            -1, 2
+        )
         self.between = np.searchsorted(self._model.bodies, bodies)
         self.moved = None
         if not self._model.rigid[self.between].all():
@@ -310,7 +364,7 @@ class Joints:
                 for n, cell in zip(place[numbers], cells):
                     if n >= 0:
                         self.moved[:, k, starts[n] : starts[n + 1]] = moved[:, cell]
-        del self._numbers, self._known, self._frames, self._last
+        del self._numbers, self._frames, self._last
 
     def displacements(self, k):
         """Displacements of all corners with the first and with the second block in the k-th frame, an array (2, n, 3) [m]."""

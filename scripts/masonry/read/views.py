@@ -127,7 +127,9 @@ def magnificationOf(joints, moved, blocks):
 
 def courseOf(blocks):
     """The usual height of a block [m]: the median of their shortest sides, of arrays of their corners (n, 3) [m]."""
-    return float(np.median([np.ptp(corners, axis=0).min() for corners in blocks]))
+    starts, points = np.cumsum([0, *map(len, blocks)])[:-1], np.concatenate(blocks)
+    high, low = (end.reduceat(points, starts) for end in (np.maximum, np.minimum))
+    return float(np.median((high - low).min(axis=1)))
 
 
 def scaleText(joints, magnification):

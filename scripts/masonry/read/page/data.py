@@ -15,7 +15,7 @@ from .. import painting
 from ..cracks import CRACK, CRUSHED, DAMAGED
 from ..files import filesOf
 from ..frames import readFrame
-from ..model import CRUSHED_TOO, GROUND, LEAST, LOOKS, OPEN, SLID, Model
+from ..model import CRUSHED_TOO, LEAST, LOOKS, OPEN, SLID, Model
 from ..views import courseOf
 
 
@@ -97,7 +97,6 @@ def dataOfModel(model, number=None, magnification=None, curve=None):
 def _head(model, magnification, curve):
     """What is said about a run, and how it is seen first."""
     sight = model.sight(magnification)
-    ends = [model.points[model.owner == n] for n in np.flatnonzero(model.looks != GROUND)[:500]]  # fmt: skip
     return {
         "title": plain(model.title),
         "frames": [
@@ -109,7 +108,7 @@ def _head(model, magnification, curve):
         "high": sight.high.tolist(),
         "towards": sight.towards.tolist(),
         "flat": sight.flat,
-        "course": courseOf(ends),
+        "course": courseOf(model.corners()[:500]),
         "farthest": float(model.farthest.max()),
         "ramp": nice(float(model.farthest.max()) or 1.0),
         "kinds": {"open": OPEN, "slid": SLID, "crushed": CRUSHED_TOO},

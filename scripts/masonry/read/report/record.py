@@ -111,11 +111,11 @@ class Record:
 
     def _drawing(self, model):
         """What was built as SVG, and a sentence on it."""
-        blocks, joints = (readFrame(self.directory, kind, 0) for kind in ("blocks", "joints"))  # fmt: skip
+        blocks = readFrame(self.directory, "blocks", 0, elevation.NEEDED)
         # it is seen from the front, also where cracks.png looks askew
         run = {**self.run, "views": {}}
         structure = elevation.structureOf(run, blocks, None, self.directory)
-        structure = self._whole(structure, joints)
+        structure = self._whole(structure)
         bricks = [b for b in structure.corners if b not in structure.shades]
         low, high = (f(blocks["points"][structure.points(bricks)], axis=0) for f in (np.min, np.max))  # fmt: skip
         targets = self.run.get("targets") or []
@@ -129,10 +129,11 @@ class Record:
             drawn = drawing.svg(elevation.figureOf(structure, "", 0), "built")
         return drawn, f"{about} (x × y × z)."
 
-    def _whole(self, structure, joints):
+    def _whole(self, structure):
         """A structure whose bricks are whole that the model has in halves: those on both sides of a crack surface."""
         kinds = self.run.get("kinds") or []
         if CRACK_SURFACE in kinds:
+            joints = readFrame(self.directory, "joints", 0, ["bodies", "kind"])
             inside = joints["kind"] == kinds.index(CRACK_SURFACE)
             for a, b in np.unique(np.sort(joints["bodies"][inside], axis=1), axis=0):
                 if a in structure.corners and b in structure.corners:
