@@ -63,12 +63,7 @@ def frameAt(directory: FilePath, time: Annotated[float, number("s")]) -> int:
 
 
 @validated
-def readFrame(
-    directory: FilePath,
-    kind: Kind,
-    number: FrameNumber = -1,
-    names: Names | None = None,
-) -> dict[str, Any]:
+def readFrame(directory: FilePath, kind: Kind, number: FrameNumber = -1, names: Names | None = None) -> dict[str, Any]:  # fmt: skip
     """A frame of blocks, joints or connectors as a dict: ``points`` [m], ``cells`` (arrays of point numbers), and every data
     array.
 

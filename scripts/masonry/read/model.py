@@ -73,11 +73,7 @@ class Model:
             if number is not None and not 0 <= number < count:
                 raise Refused(f"{directory}: there is no frame {number}; its frames are 0 to {count - 1}")  # fmt: skip
             self.numbers = list(range(count)) if number is None else [number]
-            self._build(
-                readFrame(
-                    directory, "blocks", self.numbers[0], ["body", "cells", "points"]
-                )
-            )
+            self._build(readFrame(directory, "blocks", self.numbers[0], ["body", "cells", "points"]))  # fmt: skip
             if chosen:
                 self.numbers = list(chosen(count, len(self.bodies)))
             self.times = [times[n] for n in self.numbers]
@@ -109,9 +105,8 @@ class Model:
         self.points = first["points"]
         self.bodies, block = np.unique(first["body"], return_inverse=True)
         self.owner = np.empty(len(self.points), int)
-        self.owner[np.concatenate(first["cells"])] = np.repeat(
-            block, [*map(len, first["cells"])]
-        )
+        corners = first["cells"]
+        self.owner[np.concatenate(corners)] = np.repeat(block, [*map(len, corners)])
         self.rigid = np.bincount(block, rigid) > 0
         self.centres = self._means(self.points)
         parts = (self.run.get("parts") or {}).values()
@@ -120,11 +115,10 @@ class Model:
         self.looks[self.bodies == self.run.get("ground_body")] = GROUND
         self.framed = self.looks[self.owner] != GROUND
         # the side of a zone that another zone has, too, is inside the unit
-        corners = np.sort(triangles, axis=1)
-        _, where, often = np.unique(corners, axis=0, return_inverse=True, return_counts=True)  # fmt: skip
+        _, where, often = np.unique(np.sort(triangles, axis=1), axis=0, return_inverse=True, return_counts=True)  # fmt: skip
         outside = (often[where.ravel()] == 1) | rigid[cells]
         triangles, cells = triangles[outside], cells[outside]
-        inside = centresOf(self.points, first["cells"])[cells]
+        inside = centresOf(self.points, corners)[cells]
         a, b, c = (self.points[triangles[:, k]] for k in range(3))
         normals = np.cross(b - a, c - a)
         inward = ((a - inside) * normals).sum(axis=1) < 0
@@ -143,15 +137,9 @@ class Model:
         self.moved = np.zeros((len(self.numbers), len(self.free), 3))
         self.farthest = np.zeros(len(self.numbers))
         self.joints = Joints(self)
-        needed = {
-            "blocks": ["body", "displacement", "rotation"],
-            "joints": self.joints.needed,
-        }
+        needed = ("blocks", ["body", "displacement", "rotation"]), ("joints", self.joints.needed)  # fmt: skip
         for k, number in enumerate(self.numbers):
-            blocks, joints = (
-                readFrame(self.directory, kind, number, names)
-                for kind, names in needed.items()
-            )
+            blocks, joints = (readFrame(self.directory, kind, number, names) for kind, names in needed)  # fmt: skip
             if "rotation" not in blocks:
                 raise Refused(f"{self.directory}: its frames were written by an older version of the plugin, which did not say how blocks turn; run the scene again")  # fmt: skip
             if len(blocks["displacement"]) != len(self.points):
@@ -172,10 +160,8 @@ class Model:
 
     def corners(self):
         """Points of every block but the ground, a list of arrays (n, 3) [m]."""
-        order, ends = np.argsort(self.owner, kind="stable"), np.cumsum(
-            np.bincount(self.owner)
-        )
-        blocks = np.split(self.points[order], ends[:-1])
+        order, counts = np.argsort(self.owner, kind="stable"), np.bincount(self.owner)
+        blocks = np.split(self.points[order], np.cumsum(counts)[:-1])
         return [own for own, look in zip(blocks, self.looks) if look != GROUND]
 
     def _means(self, values):
@@ -200,14 +186,7 @@ class Model:
 
         :param magnification: of displacements; None: as in :func:`masonry.read.views.magnificationOf`
         """
-        needed = [
-            "area",
-            "damage_shear",
-            "damage_tension",
-            "normal",
-            "opening",
-            "slide",
-        ]
+        needed = "area damage_shear damage_tension normal opening slide".split()
         joints = readFrame(self.directory, "joints", self.numbers[-1], needed)
         points = self.points[self.framed]
         towards = viewOf(points, joints["normal"], joints["area"]).towards
@@ -259,10 +238,8 @@ class Model:
         return stages[min(int(np.searchsorted(ends, time - 0.5 * step)), len(stages) - 1)]["stage"]  # fmt: skip
 
 
-SIDES = [
-    "displacement",
-    "second_displacement",
-]  # of the corners of a joint, with either block
+#: Displacements of the corners of a joint with its first and with its second block.
+SIDES = ["displacement", "second_displacement"]
 PAIR, POINT = 16, 24  # bytes of two numbers of bodies, and of a point
 
 
@@ -287,18 +264,8 @@ class Joints:
         self._frames = []  # numbers, values and displacements of every frame
         self._last = None
         #: names of the arrays of a frame that :meth:`add` needs
-        self.needed = [
-            "bodies",
-            "cells",
-            "crushing",
-            "damage_shear",
-            "damage_tension",
-            "opening",
-            "points",
-            "slide",
-        ]
-        if not model.rigid.all():
-            self.needed += SIDES
+        self.needed = "bodies cells crushing damage_shear damage_tension opening points slide".split()  # fmt: skip
+        self.needed += [] if model.rigid.all() else SIDES
 
     def add(self, frame, still):
         """Add the joints of the next frame.
@@ -307,18 +274,11 @@ class Joints:
         """
         points, cells, known = frame["points"], frame["cells"], self._numbers
         if self._last is None or not np.array_equal(self._last[0], points):
-            pairs, corners = (
-                frame["bodies"].astype(int).tobytes(),
-                points[np.concatenate(cells)].tobytes(),
-            )
+            corners = points[np.concatenate(cells)].tobytes()
             ends = (POINT * np.cumsum([0, *map(len, cells)])).tolist()
-            keys = [
-                pairs[PAIR * n : PAIR * (n + 1)] + corners[a:b]
-                for n, (a, b) in enumerate(zip(ends, ends[1:]))
-            ]
-            self._last = points, np.array(
-                [known.setdefault(key, len(known)) for key in keys]
-            )
+            keys = [pair.tobytes() + corners[a:b] for pair, a, b in zip(frame["bodies"].astype(int), ends, ends[1:])]  # fmt: skip
+            numbers = [known.setdefault(key, len(known)) for key in keys]
+            self._last = points, np.array(numbers)
         _, opened, cracked = widths(frame)
         values = np.array([
             frame["opening"], np.linalg.norm(frame["slide"], axis=1), frame["crushing"],
@@ -326,10 +286,9 @@ class Joints:
             np.where(cracked, np.where(opened, OPEN, SLID), 0) + CRUSHED_TOO * crushed(frame),
         ])  # fmt: skip
         shown = (values[0] > CRACK) | (values[1] > CRACK) | (values[2] > CRACK) | (values[3] > DAMAGED)  # fmt: skip
-        moved = None
-        if not self._model.rigid.all():
-            moved = np.array([frame[side] for side in SIDES]) - still
-        self._frames.append((self._last[1], values, shown, moved, cells))
+        rigid = self._model.rigid.all()
+        moved = [] if rigid else [np.array([frame[s] for s in SIDES]) - still, cells]
+        self._frames.append((self._last[1], values, shown, *moved))
         self.count = len(cells)
 
     def end(self):
@@ -348,13 +307,10 @@ class Joints:
         self.kind = kind.astype(int)
         known = [key for key, isKept in zip(self._numbers, total) if isKept]
         sizes = [(len(key) - PAIR) // POINT for key in known]
-        self.corners = np.frombuffer(b"".join(key[PAIR:] for key in known)).reshape(
-            -1, 3
-        )
+        corners, bodies = (b"".join(key[part] for key in known) for part in (slice(PAIR, None), slice(PAIR)))  # fmt: skip
+        self.corners = np.frombuffer(corners).reshape(-1, 3)
         self.owner = np.repeat(np.arange(len(kept)), sizes)
-        bodies = np.frombuffer(b"".join(key[:PAIR] for key in known), int).reshape(
-            -1, 2
-        )
+        bodies = np.frombuffer(bodies, int).reshape(-1, 2)
         self.between = np.searchsorted(self._model.bodies, bodies)
         self.moved = None
         if not self._model.rigid[self.between].all():

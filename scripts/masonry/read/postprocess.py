@@ -4,12 +4,13 @@
     python3 -P -m masonry.read.postprocess
 
 A run starts it early: it loads what it needs while the run goes on. Then it reads the folder from the standard input, up to a zero
-byte, when the files of the run are there. It draws curve.png and cracks.png in a copy of the process, and reads the frames for
-the report meanwhile. When the standard input ends, all figures that the run itself writes are there, too, and it writes
+byte, when the files of the run are there. It draws curve.png and cracks.png in a copy of the process, and makes the report
+meanwhile, but for these figures. When the standard input ends, all figures that the run itself writes are there, too, and it writes
 report.html. It ends without a word if it is given no folder.
 """
 
 import contextlib
+import gc
 import io
 import math
 import os
@@ -34,14 +35,14 @@ def _load():
     """Draw a figure that nobody sees: the first one of a process loads most of matplotlib."""
     # what is missing is said when something is drawn
     with contextlib.suppress(ImportError, Missing):
-        import jinja2  # noqa: F401
-
         with style():
             figure = empty(1, 1)
             figure.add_subplot().plot([0, 1], label="line")
             figure.axes[0].legend()
             for kind in ("png", "svg"):
                 figure.savefig(io.BytesIO(), format=kind)
+        import jinja2, scipy.spatial  # noqa: F401, E401
+    gc.freeze()  # what has been loaded stays
 
 
 def _folder():
@@ -76,14 +77,16 @@ def main():
     drawing = Task(lambda: [_draw(folder)])
     written = NO_REPORT
 
+    def ready():
+        drawing.ready(seconds=math.inf)
+        while os.read(STDIN, 1):  # at its end the run has written its own figures
+            pass
+
     def write(directory):
         memory.reserve()
         check(directory)
-        record = report.read(directory)
-        drawing.ready(seconds=math.inf)  # the report shows the figures
-        while os.read(STDIN, 1):  # at its end the run has written its own figures
-            pass
-        report.write(record, os.path.join(directory, report.NAME))
+        path = os.path.join(directory, report.NAME)
+        report.write(report.read(directory), path, ready)
 
     try:
         written = onFolder(write, [folder]) and NO_REPORT

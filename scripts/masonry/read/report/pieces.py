@@ -89,7 +89,7 @@ def missing(text):
 
 
 def figure(picture, caption, alt="", frames=""):
-    """A picture, SVG or the address of an image, with its caption.
+    """A picture, SVG or the name of a figure of the folder, with its caption. If there is no such figure, the page has neither.
 
     :param alt: what it shows, for those who do not see it
     :param frames: places of the frames of the 3-D picture on it, "x,y x,y"

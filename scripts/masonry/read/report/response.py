@@ -40,9 +40,7 @@ def curve(record):
         text += " The ring is the frame that the turning picture shows; a click on the curve shows the nearest one there."
     yield figure(svg, text, about, frames)
     yield from _ideal(record)
-    picture = record.image("capacity.png")
-    if picture:
-        yield figure(picture, "Capacity curve and demand of a spectrum, as masonry.capacity drew them. Source: capacity.png.")  # fmt: skip
+    yield figure("capacity.png", "Capacity curve and demand of a spectrum, as masonry.capacity drew them. Source: capacity.png.")  # fmt: skip
     loads = [stage.get("load") for stage in entriesOf(record.run, "stages")]
     pushes = [n for n, load in enumerate(loads, 1) if isinstance(load, list) and load[:1] == ["push"]]  # fmt: skip
     if len(pushes) > 1:
@@ -201,9 +199,7 @@ def bound(record):
             rows.append(quantities.Number(what, abs(run[peak] / run[limit]), "-", "Of an upper bound it cannot be much above 1; a run warns where it is.", f"run.json: {peak}, {limit}"))  # fmt: skip
     if rows:
         yield numbers(rows, "The run beside its bound")
-    picture = record.image("mechanism.png")
-    if picture:
-        yield figure(picture, "How the structure gives way in limit analysis. Source: mechanism.png.")  # fmt: skip
+    yield figure("mechanism.png", "How the structure gives way in limit analysis. Source: mechanism.png.")  # fmt: skip
 
 
 def energy(record):

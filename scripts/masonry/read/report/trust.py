@@ -18,9 +18,7 @@ def pictures(record):
         yield note(text)
     else:
         yield missing(f"There is no turning picture: {record.missing}")
-    cracks = record.image("cracks.png")
-    if cracks:
-        yield figure(cracks, f"Cracks {record.whenCracked}: open joints red, slid joints blue, crushed joints black. Source: cracks.png.")  # fmt: skip
+    yield figure("cracks.png", f"Cracks {record.whenCracked}: open joints red, slid joints blue, crushed joints black. Source: cracks.png.")  # fmt: skip
 
 
 def trust(record):
