@@ -132,7 +132,7 @@ def test_a_joint_may_get_other_points_and_may_go_during_a_run(run, monkeypatch):
     real = frames.readFrame
     ofCorners = ("points", "displacement", "second_displacement")
 
-    def other(directory, kind, number=-1):
+    def other(directory, kind, number, names):
         frame = real(directory, kind, number)
         if kind == "joints" and number == 2:
             # the points of the first row have moved, and the others are gone

@@ -183,20 +183,14 @@ class Solids:
             found[group.index] = measure(group)
         return found
 
-    def padded(self):
-        """Corners (n, most, 3), normals (n, most, 3) and offsets (n, most) of all: one with fewer corners than others has its first
-        one several times, and one with fewer faces has planes that are infinitely far away.
-        """
-        most = max(group.corners.shape[1] for group in self.groups)
-        faces = max(len(group.faces) for group in self.groups)
-        corners, normals = (np.zeros((self.count, n, 3)) for n in (most, faces))
-        offsets = np.full(normals.shape[:2], np.inf)
-        for group in self.groups:
-            corners[group.index] = group.corners[:, :1]
-            corners[group.index, : group.corners.shape[1]] = group.corners
-            normals[group.index, : len(group.faces)] = group.normals
-            offsets[group.index, : len(group.faces)] = group.offsets
-        return corners, normals, offsets
+    def padded(self, name):
+        """``corners``, ``normals`` or ``offsets`` of all in one array; where one has fewer than others, its last is repeated."""
+        values = [getattr(group, name) for group in self.groups]
+        numbers = np.arange(max(own.shape[1] for own in values))
+        found = np.zeros((self.count, len(numbers), *values[0].shape[2:]))
+        for group, own in zip(self.groups, values):
+            found[group.index] = own[:, np.minimum(numbers, own.shape[1] - 1)]
+        return found
 
     def of(self, solid):
         """The group of a solid, and its row there."""

@@ -26,7 +26,7 @@ from .views import spaceViewOf, viewOf
 INSIDE = 0.25
 
 #: Arrays of frames of blocks and of joints that are drawn.
-NEEDED = ["area", "bodies", "body", "cells", "crushing", "damage_shear", "damage_tension", "displacement", "kind", "normal", "opening", "points", "second_displacement", "slide"]  # fmt: skip
+NEEDED = "area bodies body cells crushing damage_shear damage_tension displacement kind normal opening points second_displacement slide".split()  # fmt: skip
 
 LONGEST = 80  # of the scale on paper [1/72 inch]
 
@@ -169,24 +169,19 @@ class Elevation:
         painting = Painting(self.view.towards, thin, bold)
         now = copy.copy(built)
         now.groups = [Alike(g.index, g.corners + magnification * s.moved[np.array([nodes[n] for n in g.index])], g.faces) for g in built.groups]  # fmt: skip
-        first = -built.count
+        behind = np.argsort(np.concatenate([g.index for g in built.groups])) - built.count  # fmt: skip
         for g in built.groups if magnification else ():
-            painting.blocks(first + np.arange(len(g.index)), g)
-            first += len(g.index)
+            painting.blocks(behind[g.index], g)
         colours = np.array([rgb(SHADES[s.shades.get(body, "brick")]) for body in self.bodies])  # fmt: skip
-        # a place for each block, behind those of its joints
-        places = np.empty(built.count, int)
-        places[fromBackToFront(now, sight)] = np.arange(built.count)
-        places *= 1 + (len(s.joints["cells"]) if s.joints else 0)
+        # in front of each there is a place for each joint
+        places = 10**9 * np.argsort(fromBackToFront(now, sight))
         for g in now.groups:
             painting.blocks(places[g.index], g, colours[g.index])
-        planes, normals = built.padded()[1:], now.padded()[1]
         number = {body: n for n, body in enumerate(self.bodies)}
-        for own, joint, *crack, moved in s.cracks:
-            n = np.array([number.get(body, -1) for body in own.tolist()])
-            here, n = n >= 0, n[n >= 0]
-            crack = [values[here] for values in (*crack, crack[-1] + magnification * moved)]  # fmt: skip
-            painting.cracks(places[n] + 1 + joint[here], crack, [p[n] for p in planes], normals[n], 1e-4 * built.diagonal[n], colours[n])  # fmt: skip
+        for own, *crack, moved in s.cracks:
+            block = np.array([number.get(body, -1) for body in own.tolist()])
+            crack = [v[block >= 0] for v in (block, *crack, crack[-1] + magnification * moved)]  # fmt: skip
+            painting.cracks(places, crack, built, now, colours)
         painting.finish(axes, self.flat, s.joints is not None)
         for shade in sorted({s.shades[b] for b in self.bodies if b in s.shades}):
             axes.add_collection(PolyCollection([], facecolor=SHADES[shade], edgecolor=MORTAR, label=shade))  # fmt: skip

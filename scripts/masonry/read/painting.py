@@ -39,7 +39,7 @@ def rounded(colours):
 FACES = rounded(np.array([0.45 * rgb(c) + 0.55 * rgb(SHADES["brick"]) for c in CRACKS.values()]))  # fmt: skip
 #: Number of the kind of a joint that is a seam, and of one that is only crushed; smaller ones are those of CRACKS.
 SEAM, NONE = 2, 3
-_CHUNK = (
+CHUNK = (
     10_000  # pairs of blocks that are compared at a time, so that memory stays small
 )
 
@@ -53,7 +53,7 @@ def fromBackToFront(solids, sight):
     :param solids: :class:`masonry.bricks.geometry.Solids`
     :param sight: unit vectors of the picture: right, up and towards the viewer, the rows of an array
     """
-    corners, normals, offsets = solids.padded()
+    corners, normals, offsets = map(solids.padded, ("corners", "normals", "offsets"))
     seen = corners @ sight.T
     low, high = seen.min(axis=1), seen.max(axis=1)
     slack = 1e-3 * np.median(high - low)
@@ -63,13 +63,12 @@ def fromBackToFront(solids, sight):
         others = a + 1 + np.flatnonzero(over.all(axis=1))
         pairs.append([np.full_like(others, a), others])
     pairs = np.concatenate(pairs, axis=1)
-    for pair in np.array_split(pairs, pairs.shape[1] // _CHUNK + 1, axis=1):
-        # how far one is beyond the faces of the other, and how these face the viewer
-        gaps = [np.einsum("nfk,nck->nfc", normals[a], corners[b]).min(axis=2) - offsets[a] for a, b in (pair, pair[::-1])]  # fmt: skip
-        gaps = np.concatenate(gaps, axis=1)
-        facing = np.concatenate([normals[pair[0]], -normals[pair[1]]], axis=1) @ sight[2]  # fmt: skip
+    for pair in np.array_split(pairs, pairs.shape[1] // CHUNK + 1, axis=1):
+        # how far each is beyond the faces of the other, and how these face the viewer
+        gaps = np.einsum("pnfk,pnck->pnfc", normals[pair], corners[pair[::-1]]).min(axis=3) - offsets[pair]  # fmt: skip
+        facing = normals[pair] @ sight[2] * [[[1]], [[-1]]]
         sides = facing > LEVEL, facing < -LEVEL, np.abs(facing) <= LEVEL
-        front, back, beside = (np.where(side, gaps, -np.inf).max(axis=1) for side in sides)  # fmt: skip
+        front, back, beside = (np.where(side, gaps, -np.inf).max(axis=(0, 2)) for side in sides)  # fmt: skip
         # no planes part them on both sides, or along the line of sight
         hides = (beside <= -slack) & (np.minimum(front, back) <= -slack)
         pair[:, back >= front] = pair[::-1, back >= front]
@@ -100,8 +99,7 @@ class Painting:
 
     def __init__(self, towards, thin, bold):
         self.towards, self.thin, self.bold = towards, thin, bold
-        self.places, self.points, self.looks = [], [], []
-        self.spots, self.kinds = [], set()
+        self.polygons, self.spots, self.kinds = [], [], set()
 
     def add(self, places, points, fill, edge, wide):
         """Polygons, or lines, with as many corners.
@@ -115,7 +113,7 @@ class Painting:
         for at, colour in ((0, fill), (4, edge)):
             if colour is not None:
                 looks[:, at : at + 3], looks[:, at + 3] = colour, 1
-        self.places.append(places), self.points.append(points), self.looks.append(looks)
+        self.polygons.append((places, points, looks))
 
     def blocks(self, places, alike, colours=None):
         """The faces of blocks that are seen, in colours on which light falls from the viewer and from above.
@@ -126,44 +124,44 @@ class Painting:
         for n, face in enumerate(alike.faces):
             normals = alike.normals[:, n]
             seen = normals @ self.towards > LEVEL
-            fill = edge = rgb(GHOST)
-            if colours is not None:
-                fill, edge = self.lit(colours[seen], normals[seen]), rgb(MORTAR)
+            fill = rgb(GHOST) if colours is None else self.lit(colours[seen], normals[seen])  # fmt: skip
+            edge = rgb(GHOST if colours is None else MORTAR)
             self.add(places[seen], alike.corners[seen][:, face], fill, edge, self.thin)
 
     def lit(self, colours, normals):
         light = 0.55 + 0.45 * normals @ self.towards + 0.3 * np.maximum(normals[:, 2], 0)  # fmt: skip
         return rounded(np.minimum(1, light)[:, None] * colours)
 
-    def cracks(self, places, crack, planes, normals, near, colours):
+    def cracks(self, places, crack, built, now, colours):
         """Joints that are open, slid or crushed: their faces that are seen, and their edges on other faces of their blocks, from which
-        the edges of seams are taken away. Arrays have a row for each.
+        the edges of seams are taken away.
 
-        :param places: as in :meth:`add`
-        :param crack: kinds, closures and corners as :meth:`masonry.read.elevation.Structure.cracks` gives them, and corners as drawn
-        :param planes: normals and offsets of the faces of the block as it was built; ``normals``: as it is drawn
-        :param colours: of the block; ``near``: how far a corner is from a face at most that it lies on [m]
+        :param places: of all blocks, as in :meth:`add`; ``colours``: theirs
+        :param crack: arrays with a row for each joint: number of the block; number of the joint; its kind; how far it is crushed; its
+            corners as built and as drawn (n, corners, 3) [m]
+        :param built: the blocks as they were built, :class:`masonry.bricks.geometry.Solids`; ``now``: as they are drawn
         """
-        kinds, closures, corners, drawn = crack
-        heights = np.einsum("nck,nfk->ncf", corners, planes[0]) - planes[1][:, None]
+        block, joint, kinds, closures, corners, drawn = crack
+        places, normals = places[block] + 1 + joint, now.padded("normals")[block]
+        heights = np.einsum("nck,nfk->ncf", corners, built.padded("normals")[block]) - built.padded("offsets")[block][:, None]  # fmt: skip
         seen = normals @ self.towards > LEVEL
-        on = (np.abs(heights) < near[:, None, None]) & seen[:, None]
+        # a corner lies on a face if it is nearer than this
+        on = (np.abs(heights) < 1e-4 * built.diagonal[block, None, None]) & seen[:, None]  # fmt: skip
         whole = on.all(axis=1)
-        n, f = np.nonzero(whole & (kinds < SEAM)[:, None])
-        self.add(places[n], drawn[n], self.lit(FACES[kinds[n]], normals[n, f]), None, 0)
-        self.kinds.update(kinds[n].tolist())
+        n = np.flatnonzero(whole.any(axis=1) & (kinds < SEAM))
+        self.add(places[n], drawn[n], self.lit(FACES[kinds[n]], normals[n, whole[n].argmax(axis=1)]), None, 0)  # fmt: skip
+        self.kinds.update(kinds[n])
         both = on & np.roll(on, 1, axis=1) & ~whole[:, None]
         n, c = np.nonzero(both.any(axis=2))
         places, kinds, closures = places[n], kinds[n], closures[n]
         ends = np.stack([drawn[n, c - 1], drawn[n, c]], axis=1)
-        edge = self.lit(colours[n], normals[n, both[n, c].argmax(axis=1)])
+        edge = self.lit(colours[block[n]], normals[n, both[n, c].argmax(axis=1)])
         for kind, colour in enumerate(CRACKS.values()):
             edge[kinds == kind] = rgb(colour)
         line, spot = kinds < NONE, closures > 0
         wide = np.where(kinds < SEAM, self.bold, 2 * self.thin)
         self.add(places[line], ends[line], None, edge[line], wide[line])
-        if spot.any():
-            self.spots.append((places[spot], ends[spot].mean(axis=1), 12 + 8e3 * np.minimum(closures[spot], MOST)))  # fmt: skip
+        self.spots += zip(places[spot], ends[spot].mean(axis=1), 12 + 8e3 * np.minimum(closures[spot], MOST))  # fmt: skip
 
     def finish(self, axes, flat, legend):
         """Put it into axes, with names for the legend.
@@ -173,9 +171,10 @@ class Painting:
         """
         from matplotlib.collections import LineCollection, PolyCollection
 
-        order = np.argsort(np.concatenate(self.places), kind="stable")
-        polygons = [polygon for points in self.points for polygon in flat(points)]
-        fills, edges, wides = np.split(np.concatenate(self.looks)[order], (4, 8), axis=1)  # fmt: skip
+        places, points, looks = zip(*self.polygons)
+        order = np.argsort(np.concatenate(places), kind="stable")
+        polygons = [polygon for alike in points for polygon in flat(alike)]
+        fills, edges, wides = np.split(np.concatenate(looks)[order], (4, 8), axis=1)
         many = len(polygons) > 3000  # an SVG file has a picture of so many
         axes.add_collection(PolyCollection([polygons[n] for n in order], facecolors=fills, edgecolors=edges, linewidths=wides.ravel(), rasterized=many))  # fmt: skip
         for n, (kind, colour) in enumerate(CRACKS.items() if legend else ()):
@@ -183,7 +182,5 @@ class Painting:
             if n in self.kinds:
                 axes.add_collection(PolyCollection([], facecolor=FACES[n], lw=0, label=kind + ", its face"))  # fmt: skip
         if self.spots:
-            places, points, wide = map(np.concatenate, zip(*self.spots))
-            order = np.argsort(places, kind="stable")
-            points, wide = points[order], wide[order]
+            _, points, wide = map(np.array, zip(*sorted(self.spots, key=lambda spot: spot[0])))  # fmt: skip
             axes.scatter(*flat(points).T, s=wide * min(1, self.bold / 1.8) ** 2, color=CRUSHED, marker="X", lw=0, label="crushed", zorder=5)  # fmt: skip
