@@ -50,13 +50,11 @@ class Structure:
     ties: list[dict[str, Any]] = field(default_factory=list)  #: entries of run.json
 
     def __post_init__(self):
-        cells, count = self.blocks["cells"], len(self.blocks["points"])
-        both = np.repeat(self.blocks["body"].astype(int), [*map(len, cells)]) * count
-        both = np.unique(both + np.concatenate(cells))
-        nodes = np.split(both % count, np.flatnonzero(np.diff(both // count)) + 1)
-        found = dict(zip(np.unique(self.blocks["body"]).tolist(), nodes))
+        cells = {}
+        for body, cell in zip(self.blocks["body"].tolist(), self.blocks["cells"]):
+            cells.setdefault(body, set()).update(cell.tolist())
         #: numbers of the points of every block, by the id of its body
-        self.corners = {body: found[body] for body in self.blocks["body"].tolist()}
+        self.corners = {body: np.array(sorted(own)) for body, own in cells.items()}
         self._outer = {}  # by the shape of blocks
         self.moved = self.blocks["displacement"] - self.still
         if self.ground in self.corners:

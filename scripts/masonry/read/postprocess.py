@@ -85,8 +85,9 @@ def main():
     def write(directory):
         memory.reserve()
         check(directory)
-        path = os.path.join(directory, report.NAME)
-        report.write(report.read(directory), path, ready)
+        record = report.read(directory)
+        record.ready = ready
+        report.write(record, os.path.join(directory, report.NAME))
 
     try:
         written = onFolder(write, [folder]) and NO_REPORT

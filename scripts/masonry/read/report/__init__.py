@@ -15,8 +15,6 @@ has its unit, what it is, and its source. What the files do not have is said to 
 that of :mod:`masonry.read.page`, and needs the Debian package libjs-three; without it the report has a sentence in its place.
 """
 
-from typing import Callable
-
 from ...common.arguments import FilePath, validated
 from ...basics import Refused
 from .. import pages
@@ -53,19 +51,16 @@ def read(directory: FilePath) -> Record:
     return Record(directory)
 
 
-def page(record: Record, ready: Callable[[], object] = lambda: None) -> str:
+def page(record: Record) -> str:
     """The report of a run as a whole page.
 
     :param record: what :func:`read` gave
-    :param ready: function that returns when the figures of the folder are there; all else is made before
     """
     library, licence = _library(record)
     parts = [(place, heading, _made(part, record)) for place, heading, part in PARTS]
-    facts, head = structure.facts(record), _made(structure.head, record)
-    ready()
     return rendered(
-        "report/report.html", title=record.title, facts=facts, head=head, parts=parts, image=record.image, library=library,
-        licence=licence,
+        "report/report.html", title=record.title, facts=structure.facts(record), head=_made(structure.head, record),
+        parts=parts, image=record.image, library=library, licence=licence,
     )  # fmt: skip
 
 
@@ -95,9 +90,10 @@ def _made(part, record):
     return found
 
 
-def write(record: Record, path: FilePath, ready: Callable[[], object] = lambda: None) -> None:  # fmt: skip
-    """Write :func:`page` to a file, whole or not at all; the other parameters are those of :func:`page`.
+def write(record: Record, path: FilePath) -> None:
+    """Write :func:`page` to a file, whole or not at all.
 
+    :param record: what :func:`read` gave
     :raises OSError: if the file cannot be written, or if its name is that of a symbolic link
     """
-    pages.write(path, page(record, ready))
+    pages.write(path, page(record))
