@@ -93,9 +93,9 @@ class Structure:
 
     @functools.cached_property
     def cracks(self):
-        """Joints that are cracked or crushed, or are seams, in lists with as many corners and on one side: arrays of the bodies on this
-        side; the joints' numbers; their kinds, as in :mod:`masonry.read.painting`; how far they are crushed, or 0 [m]; the corners as
-        built [m]; and their displacements with these bodies [m].
+        """Joints that are cracked, crushed or seams, in lists of one number of corners and one side: arrays of the bodies on this side;
+        the joints' numbers; their kinds, as in :mod:`masonry.read.painting`; their crushing, or 0 [m]; the corners as built [m]; and
+        their displacements with these bodies [m].
         """
         j, found = self.joints, []
         if not j:

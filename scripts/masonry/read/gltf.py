@@ -166,7 +166,7 @@ class _File:
 
 def linear(colour):
     """Red, green and blue as light has them, from 0 to 1, of a colour "#rrggbb" as a screen has it."""
-    share = painting.rgb(colour)
+    share = painting.rgb(colour) / 255
     return np.where(share <= 0.04045, share / 12.92, ((share + 0.055) / 1.055) ** 2.4)
 
 

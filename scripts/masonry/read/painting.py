@@ -26,18 +26,13 @@ TIES = {"elastic": ("#333333", "-"), "yielded": ("#ff7f0e", "-"), "broken": ("#9
 
 
 def rgb(colour):
-    """Red, green and blue of a colour "#rrggbb", from 0 to 1."""
-    return np.array(list(bytes.fromhex(colour[1:]))) / 255
+    """Red, green and blue of a colour "#rrggbb", from 0 to 255."""
+    return np.array(list(bytes.fromhex(colour[1:])))
 
 
-def rounded(colours):
-    """Colours as a screen shows them."""
-    return np.rint(255 * colours) / 255
-
-
-#: Of the faces of cracked joints, in the order of CRACKS.
-FACES = rounded(np.array([0.45 * rgb(c) + 0.55 * rgb(SHADES["brick"]) for c in CRACKS.values()]))  # fmt: skip
-#: Number of the kind of a joint that is a seam, and of one that is only crushed; smaller ones are those of CRACKS.
+#: Of the faces of cracked joints, as ``rgb`` gives them, in the order of CRACKS.
+FACES = np.rint([0.45 * rgb(c) + 0.55 * rgb(SHADES["brick"]) for c in CRACKS.values()])
+#: Kinds of joints after those of CRACKS: seams, and what is only crushed.
 SEAM, NONE = 2, 3
 CHUNK = (
     10_000  # pairs of blocks that are compared at a time, so that memory stays small
@@ -102,25 +97,21 @@ class Painting:
         self.polygons, self.spots, self.kinds = [], [], set()
 
     def add(self, places, points, fill, edge, wide):
-        """Polygons, or lines, with as many corners.
+        """Polygons, or lines, of corners in space (n, corners, 3) [m].
 
-        :param places: numbers, from the back to the front; of equal ones, what is added first is farther back
-        :param points: their corners in space (n, corners, 3) [m]
-        :param fill: their colours (n, 3), one for all, or None, as ``edge``; ``wide``: widths of edges
+        :param places: numbers that grow to the front; of equal ones, what comes later is in front
+        :param fill: colours (n, 3), one for all, or None, as ``edge``
         """
         looks = np.zeros((len(points), 9))
         looks[:, 8] = wide
         for at, colour in ((0, fill), (4, edge)):
             if colour is not None:
-                looks[:, at : at + 3], looks[:, at + 3] = colour, 1
+                looks[:, at : at + 3], looks[:, at + 3] = np.divide(colour, 255), 1
         self.polygons.append((places, points, looks))
 
     def blocks(self, places, alike, colours=None):
-        """The faces of blocks that are seen, in colours on which light falls from the viewer and from above.
-
-        :param places: of each, as in :meth:`add`; ``alike``: :class:`masonry.bricks.geometry.Alike`
-        :param colours: of each (n, 3); None: they are where blocks stood
-        """
+        """The faces of blocks (:class:`masonry.bricks.geometry.Alike`) that are seen, in colours on which light falls from the viewer
+        and from above; None: where blocks stood."""
         for n, face in enumerate(alike.faces):
             normals = alike.normals[:, n]
             seen = normals @ self.towards > LEVEL
@@ -130,16 +121,16 @@ class Painting:
 
     def lit(self, colours, normals):
         light = 0.55 + 0.45 * normals @ self.towards + 0.3 * np.maximum(normals[:, 2], 0)  # fmt: skip
-        return rounded(np.minimum(1, light)[:, None] * colours)
+        return np.rint(np.minimum(1, light)[:, None] * colours)
 
     def cracks(self, places, crack, built, now, colours):
         """Joints that are open, slid or crushed: their faces that are seen, and their edges on other faces of their blocks, from which
         the edges of seams are taken away.
 
-        :param places: of all blocks, as in :meth:`add`; ``colours``: theirs
-        :param crack: arrays with a row for each joint: number of the block; number of the joint; its kind; how far it is crushed; its
-            corners as built and as drawn (n, corners, 3) [m]
-        :param built: the blocks as they were built, :class:`masonry.bricks.geometry.Solids`; ``now``: as they are drawn
+        :param places: of all blocks; ``colours``: theirs
+        :param crack: arrays of the numbers of the blocks and of what :meth:`masonry.read.elevation.Structure.cracks` gives, but at the
+            end the corners as drawn
+        :param built: :class:`masonry.bricks.geometry.Solids` as built; ``now``: as drawn
         """
         block, joint, kinds, closures, corners, drawn = crack
         places, normals = places[block] + 1 + joint, now.padded("normals")[block]
@@ -180,7 +171,7 @@ class Painting:
         for n, (kind, colour) in enumerate(CRACKS.items() if legend else ()):
             axes.add_collection(LineCollection([], color=colour, lw=self.bold, label=kind))  # fmt: skip
             if n in self.kinds:
-                axes.add_collection(PolyCollection([], facecolor=FACES[n], lw=0, label=kind + ", its face"))  # fmt: skip
+                axes.add_collection(PolyCollection([], facecolor=FACES[n] / 255, lw=0, label=kind + ", its face"))  # fmt: skip
         if self.spots:
             _, points, wide = map(np.array, zip(*sorted(self.spots, key=lambda spot: spot[0])))  # fmt: skip
             axes.scatter(*flat(points).T, s=wide * min(1, self.bold / 1.8) ** 2, color=CRUSHED, marker="X", lw=0, label="crushed", zorder=5)  # fmt: skip

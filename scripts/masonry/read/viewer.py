@@ -100,7 +100,7 @@ def sceneOf(directory: FilePath, number: int, magnification: float | None, shape
         "ground": bodies(GROUND),
         "platens": bodies(PLATEN),
         "widest_mm": page.data.nice(1e3 * max(widest, 4 * CRACK)),
-        "colours": {n: painting.rgb(c).tolist() for n, c in {**painting.SHADES, **painting.CRACKS, "mortar": painting.MORTAR}.items()},  # fmt: skip
+        "colours": {n: (painting.rgb(c) / 255).tolist() for n, c in {**painting.SHADES, **painting.CRACKS, "mortar": painting.MORTAR}.items()},  # fmt: skip
         "crack": CRACK,
         "damaged": DAMAGED,
         "bounds": np.column_stack([sight.low, sight.high]).ravel().tolist(),
