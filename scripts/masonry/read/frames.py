@@ -182,9 +182,8 @@ def _opened(root):
 def _frame(root, names):
     """What :func:`readFrame` returns, of the parsed file."""
     piece, read = _opened(root)
-    found = {"points": piece.find("Points/DataArray")}
-    for place in ("PointData", "CellData"):
-        found.update((a.get("Name"), a) for a in piece.findall(f"{place}/DataArray"))
+    data = piece.findall("PointData/DataArray") + piece.findall("CellData/DataArray")
+    found = {"points": piece.find("Points/DataArray"), **{a.get("Name"): a for a in data}}  # fmt: skip
     frame = {n: read(a) for n, a in found.items() if names is None or n in names}
     if names is not None and "cells" not in names:
         return frame

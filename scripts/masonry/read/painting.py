@@ -2,6 +2,7 @@
 """The one style of all pictures of blocks: its colours, which pages, models and ParaView have, too, and how matplotlib draws faces,
 light and cracks."""
 
+import copy
 import heapq
 import numpy as np
 
@@ -34,9 +35,9 @@ def rgb(colour):
 FACES = np.rint([0.45 * rgb(c) + 0.55 * rgb(SHADES["brick"]) for c in CRACKS.values()])
 #: Kinds of joints after those of CRACKS: seams, and what is only crushed.
 SEAM, NONE = 2, 3
-CHUNK = (
-    10_000  # pairs of blocks that are compared at a time, so that memory stays small
-)
+#: Pairs of blocks that are compared at a time, so that memory stays small.
+CHUNK = 10_000
+FAR = 1e9  # beyond all blocks [m]
 
 
 def fromBackToFront(solids, sight):
@@ -49,15 +50,12 @@ def fromBackToFront(solids, sight):
     :param sight: unit vectors of the picture: right, up and towards the viewer, the rows of an array
     """
     corners, normals, offsets = map(solids.padded, ("corners", "normals", "offsets"))
-    seen = corners @ sight.T
-    low, high = seen.min(axis=1), seen.max(axis=1)
-    slack = 1e-3 * np.median(high - low)
-    pairs, after = [], [[] for _ in range(solids.count)]
-    for a in range(solids.count):
-        over = (low[a, :2] < high[a + 1 :, :2] - slack) & (low[a + 1 :, :2] < high[a, :2] - slack)  # fmt: skip
-        others = a + 1 + np.flatnonzero(over.all(axis=1))
-        pairs.append([np.full_like(others, a), others])
-    pairs = np.concatenate(pairs, axis=1)
+    seen, boxes = corners @ sight.T, copy.copy(solids)
+    boxes.low, boxes.high = seen.min(axis=1), seen.max(axis=1)
+    depth, slack = (boxes.low + boxes.high)[:, 2].tolist(), 1e-3 * np.median(boxes.high - boxes.low)  # fmt: skip
+    boxes.low[:, 2], boxes.high[:, 2] = -FAR, FAR  # pictures overlap at any depth
+    pairs = boxes.nearPairs(np.full(solids.count, -slack / 2))
+    after = [[] for _ in range(solids.count)]
     for pair in np.array_split(pairs, pairs.shape[1] // CHUNK + 1, axis=1):
         # how far each is beyond the faces of the other, and how these face the viewer
         gaps = np.einsum("pnfk,pnck->pnfc", normals[pair], corners[pair[::-1]]).min(axis=3) - offsets[pair]  # fmt: skip
@@ -71,7 +69,7 @@ def fromBackToFront(solids, sight):
             after[behind].append(before)
     hidden = [n for fronts in after for n in fronts]
     pending = np.bincount(hidden, minlength=solids.count)
-    depth, left, order = (low + high)[:, 2].tolist(), set(range(solids.count)), []
+    left, order = set(range(solids.count)), []
     ready = [(depth[n], n) for n in np.flatnonzero(pending == 0).tolist()]
     heapq.heapify(ready)
     while left:
