@@ -51,8 +51,8 @@ class Structure:
 
     def __post_init__(self):
         cells = {}
-        for body, cell in zip(self.blocks["body"].tolist(), self.blocks["cells"]):
-            cells.setdefault(body, set()).update(cell.tolist())
+        for body, cell in zip(self.blocks["body"], self.blocks["cells"]):
+            cells.setdefault(int(body), set()).update(cell)
         #: numbers of the points of every block, by the id of its body
         self.corners = {body: np.array(sorted(own)) for body, own in cells.items()}
         self._outer = {}  # by the shape of blocks
