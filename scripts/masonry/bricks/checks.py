@@ -35,6 +35,8 @@ def findJoints(solids):
     :returns: list of :class:`Joint`, sorted by the numbers of the blocks, and a list of misfits: (number of the first
         block, of the second, gap [m] (negative for an overlap), place [m])
     """
+    if not solids.groups:  # none of them is one
+        return [], []
     thickness = solids.thicknesses()
     one, two = solids.nearPairs(REACH / 2 * thickness)
     apart, faces, cosine = solids.compare(one, two)

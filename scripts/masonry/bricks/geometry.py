@@ -27,7 +27,7 @@ NEARLY_OPPOSITE = -np.cos(np.radians(6))
 REACH = 0.25
 
 #: Pairs of blocks that are compared at a time, so that memory stays small.
-_CHUNK = 40_000
+_CHUNK = 10_000
 
 
 def hull(corners):
@@ -229,26 +229,23 @@ class Solids:
         :returns: distance [m] along the normal of a face that parts them best, (n,), negative for an overlap; the
             number of that face, of the first solid's and of the second's; and the cosine between these two faces
         """
-        apart, cosine = np.zeros(len(one)), np.zeros(len(one))
-        faces = np.zeros((2, len(one)), int)
-        kinds = self.groupOf[one] * len(self.groups) + self.groupOf[two]
-        for kind in np.unique(kinds):
-            here = np.flatnonzero(kinds == kind)
-            a, b = (self.groups[g] for g in divmod(kind, len(self.groups)))
-            for part in np.array_split(here, len(here) // _CHUNK + 1):
-                i, j = self.rowOf[one[part]], self.rowOf[two[part]]
-                mine, f = _parted(a, i, b, j)
-                theirs, g = _parted(b, j, a, i)
-                first = mine >= theirs
-                row = np.arange(len(part))
-                # the face of the other solid that looks at this one
-                cosines = np.einsum("nfk,ngk->nfg", a.normals[i], b.normals[j])
-                f = np.where(first, f, cosines[row, :, g].argmin(axis=1))
-                g = np.where(first, cosines[row, f].argmin(axis=1), g)
-                apart[part] = np.maximum(mine, theirs)
-                faces[:, part] = f, g
-                cosine[part] = cosines[row, f, g]
-        return apart, faces, cosine
+        pairs = np.array([one, two])
+        beyond, normals = self.beyond(pairs), self.padded("normals")
+        mine, theirs = beyond.max(axis=2)
+        first = mine >= theirs
+        face = np.where(first, *beyond.argmax(axis=2))
+        here, there = np.where(first, pairs, pairs[::-1])
+        # the face of the other solid that looks at this one
+        cosines = np.einsum("nk,ngk->ng", normals[here, face], normals[there])
+        faces = np.array([face, cosines.argmin(axis=1)])
+        return np.maximum(mine, theirs), np.where(first, faces, faces[::-1]), cosines.min(axis=1)  # fmt: skip
+
+    def beyond(self, pairs):
+        """How far both solids of pairs (2, n) are beyond each face of the other [m]: (2, n, faces), those of the first one first."""
+        corners, normals, offsets = map(self.padded, ("corners", "normals", "offsets"))
+        parts = np.array_split(pairs, pairs.shape[1] // _CHUNK + 1, axis=1)
+        heights = [np.einsum("pnfk,pnck->pnfc", normals[p], corners[p[::-1]]).min(axis=3) for p in parts]  # fmt: skip
+        return np.concatenate(heights, axis=1) - offsets[pairs]
 
     def separation(self, one, two):
         """How far two solids are apart [m] by the separating axis theorem; negative for an overlap: its smallest depth."""
@@ -272,14 +269,6 @@ def edges(faces):
     """Edges of a solid: pairs of corner numbers, the smaller first."""
     pairs = (pair for face in faces for pair in zip(face, face[1:] + face[:1]))
     return {(min(pair), max(pair)) for pair in pairs}
-
-
-def _parted(a, i, b, j):
-    """How far the second solids are beyond the faces of the first, and beyond which of them the furthest."""
-    heights = np.einsum("nfk,nck->nfc", a.normals[i], b.corners[j])
-    beyond = heights.min(axis=2) - a.offsets[i]
-    face = beyond.argmax(axis=1)
-    return beyond[np.arange(len(i)), face], face
 
 
 def cosSin(quarters, angle):

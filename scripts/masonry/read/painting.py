@@ -35,8 +35,6 @@ def rgb(colour):
 FACES = np.rint([0.45 * rgb(c) + 0.55 * rgb(SHADES["brick"]) for c in CRACKS.values()])
 #: Kinds of joints after those of CRACKS: seams, and what is only crushed.
 SEAM, NONE = 2, 3
-#: Pairs of blocks that are compared at a time, so that memory stays small.
-CHUNK = 10_000
 FAR = 1e9  # beyond all blocks [m]
 
 
@@ -49,24 +47,21 @@ def fromBackToFront(solids, sight):
     :param solids: :class:`masonry.bricks.geometry.Solids`
     :param sight: unit vectors of the picture: right, up and towards the viewer, the rows of an array
     """
-    corners, normals, offsets = map(solids.padded, ("corners", "normals", "offsets"))
-    seen, boxes = corners @ sight.T, copy.copy(solids)
+    seen, boxes = solids.padded("corners") @ sight.T, copy.copy(solids)
     boxes.low, boxes.high = seen.min(axis=1), seen.max(axis=1)
     depth, slack = (boxes.low + boxes.high)[:, 2].tolist(), 1e-3 * np.median(boxes.high - boxes.low)  # fmt: skip
     boxes.low[:, 2], boxes.high[:, 2] = -FAR, FAR  # pictures overlap at any depth
     pairs = boxes.nearPairs(np.full(solids.count, -slack / 2))
     after = [[] for _ in range(solids.count)]
-    for pair in np.array_split(pairs, pairs.shape[1] // CHUNK + 1, axis=1):
-        # how far each is beyond the faces of the other, and how these face the viewer
-        gaps = np.einsum("pnfk,pnck->pnfc", normals[pair], corners[pair[::-1]]).min(axis=3) - offsets[pair]  # fmt: skip
-        facing = normals[pair] @ sight[2] * [[[1]], [[-1]]]
-        sides = facing > LEVEL, facing < -LEVEL, np.abs(facing) <= LEVEL
-        front, back, beside = (np.where(side, gaps, -np.inf).max(axis=(0, 2)) for side in sides)  # fmt: skip
-        # no planes part them on both sides, or along the line of sight
-        hides = (beside <= -slack) & (np.minimum(front, back) <= -slack)
-        pair[:, back >= front] = pair[::-1, back >= front]
-        for behind, before in pair[:, hides].T.tolist():
-            after[behind].append(before)
+    facing = solids.padded("normals")[pairs] @ sight[2] * [[[1]], [[-1]]]
+    sides, gaps = (facing > LEVEL, facing < -LEVEL, np.abs(facing) <= LEVEL), solids.beyond(pairs)  # fmt: skip
+    front, back, beside = (np.where(side, gaps, -np.inf).max(axis=(0, 2)) for side in sides)  # fmt: skip
+    # no planes part them on both sides, or along the line of sight
+    hides = (beside <= -slack) & (np.minimum(front, back) <= -slack)
+    for behind, before in np.where(front > back, pairs, pairs[::-1])[
+        :, hides
+    ].T.tolist():
+        after[behind].append(before)
     hidden = [n for fronts in after for n in fronts]
     pending = np.bincount(hidden, minlength=solids.count)
     left, order = set(range(solids.count)), []
