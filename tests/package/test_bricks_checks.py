@@ -58,8 +58,9 @@ def test_volume_of_any_convex_solid(count, seed):
     ],
 )
 def test_a_block_that_is_no_convex_solid_is_reported(corners, said):
-    blocks = Bricks([Block(corners, 0, "rubble")]) + block((5, 5, 5), (6, 6, 6))
+    blocks = Bricks([Block(corners, 0, "rubble")])
     (message,) = blocks.problems()
+    assert (blocks + block((5, 5, 5), (6, 6, 6))).problems() == [message]
     assert re.search(r"block 0 of brick 0 \(rubble\): .*" + said, message)
     with raises(ValueError, match=said):
         blocks.cut((0, 0, 0.2), (0, 0, 1))
