@@ -71,24 +71,37 @@ def test_a_block_that_lands_on_its_face_leaves_with_its_restitution(share):
     assert imbalance() < 1e-3
 
 
+@mark.parametrize("slides", [-1, 1])  # [m/s]
+def test_an_edge_that_lands_while_it_slides_is_not_thrown_up(slides):
+    step, speed, turn = 0.01, 0.1, Quaternion(Vector3.UnitY, 0.01)
+    stack(count=1, step=step)
+    engine("integrator").gravity = (0, 0, 0)
+    state = O.bodies[1].state
+    edge = turn * Vector3(B / 2, 0, -H / 2)
+    state.ori, state.pos = turn, Vector3(B / 2, B / 2, 1e-4 - edge[2])
+    state.vel = Vector3(slides, 0, -speed)
+    ofKind(MasonryEnergy).given()
+    untilImpact()
+    O.run(20, True)
+    # the joint takes a little up beside the impulses
+    assert (state.vel + state.angVel.cross(edge))[2] == approx(0, abs=0.05 * speed)
+    assert imbalance() < 1e-3
+
+
 @mark.parametrize("case", CASES)
 @mark.parametrize("step", [pytest.param(0.1, marks=mark.slow), 0.4, 0.8])
 def test_impacts_never_give_energy(case, step):
     for seed in range(3):
-        # blocks that turn far have an error of the balance without impacts, too
-        stack(step=step, **{**CASES[case], "restitution": 1.0})
-        for part in range(20):
-            shake(0.05, seed + 10 * part)
-        without = imbalance()
         stack(step=step, **CASES[case])
         most = fallen = 0
-        for part in range(20):
+        # in space, blocks that turn far have an error of the balance without impacts, too
+        for part in range(20 if isPlane() else 10):
             shake(0.05, seed + 10 * part)
             now = loop().impactWork
             fallen, most = max(fallen, most - now), max(most, now)
         now = balance()
         assert most > 0.2 and fallen < 0.01 * most
-        assert abs(now["error"]) < max(3e-3, 1.5 * without)
+        assert abs(now["error"]) < 3e-3
 
 
 @mark.parametrize("case", CASES)

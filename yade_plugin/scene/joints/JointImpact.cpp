@@ -9,7 +9,8 @@ namespace {
 using yade::Matrix3r;
 
 // The impulse on body 1 [N s], in the joint's axes, that ends the motion `speed` of side 2 against side 1 [m/s] at a
-// point, for this part of the corners. It does not pull, and along the face it is no larger than friction allows.
+// point, for this part of the corners. It does not pull. Where friction cannot stop the slip it ends the motion along
+// the normal alone.
 Vector3r impulseAgainst(const Vector3r& speed, const JointImpacts& by, const JointShapes& shapes, int point, int joint,
                         double part) {
     const auto& r = shapes.joints[joint];
@@ -33,9 +34,12 @@ Vector3r impulseAgainst(const Vector3r& speed, const JointImpacts& by, const Joi
     if (axes[0].dot(axes[1]) < 0) axes[1].coeffs() *= -1; // a quaternion and its negative are the same rotation
     const Matrix3r turn = Quaternionr((axes[0].coeffs() + axes[1].coeffs()).eval()).normalized().toRotationMatrix();
     const Vector3r impulse = turn.transpose() * changes.inverse() * (turn * speed);
-    const double pressed = std::max(-impulse[0], 0.0), along = std::hypot(impulse[1], impulse[2]);
-    const double most = shapes.law->law().properties().friction * pressed, kept = along > most ? most / along : 1;
-    return {-pressed, kept * impulse[1], kept * impulse[2]};
+    const double along = std::hypot(impulse[1], impulse[2]);
+    const double friction = shapes.law->law().properties().friction;
+    if (along <= -friction * impulse[0]) return impulse;
+    const Vector3r slips(-1, friction * impulse[1] / along, friction * impulse[2] / along);
+    const double ended = -turn.col(0).dot(changes * (turn * slips)); // of the speed along the normal, by slips
+    return std::max(ended > 0 ? -speed[0] / ended : -impulse[0], 0.0) * slips;
 }
 
 } // namespace
