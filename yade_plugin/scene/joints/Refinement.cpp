@@ -245,7 +245,7 @@ bool sameMoments(const Points& one, const Points& other) {
 }
 
 Refinement::Limit::Limit(const JointKind& kind, int wanted)
-    : columns_(kind.states->columns.unsynchronised().get()), law_(&columns_->law()), convex_(columns_->isConvex()) {
+    : columns_(kind.states->columns.unsynchronised().get()), convex_(columns_->isConvex()) {
     const auto& columns = *columns_;
     const auto& p = columns.law().properties();
     const auto& first = kind.shapes->joints[0];
@@ -272,7 +272,7 @@ Refinement::Limit::Limit(const JointKind& kind, int wanted)
 
 bool Refinement::Limit::isReached(double part, double sigma, double a, double b) const {
     const double squared = a * a + b * b, limit = part * elasticLimit_;
-    if (limit > 0 && law_->squaredCapStress(sigma, squared) > limit * limit) return true;
+    if (limit > 0 && columns_->law().squaredCapStress(sigma, squared) > limit * limit) return true;
     return cracks_ && (sigma > tension_ || squared > slip_ * slip_) && yields(sigma / part, a / part, b / part);
 }
 

@@ -49,7 +49,6 @@ private:
         bool yields(double normalStress, double shearStressA, double shearStressB) const;
 
         const LawColumns* columns_;
-        const Law* law_;
         bool convex_;
         int points_ = 0;
         double elasticLimit_ = 0; // in compression [Pa]; 0: none
