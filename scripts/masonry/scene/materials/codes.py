@@ -46,7 +46,7 @@ STRONGEST = {GENERAL: 75e6, THIN: 50e6}
 #: Confidence factor of a level of knowledge [-]: Circolare 7/2019, table C8.5.IV.
 CONFIDENCE = {"LC1": 1.35, "LC2": 1.2}
 _knowledge = such(
-    lambda v: v in [*CONFIDENCE],
+    lambda v: isinstance(v, str) and v in CONFIDENCE,
     "LC1 or LC2; LC3 needs tests: give what they say to materials.masonry",
 )
 #: Friction in a joint: Circolare 7/2019, C8.7.1.3.1.1. Tensile strength over tau0: C8.7.1.16 [-].
