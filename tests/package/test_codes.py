@@ -61,6 +61,8 @@ def test_knowledge_and_confidence_decide_what_the_italian_table_says():
         assert values == approx([2850e6, 950e6, 0.577, 22e3 / 9.81])
     rubble = materials.ntc2018("rubble", "LC2", confidence=1)
     assert rubble["fv0"] == approx(1.5 * 0.025e6 / 0.7)
+    with raises(Refused, match="'LC3' must be LC1 or LC2; LC3 needs tests"):
+        materials.ntc2018("rubble", "LC3")
 
 
 @mark.parametrize("row", TABLE)

@@ -33,7 +33,7 @@ def test_an_uncracked_wall_has_no_pattern():
     bed, upright = blank()
     numbers = cracks.diagonal(bed, upright) | cracks.flexure(bed)
     numbers |= cracks.crushing(bed)
-    assert math.isnan(numbers.pop("diagonal_band_courses"))
+    assert "diagonal_band_courses" not in numbers
     assert 0.3 < numbers.pop("diagonal_joint_share") < 0.6
     assert numbers.pop("flexural_course_base") == 1
     assert numbers.pop("flexural_course_top") == 1
@@ -100,6 +100,22 @@ def test_flexural_cracks_are_counted_at_the_sides():
     for end, found in (("base", (2, 3, 1)), ("top", (1, 1, 2))):
         names = f"cracks_{end} opening_{end}_mm course_{end}".split()
         assert [numbers[f"flexural_{n}"] for n in names] == approx(found)
+
+
+@mark.filterwarnings("error")
+@mark.parametrize("courses", range(1, 6))
+def test_a_low_wall_has_the_numbers_of_the_joints_that_it_has(courses):
+    bed, upright = ({n: v[: courses - k] for n, v in part.items()} for part, k in zip(blank(), (1, 0)))  # fmt: skip
+    bed["beds"] = {name: np.zeros((courses + 1, COLUMNS)) for name in NAMES}
+    bed["shear"][:], upright["opening"][:, 4:6] = 1, WIDE
+    found = cracks.patternNumbers(bed, upright)
+    assert all(map(math.isfinite, found.values()))
+    # bed joints are two courses from base and top in four, a course is in five
+    inner = {n for n in found if n.startswith("diagonal_")} - {"diagonal_reach"}
+    assert len(inner) == (3 if courses > 3 else 0)
+    assert found.get("parallel_cracks") == (2 if courses > 4 else None)
+    assert found["flexural_opening_base_mm"] == 0
+    assert cracks.failureMode(found, {**WALL, "courses": courses}) == "none"
 
 
 def test_crushing_is_shared_by_the_corners():

@@ -168,14 +168,9 @@ def acrossDiagonal(shape: Sequence[int], upright: bool) -> np.ndarray:
 def narrowestBand(
     positions: np.ndarray, weights: np.ndarray, share: float = 0.5
 ) -> float:
-    """Width of the narrowest interval of ``positions`` that holds ``share`` of the sum of ``weights``.
-
-    It is NaN if the weights sum to zero.
-    """
+    """Width of the narrowest interval of ``positions`` that holds ``share`` of the sum of ``weights``, which is above 0."""
     order = np.argsort(positions)
     positions, held = positions[order], np.append(0, np.cumsum(weights[order]))
-    if not held[-1] > 0:
-        return float("nan")
     # up to the first position at which enough is held since each start
     ends = np.searchsorted(held, held[:-1] + share * held[-1] * (1 - 1e-12)) - 1
     starts = np.flatnonzero(ends < len(positions))
@@ -185,7 +180,8 @@ def narrowestBand(
 def diagonal(
     bed: dict[str, np.ndarray], upright: dict[str, np.ndarray]
 ) -> dict[str, Any]:
-    """Numbers of the diagonal crack; ``bed`` and ``upright`` as in :func:`layOut`.
+    """Numbers of the diagonal crack; ``bed`` and ``upright`` as in :func:`layOut`. A wall so low that it has no inner joints, or no inner
+    course, has no numbers of them, and one whose inner joints lost no energy has no band.
 
     - diagonal_energy_share [-]: of the energy lost in shear by inner joints, what joints near the corner-to-corner
       diagonal lost: within three courses of it; inner are all but those of the two lowest and two highest courses
@@ -202,16 +198,18 @@ def diagonal(
     places = [acrossDiagonal(e.shape, e is energies[1]) for e in energies]
     energy, position = (np.concatenate([*map(np.ravel, v)]) for v in (energies, places))
     energy, position = (v[np.isfinite(position)] for v in (energy, position))
-    near, lost = np.abs(position) < NEAR, energy.sum()
+    near, lost, numbers = np.abs(position) < NEAR, energy.sum(), {}
     gaping = upright["opening"] > CRACK
     cracked = np.maximum(bed["opening"], bed["slide"]) > CRACK
-    return {
-        "diagonal_energy_share": energy[near].sum() / lost if lost > 0 else 0.0,
-        "diagonal_joint_share": near.mean(),
-        "diagonal_band_courses": narrowestBand(position, energy),
-        "diagonal_reach": diagonalReach(cracked, gaping),
-        "parallel_cracks": gaping[OUTER:-OUTER].sum(axis=1).mean(),
-    }
+    if len(position):
+        share = energy[near].sum() / lost if lost > 0 else 0.0
+        numbers = {"diagonal_energy_share": share, "diagonal_joint_share": near.mean()}
+    if lost > 0:
+        numbers["diagonal_band_courses"] = narrowestBand(position, energy)
+    numbers["diagonal_reach"] = diagonalReach(cracked, gaping)
+    if len(inner := gaping[OUTER:-OUTER]):
+        numbers["parallel_cracks"] = inner.sum(axis=1).mean()
+    return numbers
 
 
 def flexure(bed: dict[str, np.ndarray]) -> dict[str, Any]:
@@ -221,15 +219,16 @@ def flexure(bed: dict[str, np.ndarray]) -> dict[str, Any]:
 
     - flexural_cracks_base, _top: bed joints open more than CRACK at a side of the wall
     - flexural_opening_base_mm, _top_mm: of the widest of them
-    - flexural_course_base, _top: courses between the widest and the base, or the top
+    - flexural_course_base, _top: courses between the widest and the base, or the top; not of a wall of one course
     """
     side = np.maximum(bed["opening"][:, 0], bed["opening"][:, -1])
     middle = (len(side) + 1) // 2
     numbers = {}
     for name, openings in (("base", side[:middle]), ("top", side[: -middle - 1 : -1])):
         numbers["flexural_cracks_" + name] = int((openings > CRACK).sum())
-        numbers[f"flexural_opening_{name}_mm"] = 1e3 * max(0, openings.max())
-        numbers["flexural_course_" + name] = int(openings.argmax()) + 1
+        numbers[f"flexural_opening_{name}_mm"] = 1e3 * openings.max(initial=0)
+        if len(openings):
+            numbers["flexural_course_" + name] = int(openings.argmax()) + 1
     return numbers
 
 

@@ -15,6 +15,7 @@ from typing import Annotated, Any, NamedTuple
 
 from ...common.arguments import number, oneOf, validated, whole
 from ...basics import refuse
+from ..settings import such
 
 #: Mean over characteristic compressive strength (EN 1052-1), characteristic over mean cohesion and friction (EN 1052-3) [-].
 MEAN, SHEAR = 1.2, 0.8
@@ -44,6 +45,10 @@ STRONGEST = {GENERAL: 75e6, THIN: 50e6}
 
 #: Confidence factor of a level of knowledge [-]: Circolare 7/2019, table C8.5.IV.
 CONFIDENCE = {"LC1": 1.35, "LC2": 1.2}
+_knowledge = such(
+    lambda v: isinstance(v, str) and v in CONFIDENCE,
+    "LC1 or LC2; LC3 needs tests: give what they say to materials.masonry",
+)
 #: Friction in a joint: Circolare 7/2019, C8.7.1.3.1.1. Tensile strength over tau0: C8.7.1.16 [-].
 LOCAL_FRICTION, TENSION = 0.577, 1.5
 #: Direct tensile strength over cohesion of a joint [-], Lourenço and Rots (1997).
@@ -148,7 +153,7 @@ def en1996(
 @validated
 def ntc2018(
     masonry: Annotated[str, oneOf(*TABLE)],
-    knowledge: Annotated[str, oneOf(*CONFIDENCE)],
+    knowledge: Annotated[str, _knowledge],
     confidence: Annotated[float, number("", 1, 2)] | None = None,
 ) -> dict[str, Any]:
     """Existing masonry of table C8.5.I of Circolare 7/2019 to NTC 2018: E, G, fc, fv0, ft, friction and density.
