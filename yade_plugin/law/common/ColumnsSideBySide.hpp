@@ -152,9 +152,7 @@ void ColumnsSideBySide<LawType>::advance(int point, int from, int count, const d
                           count, normalStress);
     if (left == 0) return;
 
-    int begin = 0, end = count; // of the subcontacts that need the whole law
-    while (!pending[begin])
-        ++begin;
+    int begin = int(std::find(pending, pending + count, 1) - pending), end = count; // those that need the whole law
     while (!pending[end - 1])
         --end;
     if (LawType::fasterOneByOne(int(left), (end - 1) / lanes - begin / lanes + 1)) {

@@ -478,8 +478,7 @@ bool JointPlan::advanceIntact(Run& run, double& taken) {
 bool JointPlan::endsIntact(Run& run, const IntactFaces& faces) const {
     auto& shapes = run.shapes();
     auto& frames = run.frames;
-    Mask yielding[most];
-    std::fill_n(yielding, run.n, 0);
+    Mask yielding[most] = {};
     const auto look = [&](int p) {
         plane_ ? jumpIntactInPlane(run.n, faces, run.offset(1, p), frames)
                : jumpIntact(run.n, faces, run.offset(1, p), run.offset(2, p), frames);

@@ -244,8 +244,7 @@ bool sameMoments(const Points& one, const Points& other) {
     return moments(one).isApprox(moments(other), 1e-6);
 }
 
-Refinement::Limit::Limit(const JointKind& kind, int wanted)
-    : columns_(kind.states->columns.unsynchronised().get()), convex_(columns_->isConvex()) {
+Refinement::Limit::Limit(const JointKind& kind, int wanted) : columns_(kind.states->columns.unsynchronised().get()) {
     const auto& columns = *columns_;
     const auto& p = columns.law().properties();
     const auto& first = kind.shapes->joints[0];
@@ -286,16 +285,12 @@ bool Refinement::isDue(const JointKind& kind, const Limit& limit, double part, i
     const auto& shapes = *kind.shapes;
     const auto& columns = *kind.states->columns.unsynchronised();
     if (shapes.converted[j]) return false;
-    if (!shapes.pointwise[j]) { // its stresses are linear: the outermost points reach a convex limit first
+    for (int p = 0; p < shapes.points && !shapes.pointwise[j]; ++p) {
         const auto& k = columns.stiffness();
-        const bool outermost = limit.isConvex() && !shapes.rim.empty();
-        for (int n = 0; n < (outermost ? int(shapes.rim.size()) : shapes.points); ++n) {
-            const Vector3r jump = shapes.intactJumpAt(outermost ? shapes.rim[n] : n, j);
-            if (limit.isReached(part, k.normal * jump[0], k.shear * jump[1], k.shear * jump[2])) return true;
-        }
-        return false;
+        const Vector3r jump = shapes.intactJumpAt(p, j);
+        if (limit.isReached(part, k.normal * jump[0], k.shear * jump[1], k.shear * jump[2])) return true;
     }
-    for (int p = 0; p < shapes.points; ++p) {
+    for (int p = 0; p < shapes.points && shapes.pointwise[j]; ++p) {
         const double a = *columns.shearStressA(p, j), b = *columns.shearStressB(p, j);
         const double* damage = limit.cracks() ? columns.column(Role::BondDamage, p, j) : nullptr;
         if ((damage && *damage > 0) || *columns.regime(p, j) == Regime::Crushing) return true;

@@ -42,14 +42,12 @@ private:
         Limit(const JointKind&, int wanted);
         int points() const { return points_; } // along a side that a joint gets; 0: it keeps those that it has
         bool cracks() const { return cracks_; }
-        bool isConvex() const { return convex_; } // whether it bounds a convex set of stresses
         bool isReached(double part, double normalStress, double shearStressA, double shearStressB) const;
 
     private:
         bool yields(double normalStress, double shearStressA, double shearStressB) const;
 
         const LawColumns* columns_;
-        bool convex_;
         int points_ = 0;
         double elasticLimit_ = 0; // in compression [Pa]; 0: none
         bool cracks_ = false;     // whether the limits of its bond count

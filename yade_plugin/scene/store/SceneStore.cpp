@@ -51,14 +51,8 @@ std::string valuesOf(const JointProperties& properties) {
 
 // Whether the bodies of a scene still have the State objects that were read.
 bool sameStates(const yade::Scene& scene, const BodyColumns& bodies) {
-    const auto& all = scene.bodies->body;
-    constexpr std::size_t ahead =
-        8; // bodies lie apart in memory: the processor is asked for them before they are needed
-    for (std::size_t n = 0; n < all.size(); ++n) {
-        if (n + ahead < all.size() && all[n + ahead]) __builtin_prefetch(&all[n + ahead]->state);
-        const auto& body = all[n];
+    for (const auto& body : scene.bodies->body)
         if (body && body->state.get() != (bodies.has(body->id) ? &bodies.state(body->id) : nullptr)) return false;
-    }
     return true;
 }
 
@@ -237,13 +231,11 @@ void SceneStore::update(ScanScope scope) {
 }
 
 void SceneStore::pointsChanged() {
-    const bool same = sameJoints() && sameEngines(), wasChecked = checked;
+    const bool same = sameJoints();
     const long before = stiffnessRevision_;
     ++changes;
     update(ScanScope::Joints);
-    if (!same) return;
-    stiffnessRevision_ = before;
-    checked = wasChecked;
+    if (same) stiffnessRevision_ = before;
 }
 
 // Moves all joints into common groups, one for each kind. Within a kind they keep the order of the host's container.
