@@ -58,9 +58,8 @@ def fromBackToFront(solids, sight):
     front, back, beside = (np.where(side, gaps, -np.inf).max(axis=(0, 2)) for side in sides)  # fmt: skip
     # no planes part them on both sides, or along the line of sight
     hides = (beside <= -slack) & (np.minimum(front, back) <= -slack)
-    for behind, before in np.where(front > back, pairs, pairs[::-1])[
-        :, hides
-    ].T.tolist():
+    inOrder = np.where(front > back, pairs, pairs[::-1])
+    for behind, before in inOrder[:, hides].T.tolist():
         after[behind].append(before)
     hidden = [n for fronts in after for n in fronts]
     pending = np.bincount(hidden, minlength=solids.count)
