@@ -51,6 +51,7 @@ RIGID = ["tests/references/rigid*.json", "tests/references/couplets*.json", "tes
 DEFORMABLE = ["tests/references/deformable*.json"]
 CYCLIC = ["tests/references/cyclic*.json"]
 FLYING = ["tests/references/flying*.json"]
+IMPACTS = ["tests/references/impacts.json"]
 ALL = RIGID + DEFORMABLE + CYCLIC + FLYING
 
 
@@ -161,7 +162,7 @@ def ofStudies():
         Result("random_fields/one_brick", study("random_fields/one_brick"), ("random_fields/*_one_brick.png",), ("validation/random_fields/*.py", *RIGID), 20, ("validation/random_fields/one_brick",)),
         Result("open_tests", tuple(inYade(f"open_tests/{name}.py") for name in ("shear_walls", "panels", "strips", "specimens")), (), ("validation/open_tests/*.py", *RIGID, *DEFORMABLE), 16),
         Result("records", (*((PYTHON, "-m", "masonry.study", f"validation/records/ida_{name}.py", "--out", f"results/validation/records/{name}") for name in ("parapet", "gable", "facade")), program("records/results.py", "results/validation/records")),
-               ("records/fragility.xml", "records/fragility.png"), ("validation/records/*.py", *RIGID), 20, ("validation/records",)),
+               ("records/fragility.xml", "records/fragility.png"), ("validation/records/*.py", *RIGID, *IMPACTS), 20, ("validation/records",)),
         Result("stone_walls", (*(study(f"stone_walls/{name}")[0] for name in ("push", "cycles")), *(program(*words, *RUNS_OF_STONE) for words in (("stone_walls/results.py",), ("stone_walls/figures.py", "peaks")))),
                ("stone_walls/predictions.csv", "stone_walls/table.md", "stone_walls/peaks.png"), (*own("stone_walls"), *RIGID, *CYCLIC), 70, ("validation/stone_walls/push", "validation/stone_walls/cycles")),
         Result("stone_walls/cracks", (*(inYade("stone_walls/wall.py", "--wall", wall, "--out", f"results/validation/stone_walls/cracks/{wall}") for wall in CRACKED), program("stone_walls/figures.py", "cracks", *(f"results/validation/stone_walls/cracks/{wall}" for wall in CRACKED))),
