@@ -52,7 +52,7 @@ DEFORMABLE = ["tests/references/deformable*.json"]
 CYCLIC = ["tests/references/cyclic*.json"]
 FLYING = ["tests/references/flying*.json"]
 IMPACTS = ["tests/references/impacts.json"]
-ALL = RIGID + DEFORMABLE + CYCLIC + FLYING
+ALL = RIGID + DEFORMABLE + CYCLIC + FLYING + IMPACTS
 
 
 @dataclass(frozen=True)

@@ -98,7 +98,7 @@ def state():
         "force on the base [N]": list(O.forces.f(0, True)),
         "torque on the base [N m]": list(O.forces.t(0, True)),
         "error of the balance [-]": [balance.pop("error")],
-        # no reference has joints that get more points
+        # no reference has joints that get more points, and most have no impacts
         "energy [J]": [
             balance[n]
             for n in balance

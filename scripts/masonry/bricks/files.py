@@ -199,10 +199,9 @@ def _byMeshio(path):
     meshio = needed("meshio")  # takes a second, and few scenes need it
     with open(path, "rb") as file:
         content = file.read()
+    # meshio would look for it without end
     if content.startswith(b"ply") and b"end_header" not in content:
-        raise ValueError(
-            "its head has no end"
-        )  # which meshio would look for without end
+        raise ValueError("its head has no end")
     try:
         mesh = meshio.read(path)
     except (Exception, SystemExit) as error:  # meshio ends the program for some files

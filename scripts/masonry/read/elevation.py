@@ -93,9 +93,9 @@ class Structure:
 
     @functools.cached_property
     def cracks(self):
-        """Joints that are cracked, crushed or seams, in lists of one number of corners and one side: arrays of the bodies on this side;
-        the joints' numbers; their kinds, as in :mod:`masonry.read.painting`; their crushing, or 0 [m]; the corners as built [m]; and
-        their displacements with these bodies [m].
+        """Joints that are cracked, crushed or seams: a list with an entry for each side of all joints that have the same number of
+        corners. An entry has arrays: the bodies on this side; the numbers of the joints; their kinds, as in
+        :mod:`masonry.read.painting`; their crushing, or 0 [m]; their corners as built [m]; and how these move with the bodies [m].
         """
         j, found = self.joints, []
         if not j:
@@ -167,11 +167,10 @@ class Elevation:
         painting = Painting(self.view.towards, thin, bold)
         now = copy.copy(built)
         now.groups = [Alike(g.index, g.corners + magnification * s.moved[np.array([nodes[n] for n in g.index])], g.faces) for g in built.groups]  # fmt: skip
-        behind = np.argsort(np.concatenate([g.index for g in built.groups])) - built.count  # fmt: skip
         for g in built.groups if magnification else ():
-            painting.blocks(behind[g.index], g)
+            painting.blocks(np.full(len(g.index), -1), g)
         colours = np.array([rgb(SHADES[s.shades.get(body, "brick")]) for body in self.bodies])  # fmt: skip
-        # in front of each there is a place for each joint
+        # the joints of a block come after it and before the next block
         places = 10**9 * np.argsort(fromBackToFront(now, sight))
         for g in now.groups:
             painting.blocks(places[g.index], g, colours[g.index])

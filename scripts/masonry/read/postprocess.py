@@ -42,7 +42,7 @@ def _load():
             for kind in ("png", "svg"):
                 figure.savefig(io.BytesIO(), format=kind)
         import jinja2, scipy.spatial  # noqa: F401, E401
-    gc.freeze()  # what has been loaded stays
+    gc.freeze()  # garbage is no longer looked for among what has been loaded
 
 
 def _folder():
