@@ -13,9 +13,7 @@ options = parser(__doc__, until=None)
 options.add_argument("--spread", metavar="MM", type=float, help="by how much [mm]")
 args = options.parse_args()
 
-arch = bricks.Arch(
-    thickness=0.15, depth=0.3, stones=7, radius=0.925, angle=157.5, skewback=0.2
-)
+arch = bricks.Arch(thickness=0.15, depth=0.3, stones=7, radius=0.925, angle=157.5, skewback=0.2)
 stones = materials.dry(friction=0.7, normalStiffness=1e11)
 scene = Scene("arch", arch, stones, title="Arch of 7 voussoirs", arguments=args)
 left, right = scene.hold(7, name="left"), scene.hold(8, name="right")

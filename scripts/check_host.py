@@ -21,22 +21,25 @@ from itertools import zip_longest
 HOST = pathlib.Path(__file__).resolve().parents[1] / "yade_plugin" / "host"
 TABLES = HOST / "tables"
 WORD = 8  # [bytes]
-HEAD = 2  # words before slot 0: the distance to the beginning of the object, and the type information
+HEAD = (
+    2  # words before slot 0: the distance to the beginning of the object, and the type information
+)
 OPTIONAL = "Polyhedra"  # a YADE without CGAL does not have it
 #: What makes names of functions long and says nothing here.
 SHORTER = [
     (r", mpl_::na", ""),
     (r"\[abi:cxx11\]", ""),
-    (r"std::__cxx11::basic_string<char, std::char_traits<char>, std::allocator<char> >", "std::string"),
+    (
+        r"std::__cxx11::basic_string<char, std::char_traits<char>, std::allocator<char> >",
+        "std::string",
+    ),
     (r"Eigen::Matrix<double, 3, 1, 0, 3, 1>", "Vector3r"),
     (r"\b(boost::python|boost::mpl|boost|yade|mpl_|api)::", ""),
-]  # fmt: skip
+]
 
 
 def output(*command, text=None):
-    return subprocess.run(
-        command, input=text, capture_output=True, text=True, check=True
-    ).stdout
+    return subprocess.run(command, input=text, capture_output=True, text=True, check=True).stdout
 
 
 def declaredClasses():
@@ -62,9 +65,7 @@ class Library:
         """Address of a word -> name of the symbol that the word will point to."""
         names = {address: name for name, (address, _) in self.symbols.items()}
         found, listed = {}, output("objdump", "-R", self.path)
-        for address, target in re.findall(
-            r"^([0-9a-f]{16}) +\S+ +(\S+)$", listed, re.M
-        ):
+        for address, target in re.findall(r"^([0-9a-f]{16}) +\S+ +(\S+)$", listed, re.M):
             local = re.fullmatch(r"\*ABS\*\+0x([0-9a-f]+)", target)
             target = names.get(int(local[1], 16), "") if local else target
             found[int(address, 16)] = target.split("@")[0]
@@ -77,7 +78,7 @@ class Library:
             return None
         slots = range(address + HEAD * WORD, address + size, WORD)
         words = [self.pointers.get(slot, "") for slot in slots]
-        return [brief(word) for word in output("c++filt", text="\n".join(words)).split("\n")]  # fmt: skip
+        return [brief(word) for word in output("c++filt", text="\n".join(words)).split("\n")]
 
     def sizeOf(self, name):
         """Size [bytes] of the objects that YADE's own function makes; None if it is not here."""
@@ -110,10 +111,13 @@ class Yade:
     @classmethod
     def ofFolder(cls, folder, version):
         # Of the builds in a package the plain one, whose numbers are double.
-        core = sorted(pathlib.Path(folder).rglob("libyade.so"), key=lambda p: (p.parent.name != "yade-double", p))  # fmt: skip
+        core = sorted(
+            pathlib.Path(folder).rglob("libyade.so"),
+            key=lambda p: (p.parent.name != "yade-double", p),
+        )
         if not core:
             sys.exit(f"{folder}: no libyade.so in it")
-        paths = sorted(core[0].parent.glob("lib*.so"), key=lambda p: p.name != "libyade.so")  # fmt: skip
+        paths = sorted(core[0].parent.glob("lib*.so"), key=lambda p: p.name != "libyade.so")
         libraries = [Library(str(path)) for path in paths]
         classes = {}
         for name in declaredClasses():
@@ -164,7 +168,10 @@ class Yade:
             slots = enumerate(zip_longest(functions, mine, fillvalue="nothing"))
             other = ((slot, *pair) for slot, pair in slots if pair[0] != pair[1])
             for slot, theirs, own in list(other)[:1]:
-                yield f"{name}, virtual function {slot} of {len(mine)}: {theirs} in {known.version}, {own} in this YADE"
+                yield (
+                    f"{name}, virtual function {slot} of {len(mine)}: {theirs} in {known.version},"
+                    f" {own} in this YADE"
+                )
         for call in sorted(known.calls - self.calls):
             yield f"not in this YADE: {output('c++filt', call).strip()}"
 
@@ -188,7 +195,7 @@ def read(package):
         return Yade.ofFolder(package, "this YADE")
     with tempfile.TemporaryDirectory() as folder:
         subprocess.run(["dpkg-deb", "-x", package, folder], check=True)
-        return Yade.ofFolder(folder, output("dpkg-deb", "-f", package, "Version").strip())  # fmt: skip
+        return Yade.ofFolder(folder, output("dpkg-deb", "-f", package, "Version").strip())
 
 
 def report(yade):
@@ -198,9 +205,7 @@ def report(yade):
     fits = [version for version, wrong in found.items() if not wrong]
     absent = "" if OPTIONAL in yade.classes else f", without {OPTIONAL}"
     slots = sum(len(functions) for _, functions in yade.classes.values())
-    print(
-        f"{yade.version}: {len(yade.classes)} classes, {slots} virtual functions{absent}"
-    )
+    print(f"{yade.version}: {len(yade.classes)} classes, {slots} virtual functions{absent}")
     if fits:
         print(f"fits: as {' and '.join(fits)}")
     else:

@@ -41,7 +41,10 @@ scene = Scene(
     bricks.stack(2, UNIT),
     materials.calciumSilicate(),
     gravity=0,
-    columns="time_s opening_mm slide_mm normal_stress_MPa shear_stress_MPa normal_force_kN shear_force_kN".split(),
+    columns=(
+        "time_s opening_mm slide_mm normal_stress_MPa shear_stress_MPa normal_force_kN"
+        " shear_force_kN".split()
+    ),
     arguments=args,
 )
 base = scene.platen("bottom", height=HEIGHT)

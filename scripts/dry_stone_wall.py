@@ -9,9 +9,7 @@ from masonry import Scene, bricks, materials
 
 wall = bricks.Wall(1.0, 1.0, unit=(0.2, 0.1, 0.1), halves=False)
 
-scene = Scene(
-    "dry_stone_wall", wall, materials.dry(friction=0.65, normalStiffness=2e10)
-)
+scene = Scene("dry_stone_wall", wall, materials.dry(friction=0.65, normalStiffness=2e10))
 scene.platen("bottom")
 scene.watch(wall.high, name="crest")
 scene.settle()

@@ -6,9 +6,7 @@ It sways in its piers. It takes about 25 s.
 
 from masonry import Scene, bricks, materials
 
-opening = lambda x, z, height: bricks.Opening(
-    x, z, 1.32, height, bricks.Lintel(0.22, 0.162)
-)
+opening = lambda x, z, height: bricks.Opening(x, z, 1.32, height, bricks.Lintel(0.22, 0.162))
 places = (1.1, 4.29, 7.48, 10.67, 13.86)  # [m]
 doors = [opening(x, 0, 2.106) for x in places]
 windows = [opening(x, 3.969, 1.377) for x in places]

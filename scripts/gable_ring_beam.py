@@ -13,7 +13,12 @@ from masonry import Scene, bricks, materials
 from masonry.scene.options import parser
 
 options = parser(__doc__, until=None)
-options.add_argument("--eaves", choices=["beam", "stones"], default="beam", help="what stands at the eaves (default: beam)")  # fmt: skip
+options.add_argument(
+    "--eaves",
+    choices=["beam", "stones"],
+    default="beam",
+    help="what stands at the eaves (default: beam)",
+)
 args = options.parse_args()
 
 LENGTH, EAVES, RISE, THICK, COURSE = 4.8, 2.7, 2.4, 0.3, 0.3  # [m]
@@ -24,17 +29,19 @@ below = EAVES - COURSE if beamed else EAVES
 gable = bricks.Wall(LENGTH, RISE, unit=UNIT, halves=False)
 for side in (-1, 1):  # both verges
     gable = gable.cut((LENGTH / 2, 0, RISE), (side * RISE, 0, LENGTH / 2), own=True)
-inside = lambda b: abs(b.middle[0] - LENGTH / 2) < (RISE - b.middle[2]) * LENGTH / 2 / RISE  # fmt: skip
+inside = lambda b: abs(b.middle[0] - LENGTH / 2) < (RISE - b.middle[2]) * LENGTH / 2 / RISE
 wall = bricks.Wall(LENGTH, below, unit=UNIT, halves=False)
 wall += gable.where(inside).moved(0, 0, EAVES)
 stones = materials.dry(friction=0.6, density=2200, normalStiffness=2e11)
 if beamed:
-    beam = bricks.Beam((0, 0, below), LENGTH, THICK, COURSE, pieces=16, name="ring beam")  # fmt: skip
+    beam = bricks.Beam((0, 0, below), LENGTH, THICK, COURSE, pieces=16, name="ring beam")
     stones.withBeam(beam, young=30e9, density=2400)
     wall += beam
 
 title = f"Gable with {'a ring beam' if beamed else 'stones'} at its eaves"
-scene = Scene("gable_ring_beam", wall.named("gable"), stones, plane=False, title=title, arguments=args)  # fmt: skip
+scene = Scene(
+    "gable_ring_beam", wall.named("gable"), stones, plane=False, title=title, arguments=args
+)
 scene.platen("bottom")
 if beamed:
     for x in (0.01, LENGTH - 0.01):  # stiffness of a cross wall

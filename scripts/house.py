@@ -12,7 +12,9 @@ from masonry.scene.options import parser
 
 STIFFNESS = {"timber": 1e6, "rigid": 1e9, "none": 1e3}  # [N/m]
 options = parser(__doc__, until=None)
-options.add_argument("--diaphragm", choices=STIFFNESS, default="timber", help="kind of the floor (default: timber)")  # fmt: skip
+options.add_argument(
+    "--diaphragm", choices=STIFFNESS, default="timber", help="kind of the floor (default: timber)"
+)
 args = options.parse_args()
 
 UNIT = 0.6, 0.3, 0.3  # [m] squared stones
@@ -21,7 +23,9 @@ walls = bricks.Room(4.8, 4.8, height=2.4, unit=UNIT, front=[door], halves=False)
 floor = bricks.Floor((0, 0, 2.4), 4.8, 4.8, 0.2, along="x", strips=16)
 stones = materials.dry(friction=0.6, density=2200)
 stones.withFloor(floor, shear=STIFFNESS[args.diaphragm], mass=300, bearing="fixed")
-scene = Scene("house", walls + floor, stones, title=f"House, floor: {args.diaphragm}", arguments=args)  # fmt: skip
+scene = Scene(
+    "house", walls + floor, stones, title=f"House, floor: {args.diaphragm}", arguments=args
+)
 scene.platen("bottom")
 scene.watch((0.1, 2.4, 2.3), name="left")
 scene.watch((2.4, 4.7, 2.3), name="back")

@@ -19,13 +19,18 @@ footing = bricks.block((0, 0, -0.2), (LENGTH, THICK, 0), part="footing")
 pavement = bricks.block((-1, THICK + 0.1, -0.2), (LENGTH + 1, 4.5, 0), part="pavement")
 # pulses of 0.8 s, a whole sine each, with a peak of 2.5, 3, 3.5, ... m/s²
 pulses = [
-    (2.5 + 0.5 * n) * math.sin(2 * math.pi * EVERY * i / 0.8)
-    for n in range(5)
-    for i in range(80)
+    (2.5 + 0.5 * n) * math.sin(2 * math.pi * EVERY * i / 0.8) for n in range(5) for i in range(80)
 ]
 
 stones = materials.dry(friction=0.6, density=2000, normalStiffness=5e9)
-scene = Scene("shaken_parapet", walls + footing + pavement, stones, plane=False, title="Parapet shaken off a façade", collapse="follow")  # fmt: skip
+scene = Scene(
+    "shaken_parapet",
+    walls + footing + pavement,
+    stones,
+    plane=False,
+    title="Parapet shaken off a façade",
+    collapse="follow",
+)
 scene.hold((LENGTH / 2, THICK / 2, -0.1), name="footing")
 scene.hold((0, 2, -0.1), name="pavement")
 for z in (HEIGHT / 2, HEIGHT - 0.1):  # two floors
@@ -35,5 +40,5 @@ scene.watch((LENGTH / 2, THICK - 0.1, HEIGHT + PARAPET - 0.1), name="crest")
 scene.settle()
 scene.shake(pulses, EVERY, direction=(0, 1, 0))
 blow = max(-1e3 * force for force in scene.results.column("pavement_force_z_kN"))
-scene.result("largest_force_on_the_pavement", 1e-3 * blow, "kN", "of the rows of curve.csv")  # fmt: skip
+scene.result("largest_force_on_the_pavement", 1e-3 * blow, "kN", "of the rows of curve.csv")
 scene.finish()

@@ -11,31 +11,38 @@ from masonry.scene.options import parser
 args = parser(__doc__, until=None).parse_args()
 TOWARDS = {"+x": (1, 0, 0), "-x": (-1, 0, 0), "+y": (0, 1, 0), "-y": (0, -1, 0)}
 lintel = bricks.Lintel(bearing=0.4, height=0.4)
-door, window, small = (bricks.Opening(x, z, 1.2, 2.0 - z, lintel) for x, z in ((1.4, 0), (1.4, 0.8), (1.0, 0.8)))  # fmt: skip
+door, window, small = (
+    bricks.Opening(x, z, 1.2, 2.0 - z, lintel) for x, z in ((1.4, 0), (1.4, 0.8), (1.0, 0.8))
+)
 ground = bricks.Storey(2.4, front=[door], back=[window], left=[small], span="x")
 upper = bricks.Storey(2.4, front=[window], back=[window], span="y", ring=0.2)
 
 
 def push(side, off):
     """The acceleration that was held [g], with the mass of the floors off their middle by a share of the plan."""
-    house = bricks.House(4.0, 3.2, [ground, upper], unit=(0.8, 0.4, 0.4), eccentricity=(off, off))  # fmt: skip
+    house = bricks.House(4.0, 3.2, [ground, upper], unit=(0.8, 0.4, 0.4), eccentricity=(off, off))
     stones = materials.dry(friction=0.6, density=2200)
-    house.withFloors(
-        stones, shear=1e6, mass=[300, 150]
-    )  # [N/m], [kg/m²] of the floor and the roof
+    house.withFloors(stones, shear=1e6, mass=[300, 150])  # [N/m], [kg/m²] of the floor and the roof
     scene = Scene("storeys", house, stones, arguments=args)
     scene.platen("bottom")
     weights = house.weights(stones)
-    piers = {name: scene.section(house.heights[0], name, name.replace(" ", "_")) for name in weights}  # fmt: skip
+    piers = {
+        name: scene.section(house.heights[0], name, name.replace(" ", "_")) for name in weights
+    }
     scene.settle()
     if not table:
         for name, weight in weights.items():
-            print(f"{name:16}{weight:7.1f} kN by hand{-piers[name].forces()[0][2] / 1e3:7.1f} kN in the run")  # fmt: skip
+            print(
+                f"{name:16}{weight:7.1f} kN by hand{-piers[name].forces()[0][2] / 1e3:7.1f} kN in"
+                " the run"
+            )
     scene.accelerate(1.0, towards=TOWARDS[side], within=0.05)
     scene.finish()
     table[side, off] = scene.factor
     (bound,) = scene.bounds.entries.values()
-    rows.append(f"{side:>8} {off:8.0%} {scene.factor:8.3f} g {bound.get('factor', float('nan')):8.3f} g")  # fmt: skip
+    rows.append(
+        f"{side:>8} {off:8.0%} {scene.factor:8.3f} g {bound.get('factor', float('nan')):8.3f} g"
+    )
 
 
 table, rows = {}, ["towards  mass off   in the run    bound"]

@@ -14,14 +14,29 @@ args = options.parse_args()
 
 wall = bricks.Wall(0.44, 2.673, halves=False)
 title = "Panel with a textile" if args.layer else "Panel"
-scene = Scene("strengthened_panel", wall, materials.dry(normalStiffness=2e11), plane=False, title=title, arguments=args)  # fmt: skip
+scene = Scene(
+    "strengthened_panel",
+    wall,
+    materials.dry(normalStiffness=2e11),
+    plane=False,
+    title=title,
+    arguments=args,
+)
 scene.platen("bottom")
 top = scene.platen("top", rotation="free", guided="xy", height=0.02)
 scene.press(top, 20e3)  # [Pa] a light roof
 if (
     args.layer
 ):  # glass: E t of the fibres, their strength, their strain when they break; free over 0.1 m at a crack
-    scene.overlay((0, 1, 0), stiffness=3e6, strength=45e3, strain=0.02, gauge=0.1, fibres="vertical", name="textile")  # fmt: skip
+    scene.overlay(
+        (0, 1, 0),
+        stiffness=3e6,
+        strength=45e3,
+        strain=0.02,
+        gauge=0.1,
+        fibres="vertical",
+        name="textile",
+    )
 scene.watch((0.22, 0, 1.35), name="middle")
 scene.view((1, 0, 0))
 scene.settle()

@@ -42,9 +42,7 @@ scene = Scene(
     arguments=args,
 )
 scene.platen("bottom")
-top = scene.platen(
-    "top", rotation="free", upTo=LOAD_HEIGHT, recorded=LOAD_HEIGHT, drive="x"
-)
+top = scene.platen("top", rotation="free", upTo=LOAD_HEIGHT, recorded=LOAD_HEIGHT, drive="x")
 stress = args.level * 1e3 / (1.0 * BLOCK[1])  # [Pa] on the top course
 scene.press(top, stress, riding=args.load_line == "riding")
 scene.settle(damping="local", record=False)

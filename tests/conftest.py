@@ -23,13 +23,26 @@ from hypothesis import HealthCheck, settings
 
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 BUILD = os.path.join(ROOT, "build")
-RINGS = ["common", "law", "motion", "blocks", "contact", "files", "gates", "host", "package", "sanitizers", "fuzz", "studies", "scenes"]  # fmt: skip
+RINGS = [
+    "common",
+    "law",
+    "motion",
+    "blocks",
+    "contact",
+    "files",
+    "gates",
+    "host",
+    "package",
+    "sanitizers",
+    "fuzz",
+    "studies",
+    "scenes",
+]
 SLOW = ["sanitizers", "fuzz", "studies", "scenes"]  # rings of which every test is slow
 #: Rings, and files of other rings, that need no YADE.
 WITHOUT_YADE = ["common", "law", "motion", "blocks", "contact", "files", "gates"] + [
     f"package/test_{name}.py"
-    for name in "accelerograms bilinear bricks bricks_checks bricks_files bricks_vaults capacity compare_loops cycles imports "
-    "loops measure measured_loops plain_wall report_content stones".split()
+    for name in "accelerograms bilinear bricks bricks_checks bricks_files bricks_vaults capacity compare_loops cycles imports loops measure measured_loops plain_wall report_content stones".split()
 ]
 #: Fixtures that many tests share.
 TOGETHER = {"programs", "targets", "squat", "whole", "site"}
@@ -208,7 +221,9 @@ def pytest_terminal_summary(terminalreporter):
         reason = reason.removeprefix("Skipped: ")
         reasons[reason] = reasons.get(reason, 0) + 1
     for reason, count in reasons.items():
-        terminalreporter.write_line(f"NOT RUN: {count} test{'s' * (count > 1)}: {reason}", yellow=True)  # fmt: skip
+        terminalreporter.write_line(
+            f"NOT RUN: {count} test{'s' * (count > 1)}: {reason}", yellow=True
+        )
 
 
 @pytest.fixture

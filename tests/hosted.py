@@ -61,9 +61,7 @@ def box(low=(0, 0, 0), size=UNIT, turn=Quaternion.Identity):
 def lean(folder, blocks, masonry=None, /, *words, **settings):
     """A scene that leaves its rows and run.json alone, in this folder."""
     words = ["--lean", "--checkpoint-every", "0", "--out", str(folder), *words]
-    return Scene(
-        "lean", blocks, masonry or materials.dry(), arguments=words, **settings
-    )
+    return Scene("lean", blocks, masonry or materials.dry(), arguments=words, **settings)
 
 
 def standing(*words, **settings):
@@ -94,9 +92,7 @@ def pile(count=2, x=0.0, size=UNIT, turn=Quaternion.Identity, material=None, **h
 
 def join(joints=None, share=0.5, **around):
     """The engines and the joints of the blocks, and this share of the largest time step."""
-    engines(
-        joints if isinstance(joints, list) else [joints or MasonryJoint()], **around
-    )
+    engines(joints if isinstance(joints, list) else [joints or MasonryJoint()], **around)
     made = connect()
     O.dt = share * criticalTimeStep()[0]
     return made

@@ -37,9 +37,7 @@ def wall(case):
     for name, folder in runs.items():
         if os.path.exists(os.path.join(folder, "curve.csv")):
             curve = readCurve(folder)
-            axes.plot(
-                curve["displacement_mm"], curve["base_shear_kN"], lw=1, label=name
-            )
+            axes.plot(curve["displacement_mm"], curve["base_shear_kN"], lw=1, label=name)
             picture = os.path.join(folder, "cracks.png")
             shutil.copy(picture, os.path.join(HERE, case, f"cracks_{name}.png"))
     axes.set_xlim(0)
@@ -86,18 +84,14 @@ def couplet(case):
 
     for blocks, style in STYLES.items():
         line = dict(ls=style, lw=1.2, color="tab:red" if style == "-" else "tab:blue")
-        read = lambda run: readCurve(
-            os.path.join(RESULTS, "validation", case, f"{run}-{blocks}")
-        )
+        read = lambda run: readCurve(os.path.join(RESULTS, "validation", case, f"{run}-{blocks}"))
         path = read("opening")
         opening.plot(path["opening_mm"], path["normal_stress_MPa"], **line)
         for stress in ("0.1", "0.5", "1.0"):
             path = read("shear-" + stress)
             shear.plot(path["slide_mm"], path["shear_stress_MPa"], **line)
         path = {k: np.array(v) for k, v in read("closure").items()}
-        closure.plot(
-            -path["opening_mm"], -path["normal_stress_MPa"], **line, label=blocks
-        )
+        closure.plot(-path["opening_mm"], -path["normal_stress_MPa"], **line, label=blocks)
         path = read("closure-shear")
         cap.plot(path["normal_stress_MPa"], path["shear_stress_MPa"], **line)
     for axis, title, x, y in (

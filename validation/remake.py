@@ -47,7 +47,11 @@ YADE = ["yade", "-n", "-x"]
 #: repository.
 COMMON = ["scripts/masonry/scene/materials/published.py"]
 #: Families of stored references: a result depends on some of them.
-RIGID = ["tests/references/rigid*.json", "tests/references/couplets*.json", "tests/references/collapse*.json"]  # fmt: skip
+RIGID = [
+    "tests/references/rigid*.json",
+    "tests/references/couplets*.json",
+    "tests/references/collapse*.json",
+]
 DEFORMABLE = ["tests/references/deformable*.json"]
 CYCLIC = ["tests/references/cyclic*.json"]
 FLYING = ["tests/references/flying*.json"]
@@ -80,14 +84,24 @@ class Result:
 
 
 #: Minutes of the runs of cases, those of other names a third of a minute.
-CASE_MINUTES = {"wall_comp0a/deformable*": 4, "wall_comp1/deformable*": 3, "wall_comp4/deformable*": 5, "wall_comp6/deformable*": 10, "dry_joint_walls/deformable*": 4, "dry_joint_walls/points-32": 2}  # fmt: skip
+CASE_MINUTES = {
+    "wall_comp0a/deformable*": 4,
+    "wall_comp1/deformable*": 3,
+    "wall_comp4/deformable*": 5,
+    "wall_comp6/deformable*": 10,
+    "dry_joint_walls/deformable*": 4,
+    "dry_joint_walls/points-32": 2,
+}
 #: Cases whose runs are made by programs of their own.
 OWN = {"cyclic", "trade", "convergence"}
 
 
 def ofCases():
     """A result for every run of a case, and one for its figures."""
-    cases = sorted(os.path.basename(os.path.dirname(p)) for p in glob.glob(os.path.join(HERE, "*", "case.json")))  # fmt: skip
+    cases = sorted(
+        os.path.basename(os.path.dirname(p))
+        for p in glob.glob(os.path.join(HERE, "*", "case.json"))
+    )
     for case in [case for case in cases if case not in OWN]:
         names = []
         for run, chosen in studies.readCase(case).items():
@@ -96,28 +110,57 @@ def ofCases():
             name = f"{case}/{run}"
             names.append(name)
             soft = "deformable" in chosen["options"]
-            needs = sorted({f"{b}/{run}" for pair in chosen["limits"].values() for b in pair if isinstance(b, str)})  # fmt: skip
+            needs = sorted(
+                {
+                    f"{b}/{run}"
+                    for pair in chosen["limits"].values()
+                    for b in pair
+                    if isinstance(b, str)
+                }
+            )
             yield Result(
                 name,
                 ((PYTHON, "validation/validate.py", case, run),),
-                sources=(f"validation/{case}/case.json", f"scripts/{chosen['scene']}", *(DEFORMABLE if soft else RIGID)),
+                sources=(
+                    f"validation/{case}/case.json",
+                    f"scripts/{chosen['scene']}",
+                    *(DEFORMABLE if soft else RIGID),
+                ),
                 minutes=next((m for p, m in CASE_MINUTES.items() if fnmatch.fnmatch(name, p)), 0.3),
                 results=(f"validation/{case}/{run}",),
                 needs=tuple(needs),
                 limits=True,
-            )  # fmt: skip
+            )
         if case == "dry_joint_walls":
-            yield Result(f"{case}/envelopes", ((PYTHON, f"validation/{case}/compare.py"),), (f"{case}/envelopes.png",), ("validation/dry_joint_walls/compare.py",), 0.2, needs=tuple(names))  # fmt: skip
-            yield Result(f"{case}/figures", ((PYTHON, f"validation/{case}/pattern.py"),), (f"{case}/cracks.png",), (f"validation/{case}/pattern.py", "scripts/wall_dry.py", *RIGID), 0.3)  # fmt: skip
+            yield Result(
+                f"{case}/envelopes",
+                ((PYTHON, f"validation/{case}/compare.py"),),
+                (f"{case}/envelopes.png",),
+                ("validation/dry_joint_walls/compare.py",),
+                0.2,
+                needs=tuple(names),
+            )
+            yield Result(
+                f"{case}/figures",
+                ((PYTHON, f"validation/{case}/pattern.py"),),
+                (f"{case}/cracks.png",),
+                (f"validation/{case}/pattern.py", "scripts/wall_dry.py", *RIGID),
+                0.3,
+            )
             continue
         figures = (f"{case}/curve*.png", f"{case}/cracks*.png")
-        yield Result(f"{case}/figures", ((PYTHON, "validation/figures.py", case),), figures, ("validation/figures.py",), 0.3, needs=tuple(names))  # fmt: skip
+        yield Result(
+            f"{case}/figures",
+            ((PYTHON, "validation/figures.py", case),),
+            figures,
+            ("validation/figures.py",),
+            0.3,
+            needs=tuple(names),
+        )
 
 
 #: Folders of the studies of stone walls, and the walls whose crack patterns are drawn.
-RUNS_OF_STONE = [
-    f"results/validation/stone_walls/{name}" for name in ("push", "cycles")
-]
+RUNS_OF_STONE = [f"results/validation/stone_walls/{name}" for name in ("push", "cycles")]
 CRACKED = ("5", "13", "22", "50", "120")
 
 
@@ -128,48 +171,320 @@ def ofStudies():
     own = lambda folder: (f"validation/{folder}/*.py", f"validation/{folder}/case.json")
     walls = ("scripts/wall_comp*.py",)
     study = lambda path: (
-        (PYTHON, "-m", "masonry.study", f"validation/{path}.py", "--out", f"results/validation/{path}"),
+        (
+            PYTHON,
+            "-m",
+            "masonry.study",
+            f"validation/{path}.py",
+            "--out",
+            f"results/validation/{path}",
+        ),
         (PYTHON, "-m", "masonry.study.report", f"results/validation/{path}"),
-    )  # fmt: skip
-    loops = [(law, "softening" if law == "softening" else "cyclic") for law in ("cyclic", "softening")]  # fmt: skip
+    )
+    loops = [
+        (law, "softening" if law == "softening" else "cyclic") for law in ("cyclic", "softening")
+    ]
     return [
-        Result("closed_forms", (inYade("closed_forms/closed_forms.py"),), (), (*own("closed_forms"), *ALL), 3, limits=True),
-        Result("closed_forms/convergence", (inYade("closed_forms/convergence.py"),), (), (*own("closed_forms"), *RIGID), 3),
-        Result("contact", (inYade("contact/contact.py"),), (), (*own("contact"), *RIGID, *FLYING), 5, limits=True),
-        Result("statics", (inYade("statics/statics.py", "--sample", "500", "--seed", "31"),), (), (*own("statics"), *ALL), 10),
-        Result("held_loads", (inYade("held_loads/held_loads.py"),), (), (*own("held_loads"), *RIGID), 6, limits=True),
-        Result("stability/map", (inYade("stability/stability.py"),), ("stability/map.png",), ("validation/stability/stability.py", *ALL), 9, limits=True),
-        Result("stability/onset", (inYade("stability/onset.py"),), (), ("validation/stability/onset.py", *ALL), 2, limits=True),
-        Result("stability/invariance", (inYade("stability/invariance.py"),), (), ("validation/stability/invariance.py", *RIGID), 0.5, limits=True),
-        Result("stability/extremes", (inYade("stability/extremes.py"), inYade("stability/extremes.py", "--falls", "--scenes", "40")), (), ("validation/stability/extremes.py", *ALL), 8, limits=True),
-        Result("stability/soak", (inYade("stability/soak.py"),), (), ("validation/stability/soak.py", *RIGID), 5),
+        Result(
+            "closed_forms",
+            (inYade("closed_forms/closed_forms.py"),),
+            (),
+            (*own("closed_forms"), *ALL),
+            3,
+            limits=True,
+        ),
+        Result(
+            "closed_forms/convergence",
+            (inYade("closed_forms/convergence.py"),),
+            (),
+            (*own("closed_forms"), *RIGID),
+            3,
+        ),
+        Result(
+            "contact",
+            (inYade("contact/contact.py"),),
+            (),
+            (*own("contact"), *RIGID, *FLYING),
+            5,
+            limits=True,
+        ),
+        Result(
+            "statics",
+            (inYade("statics/statics.py", "--sample", "500", "--seed", "31"),),
+            (),
+            (*own("statics"), *ALL),
+            10,
+        ),
+        Result(
+            "held_loads",
+            (inYade("held_loads/held_loads.py"),),
+            (),
+            (*own("held_loads"), *RIGID),
+            6,
+            limits=True,
+        ),
+        Result(
+            "stability/map",
+            (inYade("stability/stability.py"),),
+            ("stability/map.png",),
+            ("validation/stability/stability.py", *ALL),
+            9,
+            limits=True,
+        ),
+        Result(
+            "stability/onset",
+            (inYade("stability/onset.py"),),
+            (),
+            ("validation/stability/onset.py", *ALL),
+            2,
+            limits=True,
+        ),
+        Result(
+            "stability/invariance",
+            (inYade("stability/invariance.py"),),
+            (),
+            ("validation/stability/invariance.py", *RIGID),
+            0.5,
+            limits=True,
+        ),
+        Result(
+            "stability/extremes",
+            (
+                inYade("stability/extremes.py"),
+                inYade("stability/extremes.py", "--falls", "--scenes", "40"),
+            ),
+            (),
+            ("validation/stability/extremes.py", *ALL),
+            8,
+            limits=True,
+        ),
+        Result(
+            "stability/soak",
+            (inYade("stability/soak.py"),),
+            (),
+            ("validation/stability/soak.py", *RIGID),
+            5,
+        ),
         *(
-            Result(f"dry_joint_walls/loops_{law}", (program("dry_joint_walls/compare_loops.py", "--joints", joints),), (f"dry_joint_walls/loops_{law}*",),
-                   ("validation/dry_joint_walls/compare_loops.py", "validation/dry_joint_walls/blind.json", "scripts/wall_dry.py", *RIGID, *CYCLIC), 20, (f"validation/dry_joint_walls/loops_{law}*",))
+            Result(
+                f"dry_joint_walls/loops_{law}",
+                (program("dry_joint_walls/compare_loops.py", "--joints", joints),),
+                (f"dry_joint_walls/loops_{law}*",),
+                (
+                    "validation/dry_joint_walls/compare_loops.py",
+                    "validation/dry_joint_walls/blind.json",
+                    "scripts/wall_dry.py",
+                    *RIGID,
+                    *CYCLIC,
+                ),
+                20,
+                (f"validation/dry_joint_walls/loops_{law}*",),
+            )
             for law, joints in loops
         ),
-        Result("dry_joint_walls/rig", tuple(inYade("dry_joint_walls/rig.py", "--rig", k, "--no-vtk", "--out", f"results/validation/dry_joint_walls/rig_{k}") for k in ("0", "37")), (), ("validation/dry_joint_walls/rig.py", *RIGID), 1, ("validation/dry_joint_walls/rig_*",)),
-        Result("dry_joint_walls/plain_wall", (program("dry_joint_walls/plain_wall.py"),), (), ("validation/dry_joint_walls/plain_wall.*",), 5),
-        Result("cyclic/joint", (inYade("cyclic/joint.py"), program("cyclic/figures.py")), ("cyclic/joint.png",), (*own("cyclic"), *CYCLIC), 0.5, ("validation/cyclic/joint",)),
-        Result("cyclic/walls", (program("cyclic/walls.py"),), ("cyclic/walls.md", "cyclic/loops_*.png", "cyclic/degradation.png"), (*own("cyclic"), *walls, *RIGID, *CYCLIC), 15, ("validation/cyclic/comp*",)),
-        Result("convergence", (program("convergence/converge.py"),), ("convergence/curves.png",), (*own("convergence"), *walls, *DEFORMABLE), 60, ("validation/convergence",)),
-        Result("trade", (program("trade/trade.py"),), ("trade/*.png", "trade/table.md", "trade/trade.json"), (*own("trade"), *walls, *RIGID, *DEFORMABLE), 300, ("trade",)),
-        Result("accuracy", (program("accuracy/accuracy.py"),), ("accuracy/table.md", "accuracy/accuracy.json"), (*own("accuracy"), "scripts/masonry/run/accuracy.py", *RIGID, *DEFORMABLE), 50, ("accuracy",), ("trade",)),
-        Result("sensitivity/tornado", (program("sensitivity/tornado.py"),), ("sensitivity/tornado.png",), ("validation/sensitivity/tornado.py", "validation/sensitivity/ranges.py", *walls, *RIGID), 45, ("validation/sensitivity/COMP-*",)),
-        Result("sensitivity/comp4", study("sensitivity/comp4"), ("sensitivity/comp4_*.png",), ("validation/sensitivity/comp4.py", "validation/sensitivity/ranges.py", *RIGID), 24, ("validation/sensitivity/comp4",)),
-        Result("sensitivity/comp1", study("sensitivity/comp1"), ("sensitivity/comp1_*.png",), ("validation/sensitivity/comp1.py", "validation/sensitivity/ranges.py", *RIGID), 16, ("validation/sensitivity/comp1",)),
-        Result("random_fields/one_metre", study("random_fields/one_metre"), ("random_fields/*_one_metre.png",), ("validation/random_fields/*.py", *RIGID), 20, ("validation/random_fields/one_metre",)),
-        Result("random_fields/one_brick", study("random_fields/one_brick"), ("random_fields/*_one_brick.png",), ("validation/random_fields/*.py", *RIGID), 20, ("validation/random_fields/one_brick",)),
-        Result("open_tests", tuple(inYade(f"open_tests/{name}.py") for name in ("shear_walls", "panels", "strips", "specimens")), (), ("validation/open_tests/*.py", *RIGID, *DEFORMABLE), 16),
-        Result("records", (*((PYTHON, "-m", "masonry.study", f"validation/records/ida_{name}.py", "--out", f"results/validation/records/{name}") for name in ("parapet", "gable", "facade")), program("records/results.py", "results/validation/records")),
-               ("records/fragility.xml", "records/fragility.png"), ("validation/records/*.py", *RIGID, *IMPACTS), 20, ("validation/records",)),
-        Result("stone_walls", (*(study(f"stone_walls/{name}")[0] for name in ("push", "cycles")), *(program(*words, *RUNS_OF_STONE) for words in (("stone_walls/results.py",), ("stone_walls/figures.py", "peaks")))),
-               ("stone_walls/predictions.csv", "stone_walls/table.md", "stone_walls/peaks.png"), (*own("stone_walls"), *RIGID, *CYCLIC), 70, ("validation/stone_walls/push", "validation/stone_walls/cycles")),
-        Result("stone_walls/cracks", (*(inYade("stone_walls/wall.py", "--wall", wall, "--out", f"results/validation/stone_walls/cracks/{wall}") for wall in CRACKED), program("stone_walls/figures.py", "cracks", *(f"results/validation/stone_walls/cracks/{wall}" for wall in CRACKED))),
-               ("stone_walls/cracks.png",), (*own("stone_walls"), *RIGID, *CYCLIC), 1, ("validation/stone_walls/cracks",)),
-        Result("calibration", (program("calibration/blind.py"),), ("calibration/table.md", "calibration/case1.png"), (*own("calibration"), "scripts/couplet.py", "scripts/masonry/study/calibrate.py", *RIGID), 10, ("validation/calibration",), limits=True),
-        Result("multifidelity", (program("multifidelity/multifidelity.py", "--jobs", "2"),), ("multifidelity/multifidelity.png",), (*own("multifidelity"), *RIGID, *DEFORMABLE), 120, ("validation/multifidelity",)),
-    ]  # fmt: skip
+        Result(
+            "dry_joint_walls/rig",
+            tuple(
+                inYade(
+                    "dry_joint_walls/rig.py",
+                    "--rig",
+                    k,
+                    "--no-vtk",
+                    "--out",
+                    f"results/validation/dry_joint_walls/rig_{k}",
+                )
+                for k in ("0", "37")
+            ),
+            (),
+            ("validation/dry_joint_walls/rig.py", *RIGID),
+            1,
+            ("validation/dry_joint_walls/rig_*",),
+        ),
+        Result(
+            "dry_joint_walls/plain_wall",
+            (program("dry_joint_walls/plain_wall.py"),),
+            (),
+            ("validation/dry_joint_walls/plain_wall.*",),
+            5,
+        ),
+        Result(
+            "cyclic/joint",
+            (inYade("cyclic/joint.py"), program("cyclic/figures.py")),
+            ("cyclic/joint.png",),
+            (*own("cyclic"), *CYCLIC),
+            0.5,
+            ("validation/cyclic/joint",),
+        ),
+        Result(
+            "cyclic/walls",
+            (program("cyclic/walls.py"),),
+            ("cyclic/walls.md", "cyclic/loops_*.png", "cyclic/degradation.png"),
+            (*own("cyclic"), *walls, *RIGID, *CYCLIC),
+            15,
+            ("validation/cyclic/comp*",),
+        ),
+        Result(
+            "convergence",
+            (program("convergence/converge.py"),),
+            ("convergence/curves.png",),
+            (*own("convergence"), *walls, *DEFORMABLE),
+            60,
+            ("validation/convergence",),
+        ),
+        Result(
+            "trade",
+            (program("trade/trade.py"),),
+            ("trade/*.png", "trade/table.md", "trade/trade.json"),
+            (*own("trade"), *walls, *RIGID, *DEFORMABLE),
+            300,
+            ("trade",),
+        ),
+        Result(
+            "accuracy",
+            (program("accuracy/accuracy.py"),),
+            ("accuracy/table.md", "accuracy/accuracy.json"),
+            (*own("accuracy"), "scripts/masonry/run/accuracy.py", *RIGID, *DEFORMABLE),
+            50,
+            ("accuracy",),
+            ("trade",),
+        ),
+        Result(
+            "sensitivity/tornado",
+            (program("sensitivity/tornado.py"),),
+            ("sensitivity/tornado.png",),
+            (
+                "validation/sensitivity/tornado.py",
+                "validation/sensitivity/ranges.py",
+                *walls,
+                *RIGID,
+            ),
+            45,
+            ("validation/sensitivity/COMP-*",),
+        ),
+        Result(
+            "sensitivity/comp4",
+            study("sensitivity/comp4"),
+            ("sensitivity/comp4_*.png",),
+            ("validation/sensitivity/comp4.py", "validation/sensitivity/ranges.py", *RIGID),
+            24,
+            ("validation/sensitivity/comp4",),
+        ),
+        Result(
+            "sensitivity/comp1",
+            study("sensitivity/comp1"),
+            ("sensitivity/comp1_*.png",),
+            ("validation/sensitivity/comp1.py", "validation/sensitivity/ranges.py", *RIGID),
+            16,
+            ("validation/sensitivity/comp1",),
+        ),
+        Result(
+            "random_fields/one_metre",
+            study("random_fields/one_metre"),
+            ("random_fields/*_one_metre.png",),
+            ("validation/random_fields/*.py", *RIGID),
+            20,
+            ("validation/random_fields/one_metre",),
+        ),
+        Result(
+            "random_fields/one_brick",
+            study("random_fields/one_brick"),
+            ("random_fields/*_one_brick.png",),
+            ("validation/random_fields/*.py", *RIGID),
+            20,
+            ("validation/random_fields/one_brick",),
+        ),
+        Result(
+            "open_tests",
+            tuple(
+                inYade(f"open_tests/{name}.py")
+                for name in ("shear_walls", "panels", "strips", "specimens")
+            ),
+            (),
+            ("validation/open_tests/*.py", *RIGID, *DEFORMABLE),
+            16,
+        ),
+        Result(
+            "records",
+            (
+                *(
+                    (
+                        PYTHON,
+                        "-m",
+                        "masonry.study",
+                        f"validation/records/ida_{name}.py",
+                        "--out",
+                        f"results/validation/records/{name}",
+                    )
+                    for name in ("parapet", "gable", "facade")
+                ),
+                program("records/results.py", "results/validation/records"),
+            ),
+            ("records/fragility.xml", "records/fragility.png"),
+            ("validation/records/*.py", *RIGID, *IMPACTS),
+            20,
+            ("validation/records",),
+        ),
+        Result(
+            "stone_walls",
+            (
+                *(study(f"stone_walls/{name}")[0] for name in ("push", "cycles")),
+                *(
+                    program(*words, *RUNS_OF_STONE)
+                    for words in (("stone_walls/results.py",), ("stone_walls/figures.py", "peaks"))
+                ),
+            ),
+            ("stone_walls/predictions.csv", "stone_walls/table.md", "stone_walls/peaks.png"),
+            (*own("stone_walls"), *RIGID, *CYCLIC),
+            70,
+            ("validation/stone_walls/push", "validation/stone_walls/cycles"),
+        ),
+        Result(
+            "stone_walls/cracks",
+            (
+                *(
+                    inYade(
+                        "stone_walls/wall.py",
+                        "--wall",
+                        wall,
+                        "--out",
+                        f"results/validation/stone_walls/cracks/{wall}",
+                    )
+                    for wall in CRACKED
+                ),
+                program(
+                    "stone_walls/figures.py",
+                    "cracks",
+                    *(f"results/validation/stone_walls/cracks/{wall}" for wall in CRACKED),
+                ),
+            ),
+            ("stone_walls/cracks.png",),
+            (*own("stone_walls"), *RIGID, *CYCLIC),
+            1,
+            ("validation/stone_walls/cracks",),
+        ),
+        Result(
+            "calibration",
+            (program("calibration/blind.py"),),
+            ("calibration/table.md", "calibration/case1.png"),
+            (
+                *own("calibration"),
+                "scripts/couplet.py",
+                "scripts/masonry/study/calibrate.py",
+                *RIGID,
+            ),
+            10,
+            ("validation/calibration",),
+            limits=True,
+        ),
+        Result(
+            "multifidelity",
+            (program("multifidelity/multifidelity.py", "--jobs", "2"),),
+            ("multifidelity/multifidelity.png",),
+            (*own("multifidelity"), *RIGID, *DEFORMABLE),
+            120,
+            ("validation/multifidelity",),
+        ),
+    ]
 
 
 def everything():
@@ -243,7 +558,9 @@ def git(*words):
 
 def commitOf(result):
     """Commit and date of the files of a result, as git has them, or of its README."""
-    paths = [f"validation/{p}" for p in result.makes] or [f"validation/{result.name.split('/')[0]}/README.md"]  # fmt: skip
+    paths = [f"validation/{p}" for p in result.makes] or [
+        f"validation/{result.name.split('/')[0]}/README.md"
+    ]
     return git("log", "-1", "--format=%h %cs", "--", *paths).split() or ["-", "-"]
 
 
@@ -277,7 +594,7 @@ def make(result, now):
         print("$", " ".join(command), flush=True)
         status = subprocess.run(command, cwd=ROOT).returncode
         if status not in ((0, 1) if result.limits else (0,)):
-            print(f"{result.name}: exit status {status}; the same command goes on", flush=True)  # fmt: skip
+            print(f"{result.name}: exit status {status}; the same command goes on", flush=True)
             return False
         if status:
             print(f"{result.name}: a limit is missed", flush=True)
@@ -287,16 +604,24 @@ def make(result, now):
 
 def builtFrom():
     """The commit of the plugin that runs use. Raises SystemExit if that is none of the state of the sources here."""
-    done = subprocess.run([PYTHON, "-c", "import masonry; print(masonry.commit)"], capture_output=True, text=True)  # fmt: skip
+    done = subprocess.run(
+        [PYTHON, "-c", "import masonry; print(masonry.commit)"], capture_output=True, text=True
+    )
     built = done.stdout.strip()
     commit = built.split("-")[0].rstrip("+")
     known = commit and git("rev-parse", "--verify", "--quiet", commit + "^{commit}")
     if not known:
-        raise SystemExit(f"the plugin that is installed is of commit {built or '-'}, which is not known here: bash scripts/setup.sh")  # fmt: skip
+        raise SystemExit(
+            f"the plugin that is installed is of commit {built or '-'}, which is not known here:"
+            " bash scripts/setup.sh"
+        )
     changed = git("diff", "--name-only", commit, "--", "yade_plugin", "scripts/masonry")
     if changed:
         some = ", ".join(changed.splitlines()[:3])
-        raise SystemExit(f"the plugin that is installed is of commit {built}, and {some} have changed since: bash scripts/setup.sh")  # fmt: skip
+        raise SystemExit(
+            f"the plugin that is installed is of commit {built}, and {some} have changed since:"
+            " bash scripts/setup.sh"
+        )
     return built
 
 
@@ -326,10 +651,19 @@ def table(every):
         taken = made.get(result.name, {}).get("minutes", result.minutes)
         rows[key] = [*parts, part or "all"], minutes + taken
     cells = [
-        [f"[{folder}]({folder}/README.md)", ", ".join(sorted(parts)), state, commit, date, f"{minutes:.0f}" if minutes >= 1 else "< 1"]
+        [
+            f"[{folder}]({folder}/README.md)",
+            ", ".join(sorted(parts)),
+            state,
+            commit,
+            date,
+            f"{minutes:.0f}" if minutes >= 1 else "< 1",
+        ]
         for (folder, state, commit, date), (parts, minutes) in sorted(rows.items())
-    ]  # fmt: skip
-    return studies.table(["folder", "results", "state", "commit", "date", "minutes of a core"], cells)  # fmt: skip
+    ]
+    return studies.table(
+        ["folder", "results", "state", "commit", "date", "minutes of a core"], cells
+    )
 
 
 def writeTable(every):
@@ -337,9 +671,11 @@ def writeTable(every):
     with open(README) as file:
         text = file.read()
     begin, end = map(re.escape, MARKS)
-    new, count = re.subn(f"(?<={begin}\n).*?(?={end})", lambda _: table(every) + "\n", text, flags=re.DOTALL)  # fmt: skip
+    new, count = re.subn(
+        f"(?<={begin}\n).*?(?={end})", lambda _: table(every) + "\n", text, flags=re.DOTALL
+    )
     if count != 1:
-        raise SystemExit(f"{README}: the marks {' and '.join(MARKS)} must be there once")  # fmt: skip
+        raise SystemExit(f"{README}: the marks {' and '.join(MARKS)} must be there once")
     if new != text:
         with open(README, "w") as file:
             file.write(new)
@@ -347,18 +683,30 @@ def writeTable(every):
 
 def main(words=None):
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("names", nargs="*", metavar="NAME", help="results or folders (default: all)")  # fmt: skip
+    parser.add_argument(
+        "names", nargs="*", metavar="NAME", help="results or folders (default: all)"
+    )
     parser.add_argument("--list", action="store_true", help="only say what there is")
-    parser.add_argument("--table", action="store_true", help="only write the table of README.md")  # fmt: skip
-    parser.add_argument("--force", action="store_true", help="make also what is not stale")  # fmt: skip
-    parser.add_argument("--minutes", type=float, default=float("inf"), help="leave out what takes longer")  # fmt: skip
-    parser.add_argument("--built", metavar="COMMIT", help="commit of the plugin that is used, if it cannot be found out")  # fmt: skip
+    parser.add_argument("--table", action="store_true", help="only write the table of README.md")
+    parser.add_argument("--force", action="store_true", help="make also what is not stale")
+    parser.add_argument(
+        "--minutes", type=float, default=float("inf"), help="leave out what takes longer"
+    )
+    parser.add_argument(
+        "--built",
+        metavar="COMMIT",
+        help="commit of the plugin that is used, if it cannot be found out",
+    )
     args = parser.parse_args(words)
     every, made = everything(), readMade()
-    unknown = [n for n in args.names if not any(r == n or r.startswith(n + "/") for r in every)]  # fmt: skip
+    unknown = [n for n in args.names if not any(r == n or r.startswith(n + "/") for r in every)]
     if unknown:
         parser.error(f"no result {', '.join(unknown)}; there are {', '.join(every)}")
-    wanted = [r for r in every.values() if not args.names or any(r.name == n or r.name.startswith(n + "/") for n in args.names)]  # fmt: skip
+    wanted = [
+        r
+        for r in every.values()
+        if not args.names or any(r.name == n or r.name.startswith(n + "/") for n in args.names)
+    ]
     if args.table:
         writeTable(every)
         return 0
@@ -366,7 +714,10 @@ def main(words=None):
         for result in wanted:
             state, commit, date = stateOf(result, made, every)
             minutes = made.get(result.name, {}).get("minutes", result.minutes)
-            print(f"{result.name:32} {state:10} {commit:10} {date:10} {minutes:6.1f} min  {' && '.join(' '.join(c) for c in result.commands)}")  # fmt: skip
+            print(
+                f"{result.name:32} {state:10} {commit:10} {date:10} {minutes:6.1f} min "
+                f" {' && '.join(' '.join(c) for c in result.commands)}"
+            )
         return 0
     failed, built = [], args.built or builtFrom()
     for result in wanted:

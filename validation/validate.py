@@ -44,9 +44,7 @@ def main(words=None):
     names = sorted(os.path.basename(os.path.dirname(case)) for case in cases)
     parser.add_argument("case", choices=names, help="folder in validation/")
     parser.add_argument("run", nargs="*", help="runs of its case.json (default: all)")
-    parser.add_argument(
-        "--measure", action="store_true", help="measure the results there are"
-    )
+    parser.add_argument("--measure", action="store_true", help="measure the results there are")
     parser.add_argument(
         "--results",
         default=os.path.join(RESULTS, "validation"),

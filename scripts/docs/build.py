@@ -25,14 +25,29 @@ YADE = "/usr/lib/x86_64-linux-gnu/yade-double/py"
 JAVASCRIPT = "/usr/share/javascript"  # of Debian
 MATHJAX = os.path.join(JAVASCRIPT, "mathjax")
 #: What equations as SVG need of MathJax, which has thirty times as much.
-PARTS = ["MathJax.js", "config/TeX-AMS_SVG-full.js", "extensions", "jax/element", "jax/input/TeX", "jax/output/SVG/config.js", "jax/output/SVG/jax.js", "jax/output/SVG/autoload", "jax/output/SVG/fonts/TeX", "localization/en"]  # fmt: skip
+PARTS = [
+    "MathJax.js",
+    "config/TeX-AMS_SVG-full.js",
+    "extensions",
+    "jax/element",
+    "jax/input/TeX",
+    "jax/output/SVG/config.js",
+    "jax/output/SVG/jax.js",
+    "jax/output/SVG/autoload",
+    "jax/output/SVG/fonts/TeX",
+    "localization/en",
+]
 
 #: The pages of the site by their sections. What stands in a folder of ``validation`` comes below its README.
 FIRST = "First steps"  # the notebooks of the tutorial come before its other pages
 SECTIONS = {
     FIRST: ["scripts/TASKS", "scripts/WALL", "gallery"],
-    "Manual": "scripts/README commands options scripts/STUDIES scripts/FILES yade_plugin/FOR_YADE_USERS".split(),
-    "Laws": "yade_plugin/law/README yade_plugin/law/cyclic_softening/README yade_plugin/contact/README".split(),
+    "Manual": (
+        "scripts/README commands options scripts/STUDIES scripts/FILES yade_plugin/FOR_YADE_USERS".split()
+    ),
+    "Laws": (
+        "yade_plugin/law/README yade_plugin/law/cyclic_softening/README yade_plugin/contact/README".split()
+    ),
     "Validation": ["validation/README"],
     "Reference": ["api/masonry", "classes"],
     "Project": "yade_plugin/README yade_plugin/host/README CONTRIBUTING CHANGELOG cite".split(),
@@ -87,7 +102,7 @@ def contents(documents, first=()):
         raise ValueError(f"no section of build.py has {', '.join(others)}")
     gone = sorted(p for p in named - GENERATED if p + ".md" not in documents)
     if gone:
-        raise ValueError(f"build.py names {', '.join(gone)}, which the repository does not have")  # fmt: skip
+        raise ValueError(f"build.py names {', '.join(gone)}, which the repository does not have")
     sections = {t: [*first, *p] if t == FIRST else p for t, p in SECTIONS.items()}
     return {
         "README.md": "".join(toctree(p, title) for title, p in sections.items()),
@@ -121,7 +136,7 @@ def stage(folder, out, runs):
 def mathjax(folder):
     """Copy what the pages need of Debian's MathJax."""
     for part in PARTS:
-        source, target = os.path.join(MATHJAX, part), os.path.join(folder, "mathjax", part)  # fmt: skip
+        source, target = os.path.join(MATHJAX, part), os.path.join(folder, "mathjax", part)
         if os.path.isdir(source):
             shutil.copytree(source, target, dirs_exist_ok=True)
         else:
@@ -133,7 +148,18 @@ def sphinx(out, builder, target, *more):
     """Run Sphinx on the staged pages; warnings are errors."""
     from sphinx.cmd.build import main
 
-    words = ["-b", builder, "-c", HERE, "-d", os.path.join(out, "doctrees-" + builder), "-W", "--keep-going", "-q", *more]  # fmt: skip
+    words = [
+        "-b",
+        builder,
+        "-c",
+        HERE,
+        "-d",
+        os.path.join(out, "doctrees-" + builder),
+        "-W",
+        "--keep-going",
+        "-q",
+        *more,
+    ]
     if main([*words, os.path.join(out, "source"), target]):
         raise SystemExit(f"Sphinx failed ({builder}): see above")
 
@@ -144,9 +170,13 @@ def bundle(static):
     """
     scripts = os.path.join(static, "scripts")
     for path, first, folder in (
-        (os.path.join(static, "styles", "furo.css"), r"@import url\(/javascript/([\w./-]+)\);", JAVASCRIPT),
+        (
+            os.path.join(static, "styles", "furo.css"),
+            r"@import url\(/javascript/([\w./-]+)\);",
+            JAVASCRIPT,
+        ),
         (os.path.join(scripts, "furo.js"), r'import Gumshoe from "\./([\w-]+\.js)";\n', scripts),
-    ):  # fmt: skip
+    ):
         text = pathlib.Path(path).read_text(encoding="utf-8")
         if part := re.match(first, text):
             begin = pathlib.Path(folder, part[1]).read_text(encoding="utf-8")
@@ -165,10 +195,14 @@ def pdf(page, target):
 
 
 def main(words=None):
-    parser = argparse.ArgumentParser(description="Make the site of the documentation and its PDF.")  # fmt: skip
-    parser.add_argument("--out", metavar="DIR", default=os.path.join(ROOT, "build", "docs"), help="where it goes")  # fmt: skip
+    parser = argparse.ArgumentParser(description="Make the site of the documentation and its PDF.")
+    parser.add_argument(
+        "--out", metavar="DIR", default=os.path.join(ROOT, "build", "docs"), help="where it goes"
+    )
     parser.add_argument("--no-pdf", action="store_true", help="the site alone")
-    parser.add_argument("--no-run", action="store_true", help="show the notebooks without what comes out of them")  # fmt: skip
+    parser.add_argument(
+        "--no-run", action="store_true", help="show the notebooks without what comes out of them"
+    )
     args = parser.parse_args(words)
     out = os.path.abspath(args.out)
     began = time.monotonic()

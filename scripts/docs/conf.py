@@ -42,7 +42,10 @@ mathjax2_config = {
 }
 myst_update_mathjax = False
 
-html_static_path = [os.path.join(os.path.dirname(os.path.abspath(__file__)), "static"), os.environ["MASONRY_DOCS_STATIC"]]  # fmt: skip
+html_static_path = [
+    os.path.join(os.path.dirname(os.path.abspath(__file__)), "static"),
+    os.environ["MASONRY_DOCS_STATIC"],
+]
 html_title = f"Masonry for YADE {release}"
 html_show_sourcelink = False
 html_copy_source = False
@@ -75,7 +78,9 @@ def _withTypes(lines, checks):
     first = next((n for n, line in enumerate(lines) if isField(line)), None)
     if first is None:
         return [*lines, "", *more, ""]
-    last = next((n for n, line in enumerate(lines) if line.startswith((":return", ":raise"))), first)  # fmt: skip
+    last = next(
+        (n for n, line in enumerate(lines) if line.startswith((":return", ":raise"))), first
+    )
     return [*lines[:first], *types, *lines[first:last], *more, *lines[last:]]
 
 

@@ -61,7 +61,12 @@ FOR_STAGES = {"begin", "checkOpen", "failed", "masonry", "present", "probe"}
 
 def _commands():
     """The commands of a scene by what they are for: dict of a title to their names."""
-    modules = {supports: "What holds it", connections: "What connects it", loads: "What loads it", records: "What is recorded"}  # fmt: skip
+    modules = {
+        supports: "What holds it",
+        connections: "What connects it",
+        loads: "What loads it",
+        records: "What is recorded",
+    }
     described = {title: [] for title in modules.values()}
     for name, thing in vars(Scene).items():
         module = sys.modules.get(getattr(_inner(thing), "__module__", None))
@@ -88,9 +93,9 @@ def commands():
     described, stages, own = _commands()
     text = ".. currentmodule:: masonry\n\n" + heading("Commands of a scene")
     text += (
-        "A scene is described, then it goes through its stages, then it is finished. Every command checks all that it is given "
-        "before it does anything; what it takes, with unit and bounds, is what the check has.\n\n"
-        ".. autoclass:: masonry.Scene\n   :no-members:\n\n"
+        "A scene is described, then it goes through its stages, then it is finished. Every command"
+        " checks all that it is given before it does anything; what it takes, with unit and bounds,"
+        " is what the check has.\n\n.. autoclass:: masonry.Scene\n   :no-members:\n\n"
     )
     once = set()
 
@@ -100,7 +105,13 @@ def commands():
             return ""
         found = heading(title, "-")
         for name in names:
-            of = "property" if isinstance(inspect.getattr_static(Scene, name), (property, functools.cached_property)) else "method"  # fmt: skip
+            of = (
+                "property"
+                if isinstance(
+                    inspect.getattr_static(Scene, name), (property, functools.cached_property)
+                )
+                else "method"
+            )
             found += f".. auto{of}:: masonry.Scene.{name}\n\n"
         return found
 
@@ -110,7 +121,12 @@ def commands():
 
 
 def _usage(action):
-    value = "" if action.nargs == 0 else " " + (action.metavar or "|".join(map(str, action.choices or ())) or action.dest.upper())  # fmt: skip
+    value = (
+        ""
+        if action.nargs == 0
+        else " "
+        + (action.metavar or "|".join(map(str, action.choices or ())) or action.dest.upper())
+    )
     return ", ".join(f"``{name}{value}``" for name in action.option_strings)
 
 
@@ -121,11 +137,14 @@ def optionsOfScenes():
     for action in parser._actions:
         if action.help == argparse.SUPPRESS or not action.option_strings:
             continue
-        usual = action.default if action.default not in (None, False, [], argparse.SUPPRESS) else ""  # fmt: skip
+        usual = action.default if action.default not in (None, False, [], argparse.SUPPRESS) else ""
         text = (action.help or "").replace("%%", "%")
         rows.append([_usage(action), escaped(str(usual)), escaped(text)])
     text = heading("Options of the command line")
-    text += "``yade -n -x SCENE.py --help`` explains these options, which all scenes share, and those of the scene.\n\n"
+    text += (
+        "``yade -n -x SCENE.py --help`` explains these options, which all scenes share, and those"
+        " of the scene.\n\n"
+    )
     text += table(rows, "30 12 58") + heading("Programs", "-")
     around = dict(cwd=ROOT, env={**os.environ, "COLUMNS": "100"})
     for name, command in PROGRAMS:
@@ -157,16 +176,20 @@ def classes():
     """The page of the classes that the plugin registers in YADE."""
     text = heading("Classes of the plugin")
     text += (
-        "The classes that the plugin registers in YADE, as ``help(masonry.MasonryJoint)`` has them. Values are in SI units. "
-        "Attributes of YADE's own classes from which they derive are left out.\n\n"
+        "The classes that the plugin registers in YADE, as ``help(masonry.MasonryJoint)`` has them."
+        " Values are in SI units. Attributes of YADE's own classes from which they derive are left"
+        " out.\n\n"
     )
     for name in masonry.classes:
         cls = getattr(masonry, name)
-        text += f".. py:class:: masonry.{name}\n\n   {escaped(' '.join((cls.__doc__ or '').split()))}\n\n"  # fmt: skip
+        text += (
+            f".. py:class:: masonry.{name}\n\n  "
+            f" {escaped(' '.join((cls.__doc__ or '').split()))}\n\n"
+        )
         rows = list(_attributes(cls))
         if rows:
             shown = table([["attribute", "default", "meaning"], *rows], "26 16 58")
-            text += "".join(f"   {line}\n" if line else "\n" for line in shown.split("\n"))  # fmt: skip
+            text += "".join(f"   {line}\n" if line else "\n" for line in shown.split("\n"))
     text += heading("Functions of the plugin", "-")
     about = masonry.criticalTimeStep.__doc__.split("C++ signature")[0].split()[3:]
     text += ".. py:function:: masonry.criticalTimeStep() -> tuple\n\n   "
@@ -216,7 +239,9 @@ def api():
                 text += "   :exclude-members: Scene\n"
             text += "\n"
         if page == "masonry":
-            text += ".. toctree::\n   :maxdepth: 1\n\n" + "".join(f"   {n}\n" for n in pages if n != page)  # fmt: skip
+            text += ".. toctree::\n   :maxdepth: 1\n\n" + "".join(
+                f"   {n}\n" for n in pages if n != page
+            )
         yield f"api/{page}.rst", text
 
 
@@ -224,11 +249,21 @@ def cite():
     """The page on how to cite the software and its papers, from CITATION.cff."""
     known = yaml.safe_load(read("CITATION.cff"))
     text = f"# How to cite\n\n{known['message']}\n\n"
-    people = lambda work: ", ".join(a.get("name") or f"{a['given-names']} {a['family-names']}" for a in work["authors"])  # fmt: skip
-    text += f"> {people(known)}: *{known['title']}*, version {known['version']}. {known['license']}.\n\n"
+    people = lambda work: ", ".join(
+        a.get("name") or f"{a['given-names']} {a['family-names']}" for a in work["authors"]
+    )
+    text += (
+        f"> {people(known)}: *{known['title']}*, version {known['version']}."
+        f" {known['license']}.\n\n"
+    )
     for paper in known.get("references", []):
         text += f"{paper['scope']}:\n\n> {people(paper)}: *{paper['title']}*"
         text += f", {paper['notes']}" if "notes" in paper else ""
-        text += f", doi [{paper['doi']}](https://doi.org/{paper['doi']})" if "doi" in paper else ""  # fmt: skip
+        text += f", doi [{paper['doi']}](https://doi.org/{paper['doi']})" if "doi" in paper else ""
         text += ".\n\n"
-    return text + "The file CITATION.cff, which reference managers read:\n\n```yaml\n" + read("CITATION.cff") + "```\n"  # fmt: skip
+    return (
+        text
+        + "The file CITATION.cff, which reference managers read:\n\n```yaml\n"
+        + read("CITATION.cff")
+        + "```\n"
+    )

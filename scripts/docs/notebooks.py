@@ -35,7 +35,9 @@ def run(path, kept, version):
         work = os.path.join(kept, "work")
         os.makedirs(work, exist_ok=True)
         notebook = nbformat.reads(contents.decode(), as_version=4)
-        client = nbclient.NotebookClient(notebook, timeout=LONGEST, kernel_name="python3", resources={"metadata": {"path": work}})  # fmt: skip
+        client = nbclient.NotebookClient(
+            notebook, timeout=LONGEST, kernel_name="python3", resources={"metadata": {"path": work}}
+        )
         client.execute()
         with open(there, "w", encoding="utf-8") as file:
             nbformat.write(notebook, file)
@@ -74,7 +76,9 @@ def markdown(notebook, name, write):
             page += source + "\n\n"
         elif cell["cell_type"] == "code" and source.strip():
             page += _fenced(source, "python")
-        spoken = _said("".join("".join(out["text"]) for out in outputs if out["output_type"] == "stream"))  # fmt: skip
+        spoken = _said(
+            "".join("".join(out["text"]) for out in outputs if out["output_type"] == "stream")
+        )
         if spoken:
             page += _fenced(spoken, "text")
         for out in outputs:
@@ -90,6 +94,6 @@ def markdown(notebook, name, write):
             elif kind:
                 pictures += 1
                 file = f"{name}_{pictures}.{KINDS[kind]}"
-                write(file, base64.b64decode(text) if kind == "image/png" else text.encode())  # fmt: skip
+                write(file, base64.b64decode(text) if kind == "image/png" else text.encode())
                 page += f"![]({file})\n\n"
     return page

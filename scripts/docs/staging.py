@@ -28,7 +28,7 @@ SOURCES = {
 }
 
 _BLOCKS = re.compile(r"^```.*?^```[^\n]*$|^(?: {4}|\t)[^\n]*$", re.M | re.S)
-_CODE = re.compile(r"^```.*?^```[^\n]*$|^(?: {4}|\t)[^\n]*$|(`+)(?!`).*?(?<!`)\1(?!`)", re.M | re.S)  # fmt: skip
+_CODE = re.compile(r"^```.*?^```[^\n]*$|^(?: {4}|\t)[^\n]*$|(`+)(?!`).*?(?<!`)\1(?!`)", re.M | re.S)
 _LINK = re.compile(r"(\]\()([^)\s]+)(\))")
 _TO_MODULE = re.compile(r"\[([^\]]+)\]\(([^)\s]+\.py)\)")
 _EQUATION = re.compile(r"^( *)```math$", re.M)
@@ -127,9 +127,9 @@ class Stage:
         def change(text):
             for found in (*_LINK.finditer(text), *_HTML.finditer(text)):
                 there = posixpath.normpath(posixpath.join(folder, found[2]))
-                if there.endswith(PICTURES) and os.path.isfile(os.path.join(ROOT, there)):  # fmt: skip
+                if there.endswith(PICTURES) and os.path.isfile(os.path.join(ROOT, there)):
                     self.copy(there)
-            return _LINK.sub(lambda m: m[1] + self.destination(path, m[2]) + m[3], text)  # fmt: skip
+            return _LINK.sub(lambda m: m[1] + self.destination(path, m[2]) + m[3], text)
 
         def toModules(text):
             return _TO_MODULE.sub(lambda m: self.toModule(path, m), text)
@@ -152,9 +152,14 @@ class Stage:
             if path in scenes:
                 name = scenes[path]
                 self.copy(f"scripts/gallery/{name}.png")
-                head = f"# {name}\n\n{aboutScene(name)}\n\n![{name}](gallery/{name}.png)\n\n    yade -n -x {path}\n\n"
+                head = (
+                    f"# {name}\n\n{aboutScene(name)}\n\n![{name}](gallery/{name}.png)\n\n    yade"
+                    f" -n -x {path}\n\n"
+                )
             self.copy(path)
-            self.write(path + ".md", f"{head}```{{literalinclude}} {file}\n:language: {language}\n```\n")  # fmt: skip
+            self.write(
+                path + ".md", f"{head}```{{literalinclude}} {file}\n:language: {language}\n```\n"
+            )
 
 
 def documents():
@@ -164,7 +169,11 @@ def documents():
 
 def gallery():
     """The names of the scenes of the gallery, those that have a picture there."""
-    return [posixpath.basename(path)[:-4] for path in files((".png",)) if path.startswith("scripts/gallery/")]  # fmt: skip
+    return [
+        posixpath.basename(path)[:-4]
+        for path in files((".png",))
+        if path.startswith("scripts/gallery/")
+    ]
 
 
 def aboutScene(name):
@@ -181,6 +190,9 @@ def galleryPage():
         first = about.partition("\n\n")[0]
         text = f"{picture}\n\n[{name}]({page})\n\n{first}"
         cards.append(f"::::{{container}} card\n{text}\n::::\n")
-    head = "# Gallery\n\nA picture leads to the scene that made it. Times are those of one core.\n\n:::::{container} gallery\n"
+    head = (
+        "# Gallery\n\nA picture leads to the scene that made it. Times are those of one"
+        " core.\n\n:::::{container} gallery\n"
+    )
     scenes = "\n".join(f"scripts/{name}.py" for name in gallery())
     return f"{head}{chr(10).join(cards)}:::::\n\n```{{toctree}}\n:hidden:\n\n{scenes}\n```\n"

@@ -184,7 +184,8 @@ def _register():
     except ImportError as error:
         if not any(map(_hasPlugin, __path__)):
             raise ImportError(
-                f"the masonry plugin is not built for {sys.executable}: bash scripts/setup.sh builds and installs it"
+                f"the masonry plugin is not built for {sys.executable}: bash scripts/setup.sh"
+                " builds and installs it"
             ) from None
         if "failed to map" in str(error):
             end(memory.FULL)
@@ -194,8 +195,9 @@ def _register():
         from yade.math import getDigits10
 
         raise ImportError(
-            f"yade{suffix} {version}, of {getDigits10(1)} digits, does not fit the masonry plugin, built for another one, of 15 "
-            f"(bash scripts/setup.sh builds it for the YADE of this machine): {error}"
+            f"yade{suffix} {version}, of {getDigits10(1)} digits, does not fit the masonry plugin,"
+            " built for another one, of 15 (bash scripts/setup.sh builds it for the YADE of this"
+            f" machine): {error}"
         ) from None
     import yade.wrapper
 

@@ -21,9 +21,7 @@ for _stream in (sys.stdout, sys.stderr):
 
 #: What a terminal obeys and does not show: control characters but for the ends of lines and tabs, and marks that turn the
 #: direction of a text.
-_CONTROL = re.compile(
-    r"[\x00-\x08\x0b-\x1f\x7f-\x9f\u200e\u200f\u2028-\u202e\u2066-\u2069]"
-)
+_CONTROL = re.compile(r"[\x00-\x08\x0b-\x1f\x7f-\x9f\u200e\u200f\u2028-\u202e\u2066-\u2069]")
 
 
 def plain(text):

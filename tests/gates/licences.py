@@ -11,9 +11,7 @@ ENDINGS = tree.CPP + tree.SHELL + (".py", ".js", ".css", "CMakeLists.txt", ".ci/
 
 def isMissing(path, root=tree.ROOT):
     first = tree.read(path, root).splitlines()[:3]
-    return not any(
-        re.fullmatch(rf"(#|//) {LICENCE}|/\* {LICENCE} \*/", line) for line in first
-    )
+    return not any(re.fullmatch(rf"(#|//) {LICENCE}|/\* {LICENCE} \*/", line) for line in first)
 
 
 def missing():

@@ -33,9 +33,7 @@ _COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/", re.DOTALL)
 _WORDS = re.compile(r"\w+|[^\w\s]")
 _TEMPLATE = re.compile(r"^\s*template\s*<[^{;]*?>\s+(?=\w)")
 _CLASS = re.compile(r"\s*(class|struct|union)\s+(\w+)")
-_NO_FUNCTION = re.compile(
-    r"\s*(namespace|enum|extern|if|for|while|switch|else|do|try|catch|\{)"
-)
+_NO_FUNCTION = re.compile(r"\s*(namespace|enum|extern|if|for|while|switch|else|do|try|catch|\{)")
 _NAME = re.compile(r"TEST_CASE.*?\"[^\"]*\"|[^\s(]+(?= *\()|\w+ = \[")
 
 
@@ -121,7 +119,10 @@ def over(part, sizes, places, allowed):
         if size <= allowed[kind]:
             continue
         if kind in places:
-            yield f"{places[kind]} has {size} lines, and no {kind} of the {part} may have more than {allowed[kind]}: {SPLIT}"
+            yield (
+                f"{places[kind]} has {size} lines, and no {kind} of the {part} may have more than"
+                f" {allowed[kind]}: {SPLIT}"
+            )
         else:
             yield f"{part}: {size} {kind} are {size - allowed[kind]} more than its budget. {REDUCE}"
 
@@ -131,7 +132,7 @@ def main(arguments):
     allowed = budget()
     for part, (sizes, places) in weighed.items():
         for kind, size in sizes.items():
-            print(f"{part:8} {kind:9}{size:8,} of {allowed[part][kind]:8,}  {places.get(kind, '')}")  # fmt: skip
+            print(f"{part:8} {kind:9}{size:8,} of {allowed[part][kind]:8,}  {places.get(kind, '')}")
     if "--write" in arguments:
         lower = {
             part: {kind: min(size, allowed[part][kind]) for kind, size in sizes.items()}

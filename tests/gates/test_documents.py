@@ -15,9 +15,7 @@ def planted(tmp_path, text):
     (tmp_path / "scripts" / "wall.py").write_text("")
     (tmp_path / "scripts" / "run.sh").write_text("")
     (tmp_path / "scripts" / "masonry" / "measure.py").write_text("def peak(): ...\n")
-    (tmp_path / "other.md").write_text(
-        "# A heading, with `code`\n\n# Twice\n\n# Twice\n"
-    )
+    (tmp_path / "other.md").write_text("# A heading, with `code`\n\n# Twice\n\n# Twice\n")
     (tmp_path / "document.md").write_text(text)
     found = documents.problems("document.md", tmp_path)
     return [line.split(": ", 1)[1] for line in found]

@@ -28,7 +28,7 @@ PUBLIC = """
 #: Stages are words of a scene, in modules that hold more.
 STAGES = "rest push supports gravity loading shake".split()
 STAGES = [f"scene.stages.{name}" for name in STAGES]
-MYPY = [sys.executable, "-m", "mypy", "--config-file", os.path.join(tree.ROOT, "pyproject.toml")]  # fmt: skip
+MYPY = [sys.executable, "-m", "mypy", "--config-file", os.path.join(tree.ROOT, "pyproject.toml")]
 needsMypy = pytest.mark.skipif(
     subprocess.run([*MYPY[:3], "--version"], capture_output=True).returncode != 0,
     reason="mypy is not installed",
@@ -93,9 +93,15 @@ def test_mypy_finds_no_error_in_the_package(tmp_path_factory):
 @needsMypy
 @pytest.mark.slow
 def test_mypy_finds_no_error_in_a_scene_or_a_snippet(tmp_path_factory, tmp_path):
-    paths = [os.path.join(tree.ROOT, p) for p in tree.files((".py",)) if re.fullmatch(r"scripts/\w+\.py", p)]  # fmt: skip
+    paths = [
+        os.path.join(tree.ROOT, p)
+        for p in tree.files((".py",))
+        if re.fullmatch(r"scripts/\w+\.py", p)
+    ]
     for document in tree.files((".md",)):
-        for n, code in enumerate(re.findall(r"^```python\n(.*?)^```", tree.read(document), re.M | re.S)):  # fmt: skip
+        for n, code in enumerate(
+            re.findall(r"^```python\n(.*?)^```", tree.read(document), re.M | re.S)
+        ):
             name = tmp_path / f"{re.sub(r'[^a-zA-Z]', '_', document)}{n}.py"
             name.write_text(code)
             paths.append(str(name))
@@ -147,7 +153,7 @@ def test_mypy_finds_what_a_user_does_wrong_and_nothing_else(tmp_path_factory, tm
     said = mypy(tmp_path_factory, str(script))
     first = (BEGIN + RIGHT).count("\n") + 1
     for number, (line, expected) in enumerate(WRONG.items(), start=first):
-        found = [one for one in said.splitlines() if f"script.py:{number}: error:" in one]  # fmt: skip
+        found = [one for one in said.splitlines() if f"script.py:{number}: error:" in one]
         assert len(found) == 1 and expected in found[0], (line, found)
     assert said.count(": error:") == len(WRONG), said
 

@@ -27,7 +27,9 @@ def test_every_document_has_its_section_and_every_page_its_source():
 def test_a_document_without_section_and_a_page_without_source_are_found():
     with pytest.raises(ValueError, match="no section of build.py has scripts/NEW$"):
         build.contents([*DOCUMENTS, "scripts/NEW.md"])
-    with pytest.raises(ValueError, match="build.py names CONTRIBUTING, which the repository does not have"):  # fmt: skip
+    with pytest.raises(
+        ValueError, match="build.py names CONTRIBUTING, which the repository does not have"
+    ):
         build.contents([d for d in DOCUMENTS if d != "CONTRIBUTING.md"])
 
 
@@ -49,12 +51,18 @@ def test_the_site_imports_modules_and_names_that_the_package_has():
                 assert text is not None, (path, node.module)
                 for name in (one.name for one in node.names):
                     count += 1
-                    assert sourceOf(f"{node.module}.{name}") or re.search(rf"\b{name}\b", text), (path, node.module, name)  # fmt: skip
+                    assert sourceOf(f"{node.module}.{name}") or re.search(rf"\b{name}\b", text), (
+                        path,
+                        node.module,
+                        name,
+                    )
     assert count > 5
 
 
 def test_the_programs_whose_options_the_site_shows_are_there():
-    programs = re.findall(r'\["(-m|scripts/\w+\.py)"(?:, "([\w.]+)")?\]', tree.read("generated.py", DOCS))  # fmt: skip
+    programs = re.findall(
+        r'\["(-m|scripts/\w+\.py)"(?:, "([\w.]+)")?\]', tree.read("generated.py", DOCS)
+    )
     assert len(programs) >= 5
     for first, module in programs:
         if module:

@@ -7,7 +7,7 @@ import pytest
 import sizes
 
 
-@pytest.mark.skipif(sys.version_info >= (3, 12), reason="it counts more tokens in f-strings")  # fmt: skip
+@pytest.mark.skipif(sys.version_info >= (3, 12), reason="it counts more tokens in f-strings")
 @pytest.mark.parametrize("part", sizes.PARTS)
 def test_no_part_grows_past_its_budget(part):
     assert list(sizes.over(part, *sizes.weigh(part), sizes.budget()[part])) == []
@@ -19,7 +19,9 @@ def test_what_is_over_its_budget_is_told_with_what_to_do():
     allowed = {"lines": 12, "tokens": 90, "function": 60}
     tokens, function = sizes.over("package", found, places, allowed)
     assert tokens.startswith("package: 99 tokens are 9 more than its budget. Take out")
-    assert function.startswith("push of scripts/a.py has 61 lines, and no function of the package may have more than 60")  # fmt: skip
+    assert function.startswith(
+        "push of scripts/a.py has 61 lines, and no function of the package may have more than 60"
+    )
 
 
 PYTHON = '''"""One sentence of six words here."""
@@ -52,7 +54,7 @@ def test_tokens_classes_and_functions_are_counted():
     # a docstring of six words; class Wall : def height ( self ) : return 2.5
     assert sizes.tokens("a.py", PYTHON) == 6 + 3 + 6 + 2
     assert sizes.tokens("a.js", "let a=1; // two") == 5
-    assert list(sizes.ofPython(PYTHON)) == [("class", "Wall", 3), ("function", "height", 2)]  # fmt: skip
+    assert list(sizes.ofPython(PYTHON)) == [("class", "Wall", 3), ("function", "height", 2)]
     assert list(sizes.ofCpp(CPP)) == [
         ("class", "Joint", 10),
         ("function", "Joint", 7),

@@ -77,7 +77,7 @@ _CPP = re.compile(
     r'(?P<comment>//[^\n]*|/\*.*?\*/)|(?P<text>R"\((?:.*?)\)"|"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])+\')'
     r"|(?P<name>[A-Za-z_]\w*)|(?P<number>\d[\w.']*)",
     re.DOTALL,
-)  # fmt: skip
+)
 
 
 @functools.lru_cache(maxsize=None)

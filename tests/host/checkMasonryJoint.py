@@ -20,7 +20,7 @@ LENGTH, WIDTH, HEIGHT = 0.22, 0.10, 0.08  # of a brick [m]
 AREA = LENGTH * WIDTH
 
 for low in (0, HEIGHT):
-    corners = [(x, y, z) for x in (0, LENGTH) for y in (0, WIDTH) for z in (low, low + HEIGHT)]  # fmt: skip
+    corners = [(x, y, z) for x in (0, LENGTH) for y in (0, WIDTH) for z in (low, low + HEIGHT)]
     addBlock(corners, MasonryMat(density=1800))
 O.bodies[0].state.blockedDOFs, O.bodies[1].state.blockedDOFs = "xyzXYZ", "xyXYZ"
 masonry.engines(
@@ -29,8 +29,12 @@ masonry.engines(
 )
 masonry.connect()
 lift = MasonryLoad(
-    body=1, point=(LENGTH / 2, WIDTH / 2, 2 * HEIGHT), direction=(0, 0, 1), driven=True, velocity=0.02
-)  # fmt: skip
+    body=1,
+    point=(LENGTH / 2, WIDTH / 2, 2 * HEIGHT),
+    direction=(0, 0, 1),
+    driven=True,
+    velocity=0.02,
+)
 O.engines = O.engines[:2] + [lift] + O.engines[2:]
 
 largest = 0.0

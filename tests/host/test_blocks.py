@@ -4,9 +4,7 @@
 import yade.wrapper
 from hosted import *
 
-polyhedra = mark.skipif(
-    not hasattr(yade.wrapper, "Polyhedra"), reason="this YADE has no Polyhedra"
-)
+polyhedra = mark.skipif(not hasattr(yade.wrapper, "Polyhedra"), reason="this YADE has no Polyhedra")
 
 
 def samples():

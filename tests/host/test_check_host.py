@@ -73,7 +73,11 @@ def test_each_fault_in_each_class_is_shown_with_its_name(version):
 
 def test_the_tables_name_all_that_the_module_calls():
     """Whoever adds a call writes the tables anew, or a YADE without that function would be called fitting."""
-    module = os.path.join(*importlib.util.find_spec("masonry").submodule_search_locations, "_masonry.so")  # fmt: skip
+    module = os.path.join(
+        *importlib.util.find_spec("masonry").submodule_search_locations, "_masonry.so"
+    )
     known = KNOWN[yade.config.version]
     calls = host.callsOf(module, known.classes) - known.calls
-    assert {c for c in calls if host.OPTIONAL not in c or hasattr(yade.wrapper, host.OPTIONAL)} == set()  # fmt: skip
+    assert {
+        c for c in calls if host.OPTIONAL not in c or hasattr(yade.wrapper, host.OPTIONAL)
+    } == set()

@@ -96,7 +96,9 @@ def test_a_joint_crushed_to_nothing_is_reported_when_one_block_lies_in_the_other
     soft.update(peakRatio=20, compressiveFractureEnergy=3000)
     s = standing(dry(**soft), FLAT, gravity=(0, 0, -100 * G))
     s.blockedDOFs = "xyXYZ"
-    deep = r"block 1 lies 0\.1\d* m deep in block 0, and the smaller of the two is 0.1 m thick there"
+    deep = (
+        r"block 1 lies 0\.1\d* m deep in block 0, and the smaller of the two is 0.1 m thick there"
+    )
     collapses(2, deep)
     assert -0.12 < s.pos[2] - s.refPos[2] < -0.1
 
@@ -108,7 +110,10 @@ def test_a_stack_pulled_apart_is_reported_when_a_block_has_left(direction):
     join(gravity=(0, 0, -G), zones=zones, functors=direction == "functors")
     O.bodies[2].state.vel = Vector3(0, 0, 10)
     # The largest extent of the smaller block is its diagonal.
-    gone = r"block 1 has left block 2 by 0.2[5-9]\d* m, more than the size of the smaller block, 0.256 m"
+    gone = (
+        r"block 1 has left block 2 by 0.2[5-9]\d* m, more than the size of the smaller block,"
+        r" 0.256 m"
+    )
     collapses(1, gone)
 
 
@@ -235,11 +240,13 @@ def test_a_wrong_balance_is_reported_again_when_it_is_twice_as_large(capfd):
 SOFT = dict(normalStiffness=1e7, shearStiffness=5e6)  # energies far above round-off
 ELASTIC = dict(tensileStrength=1, cohesion=0, elastic=True, **SOFT)
 RUBBING = dict(friction=0.1, **SOFT)
-MOVING = {  # properties of the joint, its damping [s], velocity [m/s], and an energy that is not small
-    "vibrating": (ELASTIC, 0, 0, "elastic_compression"),
-    "damped": (ELASTIC, 2e-4, 0, "damping"),
-    "sliding": (RUBBING, 0, 0.4, "dissipated_shear"),
-}
+MOVING = (
+    {  # properties of the joint, its damping [s], velocity [m/s], and an energy that is not small
+        "vibrating": (ELASTIC, 0, 0, "elastic_compression"),
+        "damped": (ELASTIC, 2e-4, 0, "damping"),
+        "sliding": (RUBBING, 0, 0.4, "dissipated_shear"),
+    }
+)
 
 
 @mark.parametrize("kind", MOVING)

@@ -33,7 +33,17 @@ def pair(connectors):
 def test_the_force_of_a_bar(case):
     strength, breaking, compression, rest, longer, force = BARS[case]
     middles = [Vector3(x + UNIT[0] / 2, UNIT[1] / 2, UNIT[2] / 2) for x in (0, 1)]
-    ties = MasonryTies(bodies1=[0], bodies2=[1], points1=middles[:1], points2=middles[1:], stiffness=[STIFF], strength=[strength], breaking=[breaking], compression=[compression], rest=[rest])  # fmt: skip
+    ties = MasonryTies(
+        bodies1=[0],
+        bodies2=[1],
+        points1=middles[:1],
+        points2=middles[1:],
+        stiffness=[STIFF],
+        strength=[strength],
+        breaking=[breaking],
+        compression=[compression],
+        rest=[rest],
+    )
     _, other = pair(ties)
     other.pos += Vector3(longer, 0, 0)
     O.step()
@@ -46,7 +56,14 @@ def test_springs_between_two_bricks_turn_both():
     """At the middle between both, the second turned by 1 mrad about y: its point moves up, and the spring turns it back."""
     kz, rotational, turn = 2e6, 3e5, 1e-3
     point = Vector3(0.5 + UNIT[0] / 2, UNIT[1] / 2, UNIT[2] / 2)
-    springs = MasonrySprings(bodies1=[0], bodies2=[1], points1=[point], points2=[point], stiffness=[(0, 0, kz)], rotationalStiffness=[(0, rotational, 0)])  # fmt: skip
+    springs = MasonrySprings(
+        bodies1=[0],
+        bodies2=[1],
+        points1=[point],
+        points2=[point],
+        stiffness=[(0, 0, kz)],
+        rotationalStiffness=[(0, rotational, 0)],
+    )
     _, other = pair(springs)
     other.ori = Quaternion(Vector3(0, 1, 0), turn) * other.ori
     O.step()
@@ -56,4 +73,6 @@ def test_springs_between_two_bricks_turn_both():
     # about y, z × x: a force up on the first, right of its middle, turns it by -0.5 lift
     assert torques[0] == approx(rotational * turn - 0.5 * lift, rel=1e-5)
     assert torques[1] == approx(-rotational * turn - 0.5 * lift, rel=1e-5)
-    assert balance()["elastic_connectors"] == approx(0.5 * (rotational * turn**2 + lift**2 / kz), rel=1e-5)  # fmt: skip
+    assert balance()["elastic_connectors"] == approx(
+        0.5 * (rotational * turn**2 + lift**2 / kz), rel=1e-5
+    )

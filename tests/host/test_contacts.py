@@ -104,7 +104,7 @@ def test_the_force_of_a_pair_is_opposite_on_both_blocks_and_has_one_line(swapped
         sizes = 10 ** dice.uniform(-2, 0) * dice.uniform(0.2, 1, (2, 3))
         places = [10 * dice.uniform(-1, 1, 3)] * 2
         places[1] = places[0] + 0.3 * sizes.min() * dice.uniform(-1, 1, 3)
-        ids = [box(sizes[n], places[n], turns[n]) for n in ((1, 0) if swapped else (0, 1))]  # fmt: skip
+        ids = [box(sizes[n], places[n], turns[n]) for n in ((1, 0) if swapped else (0, 1))]
         contacts = prepare(1e-9, gravity=(0, 0, 0))
         O.step()
         one, other = ids
@@ -134,7 +134,7 @@ MEETINGS = {
     "faces": (Quaternion.Identity, 1e-3),
     "edge": (Quaternion(ABOUT_Y, math.pi / 4), 1e-3),
     "corner": (
-        Quaternion(ABOUT_Y, math.atan(math.sqrt(0.5))) * Quaternion(Vector3(0, 0, 1), math.pi / 4),  # fmt: skip
+        Quaternion(ABOUT_Y, math.atan(math.sqrt(0.5))) * Quaternion(Vector3(0, 0, 1), math.pi / 4),
         1e-3,
     ),
     # Faces that are turned by so little that the whole face comes within few steps.
@@ -153,7 +153,9 @@ APPROACHES = [
 
 def kinetic(s):
     spin = s.ori.conjugate() * s.angVel
-    return 0.5 * s.mass * s.vel.squaredNorm() + 0.5 * sum(s.inertia[i] * spin[i] ** 2 for i in range(3))  # fmt: skip
+    return 0.5 * s.mass * s.vel.squaredNorm() + 0.5 * sum(
+        s.inertia[i] * spin[i] ** 2 for i in range(3)
+    )
 
 
 def meeting(turn, approach, step, phase):
@@ -162,7 +164,7 @@ def meeting(turn, approach, step, phase):
     edge = 0.1
     one = O.bodies[box((edge,) * 3)].state
     reach = 0.5 * edge * sum(abs(x) for x in turn.toRotationMatrix().row(0))
-    other = O.bodies[box((edge,) * 3, (0.05 + reach, *aside), turn, density=density)].state  # fmt: skip
+    other = O.bodies[box((edge,) * 3, (0.05 + reach, *aside), turn, density=density)].state
     contacts = prepare(step, gravity=(0, 0, 0), restitution=1, friction=0)
     other.pos += Vector3((2 + phase) * speed * O.dt, 0, 0)
     one.vel = Vector3(speed, 0, along * speed)
@@ -172,7 +174,7 @@ def meeting(turn, approach, step, phase):
 @mark.parametrize("kind", MEETINGS)
 def test_two_cubes_that_meet_keep_momentum_and_energy_at_any_time_step(kind):
     turn, bound = MEETINGS[kind]
-    cases = [(s, APPROACHES[n % 4], 0.618 * n % 1) for n, s in enumerate(np.linspace(0.02, 1, 30))]  # fmt: skip
+    cases = [(s, APPROACHES[n % 4], 0.618 * n % 1) for n, s in enumerate(np.linspace(0.02, 1, 30))]
     cases += [(1, a, phase) for a in APPROACHES for phase in (0, 0.4, 0.8)]
     for step, approach, phase in cases:
         O.reset()
@@ -180,7 +182,9 @@ def test_two_cubes_that_meet_keep_momentum_and_energy_at_any_time_step(kind):
         before, momentum = kinetic(one), one.mass * one.vel
         while contacts.touching() or other.vel[0] <= one.vel[0]:
             O.run(100 if kind == "faces" else 3000, True)
-        assert (one.mass * one.vel + other.mass * other.vel - momentum).norm() < 1e-12 * momentum.norm()  # fmt: skip
+        assert (
+            one.mass * one.vel + other.mass * other.vel - momentum
+        ).norm() < 1e-12 * momentum.norm()
         after = kinetic(one) + kinetic(other)
         assert abs(after / before - 1) < bound, (step, approach, phase)
         assert abs(balance()["error"] - (1 - after / before)) < 2e-4
@@ -237,7 +241,7 @@ def heap(count, seed=3, abreast=1):
         turn = Quaternion(*dice.normal(size=4)).normalized()
         place = (0.15 * dice.uniform(-1, 1), 0.15 * dice.uniform(-1, 1))
         level, column = divmod(n, abreast)
-        box((0.11, 0.102, 0.081), (place[0] + 0.5 * column, place[1], 0.1 + 0.16 * level), turn)  # fmt: skip
+        box((0.11, 0.102, 0.081), (place[0] + 0.5 * column, place[1], 0.1 + 0.16 * level), turn)
 
 
 @mark.slow
@@ -320,7 +324,7 @@ def test_polyhedra_of_yade_are_blocks_too(shapes):
         for n, poly in enumerate(polyhedra):
             size, middle = (0.2, 0.1, 0.1), (0.02 * n, 0, 0.1001 * n)
             if poly:
-                corners = [[m + s * (c - 0.5) for m, s, c in zip(middle, size, p)] for p in CUBE]  # fmt: skip
+                corners = [[m + s * (c - 0.5) for m, s, c in zip(middle, size, p)] for p in CUBE]
                 mat = unitMaterial()
                 O.bodies.append(polyhedra_utils.polyhedra(mat, v=corners))
             else:

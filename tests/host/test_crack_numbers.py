@@ -19,7 +19,7 @@ def pile(folder, masonry, push, direction=(1, 0, 0), press=1e5, rate=20, foot=0)
     scene.press(top, press)
     scene.settle()
     scene.push(top, push, direction=direction, rate=rate)
-    joints = [(i.phys.opening, i.geom.centres, i.id1, i.id2) for i in scene.model.interactions]  # fmt: skip
+    joints = [(i.phys.opening, i.geom.centres, i.id1, i.id2) for i in scene.model.interactions]
     scene.finish()
     return readRun(folder), readCurve(folder), joints
 
@@ -33,7 +33,7 @@ def test_the_first_crack_is_the_first_row_with_a_loss(tmp_path):
     assert 0.01 < curve["displacement_mm"][began] <= moved * (1 + 1e-6)
     assert moved <= curve["displacement_mm"][began + 3]
     # the platen at the top may slip on the pile, which is no drift
-    own = curve["masonry_displacement_mm"][curve["displacement_mm"].index(approx(moved))]  # fmt: skip
+    own = curve["masonry_displacement_mm"][curve["displacement_mm"].index(approx(moved))]
     assert run["drift_at_first_crack_mrad"] == approx(own / HEIGHT)
     assert run["collapse_displacement_mm"] is None and not run["collapsed"]
     widest = max(joints, key=lambda joint: max(joint[0]))
@@ -49,7 +49,7 @@ def test_the_drift_is_over_the_height_above_the_foot_wherever_that_is(tmp_path):
     runs = []
     for foot in (0, 3):
         O.reset()
-        run, _, _ = pile(tmp_path / str(foot), materials.calciumSilicate(), 0.2, foot=foot)  # fmt: skip
+        run, _, _ = pile(tmp_path / str(foot), materials.calciumSilicate(), 0.2, foot=foot)
         runs.append(run)
     assert runs[1]["drift_height_m"] == approx(HEIGHT)
     assert runs[1]["recorded_height_m"] == approx(HEIGHT + 0.1)
@@ -86,7 +86,7 @@ def test_a_push_that_ends_in_a_collapse_says_where(tmp_path):
 
 def test_the_first_crack_is_counted_from_the_first_row_of_the_push():
     """What was lost before does not count, nor does what is small beside the elastic energy."""
-    rows = {f"elastic_{part}_J": [0.0] * 6 for part in ("shear", "compression", "units")}  # fmt: skip
+    rows = {f"elastic_{part}_J": [0.0] * 6 for part in ("shear", "compression", "units")}
     rows["elastic_tension_J"] = [0.0, 10.0, 10.0, 10.0, 10.0, 10.0]
     rows["dissipated_tension_J"] = [0.0, 5.0, 5.0, 5.0 + 1e-5, 5.0 + 2e-4, 6.0]
     rows["dissipated_shear_J"] = [0.0] * 6
@@ -110,10 +110,17 @@ def numbers(loads, columns, **run):
 
 def test_what_is_lost_between_two_pushes_is_no_crack_of_theirs():
     loads = [("push", "a"), ("lean", "b"), ("push", "a")]
-    for lost, at in (([0, 0, 5, 5, 5, 5], None), ([0, 0, 5, 5, 5, 7], 0.6), ([0, 1, 5, 5, 5, 7], 0.2)):  # fmt: skip
+    for lost, at in (
+        ([0, 0, 5, 5, 5, 5], None),
+        ([0, 0, 5, 5, 5, 7], 0.6),
+        ([0, 1, 5, 5, 5, 7], 0.2),
+    ):
         moved = [0.1, 0.2, 0.3, 0.4, 0.5, 0.6]
         own = [value - 0.05 for value in moved]  # the platen slips by 0.05 mm
-        found = numbers(loads, {"dissipated_shear_J": lost, "displacement_mm": moved, "masonry_displacement_mm": own})  # fmt: skip
+        found = numbers(
+            loads,
+            {"dissipated_shear_J": lost, "displacement_mm": moved, "masonry_displacement_mm": own},
+        )
         assert found["displacement_at_first_crack_mm"] == at
         drift = None if at is None else approx((at - 0.05) / 2.0)
         assert found["drift_at_first_crack_mrad"] == drift
@@ -136,7 +143,11 @@ def test_a_peak_is_on_its_side_of_the_loop_and_is_felt_at_both_ends():
     history = {"noise_mm": 0.05}
     found = numbers([("push", "a")] * 3, columns, history=history)
     assert (found["peak_at_both_ends_kN"], found["peak_base_shear_kN"]) == (7, 8)
-    keys = ("negative_peak_at_both_ends_kN", "negative_peak_base_shear_kN", "displacement_at_negative_peak_mm")  # fmt: skip
+    keys = (
+        "negative_peak_at_both_ends_kN",
+        "negative_peak_base_shear_kN",
+        "displacement_at_negative_peak_mm",
+    )
     assert [found[key] for key in keys] == [-5, -6, -1]
 
 
@@ -146,7 +157,7 @@ def test_the_line_of_loads_that_were_put_on_goes_from_rest_up_to_the_largest():
     at = SimpleNamespace(
         stages=[["", 0, 0.0, 2 * n] for n in range(len(loads))],
         answers={str(n): [{"value": v}] for n, v in enumerate([1, 0.3, 0.2, 0.7, None], 1)},
-    )  # fmt: skip
+    )
     results = SimpleNamespace(column=lambda head: factors, rows=factors)
     numbered = [(n, [*load, ""]) for n, load in enumerate(loads, 1)]
     scene = SimpleNamespace(running=SimpleNamespace(at=at))

@@ -12,7 +12,7 @@ def pier(out, *words, stones=6, rotation="free", material=None, press=0.2e6, **p
     """A pier of stones on each other with a platen above, which a script pushes."""
     blocks = bricks.stack(stones, (WIDTH, THICK, COURSE))
     material = material or materials.dry(FRICTION, density=DENSITY)
-    made = Scene("pier", blocks, material, arguments=["--out", str(out), "--no-vtk", *words])  # fmt: skip
+    made = Scene("pier", blocks, material, arguments=["--out", str(out), "--no-vtk", *words])
     made.platen("bottom")
     top = made.platen("top", rotation=rotation, **platen)
     if press:
@@ -45,7 +45,7 @@ def test_a_dry_pier_tips_about_its_toe_or_slides(tmp_path, stones):
 def test_where_joints_crush_the_domain_is_concave_and_ends(tmp_path):
     """Bed joints of calcium-silicate masonry crush at some MPa: the shear force grows, and falls again, to nothing at the strength
     of the section."""
-    made, top = pier(tmp_path / "r", "--preset", "bound", material=materials.calciumSilicate())  # fmt: skip
+    made, top = pier(tmp_path / "r", "--preset", "bound", material=materials.calciumSilicate())
     made.settle()
     made.domain(top, [10, 200, 400, 800, 1200])
     made.finish()
@@ -99,7 +99,7 @@ def test_a_run_is_a_point_below_its_bound(tmp_path):
 @mark.slow
 def test_a_domain_is_kept_when_a_run_is_resumed(tmp_path):
     kept = []
-    for n, words in enumerate(([], ["--until", "0.1", "--resume", str(tmp_path / "0")])):  # fmt: skip
+    for n, words in enumerate(([], ["--until", "0.1", "--resume", str(tmp_path / "0")])):
         made, top = pier(tmp_path / "0", *words)
         made.settle()
         entries = made.domain(top, NORMALS)

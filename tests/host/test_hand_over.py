@@ -37,7 +37,7 @@ def test_a_block_tips_over_lands_on_its_side_and_rests():
     until(2.5)
     s = O.bodies[1].state
     assert s.pos[2] == approx(B / 2, abs=1e-6)
-    assert abs((s.ori * s.refOri.conjugate()).toRotationMatrix()[2, 0]) == approx(1, abs=1e-6)  # fmt: skip
+    assert abs((s.ori * s.refOri.conjugate()).toRotationMatrix()[2, 0]) == approx(1, abs=1e-6)
     assert s.vel.norm() < 1e-9
     weight = s.mass * G
     assert contacts.forceOf(0, 1)[2] == approx(weight, rel=1e-6)
@@ -64,14 +64,18 @@ def test_a_joint_that_is_not_due_is_not_handed_over():
     contacts = standing(push=0.5)
     until(0.2)
     assert contacts.handed == 0 and contacts.touching() == 0
-    bonded = lambda: dry(tensileStrength=1e6, cohesion=2e6, modeIFractureEnergy=100, modeIIFractureEnergy=1000)  # fmt: skip
+    bonded = lambda: dry(
+        tensileStrength=1e6, cohesion=2e6, modeIFractureEnergy=100, modeIIFractureEnergy=1000
+    )
     contacts = standing(joint=bonded)
     until(0.2)
     assert contacts.handed == 0
 
 
 def test_a_joint_that_turns_while_its_bond_holds_is_not_handed_over():
-    tough = lambda: dry(tensileStrength=1e3, cohesion=2e3, modeIFractureEnergy=1e6, modeIIFractureEnergy=1e6)  # fmt: skip
+    tough = lambda: dry(
+        tensileStrength=1e3, cohesion=2e3, modeIFractureEnergy=1e6, modeIIFractureEnergy=1e6
+    )
     contacts = standing(joint=tough)
     with raises(RuntimeError, match="^collapsed: block 1 has turned by"):
         until(3)
@@ -144,7 +148,7 @@ def test_a_joint_of_a_block_without_contacts_is_not_handed_over():
     assert contacts.handed == 0
 
 
-def test_a_stack_that_falls_has_the_same_bits_with_threads_and_from_a_checkpoint(tmp_path):  # fmt: skip
+def test_a_stack_that_falls_has_the_same_bits_with_threads_and_from_a_checkpoint(tmp_path):
     found = []
     for threads in (1, 2):
         contacts = standing(3)

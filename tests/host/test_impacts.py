@@ -124,7 +124,9 @@ def test_threads_and_a_checkpoint_change_no_bit(case, tmp_path):
 
 
 def test_what_is_pressed_or_bonded_has_no_impacts():
-    bonds = dict(tensileStrength=5e6, cohesion=1e7, modeIFractureEnergy=1e4, modeIIFractureEnergy=1e5)  # fmt: skip
+    bonds = dict(
+        tensileStrength=5e6, cohesion=1e7, modeIFractureEnergy=1e4, modeIIFractureEnergy=1e5
+    )
     for joint, speed in ((dry(1e9), 0.002), (MasonryJoint(cap=False, **bonds), 0.3)):
         O.reset()
         fix(box((-1, 0, -0.2), (2 + B, B, 0.2), mat()))

@@ -60,9 +60,7 @@ def test_elastic_joints_of_rigid_units_alone_stay_without_their_points(kind):
 
 @mark.parametrize("case", CASES)
 @mark.parametrize("damped", [False, True])
-def test_a_run_saved_among_intact_joints_goes_on_in_the_same_bits(
-    case, damped, tmp_path
-):
+def test_a_run_saved_among_intact_joints_goes_on_in_the_same_bits(case, damped, tmp_path):
     path = str(tmp_path / "c")
 
     def build():

@@ -22,7 +22,7 @@ def panel(functors, blocks="rigid", halves=True, turn=STRAIGHT, size=4, **how):
     unit, plate = unitMaterial(), unitMaterial(young=1e16, jointSet="plate")
     length, height = size * UNIT[0] / 2, size * UNIT[2]
     turned = lambda *ends: [turn * Vector3(*c) for c in corners(*ends)]
-    put = lambda low, high, mat: addBlock(turned(low, high), mat, inPlane=turn == STRAIGHT)  # fmt: skip
+    put = lambda low, high, mat: addBlock(turned(low, high), mat, inPlane=turn == STRAIGHT)
     hold(put((0, 0, -0.1), (length, UNIT[1], 0), plate))
     wall = bricks.Wall(length, height, UNIT, halves=halves)
     laid = [put(b.low, b.high, unit) for b in wall]

@@ -83,9 +83,13 @@ def test_a_support_that_settles_keeps_its_least_reaction():
     """A beam on two supports, of which one goes down: the joint opens, and the beam turns about the far edge of the
     other. Pushed up, it carries at most what turns the beam about the near side."""
     a = assembly(
-        [((0, 0, -0.1), (0.1, 0.3, 0.1)), ((0.9, 0, -0.1), (0.1, 0.3, 0.1)), ((0, 0, 0), (1.0, 0.3, 0.2))],
+        [
+            ((0, 0, -0.1), (0.1, 0.3, 0.1)),
+            ((0.9, 0, -0.1), (0.1, 0.3, 0.1)),
+            ((0, 0, 0), (1.0, 0.3, 0.2)),
+        ],
         held=(0,),
-    )  # fmt: skip
+    )
     a.held[1] = [False, True, False, True, True, True]
     a.__post_init__()
     weight = 0.3 * 0.2 * DENSITY * G
@@ -123,7 +127,10 @@ def test_a_semicircular_arch_needs_its_thickness(stones, least):
     assert sideways(stands).factor < 0.005
     O.reset()
     thin = arch(stones, 0.998 * least)
-    with raises(Refused, match=r"does not stand under its dead loads alone: body \d+ at \(.*\) m moves first"):  # fmt: skip
+    with raises(
+        Refused,
+        match=r"does not stand under its dead loads alone: body \d+ at \(.*\) m moves first",
+    ):
         sideways(thin)
 
 
@@ -140,7 +147,7 @@ def wall(courses, units, friction):
         cuts = [0.2 * n for n in range(units + 1)]
         if course % 2:
             cuts = [0, *(0.2 * n + 0.1 for n in range(units)), 0.2 * units]
-        boxes += [((a, 0, 0.1 * course), (b - a, 0.1, 0.1)) for a, b in zip(cuts, cuts[1:])]  # fmt: skip
+        boxes += [((a, 0, 0.1 * course), (b - a, 0.1, 0.1)) for a, b in zip(cuts, cuts[1:])]
     return assembly(boxes, dry(friction))
 
 
@@ -263,7 +270,9 @@ def test_a_mechanism_is_drawn_and_written_for_paraview(tmp_path):
 
 def small(*words):
     pier = bricks.Wall(0.4, 0.6, unit=(0.2, 0.1, 0.1), halves=False)
-    s = Scene("pier", pier, materials.dry(0.6, normalStiffness=1e10), arguments=[*words, "--no-vtk"])  # fmt: skip
+    s = Scene(
+        "pier", pier, materials.dry(0.6, normalStiffness=1e10), arguments=[*words, "--no-vtk"]
+    )
     s.platen("bottom")
     top = s.platen("top", rotation="held", height=0.1)
     s.press(top, 0.05e6)
@@ -286,7 +295,7 @@ def test_a_push_has_its_bound_beside_it(tmp_path):
     assert run["bound_base_shear_kN"] == entry["factor"]
     assert 0.5 * entry["factor"] < run["peak_base_shear_kN"] < 1.02 * entry["factor"]
     assert run["figure"]["bounds"] == [
-        {"y": entry["factor"], "text": f"limit analysis: {entry['factor']:.1f} kN at most"}  # fmt: skip
+        {"y": entry["factor"], "text": f"limit analysis: {entry['factor']:.1f} kN at most"}
     ]
     assert (tmp_path / "r" / "mechanism.png").exists()
 
@@ -301,7 +310,7 @@ def test_the_preset_bound_runs_nothing(tmp_path, capsys):
     run = readRun(out)
     assert run["steps"] == 0 and run["bound_base_shear_kN"] > 0
     assert run["preset"]["name"] == "bound"
-    assert not (out / "curve.csv").exists() or len(open(out / "curve.csv").readlines()) == 1  # fmt: skip
+    assert not (out / "curve.csv").exists() or len(open(out / "curve.csv").readlines()) == 1
     assert "there is no run" in capsys.readouterr().out
     O.reset()
     other = pushed(tmp_path / "q", 0.05)["bound_base_shear_kN"]
@@ -344,7 +353,7 @@ def test_a_tilt_is_the_same_under_another_gravity(tmp_path):
 
 
 @mark.slow
-def test_limit_analysis_alone_replaces_a_load_and_stands_under_one_that_moves_nothing(tmp_path):  # fmt: skip
+def test_limit_analysis_alone_replaces_a_load_and_stands_under_one_that_moves_nothing(tmp_path):
     s, highest, weight = stones(tmp_path, (100, 0, -50))
     assert s.load(highest, (0, 0, -1e5)) == "at rest"  # on a base that is held
     assert s.load(highest, (0, 0, 0)) == "at rest"
@@ -381,7 +390,7 @@ def test_a_cycle_has_the_bounds_of_both_directions(tmp_path):
     assert back == approx(-1e-3 * (slides + dead), rel=1e-3)
 
 
-def test_a_bound_is_found_anew_beside_another_load_and_where_the_structure_went(tmp_path):  # fmt: skip
+def test_a_bound_is_found_anew_beside_another_load_and_where_the_structure_went(tmp_path):
     s, highest, weight = stones(tmp_path, (0, 0, -100), friction=4)
     bound = lambda: s.bounds.lean((1, 0, 0))["factor"]
     tips = lambda down: approx((1 + down / weight) * 0.5, rel=1e-6)
@@ -395,7 +404,7 @@ def test_a_bound_is_found_anew_beside_another_load_and_where_the_structure_went(
         body.state.pos += Vector3(0.15, 0, 0)
     assert s.bounds.lean((1, 0, 0), lowerUpTo=1)["factor"] == tips(400)
     pushed = 1e-3 * (weight + 400) * 0.15 / 0.5
-    assert s.bounds.push(highest, Vector3(1, 0, 0))["factor"] == approx(pushed, rel=1e-6)  # fmt: skip
+    assert s.bounds.push(highest, Vector3(1, 0, 0))["factor"] == approx(pushed, rel=1e-6)
     s.finish()
 
 
@@ -417,7 +426,7 @@ def test_the_bound_of_a_tilt_turns_weight_and_not_dead_loads(tmp_path, share):
 
 
 def test_stones_that_are_pressed_hard_are_moved_by_no_tilt(tmp_path):
-    s, _, weight = stones(tmp_path, (0, 0, -3 * DENSITY * G * 0.3 * 0.3 * 0.6), friction=4)  # fmt: skip
+    s, _, weight = stones(tmp_path, (0, 0, -3 * DENSITY * G * 0.3 * 0.3 * 0.6), friction=4)
     s.tilt(80)
     s.finish()
     (entry,) = readRun(tmp_path)["bounds"]
@@ -433,8 +442,13 @@ def test_a_peak_may_be_above_its_bound_by_two_per_cent():
 
     def warned(peak, held):
         """Whether a push to both sides and a load that was held are above their bounds, of 40 kN, 60 kN and 0.5 g."""
-        run = dict(peak_base_shear_kN=40 * peak, bound_base_shear_kN=40, dynamic_imbalance=0.05,
-                   negative_peak_base_shear_kN=-60 * peak, negative_bound_base_shear_kN=-60)  # fmt: skip
+        run = dict(
+            peak_base_shear_kN=40 * peak,
+            bound_base_shear_kN=40,
+            dynamic_imbalance=0.05,
+            negative_peak_base_shear_kN=-60 * peak,
+            negative_bound_base_shear_kN=-60,
+        )
         return list(over(entries, {"lean": 0.5 * held}, run))
 
     assert warned(1.019, 1.019) == []
@@ -467,7 +481,13 @@ def test_deformable_units_have_the_bound_of_rigid_ones(tmp_path, plane):
     for kind in ("rigid", "deformable"):
         O.reset()
         words = ["--preset", "bound", "--blocks", kind, "--out", str(tmp_path / kind)]
-        s = Scene("pier", bricks.Wall(0.22, 0.243), materials.calciumSilicate(), plane=plane, arguments=words)  # fmt: skip
+        s = Scene(
+            "pier",
+            bricks.Wall(0.22, 0.243),
+            materials.calciumSilicate(),
+            plane=plane,
+            arguments=words,
+        )
         s.platen("bottom")
         top = s.platen("top", rotation="free", height=0.1)
         s.press(top, 0.2e6)
@@ -481,7 +501,12 @@ def test_deformable_units_have_the_bound_of_rigid_ones(tmp_path, plane):
 @mark.slow
 def test_no_bound_is_reported_after_supports_have_moved(tmp_path):
     two = bricks.Wall(0.4, 0.2, unit=(0.2, 0.1, 0.1), halves=False)
-    s = Scene("pier", two, materials.dry(0.6, normalStiffness=1e10), arguments=["--no-vtk", "--out", str(tmp_path / "r")])  # fmt: skip
+    s = Scene(
+        "pier",
+        two,
+        materials.dry(0.6, normalStiffness=1e10),
+        arguments=["--no-vtk", "--out", str(tmp_path / "r")],
+    )
     base = s.platen("bottom")
     s.settle()
     s.move(base, x=0.1, rate=50)

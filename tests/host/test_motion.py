@@ -106,7 +106,11 @@ def test_a_drive_in_a_pattern_moves_the_mean_of_its_points_with_forces_in_propor
     shares, direction = (0.25, 0.75), Vector3(1, 0, 2).normalized()
     states = [O.bodies[body].state for body in corners]
     driven = dict(direction=direction, driven=True, velocity=0.003)
-    load = insert(MasonryLoad(body=1, point=corners[1], others=[2], otherPoints=[corners[2]], shares=shares, **driven))  # fmt: skip
+    load = insert(
+        MasonryLoad(
+            body=1, point=corners[1], others=[2], otherPoints=[corners[2]], shares=shares, **driven
+        )
+    )
     O.dt = 0.3 * criticalTimeStep()[0]
     for step in range(200):
         arms = [
@@ -114,7 +118,7 @@ def test_a_drive_in_a_pattern_moves_the_mean_of_its_points_with_forces_in_propor
             for s, corner in zip(states, corners.values())
         ]
         O.step()
-        speeds = [(s.vel + s.angVel.cross(a)).dot(direction) for s, a in zip(states, arms)]  # fmt: skip
+        speeds = [(s.vel + s.angVel.cross(a)).dot(direction) for s, a in zip(states, arms)]
         assert np.dot(shares, speeds) == approx(0.003, rel=1e-5)
     assert speeds[0] != approx(speeds[1], rel=0.1)
     assert imbalance() < 1e-6

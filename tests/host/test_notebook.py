@@ -102,7 +102,9 @@ def test_a_scene_shows_itself_before_between_and_after_its_stages(kernel, tmp_pa
     progress += kernel.say("scene.push(top, 1)")
     lines = [c for c in of(progress, "display_data") if "progress" in str(c)]
     assert len(lines) == 2  # one of each stage
-    assert {c["transient"]["display_id"] for c in of(progress, "update_display_data")} <= {c["transient"]["display_id"] for c in lines}  # fmt: skip
+    assert {c["transient"]["display_id"] for c in of(progress, "update_display_data")} <= {
+        c["transient"]["display_id"] for c in lines
+    }
     assert "steps/s" not in printed(progress)
     page = shown(kernel.say("scene"))
     assert len(pictures(page)) == 2 and "push: peak" in page
@@ -174,7 +176,7 @@ def test_words_of_the_kernel_stay_and_scenes_follow_each_other(kernel, tmp_path)
         kernel.say(SCENE.format(name=name, rate=100, out=name))
         kernel.say("scene.settle(); scene.push(top, 0.1); scene.finish()")
         assert (tmp_path / name / "run.json").exists()
-    found = printed(kernel.say("print(sys.argv == before[0], sys.path[:3] == before[1][:3])"))  # fmt: skip
+    found = printed(kernel.say("print(sys.argv == before[0], sys.path[:3] == before[1][:3])"))
     assert found.split() == ["True", "True"]
     wrong = of(kernel.ask("Scene('three', [], materials.dry(0.6))"), "error")
     assert wrong[0]["ename"] == "Refused"

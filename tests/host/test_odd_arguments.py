@@ -37,19 +37,59 @@ class Odd:
 
 def odd():
     """Odd values, by what they are. Another scene and its targets are among them."""
-    other = Scene("other", bricks.stack(2, (0.2, 0.1, 0.1)), materials.dry(0.5), arguments=["--out", "other"])  # fmt: skip
+    other = Scene(
+        "other", bricks.stack(2, (0.2, 0.1, 0.1)), materials.dry(0.5), arguments=["--out", "other"]
+    )
     return {
-        "nan": math.nan, "inf": math.inf, "-1": -1, "0": 0, "1e300": 1e300, "-1e300": -1e300, "1e-300": 1e-300,
-        "huge whole number": 10**400, "True": True, "False": False, "'1'": "1", "''": "", "'x'": "x", "None": None,
-        "[]": [], "{}": {}, "two numbers": (1, 2), "four numbers": (1, 2, 3, 4), "zeros": (0, 0, 0), "nans": (math.nan, 0, 0),
-        "texts": ("a", "b", "c"), "huge numbers": (1e300,) * 3, "nested": [[1, 2, 3]], "array": np.array([1.0, 0, 0]),
-        "array without dimensions": np.array(1.0), "matrix": np.ones((3, 3)), "float32": np.float32(0.5),
-        "int64": np.int64(1), "bool_": np.bool_(True), "control characters": "a\x00\n\x1b[31mb", "long text": "x" * 100000,
-        "surrogate": "\udc80", "complex": 1 + 2j, "bytes": b"x", "object": Odd(), "Decimal": Decimal("1"),
-        "Fraction": Fraction(1, 3), "set": {1.0}, "scene": other, "target of another scene": other.handle(1, name="theirs"),
-        "module": math, "Ellipsis": ..., "list of nan": [math.nan], "list of True": [True], "list of None": [None],
-        "Vector3": Vector3(1, 0, 0), "joint": MasonryJoint(), "masonry": materials.dry(0.5),
-    }  # fmt: skip
+        "nan": math.nan,
+        "inf": math.inf,
+        "-1": -1,
+        "0": 0,
+        "1e300": 1e300,
+        "-1e300": -1e300,
+        "1e-300": 1e-300,
+        "huge whole number": 10**400,
+        "True": True,
+        "False": False,
+        "'1'": "1",
+        "''": "",
+        "'x'": "x",
+        "None": None,
+        "[]": [],
+        "{}": {},
+        "two numbers": (1, 2),
+        "four numbers": (1, 2, 3, 4),
+        "zeros": (0, 0, 0),
+        "nans": (math.nan, 0, 0),
+        "texts": ("a", "b", "c"),
+        "huge numbers": (1e300,) * 3,
+        "nested": [[1, 2, 3]],
+        "array": np.array([1.0, 0, 0]),
+        "array without dimensions": np.array(1.0),
+        "matrix": np.ones((3, 3)),
+        "float32": np.float32(0.5),
+        "int64": np.int64(1),
+        "bool_": np.bool_(True),
+        "control characters": "a\x00\n\x1b[31mb",
+        "long text": "x" * 100000,
+        "surrogate": "\udc80",
+        "complex": 1 + 2j,
+        "bytes": b"x",
+        "object": Odd(),
+        "Decimal": Decimal("1"),
+        "Fraction": Fraction(1, 3),
+        "set": {1.0},
+        "scene": other,
+        "target of another scene": other.handle(1, name="theirs"),
+        "module": math,
+        "Ellipsis": ...,
+        "list of nan": [math.nan],
+        "list of True": [True],
+        "list of None": [None],
+        "Vector3": Vector3(1, 0, 0),
+        "joint": MasonryJoint(),
+        "masonry": materials.dry(0.5),
+    }
 
 
 # -- examples: what stands before a word, and legal arguments of it ----------------------------------------------------
@@ -57,7 +97,12 @@ def odd():
 
 def scene(blocks=WALL, stones=None, **settings):
     """A scene that has not begun, with a platen below and one above."""
-    made = Scene("odd", blocks, stones or materials.calciumSilicate(), **{"arguments": SCENE_OPTIONS, **settings})  # fmt: skip
+    made = Scene(
+        "odd",
+        blocks,
+        stones or materials.calciumSilicate(),
+        **{"arguments": SCENE_OPTIONS, **settings},
+    )
     made.base = made.platen("bottom", name="under")
     made.top = made.platen("top", name="over")
     return made
@@ -68,7 +113,13 @@ def bare():
 
 
 def space():
-    made = Scene("odd", bricks.stack(3, (0.2, 0.15, 0.1)), materials.dry(0.6), arguments=SCENE_OPTIONS, plane=False)  # fmt: skip
+    made = Scene(
+        "odd",
+        bricks.stack(3, (0.2, 0.15, 0.1)),
+        materials.dry(0.6),
+        arguments=SCENE_OPTIONS,
+        plane=False,
+    )
     made.platen("bottom")
     return made
 
@@ -93,7 +144,7 @@ def holding():
 
 def driven():
     blocks = bricks.stack(2, (0.2, 0.1, 0.05))
-    made = Scene("odd", blocks, materials.calciumSilicate(), arguments=SCENE_OPTIONS, rate=100)  # fmt: skip
+    made = Scene("odd", blocks, materials.calciumSilicate(), arguments=SCENE_OPTIONS, rate=100)
     made.platen("bottom")
     made.top, made.between = made.platen("top", drive="xz"), made.joint(0, 1)
     return made
@@ -160,7 +211,7 @@ WORDS = {
     "pressure, a stage": (lambda: settled(space), dict(value=10.0, towards=LEVEL, longest=0.05)),
     "press, a stage": (settled, dict(platen=TOP, stress=1e4, longest=0.05)),
     "hold, a stage": (holding, dict(target=Of("grip"), axes="xz")),
-}  # fmt: skip
+}
 #: Methods of a scene that scripts do not call with arguments of their own: other parts of the package do.
 INTERNAL = {"checkOpen", "failed", "findBound", "keepState", "noted", "probe"}
 
@@ -169,9 +220,19 @@ RING = dict(thickness=0.3, stones=9, radius=2.0, angle=90)
 FIELD = dict(cov=0.2, length=0.5, seed=1)
 ABOUT = dict(mean=1.0, cov=0.1, low=0.5, high=2.0)
 CLAY = dict(
-    E=4e9, unit_E=9e9, fc=12e6, fv0=0.2e6, friction=0.6, unit=(0.25, 0.12, 0.065), joint=0.01, density=1800, bond_wrench=0.3e6,
-    unit_ft=1.5e6, peak_strain=4e-3, Gc=2e4,
-)  # fmt: skip
+    E=4e9,
+    unit_E=9e9,
+    fc=12e6,
+    fv0=0.2e6,
+    friction=0.6,
+    unit=(0.25, 0.12, 0.065),
+    joint=0.01,
+    density=1800,
+    bond_wrench=0.3e6,
+    unit_ft=1.5e6,
+    peak_strain=4e-3,
+    Gc=2e4,
+)
 
 
 def opening(**values):
@@ -180,7 +241,7 @@ def opening(**values):
 
 def lintel(**values):
     over = bricks.Lintel(**values)
-    return bricks.Wall(1.32, 0.486, openings=[bricks.Opening(0.44, 0.081, 0.22, 0.162, over)])  # fmt: skip
+    return bricks.Wall(1.32, 0.486, openings=[bricks.Opening(0.44, 0.081, 0.22, 0.162, over)])
 
 
 def laid():
@@ -205,8 +266,11 @@ CURVE = dict(displacement=[0.0, 1.0, 2.0, 4.0, 6.0], force=[0.0, 8.0, 10.0, 9.0,
 BILINEAR, SYSTEM = capacity.bilinear(**CURVE), capacity.equivalent(3e4, 1.0)
 SPECTRUM = capacity.elastic(0.1, "g", 1, "B")
 DEMAND = dict(system=SYSTEM, spectrum=SPECTRUM)
-MASSES = [dict(name="equivalent_mass", value=3e4, unit="kg"), dict(name="participation_factor", value=1.0, unit="-")]  # fmt: skip
-STUDY = dict(scene="wall_comp4", options={"rate": 50}, runs=3, vary={"bed.friction": [0.5, 0.6]})  # fmt: skip
+MASSES = [
+    dict(name="equivalent_mass", value=3e4, unit="kg"),
+    dict(name="participation_factor", value=1.0, unit="-"),
+]
+STUDY = dict(scene="wall_comp4", options={"rate": 50}, runs=3, vary={"bed.friction": [0.5, 0.6]})
 
 
 def iterated(push=None, **settings):
@@ -216,48 +280,117 @@ def iterated(push=None, **settings):
 
 #: Functions and classes by their names: what is called, its arguments but for those that have a default, and what stands before.
 CALLS = {
-    "Scene": (Scene, dict(name="odd", bricks=WALL, materials=materials.calciumSilicate(), arguments=SCENE_OPTIONS, **sceneOptions())),
-    "materials.dry": (materials.dry, dict(friction=0.5, normalStiffness=5e9, shearStiffness=2e9, density=2000, young=2e10, poisson=0.2)),
+    "Scene": (
+        Scene,
+        dict(
+            name="odd",
+            bricks=WALL,
+            materials=materials.calciumSilicate(),
+            arguments=SCENE_OPTIONS,
+            **sceneOptions(),
+        ),
+    ),
+    "materials.dry": (
+        materials.dry,
+        dict(
+            friction=0.5,
+            normalStiffness=5e9,
+            shearStiffness=2e9,
+            density=2000,
+            young=2e10,
+            poisson=0.2,
+        ),
+    ),
     "materials.masonry": (materials.masonry, CLAY),
-    "materials.en1996": (materials.en1996, dict(unit="clay", fb=15e6, mortar="M5", joints="thin layer")),
-    "materials.ntc2018": (materials.ntc2018, dict(masonry="rubble", knowledge="LC1", confidence=1.0)),
-    "materials.Masonry": (materials.Masonry, dict(unit=MasonryMat(), joints={"bed": MasonryJoint()}, units={}, varied=[])),
+    "materials.en1996": (
+        materials.en1996,
+        dict(unit="clay", fb=15e6, mortar="M5", joints="thin layer"),
+    ),
+    "materials.ntc2018": (
+        materials.ntc2018,
+        dict(masonry="rubble", knowledge="LC1", confidence=1.0),
+    ),
+    "materials.Masonry": (
+        materials.Masonry,
+        dict(unit=MasonryMat(), joints={"bed": MasonryJoint()}, units={}, varied=[]),
+    ),
     "materials.calciumSilicateJoints": (materials.calciumSilicateJoints, {}),
     "materials.dryGranite": (materials.dryGranite, dict(level=100, height=0.15)),
     "materials.dryGraniteJoints": (materials.dryGraniteJoints, dict(level=100, height=0.15)),
     "materials.compressiveFractureEnergy": (materials.compressiveFractureEnergy, dict(fc=1e7)),
     "materials.leastEnergy": (materials.leastEnergy, dict(strength=1e5, stiffness=1e10)),
     "materials.linesOf": (materials.linesOf, dict(entries=[], brief=False)),
-    "materials.withResidual": (materials.withResidual, dict(names=["bed.friction"], joints=materials.calciumSilicateJoints())),
-    "Masonry.vary": (materials.calciumSilicate().vary, dict(name="bed.cohesion", value=lambda x, y, z: 1.0)),
+    "materials.withResidual": (
+        materials.withResidual,
+        dict(names=["bed.friction"], joints=materials.calciumSilicateJoints()),
+    ),
+    "Masonry.vary": (
+        materials.calciumSilicate().vary,
+        dict(name="bed.cohesion", value=lambda x, y, z: 1.0),
+    ),
     "fields.lognormal": (fields.lognormal, FIELD),
     "fields.normal": (fields.normal, FIELD),
     "study.lognormal": (variables.lognormal, ABOUT),
     "study.normal": (variables.normal, ABOUT),
     "study.uniform": (variables.uniform, dict(low=0.5, high=2.0)),
     "study.field": (variables.field, dict(length=0.5, cov=0.1)),
-    "study.choice": (lambda value, weights: variables.choice(value, "other", weights=weights), dict(value=1, weights=[1, 2])),
+    "study.choice": (
+        lambda value, weights: variables.choice(value, "other", weights=weights),
+        dict(value=1, weights=[1, 2]),
+    ),
     "bricks.Wall": (bricks.Wall, dict(length=0.88, height=0.243)),
     "bricks.Corner": (bricks.Corner, dict(length=0.88, length2=0.88, height=0.243)),
     "bricks.Tee": (bricks.Tee, dict(length=1.1, length2=0.88, at=0.55, height=0.243)),
     "bricks.Room": (getattr(bricks, "Room"), dict(length=0.88, width=0.88, height=0.243)),
     "bricks.Arch": (bricks.Arch, dict(depth=0.5, skewback=0.3, **RING)),
     "bricks.BarrelVault": (bricks.BarrelVault, dict(length=1.0, rows=2, **RING)),
-    "bricks.Dome": (bricks.Dome, dict(radius=2.0, thickness=0.3, courses=3, stones=6, oculus=0.5, angle=120.0)),
+    "bricks.Dome": (
+        bricks.Dome,
+        dict(radius=2.0, thickness=0.3, courses=3, stones=6, oculus=0.5, angle=120.0),
+    ),
     "bricks.stack": (bricks.stack, dict(count=3, size=(0.2, 0.1, 0.1))),
-    "bricks.Beam": (bricks.Beam, dict(start=(0, 0, 0), length=2.0, width=0.1, height=0.2, pieces=3)),
-    "bricks.Floor": (bricks.Floor, dict(start=(0, 0, 0), length=2.0, width=1.0, height=0.2, along="y", strips=3)),
+    "bricks.Beam": (
+        bricks.Beam,
+        dict(start=(0, 0, 0), length=2.0, width=0.1, height=0.2, pieces=3),
+    ),
+    "bricks.Floor": (
+        bricks.Floor,
+        dict(start=(0, 0, 0), length=2.0, width=1.0, height=0.2, along="y", strips=3),
+    ),
     "bricks.block": (bricks.block, dict(low=(0, 0, 0), high=(1, 1, 1))),
     "bricks.Block": (bricks.Block, dict(corners=CUBE, brick=0)),
     "bricks.Bricks": (bricks.Bricks, dict(blocks=list(WALL))),
-    "bricks.StoneWall": (bricks.StoneWall, dict(length=0.88, height=0.6, unit=(0.2, 0.1, 0.15), pattern="irregular", scatter=0.2, trace=1.2, part="p")),
+    "bricks.StoneWall": (
+        bricks.StoneWall,
+        dict(
+            length=0.88,
+            height=0.6,
+            unit=(0.2, 0.1, 0.15),
+            pattern="irregular",
+            scatter=0.2,
+            trace=1.2,
+            part="p",
+        ),
+    ),
     "bricks.leastTrace": (bricks.leastTrace, dict(bricks=WALL)),
     "bricks.boxCorners": (bricks.boxCorners, dict(low=(0, 0, 0), high=(1, 1, 1))),
     "bricks.summary": (bricks.summary, dict(bricks=WALL)),
     "bricks.fromFile": (bricks.fromFile, dict(path="cube.obj")),
-    "bricks.fromOutlines": (bricks.fromOutlines, dict(path="stones.csv", thickness=0.2, mortar=0.02, tolerance=0.005, mend=True, part="p")),
+    "bricks.fromOutlines": (
+        bricks.fromOutlines,
+        dict(path="stones.csv", thickness=0.2, mortar=0.02, tolerance=0.005, mend=True, part="p"),
+    ),
     "bricks.Storey": (bricks.Storey, dict(height=0.81, ring=0.1)),
-    "bricks.House": (bricks.House, dict(length=0.88, width=0.88, storeys=[bricks.Storey(0.81)], thickness=0.1, eccentricity=(0.0, 0.05))),
+    "bricks.House": (
+        bricks.House,
+        dict(
+            length=0.88,
+            width=0.88,
+            storeys=[bricks.Storey(0.81)],
+            thickness=0.1,
+            eccentricity=(0.0, 0.05),
+        ),
+    ),
     "bricks.Opening": (opening, dict(x=0.22, z=0.081, width=0.22, height=0.162, lintel=None)),
     "bricks.Lintel": (lintel, dict(bearing=0.11, height=0.081)),
     "Bricks.moved": (WALL.moved, dict(dx=1.0)),
@@ -268,7 +401,10 @@ CALLS = {
     "Bricks.within": (WALL.within, dict(low=(0, 0, 0), high=(1, 1, 1))),
     "Bricks.cut": (WALL.cut, dict(point=(0.1, 0, 0), normal=LEVEL)),
     "Bricks.freeFaces": (WALL.freeFaces, dict(direction=(0, 1, 0), least=0.5)),
-    "capacity.assess": (capacity.assess, dict(directory="run", rule="masonry", height=1.0, spectrum=SPECTRUM, system=SYSTEM)),
+    "capacity.assess": (
+        capacity.assess,
+        dict(directory="run", rule="masonry", height=1.0, spectrum=SPECTRUM, system=SYSTEM),
+    ),
     "capacity.assessDomain": (capacity.assessDomain, dict(directory="run")),
     "capacity.bilinear": (capacity.bilinear, CURVE),
     "capacity.bilinearOf": (capacity.bilinearOf, dict(directory="run")),
@@ -281,7 +417,10 @@ CALLS = {
     "capacity.ofMasses": (capacity.ofMasses, dict(masses=[1e3, 2e3], shape=[0.5, 1.0])),
     "capacity.ofRun": (capacity.ofRun, dict(run=dict(answers=MASSES), directory="run")),
     "capacity.pushover": (capacity.pushover, dict(directory="run")),
-    "capacity.readSpectrum": (capacity.readSpectrum, dict(path="spectrum.csv", unit="g", corner=0.5)),
+    "capacity.readSpectrum": (
+        capacity.readSpectrum,
+        dict(path="spectrum.csv", unit="g", corner=0.5),
+    ),
     "capacity.runPoint": (capacity.runPoint, dict(directory="run")),
     "spectralAcceleration": (spectralAcceleration, dict(values=[1.0, 2.0], every=0.01, period=1.0)),
     "measure.measure": (measure.measure, dict(directory="run")),
@@ -290,7 +429,10 @@ CALLS = {
     "frames.readFrame": (frames.readFrame, dict(directory="run", kind="blocks")),
     "study.Study": (Study, STUDY),
     "rayleigh": (masonry.rayleigh, dict(ratio=0.05, low=1.0, high=10.0)),
-    "addBlock": (addBlock, dict(vertices=CUBE, material=MasonryMat(density=1800), color=(0.7, 0.7, 0.7))),
+    "addBlock": (
+        addBlock,
+        dict(vertices=CUBE, material=MasonryMat(density=1800), color=(0.7, 0.7, 0.7)),
+    ),
     "engines": (engines, dict(joints=[MasonryJoint()]), pile),
     "connect": (connect, {}, laid),
     "touchingPairs": (masonry.touchingPairs, {}, laid),
@@ -299,9 +441,12 @@ CALLS = {
     "saveCheckpoint": (masonry.saveCheckpoint, dict(path="saved", extra={"a": 1}), joined),
     "loadCheckpoint": (masonry.loadCheckpoint, dict(path="kept"), joined),
     "readCheckpoint": (masonry.readCheckpoint, dict(path="kept"), joined),
-}  # fmt: skip
+}
 
-CUBE_FILE = "".join("v {} {} {}\n".format(*c) for c in CUBE) + "f 1 2 4 3\nf 5 7 8 6\nf 1 5 6 2\nf 3 4 8 7\nf 1 3 7 5\nf 2 6 8 4\n"  # fmt: skip
+CUBE_FILE = (
+    "".join("v {} {} {}\n".format(*c) for c in CUBE)
+    + "f 1 2 4 3\nf 5 7 8 6\nf 1 5 6 2\nf 3 4 8 7\nf 1 3 7 5\nf 2 6 8 4\n"
+)
 
 
 @pytest.fixture(scope="module")
@@ -369,7 +514,7 @@ def said(name, change):
             act, example, *before = CALLS[name]
             for make in before:
                 make()
-        example = {n: getattr(made, v.name) if isinstance(v, Of) else v for n, v in example.items()}  # fmt: skip
+        example = {n: getattr(made, v.name) if isinstance(v, Of) else v for n, v in example.items()}
         try:
             act(**{**example, **change})
             return None
@@ -408,7 +553,9 @@ def legalOf(name):
 
 
 #: Sentences of Python and of its libraries, which name nothing that a script has said.
-NOT_OURS = "truth value|could not be broadcast|codec can't|JSON compliant|unpack|invalid literal|NoneType"
+NOT_OURS = (
+    "truth value|could not be broadcast|codec can't|JSON compliant|unpack|invalid literal|NoneType"
+)
 #: By what else a message may name an argument: a property in words, points as corners, or what a lintel lies on.
 OTHERWISE = {
     "addBlock": "corner",
@@ -428,10 +575,30 @@ def isNamed(name, argument, message):
 
 
 #: Words that take steps, some tenths of a second each time.
-STEPS = {"accelerate", "bound", "cycle", "domain", "follow", "growLoad", "growPress", "grow", "load, a stage", "move", "pressJoint", "push", "result", "shake", "shakeAgain", "tilt", "travel"}  # fmt: skip
+STEPS = {
+    "accelerate",
+    "bound",
+    "cycle",
+    "domain",
+    "follow",
+    "growLoad",
+    "growPress",
+    "grow",
+    "load, a stage",
+    "move",
+    "pressJoint",
+    "push",
+    "result",
+    "shake",
+    "shakeAgain",
+    "tilt",
+    "travel",
+}
 
 
-@mark.parametrize("name", [pytest.param(n, marks=[mark.slow] * (n in STEPS)) for n in (*WORDS, *CALLS)])  # fmt: skip
+@mark.parametrize(
+    "name", [pytest.param(n, marks=[mark.slow] * (n in STEPS)) for n in (*WORDS, *CALLS)]
+)
 def test_odd_values_are_refused_in_a_sentence_or_mean_something(folder, name):
     values = odd()
     assert said(name, {}) is None
@@ -467,11 +634,30 @@ def test_every_function_that_scripts_call_has_an_example():
     for module in (materials, bricks, capacity):
         short = module.__name__.rpartition(".")[2]
         members = {n: getattr(module, n) for n in module.__all__}
-        names |= {f"{short}.{n}" for n, t in members.items() if callable(t) and argumentsOf(t)}  # fmt: skip
-    names |= {f"Bricks.{n}" for n, t in inspect.getmembers(bricks.Bricks, inspect.isfunction) if n[0] != "_" and argumentsOf(t)}  # fmt: skip
+        names |= {f"{short}.{n}" for n, t in members.items() if callable(t) and argumentsOf(t)}
+    names |= {
+        f"Bricks.{n}"
+        for n, t in inspect.getmembers(bricks.Bricks, inspect.isfunction)
+        if n[0] != "_" and argumentsOf(t)
+    }
     # a result, and classes
-    results = ["Bilinear", "BoundPoint", "Demand", "Domain", "Equivalent", "Number", "Pushover", "RunPoint", "Spectrum"]  # fmt: skip
-    names -= {"bricks.Joint", "materials.MasonryJoint", "materials.MasonryMat", *(f"capacity.{n}" for n in results)}  # fmt: skip
+    results = [
+        "Bilinear",
+        "BoundPoint",
+        "Demand",
+        "Domain",
+        "Equivalent",
+        "Number",
+        "Pushover",
+        "RunPoint",
+        "Spectrum",
+    ]
+    names -= {
+        "bricks.Joint",
+        "materials.MasonryJoint",
+        "materials.MasonryMat",
+        *(f"capacity.{n}" for n in results),
+    }
     assert names <= set(CALLS), names - set(CALLS)
 
 
@@ -483,7 +669,7 @@ def commandsWithKinds():
     commands = {n.partition(",")[0]: getattr(Scene, n.partition(",")[0]) for n in WORDS}
     commands.update({name: act for name, (act, *_) in CALLS.items()})
     for name, act in commands.items():
-        act = vars(act)["__init__"] if isinstance(act, type) and "__init__" in vars(act) else act  # fmt: skip
+        act = vars(act)["__init__"] if isinstance(act, type) and "__init__" in vars(act) else act
         act = inspect.unwrap(act, stop=lambda f: hasattr(f, "kinds"))
         for argument, kind in act.kinds().items() if hasattr(act, "kinds") else ():
             yield name, argument, kind
@@ -508,7 +694,7 @@ BOUNDED = {
     if re.search("number.*(at |above|below|from)", meant := kinds.meaning(kind))
     and not re.search("list|three|free|dict", meant)
 }
-LIES = {"at least": operator.ge, "above": operator.gt, "at most": operator.le, "below": operator.lt}  # fmt: skip
+LIES = {"at least": operator.ge, "above": operator.gt, "at most": operator.le, "below": operator.lt}
 
 
 def takenWithinBounds(value, meant):
@@ -550,7 +736,11 @@ def test_no_property_of_a_class_passes_outside_its_bounds(name):
     cls = getattr(masonry, name)
     for p in cls.properties():
         known = getattr(cls(), p["name"])
-        if not isinstance(known, (float, int)) or isinstance(known, bool) or _isReadOnly(cls, p["name"]):  # fmt: skip
+        if (
+            not isinstance(known, (float, int))
+            or isinstance(known, bool)
+            or _isReadOnly(cls, p["name"])
+        ):
             continue
         whole = isinstance(known, int)
         wrong = [None, "x", True, *((2.5, 10**12) if whole else (math.nan, math.inf))]
@@ -563,8 +753,10 @@ def test_no_property_of_a_class_passes_outside_its_bounds(name):
                 cls(**{p["name"]: value})
             said = str(refused.value)
             words = "".join(c if c.islower() else " " + c for c in p["name"]).lower()
-            assert p["name"] in said or words.replace("i i", "ii").replace(" ", "") in said.lower().replace(" ", ""), said  # fmt: skip
-            assert f"{value:g}" in said if isinstance(value, float) else str(value) in said, said  # fmt: skip
+            assert p["name"] in said or words.replace("i i", "ii").replace(
+                " ", ""
+            ) in said.lower().replace(" ", ""), said
+            assert f"{value:g}" in said if isinstance(value, float) else str(value) in said, said
 
 
 def _isReadOnly(cls, name):
@@ -578,27 +770,90 @@ def _isReadOnly(cls, name):
     "name, change, message",
     [
         ("push", {"untill": 3}, "push: no argument 'untill', did you mean 'until'?"),
-        ("push", {"until": "3", "rate": 1e300, "continued": 1}, "push: until '3' must be a number above 0 and at most 1000 mm\npush: rate 1e+300 mm/s must be at least 0.001 and at most 1000\npush: continued 1 must be True or False"),
-        ("push", {"direction": (0, 0, 0)}, "push: direction (0, 0, 0) must be a direction, whose length is not zero"),
-        ("cycle", {"amplitudes": [2, math.nan]}, "cycle: amplitudes (value 1 of the list) nan mm or % must be a finite number"),
-        ("settle", {"longest": 1e-6}, "longest 1e-06 s, after which the wait for rest ends, must be above the time step"),
-        ("settle", {"damping": "locl"}, "settle: damping 'locl' must be one of local, combined, did you mean 'local'?"),
+        (
+            "push",
+            {"until": "3", "rate": 1e300, "continued": 1},
+            (
+                "push: until '3' must be a number above 0 and at most 1000 mm\npush: rate 1e+300"
+                " mm/s must be at least 0.001 and at most 1000\npush: continued 1 must be True or"
+                " False"
+            ),
+        ),
+        (
+            "push",
+            {"direction": (0, 0, 0)},
+            "push: direction (0, 0, 0) must be a direction, whose length is not zero",
+        ),
+        (
+            "cycle",
+            {"amplitudes": [2, math.nan]},
+            "cycle: amplitudes (value 1 of the list) nan mm or % must be a finite number",
+        ),
+        (
+            "settle",
+            {"longest": 1e-6},
+            "longest 1e-06 s, after which the wait for rest ends, must be above the time step",
+        ),
+        (
+            "settle",
+            {"damping": "locl"},
+            "settle: damping 'locl' must be one of local, combined, did you mean 'local'?",
+        ),
         ("drive", {"z": lambda: "far"}, "drive: z 'far' must be a number"),
-        ("release", {"axes": ["xz", 3]}, "release: axes ['xz', 3] must be some of the axes 'xyzXYZ', each once"),
-        ("platen", {"name": ""}, "platen: name '' must be a name of letters, digits and underscores"),
-        ("section", {"part": "wal"}, "section: part 'wal' must be one of wall, did you mean 'wall'?"),
-        ("result", {"unit": "a\x00"}, "result: unit 'a\\x00' must be a text of characters that can be printed"),
+        (
+            "release",
+            {"axes": ["xz", 3]},
+            "release: axes ['xz', 3] must be some of the axes 'xyzXYZ', each once",
+        ),
+        (
+            "platen",
+            {"name": ""},
+            "platen: name '' must be a name of letters, digits and underscores",
+        ),
+        (
+            "section",
+            {"part": "wal"},
+            "section: part 'wal' must be one of wall, did you mean 'wall'?",
+        ),
+        (
+            "result",
+            {"unit": "a\x00"},
+            "result: unit 'a\\x00' must be a text of characters that can be printed",
+        ),
         ("Scene", {"gravty": 9}, "no option gravty; did you mean gravity?"),
-        ("Scene", {"plane": 1, "columns": "x", "allowGaps": None}, "Scene: plane 1 must be True or False\nScene: columns 'x' must be a list with at least 1 value\nScene: allowGaps None must be True or False"),
+        (
+            "Scene",
+            {"plane": 1, "columns": "x", "allowGaps": None},
+            (
+                "Scene: plane 1 must be True or False\nScene: columns 'x' must be a list with at"
+                " least 1 value\nScene: allowGaps None must be True or False"
+            ),
+        ),
         ("Scene", {"arguments": [1]}, "scene odd: arguments must be a list of words, got 1"),
-        ("materials.Masonry", {"joints": 5, "brief": None}, "Masonry: joints 5 must be a dict by name\nMasonry: brief None must be True or False"),
+        (
+            "materials.Masonry",
+            {"joints": 5, "brief": None},
+            "Masonry: joints 5 must be a dict by name\nMasonry: brief None must be True or False",
+        ),
         ("Masonry.vary", {"name": "bed.cohesoin"}, "vary: no property 'bed.cohesoin'"),
-        ("study.choice", {"value": math.inf}, "choice: values (value 0 of the list) inf must be a finite number"),
-        ("bricks.Wall", {"unit": (1, 2), "bond": "flemsh"}, "Wall: unit (1, 2) must be a length, thickness and height above 0 and at most 1e+06 m\nWall: bond 'flemsh' must be one of running, stack, header, english, flemish, did you mean 'flemish'?"),
+        (
+            "study.choice",
+            {"value": math.inf},
+            "choice: values (value 0 of the list) inf must be a finite number",
+        ),
+        (
+            "bricks.Wall",
+            {"unit": (1, 2), "bond": "flemsh"},
+            (
+                "Wall: unit (1, 2) must be a length, thickness and height above 0 and at most 1e+06"
+                " m\nWall: bond 'flemsh' must be one of running, stack, header, english, flemish,"
+                " did you mean 'flemish'?"
+            ),
+        ),
         ("bricks.Opening", {"widht": 1}, "Opening: no argument 'widht', did you mean 'width'?"),
         ("saveCheckpoint", {"path": 1}, "saveCheckpoint: path 1 must be the name of a file"),
     ],
-)  # fmt: skip
+)
 def test_what_is_refused_is_named_with_its_bound(folder, name, change, message):
     assert message in said(name, change)
 

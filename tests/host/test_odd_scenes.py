@@ -22,8 +22,8 @@ def stack(number=3, zones=(), lone=False, functors=False, reset=True):
     if lone:
         addBlock(cube(x=1), O.materials[0])
     hold(0)
-    load = MasonryLoad(body=number - 1, point=(0.05, 0.05, SIDE * number), force=(0, 0, -10))  # fmt: skip
-    joint = MasonryJoint(name="j", normalStiffness=1e10, shearStiffness=5e9, elastic=True)  # fmt: skip
+    load = MasonryLoad(body=number - 1, point=(0.05, 0.05, SIDE * number), force=(0, 0, -10))
+    joint = MasonryJoint(name="j", normalStiffness=1e10, shearStiffness=5e9, elastic=True)
     zones = MasonryZones(bodies=list(zones)) if zones else None
     return join(joint, 0.3, loads=[load], zones=zones, functors=functors)
 
@@ -62,7 +62,7 @@ def test_a_lone_deformable_block_that_is_erased_is_reported():
 def test_units_without_their_engine_are_reported():
     stack(zones=[1])
     steps()
-    for change in (lambda: setattr(zones, "dead", True), lambda: setattr(O, "engines", others)):  # fmt: skip
+    for change in (lambda: setattr(zones, "dead", True), lambda: setattr(O, "engines", others)):
         *others, zones = O.engines
         change()
         for act in (criticalTimeStep, steps):
@@ -134,7 +134,7 @@ def test_a_state_that_replaces_another_counts_within_ten_steps():
 def test_what_joints_were_made_with_cannot_be_changed(functors):
     joints = stack(zones=() if functors else (1,), functors=functors)
     joint, mat = joints[0].phys.joint, O.bodies[1].mat
-    geometry = O.engines[1].geomDispatcher.functors[0] if functors else O.engines[1].geometry  # fmt: skip
+    geometry = O.engines[1].geomDispatcher.functors[0] if functors else O.engines[1].geometry
     before = joints[0].phys.normalStiffness
     changes = [(joint, "normalStiffness", 1e7), (joint, "shearStiffness", 1e7)]
     changes += [(mat, "young", 1e6), (mat, "poisson", 0.3)]

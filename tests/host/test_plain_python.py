@@ -86,7 +86,7 @@ for host in (False, True):
 """
     )
     usual = min(4, len(os.sched_getaffinity(0)))
-    for words, count, host in (([], usual, 1), (["-j1"], 1, 1), (["--threads", "3"], 3, 3)):  # fmt: skip
+    for words, count, host in (([], usual, 1), (["-j1"], 1, 1), (["--threads", "3"], 3, 3)):
         command = ["yade", *words, "-n", "-x", str(script), "-j7"]
         run = ran(command, env=environment())
         assert f"steps {count}\nYADE 1\nYADE {host}\n" in run.stdout
@@ -95,16 +95,23 @@ for host in (False, True):
 @mark.parametrize(
     "asked, allowed, few, said",
     [(True, 4, 900, True), (False, 4, 900, False), (True, 1, 900, False), (True, 4, 100, False)],
-)  # fmt: skip
-def test_fewer_threads_than_were_asked_for_are_remarked_upon(monkeypatch, asked, allowed, few, said):  # fmt: skip
+)
+def test_fewer_threads_than_were_asked_for_are_remarked_upon(
+    monkeypatch, asked, allowed, few, said
+):
     from masonry.assembly import threads
 
     taken = {1: (few, 1e-5), 4: (1000 - few, 2e-5)}
-    records = [dict(threads=n, steps=steps, time=steps * each) for n, (steps, each) in taken.items()]  # fmt: skip
+    records = [
+        dict(threads=n, steps=steps, time=steps * each) for n, (steps, each) in taken.items()
+    ]
     monkeypatch.setattr(threads, "records", lambda: records)
     monkeypatch.setattr(threads, "_asked", asked)
     monkeypatch.setattr(threads, "_allowed", allowed)
-    expected = "4 threads were allowed, and 90 % of the steps used 1, which was quicker: a step took 10 µs, and 20 µs on 4"  # fmt: skip
+    expected = (
+        "4 threads were allowed, and 90 % of the steps used 1, which was quicker: a step took 10"
+        " µs, and 20 µs on 4"
+    )
     assert threads.remark() == (expected if said else None)
 
 
@@ -127,13 +134,19 @@ def test_a_yade_that_was_imported_before_has_one_thread(tmp_path):
         "from masonry import *; MasonryMat, Scene, engines, window",
         "import masonry.assembly.blocks, masonry; masonry.MasonryJoint.set",
         "from masonry import _masonry; import masonry; masonry.commit, masonry.Scene",
-        "from masonry.scene.materials import dry; dry(friction=0.6).joints['bed'].set(friction=0.5, residualFriction=0.5)",
-        "from masonry.run.checkpoints import readCheckpoint; import masonry; masonry.MasonryJoint.set",
+        (
+            "from masonry.scene.materials import dry;"
+            " dry(friction=0.6).joints['bed'].set(friction=0.5, residualFriction=0.5)"
+        ),
+        (
+            "from masonry.run.checkpoints import readCheckpoint; import masonry;"
+            " masonry.MasonryJoint.set"
+        ),
         "from masonry.assembly import columns; from masonry import Scene",
         FOUND + "import yade, masonry; masonry.Scene, masonry.scene, masonry.MasonryJoint.set",
         FOUND + "import masonry, yade; masonry.Scene, yade.wrapper.MasonryJoint.set",
     ],
-)  # fmt: skip
+)
 def test_whatever_is_imported_first(code):
     done(code + "; import importlib, masonry; importlib.reload(masonry).Scene")
 
@@ -158,7 +171,9 @@ def test_the_importer_of_yade_works_before_and_after(tmp_path):
     first = "import sys; sys.path.insert(0, '.'); import yadeimport\n"
     run = played(tmp_path, first)
     assert "plain: at rest" in run.stdout
-    after = "from yadeimport import *\nassert O.iter > 0 and utils.sphere and yade.wrapper.MasonryMat"
+    after = (
+        "from yadeimport import *\nassert O.iter > 0 and utils.sphere and yade.wrapper.MasonryMat"
+    )
     played(tmp_path, "import sys; sys.path.insert(0, '.')\n", end=after)
 
 
@@ -217,7 +232,10 @@ def test_a_virtual_environment_without_what_yade_needs_gives_a_sentence(tmp_path
 def test_a_source_tree_without_the_plugin_says_how_to_build_it(tmp_path):
     shutil.copytree(os.path.join(ROOT, "scripts", "masonry"), tmp_path / "masonry")
     env = environment(PYTHONPATH=str(tmp_path))
-    hide = "import sys; sys.path[1:] = [p for p in sys.path[1:] if not (p != %r and __import__('glob').glob(p + '/masonry/_masonry*.so'))]\n"
+    hide = (
+        "import sys; sys.path[1:] = [p for p in sys.path[1:] if not (p != %r and"
+        " __import__('glob').glob(p + '/masonry/_masonry*.so'))]\n"
+    )
     said = done(hide % str(tmp_path) + ASK, env=env)
     assert "REFUSED: the masonry plugin is not built" in said and "setup.sh" in said
 
@@ -232,7 +250,13 @@ def test_a_scene_beside_the_sources_uses_the_installed_package(tmp_path):
 
 # -- the same as the program yade -------------------------------------------------------------------------------------
 
-BANNER = ("Welcome to Yade", "Using python version", "TCP python prompt", "XMLRPC info", "Running script")  # fmt: skip
+BANNER = (
+    "Welcome to Yade",
+    "Using python version",
+    "TCP python prompt",
+    "XMLRPC info",
+    "Running script",
+)
 #: Times of the clock, and what is as fast as the machine.
 TIMES = re.compile(
     r'"(date|seconds|setup|steps|rows|frames|wall_clock_s|microseconds_per_step|nanoseconds_per_subcontact_step|out)": .*'
@@ -240,7 +264,13 @@ TIMES = re.compile(
 
 #: The same in a report: when the run ended, and how long it took; and numbers of its picture, whose last digits depend on where
 #: LAPACK finds its arrays in the memory.
-CLOCK = re.compile(r"\d{4}-\d\d-\d\d [\d:]+ UTC|time of (the run|a step[^<]*)</th><td[^>]*>[^<]*|<script type.*?</script>", re.S)  # fmt: skip
+CLOCK = re.compile(
+    (
+        r"\d{4}-\d\d-\d\d [\d:]+ UTC|time of (the run|a step[^<]*)</th><td[^>]*>[^<]*|<script"
+        r" type.*?</script>"
+    ),
+    re.S,
+)
 
 
 def both(tmp_path, name, *words):
@@ -264,7 +294,7 @@ def lines(run, folder):
 
 
 @mark.slow
-@mark.parametrize("name", ["couplet", "arch", pytest.param("wall_comp1", marks=mark.long)])  # fmt: skip
+@mark.parametrize("name", ["couplet", "arch", pytest.param("wall_comp1", marks=mark.long)])
 def test_a_scene_is_the_same_in_plain_python(tmp_path, name):
     (one, first), (two, second) = both(tmp_path, name, "--out", "out", "--quick")
     assert one.returncode == two.returncode == 0, one.stderr + two.stderr

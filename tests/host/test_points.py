@@ -20,9 +20,7 @@ from wall_cases import prismTips, tips
 
 @mark.parametrize("about", [(0, 1, 0), (1, 0, 0)], ids=["along", "across"])
 @FUNCTORS
-@mark.parametrize(
-    "points, factor", [(None, 1), (2, 3), (3, 1), (4, 1), (7, 1), (16, 1)]
-)
+@mark.parametrize("points, factor", [(None, 1), (2, 3), (3, 1), (4, 1), (7, 1), (16, 1)])
 def test_three_points_have_the_rotational_stiffness(points, factor, functors, about):
     true, measured = jointMoment(about, points, functors)
     assert measured == approx(factor * true, rel=1e-6)
@@ -30,13 +28,9 @@ def test_three_points_have_the_rotational_stiffness(points, factor, functors, ab
 
 @FUNCTORS
 @mark.parametrize("divisions", [(1, 1, 1), (2, 1, 1), (3, 2, 2)])
-@mark.parametrize(
-    "blocked, about", [("y", (0, 1, 0)), ("", (0, 1, 0)), ("", (1, 0, 0))]
-)
+@mark.parametrize("blocked, about", [("y", (0, 1, 0)), ("", (0, 1, 0)), ("", (1, 0, 0))])
 def test_any_mesh_has_the_rotational_stiffness(blocked, about, divisions, functors):
-    true, measured = jointMoment(
-        about, functors=functors, divisions=divisions, blocked=blocked
-    )
+    true, measured = jointMoment(about, functors=functors, divisions=divisions, blocked=blocked)
     assert measured == approx(true, rel=1e-6)
 
 

@@ -115,10 +115,15 @@ def test_the_points_of_a_joint_move_with_each_of_its_two_blocks(frame):
         axes = i.geom.normal, i.geom.tangent, i.geom.normal.cross(i.geom.tangent)
         between, mean = np.zeros(3), np.zeros(3)
         for jump, area in zip(i.geom.jumps, i.geom.areas):
-            sides = [np.array([points[n][p] for p in corners[row]]) for n in ("displacement", "second_displacement")]  # fmt: skip
+            sides = [
+                np.array([points[n][p] for p in corners[row]])
+                for n in ("displacement", "second_displacement")
+            ]
             for body, side in zip((i.id1, i.id2), sides):
                 if body not in deformable:
-                    expected = [moved(O.bodies[body].state, Vector3(*places[p])) for p in corners[row]]  # fmt: skip
+                    expected = [
+                        moved(O.bodies[body].state, Vector3(*places[p])) for p in corners[row]
+                    ]
                     assert np.abs(side - expected).max() < 1e-9 * size
             # a point need not stand in the middle of its cell: means over the joint are compared
             between += area * (sides[1] - sides[0]).mean(axis=0) @ np.transpose(axes)

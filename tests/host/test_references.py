@@ -66,7 +66,7 @@ def test_a_run_gives_the_stored_numbers(scene, name):
     ]
     assert not wrong, f"{name} differs from what is stored:\n" + "\n".join(wrong)
     if eigen() != EIGEN:
-        pytest.skip("later instants, and scenes askew, of references made with Eigen 3.4")  # fmt: skip
+        pytest.skip("later instants, and scenes askew, of references made with Eigen 3.4")
 
 
 def test_every_run_has_its_tolerance_and_its_file():

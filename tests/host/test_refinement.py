@@ -23,7 +23,7 @@ def couplet(refine=3, inPlane=True, subcontacts=3, rows=None, **properties):
     O.reset()
     unit = unitMaterial(young=1e13, poisson=0.2)
     _, top = pile(material=unit, inPlane=inPlane)
-    load = MasonryLoad(body=top, point=(LENGTH / 2, WIDTH / 2, HEIGHT), damped=True, label="load")  # fmt: skip
+    load = MasonryLoad(body=top, point=(LENGTH / 2, WIDTH / 2, HEIGHT), damped=True, label="load")
     around = dict(damping=0.7, gravity=(0, 0, 0), inPlane=inPlane, loads=[load])
     around.update(subcontacts=subcontacts, rows=rows)
     engines([MasonryJoint(**{**JOINT, **properties})], **around)
@@ -44,7 +44,7 @@ def resultants(joint):
     """Normal force, shear force [N] and moment about the middle [N m] of the joint's stresses."""
     area, stress = np.array(joint.geom.areas), np.array(joint.phys.stress)
     lever = np.array(joint.geom.centres)[:, 0] - LENGTH / 2
-    return np.array([area @ stress[:, 0], area @ stress[:, 1], area @ (stress[:, 0] * lever)])  # fmt: skip
+    return np.array([area @ stress[:, 0], area @ stress[:, 1], area @ (stress[:, 0] * lever)])
 
 
 def energies(kind):
@@ -182,14 +182,21 @@ def test_joints_keep_their_points_to_the_bit_when_others_are_refined(tmp_path):
     O.reset()
     unit, path = unitMaterial(young=1e13, poisson=0.2), str(tmp_path / "c")
     pile(34, x=0.1, size=UNIT, material=unit, inPlane=True)
-    top = pile(34, x=1.0, size=(LENGTH, 2 * WIDTH, HEIGHT), material=unit, inPlane=True)[-1]  # fmt: skip
-    load = MasonryLoad(
-        body=top, point=(1 + LENGTH / 2, WIDTH, 34 * HEIGHT), label="load"
+    top = pile(34, x=1.0, size=(LENGTH, 2 * WIDTH, HEIGHT), material=unit, inPlane=True)[-1]
+    load = MasonryLoad(body=top, point=(1 + LENGTH / 2, WIDTH, 34 * HEIGHT), label="load")
+    joints = join(
+        MasonryJoint(**JOINT),
+        gravity=(0, 0, 0),
+        damping=0.7,
+        inPlane=True,
+        loads=[load],
+        subcontacts=3,
     )
-    joints = join(MasonryJoint(**JOINT), gravity=(0, 0, 0), damping=0.7, inPlane=True, loads=[load], subcontacts=3)  # fmt: skip
     loop().points = 12
     run(1)
-    shapes = lambda: [np.array([i.geom.areas, *np.transpose(i.geom.centres)]).tobytes() for i in joints]  # fmt: skip
+    shapes = lambda: [
+        np.array([i.geom.areas, *np.transpose(i.geom.centres)]).tobytes() for i in joints
+    ]
     before, whole = bits(joints), shapes()
     saveCheckpoint(path)
     load.force = Vector3(0, 0, -0.95 * 4e6 * 2 * AREA)
@@ -242,7 +249,7 @@ def test_any_number_of_threads_gives_the_same_bits():
 
 def test_a_panel_with_points_that_come_late_is_one_that_has_had_them_from_the_beginning():
     lost, turned = {}, {}
-    for name, (refine, few) in {"few": (3, 3), "refined": (12, 3), "many": (3, 12)}.items():  # fmt: skip
+    for name, (refine, few) in {"few": (3, 3), "refined": (12, 3), "many": (3, 12)}.items():
         pushed(refine, size=6, subcontacts=few)
         run(1000)
         lost[name] = energies("dissipated_compression")
@@ -311,7 +318,7 @@ def test_an_elastic_joint_in_space_keeps_force_moments_and_energy(law, points):
 
 
 @LAWS
-def test_a_joint_that_bends_across_is_as_one_that_has_had_its_points_from_the_beginning(law):  # fmt: skip
+def test_a_joint_that_bends_across_is_as_one_that_has_had_its_points_from_the_beginning(law):
     """The crack goes through the thickness of the wall; with three rows the joint turns otherwise."""
     turned, errors = {}, {}
     for name, few, points in (("few", 3, 3), ("refined", 3, 9), ("many", 9, 9)):

@@ -34,7 +34,7 @@ def apart(values):
     return sorted({round(v, 9) for v in values})
 
 
-@mark.parametrize("words, count", [((), 3), (("--points", "5"), 3), (("--points", "5,5"), 5)])  # fmt: skip
+@mark.parametrize("words, count", [((), 3), (("--points", "5"), 3), (("--points", "5,5"), 5)])
 def test_joints_in_space_begin_with_points_along_both_sides(tmp_path, words, count):
     points = bedPoints(strip(tmp_path, *words))
     assert len(points) == count**2
@@ -68,12 +68,20 @@ def test_a_strip_that_bends_cracks_at_a_force_that_settles_with_more_points(tmp_
 @mark.parametrize(
     "words, plane, message",
     [
-        (("--points", "5", "--blocks", "deformable"), False, "--points 5: joints of deformable units have the points of"),
+        (
+            ("--points", "5", "--blocks", "deformable"),
+            False,
+            "--points 5: joints of deformable units have the points of",
+        ),
         (("--points", "2"), False, "--points: 2 must be a whole number from 3 to 100"),
         (("--points", "12,4,4"), True, "'12,4,4' must be one or two whole numbers"),
-        (("--points", "5,6"), True, "'5,6': a joint cannot have fewer points from when it yields than before"),
+        (
+            ("--points", "5,6"),
+            True,
+            "'5,6': a joint cannot have fewer points from when it yields than before",
+        ),
     ],
-)  # fmt: skip
+)
 def test_points_that_do_nothing_are_refused(tmp_path, capsys, words, plane, message):
     with raises(SystemExit) as refused:
         refusing = strip(tmp_path, *words, plane=plane)

@@ -41,7 +41,7 @@ def test_a_tilt_turns_gravity_and_its_factor_is_the_tangent(share):
 
 
 def test_forces_add_to_what_is_there_or_replace_it_beside_one_that_stays():
-    engines = [SimpleNamespace(force=Vector3(1, 2, 3)), SimpleNamespace(force=Vector3(4, 5, 6))]  # fmt: skip
+    engines = [SimpleNamespace(force=Vector3(1, 2, 3)), SimpleNamespace(force=Vector3(4, 5, 6))]
     load = loading.Forces(engines, [Vector3(10, 0, 0), Vector3(0, 0, -20)], "f", "N", 2)
     began = load.now()
     assert began == [1, 2, 3, 4, 5, 6]
@@ -80,13 +80,19 @@ def standing(scaling=1.0, height=0.6):
     box = SimpleNamespace(high=(0, 0, height), low=(0, 0, 0))
     nothing = lambda *words, **more: None
     running = SimpleNamespace(
-        advance=nothing, show=nothing, record=nothing, flush=nothing, mark=nothing,
+        advance=nothing,
+        show=nothing,
+        record=nothing,
+        flush=nothing,
+        mark=nothing,
         readings=SimpleNamespace(time=None),
-    )  # fmt: skip
+    )
     motion = SimpleNamespace(checkFall=nothing, fastest=lambda far: 0.0)
-    made = SimpleNamespace(loading=SimpleNamespace(loadFactor=0.0), supports=SimpleNamespace(), motion=motion)  # fmt: skip
+    made = SimpleNamespace(
+        loading=SimpleNamespace(loadFactor=0.0), supports=SimpleNamespace(), motion=motion
+    )
     args = SimpleNamespace(density_scaling=scaling)
-    return SimpleNamespace(args=args, description=box, running=running, model=made, share=1)  # fmt: skip
+    return SimpleNamespace(args=args, description=box, running=running, model=made, share=1)
 
 
 def test_a_growth_takes_longer_with_scaled_masses_and_has_the_load_of_the_middle():
@@ -111,7 +117,9 @@ def trial(looks, source=0.2, goal=0.5, scaling=1.0, speeds=None):
     O.dt = 1e-4
     scene, load, number = standing(scaling), Load(), iter(range(10**6))
     at = growing.Growing(goal=goal, source=source, marks=[])
-    scene.model.supports.unrest = lambda: (0.0, 0.0) if looks(next(number)) else (2 * REST, 2 * CALM)  # fmt: skip
+    scene.model.supports.unrest = lambda: (
+        (0.0, 0.0) if looks(next(number)) else (2 * REST, 2 * CALM)
+    )
     scene.model.supports.slowest = lambda: 0.0
     if speeds:
         scene.model.motion.fastest = lambda far: speeds(at.taken)
@@ -135,7 +143,9 @@ def test_a_trial_leads_smoothly_to_its_load_and_looks_for_rest_there(source, goa
 def test_a_trial_without_looks_at_rest_in_a_row_is_given_up_in_its_time(scaling):
     held, at, _, _ = trial(lambda n: n % LOOKS, scaling=scaling)
     assert not held and growing.WHY[at.ended].startswith("it was still moving")
-    assert at.taken * O.dt == approx(growing.TRIAL * math.sqrt(scaling), rel=EVERY * O.dt / growing.TRIAL)  # fmt: skip
+    assert at.taken * O.dt == approx(
+        growing.TRIAL * math.sqrt(scaling), rel=EVERY * O.dt / growing.TRIAL
+    )
 
 
 def test_a_trial_ends_when_the_structure_moves_faster_and_faster():
@@ -147,7 +157,7 @@ def test_a_trial_ends_when_the_structure_moves_faster_and_faster():
     held, at, _, _ = trial(lambda n: False, speeds=slower)
     assert growing.WHY[at.ended].startswith("it was still moving")
     # blocks that the load itself moves, in the eight looks in which it is put on, have not fallen
-    swing = lambda steps: growing.SURE * 2 ** (steps / EVERY) if steps < 8 * EVERY else 0  # fmt: skip
+    swing = lambda steps: growing.SURE * 2 ** (steps / EVERY) if steps < 8 * EVERY else 0
     assert trial(lambda n: n > 8, speeds=swing)[0]
 
 
@@ -167,10 +177,12 @@ def search(patch, capacity, moving, fell, setsOff, growth, buckling=math.inf):
     made.model.loading.alongNow = lambda: 1e-3 * here["factor"]
     factors = [last * n / states for n in range(states + 1)]
     at = growing.Growing(
-        fell="it fell" if fell else "", last=last, lastState=text(last),
+        fell="it fell" if fell else "",
+        last=last,
+        lastState=text(last),
         kept=[[f, text(f)] for f in factors],
         rows=[[f, f, 1.0 if f < setsOff * last else 50.0] for f in factors[1:]],
-    )  # fmt: skip
+    )
 
     class Known(growing._Search):
         def _trial(self):
@@ -204,7 +216,7 @@ def test_a_search_brackets_what_is_held(capacity, moves, setsOff, growth):
     with pytest.MonkeyPatch.context() as patch:
         rest = capacity * last  # from rest it holds more than while it moves
         fell = rest <= last or moves * rest <= last
-        at, made, trials, found = search(patch, rest, moves * rest, fell, setsOff, growth)  # fmt: skip
+        at, made, trials, found = search(patch, rest, moves * rest, fell, setsOff, growth)
         assert len(trials) < 60 and at.held
         held, lost = at.held[0], at.lost and at.lost[0]
         assert held < rest and at.held[1] == approx(held)
@@ -251,8 +263,10 @@ def test_a_structure_that_never_rests_is_tried_down_to_no_load_and_has_no_number
         assert made.model.atRest is None
 
 
-@mark.parametrize("held, exact, noted", [(0.94, True, True), (0.96, True, False), (0.5, False, False)])  # fmt: skip
-def test_a_note_says_that_much_less_is_held_than_rigid_blocks_carry(capsys, held, exact, noted):  # fmt: skip
+@mark.parametrize(
+    "held, exact, noted", [(0.94, True, True), (0.96, True, False), (0.5, False, False)]
+)
+def test_a_note_says_that_much_less_is_held_than_rigid_blocks_carry(capsys, held, exact, noted):
     entries = {"a": {"exact": exact, "factor": 1.0}}
     made = SimpleNamespace(bounds=SimpleNamespace(entries=entries))
     at = growing.Growing(held=[held, 0.0], lost=[0.99, 0.0, 1, 0])

@@ -20,7 +20,7 @@ def made(folder, blocks, *words, masonry=None, **settings):
 
 def weightAbove(scene, z):
     """Weight of the bricks whose centroid is above z [N]."""
-    above = [O.bodies[i] for i in scene.model.ids if O.bodies[i].state.refPos[2] > z + 1e-9]  # fmt: skip
+    above = [O.bodies[i] for i in scene.model.ids if O.bodies[i].state.refPos[2] > z + 1e-9]
     return GRAVITY * sum(body.state.mass for body in above)
 
 
@@ -29,12 +29,8 @@ def column(scene, head):
 
 
 @BLOCKS
-@mark.parametrize(
-    "plane, axis", [(True, 0), (False, 0), (False, 1)], ids=["plane", "x", "y"]
-)
-def test_a_push_is_the_shear_and_its_lever_arm_the_moment(
-    tmp_path, plane, axis, blocks
-):
+@mark.parametrize("plane, axis", [(True, 0), (False, 0), (False, 1)], ids=["plane", "x", "y"])
+def test_a_push_is_the_shear_and_its_lever_arm_the_moment(tmp_path, plane, axis, blocks):
     """The platen can turn, so what acts on it are the push and the pressure, at places that are known."""
     words = "--blocks", blocks, "--rate", "2.5"
     wall = made(tmp_path, bricks.Wall(0.66, 0.486), *words, plane=plane)
@@ -110,7 +106,7 @@ def test_tractions_of_a_frame_add_up_to_the_section(tmp_path):
     joints = asFrame(MasonryVtkRecorder().joints())
     lower = {(i.id1, i.id2): s for i, s in zip(cut.interactions, cut.signs)}
     signs = np.array([lower.get(tuple(map(int, pair)), 0) for pair in joints["bodies"]])
-    traction = joints["shear_traction"] + joints["normal_stress"][:, None] * joints["normal"]  # fmt: skip
+    traction = joints["shear_traction"] + joints["normal_stress"][:, None] * joints["normal"]
     force = (signs * joints["area"]) @ traction
     there = cut.forces()[0]  # along axes that have turned by some 0.3 mrad
     assert np.linalg.norm(force - there) < 1e-3 * there.norm()
@@ -174,11 +170,17 @@ def test_the_parts_of_a_corner_add_up(tmp_path):
     "act, message",
     [
         (lambda s: s.section(3), "no brick reaches z = 3 m; they are from 0 to 0.324 m"),
-        (lambda s: s.section(0.324) and s.begin(), "section section0: no joint crosses z = 0.324 m"),
+        (
+            lambda s: s.section(0.324) and s.begin(),
+            "section section0: no joint crosses z = 0.324 m",
+        ),
         (lambda s: s.section(0.1).forces(), "section section0: the scene is not built yet"),
-        (lambda s: (s.section(0.1, name="a"), s.section(0.2, name="a"), s.begin()), "two columns have the name a_M_y_kNm"),
+        (
+            lambda s: (s.section(0.1, name="a"), s.section(0.2, name="a"), s.begin()),
+            "two columns have the name a_M_y_kNm",
+        ),
     ],
-)  # fmt: skip
+)
 def test_sections_that_cannot_be_are_refused(tmp_path, act, message):
     wall = made(tmp_path, bricks.Wall(0.44, 0.324))
     wall.platen("bottom")
@@ -197,10 +199,14 @@ def test_sections_that_cannot_be_are_refused(tmp_path, act, message):
         (lambda s: (s.platen("bottom"), s.section(0)), "section0_N_kN", "base_N_kN"),
         (lambda s: (s.platen("bottom"), s.section(0, name="base")), "base_N_kN", "base2_N_kN"),
         (lambda s: (s.platen("bottom"), s.section(0.2, name="base")), "base2_N_kN", "base3_N_kN"),
-        (lambda s: (s.platen("bottom"), s.column("base_N", "mine", lambda: 1.0)), "base2_N_kN", "base3_N_kN"),
+        (
+            lambda s: (s.platen("bottom"), s.column("base_N", "mine", lambda: 1.0)),
+            "base2_N_kN",
+            "base3_N_kN",
+        ),
         (lambda s: s.hold(0, name="foot"), "foot_force_z_kN", "base_N_kN"),
     ],
-)  # fmt: skip
+)
 def test_the_base_is_recorded_once(tmp_path, act, present, missing):
     stack = made(tmp_path, bricks.stack(3, (0.4, 0.3, 0.2)), masonry=materials.dry(0.6))
     act(stack)

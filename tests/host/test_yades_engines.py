@@ -40,7 +40,7 @@ def test_forces_motions_and_records_of_yades_engines_hold_beside_ours(tmp_path, 
 
     builtins.grow = grow  # where a PyRunner finds it
     moved = TranslationEngine(ids=[0], velocity=1e-3, translationAxis=(0, 1, 0))
-    recorder = VTKRecorder(fileName=str(tmp_path / "yade-"), recorders=["boxes"], iterPeriod=500)  # fmt: skip
+    recorder = VTKRecorder(fileName=str(tmp_path / "yade-"), recorders=["boxes"], iterPeriod=500)
     ours = list(O.engines)
     runner = PyRunner(command="grow()", iterPeriod=20)
     O.engines = [ours[0], runner, push, moved, *ours[1:], recorder]
@@ -61,7 +61,7 @@ def test_work_that_is_not_counted_is_said_and_ends_no_run(capfd, functors, place
     """Behind the loop of the joints, and with functors, forces of YADE's engines are not apart from those of joints."""
     block, weight = standing(0.5, functors=functors)
     ours = list(O.engines)
-    O.engines = [*ours[:place], ForceEngine(ids=[block], force=(0.6 * weight, 0, 0)), *ours[place:]]  # fmt: skip
+    O.engines = [*ours[:place], ForceEngine(ids=[block], force=(0.6 * weight, 0, 0)), *ours[place:]]
     run(3000)
     assert O.bodies[block].state.displ()[0] > 1e-3
     assert capfd.readouterr().err.count("the work of ForceEngine is not counted") == 1

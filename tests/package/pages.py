@@ -4,7 +4,15 @@
 import html.parser
 
 #: Attributes by which a page loads something when it is opened. A link that a reader follows is none.
-LOADED = {"script": "src", "link": "href", "img": "src", "iframe": "src", "source": "src", "object": "data", "embed": "src"}  # fmt: skip
+LOADED = {
+    "script": "src",
+    "link": "href",
+    "img": "src",
+    "iframe": "src",
+    "source": "src",
+    "object": "data",
+    "embed": "src",
+}
 #: Texts that break out of a page, turn its reading round or steer a terminal, if they are not escaped.
 HOSTILE = "</script><script>alert(1)</script><!-- \"' & <b>\u202e\x1b"
 SHOWN = HOSTILE.replace("\u202e", "\\u202e").replace("\x1b", "\\x1b")

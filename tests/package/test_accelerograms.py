@@ -13,7 +13,9 @@ numbers = some.lists(sample, min_size=2, max_size=60)
 GOOD = [0.1, 0.2, -0.1, 0.3, 0.1, -0.2]
 
 
-def peer(values, every="DT=   .0050 SEC,", count=None, unit="UNITS OF G", what="TIME SERIES", columns=5):  # fmt: skip
+def peer(
+    values, every="DT=   .0050 SEC,", count=None, unit="UNITS OF G", what="TIME SERIES", columns=5
+):
     head = ["PEER NGA STRONG MOTION DATABASE RECORD", "Nowhere-01, 1/1/2000, Desk, 90"]
     head.append(f"ACCELERATION {what} IN {unit}")
     head.append(f"NPTS= {len(values) if count is None else count:6d}, {every}")
@@ -74,7 +76,7 @@ def test_a_file_of_esm_gives_its_samples_in_its_unit(tmp_path_factory, values):
 @given(values=numbers, every=some.sampled_from([0.001, 0.005, 0.01, 1 / 256]))
 @settings(max_examples=60)
 def test_a_text_has_times_and_accelerations(tmp_path_factory, values, every):
-    lines = ["# by hand", "# unit: g", *(f"{n * every!r}, {v!r}" for n, v in enumerate(values)), ""]  # fmt: skip
+    lines = ["# by hand", "# unit: g", *(f"{n * every!r}, {v!r}" for n, v in enumerate(values)), ""]
     found = read(file(tmp_path_factory.mktemp("text"), "\n".join(lines)))
     assert (found.kind, found.unit) == ("text", "g")
     assert found.every == approx(every, rel=1e-9)
@@ -94,12 +96,12 @@ def test_three_components_are_read_from_one_file_or_three(tmp_path):
     rows = [*map(list, zip(*parts))]
     one = file(tmp_path, accelerograms.written(rows, 0.02, "a record"))
     assert readRecord(one, None) == (rows, 0.02)
-    three = [file(tmp_path, "\n".join(map(str, p)), f"{n}.txt") for n, p in enumerate(parts)]  # fmt: skip
+    three = [file(tmp_path, "\n".join(map(str, p)), f"{n}.txt") for n, p in enumerate(parts)]
     assert readRecord(three, 0.02) == (rows, 0.02)
     inG = readRecord(three, 0.02, unit="g")[0]
     assert np.array(inG) == approx(9.81 * np.array(rows))
     file(tmp_path, "1\n3\n", "2.txt")
-    with raises(Refused, match="must be alike, not 3 samples every 0.02 s, .*, 2 samples"):  # fmt: skip
+    with raises(Refused, match="must be alike, not 3 samples every 0.02 s, .*, 2 samples"):
         readRecord(three, 0.02)
     with raises(Refused, match="the first is number 1, -999"):
         readRecord([[0, 1, 2], [0, -999, 1]], 0.02)
@@ -131,37 +133,68 @@ def test_what_a_script_says_must_agree_with_the_file(tmp_path):
         (peer(GOOD)[:-16], r"line 4: NPTS is 6, and the file has 5 values: is it cut off"),
         (peer(GOOD)[:-4], r"line 6: '-2.0000000E' is not a number"),
         (peer([0.1, math.nan, 0.2]), r"line 5: 'NAN' is not a finite number"),
-
-        (peer([0.1, 0.2], "DELTA= 0.01"), r"line 4: the line must have NPTS and DT, .* and is 'NPTS= 2, DELTA= 0.01'"),
-        (peer([0.1, 0.2], unit="UNITS OF FURLONGS"), r"line 3: unit 'FURLONGS' must be one of m/s², g, cm/s²"),
-        (peer([0.1, 0.2]).replace("ACCELERATION", "VELOCITY"), r"line 3: it must hold accelerations, and says 'VELOCITY"),
+        (
+            peer([0.1, 0.2], "DELTA= 0.01"),
+            r"line 4: the line must have NPTS and DT, .* and is 'NPTS= 2, DELTA= 0.01'",
+        ),
+        (
+            peer([0.1, 0.2], unit="UNITS OF FURLONGS"),
+            r"line 3: unit 'FURLONGS' must be one of m/s², g, cm/s²",
+        ),
+        (
+            peer([0.1, 0.2]).replace("ACCELERATION", "VELOCITY"),
+            r"line 3: it must hold accelerations, and says 'VELOCITY",
+        ),
         (peer([]), r"it must have two lines of samples at least"),
         (esm(GOOD, NDATA="8"), r"line 5: NDATA is 8, and the file has 6 values"),
         (esm(GOOD, NDATA="many"), r"line 5: NDATA 'many' must be a whole number"),
         (esm(GOOD, UNITS="furlong"), r"line 7: unit 'furlong' must be one of"),
         (esm(GOOD, UNITS=""), r"its header must have UNITS, and ends with line 64"),
-        (esm(GOOD, DATA_TYPE="VELOCITY"), r"line 8: DATA_TYPE must be ACCELERATION, got 'VELOCITY'"),
-        (esm(GOOD, SAMPLING_INTERVAL_S="-1"), r"line 4: the time between samples, -1 s, must be above 0"),
+        (
+            esm(GOOD, DATA_TYPE="VELOCITY"),
+            r"line 8: DATA_TYPE must be ACCELERATION, got 'VELOCITY'",
+        ),
+        (
+            esm(GOOD, SAMPLING_INTERVAL_S="-1"),
+            r"line 4: the time between samples, -1 s, must be above 0",
+        ),
         (esm([0.1, math.inf]), r"line 66: 'INF' is not a finite number"),
         (esm(GOOD) + "1 2\n", r"line 71: 2 numbers, there must be one a line"),
         ("0 1\n0.01 2\n0.02 nan\n", r"line 3: 'nan' is not a finite number"),
-        ("0 1\n0.01 2\n0.03 3\n", r"line 2: its times are not evenly apart: 0.01 s is 0.01 s after the one before, and the mean is 0.015 s"),
+        (
+            "0 1\n0.01 2\n0.03 3\n",
+            (
+                r"line 2: its times are not evenly apart: 0.01 s is 0.01 s after the one before,"
+                r" and the mean is 0.015 s"
+            ),
+        ),
         # half a per cent, five times what is allowed
-        ("0 1\n0.01 2\n0.0201 3\n", r"line 2: its times are not evenly apart: 0.01 s is 0.01 s after the one before, and the mean is 0.01005 s"),
-        ("0 1\n0.01 2\n0.02 1\n0.01 3\n", r"line 2|line 4: its times are not evenly apart: 0.01 s must be after 0.02 s"),
+        (
+            "0 1\n0.01 2\n0.0201 3\n",
+            (
+                r"line 2: its times are not evenly apart: 0.01 s is 0.01 s after the one before,"
+                r" and the mean is 0.01005 s"
+            ),
+        ),
+        (
+            "0 1\n0.01 2\n0.02 1\n0.01 3\n",
+            r"line 2|line 4: its times are not evenly apart: 0.01 s must be after 0.02 s",
+        ),
         ("0 1\n0.01 2 3\n", r"line 2: 3 numbers, and the lines must have one or two"),
-
         ("# components: x y z\n0 1\n0.01 2\n", r"line 2: 2 numbers, .* or three below"),
         ("# components: N E Z\n", r"line 1: components 'N E Z' must be x y z"),
         ("time_s,a\n0,1\n", r"line 1: 'time_s' is not a number"),
         ("", r"it must have two lines of samples at least"),
         ("# unit: mm/s2\n0 1\n0.01 2\n", r"line 1: unit 'mm/s2' must be one of"),
         ("# unit: g\n# unit: m/s2\n0 1\n0.01 2\n", r"line 2: it says unit twice"),
-        ("# every: 0.02 s\n0 1\n0.01 2\n", r"its times are 0.01 s apart, and it says every: 0.02 s"),
+        (
+            "# every: 0.02 s\n0 1\n0.01 2\n",
+            r"its times are 0.01 s apart, and it says every: 0.02 s",
+        ),
         ("\0\0\0\0", r"line 1: .* is not a number"),
     ],
-)  # fmt: skip
-def test_a_file_that_is_wrong_is_refused_with_file_line_and_value(tmp_path, text, message):  # fmt: skip
+)
+def test_a_file_that_is_wrong_is_refused_with_file_line_and_value(tmp_path, text, message):
     with raises(Refused, match=message) as caught:
         read(file(tmp_path, text))
     assert str(tmp_path) in str(caught.value) and "\n" not in str(caught.value)
@@ -231,11 +264,19 @@ def test_an_offset_is_named_with_its_numbers():
 @mark.parametrize(
     "values, every, message",
     [
-        ([0, 2.0, 0], 10.0, "every 10 s, the time between samples, must be at most 0.5 s: is it in s, not ms?"),
-        ([0, 2.0, -9999.0, 0], 0.01, "1 samples stand for missing values, the first is number 2, -9999"),
+        (
+            [0, 2.0, 0],
+            10.0,
+            "every 10 s, the time between samples, must be at most 0.5 s: is it in s, not ms?",
+        ),
+        (
+            [0, 2.0, -9999.0, 0],
+            0.01,
+            "1 samples stand for missing values, the first is number 2, -9999",
+        ),
         ([0, 400.0, -200.0], 0.01, "the peak of the record is 400, "),
     ],
-)  # fmt: skip
+)
 def test_a_record_that_no_instrument_has_made_is_refused(values, every, message):
     with raises(Refused, match=re.escape(message)):
         readRecord(values, every)
@@ -243,9 +284,7 @@ def test_a_record_that_no_instrument_has_made_is_refused(values, every, message)
         readRecord([0, 1930.0], 0.01, unit="m/s²")
 
 
-@mark.parametrize(
-    "peak, unit, found", [(4.0, None, 4.0), (400, "cm/s²", 4), (0.4, "m/s²", 0.4)]
-)
+@mark.parametrize("peak, unit, found", [(4.0, None, 4.0), (400, "cm/s²", 4), (0.4, "m/s²", 0.4)])
 def test_a_list_is_read_in_its_unit(peak, unit, found):
     assert readRecord([0, peak], 0.01, unit=unit)[0] == approx([0, found])
     with raises(Refused, match="unit must be one of m/s², g, cm/s²"):

@@ -15,7 +15,7 @@ OTHER = dict(
     **dict(residualStrengthRatio=0.1, peakRatio=20.0, compressiveFractureEnergy=2e4),
     **dict(capNormal=1.1, capShear=8.0, capLinear=1.0, restitution=0.5),
 )
-STRENGTHS = dict(tensileStrength=0.1e6, cohesion=0.2e6, friction=0.6, compressiveStrength=8e6)  # fmt: skip
+STRENGTHS = dict(tensileStrength=0.1e6, cohesion=0.2e6, friction=0.6, compressiveStrength=8e6)
 
 
 def own(joint=None, unit=None, **joints):
@@ -103,12 +103,27 @@ def test_what_has_no_effect_is_not_named(changes, without):
 @mark.parametrize(
     "joint, unit, message",
     [
-        ({}, None, "joint 'bed': tensileStrength [Pa], cohesion [Pa], friction [-], compressiveStrength [Pa] must be given"),
-        (dict(cap=False), None, "joint 'bed': tensileStrength [Pa], cohesion [Pa], friction [-] must be given"),
-        ({n: v for n, v in STRENGTHS.items() if n != "cohesion"}, None, "joint 'bed': cohesion [Pa] must be given"),
+        (
+            {},
+            None,
+            (
+                "joint 'bed': tensileStrength [Pa], cohesion [Pa], friction [-],"
+                " compressiveStrength [Pa] must be given"
+            ),
+        ),
+        (
+            dict(cap=False),
+            None,
+            "joint 'bed': tensileStrength [Pa], cohesion [Pa], friction [-] must be given",
+        ),
+        (
+            {n: v for n, v in STRENGTHS.items() if n != "cohesion"},
+            None,
+            "joint 'bed': cohesion [Pa] must be given",
+        ),
         (None, dict(young=10e9), "unit 'unit': density [kg/m³] must be given"),
     ],
-)  # fmt: skip
+)
 def test_what_cannot_be_assumed_is_refused(joint, unit, message, tmp_path, capsys):
     with raises(SystemExit) as end:
         scene(own(joint, unit), tmp_path / "r").settle()
@@ -117,7 +132,7 @@ def test_what_cannot_be_assumed_is_refused(joint, unit, message, tmp_path, capsy
 
 
 def test_all_that_is_missing_is_named_with_the_other_problems(tmp_path, capsys):
-    masonry = own({}, {}, head=MasonryJoint(**{**STRENGTHS, "cap": False}), pier=MasonryJoint())  # fmt: skip
+    masonry = own({}, {}, head=MasonryJoint(**{**STRENGTHS, "cap": False}), pier=MasonryJoint())
     with raises(SystemExit):
         scene(masonry, tmp_path / "r", "--set", "bed.frictoin=1").settle()
     said = capsys.readouterr().err
@@ -177,7 +192,7 @@ def test_published_sets_name_what_they_assume(tmp_path, capsys):
     assert not found & {"bed.friction", "head.compressiveStrength", "unit.density"}
     assert not any(name.startswith("support") for name in found)
     granite = materials.dryGranite(175, 0.15).assumed()
-    assert {"unit.density", "unit.poisson", "bed.friction", "head.normalStiffness"} < names(granite)  # fmt: skip
+    assert {"unit.density", "unit.poisson", "bed.friction", "head.normalStiffness"} < names(granite)
     assert not names(granite) & {"bed.normalStiffness", "bed.cohesion", "unit.young"}
     changed = materials.calciumSilicate()
     changed.joints["bed"].dilatancy = 0.1
@@ -185,10 +200,14 @@ def test_published_sets_name_what_they_assume(tmp_path, capsys):
     made = scene(changed, tmp_path / "r")
     made.settle()
     made.finish()
-    assert f"note: {len(found) - 1} properties of the materials are assumed" in capsys.readouterr().out  # fmt: skip
+    assert (
+        f"note: {len(found) - 1} properties of the materials are assumed" in capsys.readouterr().out
+    )
 
 
-DRY = dict(friction=0.6, normalStiffness=1e10, shearStiffness=5e9, density=2500, young=3e10, poisson=0.1)  # fmt: skip
+DRY = dict(
+    friction=0.6, normalStiffness=1e10, shearStiffness=5e9, density=2500, young=3e10, poisson=0.1
+)
 
 
 def test_calcium_silicate_has_the_moduli_and_closures_that_its_help_names():
@@ -223,7 +242,7 @@ def test_granite_blocks_and_their_dry_joints_have_the_measured_modulus(level, mo
 @given(own=some.sets(some.sampled_from(sorted(DRY))))
 def test_dry_joints_name_the_defaults_that_were_not_given(own):
     masonry = materials.dry(**{name: DRY[name] for name in own})
-    of = lambda n: ["unit"] if n in ("density", "young", "poisson") else ["bed", "support"]  # fmt: skip
+    of = lambda n: ["unit"] if n in ("density", "young", "poisson") else ["bed", "support"]
     expected = {f"{kind}.{n}" for n in set(DRY) - own for kind in of(n)}
     assert names(masonry.assumed()) == expected
     for name in own:
@@ -243,7 +262,15 @@ def test_the_defaults_of_dry_joints_are_those_of_its_help():
 
 def test_stones_slide_on_their_platen(tmp_path):
     stones = bricks.stack(2, (0.3, 0.2, 0.1))
-    bed = dict(normalStiffness=1e10, shearStiffness=4e9, tensileStrength=0, cohesion=0, friction=0.4, residualFriction=0.4, cap=False)  # fmt: skip
+    bed = dict(
+        normalStiffness=1e10,
+        shearStiffness=4e9,
+        tensileStrength=0,
+        cohesion=0,
+        friction=0.4,
+        residualFriction=0.4,
+        cap=False,
+    )
     density = 216 / GRAVITY / 0.012  # 216 N in all
     made = scene(own(bed, dict(density=density)), tmp_path / "r", blocks=stones, rate=1)
     pushed = made.handle(0, name="lower")
@@ -286,9 +313,13 @@ def test_joints_without_a_name_have_that_of_their_place():
 # -- properties that go together --------------------------------------------------------------------------------------
 
 
-@given(some.permutations(["friction", "residualFriction", "dilatancy", "cohesion", "tensileStrength"]))  # fmt: skip
+@given(
+    some.permutations(["friction", "residualFriction", "dilatancy", "cohesion", "tensileStrength"])
+)
 def test_properties_are_set_together_in_any_order(order):
-    values = dict(friction=0.2, residualFriction=0.15, dilatancy=0.1, cohesion=0.9e6, tensileStrength=1e6)  # fmt: skip
+    values = dict(
+        friction=0.2, residualFriction=0.15, dilatancy=0.1, cohesion=0.9e6, tensileStrength=1e6
+    )
     joint = MasonryJoint()
     assert joint.set(**{name: values[name] for name in order}) is joint
     assert {name: getattr(joint, name) for name in order} == values
@@ -299,7 +330,7 @@ def test_what_cannot_be_set_together_has_all_problems_and_changes_nothing():
     before, noted = joint.dict(), dict(joint.assumed())
     with raises(ValueError) as refused:
         joint.set(residualFrictoin=0.1, friction=-1, cohesion=2e5)
-    assert "no attribute 'residualFrictoin', did you mean 'residualFriction'?" in str(refused.value)  # fmt: skip
+    assert "no attribute 'residualFrictoin', did you mean 'residualFriction'?" in str(refused.value)
     assert "friction -1 must be at least 0" in str(refused.value)
     with raises(ValueError, match="residual friction 0.43 must be at most 0.3"):
         joint.set(friction=0.3)

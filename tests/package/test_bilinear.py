@@ -94,7 +94,7 @@ def pushes(draw):
     for step, slope in zip(steps, slopes):
         corners.append(corners[-1] + step)
         values.append(values[-1] + slope * step)
-    for length, share in ((draw(shares), 1.0), (draw(shares), draw(some.floats(0.0, 0.95)))):  # fmt: skip
+    for length, share in ((draw(shares), 1.0), (draw(shares), draw(some.floats(0.0, 0.95)))):
         corners.append(corners[-1] + length)
         values.append(values[-1] * share)
     return curve(*zip(corners, values), rows=draw(some.integers(20, 200)))
@@ -111,8 +111,13 @@ def found(moved, force, *words):
         raise
 
 
-@given(pushes(), some.floats(1e-3, 1e3), some.floats(1e-3, 1e3), some.sampled_from(sorted(bilinear.RULES)))  # fmt: skip
-def test_other_units_of_displacement_and_force_scale_the_answer(push, long, strong, rule):  # fmt: skip
+@given(
+    pushes(),
+    some.floats(1e-3, 1e3),
+    some.floats(1e-3, 1e3),
+    some.sampled_from(sorted(bilinear.RULES)),
+)
+def test_other_units_of_displacement_and_force_scale_the_answer(push, long, strong, rule):
     moved, force = push
     one = found(moved, force, rule)
     two = bilinear.bilinear(long * moved, strong * force, rule)
@@ -137,13 +142,15 @@ def test_areas_are_equal(push):
     work = lambda b, d: b.yieldForce * (d - b.yieldDisplacement / 2)
     code = bilinear.bilinear(moved, force, "en1998")
     fine = np.linspace(0, code.mechanism, 200001)
-    assert work(code, code.mechanism) == approx(trapezoid(np.interp(fine, moved, force), fine), rel=1e-4)  # fmt: skip
+    assert work(code, code.mechanism) == approx(
+        trapezoid(np.interp(fine, moved, force), fine), rel=1e-4
+    )
 
 
 @given(pushes(), some.integers(2, 4))
 def test_more_rows_of_the_same_curve_change_nothing(push, times):
     moved, force = push
-    fine = np.unique(np.concatenate([moved, np.linspace(0, moved[-1], times * len(moved))]))  # fmt: skip
+    fine = np.unique(np.concatenate([moved, np.linspace(0, moved[-1], times * len(moved))]))
     one, two = found(moved, force), found(fine, np.interp(fine, moved, force))
     assume(not one.notes and not two.notes)
     assert two.yieldForce == approx(one.yieldForce, rel=1e-6)
@@ -156,9 +163,9 @@ def test_more_rows_of_the_same_curve_change_nothing(push, times):
 def test_a_curve_that_does_not_fall_so_far_ends_at_its_end_and_says_so():
     found = bilinear.bilinear(*curve((0, 0), (2, 100), (10, 85)))
     assert found.ultimateDisplacement == 10 and not found.reached
-    assert found.notes[0].startswith("not reached: the force never falls to 0.8 of its peak")  # fmt: skip
+    assert found.notes[0].startswith("not reached: the force never falls to 0.8 of its peak")
     notes = {one.name: one.note for one in found.numbers()}
-    assert notes["ultimate_displacement_mm"] == notes["displacement_ductility"] == found.notes[0]  # fmt: skip
+    assert notes["ultimate_displacement_mm"] == notes["displacement_ductility"] == found.notes[0]
     assert notes["bilinear_stiffness_kN_per_mm"] == ""
 
 
@@ -168,7 +175,9 @@ def test_a_plateau_up_to_the_end_says_that_the_force_may_grow():
 
 
 def test_a_short_fall_is_a_wave_and_a_long_one_is_the_ultimate_displacement():
-    moved, force = curve((0, 0), (2, 100), (3, 98), (3.01, 70), (3.04, 70), (3.05, 98), (6, 90), (7, 0), rows=4001)  # fmt: skip
+    moved, force = curve(
+        (0, 0), (2, 100), (3, 98), (3.01, 70), (3.04, 70), (3.05, 98), (6, 90), (7, 0), rows=4001
+    )
     found = bilinear.bilinear(moved, force, pulse=0.1)
     assert found.ultimateDisplacement == approx(6 + 1 / 9) and not found.notes
     found = bilinear.bilinear(moved, force)
@@ -191,8 +200,14 @@ def test_a_peak_anywhere_on_a_plateau_says_what_the_stiffness_depends_on():
     moved, force = curve((0, 0), (1, 50), (2, 96), (20, 100), (22, 0), rows=4001)
     found = bilinear.bilinear(moved, force, "en1998")
     early = bilinear.bilinear(moved, force, "en1998", mechanism=2 - 1 / 46)
-    assert "the force is above 0.95 of its peak from 1.978 mm on, and the peak is at 20 mm" in found.notes[0]  # fmt: skip
-    assert f"{early.stiffness:.4g} kN/mm with the first and {found.stiffness:.4g} kN/mm with the second" in found.notes[0]  # fmt: skip
+    assert (
+        "the force is above 0.95 of its peak from 1.978 mm on, and the peak is at 20 mm"
+        in found.notes[0]
+    )
+    assert (
+        f"{early.stiffness:.4g} kN/mm with the first and {found.stiffness:.4g} kN/mm with the"
+        " second" in found.notes[0]
+    )
     assert early.notes == () and bilinear.bilinear(moved, force).notes == ()
 
 
@@ -204,12 +219,20 @@ def test_a_peak_anywhere_on_a_plateau_says_what_the_stiffness_depends_on():
         ([0, 1, math.nan], [0, 1, 2], "a number that is not finite"),
         ([0, 1], [0, 1], "is no push: it has 2 rows"),
         ([0, 1, 2], [0, -1, -2], "its largest force is 0 kN"),
-        ([0, 1, 2, 3], [0, 1, 2, 3], "has no peak: its force still grows at its end, 3 mm, with 1 kN/mm"),
-        ([0, 1, 2, 1, 0], [0, 5, 6, 2, 0], "the displacement goes back by 2 mm: the curve is of cycles or of several pushes"),
+        (
+            [0, 1, 2, 3],
+            [0, 1, 2, 3],
+            "has no peak: its force still grows at its end, 3 mm, with 1 kN/mm",
+        ),
+        (
+            [0, 1, 2, 1, 0],
+            [0, 5, 6, 2, 0],
+            "the displacement goes back by 2 mm: the curve is of cycles or of several pushes",
+        ),
         ([0, 1, 2, 3], [3, 5, 6, 2], "the curve begins with 3 kN at 0 mm"),
         ([1, 2, 3, 4], [0, 5, 6, 2], "the curve begins with 0 kN at 1 mm"),
     ],
-)  # fmt: skip
+)
 def test_a_curve_that_has_none_is_refused_in_a_sentence(moved, force, message):
     for rule in bilinear.RULES:
         with raises(Refused, match=message):
@@ -238,7 +261,9 @@ PUSH = {"stage": "push", "first_row": 0, "load": ["push", "top along x", ""]}
 
 def run(folder, moved, base, top=None, **entries):
     """A folder of results with a push that takes a second."""
-    rows = np.column_stack([np.linspace(0, 1, len(moved)), moved, base, base if top is None else top])  # fmt: skip
+    rows = np.column_stack(
+        [np.linspace(0, 1, len(moved)), moved, base, base if top is None else top]
+    )
     entries = {"stages": [PUSH], "interrupted": False, **entries}
     return writeRun(folder, HEADS, rows, **entries)
 
@@ -260,7 +285,9 @@ def test_the_force_of_a_run_is_what_both_ends_carry_at_once(tmp_path):
 
 
 def test_a_wave_of_a_run_lasts_no_longer_than_its_first_period(tmp_path):
-    moved, force = curve((0, 0), (2, 100), (3, 98), (3.01, 70), (3.04, 70), (3.05, 98), (6, 90), (7, 0), rows=4001)  # fmt: skip
+    moved, force = curve(
+        (0, 0), (2, 100), (3, 98), (3.01, 70), (3.04, 70), (3.05, 98), (6, 90), (7, 0), rows=4001
+    )
     slow = run(tmp_path / "slow", moved, force, first_period_s=1e-3)
     fast = run(tmp_path / "fast", moved, force, first_period_s=2e-2)
     assert bilinear.pushover(fast).data.pulse == approx(0.14)
@@ -286,7 +313,7 @@ def test_only_the_rows_of_the_last_push_count(tmp_path):
         ({"stages": [None]}, "not the files of a finished run"),
     ],
 )
-def test_a_run_without_a_whole_push_is_refused_with_its_folder(tmp_path, entries, message):  # fmt: skip
+def test_a_run_without_a_whole_push_is_refused_with_its_folder(tmp_path, entries, message):
     folder = run(tmp_path, *WHOLE, **entries)
     with raises(Refused, match=message) as refused:
         bilinear.ofRun(folder)
@@ -295,7 +322,13 @@ def test_a_run_without_a_whole_push_is_refused_with_its_folder(tmp_path, entries
 
 def test_a_run_that_is_no_push_is_refused(tmp_path):
     folder = writeRun(tmp_path, ["time_s", "load_factor"], [[0, 0], [1, 1]], figure={})
-    with raises(Refused, match="the run has no push: curve.csv has no column displacement_mm, base_shear_kN, top_shear_kN"):  # fmt: skip
+    with raises(
+        Refused,
+        match=(
+            "the run has no push: curve.csv has no column displacement_mm, base_shear_kN,"
+            " top_shear_kN"
+        ),
+    ):
         bilinear.ofRun(folder)
     with raises(Refused, match="cannot read"):
         bilinear.ofRun(tmp_path / "nowhere")
@@ -303,10 +336,10 @@ def test_a_run_that_is_no_push_is_refused(tmp_path):
 
 def test_a_push_to_its_collapse_and_one_that_was_too_fast_say_so(tmp_path):
     moved, force = curve((0, 0), (2, 100), (10, 90))
-    folder = run(tmp_path, moved, force, collapsed=True, too_fast=True, dynamic_imbalance=0.12)  # fmt: skip
+    folder = run(tmp_path, moved, force, collapsed=True, too_fast=True, dynamic_imbalance=0.12)
     notes = bilinear.ofRun(folder).notes
     assert notes[0].startswith("not reached: the structure collapsed at 10 mm")
-    assert notes[1] == "the push was too fast: 12 % of the force did not reach the supports"  # fmt: skip
+    assert notes[1] == "the push was too fast: 12 % of the force did not reach the supports"
 
 
 def test_drifts_are_displacements_over_the_height(tmp_path):

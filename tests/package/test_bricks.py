@@ -255,14 +255,26 @@ FIRST = Opening(0.22, 0.405, 0.44, 0.405, Lintel(0.11, 0.081))
         ([Opening(0.55, 0, 0.55, 1.62)], "no joint with the rest"),
         ([Opening(0.02, 0.405, 0.5, 0.405)], "a sliver of brick .* 0.02 m long, at .* 0.055 m"),
         ([Opening(0.55, 0.41, 0.55, 0.395)], "a sliver of brick .* 0.005 m high, at .* 0.0203 m"),
-        ([Opening(0.11, 0.405, 0.55, 0.405, Lintel(0.22, 0.081))], "lintel of opening 0 reaches from x = -0.11 to 0.88 m, off the wall"),
-        ([Opening(0.55, 0.405, 0.55, 1.134, Lintel(0.22, 0.162))], "lintel of opening 0 reaches up to 1.701 m, off the wall"),
+        (
+            [Opening(0.11, 0.405, 0.55, 0.405, Lintel(0.22, 0.081))],
+            "lintel of opening 0 reaches from x = -0.11 to 0.88 m, off the wall",
+        ),
+        (
+            [Opening(0.55, 0.405, 0.55, 1.134, Lintel(0.22, 0.162))],
+            "lintel of opening 0 reaches up to 1.701 m, off the wall",
+        ),
         ([(0.55, 0.405, 0.55, 0.405)], "value 0 of the list.* must be a bricks.Opening"),
         ([FIRST, Opening(0.55, 0.405, 0.44, 0.405)], "opening 0 and opening 1 overlap"),
-        ([FIRST, Opening(0.66, 0.81, 0.44, 0.405)], "opening 1 and the lintel of opening 0 overlap"),
-        ([FIRST, Opening(0.88, 0.405, 0.44, 0.405, Lintel(0.22, 0.081))], "the lintel of opening 0 and the lintel of opening 1 overlap"),
+        (
+            [FIRST, Opening(0.66, 0.81, 0.44, 0.405)],
+            "opening 1 and the lintel of opening 0 overlap",
+        ),
+        (
+            [FIRST, Opening(0.88, 0.405, 0.44, 0.405, Lintel(0.22, 0.081))],
+            "the lintel of opening 0 and the lintel of opening 1 overlap",
+        ),
     ],
-)  # fmt: skip
+)
 def test_impossible_openings_are_refused(openings, said):
     with raises(ValueError, match=said):
         Wall(2.2, 1.62, openings=openings)
@@ -339,8 +351,14 @@ def test_a_stem_in_the_wrong_place_is_reported_the_nearest_right_one():
 @mark.parametrize(
     "arguments, said",
     [
-        (dict(length=3.0), r"length 3 m is 13.6\d* units .* nearest: 2.97 m \(13.5\) or 3.08 m \(14\)"),
-        (dict(height=1.0), r"height 1 m is 12.3\d* courses .* nearest: 0.972 m \(12\) or 1.053 m \(13\)"),
+        (
+            dict(length=3.0),
+            r"length 3 m is 13.6\d* units .* nearest: 2.97 m \(13.5\) or 3.08 m \(14\)",
+        ),
+        (
+            dict(height=1.0),
+            r"height 1 m is 12.3\d* courses .* nearest: 0.972 m \(12\) or 1.053 m \(13\)",
+        ),
         (dict(length=2200), "bricks are more than 100000: are all lengths in m"),
         (dict(height=None), "height .* or courses must be given"),
         (dict(courses=(1.0, 1.0, 9.5e-7)), "course 2: 9.5e-07 m is too flat"),
@@ -351,7 +369,7 @@ def test_a_stem_in_the_wrong_place_is_reported_the_nearest_right_one():
         (dict(bond="stack", length=2.31), "it must be whole units"),
         (dict(length=3.0, height=1.0), "length 3 m.*; height 1 m"),
     ],
-)  # fmt: skip
+)
 def test_an_impossible_wall_is_refused_with_all_problems(arguments, said):
     with raises(ValueError, match=said):
         Wall(**{**dict(length=2.2, height=1.62), **arguments})

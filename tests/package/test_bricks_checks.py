@@ -158,9 +158,7 @@ def test_a_sliver_and_a_narrow_joint_are_reported():
     assert len(message) == 3  # course 2 has three whole bricks
     shifted = stack(2, (1, 1, 1))[:1] + stack(1, (1, 1, 1)).moved(0.95, 0, 1)
     (message,) = shifted.problems()
-    what = (
-        r"share a joint of odd size near \(0.975, 0.500, 1.000\) m: 1 m long but 0.04"
-    )
+    what = r"share a joint of odd size near \(0.975, 0.500, 1.000\) m: 1 m long but 0.04"
     assert re.search(what, message)
 
 

@@ -17,8 +17,7 @@ STRUCTURES = {
     "room": lambda: Room(1.1, 0.88, 0.324),
     "tiles": lambda: stack(10, (0.3, 0.3, 0.03)),
     "mortar": lambda: sum(
-        block((0, 0, z), (0.22, 0.1, z + h))
-        for z, h in ((0, 0.08), (0.08, 0.005), (0.085, 0.08))
+        block((0, 0, z), (0.22, 0.1, z + h)) for z, h in ((0, 0.08), (0.08, 0.005), (0.085, 0.08))
     ),
     "thin stones": lambda: Arch(0.4, 0.3, 150, radius=1.0),
     "arch": lambda: Arch(0.2, 0.3, 15, span=3.0, angle=90, skewback=0.25),

@@ -51,7 +51,12 @@ def test_grounds_have_the_corners_of_the_tables(type, ground, soil, corners):
 def test_damping_lowers_the_spectrum_as_far_as_055():
     """η = √(10/(5 + ξ)), 0.816 at 10 %, not below 0.55; the acceleration at the period 0 is that of the ground."""
     usual = capacity.elastic(1.0, "m/s²", type=1, ground="A")
-    for damping, correction in {5: 1, 10: math.sqrt(10 / 15), 2: math.sqrt(10 / 7), 40: 0.55}.items():  # fmt: skip
+    for damping, correction in {
+        5: 1,
+        10: math.sqrt(10 / 15),
+        2: math.sqrt(10 / 7),
+        40: 0.55,
+    }.items():
         found = capacity.elastic(1.0, "m/s²", type=1, ground="A", damping=damping)
         assert found.acceleration(0.3) == approx(correction * usual.acceleration(0.3))
         assert found.acceleration(0) == approx(1)
@@ -62,7 +67,7 @@ def test_units_and_annexes():
     for ag, unit in ((0.981, "m/s²"), (0.981, "m/s2"), (98.1, "cm/s²")):
         other = capacity.elastic(ag, unit, type=1, ground="C")
         assert other.accelerations == approx(one.accelerations)
-    own = capacity.elastic(0.1, "g", type=1, ground="C", parameters=(1.15, 0.2, 0.6, 2.0))  # fmt: skip
+    own = capacity.elastic(0.1, "g", type=1, ground="C", parameters=(1.15, 0.2, 0.6, 2.0))
     assert own.accelerations == approx(one.accelerations)
     assert "given values" in own.source
 
@@ -71,10 +76,13 @@ def test_units_and_annexes():
     "words, message",
     [
         (dict(ag=25, unit="g", type=1, ground="A"), "is ag 25 g in another unit?"),
-        (dict(ag=0.1, unit="g", type=1, ground="A", parameters=(1, 0.5, 0.2, 2)), "0 < TB <= TC <= TD"),
+        (
+            dict(ag=0.1, unit="g", type=1, ground="A", parameters=(1, 0.5, 0.2, 2)),
+            "0 < TB <= TC <= TD",
+        ),
         (dict(ag=0.1, unit="g", ground="A"), "elastic: type must be given"),
     ],
-)  # fmt: skip
+)
 def test_odd_spectra_are_refused(words, message):
     with raises(Refused, match=message):
         capacity.elastic(**words)
@@ -89,7 +97,7 @@ def test_a_spectrum_ends_at_four_seconds():
 def test_a_spectrum_of_a_file_is_lines_between_its_rows(tmp_path, mark):
     path = tmp_path / "spectrum.csv"
     rows = ["# a site", mark.join(("T", "Sa")), "0 0.1", "0.2 0.3", "", "1.0 0.1"]
-    path.write_text("\n".join(rows[:2] + [row.replace(" ", mark) for row in rows[2:]]) + "\n")  # fmt: skip
+    path.write_text("\n".join(rows[:2] + [row.replace(" ", mark) for row in rows[2:]]) + "\n")
     found = capacity.readSpectrum(path, "g", corner=0.5)
     assert found.acceleration(0.1) == approx(0.2 * 9.81)
     assert found.acceleration(0.6) == approx(0.2 * 9.81)
@@ -108,7 +116,7 @@ def test_a_spectrum_of_a_file_is_lines_between_its_rows(tmp_path, mark):
         ("0,981\n1,981\n", dict(unit="g", corner=1), "below 100 g: is the unit 'g'?"),
         (None, dict(unit="g", corner=1), "cannot read"),
     ],
-)  # fmt: skip
+)
 def test_odd_files_of_spectra_are_refused(tmp_path, text, words, message):
     path = tmp_path / "spectrum.csv"
     if text is not None:
@@ -148,7 +156,9 @@ def test_a_run_says_its_system_or_what_is_missing():
     gamma = {"name": "participation_factor", "value": 1.2, "unit": "-"}
     found = capacity.ofRun({"answers": [mass, gamma]}, "results/wall")
     assert (found.mass, found.gamma) == (30e3, 1.2)
-    with raises(Refused, match="no equivalent_mass and no participation_factor, and neither is guessed"):  # fmt: skip
+    with raises(
+        Refused, match="no equivalent_mass and no participation_factor, and neither is guessed"
+    ):
         capacity.ofRun({})
     with raises(Refused, match="results/wall: run.json has no participation_factor,"):
         capacity.ofRun({"answers": [mass, {**gamma, "value": None}]}, "results/wall")
@@ -162,7 +172,9 @@ def test_a_run_says_its_system_or_what_is_missing():
 def bilinearOf(stiffness, force, ultimate, rule="en1998"):
     """A bilinear curve [kN/mm, kN, mm] that falls at its end."""
     yields = force / stiffness
-    return capacity.bilinear(*curve((0, 0), (yields, force), (ultimate, force), (ultimate * (1 + 1e-9), 0)), rule)  # fmt: skip
+    return capacity.bilinear(
+        *curve((0, 0), (yields, force), (ultimate, force), (ultimate * (1 + 1e-9), 0)), rule
+    )
 
 
 GROUND_A = capacity.elastic(0.2, "g", type=1, ground="A")
@@ -180,7 +192,10 @@ def test_above_tc_displacements_are_equal():
     assert found.targetDisplacement == found.elasticDisplacement == approx(moved)
     assert found.ductility == approx(moved / 10) and found.ductility > 4
     assert found.holds and found.scale == approx(90 / moved)
-    assert found.verdict() == f"the capacity exceeds the demand: 90 mm is {90 / moved:.3g} times {moved:.4g} mm"  # fmt: skip
+    assert (
+        found.verdict()
+        == f"the capacity exceeds the demand: 90 mm is {90 / moved:.3g} times {moved:.4g} mm"
+    )
 
 
 def test_below_tc_they_are_not():
@@ -204,10 +219,16 @@ def test_below_tc_they_are_not():
 
 def test_the_least_of_the_annex_is_taken_only_if_it_is_asked_for():
     """T* = 0.0628 s, TC = 0.8 s: dt* of (B.10) is 12 times as much as TC/T* says, and more than 3 det*."""
-    words = bilinearOf(100, 10, 12), capacity.equivalent(10e3, 1.0), capacity.elastic(0.2, "g", type=1, ground="D")  # fmt: skip
+    words = (
+        bilinearOf(100, 10, 12),
+        capacity.equivalent(10e3, 1.0),
+        capacity.elastic(0.2, "g", type=1, ground="D"),
+    )
     found, least = capacity.demand(*words), capacity.demand(*words, limited=True)
     assert found.equivalentDisplacement > 3 * found.elasticDisplacement
-    assert "lets the target displacement of the equivalent system be at most 3 det*" in found.notes[0]  # fmt: skip
+    assert (
+        "lets the target displacement of the equivalent system be at most 3 det*" in found.notes[0]
+    )
     assert least.equivalentDisplacement == approx(3 * found.elasticDisplacement)
     assert least.branch == "B.10, at most 3 det*"
 
@@ -215,8 +236,18 @@ def test_the_least_of_the_annex_is_taken_only_if_it_is_asked_for():
 strong = some.floats(1, 1e3)
 
 
-@given(strong, strong, some.floats(1.0, 20), strong, some.sampled_from("ABCDE"), some.sampled_from([1, 2]), some.booleans())  # fmt: skip
-def test_the_spectrum_times_its_factor_demands_the_ultimate_displacement(stiffness, force, ductility, tons, ground, type, limited):  # fmt: skip
+@given(
+    strong,
+    strong,
+    some.floats(1.0, 20),
+    strong,
+    some.sampled_from("ABCDE"),
+    some.sampled_from([1, 2]),
+    some.booleans(),
+)
+def test_the_spectrum_times_its_factor_demands_the_ultimate_displacement(
+    stiffness, force, ductility, tons, ground, type, limited
+):
     made = bilinearOf(stiffness, force, ductility * force / stiffness * 1.001)
     system = capacity.equivalent(1e3 * tons, 1.3)
     if 2 * math.pi * math.sqrt(1e-3 * tons / stiffness) > 3.9:
@@ -236,11 +267,11 @@ def test_what_does_not_hold_says_so_and_a_short_curve_is_not_known():
     assert found.holds is False and "does not reach the demand: 5 mm" in found.verdict()
     short = capacity.bilinear(*curve((0, 0), (1, 100), (5, 100)), "en1998")
     found = capacity.demand(short, system, GROUND_A)
-    assert found.holds is None and found.verdict().startswith("not known: the demand is")  # fmt: skip
+    assert found.holds is None and found.verdict().startswith("not known: the demand is")
     assert any("4.3.3.4.2.3(1)" in note for note in found.notes)
     longer = capacity.bilinear(*curve((0, 0), (1, 100), (50, 100)), "en1998")
     found = capacity.demand(longer, system, GROUND_A)
-    assert found.holds is True and not any("4.3.3.4.2.3" in note for note in found.notes)  # fmt: skip
+    assert found.holds is True and not any("4.3.3.4.2.3" in note for note in found.notes)
 
 
 @mark.parametrize("gamma", [2 / 3, 1.0, 1.5])
@@ -255,7 +286,7 @@ def test_the_curve_of_the_structure_is_compared_with_its_own_displacement(gamma)
         assert found.targetDisplacement == approx(moved)
         assert found.holds == (share > 1)
     for share in (1.47, 1.53):
-        short = capacity.bilinear(*curve((0, 0), (10, 100), (share * moved, 100)), "en1998")  # fmt: skip
+        short = capacity.bilinear(*curve((0, 0), (10, 100), (share * moved, 100)), "en1998")
         notes = capacity.demand(short, system, GROUND_A).notes
         assert any("4.3.3.4.2.3(1)" in note for note in notes) == (share < 1.5)
 
@@ -277,23 +308,29 @@ def test_the_iteration_ends_where_the_mechanism_forms_at_the_target(tmp_path):
     assert found.period == approx(period, rel=1e-3) and period > 0.6
     assert at == approx(spectrum.displacement(period), rel=1e-3)
     # with the mechanism at the peak, 60 mm, it is another one
-    assert capacity.demand(capacity.bilinearOf(push, "en1998"), system, spectrum).targetDisplacement > 1.02 * at  # fmt: skip
+    assert (
+        capacity.demand(capacity.bilinearOf(push, "en1998"), system, spectrum).targetDisplacement
+        > 1.02 * at
+    )
 
 
 def test_an_iteration_that_leads_beyond_the_curve_says_so(tmp_path):
     push = capacity.pushover(run(tmp_path, *WHOLE))
     spectrum = capacity.elastic(1.0, "g", type=1, ground="C")
     found = capacity.iterated(push, capacity.equivalent(300e3, 1.0), spectrum)
-    assert "was ended with a mechanism at 2 mm: the target displacement" in found.notes[0]  # fmt: skip
+    assert "was ended with a mechanism at 2 mm: the target displacement" in found.notes[0]
     folder = push.directory
     with raises(Refused, match="iterate: it is of the rule en1998 with a spectrum"):
         capacity.assess(folder, iterate=True)
-    again = capacity.assess(folder, spectrum, capacity.equivalent(300e3, 1.0), iterate=True)  # fmt: skip
+    again = capacity.assess(folder, spectrum, capacity.equivalent(300e3, 1.0), iterate=True)
     assert again["holds"] is False and found.notes[0] in again["notes"]
 
 
 def test_a_period_beyond_the_spectrum_is_refused_with_its_equation():
-    with raises(Refused, match=r"the equivalent period \(B.7\) is 6.283 s: the spectrum .* goes from 0 to 4 s"):  # fmt: skip
+    with raises(
+        Refused,
+        match=r"the equivalent period \(B.7\) is 6.283 s: the spectrum .* goes from 0 to 4 s",
+    ):
         capacity.demand(bilinearOf(1, 10, 90), capacity.equivalent(1e6, 1.0), GROUND_A)
 
 
@@ -312,7 +349,9 @@ def test_a_folder_gets_its_numbers_and_its_picture(tmp_path):
     with open(tmp_path / "capacity.json") as file:
         assert json.load(file) == found
     assert (tmp_path / "capacity.png").read_bytes().startswith(b"\x89PNG")
-    expected = capacity.demand(capacity.bilinearOf(folder, "en1998"), capacity.equivalent(30e3, 1.0), spectrum)  # fmt: skip
+    expected = capacity.demand(
+        capacity.bilinearOf(folder, "en1998"), capacity.equivalent(30e3, 1.0), spectrum
+    )
     numbers = {one["name"]: one for one in found["numbers"]}
     assert numbers["target_displacement_mm"]["value"] == expected.targetDisplacement
     assert numbers["target_displacement_mm"]["unit"] == "mm"
@@ -325,7 +364,10 @@ def test_without_a_spectrum_there_is_the_bilinear_curve_alone(tmp_path):
     found = capacity.assess(folder, rule="masonry", out=tmp_path / "other")
     assert "holds" not in found and found["rule"] == "masonry"
     assert any("drifts need height=" in note for note in found["notes"])
-    assert sorted(p.name for p in (tmp_path / "other").iterdir()) == ["capacity.json", "capacity.png"]  # fmt: skip
+    assert sorted(p.name for p in (tmp_path / "other").iterdir()) == [
+        "capacity.json",
+        "capacity.png",
+    ]
     assert not (tmp_path / "run" / "capacity.json").exists()
 
 
@@ -346,22 +388,35 @@ MASS = ["--mass", "30e3", "--gamma", "1"]
         ([*CODE], "neither is guessed"),
         ([*CODE, "--mass", "30e3"], "--mass: --gamma is missing, and it is not guessed"),
         ([*CODE, "--masses", "1e3,2e3"], "--masses: --shape is missing"),
-        ([*CODE, *MASS, "--masses", "1e3", "--shape", "1"], "give either --mass and --gamma or --masses and --shape"),
-        ([*CODE, "--masses", "1e3;2e3", "--shape", "1,1"], "--masses '1e3;2e3' must be numbers with commas"),
+        (
+            [*CODE, *MASS, "--masses", "1e3", "--shape", "1"],
+            "give either --mass and --gamma or --masses and --shape",
+        ),
+        (
+            [*CODE, "--masses", "1e3;2e3", "--shape", "1,1"],
+            "--masses '1e3;2e3' must be numbers with commas",
+        ),
         ([*CODE[:4], *MASS], "--type, --ground: --ag must be given, too"),
         ([*CODE[:4], "--ag", "0.2", *MASS], "--ag '0.2' must be a number with its unit"),
         ([*CODE[:4], "--ag", "-0.2g", *MASS], "ag -0.2 must be above 0"),
         (["--spectrum", "s.csv", *MASS], "--spectrum: --unit is missing"),
-        (["--spectrum", "s.csv", "--unit", "g", *CODE, *MASS], "--spectrum: leave --type, --ground, --ag away"),
+        (
+            ["--spectrum", "s.csv", "--unit", "g", *CODE, *MASS],
+            "--spectrum: leave --type, --ground, --ag away",
+        ),
         (["--unit", "g", *MASS], "--unit: it is of --spectrum FILE, which is missing"),
         (["other", "--out", "there"], "--out there: it is for one folder, not 2"),
         (["--mechanism", "0"], "mechanism 0.0 mm must be above 0"),
     ],
-)  # fmt: skip
-def test_odd_options_are_refused_in_a_sentence(tmp_path, monkeypatch, capsys, words, message):  # fmt: skip
+)
+def test_odd_options_are_refused_in_a_sentence(tmp_path, monkeypatch, capsys, words, message):
     monkeypatch.chdir(tmp_path)
     run("wall", *WHOLE)
-    words = [f"--ag={word}" if before == "--ag" else word for before, word in zip(["", *words], words) if word != "--ag"]  # fmt: skip
+    words = [
+        f"--ag={word}" if before == "--ag" else word
+        for before, word in zip(["", *words], words)
+        if word != "--ag"
+    ]
     assert program.main(["wall", *words]) == 2
     assert message in capsys.readouterr().err
     assert not (tmp_path / "wall" / "capacity.json").exists()
@@ -371,18 +426,38 @@ def test_the_program_prints_every_number_with_its_unit(tmp_path, capsys):
     folder = run(tmp_path, *WHOLE)
     assert program.main([folder, *CODE, *MASS]) == 0
     said = capsys.readouterr().out
-    for part in ("target_displacement_mm", "mm ", "kN/mm", "the capacity exceeds the demand", "written: capacity.json, capacity.png"):  # fmt: skip
+    for part in (
+        "target_displacement_mm",
+        "mm ",
+        "kN/mm",
+        "the capacity exceeds the demand",
+        "written: capacity.json, capacity.png",
+    ):
         assert part in said
     path = tmp_path / "s.csv"
     path.write_text("0,0.2\n0.1,0.5\n0.5,0.5\n2,0.1\n")
-    words = ["--spectrum", str(path), "--unit", "g", "--corner", "0.5", "--masses", "20e3,10e3", "--shape", "0.5,1", "--limited", "--rule", "masonry"]  # fmt: skip
+    words = [
+        "--spectrum",
+        str(path),
+        "--unit",
+        "g",
+        "--corner",
+        "0.5",
+        "--masses",
+        "20e3,10e3",
+        "--shape",
+        "0.5,1",
+        "--limited",
+        "--rule",
+        "masonry",
+    ]
     assert program.main([folder, *words]) == 0
     assert program.main([folder]) == 0
     assert "no spectrum, so no demand" in capsys.readouterr().out
     assert program.main([]) == 2
 
 
-def test_a_folder_that_has_no_curve_does_not_keep_the_others_from_theirs(tmp_path, capsys):  # fmt: skip
+def test_a_folder_that_has_no_curve_does_not_keep_the_others_from_theirs(tmp_path, capsys):
     good = run(tmp_path / "good", *WHOLE)
     bad = run(tmp_path / "bad", *WHOLE, interrupted=True)
     assert program.main([bad, good]) == 2
@@ -399,14 +474,16 @@ def test_a_folder_that_has_no_curve_does_not_keep_the_others_from_theirs(tmp_pat
         {"stages": [{"load": ["push"], "first_row": "a"}]},
         {"wall": 3},
     ],
-)  # fmt: skip
+)
 def test_damaged_files_give_a_sentence_or_are_left_alone(tmp_path, entries):
     folder = run(tmp_path, *WHOLE, **entries)
     spectrum = capacity.elastic(0.2, "g", type=1, ground="B")
     try:
         capacity.assess(folder, spectrum)
     except Refused as refused:
-        assert "not the files of a finished run" in str(refused) or "neither is guessed" in str(refused)  # fmt: skip
+        assert "not the files of a finished run" in str(refused) or "neither is guessed" in str(
+            refused
+        )
     with contextlib.suppress(Refused):
         capacity.assess(folder)
         json.loads((tmp_path / "capacity.json").read_text(), parse_constant=pytest.fail)
@@ -418,9 +495,16 @@ def test_damaged_files_give_a_sentence_or_are_left_alone(tmp_path, entries):
 def bounds(*rows):
     """Entries of run.json: of pressed and normal force and bound."""
     return [
-        {"load": f"top along x under {p} kN", "unit": "kN", "pressed_kN": p, "normal_kN": n, "factor": v, "exact": True}
+        {
+            "load": f"top along x under {p} kN",
+            "unit": "kN",
+            "pressed_kN": p,
+            "normal_kN": n,
+            "factor": v,
+            "exact": True,
+        }
         for p, n, v in rows
-    ]  # fmt: skip
+    ]
 
 
 def scene(folder, *entries, **known):
@@ -430,21 +514,26 @@ def scene(folder, *entries, **known):
 
 
 def test_a_domain_has_its_bounds_in_order_and_runs_as_points(tmp_path):
-    folder = scene(tmp_path / "pier", *bounds((100, 105, 22.5), (20, 25, 5.4), (50, 55, 11.8)))  # fmt: skip
+    folder = scene(tmp_path / "pier", *bounds((100, 105, 22.5), (20, 25, 5.4), (50, 55, 11.8)))
     moved, force = WHOLE
     at = int(force.argmax())
-    heads = ["time_s", "displacement_mm", "base_shear_kN", "top_shear_kN", "base_force_z_kN"]  # fmt: skip
+    heads = ["time_s", "displacement_mm", "base_shear_kN", "top_shear_kN", "base_force_z_kN"]
     down = np.where(np.arange(len(moved)) == at, -60.0, -55.0)
     rows = np.column_stack([moved, moved, force, force, down])
     before = [[0, 0, 0, 0, -50.0]] * 3  # under another load, which is none of the push
     other = {"stage": "lean", "first_row": 0, "load": ["lean", "x", "g"]}
     stages = [other, {**PUSH, "first_row": len(before)}]
-    point = writeRun(tmp_path / "run", heads, [*before, *rows], stages=stages, held=["base"])  # fmt: skip
+    point = writeRun(tmp_path / "run", heads, [*before, *rows], stages=stages, held=["base"])
     found = capacity.assessDomain(folder, [point])
     assert [one.normal for one in found.bounds] == [25, 55, 105]
     assert found.shear(40) == approx((5.4 + 11.8) / 2)
     (one,) = found.runs
-    assert (one.name, one.normal, one.shear, one.displacement) == ("run", 60, approx(100), approx(2))  # fmt: skip
+    assert (one.name, one.normal, one.shear, one.displacement) == (
+        "run",
+        60,
+        approx(100),
+        approx(2),
+    )
     with open(tmp_path / "pier" / "domain.json") as file:
         assert json.load(file) == found.entries()
     assert (tmp_path / "pier" / "domain.png").read_bytes().startswith(b"\x89PNG")
@@ -454,33 +543,62 @@ def test_a_domain_has_its_bounds_in_order_and_runs_as_points(tmp_path):
 
 def test_a_wall_without_vertical_forces_has_those_of_its_load_and_weight(tmp_path):
     """4 m × 0.1 m under 0.5 MPa: 200 kN; 2.5 m of 1800 kg/m³ weigh 17.658 kN."""
-    wall = {"length_m": 4.0, "thickness_m": 0.1, "height_m": 2.5, "precompression_Pa": 0.5e6, "measure_height_m": 2.5}  # fmt: skip
-    folder = run(tmp_path, *WHOLE, wall=wall, unit_material={"density_kg_per_m3": 1800.0}, held=["base"])  # fmt: skip
+    wall = {
+        "length_m": 4.0,
+        "thickness_m": 0.1,
+        "height_m": 2.5,
+        "precompression_Pa": 0.5e6,
+        "measure_height_m": 2.5,
+    }
+    folder = run(
+        tmp_path, *WHOLE, wall=wall, unit_material={"density_kg_per_m3": 1800.0}, held=["base"]
+    )
     found = capacity.runPoint(folder)
     assert found.normal == approx(217.658)
     assert "precompression and weight" in found.source
     other = run(tmp_path / "other", *WHOLE, held=["base"])
-    with raises(Refused, match="curve.csv has no column base_force_z_kN; run the scene with all columns"):  # fmt: skip
+    with raises(
+        Refused, match="curve.csv has no column base_force_z_kN; run the scene with all columns"
+    ):
         capacity.runPoint(other)
 
 
-def test_a_scene_without_a_domain_is_refused_and_a_force_without_bound_is_a_note(tmp_path, capsys):  # fmt: skip
+def test_a_scene_without_a_domain_is_refused_and_a_force_without_bound_is_a_note(tmp_path, capsys):
     folder = scene(tmp_path / "none")
     with raises(Refused, match=r"run.json has no domain: say scene.domain\(top"):
         capacity.domain(folder)
-    failed = {"load": "top along x under 9 kN", "unit": "kN", "pressed_kN": 9, "note": "it was not solved in time"}  # fmt: skip
+    failed = {
+        "load": "top along x under 9 kN",
+        "unit": "kN",
+        "pressed_kN": 9,
+        "note": "it was not solved in time",
+    }
     with raises(Refused, match="under 9 kN: it was not solved in time"):
         capacity.domain(scene(tmp_path / "failed", failed))
     folder = scene(tmp_path / "some", failed, *bounds((20, 25, 5.4)))
-    assert capacity.domain(folder).notes == ["top along x under 9 kN: it was not solved in time"]  # fmt: skip
+    assert capacity.domain(folder).notes == ["top along x under 9 kN: it was not solved in time"]
     assert program.main(["--domain", folder]) == 0
     said = capsys.readouterr().out
     assert "25" in said and "note: top along x under 9 kN" in said
 
 
 def test_a_run_of_another_pier_is_a_note(tmp_path):
-    material, wall = {"density_kg_per_m3": 1800.0}, {"length_m": 1.0, "thickness_m": 0.1, "height_m": 2.5, "precompression_Pa": 1e5}  # fmt: skip
-    made = {"unit_material": material, "wall": wall, "units": 10, "joints": {"bed": {"friction": 0.6}}}  # fmt: skip
-    folder = scene(tmp_path / "pier", *bounds((20, 25, 5.4)), units=10, joints={"bed": {"friction": 0.5}})  # fmt: skip
+    material, wall = {"density_kg_per_m3": 1800.0}, {
+        "length_m": 1.0,
+        "thickness_m": 0.1,
+        "height_m": 2.5,
+        "precompression_Pa": 1e5,
+    }
+    made = {
+        "unit_material": material,
+        "wall": wall,
+        "units": 10,
+        "joints": {"bed": {"friction": 0.6}},
+    }
+    folder = scene(
+        tmp_path / "pier", *bounds((20, 25, 5.4)), units=10, joints={"bed": {"friction": 0.5}}
+    )
     other = run(tmp_path / "run", *WHOLE, **made)
-    assert capacity.domain(folder, [other]).notes == ["run: its properties of joints are not those of the domain: is it the same pier?"]  # fmt: skip
+    assert capacity.domain(folder, [other]).notes == [
+        "run: its properties of joints are not those of the domain: is it the same pier?"
+    ]

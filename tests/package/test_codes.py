@@ -13,17 +13,33 @@ BRICK = dict(unit_E=40e9, unit=(0.24, 0.12, 0.065), joint=0.01)
     [
         (dict(unit="clay", fb=15e6, mortar="M5"), 0.55 * 15**0.7 * 5**0.3, 0.2),
         (dict(unit="clay", fb=10e6, mortar="M10", group=3), 0.35 * 10**0.7 * 10**0.3, 0.3),
-        (dict(unit="clay", fb=10e6, mortar="M10", group=2, joints="thin layer"), 0.70 * 10**0.7, 0.3),
-        (dict(unit="calcium silicate", fb=20e6, mortar="M10", joints="thin layer"), 0.80 * 20**0.85, 0.4),
+        (
+            dict(unit="clay", fb=10e6, mortar="M10", group=2, joints="thin layer"),
+            0.70 * 10**0.7,
+            0.3,
+        ),
+        (
+            dict(unit="calcium silicate", fb=20e6, mortar="M10", joints="thin layer"),
+            0.80 * 20**0.85,
+            0.4,
+        ),
         (dict(unit="natural stone", fb=60e6, mortar="M2"), 0.45 * 60**0.7 * 2**0.3, 0.1),
-        (dict(unit="autoclaved aerated concrete", fb=3e6, mortar="M5"), 0.55 * 3**0.7 * 5**0.3, 0.15),
-        (dict(unit="autoclaved aerated concrete", fb=2e6, mortar="M4"), 0.55 * 2**0.7 * 4**0.3, 0.13),  # 0.065 fb
+        (
+            dict(unit="autoclaved aerated concrete", fb=3e6, mortar="M5"),
+            0.55 * 3**0.7 * 5**0.3,
+            0.15,
+        ),
+        (
+            dict(unit="autoclaved aerated concrete", fb=2e6, mortar="M4"),
+            0.55 * 2**0.7 * 4**0.3,
+            0.13,
+        ),  # 0.065 fb
     ],
-)  # fmt: skip
+)
 def test_what_eurocode_6_says_of_a_unit_and_a_mortar(words, fk, fvk0):
     found = materials.en1996(**words, value="characteristic")
     numbers = [found[n] for n in ("fc", "E", "G", "fv0", "friction")]
-    assert numbers == approx([1e6 * fk, 1e9 * fk, 0.4e9 * fk, 1e6 * fvk0, 0.4], rel=1e-12)  # fmt: skip
+    assert numbers == approx([1e6 * fk, 1e9 * fk, 0.4e9 * fk, 1e6 * fvk0, 0.4], rel=1e-12)
     mean = materials.en1996(**words)
     ratios = [mean[n] / found[n] for n in ("fc", "E", "G", "fv0", "friction")]
     assert ratios == approx([1.2, 1, 1, 1.25, 1.25], rel=1e-12)
@@ -33,12 +49,15 @@ def test_what_eurocode_6_says_of_a_unit_and_a_mortar(words, fk, fvk0):
     "words, message",
     [
         (("natural stone", 2e7, "M5", 2), "table 3.3 has no K for natural stone of group 2"),
-        (("natural stone", 2e7, "M5", 1, "thin layer"), "has no K for natural stone of group 1 in thin layer mortar"),
+        (
+            ("natural stone", 2e7, "M5", 1, "thin layer"),
+            "has no K for natural stone of group 1 in thin layer mortar",
+        ),
         (("clay", 6e7, "M5", 1, "thin layer"), "fb 6e+07 Pa must be at most 5e+07 Pa"),
         (("clay", 3e6, "M10"), "mortar M10 must be at most twice as strong as the units"),
         (("clay", 3e6, "M30"), "mortar 'M30' must be a class of mortar from 'M1' to 'M20'"),
     ],
-)  # fmt: skip
+)
 def test_what_eurocode_6_does_not_have_is_refused(words, message):
     with raises(Refused) as refused:
         materials.en1996(*words)
@@ -54,8 +73,8 @@ def test_more_holes_and_thicker_mortar_make_no_masonry_stronger():
 def test_knowledge_and_confidence_decide_what_the_italian_table_says():
     first = materials.ntc2018("squared stone", "LC1")
     second = materials.ntc2018("squared stone", "LC2")
-    assert [1e-6 * first[n] * 1.35 for n in ("fc", "fv0", "ft")] == approx([5.8, 0.18, 1.5 * 0.09])  # fmt: skip
-    assert [1e-6 * second[n] * 1.2 for n in ("fc", "fv0", "ft")] == approx([7.0, 0.23, 1.5 * 0.105])  # fmt: skip
+    assert [1e-6 * first[n] * 1.35 for n in ("fc", "fv0", "ft")] == approx([5.8, 0.18, 1.5 * 0.09])
+    assert [1e-6 * second[n] * 1.2 for n in ("fc", "fv0", "ft")] == approx([7.0, 0.23, 1.5 * 0.105])
     for found in (first, second):
         values = [found["E"], found["G"], found["friction"], found["density"]]
         assert values == approx([2850e6, 950e6, 0.577, 22e3 / 9.81])

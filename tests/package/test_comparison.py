@@ -66,7 +66,7 @@ def test_columns_of_older_runs_can_be_named(tmp_path, drawn):
         ([], "name one folder of results at least"),
         (["run", "--x", "v"], "curve.csv has no column v, it has u_mm, f_kN"),
     ],
-)  # fmt: skip
+)
 def test_what_cannot_be_drawn_is_refused(tmp_path, monkeypatch, capsys, words, message):
     monkeypatch.chdir(tmp_path)
     writeRun("run", ["u_mm", "f_kN"], [[0, 0], [1, 1]], figure=FIGURE)
@@ -99,7 +99,12 @@ def test_yade_plot_is_filled_if_the_user_asks(plot, monkeypatch):
     assert live(columns) is None
     plot.plots = {"x": ("y",), "picture": None}
     assert live(columns) is None
-    for plots in ({"u_mm": None}, {"x": "f_kN"}, {"x": ("y", None, ("f_kN", "r-"))}, {" time_s ": ()}):  # fmt: skip
+    for plots in (
+        {"u_mm": None},
+        {"x": "f_kN"},
+        {"x": ("y", None, ("f_kN", "r-"))},
+        {" time_s ": ()},
+    ):
         plot.plots = plots
         assert live(columns)
     add = live(columns)

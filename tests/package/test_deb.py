@@ -11,13 +11,15 @@ pytestmark = [mark.long, mark.xdist_group("deb")]  # one worker makes the packag
 def package(tmp_path_factory):
     """The fields of the package, and the folder in which it is unpacked."""
     who = {"DEBFULLNAME": "A Maintainer", "DEBEMAIL": "maintainer@example.org"}
-    subprocess.run(["bash", "scripts/package.sh"], cwd=ROOT, env={**os.environ, **who}, check=True, timeout=900)  # fmt: skip
+    subprocess.run(
+        ["bash", "scripts/package.sh"], cwd=ROOT, env={**os.environ, **who}, check=True, timeout=900
+    )
     folder = os.path.join(ROOT, "build", "package")
-    (path,) = (os.path.join(folder, n) for n in os.listdir(folder) if n.endswith(".deb"))  # fmt: skip
+    (path,) = (os.path.join(folder, n) for n in os.listdir(folder) if n.endswith(".deb"))
     out = tmp_path_factory.mktemp("unpacked")
     subprocess.run(["dpkg-deb", "-x", path, out], check=True)
     said = ran(["dpkg-deb", "-f", path], check=True)
-    fields = dict(line.split(": ", 1) for line in said.stdout.splitlines() if ": " in line)  # fmt: skip
+    fields = dict(line.split(": ", 1) for line in said.stdout.splitlines() if ": " in line)
     return fields, out / "usr" / "lib" / "python3" / "dist-packages"
 
 
@@ -26,7 +28,12 @@ def test_the_package_is_of_this_version_and_has_each_file(package):
     assert fields["Version"].startswith(masonry.__version__ + "+")
     assert "python3-jinja2" in fields["Depends"] and "yade (= " in fields["Depends"]
     sources = os.path.join(ROOT, "scripts", "masonry")
-    kept = [os.path.relpath(os.path.join(at, name), sources) for at, _, names in os.walk(sources) for name in names if not name.endswith(".pyc")]  # fmt: skip
+    kept = [
+        os.path.relpath(os.path.join(at, name), sources)
+        for at, _, names in os.walk(sources)
+        for name in names
+        if not name.endswith(".pyc")
+    ]
     missing = [one for one in kept if not (modules / "masonry" / one).exists()]
     assert len(kept) > 100 and missing == []
 

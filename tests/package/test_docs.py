@@ -31,9 +31,7 @@ class SitePage(Page):
         super().__init__(pathlib.Path(path).read_text(encoding="utf-8"))
         known = [attributes for _, attributes, _ in self.elements]
         links = [attributes for tag, attributes, _ in self.elements if tag == "a"]
-        self.links = [
-            attributes["href"] for attributes in links if "href" in attributes
-        ]
+        self.links = [attributes["href"] for attributes in links if "href" in attributes]
         self.anchors = {a.get(name) for a in known for name in ("id", "name")}
         self.text = "".join(self.data)
 
@@ -71,7 +69,9 @@ def test_every_document_is_a_page(site, pages):
             assert heading[1] in pages[page].text, path
     for path in glob.glob(os.path.join(DOCS, "tutorial", "*.ipynb")):
         assert os.path.relpath(path, ROOT).removesuffix(".ipynb") + ".html" in pages
-    assert {"gallery.html", "commands.html", "options.html", "classes.html", "cite.html"} < set(pages)  # fmt: skip
+    assert {"gallery.html", "commands.html", "options.html", "classes.html", "cite.html"} < set(
+        pages
+    )
 
 
 @needsSite
@@ -98,7 +98,7 @@ def test_every_link_within_the_site_leads_somewhere(site, pages):
             if re.match(r"[a-z]+:", link):
                 continue
             path, _, anchor = urllib.parse.unquote(link).partition("#")
-            there = os.path.normpath(os.path.join(os.path.dirname(name), path)) if path else name  # fmt: skip
+            there = os.path.normpath(os.path.join(os.path.dirname(name), path)) if path else name
             count += 1
             if there in pages:
                 if anchor and anchor not in pages[there].anchors:
@@ -115,7 +115,10 @@ def test_the_page_of_commands_has_every_command_with_unit_and_bounds(pages):
     page = pages["commands.html"]
     for stage in (*STAGES, *LATER):
         assert f"masonry.Scene.{stage.__name__}" in page.anchors
-    described = "platen hold watch handle press load wind tie spring overlay ground drift column joint section view"
+    described = (
+        "platen hold watch handle press load wind tie spring overlay ground drift column joint"
+        " section view"
+    )
     own = "bracket bound domain result stepBack resume curve factor finish"
     for word in f"{described} {own}".split():
         assert f"masonry.Scene.{word}" in page.anchors
@@ -173,13 +176,17 @@ def test_what_a_word_takes_is_what_its_check_says(kind, text):
 def test_links_lead_to_pages(tmp_path):
     stage = staging.Stage(str(tmp_path / "source"))
     text = (
-        "[a](scripts/README.md#gallery) [b](https://yade-dem.org) [c](validation/) [d](scripts/masonry/limit/__init__.py) "
-        "[`e`](scripts/masonry/study/estimate.py) [f](scripts/arch.py) [g](#start) `[h](scripts/README.md)`\n\n"
-        "```math\nx\n```\n\n    [i](scripts/README.md)\n"
+        "[a](scripts/README.md#gallery) [b](https://yade-dem.org) [c](validation/)"
+        " [d](scripts/masonry/limit/__init__.py) [`e`](scripts/masonry/study/estimate.py)"
+        " [f](scripts/arch.py) [g](#start) `[h](scripts/README.md)`\n\n```math\nx\n```\n\n   "
+        " [i](scripts/README.md)\n"
     )
     stage.document("README.md", "# Title\n\n" + text)
     written = (tmp_path / "source" / "index.md").read_text()
-    assert "[a](scripts/README.md#gallery) [b](https://yade-dem.org) [c](validation/README.md)" in written  # fmt: skip
+    assert (
+        "[a](scripts/README.md#gallery) [b](https://yade-dem.org) [c](validation/README.md)"
+        in written
+    )
     assert "{py:mod}`d <masonry.limit>` {py:mod}`e <masonry.study.estimate>`" in written
     assert "[f](scripts/arch.py.md) [g](#start) `[h](scripts/README.md)`" in written
     assert "```{math}\nx\n```" in written and "    [i](scripts/README.md)\n" in written
@@ -190,10 +197,17 @@ def test_links_lead_to_pages(tmp_path):
 
 def test_a_notebook_becomes_a_page():
     outputs = [
-        {"output_type": "stream", "name": "stdout", "text": ["10 %\r20 %\n", "\x1b[1mdone\x1b[0m\n"]},
+        {
+            "output_type": "stream",
+            "name": "stdout",
+            "text": ["10 %\r20 %\n", "\x1b[1mdone\x1b[0m\n"],
+        },
         {"output_type": "display_data", "data": {"image/png": "AAAA", "text/plain": ["x"]}},
-        {"output_type": "execute_result", "data": {"text/html": ["<b>```</b>"], "text/plain": ["x"]}},
-    ]  # fmt: skip
+        {
+            "output_type": "execute_result",
+            "data": {"text/html": ["<b>```</b>"], "text/plain": ["x"]},
+        },
+    ]
     code = {"cell_type": "code", "source": ["print(1)"], "outputs": outputs}
     title = {"cell_type": "markdown", "source": ["# Title\n", "text"]}
     notebook, kept = {"cells": [title, code]}, {}

@@ -53,7 +53,7 @@ def test_a_property_that_varies_is_rounded_by_half_a_step_at_most(factor):
     """Each kind of joint in its own steps, although the property has the same name."""
     steps = {"bed": 0.01, "head": 0.5}
     varied = materials.dry(normalStiffness=1e9)
-    varied.joints["head"] = varied.joints["bed"].__class__(**varied.joints["bed"].dict())  # fmt: skip
+    varied.joints["head"] = varied.joints["bed"].__class__(**varied.joints["bed"].dict())
     for name, step in steps.items():
         varied.vary(f"{name}.normalStiffness", lambda x, y, z: factor * (1 + z), step)
     geom = SimpleNamespace(centres=[(0, 0, 0), (0, 0, 1)])  # its middle is at z = 0.5

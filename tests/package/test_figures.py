@@ -17,7 +17,9 @@ L, T, H = 0.2, 0.1, 0.08  # [m] of a brick
 @pytest.fixture
 def drawn(monkeypatch):
     found = {}
-    monkeypatch.setattr(drawing, "save", lambda figure, path, dpi: found.update({os.path.basename(path): figure}))  # fmt: skip
+    monkeypatch.setattr(
+        drawing, "save", lambda figure, path, dpi: found.update({os.path.basename(path): figure})
+    )
     return found
 
 
@@ -41,9 +43,13 @@ def axis(column, label=None):
 def test_a_history_over_time_shows_all_values_and_needs_no_energies(tmp_path, drawn):
     t = np.linspace(0, 2, 101)
     rows = np.column_stack([t, np.sin(9 * t), -3 * np.sin(9 * t)])
-    entry = {"x": axis("time_s", "time [s]"), "y": [axis("top_mm", "top"), axis("base_kN", "base")], "y_label": "both"}  # fmt: skip
+    entry = {
+        "x": axis("time_s", "time [s]"),
+        "y": [axis("top_mm", "top"), axis("base_kN", "base")],
+        "y_label": "both",
+    }
     entry["bounds"] = [{"y": 5, "text": "bound"}]
-    curve_figure.curve(writeRun(tmp_path, ["time_s", "top_mm", "base_kN"], rows, figure=entry))  # fmt: skip
+    curve_figure.curve(writeRun(tmp_path, ["time_s", "top_mm", "base_kN"], rows, figure=entry))
     (top,) = drawn["curve.png"].axes
     low, high = top.get_ylim()
     assert low < -2.99 and high > 5
@@ -57,8 +63,10 @@ def test_a_history_over_time_shows_all_values_and_needs_no_energies(tmp_path, dr
 def test_what_energies_there_are_is_drawn_since_the_first_row(tmp_path, drawn):
     x = np.arange(5.0)
     rows = np.column_stack([x, -x, 10 + x, 3 * x, x, 2 * x])
-    columns = ["u_mm", "f_kN", "external_J", "elastic_shear_J", "elastic_tension_J", "viscous_J"]  # fmt: skip
-    curve_figure.curve(writeRun(tmp_path, columns, rows, figure={"x": axis("u_mm"), "y": [axis("f_kN")]}))  # fmt: skip
+    columns = ["u_mm", "f_kN", "external_J", "elastic_shear_J", "elastic_tension_J", "viscous_J"]
+    curve_figure.curve(
+        writeRun(tmp_path, columns, rows, figure={"x": axis("u_mm"), "y": [axis("f_kN")]})
+    )
     top, bottom = drawn["curve.png"].axes
     assert top.get_ylim()[0] < -4 and top.get_ylim()[1] >= 0
     lines = {line.get_label(): list(line.get_ydata()) for line in bottom.lines}
@@ -71,7 +79,9 @@ def test_what_energies_there_are_is_drawn_since_the_first_row(tmp_path, drawn):
 
 def test_one_row_has_a_point_and_no_energies(tmp_path, drawn):
     entry = {"x": axis("u_mm"), "y": [axis("f_kN")]}
-    curve_figure.curve(writeRun(tmp_path, ["u_mm", "f_kN", "external_J"], [[1, 2, 3]], figure=entry))  # fmt: skip
+    curve_figure.curve(
+        writeRun(tmp_path, ["u_mm", "f_kN", "external_J"], [[1, 2, 3]], figure=entry)
+    )
     (top,) = drawn["curve.png"].axes
     (line,) = [line for line in top.lines if line.get_marker() == "o"]
     assert line.get_xydata().tolist() == [[1, 2]]
@@ -148,15 +158,22 @@ def test_a_structure_in_space_is_seen_from_above_at_the_side_to_which_it_moved()
 def jointFrame(opening, closed=0.0, slide=0.0):
     """Two points of a joint that has cracked: an open one and a closed one [m]."""
     one = np.ones(2)
-    return {"opening": np.array([opening, -closed]), "slide": slide * np.eye(2, 3), "damage_tension": one, "damage_shear": one}  # fmt: skip
+    return {
+        "opening": np.array([opening, -closed]),
+        "slide": slide * np.eye(2, 3),
+        "damage_tension": one,
+        "damage_shear": one,
+    }
 
 
 def test_the_magnification_is_the_usual_one_unless_that_is_absurd():
-    of = lambda frame, moved: magnificationOf(frame, np.full((100, 3), moved / 3**0.5), [boxPoints(3, T, H)])  # fmt: skip
-    assert of(jointFrame(1e-3), 12e-3) == of(jointFrame(1e-4), 0.3e-3) == MAGNIFICATIONS[0]  # fmt: skip
+    of = lambda frame, moved: magnificationOf(
+        frame, np.full((100, 3), moved / 3**0.5), [boxPoints(3, T, H)]
+    )
+    assert of(jointFrame(1e-3), 12e-3) == of(jointFrame(1e-4), 0.3e-3) == MAGNIFICATIONS[0]
     assert of(jointFrame(1e-3), 1.0) == 1
     # rigid motion and shortening alone are true to scale, however small; so is what has no joints
-    assert of(jointFrame(1e-6), 1e-6) == of(jointFrame(1e-6), 0.05) == of(None, 1e-3) == 1  # fmt: skip
+    assert of(jointFrame(1e-6), 1e-6) == of(jointFrame(1e-6), 0.05) == of(None, 1e-3) == 1
     for closed in (1e-4, 1e-3, 5e-3):
         assert of(jointFrame(1e-3, closed), 5e-3) * closed <= H / 4
     assert of(jointFrame(0, 0, 1e-3), 12e-3) == MAGNIFICATIONS[0]
@@ -165,14 +182,19 @@ def test_the_magnification_is_the_usual_one_unless_that_is_absurd():
 # -- what hides what -----------------------------------------------------------------------------------------------------
 
 
-@mark.parametrize("towards", [(0.5, -0.75, 0.4), (-0.5, -0.75, 0.4), (0, -1, 0), (0.3, 0.9, 0.2), (0, 0, 1)])  # fmt: skip
+@mark.parametrize(
+    "towards", [(0.5, -0.75, 0.4), (-0.5, -0.75, 0.4), (0, -1, 0), (0.3, 0.9, 0.2), (0, 0, 1)]
+)
 def test_blocks_are_drawn_after_those_that_they_hide(towards):
     """A wall of two wythes in bond, of bricks of two lengths, on a slab that is wider than all of them."""
     bricks = [boxCorners((-1, -1, -0.1), (2, 1, 0))]
     for z in range(5):
         for y in range(2):
             ends = [0, *np.arange(0.1 + 0.1 * ((z + y) % 2), 1, 0.2), 1]
-            bricks += [boxCorners((a, 0.1 * y, 0.08 * z), (b, 0.1 * y + 0.1, 0.08 * z + 0.08)) for a, b in zip(ends, ends[1:])]  # fmt: skip
+            bricks += [
+                boxCorners((a, 0.1 * y, 0.08 * z), (b, 0.1 * y + 0.1, 0.08 * z + 0.08))
+                for a, b in zip(ends, ends[1:])
+            ]
     towards = np.array(towards) / np.linalg.norm(towards)
     right = np.cross((0, 0, 1), towards) if towards[2] < 1 else np.array([1.0, 0, 0])
     right /= np.linalg.norm(right)
@@ -262,14 +284,18 @@ def test_the_reader_reads_what_vtk_reads(scene, tmp_path):
     assert frames.frameTimes(tmp_path) == [approx(scene.time)]
 
 
-def test_frames_are_in_the_order_of_their_numbers_and_damage_is_refused(scene, tmp_path):  # fmt: skip
+def test_frames_are_in_the_order_of_their_numbers_and_damage_is_refused(scene, tmp_path):
     couplet(scene, tmp_path)
     whole = (tmp_path / "joints_0000.vtp").read_bytes()
     for number in (9999, 10000):
         (tmp_path / f"joints_{number:04d}.vtp").write_bytes(whole)
     last = frames.framePaths(tmp_path, "joints")[-1]
     assert last.endswith("joints_10000.vtp")
-    for broken in (whole[: len(whole) // 2], whole.replace(b"Polys>", b"Verts>"), whole[:-200] + whole[-120:]):  # fmt: skip
+    for broken in (
+        whole[: len(whole) // 2],
+        whole.replace(b"Polys>", b"Verts>"),
+        whole[:-200] + whole[-120:],
+    ):
         (tmp_path / "joints_10000.vtp").write_bytes(broken)
         with raises(Refused, match="joints_10000.vtp: it holds no frame"):
             frames.readFrame(tmp_path, "joints")
@@ -277,7 +303,7 @@ def test_frames_are_in_the_order_of_their_numbers_and_damage_is_refused(scene, t
 
 def polygonsOf(axes):
     """All that is drawn of blocks and cracks: polygons with the colours of their faces and edges."""
-    (all_,) = [c for c in axes.collections if isinstance(c, PolyCollection) and len(c.get_paths())]  # fmt: skip
+    (all_,) = [c for c in axes.collections if isinstance(c, PolyCollection) and len(c.get_paths())]
     shapes = [path.vertices[:-1] for path in all_.get_paths()]
     faces, edges = all_.get_facecolors(), all_.get_edgecolors()
     look = lambda colours, n: to_hex(colours[n]) if colours[n][3] else "none"
@@ -286,7 +312,10 @@ def polygonsOf(axes):
 
 def crackLines(axes):
     """Lines of cracks by kind: arrays of pairs of ends."""
-    return {kind: np.array([shape for shape, _, edge in polygonsOf(axes) if edge == colour]) for kind, colour in CRACKS.items()}  # fmt: skip
+    return {
+        kind: np.array([shape for shape, _, edge in polygonsOf(axes) if edge == colour])
+        for kind, colour in CRACKS.items()
+    }
 
 
 def crackFaces(axes):
@@ -309,7 +338,7 @@ def test_an_open_joint_is_drawn_on_the_faces_of_both_blocks(scene, tmp_path, dra
     # what was lifted, magnified; both faces from end to end
     lifted = H + 30 * 2e-3
     for face in (H, lifted):
-        ends = lines["open"][np.abs(lines["open"][:, 0, 1] - face) < 0.05 * (lifted - H)]  # fmt: skip
+        ends = lines["open"][np.abs(lines["open"][:, 0, 1] - face) < 0.05 * (lifted - H)]
         assert (ends[..., 0].min(), ends[..., 0].max()) == approx((0, 2 * L))
     assert axes.get_xlabel() == "x [m]" and axes.get_ylabel() == "z [m]"
     assert "displacements × 30" in figure._suptitle.get_text()
@@ -319,11 +348,11 @@ def test_the_seam_in_a_brick_of_two_halves_is_no_mortar_joint(scene, tmp_path, d
     box((0, 0, 0), (L, T, H))
     pull(scene, tmp_path, box((L, 0, 0), (2 * L, T, H)), (1.0, 0, 0), most=1e-6)
     for kinds, places in ((["bed"], 0), (["crack"], 1)):
-        elevation.cracks(writeRun(tmp_path, ["time_s", "f_kN"], [[0, 0], [1, 1]], kinds=kinds))  # fmt: skip
+        elevation.cracks(writeRun(tmp_path, ["time_s", "f_kN"], [[0, 0], [1, 1]], kinds=kinds))
         (axes,) = drawn["cracks.png"].axes
-        seams = [shape for shape, _, edge in polygonsOf(axes) if edge == SHADES["brick"]]  # fmt: skip
+        seams = [shape for shape, _, edge in polygonsOf(axes) if edge == SHADES["brick"]]
         assert len({tuple(shape[:, 0].round(4)) for shape in seams}) == places
-        assert "no joint is cracked, true to scale" in drawn["cracks.png"]._suptitle.get_text()  # fmt: skip
+        assert "no joint is cracked, true to scale" in drawn["cracks.png"]._suptitle.get_text()
 
 
 def test_drawn_blocks_overlap_by_their_closure_and_no_more(scene, tmp_path, drawn):
@@ -344,7 +373,9 @@ def test_drawn_blocks_overlap_by_their_closure_and_no_more(scene, tmp_path, draw
     assert overlap <= H / 4 and lower == 0
 
 
-def test_a_corner_has_an_elevation_for_each_wall_and_what_parts_them_is_seen_in_space(scene, tmp_path, drawn):  # fmt: skip
+def test_a_corner_has_an_elevation_for_each_wall_and_what_parts_them_is_seen_in_space(
+    scene, tmp_path, drawn
+):
     """A wall along x and one along y that butts against it and is pulled away along y."""
     high = 4 * H
     front = [box((n * L, 0, 0), ((n + 1) * L, T, high)) for n in (0, 1)]
@@ -364,7 +395,7 @@ def test_a_corner_has_an_elevation_for_each_wall_and_what_parts_them_is_seen_in_
 
     # a ground that has moved with everything is taken off
     message = json.load(open(os.path.join(folder, "run.json")))
-    json.dump({**message, "reference_body": side[0]}, open(os.path.join(folder, "run.json"), "w"))  # fmt: skip
+    json.dump({**message, "reference_body": side[0]}, open(os.path.join(folder, "run.json"), "w"))
     elevation.cracks(folder)
     panels = {axes.get_title().split(" ")[0]: axes for axes in drawn["cracks.png"].axes}
     assert "moved up to 2 mm towards the viewer" in panels["front"].get_title()
@@ -379,15 +410,17 @@ def test_a_corner_has_an_elevation_for_each_wall_and_what_parts_them_is_seen_in_
 def made(*boxes):
     points = np.concatenate([boxCorners(*ends) for ends in boxes]).astype(float)
     cells = np.arange(len(points)).reshape(-1, 8)
-    return {"points": points, "displacement": 0 * points, "body": range(len(boxes)), "cells": cells}  # fmt: skip
+    return {"points": points, "displacement": 0 * points, "body": range(len(boxes)), "cells": cells}
 
 
 def test_a_facade_has_one_elevation_with_all_parts_in_it():
     """Two walls along x, 3 m apart, a floor that bears on both, and a footing below the first."""
-    bricks = [((n, y, z), (n + 1, y + 0.3, z + 1)) for y in (0, 3) for n in range(4) for z in (0, 1.2)]  # fmt: skip
+    bricks = [
+        ((n, y, z), (n + 1, y + 0.3, z + 1)) for y in (0, 3) for n in range(4) for z in (0, 1.2)
+    ]
     floor, footing = ((0, 0.1, 1), (4, 3.2, 1.2)), ((0, -0.2, -0.3), (4, 0.5, 0))
     parts = {"front": range(8), "back": range(8, 16), "floor": [16], "footing": [17]}
-    found = elevation.elevationsOf(Structure(made(*bricks, floor, footing), None, parts))  # fmt: skip
+    found = elevation.elevationsOf(Structure(made(*bricks, floor, footing), None, parts))
     assert [(one.name, set(one.bodies)) for one in found] == [
         ("front", {*range(8), 16, 17}),
         ("back", {*range(8, 16), 16}),
@@ -397,9 +430,9 @@ def test_a_facade_has_one_elevation_with_all_parts_in_it():
 def test_a_picture_names_its_moment_as_it_is(tmp_path):
     """Three frames of a run that fell: the collapse was noticed at the first, the first block had fallen at the second."""
     sets = "".join(f'<DataSet timestep="{t}"/>' for t in (0.5, 1.0, 1.5))
-    (tmp_path / "joints.pvd").write_text(f"<VTKFile><Collection>{sets}</Collection></VTKFile>")  # fmt: skip
+    (tmp_path / "joints.pvd").write_text(f"<VTKFile><Collection>{sets}</Collection></VTKFile>")
     entry = {"x": axis("u_mm", "displacement of ridge [mm]"), "y": [axis("f_kN")]}
-    folder = writeRun(tmp_path, ["time_s", "u_mm", "f_kN"], [[0, 0, 0], [2, 20, 1]], figure=entry)  # fmt: skip
+    folder = writeRun(tmp_path, ["time_s", "u_mm", "f_kN"], [[0, 0, 0], [2, 20, 1]], figure=entry)
     run = readRun(folder)
     of = lambda n: elevation.whenOf(run, folder, n)
     assert of(0) == "during the run: t = 0.5 s, displacement of ridge = 5.0 mm"

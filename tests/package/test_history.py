@@ -51,7 +51,7 @@ def test_any_text_is_refused_in_words_or_is_a_history(text):
         found = history.parse(text)
     except ValueError as refused:
         message = str(refused)
-        assert message.startswith(("'", "must be amplitudes in mm")) or "cycles" in message  # fmt: skip
+        assert message.startswith(("'", "must be amplitudes in mm")) or "cycles" in message
         assert all(piece in text for piece in message.split("'")[1::2])
     else:
         assert all(map(math.isfinite, found["points_mm"]))
@@ -88,7 +88,7 @@ def test_a_history_takes_the_place_of_until(capsys):
         parse("--history", "2", "--until", "3")
     assert "not allowed with argument" in capsys.readouterr().err
     with raises(SystemExit):
-        options.parser("two bricks", until=2, loops=False).parse_args(["--history", "2"])  # fmt: skip
+        options.parser("two bricks", until=2, loops=False).parse_args(["--history", "2"])
     assert "unrecognized arguments: --history" in capsys.readouterr().err
 
 

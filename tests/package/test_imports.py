@@ -9,7 +9,18 @@ import graphlib
 PACKAGE = os.path.join(ROOT, "scripts", "masonry")
 
 #: The rooms of the package. Each imports only those above it, and itself.
-LAYERS = ["basics", "common", "bricks", "read", "capacity", "assembly", "run", "limit", "scene", "study"]  # fmt: skip
+LAYERS = [
+    "basics",
+    "common",
+    "bricks",
+    "read",
+    "capacity",
+    "assembly",
+    "run",
+    "limit",
+    "scene",
+    "study",
+]
 #: Rooms and modules that work where YADE is not installed, with all that they import.
 WITHOUT_YADE = LAYERS[: LAYERS.index("assembly")] + ["study"]
 WITHOUT_YADE += "run.accuracy run.batch run.presets run.progress run.lock".split()

@@ -47,15 +47,24 @@ def test_the_script_holds_and_the_command_line_wins(form, script, line):
     typed = {option: VALUES[option][1] for option in line}
     plain = vars(made(form, []))
     args = made(form, wordsOf(typed), **said)
-    assert {o: vars(args)[o] for o in VALUES} == {**{o: plain[o] for o in VALUES}, **said, **typed}  # fmt: skip
+    assert {o: vars(args)[o] for o in VALUES} == {**{o: plain[o] for o in VALUES}, **said, **typed}
     assert set(vars(args)) == set(plain)  # what a checkpoint and run.json hold
 
 
 @forms
 def test_one_note_says_what_the_command_line_wins_over(form, capsys):
-    made(form, ["--rate", "7", "--damping", "0.5", "--until", "2"], rate=100, damping=0.3, joints="brittle")  # fmt: skip
+    made(
+        form,
+        ["--rate", "7", "--damping", "0.5", "--until", "2"],
+        rate=100,
+        damping=0.3,
+        joints="brittle",
+    )
     said = capsys.readouterr().out
-    assert said == "note: the command line wins: --rate 7.0, --damping 0.5; the scene has rate 100.0, damping 0.3\n"  # fmt: skip
+    assert (
+        said == "note: the command line wins: --rate 7.0, --damping 0.5; the scene has rate 100.0,"
+        " damping 0.3\n"
+    )
     made(form, ["--rate", "100"], rate=100)
     assert not capsys.readouterr().out
 
@@ -78,7 +87,7 @@ def test_until_and_history_exclude_each_other(form, words, usual, until, path):
 
 @forms
 def test_settings_of_the_script_come_before_those_of_the_command_line(form):
-    args = made(form, ["--set", "bed.friction=0.4"], set=["bed.friction=0.3", "bed.cohesion=0"])  # fmt: skip
+    args = made(form, ["--set", "bed.friction=0.4"], set=["bed.friction=0.3", "bed.cohesion=0"])
     assert [value for *_, value in args.set] == ["0.3", "0", "0.4"]
 
 
@@ -106,7 +115,7 @@ def test_a_preset_wins_over_the_script_and_says_so(form, capsys):
         (["--joints", "cyclic", "--until", "4"], ["joints"]),  # how far is free
     ],
 )
-def test_only_what_differs_from_preset_and_script_goes_beside_a_preset(form, words, overrides):  # fmt: skip
+def test_only_what_differs_from_preset_and_script_goes_beside_a_preset(form, words, overrides):
     args = made(form, words, preset="fast", until=3.0)
     assert args.rate == (20 if "rate" in overrides else 100)
     assert args.overrides == overrides
@@ -114,7 +123,19 @@ def test_only_what_differs_from_preset_and_script_goes_beside_a_preset(form, wor
 
 @forms
 def test_keywords_are_checked_with_all_problems_at_once(form):
-    wrong = dict(joints="britle", rate=-50, rat=3, lean=1, resume="x", points=2.5, out=[], damping=True, set="bed=1", until=1, history="1")  # fmt: skip
+    wrong = dict(
+        joints="britle",
+        rate=-50,
+        rat=3,
+        lean=1,
+        resume="x",
+        points=2.5,
+        out=[],
+        damping=True,
+        set="bed=1",
+        until=1,
+        history="1",
+    )
     with raises(Refused) as refused:
         made(form, [], **wrong)
     said = str(refused.value)
@@ -137,7 +158,7 @@ def test_options_of_a_parser_serve_several_scenes():
     Scene("one", blocks, stones, arguments=args, rate=50, preset="accurate")
     assert args.rate == 50 and args.blocks == "deformable"
     Scene("two", blocks, stones, arguments=args, damping=0.3)
-    assert (args.rate, args.blocks, args.damping, args.preset) == (5, "rigid", 0.3, None)  # fmt: skip
+    assert (args.rate, args.blocks, args.damping, args.preset) == (5, "rigid", 0.3, None)
 
 
 def test_an_option_of_the_scene_itself_can_be_a_keyword():

@@ -105,7 +105,9 @@ def test_flexural_cracks_are_counted_at_the_sides():
 @mark.filterwarnings("error")
 @mark.parametrize("courses", range(1, 6))
 def test_a_low_wall_has_the_numbers_of_the_joints_that_it_has(courses):
-    bed, upright = ({n: v[: courses - k] for n, v in part.items()} for part, k in zip(blank(), (1, 0)))  # fmt: skip
+    bed, upright = (
+        {n: v[: courses - k] for n, v in part.items()} for part, k in zip(blank(), (1, 0))
+    )
     bed["beds"] = {name: np.zeros((courses + 1, COLUMNS)) for name in NAMES}
     bed["shear"][:], upright["opening"][:, 4:6] = 1, WIDE
     found = cracks.patternNumbers(bed, upright)
@@ -175,8 +177,8 @@ def test_heights_above_the_diagonal_vanish_on_it():
 
 #: Numbers of a wall of which nothing is cracked.
 WHOLE = dict.fromkeys(
-    "slid_share slid_mm sliding_energy_share diagonal_reach past_peak_area_cm2 flexural_cracks_base "
-    "flexural_cracks_top flexural_opening_base_mm flexural_opening_top_mm".split(),
+    "slid_share slid_mm sliding_energy_share diagonal_reach past_peak_area_cm2 flexural_cracks_base"
+    " flexural_cracks_top flexural_opening_base_mm flexural_opening_top_mm".split(),
     0,
 )
 SLID = {"slid_share": 1.0, "slid_mm": 5.0, "sliding_energy_share": 0.8}

@@ -6,7 +6,7 @@ import base64
 import zlib
 from masonry.read import frames, gltf, page, viewer
 
-from masonry.read.model import BRICK, FEWEST, MOST_PLACES, PLATEN, Model, chosenFrames, turned  # fmt: skip
+from masonry.read.model import BRICK, FEWEST, MOST_PLACES, PLATEN, Model, chosenFrames, turned
 from masonry.read.page import data, library
 from pages import HOSTILE, SHOWN, Page
 from test_figures import axis
@@ -34,8 +34,11 @@ def test_faces_are_the_same_in_both_layouts_of_vtk():
     dice = random.Random(2)
     faces = [[dice.randrange(9) for _ in range(3)] for _ in range(9)]
     own, stored = {0: faces[:4], 1: [], 2: faces[4:]}, dice.sample(range(9), 9)
-    lists = [[len(f), *(n for face in f for n in (3, *face))] if f else [] for f in own.values()]  # fmt: skip
-    old = {"faces": np.concatenate(lists).astype(int), "faceoffsets": np.cumsum([len(l) for l in lists])}  # fmt: skip
+    lists = [[len(f), *(n for face in f for n in (3, *face))] if f else [] for f in own.values()]
+    old = {
+        "faces": np.concatenate(lists).astype(int),
+        "faceoffsets": np.cumsum([len(l) for l in lists]),
+    }
     new = {
         "face_connectivity": np.array([faces[n] for n in stored]).ravel(),
         "face_offsets": np.arange(3, 28, 3),
@@ -51,9 +54,15 @@ def test_faces_are_the_same_in_both_layouts_of_vtk():
 
 def writeRun(folder, **message):
     rows = [[k, k / 10, 5 * k] for k in range(len(STEPS))]
-    figure = {"x": axis("displacement_mm", "displacement of the top [mm]"), "y": [axis("base_shear_kN", "supports")], "y_label": "force [kN]"}  # fmt: skip
+    figure = {
+        "x": axis("displacement_mm", "displacement of the top [mm]"),
+        "y": [axis("base_shear_kN", "supports")],
+        "y_label": "force [kN]",
+    }
     message = {"title": "two bricks", "figure": figure, **message}
-    return test_figures.writeRun(folder, ["time_s", "displacement_mm", "base_shear_kN"], rows, **message)  # fmt: skip
+    return test_figures.writeRun(
+        folder, ["time_s", "displacement_mm", "base_shear_kN"], rows, **message
+    )
 
 
 @pytest.fixture(scope="module")
@@ -83,7 +92,9 @@ def recorded(tmp_path_factory):
     O.reset()
     times = folder / "joints.pvd"
     number = iter(range(len(STEPS)))
-    times.write_text(re.sub(r'timestep="[^"]*"', lambda _: f'timestep="{next(number)}"', times.read_text()))  # fmt: skip
+    times.write_text(
+        re.sub(r'timestep="[^"]*"', lambda _: f'timestep="{next(number)}"', times.read_text())
+    )
     return folder
 
 
@@ -158,7 +169,7 @@ def test_frames_are_chosen_so_that_a_report_stays_small():
 
 
 def test_frames_of_an_older_version_are_refused_with_what_to_do(run, monkeypatch):
-    old = lambda *words: {n: v for n, v in frames.readFrame(*words).items() if n != "rotation"}  # fmt: skip
+    old = lambda *words: {n: v for n, v in frames.readFrame(*words).items() if n != "rotation"}
     monkeypatch.setattr(sys.modules["masonry.read.model"], "readFrame", old)
     with raises(Refused, match="written by an older version.*run the scene again"):
         Model(run)
@@ -193,9 +204,12 @@ def test_surfaces_look_outwards_and_are_closed_and_edges_are_drawn_where_they_be
 
 def test_captions_have_the_numbers_of_curve_csv_with_their_units(run):
     captions = Model(run).captions()
-    assert captions[2]["values"] == ["displacement of the top: 0.2 mm", "supports: 10 kN"]  # fmt: skip
+    assert captions[2]["values"] == ["displacement of the top: 0.2 mm", "supports: 10 kN"]
     assert captions[2]["stage"] is None  # run.json says nothing about stages
-    stages = [{"stage": "settle", "steps": 100, "seconds": 1}, {"stage": "push", "steps": 200, "seconds": 1}]  # fmt: skip
+    stages = [
+        {"stage": "settle", "steps": 100, "seconds": 1},
+        {"stage": "push", "steps": 200, "seconds": 1},
+    ]
     writeRun(run, stages=stages, time_step_s=0.01)
     found = [caption["stage"] for caption in Model(run).captions()]
     assert found == ["settle", "settle", "push", "push"]
@@ -229,14 +243,16 @@ def test_numbers_in_a_page_are_those_of_the_run_to_half_a_step(run):
         assert np.abs(found[name].reshape(values.shape) - values).max() <= 0.51 * step
     for name in ("opening", "slide"):
         values = np.clip(getattr(model.joints, name), 0, None)
-        assert np.abs(found[name].reshape(count, -1) - values).max() <= 0.51 * values.max() / 4000  # fmt: skip
+        assert np.abs(found[name].reshape(count, -1) - values).max() <= 0.51 * values.max() / 4000
         assert head["values"][name]["most"] == approx(values.max())
     assert found["kind"].reshape(count, -1).tolist() == model.joints.kind.tolist()
     assert [f["time"] for f in head["frames"]] == model.times
     assert head["first"] == count - 1 and data.dataOf(run, 1)[0]["first"] == 1
 
 
-@mark.parametrize("value, expected", [(12.01, 16), (1, 1), (1.0000000001, 1), (0.00021, 0.00024), (9, 10)])  # fmt: skip
+@mark.parametrize(
+    "value, expected", [(12.01, 16), (1, 1), (1.0000000001, 1), (0.00021, 0.00024), (9, 10)]
+)
 def test_legends_end_at_round_numbers(value, expected):
     assert data.nice(value) == approx(expected)
 
@@ -250,7 +266,11 @@ needsThree = mark.skipif(
 @needsThree
 def test_what_stands_in_files_of_a_run_is_text_in_its_page(run):
     plain = Page(page.page(run))
-    figure = {"x": axis("displacement_mm", HOSTILE), "y": [axis("base_shear_kN", HOSTILE)], "y_label": HOSTILE}  # fmt: skip
+    figure = {
+        "x": axis("displacement_mm", HOSTILE),
+        "y": [axis("base_shear_kN", HOSTILE)],
+        "y_label": HOSTILE,
+    }
     stages = [{"stage": HOSTILE, "steps": 300, "seconds": 1}]
     writeRun(run, title=HOSTILE, figure=figure, stages=stages, time_step_s=0.01)
     text = page.page(run)
@@ -284,7 +304,7 @@ def test_a_notebook_gets_the_page_in_a_frame_that_reaches_nothing(run):
     assert tag == "iframe" and attributes["sandbox"] == "allow-scripts"
     assert attributes["srcdoc"] == picture.page == page.page(run)
     assert "height:400px" in attributes["style"]
-    with raises(Refused, match="show: height 10 must be a whole number from 200 to 5000"):  # fmt: skip
+    with raises(Refused, match="show: height 10 must be a whole number from 200 to 5000"):
         page.show(str(run), height=10)
 
 
@@ -354,7 +374,9 @@ def test_vtk_reads_the_animation_of_every_block(run, tmp_path):
 
 
 @mark.parametrize("number, magnification", [(1, 50.0), (2, 1.0)])
-def test_vtk_reads_the_deformed_shape_of_a_frame_and_its_cracks(run, tmp_path, number, magnification):  # fmt: skip
+def test_vtk_reads_the_deformed_shape_of_a_frame_and_its_cracks(
+    run, tmp_path, number, magnification
+):
     path = str(tmp_path / "run.glb")
     said = gltf.write(run, path, number, magnification)
     model = Model(run, number)
@@ -404,12 +426,18 @@ def cut(run):
     "damage, words",
     [
         (cut, "blocks_0002.vtu: it holds no frame"),
-        (lambda run: (run / "joints_0003.vtp").unlink(), "joints.pvd lists 4 frames, and there are 4 files blocks_.*3 files joints_"),
+        (
+            lambda run: (run / "joints_0003.vtp").unlink(),
+            "joints.pvd lists 4 frames, and there are 4 files blocks_.*3 files joints_",
+        ),
         (lambda run: writeRun(run, reference_body=9), "names body 9, which is not in the frames"),
         (lambda run: writeRun(run, parts=[1, 2]), "not the files of a finished run"),
-        (lambda run: writeRun(run, stages=[{"steps": 1}], time_step_s=3.0), "not the files of a finished run"),
+        (
+            lambda run: writeRun(run, stages=[{"steps": 1}], time_step_s=3.0),
+            "not the files of a finished run",
+        ),
     ],
-)  # fmt: skip
+)
 def test_damaged_and_foreign_files_are_refused_in_a_sentence(run, damage, words):
     for number in (-1, 4, 99):
         with raises(Refused, match=f"is no frame {number}; its frames are 0 to 3"):
@@ -426,16 +454,24 @@ def test_damaged_and_foreign_files_are_refused_in_a_sentence(run, damage, words)
         (["nowhere", "--html", "a.html"], "cannot read nowhere/run.json: No such file"),
         (["RUN", "--html", "no/a.html"], "cannot write no/a.html: there is no folder no"),
         (["RUN", "--html", "RUN"], "is a folder; name a file that ends in .html or .htm"),
-        (["RUN", "--gltf", "link.glb"], "cannot write link.glb: it is a symbolic link or no regular file"),
+        (
+            ["RUN", "--gltf", "link.glb"],
+            "cannot write link.glb: it is a symbolic link or no regular file",
+        ),
         (["RUN", "--gltf", "a.obj"], "a.obj must end in .glb"),
         (["RUN", "--gltf", "a.glb", "--at", "9mm"], "never comes to 9 mm"),
-        (["RUN", "--gltf", "a.glb", "--at", "0", "--frame", "1"], "--frame and --at both name a frame"),
+        (
+            ["RUN", "--gltf", "a.glb", "--at", "0", "--frame", "1"],
+            "--frame and --at both name a frame",
+        ),
         (["RUN", "RUN", "--html", "a.html"], "one file of one run"),
         (["RUN", "--frame", "1"], "--frame is for --html and --gltf"),
         (["RUN", "--html", "a.html", "--magnify", "-2"], "--magnify: -2 must be at least 0"),
     ],
-)  # fmt: skip
-def test_what_cannot_be_written_is_refused_and_nothing_is(run, tmp_path_factory, monkeypatch, capsys, words, message):  # fmt: skip
+)
+def test_what_cannot_be_written_is_refused_and_nothing_is(
+    run, tmp_path_factory, monkeypatch, capsys, words, message
+):
     here = tmp_path_factory.mktemp("here")
     monkeypatch.chdir(here)
     for name in ("link.html", "link.glb"):
@@ -446,7 +482,7 @@ def test_what_cannot_be_written_is_refused_and_nothing_is(run, tmp_path_factory,
 
 
 @needsThree
-def test_the_program_writes_a_page_into_the_folder_and_a_model_elsewhere(run, tmp_path, capsys):  # fmt: skip
+def test_the_program_writes_a_page_into_the_folder_and_a_model_elsewhere(run, tmp_path, capsys):
     assert viewer.main([str(run), "--html"]) == 0
     assert "view.html: 0." in capsys.readouterr().out
     first = json.loads(Page((run / "view.html").read_text()).of("script")[-2])

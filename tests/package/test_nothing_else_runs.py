@@ -4,9 +4,7 @@
 from usual import *
 
 #: Modules of Python and of other libraries that the package reads.
-PLANTED = (
-    "csv token json glob struct zlib base64 numpy matplotlib argparse yade".split()
-)
+PLANTED = "csv token json glob struct zlib base64 numpy matplotlib argparse yade".split()
 
 
 @pytest.fixture
@@ -17,7 +15,15 @@ def planted(tmp_path):
     return tmp_path
 
 
-@mark.parametrize("words", ["read.measure nowhere", "read.figures nowhere", "read.report nowhere", "study nowhere.py --out out"])  # fmt: skip
+@mark.parametrize(
+    "words",
+    [
+        "read.measure nowhere",
+        "read.figures nowhere",
+        "read.report nowhere",
+        "study nowhere.py --out out",
+    ],
+)
 def test_programs_of_the_package_run_nothing_of_the_present_folder(planted, words):
     module, *more = words.split()
     command = [sys.executable, "-m", f"masonry.{module}", *more]
@@ -78,14 +84,20 @@ def test_an_installation_that_would_remove_packages_is_refused(tmp_path, removed
         program.write_text(text if removed else text.replace('echo "Remv', ': "'))
         program.chmod(0o755)
     (tmp_path / "logs").mkdir()
-    env = dict(os.environ, PATH=f"{tmp_path}/bin:/usr/bin:/bin", REMOVED=removed, LOG=str(tmp_path / "asked"), TMPDIR=str(tmp_path / "logs"))  # fmt: skip
+    env = dict(
+        os.environ,
+        PATH=f"{tmp_path}/bin:/usr/bin:/bin",
+        REMOVED=removed,
+        LOG=str(tmp_path / "asked"),
+        TMPDIR=str(tmp_path / "logs"),
+    )
     setup = os.path.join(ROOT, "scripts", "setup.sh")
     done = ran(["bash", setup], env=env)
     assert done.returncode == 1
     asked = (tmp_path / "asked").read_text().splitlines()
     assert asked[0] == "update" and "--simulate" in asked[1]
     if removed:
-        assert "apt-get would remove python3-paraview. Nothing was changed" in done.stderr  # fmt: skip
+        assert "apt-get would remove python3-paraview. Nothing was changed" in done.stderr
         assert len(asked) == 2
     else:  # the stand-in refuses to install
         assert len(asked) == 3 and "--no-remove" in asked[2]

@@ -5,7 +5,17 @@ from usual import *
 from masonry import AT_REST, Scene, bricks, materials
 
 SIZE, MORTAR = (0.25, 0.12, 0.065), 0.010
-CLAY = dict(E=4e9, unit_E=9e9, fc=14e6, fv0=0.25e6, friction=0.6, ft=0.2e6, unit=SIZE, joint=MORTAR, density=1800)  # fmt: skip
+CLAY = dict(
+    E=4e9,
+    unit_E=9e9,
+    fc=14e6,
+    fv0=0.25e6,
+    friction=0.6,
+    ft=0.2e6,
+    unit=SIZE,
+    joint=MORTAR,
+    density=1800,
+)
 
 
 def clay(**changes):
@@ -60,8 +70,8 @@ def test_bricks_and_joints_in_series_are_the_masonry(p):
     bedSpacing, headSpacing = p["height"] + p["joint"], p["length"] + p["joint"]
     inSeries = lambda k, spacing, own: 1 / (1 / (k * spacing) + 1 / own)
     assert inSeries(bed.normalStiffness, bedSpacing, unitE) == approx(p["E"])
-    assert inSeries(head.normalStiffness, headSpacing, unitE) == approx(values["head_E"])  # fmt: skip
-    assert inSeries(bed.shearStiffness, bedSpacing, shear * unitE) == approx(values["G"])  # fmt: skip
+    assert inSeries(head.normalStiffness, headSpacing, unitE) == approx(values["head_E"])
+    assert inSeries(bed.shearStiffness, bedSpacing, shear * unitE) == approx(values["G"])
     # brick and joint together have the peak strain at fc
     closure = bed.peakRatio * p["fc"] / bed.normalStiffness
     strain = closure / bedSpacing + p["fc"] / unitE
@@ -89,17 +99,19 @@ def test_what_is_assumed_is_what_the_law_can_follow(p, brickStrength):
     for name, distance in distances.items():
         joint = made.joints[name]
         lumped = distance / unitE
-        tension = materials.leastEnergy(joint.tensileStrength, joint.normalStiffness, lumped)  # fmt: skip
-        shear = materials.leastEnergy(joint.cohesion, joint.shearStiffness, shearing * lumped)  # fmt: skip
-        assert joint.modeIFractureEnergy >= max(0.029e-3 * joint.tensileStrength, 1.099 * tension)  # fmt: skip
-        assert joint.modeIIFractureEnergy >= max(0.093e-3 * joint.cohesion, 1.099 * shear)  # fmt: skip
+        tension = materials.leastEnergy(joint.tensileStrength, joint.normalStiffness, lumped)
+        shear = materials.leastEnergy(joint.cohesion, joint.shearStiffness, shearing * lumped)
+        assert joint.modeIFractureEnergy >= max(0.029e-3 * joint.tensileStrength, 1.099 * tension)
+        assert joint.modeIIFractureEnergy >= max(0.093e-3 * joint.cohesion, 1.099 * shear)
     bed = made.joints["bed"]
     assert bed.peakRatio == approx(1 + 1 / (1 - p["share"]))  # of 2 fc/E
     assert bed.shearStiffness * shearing == approx(bed.normalStiffness)
     assert bed.residualFriction == p["friction"] and bed.dilatancy == 0
     said = sources(made)
-    assert "Kaushik" in said["bed.peakRatio"] and "Lourenço" in said["bed.compressiveFractureEnergy"]  # fmt: skip
-    assert not {"bed.cohesion", "bed.friction", "unit.density", "unit.young"} & set(said)  # fmt: skip
+    assert (
+        "Kaushik" in said["bed.peakRatio"] and "Lourenço" in said["bed.compressiveFractureEnergy"]
+    )
+    assert not {"bed.cohesion", "bed.friction", "unit.density", "unit.young"} & set(said)
 
 
 def test_the_compressive_fracture_energy_is_that_of_its_sources():
@@ -135,7 +147,15 @@ def test_other_strengths_are_converted_and_said():
 
 def test_head_joints_are_of_the_same_mortar_or_have_their_share():
     bed, head = (clay().joints[name].dict() for name in ("bed", "head"))
-    alike = {"normalStiffness", "shearStiffness", "tensileStrength", "cohesion", "friction", "peakRatio", "compressiveStrength"}  # fmt: skip
+    alike = {
+        "normalStiffness",
+        "shearStiffness",
+        "tensileStrength",
+        "cohesion",
+        "friction",
+        "peakRatio",
+        "compressiveStrength",
+    }
     assert {n: bed[n] for n in alike} == {n: head[n] for n in alike}
     poor = clay(head_share=0.5, GfI=20).joints
     assert poor["head"].tensileStrength == 0.1e6 and poor["head"].cohesion == 0.125e6
@@ -185,14 +205,32 @@ def test_bricks_crack_if_their_strength_is_given():
         (dict(E=9e9), "E 9e+09 Pa must be below unit_E 9e+09 Pa: bricks and joints are in series"),
         (dict(joint=0.07), "joint 0.07 m must be below length and height of the unit"),
         (dict(unit=(250, 120, 65)), "must be at most 5 m: is it in m?"),
-        (dict(ft=None), "give either ft, the direct tensile strength of bed joints, or bond_wrench"),
+        (
+            dict(ft=None),
+            "give either ft, the direct tensile strength of bed joints, or bond_wrench",
+        ),
         (dict(bond_wrench=0.3e6), "give either ft, the direct"),
-        (dict(ft=0.5e6), "ft 500000 Pa must be at most fv0/friction = 416667 Pa, the apex of the Coulomb cone"),
-        (dict(ft=None, bond_wrench=0.9e6), "bond_wrench/1.5 = 600000 Pa must be at most fv0/friction = 416667 Pa"),
-        (dict(unit_ft=2e6, unit_fv0=1e6), "unit_ft 2e+06 Pa must be at most unit_fv0/unit_friction = 1.33333e+06 Pa"),
-        (dict(G=4e9), "G 4e+09 Pa must be below that of the bricks, unit_E/(2 (1 + nu)) = 3.75e+09 Pa"),
+        (
+            dict(ft=0.5e6),
+            "ft 500000 Pa must be at most fv0/friction = 416667 Pa, the apex of the Coulomb cone",
+        ),
+        (
+            dict(ft=None, bond_wrench=0.9e6),
+            "bond_wrench/1.5 = 600000 Pa must be at most fv0/friction = 416667 Pa",
+        ),
+        (
+            dict(unit_ft=2e6, unit_fv0=1e6),
+            "unit_ft 2e+06 Pa must be at most unit_fv0/unit_friction = 1.33333e+06 Pa",
+        ),
+        (
+            dict(G=4e9),
+            "G 4e+09 Pa must be below that of the bricks, unit_E/(2 (1 + nu)) = 3.75e+09 Pa",
+        ),
         (dict(residual_friction=0.7), "residual_friction 0.7 must be at most friction 0.6"),
-        (dict(dilatancy=0.5, residual_friction=0.4), "dilatancy 0.5 must be at most residual_friction 0.4"),
+        (
+            dict(dilatancy=0.5, residual_friction=0.4),
+            "dilatancy 0.5 must be at most residual_friction 0.4",
+        ),
         (dict(peak_strain=1e-3), "peak_strain 0.001 must be at least fc/E = 0.0035"),
         (dict(Gc=3000), "compressive fracture energy 3000 J/m² is too small for peak ratio"),
         (dict(unit_GfI=60), "unit_GfI without unit_ft: bricks do not crack then"),
@@ -202,7 +240,7 @@ def test_bricks_crack_if_their_strength_is_given():
         (dict(fk=8e6), "give fc, the mean"),
         (dict(fm=5e6), "fm is the strength of the mortar in EN 1996 and on data sheets: give fc"),
     ],
-)  # fmt: skip
+)
 def test_wrong_values_are_refused_with_the_bound(changes, message):
     with raises(Refused) as refused:
         clay(**changes)
@@ -233,7 +271,7 @@ def wall(masonry, folder, length=0.52, height=0.375, **settings):
         ("unit_GfI", "crack", "tensileStrength", "normalStiffness", 0.13, dict(unit_ft=2e6)),
         ("unit_GfII", "crack", "cohesion", "shearStiffness", 0.13, dict(unit_ft=2e6)),
     ],
-)  # fmt: skip
+)
 def test_softening_that_snaps_back_is_a_warning_and_no_scene(
     energy, joint, strength, stiffness, distance, changes, tmp_path, capsys
 ):
@@ -241,7 +279,9 @@ def test_softening_that_snaps_back_is_a_warning_and_no_scene(
     changes = dict(E=7e9, fc=20e6, unit_E=7.5e9, **changes)
     made = clay(**changes).joints[joint]
     soft = 2.4 if "II" in energy else 1.0  # E/G of the bricks
-    least = materials.leastEnergy(getattr(made, strength), getattr(made, stiffness), soft * distance / 7.5e9)  # fmt: skip
+    least = materials.leastEnergy(
+        getattr(made, strength), getattr(made, stiffness), soft * distance / 7.5e9
+    )
     # bricks in halves share their shear, and are half as far apart
     for share, snaps in ((1.02, False), (0.2, True)):
         capsys.readouterr()
@@ -273,7 +313,7 @@ def test_a_wall_has_the_modulus_of_its_masonry(tmp_path):
 
 def test_bricks_of_another_course_than_that_of_the_joints_are_noted(tmp_path, capsys):
     for name, size in (("same", SIZE), ("other", (0.25, 0.12, 0.09))):
-        wall = bricks.Wall(2 * (size[0] + 0.01), 2 * (size[2] + 0.01), unit=size, joint=0.01)  # fmt: skip
+        wall = bricks.Wall(2 * (size[0] + 0.01), 2 * (size[2] + 0.01), unit=size, joint=0.01)
         words = ["--lean", "--out", str(tmp_path / name)]
         scene = Scene(name, wall, clay(), arguments=words)
         scene.platen("bottom")

@@ -269,8 +269,9 @@ def test_a_column_says_its_unit_in_its_name_and_in_its_meaning():
         *targets.Drift("drift", low, high).columns(plane=True),
         *targets.JointRecord("joint0", (0, 1)).columns(),
     ]
-    assert " ".join(columns.heads(recorded)) == (
-        "b_x_mm b_y_mm b_z_mm b_rotation_mrad drift_x_mm drift_x_mrad joint0_opening_mm "
+    assert (
+        " ".join(columns.heads(recorded))
+        == "b_x_mm b_y_mm b_z_mm b_rotation_mrad drift_x_mm drift_x_mrad joint0_opening_mm "
         "joint0_slide_mm joint0_normal_stress_MPa joint0_shear_stress_MPa"
     )
     usual = columns.PUSH + columns.HISTORY + columns.BALANCE

@@ -24,30 +24,67 @@ def without(module, tmp_path, *command):
 
 def sentence(module):
     package, what = packages.NEEDED_FOR[module]
-    return f"{what} the Python module {module}, which is not installed: apt-get install --no-install-recommends {package}"
+    return (
+        f"{what} the Python module {module}, which is not installed: apt-get install"
+        f" --no-install-recommends {package}"
+    )
 
 
-@mark.parametrize("module, use", [
-    ("ezdxf", "open('a.dxf', 'w').write(''); from masonry import bricks; bricks.fromOutlines('a.dxf', 1, 0.1)"),
-    ("jinja2", "from masonry.read import pages; pages.rendered('page/page.html')"),
-    ("matplotlib", "from masonry.read import drawing; drawing.empty(1, 1)"),
-    ("meshio", "open('a.ply', 'w').write('ply'); from masonry import bricks; bricks.fromFile('a.ply')"),
-    ("openturns", "from masonry.study import lognormal; lognormal(1, 0.1).law()"),
-    ("scipy", "from masonry import bricks"),
-])  # fmt: skip
-def test_a_missing_module_is_one_sentence_with_the_command_that_installs_it(tmp_path, module, use):  # fmt: skip
+@mark.parametrize(
+    "module, use",
+    [
+        (
+            "ezdxf",
+            (
+                "open('a.dxf', 'w').write(''); from masonry import bricks;"
+                " bricks.fromOutlines('a.dxf', 1, 0.1)"
+            ),
+        ),
+        ("jinja2", "from masonry.read import pages; pages.rendered('page/page.html')"),
+        ("matplotlib", "from masonry.read import drawing; drawing.empty(1, 1)"),
+        (
+            "meshio",
+            "open('a.ply', 'w').write('ply'); from masonry import bricks; bricks.fromFile('a.ply')",
+        ),
+        ("openturns", "from masonry.study import lognormal; lognormal(1, 0.1).law()"),
+        ("scipy", "from masonry import bricks"),
+    ],
+)
+def test_a_missing_module_is_one_sentence_with_the_command_that_installs_it(tmp_path, module, use):
     done = without(module, tmp_path, sys.executable, "-c", use)
     assert done.returncode == 1
     assert done.stderr.splitlines()[-1].endswith(sentence(module)), done.stderr
 
 
-@mark.parametrize("module, parts, absent", [
-    ("matplotlib", ("the figures are left out", "mechanism.png is left out"), ("curve.png", "mechanism.png")),
-    ("meshio", ("the mechanism for ParaView is left out",), ("mechanism_blocks.vtu",)),
-])  # fmt: skip
-def test_a_run_leaves_out_what_a_missing_module_draws_and_ends_in_order(tmp_path, module, parts, absent):  # fmt: skip
+@mark.parametrize(
+    "module, parts, absent",
+    [
+        (
+            "matplotlib",
+            ("the figures are left out", "mechanism.png is left out"),
+            ("curve.png", "mechanism.png"),
+        ),
+        ("meshio", ("the mechanism for ParaView is left out",), ("mechanism_blocks.vtu",)),
+    ],
+)
+def test_a_run_leaves_out_what_a_missing_module_draws_and_ends_in_order(
+    tmp_path, module, parts, absent
+):
     scene = os.path.join(ROOT, "scripts", "wall_comp4.py")
-    done = without(module, tmp_path, "yade", "-n", "-x", scene, "--until", "0.02", "--quick", "--no-vtk", "--out", "run")  # fmt: skip
+    done = without(
+        module,
+        tmp_path,
+        "yade",
+        "-n",
+        "-x",
+        scene,
+        "--until",
+        "0.02",
+        "--quick",
+        "--no-vtk",
+        "--out",
+        "run",
+    )
     assert done.returncode == 0, done.stdout + done.stderr
     lines = (done.stdout + done.stderr).splitlines()
     for part in parts:

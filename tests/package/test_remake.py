@@ -14,16 +14,18 @@ def committed():
     return done.stdout.splitlines()
 
 
-@mark.skipif(
-    not os.path.exists(os.path.join(ROOT, ".git")), reason="no repository of git"
-)
+@mark.skipif(not os.path.exists(os.path.join(ROOT, ".git")), reason="no repository of git")
 def test_every_figure_and_table_is_made_by_one_result():
-    made = [f for f in committed() if f.endswith((".png", "table.md", "walls.md", ".json")) or "/loops_" in f]  # fmt: skip
+    made = [
+        f
+        for f in committed()
+        if f.endswith((".png", "table.md", "walls.md", ".json")) or "/loops_" in f
+    ]
     given = {"case.json", "blind.json", "made.json"}  # written by hand, or by remake.py
-    made = [f for f in made if os.path.basename(f) not in given and "/reference/" not in f]  # fmt: skip
+    made = [f for f in made if os.path.basename(f) not in given and "/reference/" not in f]
     assert len(made) > 50
     for path in made:
-        makers = [r.name for r in EVERY.values() if any(fnmatch.fnmatch(path, p) for p in r.makes)]  # fmt: skip
+        makers = [r.name for r in EVERY.values() if any(fnmatch.fnmatch(path, p) for p in r.makes)]
         assert len(makers) == 1, (path, makers)
 
 
@@ -37,7 +39,7 @@ def test_results_come_after_those_that_they_need():
 
 @pytest.fixture
 def tree(tmp_path, monkeypatch):
-    for folder in ("validation/one", "tests/references", "results/one", "results/other"):  # fmt: skip
+    for folder in ("validation/one", "tests/references", "results/one", "results/other"):
         (tmp_path / folder).mkdir(parents=True)
     (tmp_path / "validation/one/run.py").write_text("open('results/one/new', 'w')\n")
     (tmp_path / "tests/references/rigid.json").write_text('{"made by": "a", "x": 1}')
@@ -57,12 +59,12 @@ def state(result):
     return remake.stateOf(result, remake.readMade(), {"one": result})[0]
 
 
-def test_a_result_is_stale_when_what_decides_its_numbers_has_changed_and_only_then(tree):  # fmt: skip
+def test_a_result_is_stale_when_what_decides_its_numbers_has_changed_and_only_then(tree):
     path, result = tree
     assert state(result) == "unrecorded"
     remake.record(result, remake.fingerprint(result), 60, "abc")
     assert state(result) == "fresh"
-    program, reference = path / "validation/one/run.py", path / "tests/references/rigid.json"  # fmt: skip
+    program, reference = path / "validation/one/run.py", path / "tests/references/rigid.json"
     program.write_text('"""What it is."""\n# why\n' + program.read_text())
     reference.write_text('{"made by": "b", "x": 1}')
     assert state(result) == "fresh"  # a comment, and the name of a build
@@ -77,9 +79,7 @@ def test_what_is_stale_is_made_recorded_and_in_the_table(tree, capfd):
     path, result = tree
     folder = path / "results/one"
     program = "import os; os.makedirs('results/one', exist_ok=True); open('results/one/new', 'w'); "
-    (path / "validation/one/run.py").write_text(
-        program + "assert os.path.exists('fine')"
-    )
+    (path / "validation/one/run.py").write_text(program + "assert os.path.exists('fine')")
     (folder / "old").write_text("of an older state")
     assert remake.main(["--built", "abc"]) == 1
     assert os.listdir(folder) == ["new"]  # what was older is gone

@@ -9,7 +9,18 @@ from masonry.read.report import __main__ as program
 from masonry.read.report.pieces import written
 from pages import HOSTILE, SHOWN, Page
 
-PARTS = ["What was built", "How it was held and loaded", "The curve", "Drifts and other numbers", "The bound by limit analysis", "Where the work went", "Equivalent damping of cycles", "Forces at the base", "The structure in 3-D", "How far to trust it"]  # fmt: skip
+PARTS = [
+    "What was built",
+    "How it was held and loaded",
+    "The curve",
+    "Drifts and other numbers",
+    "The bound by limit analysis",
+    "Where the work went",
+    "Equivalent damping of cycles",
+    "Forces at the base",
+    "The structure in 3-D",
+    "How far to trust it",
+]
 #: A push along straight lines: from 0 to 100 kN at 1 mm, and down to 40 kN at 4 mm, so 80 kN are reached at 2 mm.
 MOVED = np.linspace(0, 4, 401)
 FORCE = np.interp(MOVED, [0, 1, 4], [0, 100, 40])
@@ -27,14 +38,26 @@ COLUMNS = {
     **{f"elastic_{part}_J": 0 * MOVED for part in ("tension", "shear", "units")},
     "dissipated_tension_J": np.where(MOVED < 0.495, 0, 2 * MOVED),
     "dissipated_shear_J": np.where(MOVED < 0.495, 0, 0.25 * MOVED**2),
-}  # fmt: skip
+}
 MEANINGS = {
     "time_s": "time since the scene was built [s]",
     "external_J": "work of the loads since the scene was built [J]",
     "damping_J": "energy taken by damping since the scene was built [J]",
-    "dissipated_tension_J": "energy that joints dissipated in tension since the scene was built [J]",
+    "dissipated_tension_J": (
+        "energy that joints dissipated in tension since the scene was built [J]"
+    ),
 }
-JOINT = {"name": "bed", "law": "softening", "elastic": False, "cap": True, "normalStiffness": 3.352e11, "tensileStrength": 1e5, "friction": 0.43, "modeIFractureEnergy": 16.0, "compressiveStrength": 7.55e6}  # fmt: skip
+JOINT = {
+    "name": "bed",
+    "law": "softening",
+    "elastic": False,
+    "cap": True,
+    "normalStiffness": 3.352e11,
+    "tensileStrength": 1e5,
+    "friction": 0.43,
+    "modeIFractureEnergy": 16.0,
+    "compressiveStrength": 7.55e6,
+}
 RUN = {
     "scene": "made_up",
     "title": "A wall that is made up",
@@ -43,33 +66,73 @@ RUN = {
     "option_units": {"until": "mm", "rate": "mm/s"},
     "preset": None,
     "columns": MEANINGS,
-    "joints": {"bed": JOINT, "support": {**JOINT, "elastic": True}, "crack": {**JOINT, "cap": False}},
-    "joint_units": {"normalStiffness": "Pa/m", "tensileStrength": "Pa", "friction": "-", "modeIFractureEnergy": "J/m²", "compressiveStrength": "Pa"},
-    "joint_meanings": {"normalStiffness": "Normal stiffness kn. A joint takes its elastic stiffness from it when it is made"},
+    "joints": {
+        "bed": JOINT,
+        "support": {**JOINT, "elastic": True},
+        "crack": {**JOINT, "cap": False},
+    },
+    "joint_units": {
+        "normalStiffness": "Pa/m",
+        "tensileStrength": "Pa",
+        "friction": "-",
+        "modeIFractureEnergy": "J/m²",
+        "compressiveStrength": "Pa",
+    },
+    "joint_meanings": {
+        "normalStiffness": (
+            "Normal stiffness kn. A joint takes its elastic stiffness from it when it is made"
+        )
+    },
     "unit_material": {"young_Pa": 4.8e9, "poisson": 0.16, "density_kg_per_m3": 1800.0},
     "assumed": [
-        {"name": "bed.modeIFractureEnergy", "value": 16.0, "unit": "J/m²", "source": "the paper gives no value"},
+        {
+            "name": "bed.modeIFractureEnergy",
+            "value": 16.0,
+            "unit": "J/m²",
+            "source": "the paper gives no value",
+        },
         {"name": "bed.friction", "value": 0.43, "unit": "-", "source": "the paper gives no value"},
         {"name": "unit.young", "value": 4.8e9, "unit": "Pa", "source": "default"},
     ],
     "versions": {"yade": "2023.02a", "python": "3.11.2", "masonry": "3.0.0"},
     "commit": "abc1234",
     "built": [["size", "4 × 0.1 × 2 m (x × y × z), 0.8 m³"]],
-    "held_and_loaded": [["base", "platen, held"], ["top", "platen, held about y; pressed by 0.5 MPa"]],
+    "held_and_loaded": [
+        ["base", "platen, held"],
+        ["top", "platen, held about y; pressed by 0.5 MPa"],
+    ],
     "script": [["platen", {"where": "bottom", "rotation": None}], ["push", {"target": "top"}]],
     "stages": [
         {"stage": "settle", "steps": 100, "seconds": 1.0, "first_row": 0, "load": None},
-        {"stage": "push", "steps": 4000, "seconds": 1.0, "first_row": 0, "load": ["push", "top along x", ""]},
+        {
+            "stage": "push",
+            "steps": 4000,
+            "seconds": 1.0,
+            "first_row": 0,
+            "load": ["push", "top along x", ""],
+        },
     ],
     "held": ["base"],
     "figure": {
         "x": {"column": "displacement_mm", "label": "displacement of top [mm]"},
-        "y": [{"column": "base_shear_kN", "label": "supports"}, {"column": "top_shear_kN", "label": "loaded point"}],
+        "y": [
+            {"column": "base_shear_kN", "label": "supports"},
+            {"column": "top_shear_kN", "label": "loaded point"},
+        ],
         "y_label": "force along the push [kN]",
         "marks": [{"x": 1.0, "y": 100.0, "text": "100.0 kN at 1.00 mm"}],
         "bounds": [{"y": 125.0, "text": "limit analysis: 125 kN at most"}],
     },
-    "bounds": [{"load": "top along x", "unit": "kN", "factor": 125.0, "exact": False, "open_joints_slip": None, "joints": {"opens": 2, "slides": 3, "crushes": 0}}],
+    "bounds": [
+        {
+            "load": "top along x",
+            "unit": "kN",
+            "factor": 125.0,
+            "exact": False,
+            "open_joints_slip": None,
+            "joints": {"opens": 2, "slides": 3, "crushes": 0},
+        }
+    ],
     "bound_base_shear_kN": 125.0,
     "peak_base_shear_kN": 100.0,
     "displacement_at_peak_mm": 1.0,
@@ -84,7 +147,17 @@ RUN = {
     "largest_crack_mm": 3.25,
     "dynamic_imbalance": 0.0125,
     "energy_balance_error": 2e-10,
-    "answers": [{"stage": "push", "number": 2, "name": "peak", "unit": "kN", "value": 100.0, "uncertainty": 1.5, "how": "the largest force"}],
+    "answers": [
+        {
+            "stage": "push",
+            "number": 2,
+            "name": "peak",
+            "unit": "kN",
+            "value": 100.0,
+            "uncertainty": 1.5,
+            "how": "the largest force",
+        }
+    ],
     "warnings": [],
     "ended": "done",
     "collapsed": False,
@@ -92,7 +165,7 @@ RUN = {
     "steps": 4100,
     "time_step_s": 2e-5,
     "time_step_limit_s": 2.5e-5,
-}  # fmt: skip
+}
 
 
 def folder(path, run=RUN, columns=COLUMNS, **changed):
@@ -101,7 +174,9 @@ def folder(path, run=RUN, columns=COLUMNS, **changed):
     run = {k: v for k, v in {**run, **changed}.items() if v is not ...}
     (path / "run.json").write_text(json.dumps(run))
     if columns is not None:
-        lines = [",".join(columns)] + [",".join("%.9g" % v for v in row) for row in zip(*columns.values())]  # fmt: skip
+        lines = [",".join(columns)] + [
+            ",".join("%.9g" % v for v in row) for row in zip(*columns.values())
+        ]
         (path / "curve.csv").write_text("\r\n".join(lines) + "\r\n")
     return str(path)
 
@@ -152,7 +227,7 @@ ROWS = {
     "largest error of the energy balance": ["2\u202f·\u202f10⁻⁸ %"],
     "dynamic imbalance": ["1.25 %"],
     "time step": ["20 µs", "80 % of the largest stable one."],
-}  # fmt: skip
+}
 #: Sentences that are somewhere on the page, and texts of its chart.
 SAID = """Peak 100 kN at 1 mm; limit analysis: at most 125 kN.
 until 4 mm; rate 20 mm/s; set –; preset –
@@ -161,7 +236,10 @@ one run does not tell
 no error of peak or work is promised
 the push did not end in a collapse
 an upper bound"""
-CHART = "supports;loaded point;bilinear;100.0 kN at 1.00 mm;limit analysis: 125 kN at most;displacement of top [mm];force along the push [kN]"
+CHART = (
+    "supports;loaded point;bilinear;100.0 kN at 1.00 mm;limit analysis: 125 kN at most;displacement"
+    " of top [mm];force along the push [kN]"
+)
 
 
 @mark.parametrize("head", ROWS)
@@ -173,7 +251,16 @@ def test_each_number_has_its_unit_and_stands_where_it_belongs(pushed, head):
 def test_the_head_the_sentences_and_the_chart(pushed):
     assert pushed.of("h1") == ["A wall that is made up"]
     facts = pushed.of("dt", "dd")
-    assert facts == ["scene", "made_up", "run ended", "2026-05-31 12:00:00 UTC", "versions", "masonry 3.0.0, YADE 2023.02a, Python 3.11.2", "commit", "abc1234"]  # fmt: skip
+    assert facts == [
+        "scene",
+        "made_up",
+        "run ended",
+        "2026-05-31 12:00:00 UTC",
+        "versions",
+        "masonry 3.0.0, YADE 2023.02a, Python 3.11.2",
+        "commit",
+        "abc1234",
+    ]
     assert ["property", "unit", "bed", "support", "crack"] in pushed.rows
     assert pushed.row("peak", 6)[1:4] == ["1 mm", "0.5 mrad", "100 kN"]
     assert pushed.of("code") == ["platen(where='bottom')", "push(target='top')"]
@@ -186,20 +273,67 @@ def test_the_head_the_sentences_and_the_chart(pushed):
 
 #: What changes a run, the beginning of a row, and cells of it.
 CHANGED = [
-    (dict(joints={"bed": JOINT, "dry": {**JOINT, "tensileStrength": 0.0, "cohesion": 0.0}}), {}, "modeIFractureEnergy", ["0.016assumed", "–"]),
-    (dict(joints={"bed": JOINT, "dry": {**JOINT, "tensileStrength": 0.0}}), {}, "friction", ["0.43assumed", "0.43"]),
-    (dict(joints_by_kind={"bed": 3, "support": 1}), {}, "law", ["", "softening", "elastic: no strength is reached"]),
-    (dict(ties=[{"name": "rod", "ends_m": [[0, 0, 1.5], [2, 0, 1.5]], "stiffness_N_per_m": 1e7, "prestress_N": 3e4, "state": "yielded", "breaking_strain": None}]), {},
-     "rod", ["ends ((0, 0, 1.5), (2, 0, 1.5)) m; stiffness 1\u202f·\u202f10⁷ N/m; prestress 30,000 N; state yielded; breaking strain –"]),
-    (dict(recorded_drifts=["storey_x_mrad"]), {"storey_x_mrad": ("displacement of b along x less that of a, over the height between them [mrad]", -MOVED)},
-     "largest storey_x", ["−4 mrad"]),
-    ({}, {"base_force_z_kN": ("force of the structure on base along z [kN]", 0 * MOVED - 20)}, "base_force_z", ["−20 kN"] * 3),
-]  # fmt: skip
+    (
+        dict(joints={"bed": JOINT, "dry": {**JOINT, "tensileStrength": 0.0, "cohesion": 0.0}}),
+        {},
+        "modeIFractureEnergy",
+        ["0.016assumed", "–"],
+    ),
+    (
+        dict(joints={"bed": JOINT, "dry": {**JOINT, "tensileStrength": 0.0}}),
+        {},
+        "friction",
+        ["0.43assumed", "0.43"],
+    ),
+    (
+        dict(joints_by_kind={"bed": 3, "support": 1}),
+        {},
+        "law",
+        ["", "softening", "elastic: no strength is reached"],
+    ),
+    (
+        dict(
+            ties=[
+                {
+                    "name": "rod",
+                    "ends_m": [[0, 0, 1.5], [2, 0, 1.5]],
+                    "stiffness_N_per_m": 1e7,
+                    "prestress_N": 3e4,
+                    "state": "yielded",
+                    "breaking_strain": None,
+                }
+            ]
+        ),
+        {},
+        "rod",
+        [
+            "ends ((0, 0, 1.5), (2, 0, 1.5)) m; stiffness 1\u202f·\u202f10⁷ N/m; prestress 30,000"
+            " N; state yielded; breaking strain –"
+        ],
+    ),
+    (
+        dict(recorded_drifts=["storey_x_mrad"]),
+        {
+            "storey_x_mrad": (
+                "displacement of b along x less that of a, over the height between them [mrad]",
+                -MOVED,
+            )
+        },
+        "largest storey_x",
+        ["−4 mrad"],
+    ),
+    (
+        {},
+        {"base_force_z_kN": ("force of the structure on base along z [kN]", 0 * MOVED - 20)},
+        "base_force_z",
+        ["−20 kN"] * 3,
+    ),
+]
 
 
 @mark.parametrize("changed, columns, head, cells", CHANGED)
 def test_what_a_run_has_beside(tmp_path, changed, columns, head, cells):
-    changed["columns"] = {**MEANINGS, **{n: meaning for n, (meaning, _) in columns.items()}}  # fmt: skip
+    changed["columns"] = {**MEANINGS, **{n: meaning for n, (meaning, _) in columns.items()}}
     more = {n: values for n, (_, values) in columns.items()}
     found = page(folder(tmp_path, columns={**COLUMNS, **more}, run={**RUN, **changed}))
     row = found.row(head)
@@ -208,7 +342,7 @@ def test_what_a_run_has_beside(tmp_path, changed, columns, head, cells):
 
 
 def test_a_warning_stands_at_the_head(tmp_path):
-    said = page(folder(tmp_path, warnings=["the push is too fast", "it is damped"])).said()  # fmt: skip
+    said = page(folder(tmp_path, warnings=["the push is too fast", "it is damped"])).said()
     assert said.index("the push is too fast") < said.index(PARTS[0])
     assert "and 1 more" in said and said.count("it is damped") == 1
 
@@ -238,24 +372,46 @@ def test_the_promise_of_a_preset_and_the_width_of_an_accuracy_are_said(tmp_path)
     about = "preset fast: promises the peak within 3 % and more"
     found = page(folder(tmp_path, preset={"name": "fast"}, preset_note=about))
     assert f"The {about}." in found.said()
-    accuracy = {"asked_percent": 2, "reached": False, "fidelity": "rigid units", "companions": [{}, {}], "not_covered": "the crack pattern",
-                "quantities": [{"name": "peak", "unit": "kN", "value": 100.0, "half_width": 3.1, "half_width_percent": 3.1, "parts_percent": {"rate": 1.25}, "how": ""}]}  # fmt: skip
+    accuracy = {
+        "asked_percent": 2,
+        "reached": False,
+        "fidelity": "rigid units",
+        "companions": [{}, {}],
+        "not_covered": "the crack pattern",
+        "quantities": [
+            {
+                "name": "peak",
+                "unit": "kN",
+                "value": 100.0,
+                "half_width": 3.1,
+                "half_width_percent": 3.1,
+                "parts_percent": {"rate": 1.25},
+                "how": "",
+            }
+        ],
+    }
     found = page(folder(tmp_path, accuracy=accuracy))
-    assert ["peak", "100 ± 3.1 kN", "3.1 %", "rate: 1.2 %"] in [[c.replace("\u00a0", " ") for c in r] for r in found.rows]  # fmt: skip
+    assert ["peak", "100 ± 3.1 kN", "3.1 %", "rate: 1.2 %"] in [
+        [c.replace("\u00a0", " ") for c in r] for r in found.rows
+    ]
     said = found.said()
-    assert "The 2 % are not reached" in said and "does not cover the crack pattern" in said  # fmt: skip
+    assert "The 2 % are not reached" in said and "does not cover the crack pattern" in said
     assert "one run does not tell" not in said
 
 
 # -- runs of all kinds ------------------------------------------------------------------------------------------------
 
 
-NO_PUSH = {k: ... for k in RUN if k.endswith(("_mm", "_kN", "_mrad", "_kN_per_mm")) or k == "bounds"}  # fmt: skip
+NO_PUSH = {
+    k: ... for k in RUN if k.endswith(("_mm", "_kN", "_mrad", "_kN_per_mm")) or k == "bounds"
+}
 
 
 @mark.parametrize("columns", [{n: [] for n in COLUMNS}, None])
 def test_without_rows_there_is_a_page_of_the_bound(tmp_path, columns):
-    found = page(folder(tmp_path, columns=columns, **{**NO_PUSH, "ended": ..., "bounds": RUN["bounds"]}))  # fmt: skip
+    found = page(
+        folder(tmp_path, columns=columns, **{**NO_PUSH, "ended": ..., "bounds": RUN["bounds"]})
+    )
     said = found.said()
     assert "The run has no rows" in said and "There is no curve" in said
     assert found.row("top along x")[1] == "125 kN"
@@ -263,10 +419,27 @@ def test_without_rows_there_is_a_page_of_the_bound(tmp_path, columns):
 
 
 def test_a_run_without_a_push_says_so(tmp_path):
-    figure = {"x": {"column": "time_s", "label": "time [s]"}, "y": [{"column": "displacement_mm", "label": "top"}], "y_label": "displacement [mm]"}  # fmt: skip
-    answers = [{"stage": "shake", "number": 2, "name": "largest_displacement_of_top_x", "unit": "mm", "value": -4.0, "uncertainty": None, "how": "of all rows"}]  # fmt: skip
-    stages = [{"stage": "settle", "steps": 1, "first_row": 0}, {"stage": "shake", "steps": 1, "first_row": 0, "load": None}]  # fmt: skip
-    found = page(folder(tmp_path, figure=figure, answers=answers, stages=stages, **NO_PUSH))  # fmt: skip
+    figure = {
+        "x": {"column": "time_s", "label": "time [s]"},
+        "y": [{"column": "displacement_mm", "label": "top"}],
+        "y_label": "displacement [mm]",
+    }
+    answers = [
+        {
+            "stage": "shake",
+            "number": 2,
+            "name": "largest_displacement_of_top_x",
+            "unit": "mm",
+            "value": -4.0,
+            "uncertainty": None,
+            "how": "of all rows",
+        }
+    ]
+    stages = [
+        {"stage": "settle", "steps": 1, "first_row": 0},
+        {"stage": "shake", "steps": 1, "first_row": 0, "load": None},
+    ]
+    found = page(folder(tmp_path, figure=figure, answers=answers, stages=stages, **NO_PUSH))
     said = found.said()
     assert "The run has no push, so there is no bilinear curve." in said
     assert "The run has no push, so there are no drifts" in said
@@ -275,15 +448,33 @@ def test_a_run_without_a_push_says_so(tmp_path):
 
 
 def test_the_search_for_a_load_leads_with_what_was_held_and_what_was_not(tmp_path):
-    one = lambda number, name, value: {"stage": "lean", "number": number, "name": name, "unit": "g", "value": value, "uncertainty": None, "how": "it rested"}  # fmt: skip
-    answers = [one(2, "factor_held", 0.2), one(2, "factor_not_held", None), one(3, "factor_not_held", 0.4), one(4, "factor_held", 0.3), one(5, "factor_not_held", 0.35)]  # fmt: skip
+    one = lambda number, name, value: {
+        "stage": "lean",
+        "number": number,
+        "name": name,
+        "unit": "g",
+        "value": value,
+        "uncertainty": None,
+        "how": "it rested",
+    }
+    answers = [
+        one(2, "factor_held", 0.2),
+        one(2, "factor_not_held", None),
+        one(3, "factor_not_held", 0.4),
+        one(4, "factor_held", 0.3),
+        one(5, "factor_not_held", 0.35),
+    ]
     found = page(folder(tmp_path, stages=..., answers=answers, **NO_PUSH))
-    assert "Largest load that was held 0.3 g; smallest load that was not held 0.35 g" in found.said()  # fmt: skip
+    assert (
+        "Largest load that was held 0.3 g; smallest load that was not held 0.35 g" in found.said()
+    )
 
 
 def test_several_pushes_are_named(tmp_path):
     push = RUN["stages"][1]
-    found = page(folder(tmp_path, stages=[*RUN["stages"], {**push, "load": ["push", "top along y", ""]}]))  # fmt: skip
+    found = page(
+        folder(tmp_path, stages=[*RUN["stages"], {**push, "load": ["push", "top along y", ""]}])
+    )
     assert "The run has 2 pushes, the stages 2, 3." in found.said()
     found = page(folder(tmp_path, figure={**RUN["figure"], "rows": list(range(100))}))
     assert "from 0 kN to 99 kN" in found.said()
@@ -292,24 +483,46 @@ def test_several_pushes_are_named(tmp_path):
 @mark.parametrize(
     "changed, text",
     [
-        ({"collapsed": True, "collapse": "brick 5 falls", "ended": "collapsed", "collapse_displacement_mm": 4.0}, "Collapsed: brick 5 falls"),
+        (
+            {
+                "collapsed": True,
+                "collapse": "brick 5 falls",
+                "ended": "collapsed",
+                "collapse_displacement_mm": 4.0,
+            },
+            "Collapsed: brick 5 falls",
+        ),
         ({"interrupted": True}, "The run was interrupted."),
-        ({"error": "the run has left finite numbers"}, "The run ended by an error: the run has left finite numbers"),
+        (
+            {"error": "the run has left finite numbers"},
+            "The run ended by an error: the run has left finite numbers",
+        ),
         ({"warnings": ["the push is too fast"]}, "the push is too fast"),
         ({"warnings": ...}, "does not list the warnings"),
         ({"assumed": []}, "Nothing was assumed"),
-        ({"recorded_height_m": None, "drift_at_first_crack_mrad": None}, "The height of the recorded point is not known"),
-        ({"bounds": [{"load": "top along x", "unit": "kN", "note": "it was not solved in time"}], "bound_base_shear_kN": ...}, "it was not solved in time"),
+        (
+            {"recorded_height_m": None, "drift_at_first_crack_mrad": None},
+            "The height of the recorded point is not known",
+        ),
+        (
+            {
+                "bounds": [
+                    {"load": "top along x", "unit": "kN", "note": "it was not solved in time"}
+                ],
+                "bound_base_shear_kN": ...,
+            },
+            "it was not solved in time",
+        ),
         ({"figure": ...}, "There is no curve: the curve is not drawn: run.json has no entry"),
         ({"options": {"no_vtk": True}}, "its run was started with --no-vtk"),
         ({"options": {"lean": True}}, "its run was started with --lean"),
     ],
-)  # fmt: skip
+)
 def test_what_ended_a_run_and_what_it_lacks_is_said(tmp_path, changed, text):
     assert text in " ".join(page(folder(tmp_path, **changed)).said().split())
 
 
-def test_numbers_that_are_not_finite_and_torn_lines_are_named_and_drawn_around(tmp_path):  # fmt: skip
+def test_numbers_that_are_not_finite_and_torn_lines_are_named_and_drawn_around(tmp_path):
     columns = {n: v.copy() for n, v in COLUMNS.items()}
     columns["base_shear_kN"][7] = math.nan
     columns["damping_J"][3:5] = math.inf
@@ -323,16 +536,42 @@ def test_numbers_that_are_not_finite_and_torn_lines_are_named_and_drawn_around(t
     assert "2 of 401 values of damping_J" in said
     assert "There is no bilinear curve" in said and "not finite" in said
     text = report.page(report.read(path))
-    assert not re.search(r"\b(nan|inf)\b", re.sub(r"<(script|style).*?</\1>", "", text, flags=re.S))  # fmt: skip
+    assert not re.search(r"\b(nan|inf)\b", re.sub(r"<(script|style).*?</\1>", "", text, flags=re.S))
 
 
 def test_cycles_have_their_damping_and_what_took_their_work(tmp_path):
     t = np.linspace(0, 2 * np.pi, 400)
-    columns = {**{n: np.resize(v, 400) for n, v in COLUMNS.items()}, "displacement_mm": 2 * np.sin(t), "base_shear_kN": 10 * np.sin(t)}  # fmt: skip
-    cycle = {"rows": [0, 399], "largest_mm": 2.0, "smallest_mm": -2.0, "amplitude_mm": 2.0, "work_J": 12.5, "largest_kN": 10.0, "smallest_kN": -10.0, "stiffness_kN_per_mm": 5.0,
-             "damping": 12.5 / (40 * np.pi), "residual_positive_mm": None, "residual_negative_mm": 0.1, "dissipated_J": 11.0, "damped_J": 1.5}  # fmt: skip
-    found = page(folder(tmp_path, columns=columns, figure={**RUN["figure"], "looped": True}, cycles=[cycle, {**cycle, "damping": None}], history={}, damped_share=0.12))  # fmt: skip
-    assert found.row("1", 10) == ["1", "−2", "2", "−10", "10", "12.5", "5", "9.947", "11", "1.5"]  # fmt: skip
+    columns = {
+        **{n: np.resize(v, 400) for n, v in COLUMNS.items()},
+        "displacement_mm": 2 * np.sin(t),
+        "base_shear_kN": 10 * np.sin(t),
+    }
+    cycle = {
+        "rows": [0, 399],
+        "largest_mm": 2.0,
+        "smallest_mm": -2.0,
+        "amplitude_mm": 2.0,
+        "work_J": 12.5,
+        "largest_kN": 10.0,
+        "smallest_kN": -10.0,
+        "stiffness_kN_per_mm": 5.0,
+        "damping": 12.5 / (40 * np.pi),
+        "residual_positive_mm": None,
+        "residual_negative_mm": 0.1,
+        "dissipated_J": 11.0,
+        "damped_J": 1.5,
+    }
+    found = page(
+        folder(
+            tmp_path,
+            columns=columns,
+            figure={**RUN["figure"], "looped": True},
+            cycles=[cycle, {**cycle, "damping": None}],
+            history={},
+            damped_share=0.12,
+        )
+    )
+    assert found.row("1", 10) == ["1", "−2", "2", "−10", "10", "12.5", "5", "9.947", "11", "1.5"]
     assert [r for r in found.rows if r and r[0] == "2"][-1][7] == "not known"
     said = found.said()
     assert "ξ = W/(4π·½·K·A²)" in said and "goes along a history" in said
@@ -340,8 +579,8 @@ def test_cycles_have_their_damping_and_what_took_their_work(tmp_path):
 
 
 def test_sections_have_normal_force_shear_and_moment(tmp_path):
-    names = {"foot_N_kN": -50 + 0 * MOVED, "foot_V_x_kN": FORCE, "foot_M_y_kNm": 2 * FORCE}  # fmt: skip
-    meanings = {n: f"a force on the section at z = 0 m [{n.rpartition('_')[2]}]" for n in names}  # fmt: skip
+    names = {"foot_N_kN": -50 + 0 * MOVED, "foot_V_x_kN": FORCE, "foot_M_y_kNm": 2 * FORCE}
+    meanings = {n: f"a force on the section at z = 0 m [{n.rpartition('_')[2]}]" for n in names}
     run = {**RUN, "columns": {**MEANINGS, **meanings}, "recorded_sections": list(names)}
     found = page(folder(tmp_path, run, {**COLUMNS, **names}))
     assert found.row("foot_N")[1:6] == ["−50 kN"] * 5
@@ -357,7 +596,7 @@ def test_what_stands_in_files_is_text_in_the_report(tmp_path):
 
     def hostile(value, key=None):
         if isinstance(value, dict):
-            return {n if n != "bed" else HOSTILE: hostile(v, n) for n, v in value.items()}  # fmt: skip
+            return {n if n != "bed" else HOSTILE: hostile(v, n) for n, v in value.items()}
         if isinstance(value, list):
             return [hostile(v) for v in value]
         keep = ("column", "where", "law", "date", "stage", "name", "load", "unit")
@@ -372,7 +611,7 @@ def test_what_stands_in_files_is_text_in_the_report(tmp_path):
 
 
 def test_whatever_stands_in_an_entry_there_is_a_page(tmp_path):
-    values = itertools.cycle([..., None, HOSTILE, [], [None], {"a": [{"b": HOSTILE}]}, 7])  # fmt: skip
+    values = itertools.cycle([..., None, HOSTILE, [], [None], {"a": [{"b": HOSTILE}]}, 7])
     for key, value in zip(RUN, values):
         text = report.page(report.read(folder(tmp_path, {**RUN, key: value})))
         assert Page(text).of("h2") == PARTS, key
@@ -422,10 +661,15 @@ def test_the_program_writes_a_report_into_the_folder_or_elsewhere(tmp_path, caps
     [
         (["nowhere"], "cannot read nowhere/run.json"),
         (["RUN", "-o", "no/a.html"], "cannot write no/a.html: No such file or directory"),
-        (["RUN", "-o", "link.html"], "cannot write link.html: it is a symbolic link or no regular file"),
+        (
+            ["RUN", "-o", "link.html"],
+            "cannot write link.html: it is a symbolic link or no regular file",
+        ),
     ],
-)  # fmt: skip
-def test_what_cannot_be_written_is_refused_and_nothing_is(tmp_path, monkeypatch, capsys, words, message):  # fmt: skip
+)
+def test_what_cannot_be_written_is_refused_and_nothing_is(
+    tmp_path, monkeypatch, capsys, words, message
+):
     run = folder(tmp_path / "run")
     here = tmp_path / "here"
     here.mkdir()
@@ -441,8 +685,24 @@ def test_what_cannot_be_written_is_refused_and_nothing_is(tmp_path, monkeypatch,
 
 @mark.parametrize(
     "value, text",
-    [(0, "0"), (0.0, "0"), (116.4789, "116.5"), (115.9697, "116.0"), (0.5, "0.5"), (-34.5, "−34.5"), (1224, "1,224"), (4800.0, "4,800"),
-     (1.0678e-10, "1.068\u202f·\u202f10⁻¹⁰"), (2.0e11, "2\u202f·\u202f10¹¹"), (9.99996, "10.00"), (math.nan, "not known"), (math.inf, "not known"), (None, "not known"), ("7", "not known"), (True, "not known")],
-)  # fmt: skip
+    [
+        (0, "0"),
+        (0.0, "0"),
+        (116.4789, "116.5"),
+        (115.9697, "116.0"),
+        (0.5, "0.5"),
+        (-34.5, "−34.5"),
+        (1224, "1,224"),
+        (4800.0, "4,800"),
+        (1.0678e-10, "1.068\u202f·\u202f10⁻¹⁰"),
+        (2.0e11, "2\u202f·\u202f10¹¹"),
+        (9.99996, "10.00"),
+        (math.nan, "not known"),
+        (math.inf, "not known"),
+        (None, "not known"),
+        ("7", "not known"),
+        (True, "not known"),
+    ],
+)
 def test_numbers_are_written_as_people_write_them(value, text):
     assert written(value) == text

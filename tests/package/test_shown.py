@@ -37,8 +37,8 @@ def test_results_that_were_not_found_are_not_shown():
         dict(stage="tilt", name="factor_held", unit="-", value=None, uncertainty=None),
         dict(stage="push", name="peak", unit="kN", value=12.345, uncertainty=0.5),
         dict(stage="tilt", name="displacement_held", unit="mm", value=1.0, uncertainty=None),
-    ]  # fmt: skip
-    run = dict(answers=answers, steps=7, largest_crack_mm=None, bound_acceleration=float("nan"))  # fmt: skip
+    ]
+    run = dict(answers=answers, steps=7, largest_crack_mm=None, bound_acceleration=float("nan"))
     assert resultsOf(run) == [
         ("tilt: factor held", "not found", ""),
         ("push: peak", "12.35 ± 0.5", "kN"),

@@ -4,7 +4,15 @@
 from usual import *
 
 #: What only pictures, limit analysis, studies and files of bricks need: each takes a tenth of a second or more.
-NOT_NEEDED = ["matplotlib", "meshio", "openturns", "pandas", "scipy", "masonry.study", "numpy.testing"]  # fmt: skip
+NOT_NEEDED = [
+    "matplotlib",
+    "meshio",
+    "openturns",
+    "pandas",
+    "scipy",
+    "masonry.study",
+    "numpy.testing",
+]
 SCRIPT = """
 import json, sys
 before = set(sys.modules)
@@ -32,17 +40,19 @@ def test_a_lean_run_loads_no_library_that_it_does_not_need(tmp_path, scene):
 
 def test_what_makes_bricks_loads_no_library_that_looks_at_hulls(tmp_path):
     script = (
-        "import sys; from masonry import bricks; wall = bricks.Wall(1.1, 0.81); print(len(wall), 'scipy.spatial' in sys.modules); "
-        "print(round(wall.volume, 9), 'scipy.spatial' in sys.modules)"
+        "import sys; from masonry import bricks; wall = bricks.Wall(1.1, 0.81); print(len(wall),"
+        " 'scipy.spatial' in sys.modules); print(round(wall.volume, 9), 'scipy.spatial' in"
+        " sys.modules)"
     )
     done = ran(["/usr/bin/python3", "-c", script], cwd=tmp_path)
-    assert done.stdout.splitlines() == ["100 False", f"{1.1 * 0.81 * 0.102:.9g} True"], done.stderr  # fmt: skip
+    assert done.stdout.splitlines() == ["100 False", f"{1.1 * 0.81 * 0.102:.9g} True"], done.stderr
 
 
-def test_yade_starts_in_plain_python_without_the_shell_of_which_it_wants_the_version(tmp_path):  # fmt: skip
+def test_yade_starts_in_plain_python_without_the_shell_of_which_it_wants_the_version(tmp_path):
     script = (
-        "import sys, masonry; masonry.classes; import yade.runtime; print('IPython' in sys.modules); "
-        "import IPython; print(yade.runtime.ipython_version == 100 * IPython.version_info[0] + IPython.version_info[1])"
+        "import sys, masonry; masonry.classes; import yade.runtime; print('IPython' in"
+        " sys.modules); import IPython; print(yade.runtime.ipython_version == 100 *"
+        " IPython.version_info[0] + IPython.version_info[1])"
     )
     done = ran(["/usr/bin/python3", "-c", script], cwd=tmp_path)
     assert done.stdout.split() == ["False", "True"], done.stderr

@@ -40,8 +40,10 @@ def test_every_wall_is_either_known_or_blind():
 
 def test_draws_are_a_latin_hypercube_about_the_best_estimate():
     row = rules.read()["22"]
-    shares = [rules.Guess(row, *rules.CHOSEN, n)._share("bond") for n in range(2, rules.SAMPLES + 2)]  # fmt: skip
-    assert sorted(int(rules.SAMPLES * share) for share in shares) == list(range(rules.SAMPLES))  # fmt: skip
+    shares = [
+        rules.Guess(row, *rules.CHOSEN, n)._share("bond") for n in range(2, rules.SAMPLES + 2)
+    ]
+    assert sorted(int(rules.SAMPLES * share) for share in shares) == list(range(rules.SAMPLES))
     best = rules.Guess(row, *rules.CHOSEN, 0)
     assert set(best.factors.values()) == {1.0}
 

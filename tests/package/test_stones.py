@@ -30,7 +30,7 @@ def test_stones_fill_the_wall_and_touch(pattern, length, height, unit, scatter, 
 
 @patterns
 def test_a_seed_is_a_wall(pattern):
-    wall = lambda **how: list(bricks.StoneWall(1.2, 1.2, (0.2, 0.3, 0.15), pattern, **how))  # fmt: skip
+    wall = lambda **how: list(bricks.StoneWall(1.2, 1.2, (0.2, 0.3, 0.15), pattern, **how))
     assert wall() == wall(seed=1, scatter=0.2) != wall(seed=2)
 
 
@@ -47,9 +47,9 @@ def test_joints_of_irregular_stones_are_long_and_level_at_the_ends(seed):
 def test_head_joints_scatter_to_both_sides_and_overlap_or_lie_in_line():
     scatter, count = 0.3, 60
     wall = bricks.StoneWall(count, 4, (1, 1, 1), scatter=scatter)
-    ends = [np.array([b.low[0] for b in wall if b.course == n] + [count]) for n in range(4)]  # fmt: skip
+    ends = [np.array([b.low[0] for b in wall if b.course == n] + [count]) for n in range(4)]
     moved = ends[0][1:-1] - np.arange(1, count)
-    assert -scatter < min(moved) < -0.9 * scatter and 0.9 * scatter < max(moved) < scatter  # fmt: skip
+    assert -scatter < min(moved) < -0.9 * scatter and 0.9 * scatter < max(moved) < scatter
     for below, above in zip(ends, ends[1:]):
         assert min(np.diff(above)) > SHORTEST - 1e-9
         apart = abs(np.subtract.outer(below, above))
@@ -69,14 +69,16 @@ def test_the_trace_goes_up_through_one_head_joint_of_every_course(scatter):
     heads = [[b.low[0] for b in wall if b.course == n][1:] for n in range(8)]
     ways = dict.fromkeys(heads[0], 1.2)
     for above in heads[1:]:
-        ways = {x: min(path + abs(x - other) for other, path in ways.items()) for x in above}  # fmt: skip
+        ways = {x: min(path + abs(x - other) for other, path in ways.items()) for x in above}
     assert bricks.leastTrace(wall) == approx(min(ways.values()) / 1.2)
 
 
 @mark.parametrize("trace", [1.1, 1.17, 1.25])
 @patterns
 def test_the_wall_has_the_trace_that_was_asked_for(pattern, trace):
-    walls = [bricks.StoneWall(1.6, 1.6, (0.2, 0.3, 0.15), pattern, trace=trace, seed=n) for n in range(5)]  # fmt: skip
+    walls = [
+        bricks.StoneWall(1.6, 1.6, (0.2, 0.3, 0.15), pattern, trace=trace, seed=n) for n in range(5)
+    ]
     found = [bricks.leastTrace(wall) for wall in walls]
     assert max(found) < 1.1 * trace and min(found) > 0.9 * trace
     assert len({round(f, 6) for f in found}) > 1
@@ -90,7 +92,7 @@ def test_the_first_wall_that_is_near_the_trace_is_taken():
 
 
 def test_what_is_refused():
-    with raises(ValueError, match="length of a stone, 2 m.*\n?.*height of a stone, 3 m"):  # fmt: skip
+    with raises(ValueError, match="length of a stone, 2 m.*\n?.*height of a stone, 3 m"):
         bricks.StoneWall(1.0, 1.0, (2, 0.3, 3))
     with raises(ValueError, match="are all lengths in m"):
         bricks.StoneWall(1000, 1200, (0.2, 0.3, 0.15))

@@ -100,9 +100,7 @@ def state():
         "error of the balance [-]": [balance.pop("error")],
         # no reference has joints that get more points, and most have no impacts
         "energy [J]": [
-            balance[n]
-            for n in balance
-            if n != "refining" and (n != "impacts" or balance[n])
+            balance[n] for n in balance if n != "refining" and (n != "impacts" or balance[n])
         ],
         "subcontacts in a regime": [float(regimes.count(r)) for r in REGIMES],
     }
@@ -369,7 +367,9 @@ class Run:
     build: callable  # takes the keywords
     stages: list  # (instant, steps to it, what is changed before them)
     keywords: dict
-    through: str = ""  # after its second stage the scene is saved and loaded: by "checkpoint" or "file"
+    through: str = (  # after its second stage the scene is saved and loaded: by "checkpoint" or "file"
+        ""
+    )
     like: str = ""  # the run whose stored numbers this one must give; empty: its own
 
 

@@ -17,7 +17,11 @@ import pytest
 from matplotlib.image import imread
 
 PROGRAM = shutil.which("chromium")
-MISSING = "" if PROGRAM else "Chromium is not installed (apt-get install --no-install-recommends chromium)"  # fmt: skip
+MISSING = (
+    ""
+    if PROGRAM
+    else "Chromium is not installed (apt-get install --no-install-recommends chromium)"
+)
 PATIENCE = 120  # for an answer [s]
 needed = [
     pytest.mark.skipif(bool(MISSING), reason=MISSING),
@@ -53,7 +57,7 @@ def viewed(chromium, path):
 def moved(chromium, frame):
     """Move the slider of the frames."""
     slider = "document.querySelector('[aria-label=frame]')"
-    chromium.value(f"({slider}.value = {frame}, {slider}.dispatchEvent(new Event('input')), 0)")  # fmt: skip
+    chromium.value(f"({slider}.value = {frame}, {slider}.dispatchEvent(new Event('input')), 0)")
     chromium.drawn()
 
 
@@ -85,7 +89,7 @@ class Browser:
 
     def _next(self, until):
         while b"\0" not in self._rest:
-            ready = select.select([self._read], [], [], max(0, until - time.monotonic()))[0]  # fmt: skip
+            ready = select.select([self._read], [], [], max(0, until - time.monotonic()))[0]
             assert ready, f"Chromium did not answer within {PATIENCE} s"
             data = os.read(self._read, 1 << 20)
             assert data, "Chromium ended"
@@ -98,9 +102,13 @@ class Browser:
     def _note(self, method, about):
         if method == "Runtime.exceptionThrown":
             self.problems.append(json.dumps(about["exceptionDetails"]))
-        elif method == "Runtime.consoleAPICalled" and about["type"] in ("error", "warning", "assert"):  # fmt: skip
+        elif method == "Runtime.consoleAPICalled" and about["type"] in (
+            "error",
+            "warning",
+            "assert",
+        ):
             self.problems.append(json.dumps(about["args"]))
-        elif method == "Log.entryAdded" and about["entry"]["level"] in ("error", "warning"):  # fmt: skip
+        elif method == "Log.entryAdded" and about["entry"]["level"] in ("error", "warning"):
             # the software that stands in for a graphics card is slow to be read
             if "ReadPixels" not in about["entry"]["text"]:
                 self.problems.append(json.dumps(about["entry"]))
@@ -117,7 +125,13 @@ class Browser:
             self._session = found["sessionId"]
             for domain in ("Page", "Runtime", "Log", "Network"):
                 self.call(domain + ".enable")
-        self.call("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=False)  # fmt: skip
+        self.call(
+            "Emulation.setDeviceMetricsOverride",
+            width=width,
+            height=height,
+            deviceScaleFactor=1,
+            mobile=False,
+        )
         self.call("Page.navigate", url="file://" + os.path.abspath(path))
         until = time.monotonic() + PATIENCE
         while not self.value("document.readyState === 'complete'"):
@@ -128,13 +142,17 @@ class Browser:
 
     def value(self, code):
         """Value of an expression of JavaScript in the page; of a promise, what it comes to."""
-        found = self.call("Runtime.evaluate", expression=code, awaitPromise=True, returnByValue=True)  # fmt: skip
+        found = self.call(
+            "Runtime.evaluate", expression=code, awaitPromise=True, returnByValue=True
+        )
         assert "exceptionDetails" not in found, found
         return found["result"].get("value")
 
     def drawn(self):
         """Wait until what was asked for is drawn."""
-        self.value("new Promise(done => requestAnimationFrame(() => requestAnimationFrame(() => done(0))))")  # fmt: skip
+        self.value(
+            "new Promise(done => requestAnimationFrame(() => requestAnimationFrame(() => done(0))))"
+        )
 
     def picture(self, path):
         """Write what is seen to a .png file."""
@@ -145,7 +163,9 @@ class Browser:
 
     def drag(self, start, end):
         """Move the mouse from one place to another with its left button down [pixels]."""
-        mouse = lambda kind, x, y, **more: self.call("Input.dispatchMouseEvent", type=kind, x=x, y=y, button="left", **more)  # fmt: skip
+        mouse = lambda kind, x, y, **more: self.call(
+            "Input.dispatchMouseEvent", type=kind, x=x, y=y, button="left", **more
+        )
         mouse("mousePressed", *start, buttons=1, clickCount=1)
         for share in (0.25, 0.5, 0.75, 1):
             x, y = (a + share * (b - a) for a, b in zip(start, end))
@@ -155,7 +175,7 @@ class Browser:
 
     def wheel(self, place, pixels):
         x, y = place
-        self.call("Input.dispatchMouseEvent", type="mouseWheel", x=x, y=y, deltaX=0, deltaY=pixels)  # fmt: skip
+        self.call("Input.dispatchMouseEvent", type="mouseWheel", x=x, y=y, deltaX=0, deltaY=pixels)
         self.drawn()
 
     def press(self, key):
@@ -180,16 +200,30 @@ def browser(*options):
 
     with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as folder:
         command = [
-            PROGRAM, "--headless", "--remote-debugging-pipe", "--user-data-dir=" + folder, "--no-first-run",
-            "--disable-dev-shm-usage", "--disable-background-networking", "--disable-component-update",
-            "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--hide-scrollbars", *options,
-        ]  # fmt: skip
+            PROGRAM,
+            "--headless",
+            "--remote-debugging-pipe",
+            "--user-data-dir=" + folder,
+            "--no-first-run",
+            "--disable-dev-shm-usage",
+            "--disable-background-networking",
+            "--disable-component-update",
+            "--use-angle=swiftshader",
+            "--enable-unsafe-swiftshader",
+            "--hide-scrollbars",
+            *options,
+        ]
         if os.geteuid() == 0:
             command.append("--no-sandbox")  # Chromium has none for root
         process = subprocess.Popen(
-            command, preexec_fn=pipes, close_fds=False, start_new_session=True,
-            stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, env={**os.environ, "HOME": folder},
-        )  # fmt: skip
+            command,
+            preexec_fn=pipes,
+            close_fds=False,
+            start_new_session=True,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+            env={**os.environ, "HOME": folder},
+        )
         os.close(down[0])
         os.close(up[1])
         try:

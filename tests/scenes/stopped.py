@@ -18,7 +18,10 @@ BEGIN = """\
 from masonry import AT_REST, Scene, bricks, materials
 """
 #: Entries of run.json that may differ between an unbroken run and a resumed one.
-TIMES = "date wall_clock_s seconds microseconds_per_step nanoseconds_per_subcontact_step resumed_at_s host directory options stages started".split()
+TIMES = (
+    "date wall_clock_s seconds microseconds_per_step nanoseconds_per_subcontact_step resumed_at_s"
+    " host directory options stages started".split()
+)
 
 
 class Stopped(BaseException):
@@ -52,11 +55,15 @@ STAGES = {
         "run": "scene.run(<0.001~0.02><|, damping=0.3|, damping=0.0>)",
         "stepBack": TRY.format("scene.stepBack()"),
         "move": "scene.move(base, <x|z>=<-0.05~-0.01>)",
-        "result": 'scene.result("time", scene.results.rows[-1][0] if scene.results.rows else 0.0, "s")',
+        "result": (
+            'scene.result("time", scene.results.rows[-1][0] if scene.results.rows else 0.0, "s")'
+        ),
         "bound": f"print(scene.bound(towards={TOWARDS})['load'])",
     },
     "rigid": {
-        "pattern": f"scene.push(<'masses'|'mode'|lambda x, y, z: z>, <0.05~0.2>, {TOWARDS}, control=top)",
+        "pattern": (
+            f"scene.push(<'masses'|'mode'|lambda x, y, z: z>, <0.05~0.2>, {TOWARDS}, control=top)"
+        ),
         "wind": f"scene.wind(<100~900>, {TOWARDS}, {LONGEST})",
         "growWind": f"scene.growWind(<300~3000>, {TOWARDS}, {GROWS})",
         "bracketWind": bracket("wind(1e3 * f, (1, 0, 0)"),
@@ -77,12 +84,15 @@ STAGES = {
     "drive": {"drive": "scene.drive(top, AXIS=<0.005~0.05>)"},
 }
 #: Before the first of these a scene settles.
-LATER = (
-    "bound bracket bracketWind growWind hold load press result stepBack wind".split()
-)
+LATER = "bound bracket bracketWind growWind hold load press result stepBack wind".split()
 SPECIAL = "prestress=<10~300>|slack=1e-5|compression=True|breaking=<1e-6~1e-4>"
-TIE = f"scene.tie({POINT}, anchor=(<-1~2>, 0.05, <-1~1>), stiffness=1e7, strength=<301~900>, <{SPECIAL}>)"
-LAYER = "scene.overlay((0, <-1|1>, 0), stiffness=1e7, strength=<300~9000>, gauge=0.1<|, strain=0.01>)"
+TIE = (
+    f"scene.tie({POINT}, anchor=(<-1~2>, 0.05, <-1~1>), stiffness=1e7, strength=<301~900>,"
+    f" <{SPECIAL}>)"
+)
+LAYER = (
+    "scene.overlay((0, <-1|1>, 0), stiffness=1e7, strength=<300~9000>, gauge=0.1<|, strain=0.01>)"
+)
 SPRING = f"scene.spring({POINT}, stiffness=(1e6, 0, 1e6), rotation=(0, 1e4, 0))"
 
 
@@ -253,9 +263,7 @@ def killed(folder, step):
     def act(run, taken):
         if taken == step:
             run.checkpoints.since = -math.inf
-        elif taken > step and os.path.exists(
-            os.path.join(run.results.directory, checkpoints.NAME)
-        ):
+        elif taken > step and os.path.exists(os.path.join(run.results.directory, checkpoints.NAME)):
             shutil.copytree(run.results.directory, folder)
             raise Stopped()
 

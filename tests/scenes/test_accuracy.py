@@ -27,7 +27,9 @@ COMMAND = [sys.executable, "pier.py", "--lean", "--out", "out"]
 
 
 def run(folder, *words, command=COMMAND):
-    return subprocess.run([*command, *words], cwd=folder, capture_output=True, text=True, timeout=120)  # fmt: skip
+    return subprocess.run(
+        [*command, *words], cwd=folder, capture_output=True, text=True, timeout=120
+    )
 
 
 def recorded(folder):
@@ -37,15 +39,17 @@ def recorded(folder):
 def test_differences_that_shrink_as_those_of_an_order_count_by_richardson_and_others_whole():
     source = Source("rate", ("a", "b", "c"))
     # second order: errors of 16, 4 and 1 % make differences of 12 and 3 %; 1 % is left
-    assert accuracy.shown(source, {"a": 116, "b": 104, "c": 101}, 100) == pytest.approx(0.01)  # fmt: skip
+    assert accuracy.shown(source, {"a": 116, "b": 104, "c": 101}, 100) == pytest.approx(0.01)
     # the other way round, or growing: the last difference counts whole
-    assert accuracy.shown(source, {"a": 92, "b": 104, "c": 101}, 100) == pytest.approx(0.03)  # fmt: skip
-    assert accuracy.shown(source, {"a": 105, "b": 104, "c": 101}, 100) == pytest.approx(0.03)  # fmt: skip
+    assert accuracy.shown(source, {"a": 92, "b": 104, "c": 101}, 100) == pytest.approx(0.03)
+    assert accuracy.shown(source, {"a": 105, "b": 104, "c": 101}, 100) == pytest.approx(0.03)
     assert accuracy.shown(source, {"a": 101, "b": 101, "c": 101}, 100) == 0
 
 
 def test_two_runs_count_by_their_share_and_chance_by_its_range():
-    assert accuracy.shown(Source("mesh", ("a", "b"), 0.5), {"a": 104, "b": 100}, 100) == pytest.approx(0.02)  # fmt: skip
+    assert accuracy.shown(
+        Source("mesh", ("a", "b"), 0.5), {"a": 104, "b": 100}, 100
+    ) == pytest.approx(0.02)
     chance = Source("chance", ("a", "b", "c"), chance=True)
     found = accuracy.shown(chance, {"a": 100, "b": 101, "c": 100.5}, 100)
     assert found == pytest.approx(0.01 * accuracy.BY_CHANCE)
@@ -85,7 +89,7 @@ def test_a_push_says_its_peak_and_work_with_half_widths_everywhere(pier):
     entry, values = found["accuracy"], {}
     for q in entry["quantities"]:
         values[q["name"]] = q
-        assert q["half_width"] == pytest.approx(q["value"] * sum(q["parts_percent"].values()) / 100)  # fmt: skip
+        assert q["half_width"] == pytest.approx(q["value"] * sum(q["parts_percent"].values()) / 100)
     assert values["peak"]["value"] == found["peak_at_both_ends_kN"]
     assert values["work"]["value"] == found["push_work_J"]
     assert found["peak_half_width_kN"] == values["peak"]["half_width"]
@@ -104,7 +108,7 @@ def test_a_push_says_its_peak_and_work_with_half_widths_everywhere(pier):
     # the run is the same, to the last bit, as one with these options
     again = run(pier, "--rate", "50", "--out", "plain")
     assert again.returncode == 0
-    assert (pier / "out" / "curve.csv").read_bytes() == (pier / "plain" / "curve.csv").read_bytes()  # fmt: skip
+    assert (pier / "out" / "curve.csv").read_bytes() == (pier / "plain" / "curve.csv").read_bytes()
 
 
 def test_what_cannot_be_reached_is_said_with_the_width_that_was_found(pier):
@@ -115,12 +119,15 @@ def test_what_cannot_be_reached_is_said_with_the_width_that_was_found(pier):
     assert "0.01 % is not reached by the finest fidelity there is" in done.stdout
 
 
-@pytest.mark.parametrize("words, sentence", [
-    (["--accuracy", "60"], "60.0 % must be above 0 and at most 50"),
-    (["--accuracy", "2", "--preset", "bound"], "leave --preset away"),
-    (["--accuracy", "2", "--rate", "20"], "leave --rate away"),
-    (["--accuracy", "2", "--history", "1,2"], "loops of --history"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    "words, sentence",
+    [
+        (["--accuracy", "60"], "60.0 % must be above 0 and at most 50"),
+        (["--accuracy", "2", "--preset", "bound"], "leave --preset away"),
+        (["--accuracy", "2", "--rate", "20"], "leave --rate away"),
+        (["--accuracy", "2", "--history", "1,2"], "loops of --history"),
+    ],
+)
 def test_wrong_values_and_options_are_one_sentence(pier, words, sentence):
     done = run(pier, *words)
     assert done.returncode == 2
@@ -132,13 +139,20 @@ def test_wrong_values_and_options_are_one_sentence(pier, words, sentence):
 PUSH = "scene.push(top)"
 
 
-@pytest.mark.parametrize("what, other, sentence", [
-    (PUSH, "scene.lean(0.01)", "this scene has the stage lean"),
-    (PUSH, "scene.run(0.01)", "this scene has the stage run"),
-    (PUSH, "pass", "this scene has no push of one target that takes force"),
-    (PUSH, "scene.push(top, rate=5)", "push() has one of its own: rate=5 mm/s"),
-    ("until=1", "arguments=['--accuracy', '2']", "that takes its options from the command line"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    "what, other, sentence",
+    [
+        (PUSH, "scene.lean(0.01)", "this scene has the stage lean"),
+        (PUSH, "scene.run(0.01)", "this scene has the stage run"),
+        (PUSH, "pass", "this scene has no push of one target that takes force"),
+        (PUSH, "scene.push(top, rate=5)", "push() has one of its own: rate=5 mm/s"),
+        (
+            "until=1",
+            "arguments=['--accuracy', '2']",
+            "that takes its options from the command line",
+        ),
+    ],
+)
 def test_scenes_of_which_it_says_nothing_are_refused(pier, what, other, sentence):
     (pier / "pier.py").write_text(SCENE.replace(what, other))
     done = run(pier, *["--accuracy", "2"] * (what == PUSH))
@@ -183,9 +197,11 @@ def companions():
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGKILL])
 def test_companions_end_with_the_run_and_the_same_command_goes_on(pier, number):
-    (pier / "pier.py").write_text(SCENE.replace("0.44, 0.324", "1.1, 1.62").replace("until=1", "until=6"))  # fmt: skip
+    (pier / "pier.py").write_text(
+        SCENE.replace("0.44, 0.324", "1.1, 1.62").replace("until=1", "until=6")
+    )
     with open(pier / "log", "w") as log:
-        process = subprocess.Popen([*COMMAND, "--accuracy", "50"], cwd=pier, stdout=log, stderr=log)  # fmt: skip
+        process = subprocess.Popen([*COMMAND, "--accuracy", "50"], cwd=pier, stdout=log, stderr=log)
         while "accuracy: rigid" not in (pier / "log").read_text():
             time.sleep(0.05)
             assert process.poll() is None

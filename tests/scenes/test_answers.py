@@ -25,7 +25,7 @@ def answers(folder):
 
 
 def test_a_push_answers_with_its_peak_and_where_it_was(tmp_path, capsys):
-    assert carryOut(SMALL, parsed("--no-vtk", "--until", "0.4", "--out", str(tmp_path))) == 0  # fmt: skip
+    assert carryOut(SMALL, parsed("--no-vtk", "--until", "0.4", "--out", str(tmp_path))) == 0
     run, found = readRun(tmp_path), answers(tmp_path)
     peak = found["push peak"]
     assert (peak["value"], peak["unit"]) == (run["peak_at_both_ends_kN"], "kN")
@@ -57,7 +57,15 @@ def brackets(stage, unit, *factors):
     for number, factor in enumerate(factors, 2):
         held, lost = (factor, None) if factor > 0 else (None, -factor)
         for name, value in (("factor_held", held), ("factor_not_held", lost)):
-            yield dict(stage=stage, number=number, name=name, unit=unit, value=value, uncertainty=None, how="none")  # fmt: skip
+            yield dict(
+                stage=stage,
+                number=number,
+                name=name,
+                unit=unit,
+                value=value,
+                uncertainty=None,
+                how="none",
+            )
 
 
 def test_the_line_of_a_bracket_has_the_largest_held_and_the_smallest_not_held():
@@ -69,7 +77,9 @@ def test_the_line_of_a_bracket_has_the_largest_held_and_the_smallest_not_held():
 
 def test_loads_on_several_blocks_have_a_line_each():
     answers = [*brackets("load", "kN", 16, -1.4, 12)]
-    stages = [{"load": None}] + [{"load": ["lean", f"load on {name} along y", ""]} for name in ("foot", "top", "foot")]  # fmt: skip
+    stages = [{"load": None}] + [
+        {"load": ["lean", f"load on {name} along y", ""]} for name in ("foot", "top", "foot")
+    ]
     assert list(answersText(answers, stages)) == [
         "load on foot along y: factor held 16 kN (2 stages); factor not held: not found: none",
         "load on top along y: factor held: not found: none; factor not held 1.4 kN",

@@ -19,7 +19,7 @@ def test_a_cantilever_sags_as_a_beam_with_shear(tmp_path, words):
     force, span = 1e3, LENGTH * 32 / 33
     scene.load(tip, (0, 0, -force))
     assert scene.settle() == AT_REST
-    expected = force * span**3 / (3 * YOUNG * INERTIA) + force * span / (5 / 6 * SHEAR * AREA)  # fmt: skip
+    expected = force * span**3 / (3 * YOUNG * INERTIA) + force * span / (5 / 6 * SHEAR * AREA)
     assert -scene.model.supports.moved(tip)[0][2] == pytest.approx(expected, rel=0.003)
 
 
@@ -27,7 +27,7 @@ def test_a_cantilever_sags_as_a_beam_with_shear(tmp_path, words):
 def test_a_floor_shares_a_force_as_its_shear_stiffness_says(tmp_path, along):
     """Walls of stiffness k1 and k2 hold the outer strips; between them and the loaded strip the floor has G t l / (n w)."""
     strips, length, pitch, shear, k1, k2 = 9, 4.0, 0.5, 2e6, 3e6, 1e6
-    floor = bricks.Floor((0, 0, 3), length, strips * pitch, 0.2, along=along, strips=strips)  # fmt: skip
+    floor = bricks.Floor((0, 0, 3), length, strips * pitch, 0.2, along=along, strips=strips)
     stones = materials.dry(0.6).withFloor(floor, shear=shear, mass=100)
     scene = lean(tmp_path, floor, stones, plane=False, gravity=0.0)
     for n in range(strips):
@@ -72,7 +72,7 @@ def test_a_beam_of_which_the_materials_do_not_know_is_refused(tmp_path, capsys):
     scene = standing(tmp_path, bricks.stack(2, (1, 0.1, 0.2)) + beam)
     with pytest.raises(SystemExit):
         scene.settle()
-    assert "the materials have nothing for blocks of the kind 'ring'" in capsys.readouterr().err  # fmt: skip
+    assert "the materials have nothing for blocks of the kind 'ring'" in capsys.readouterr().err
     chosen = materials.dry(0.6)
     chosen.units["ring"] = chosen.unit
     assert not scene.description.problems(chosen)

@@ -93,7 +93,7 @@ def test_a_wall_interrupted_in_every_stage(tmp_path, at, wall, blocks, path, eve
     words = [*path, "--blocks", blocks]
     assert run(tmp_path / "whole", *words, wall=wall) == 0
     out = tmp_path / "broken"
-    start = lambda again: run(out, *words[: 0 if again else None], wall=wall, resume=again)  # fmt: skip
+    start = lambda again: run(out, *words[: 0 if again else None], wall=wall, resume=again)
     found = interrupted(at, start, out, every, first=3)
     assert {"settle", "push"} == {one["stage"] for one in found}
     points = {one["memory"].get("passed", 0) for one in found}
@@ -109,7 +109,7 @@ def test_a_couplet_interrupted_in_every_move(tmp_path, at, blocks, path):
     begin = lambda out: runScript("couplet", *words.split(), "--out", str(out))
     assert begin(tmp_path / "whole") == 0
     out = tmp_path / "broken"
-    start = lambda again: runScript("couplet", "--resume", str(out)) if again else begin(out)  # fmt: skip
+    start = lambda again: runScript("couplet", "--resume", str(out)) if again else begin(out)
     moves = {one["number"] for one in interrupted(at, start, out, 700)}
     assert moves == ({1, 2, 3} if path == "shear" else {1, 2})
     assert files(out) == files(tmp_path / "whole")

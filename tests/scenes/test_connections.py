@@ -201,8 +201,13 @@ def test_no_energy_is_made_by_ties_in_a_shaken_wall(tmp_path):
     rng = np.random.default_rng(5)
     for n in range(8):
         one, other = rng.choice(len(WALL), 2, replace=False)
-        scene.tie(int(one), int(other), stiffness=10 ** rng.uniform(5, 7), strength=10 ** rng.uniform(0, 2),
-                  compression=bool(n % 2))  # fmt: skip
+        scene.tie(
+            int(one),
+            int(other),
+            stiffness=10 ** rng.uniform(5, 7),
+            strength=10 ** rng.uniform(0, 2),
+            compression=bool(n % 2),
+        )
     scene.settle()
     times = np.arange(0, 0.5, 0.005)
     assert scene.shake(list(9 * np.sin(30 * times)), every=0.005) != COLLAPSED
@@ -233,9 +238,14 @@ def test_fibres_cross_the_joints_of_one_face_only(tmp_path):
 
 
 def test_a_layer_on_a_part_leaves_the_others_bare(tmp_path):
-    left, right = (bricks.stack(3, (0.2, 0.1, 0.1)).moved(dx).named(name) for dx, name in ((0, "left"), (0.2, "right")))  # fmt: skip
+    left, right = (
+        bricks.stack(3, (0.2, 0.1, 0.1)).moved(dx).named(name)
+        for dx, name in ((0, "left"), (0.2, "right"))
+    )
     scene = lean(tmp_path, left + right, plane=False)
-    layer = lambda part: scene.overlay((0, -1, 0), stiffness=1e7, strength=1e4, gauge=0.1, part=part)  # fmt: skip
+    layer = lambda part: scene.overlay(
+        (0, -1, 0), stiffness=1e7, strength=1e4, gauge=0.1, part=part
+    )
     # two bed joints of the part, and none of the joints between both parts
     assert {one.brick for tie in layer("right").ties for one in tie.ends} == {3, 4, 5}
     assert len(layer("left").ties) == 4 and len(layer(None).ties) > 8
@@ -268,10 +278,19 @@ def test_ends_that_a_script_moves_are_where_it_moved_them(tmp_path):
     engine.updateAttrs({"points1": [at(HEIGHT)], "points2": [at(HEIGHT, 3.0)]})
     O.step()
     assert tie.elongation / low == pytest.approx(4, rel=0.01)
-    twice = {name: 2 * list(getattr(engine, name)) for name in ("bodies1", "points1", "bodies2", "points2")}  # fmt: skip
+    twice = {
+        name: 2 * list(getattr(engine, name))
+        for name in ("bodies1", "points1", "bodies2", "points2")
+    }
     with refused("stiffness must have a number for each of the 2 connectors, got 1"):
         engine.updateAttrs(twice)
-    of = {"stiffness": [1e3] * 2, "strength": [1e300] * 2, "breaking": [1e300] * 2, "compression": [0] * 2, "rest": [0.0] * 2}  # fmt: skip
+    of = {
+        "stiffness": [1e3] * 2,
+        "strength": [1e300] * 2,
+        "breaking": [1e300] * 2,
+        "compression": [0] * 2,
+        "rest": [0.0] * 2,
+    }
     engine.updateAttrs({**twice, **of})
     O.step()
     assert engine.elongations[1] == engine.elongations[0] == tie.elongation
@@ -323,7 +342,7 @@ def test_frames_have_ties_and_springs(tmp_path):
     assert frame["elongation"][1] == pytest.approx(tie.elongation, rel=1e-12)
     spring = scene.description.connectors[0]
     assert frame["force"][0] == pytest.approx(spring.force, rel=1e-12)
-    one, other = frame["points"][frame["cells"][1]] + frame["displacement"][frame["cells"][1]]  # fmt: skip
+    one, other = frame["points"][frame["cells"][1]] + frame["displacement"][frame["cells"][1]]
     after = np.linalg.norm(other - one) - tie.length
     # bodies have moved on by half a step
     assert after == pytest.approx(tie.elongation, rel=0.005)

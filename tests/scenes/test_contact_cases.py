@@ -44,7 +44,7 @@ def test_the_program_prints_rows_and_misses(tmp_path, capsys, monkeypatch):
     assert contact.main(["--out", str(path)]) is False
     assert "| good | a [m] | b | 1 | 1.001 | +0.10 % | ± 1 % |" in path.read_text()
     assert "| good | c | d | 1 … 3 | 2 |  | within |" in path.read_text()
-    monkeypatch.setattr(contact, "CASES", {"bad": lambda quick: bad, "worse": lambda quick: 1 / 0})  # fmt: skip
+    monkeypatch.setattr(contact, "CASES", {"bad": lambda quick: bad, "worse": lambda quick: 1 / 0})
     assert contact.main(["--only", "bad"]) is True
     out = capsys.readouterr().out
     assert out.count("**missed**") == 2

@@ -54,8 +54,6 @@ def test_a_push_without_a_period_says_so(tmp_path, capsys):
 
 
 def test_the_cure_of_a_push_that_long_time_steps_brake_is_shorter_ones():
-    args = lambda f: SimpleNamespace(
-        rate=20, damping=0.8, damping_kind="combined", dt_fraction=f
-    )
+    args = lambda f: SimpleNamespace(rate=20, damping=0.8, damping_kind="combined", dt_fraction=f)
     assert "--dt-fraction 0.8 would do" in pushing.tooFast(args(0.95), 0.47)
     assert "--rate 4.3 would do" in pushing.tooFast(args(0.93), 0.47)

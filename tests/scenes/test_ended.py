@@ -138,9 +138,11 @@ np.ones((9, 9)) @ (2 * np.ones((9, 9)))
 """
 
 
-@pytest.mark.parametrize("program", [SCENE + PRODUCT, FIGURES], ids=["scene", "figures"])  # fmt: skip
+@pytest.mark.parametrize("program", [SCENE + PRODUCT, FIGURES], ids=["scene", "figures"])
 def test_too_little_memory_for_numerical_libraries_is_one_sentence(program):
-    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=30)  # fmt: skip
+    done = subprocess.run(
+        [sys.executable, "-c", program], capture_output=True, text=True, timeout=30
+    )
     assert (done.returncode, done.stderr) == (1, FULL + "\n")
 
 

@@ -54,10 +54,10 @@ def test_what_fell_lies_on_the_ground_at_rest(fallen):
     assert answer(scene, "rubble_volume") == pytest.approx(8 * SIDE**3)
     # one layer on the ground, which carries all of it
     assert answer(scene, "rubble_height") == pytest.approx(SIDE, rel=1e-3)
-    assert rows["ground_force_z_kN"][-1] == pytest.approx(-1e-3 * mass * GRAVITY, rel=5e-3)  # fmt: skip
+    assert rows["ground_force_z_kN"][-1] == pytest.approx(-1e-3 * mass * GRAVITY, rel=5e-3)
     assert rows["base_force_z_kN"][-1] == 0
     ground = scene.targets["ground"].box[1][2]
-    assert all(place[2] == pytest.approx(ground + SIDE / 2, abs=1e-5) for place in scene.places)  # fmt: skip
+    assert all(place[2] == pytest.approx(ground + SIDE / 2, abs=1e-5) for place in scene.places)
     reach = max(place[1] for place in scene.places) + SIDE / 2 - SIDE
     assert answer(scene, "rubble_reach") == pytest.approx(reach, rel=0.01)
 
@@ -99,7 +99,9 @@ def test_the_table_has_a_row_for_every_fallen_block(fallen):
         assert float(row["turned_deg"]) == pytest.approx(turned, abs=1e-3)
         # no stone is faster than one that falls from the top, and slides at 0.4 g as long
         fell = math.sqrt(2 * GRAVITY * 5 * SIDE)
-        assert 0 < float(row["largest_kinetic_energy_J"]) < 0.5 * float(row["mass_kg"]) * 3 * fell**2  # fmt: skip
+        assert (
+            0 < float(row["largest_kinetic_energy_J"]) < 0.5 * float(row["mass_kg"]) * 3 * fell**2
+        )
 
 
 def test_cracks_are_those_of_the_moment_when_the_collapse_was_noticed(fallen):
@@ -135,7 +137,7 @@ def test_a_shaken_wall_goes_on_while_its_top_falls(tmp_path):
     fell = [one["fell"] for one in scene.model.fallen().values()]
     assert min(fell) < answer(scene, "noticed_at")
     times = scene.results.column("time_s")
-    assert answer(scene, "time_of_collapse") == pytest.approx(min(fell) - times[1], abs=0.05)  # fmt: skip
+    assert answer(scene, "time_of_collapse") == pytest.approx(min(fell) - times[1], abs=0.05)
     # the shake is not damped, and what stands when the fall is noticed has the damping of the options from then on
     damped, noticed = scene.results.column("damping_J"), answer(scene, "noticed_at")
     shaken = max(d for d, t in zip(damped, times) if t <= noticed)
@@ -158,7 +160,10 @@ def test_what_does_not_go_together_is_refused(tmp_path, capsys, settings, messag
 
 
 def test_contact_takes_the_bed_joint_and_what_set_says(tmp_path, capsys):
-    for words, friction in (["--set=contact.restitution=0.2"], 0.6), (["--set=contact.friction=0.3"], 0.3):  # fmt: skip
+    for words, friction in (["--set=contact.restitution=0.2"], 0.6), (
+        ["--set=contact.friction=0.3"],
+        0.3,
+    ):
         scene = column(tmp_path, *words)
         scene.begin()
         contacts = scene.model.contacts
@@ -168,21 +173,23 @@ def test_contact_takes_the_bed_joint_and_what_set_says(tmp_path, capsys):
         letGo()
     with pytest.raises(SystemExit):
         column(tmp_path, "--set=contact.friction=11").settle()
-    assert "friction 11.0 - must be at least 0 and at most 10" in capsys.readouterr().err  # fmt: skip
+    assert "friction 11.0 - must be at least 0 and at most 10" in capsys.readouterr().err
 
 
 def test_a_support_that_moved_stands_still_in_the_fall(tmp_path):
     """The right one of two stones on which a third one lies is drawn from under it."""
     side = bricks.block((0, 0, 0), (SIDE, SIDE, SIDE))
     lintel = bricks.block((0.8 * SIDE, 0, SIDE), (1.7 * SIDE, SIDE, 1.5 * SIDE))
-    scene = following(tmp_path, side + side.moved(1.5 * SIDE) + lintel, stones(0.3, 1e8), allowGaps=True)  # fmt: skip
+    scene = following(
+        tmp_path, side + side.moved(1.5 * SIDE) + lintel, stones(0.3, 1e8), allowGaps=True
+    )
     scene.hold(0, name="still")
     moved = scene.hold(1, name="ground")  # a name that the ground itself would have
     scene.settle()
     assert scene.move(moved, x=300, rate=500) == COLLAPSED
     assert scene.ended == "collapsed and at rest"
     column = scene.results.column
-    rows = [n for n, t in enumerate(column("time_s")) if t > answer(scene, "noticed_at") + 0.01]  # fmt: skip
+    rows = [n for n, t in enumerate(column("time_s")) if t > answer(scene, "noticed_at") + 0.01]
     assert np.ptp([column("ground_x_mm")[n] for n in rows]) == 0
     assert column("ground2_force_z_kN")[-1] < 0 and answer(scene, "fallen_blocks") == 1
 
@@ -192,11 +199,11 @@ def test_the_ground_where_the_scene_has_it(tmp_path):
     scene.ground(level=-1.0)
     scene.settle()
     scene.lean(0.55, towards=(-1, 0, 0))  # 0.5 overturns it, 0.6 lets it slide
-    corners = [c for n in scene.model.fallen() for c in falling.cornersNow(scene.model, n)]  # fmt: skip
+    corners = [c for n in scene.model.fallen() for c in falling.cornersNow(scene.model, n)]
     assert min(c[2] for c in corners) == pytest.approx(-1, abs=0.01)
     # on the low side, too, and along x, to the farthest corner
     reach = -min(c[0] for c in corners)
-    assert answer(scene, "rubble_reach") == pytest.approx(reach, rel=1e-3) and reach > SIDE  # fmt: skip
+    assert answer(scene, "rubble_reach") == pytest.approx(reach, rel=1e-3) and reach > SIDE
     with pytest.raises(Refused, match="ground: level 1 m must be at most -0.2 m"):
         column(tmp_path).ground(1.0)
     with pytest.raises(Refused, match="only a scene with collapse='follow'"):
@@ -212,7 +219,11 @@ def test_a_tilt_stays_when_the_block_that_it_overturned_lies(tmp_path):
     scene.settle()
     assert scene.tilt(20, towards=(0, 1, 0), rate=5, within=0.3) == COLLAPSED
     assert scene.ended == "collapsed and at rest"
-    y, z = (1e3 * sum(scene.results.column(f"{name}_force_{axis}_kN")[-1] for name in ("base", "ground")) for axis in "yz")  # fmt: skip
+    y, z = (
+        1e3
+        * sum(scene.results.column(f"{name}_force_{axis}_kN")[-1] for name in ("base", "ground"))
+        for axis in "yz"
+    )
     slope = scene.results.column("load_factor")[-1]
     assert slope > 0.25 and y == pytest.approx(-slope * z, rel=0.01)
     weight = 4 * SIDE**3 * DENSITY * GRAVITY
@@ -229,7 +240,7 @@ def test_without_follow_the_run_ends_where_it_fell(tmp_path):
 
 def test_what_is_released_keeps_its_momentum_and_nothing_brakes_its_flight(tmp_path):
     """A block without joints, which falls by half a metre; the settling brakes it until its collapse is noticed."""
-    made = bricks.block((0, 0, 0.5), (SIDE, SIDE, 0.7)) + bricks.stack(2, (SIDE,) * 3).moved(dx=3)  # fmt: skip
+    made = bricks.block((0, 0, 0.5), (SIDE, SIDE, 0.7)) + bricks.stack(2, (SIDE,) * 3).moved(dx=3)
     for stage in ("run", "settle"):
         scene = following(tmp_path / stage, made, stones(), plane=None, allowGaps=True)
         scene.ground(0.0)

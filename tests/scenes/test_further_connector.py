@@ -17,9 +17,11 @@ class Rope(Tie):
     @staticmethod
     def engineOf(records, **ends):
         never = [1e300] * len(records)
-        softly = dict(stiffness=[one.stiffness for one in records], compression=[0] * len(records))  # fmt: skip
+        softly = dict(stiffness=[one.stiffness for one in records], compression=[0] * len(records))
         rests = [one.rest(0) for one in records]
-        return MasonryTies(label="ropes", strength=never, breaking=never, rest=rests, **softly, **ends)  # fmt: skip
+        return MasonryTies(
+            label="ropes", strength=never, breaking=never, rest=rests, **softly, **ends
+        )
 
 
 @describes

@@ -6,7 +6,10 @@ import glob
 
 
 #: The scenes of the gallery, which have a picture.
-GALLERY = [os.path.basename(p)[:-4] for p in sorted(glob.glob(os.path.join(ROOT, "scripts", "gallery", "*.png")))]  # fmt: skip
+GALLERY = [
+    os.path.basename(p)[:-4]
+    for p in sorted(glob.glob(os.path.join(ROOT, "scripts", "gallery", "*.png")))
+]
 #: Those that take longest.
 LONGEST = {"corner", "facade", "falling_gable", "flemish_wall", "gable_ring_beam"}
 LONGEST |= {"house", "shaken_parapet", "storeys"}

@@ -139,7 +139,7 @@ def test_a_fall_is_counted_from_the_state_to_which_the_scene_steps_back(tmp_path
         # on all of its face
         (lambda s, t: s.growWind(2e4, (1, 0, 0)), 1e-3 * WEIGHT * 0.15 / 0.3 / (0.3 * 0.6)),
     ],
-)  # fmt: skip
+)
 def test_growing_loads_hold_what_statics_says(tmp_path, grow, expected):
     s, stone = stack(tmp_path)
     s.args.lean = False  # bounds are found beside the run
@@ -308,7 +308,10 @@ def test_a_result_of_the_script_is_an_answer(tmp_path, capsys):
 def test_states_of_a_growth_are_evenly_apart_and_not_too_many(monkeypatch):
     loading = SimpleNamespace(loadFactor=0.0)
     motion = SimpleNamespace(fastest=lambda: 0.0, checkFall=lambda: None)
-    scene = SimpleNamespace(model=SimpleNamespace(loading=loading, motion=motion), args=SimpleNamespace(density_scaling=1))  # fmt: skip
+    scene = SimpleNamespace(
+        model=SimpleNamespace(loading=loading, motion=motion),
+        args=SimpleNamespace(density_scaling=1),
+    )
     monkeypatch.setattr(growing, "saveScene", lambda name: b"state")
     at = growing.Growing(kept=[[0.0, ""]])
     growth = growing._Growth(scene, at, None, 1.0)
@@ -334,7 +337,7 @@ def test_a_perfect_column_holds_no_more_than_its_buckling_load(tmp_path, stage):
     n, side, stiffness, plane = 10, 0.2, 5e8, stage == "growLoad"
     wide = side if plane else 1.5 * side
     joint = MasonryJoint(elastic=True, normalStiffness=stiffness, shearStiffness=2e8)
-    light = materials.Masonry(MasonryMat(young=2e10, poisson=0.2, density=200), {"bed": joint})  # fmt: skip
+    light = materials.Masonry(MasonryMat(young=2e10, poisson=0.2, density=200), {"bed": joint})
     blocks = bricks.stack(n, (wide, side, side))
     scene = standing(tmp_path, blocks, light, plane=plane)
     head = scene.handle((wide / 2, side / 2, n * side - 0.01))

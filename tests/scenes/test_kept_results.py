@@ -113,7 +113,10 @@ def test_a_folder_is_for_one_run_at_a_time(finished, monkeypatch, capsys, locks)
     os.read(report, 1)
     before = contents(finished)
     try:
-        who = f"a run of other on host {socket.gethostname()}, process {child}, is writing to {finished}"
+        who = (
+            f"a run of other on host {socket.gethostname()}, process {child}, is writing to"
+            f" {finished}"
+        )
         for words, resume in ((SHORT, False), ([], True)):
             assert run(finished, *words, resume=resume) == 2
             said = capsys.readouterr().err
@@ -126,7 +129,7 @@ def test_a_folder_is_for_one_run_at_a_time(finished, monkeypatch, capsys, locks)
     assert run(finished, *SHORT) == 0
     assert not (finished / "run.lock").exists()
     if not locks:
-        (finished / "run.lock").write_text('{"host": "elsewhere", "process": 1, "scene": "s"}')  # fmt: skip
+        (finished / "run.lock").write_text('{"host": "elsewhere", "process": 1, "scene": "s"}')
         assert run(finished, *SHORT) == 2
         assert "on host elsewhere, process 1," in capsys.readouterr().err
 

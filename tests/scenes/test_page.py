@@ -17,7 +17,9 @@ def paper(comp4, tmp_path_factory):
     """Its page, written as a user does."""
     path = str(tmp_path_factory.mktemp("paper") / "wall.html")
     program = os.path.join(ROOT, "scripts", "view.py")
-    done = subprocess.run(["/usr/bin/python3", program, comp4, "--html", path], capture_output=True, text=True)  # fmt: skip
+    done = subprocess.run(
+        ["/usr/bin/python3", program, comp4, "--html", path], capture_output=True, text=True
+    )
     assert done.returncode == 0, done.stderr
     return path
 
@@ -46,7 +48,7 @@ def test_the_browser_lets_the_page_ask_nobody(opened, tmp_path):
     """Whatever stood in it: a policy in the page forbids it."""
     (tmp_path / "other.json").write_text("{}")
     for address in ("http://127.0.0.1:9/", f"file://{tmp_path}/other.json"):
-        assert opened.value(f"fetch('{address}').then(() => 'came', () => 'refused')") == "refused"  # fmt: skip
+        assert opened.value(f"fetch('{address}').then(() => 'came', () => 'refused')") == "refused"
     assert len(opened.problems) >= 2
     assert all("Content Security Policy" in text for text in opened.problems)
 
@@ -71,9 +73,7 @@ def test_legends_have_the_unit_and_the_range_of_what_is_chosen(opened):
 
 
 def test_mouse_and_keys_turn_and_zoom(opened):
-    where = lambda: opened.value(
-        "[...view.directions()[2].toArray(), view.camera.zoom]"
-    )
+    where = lambda: opened.value("[...view.directions()[2].toArray(), view.camera.zoom]")
     first = where()
     opened.drag((400, 300), (490, 300))
     assert np.dot(where()[:3], first[:3]) < 0.95
@@ -96,17 +96,25 @@ def test_blocks_and_joints_stand_where_the_run_says(opened, comp4):
         found = np.array(opened.value("[...view.moved]")).reshape(-1, 3)
         expected = model.displacements(k)
         # a step of the shift, and one of the turn for a corner that is at most half a metre from the centre of its brick
-        steps = np.abs(model.shift).max() / 32767 + 0.2 * np.abs(model.turn).max() / 32767  # fmt: skip
+        steps = np.abs(model.shift).max() / 32767 + 0.2 * np.abs(model.turn).max() / 32767
         brick = model.looks[model.owner] == BRICK_BLOCK
         assert np.abs(found - expected)[brick].max() < steps
         assert np.abs(found - expected)[~brick].max() < 20 * steps  # 4 m long
-        faces = np.array(opened.value("[...view.faces.geometry.attributes.position.array]")).reshape(-1, 3)  # fmt: skip
-        shades = np.array(opened.value("[...view.faces.geometry.attributes.color.array]")).reshape(-1, 3)  # fmt: skip
+        faces = np.array(
+            opened.value("[...view.faces.geometry.attributes.position.array]")
+        ).reshape(-1, 3)
+        shades = np.array(opened.value("[...view.faces.geometry.attributes.color.array]")).reshape(
+            -1, 3
+        )
         shown = np.flatnonzero(joints.kind[k][joints.owner])
-        corners = np.concatenate([(joints.corners + side)[shown] for side in joints.displacements(k)])  # fmt: skip
+        corners = np.concatenate(
+            [(joints.corners + side)[shown] for side in joints.displacements(k)]
+        )
         for one in corners[:: max(1, len(corners) // 50)]:
             assert np.abs(faces - one).max(axis=1).min() < 1e-5
-        assert len({*map(tuple, np.rint(255 * shades).astype(int))}) == len(set(joints.kind[k][joints.kind[k] > 0]))  # fmt: skip
+        assert len({*map(tuple, np.rint(255 * shades).astype(int))}) == len(
+            set(joints.kind[k][joints.kind[k] > 0])
+        )
 
 
 def test_a_click_on_a_block_says_which_it_is_and_how_it_moved(opened, comp4):
@@ -115,17 +123,23 @@ def test_a_click_on_a_block_says_which_it_is_and_how_it_moved(opened, comp4):
     model = Model(comp4)
     block = 600
     moved = model.shift[-1, block]
-    place = opened.value(f"(() => {{ const b = view.canvas.getBoundingClientRect(), p = new THREE.Vector3(...{(model.centres[block] + 30 * moved).tolist()}).project(view.camera); return [b.left + (p.x + 1) / 2 * b.width, b.top + (1 - p.y) / 2 * b.height] }})()")  # fmt: skip
+    place = opened.value(
+        "(() => { const b = view.canvas.getBoundingClientRect(), p = new"
+        f" THREE.Vector3(...{(model.centres[block] + 30 * moved).tolist()}).project(view.camera);"
+        " return [b.left + (p.x + 1) / 2 * b.width, b.top + (1 - p.y) / 2 * b.height] })()"
+    )
     opened.drag(place, place)
     said = opened.value("view.says.innerText")
     found = re.search(r"block (\d+) at \(.*\) m has moved by \((.*)\) mm", said)
     assert int(found[1]) == model.bodies[block]
-    assert list(map(float, found[2].split(", "))) == pytest.approx(1e3 * moved, rel=6e-3, abs=2e-3)  # fmt: skip
+    assert list(map(float, found[2].split(", "))) == pytest.approx(1e3 * moved, rel=6e-3, abs=2e-3)
 
 
 def test_a_notebook_shows_the_picture(chromium, comp4, tmp_path):
     path = tmp_path / "notebook.html"
-    path.write_text(f'<!DOCTYPE html><meta charset="utf-8"><body>{page.show(comp4)._repr_html_()}</body>')  # fmt: skip
+    path.write_text(
+        f'<!DOCTYPE html><meta charset="utf-8"><body>{page.show(comp4)._repr_html_()}</body>'
+    )
     chromium.problems.clear()
     chromium.open(str(path))
     until = 100
@@ -157,7 +171,9 @@ def test_without_webgl_a_sentence_stands_in_place_of_the_picture(paper):
         chromium.open(paper)
         assert chromium.value("masonryViews[0]") is None
         text = chromium.value("document.body.innerText")
-        assert "This browser shows no 3-D pictures, because WebGL is switched off or missing" in text  # fmt: skip
+        assert (
+            "This browser shows no 3-D pictures, because WebGL is switched off or missing" in text
+        )
         assert chromium.problems == []
 
 

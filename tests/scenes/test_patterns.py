@@ -68,7 +68,7 @@ def test_the_first_mode_of_a_slender_pier_is_that_of_a_cantilever(tmp_path):
     ratio = (math.sinh(k) - math.sin(k)) / (math.cosh(k) + math.cos(k))
 
     def bent(x):
-        return math.cosh(k * x) - math.cos(k * x) - ratio * (math.sinh(k * x) - math.sin(k * x))  # fmt: skip
+        return math.cosh(k * x) - math.cos(k * x) - ratio * (math.sinh(k * x) - math.sin(k * x))
 
     expected = [bent((n + 0.5) / 20) / bent(19.5 / 20) for n in range(20)]
     assert np.allclose(np.array(found) / found[-1], expected, atol=0.02)

@@ -115,7 +115,7 @@ def test_water_that_rises_in_stages_replaces_what_was_there(tmp_path):
 def test_two_loads_in_proportion_tip_a_stack_at_the_factor_of_statics(tmp_path):
     """1 kN sideways tips it about its foot, and the load on the windward edge holds it, which grows along."""
     scene = made(tmp_path, bricks.stack(3, (0.3, 0.3, 0.2)), plane=False)
-    side, edge = scene.handle((0.15, 0.15, 0.39)), scene.handle((0.0, 0.15, 0.55), name="edge")  # fmt: skip
+    side, edge = scene.handle((0.15, 0.15, 0.39)), scene.handle((0.0, 0.15, 0.55), name="edge")
     scene.load(edge, (0, 0, -300))
     scene.settle()
     grown = {side: (1e3, 0, 0), edge: (0, 0, -200)}
@@ -168,7 +168,7 @@ def test_the_bound_of_a_load_that_travels_is_that_of_one_that_stands_there(tmp_p
 
 
 def test_a_load_that_travels_stands_on_the_highest_face_below(tmp_path):
-    blocks = bricks.stack(3, (0.4, 0.4, 0.2)) + bricks.block((0.4, 0, 0), (0.8, 0.4, 0.2))  # fmt: skip
+    blocks = bricks.stack(3, (0.4, 0.4, 0.2)) + bricks.block((0.4, 0, 0), (0.8, 0.4, 0.2))
     description = described(blocks, False)
     below = lambda point: pressures.placesBelow(description, [point])
     for x, brick, z in ((0.1, 2, 0.6), (0.5, 3, 0.2)):

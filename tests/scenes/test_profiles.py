@@ -67,7 +67,7 @@ def test_the_gap_under_a_beam_is_a_crack_of_every_row_and_of_its_groups(tmp_path
         (3, lambda x, y, z: 0.0, "must not be zero"),
         (3, lambda x, y, z: "far", "'far' must be a number"),
     ],
-)  # fmt: skip
+)
 def test_what_cannot_be_moved_is_refused(tmp_path, last, z, message):
     scene, footings, beam = footed(tmp_path, 3)
     with pytest.raises(ValueError, match=message):

@@ -14,17 +14,17 @@ MOST = 3e6  # [bytes] of the report of COMP-4
 
 
 def test_a_run_leaves_its_report_beside_its_figures(tmp_path):
-    assert carryOut(SMALL, parsed("--until", "0.3", "--rate", "60", "--out", str(tmp_path))) == 0  # fmt: skip
+    assert carryOut(SMALL, parsed("--until", "0.3", "--rate", "60", "--out", str(tmp_path))) == 0
     text = (tmp_path / "report.html").read_text()
     run = readRun(tmp_path)
     assert "report.html" in run["files"] and "is not whole" not in text
     assert re.fullmatch(r"\d{4}-\d\d-\d\dT\d\d:\d\d:\d\dZ", run["date"])
     assert run["warnings"] == [] or all(isinstance(w, str) for w in run["warnings"])
     assert ["base", "platen, held"] in run["held_and_loaded"]
-    assert [(t["name"], t["held"]) for t in run["targets"]] == [("base", True), ("top", False)]  # fmt: skip
+    assert [(t["name"], t["held"]) for t in run["targets"]] == [("base", True), ("top", False)]
     assert ">held<" in text and ">base<" in text  # in the drawing
-    assert [word for word, _ in run["script"]] == ["platen", "platen", "press", "settle", "push"]  # fmt: skip
-    assert [stage["load"] and stage["load"][0] for stage in run["stages"]] == [None, "push"]  # fmt: skip
+    assert [word for word, _ in run["script"]] == ["platen", "platen", "press", "settle", "push"]
+    assert [stage["load"] and stage["load"][0] for stage in run["stages"]] == [None, "push"]
     rows = readCurve(tmp_path)["displacement_mm"]
     assert 0 <= run["stages"][1]["first_row"] < len(rows)
     assert run["recorded_height_m"] == pytest.approx(SMALL.courses * SMALL.unit[2])
@@ -44,12 +44,14 @@ def test_a_lean_run_leaves_none_and_no_words_for_it(tmp_path):
 
 def test_a_run_that_goes_on_has_no_report_of_before(tmp_path, monkeypatch):
     words = ["--rate", "60", "--no-vtk"]
-    assert carryOut(SMALL, parsed("--until", "0.1", *words, "--out", str(tmp_path))) == 0  # fmt: skip
+    assert carryOut(SMALL, parsed("--until", "0.1", *words, "--out", str(tmp_path))) == 0
     assert {"report.html", "curve.png"} <= set(os.listdir(tmp_path))
     there = []
-    monkeypatch.setattr(DrawingProgram, "begin", lambda self, folder: there.extend(os.listdir(folder)))  # fmt: skip
+    monkeypatch.setattr(
+        DrawingProgram, "begin", lambda self, folder: there.extend(os.listdir(folder))
+    )
     monkeypatch.setattr(DrawingProgram, "draw", lambda self, folder: None)
-    assert carryOut(SMALL, parsed("--until", "0.2", *words, "--resume", str(tmp_path))) == 0  # fmt: skip
+    assert carryOut(SMALL, parsed("--until", "0.2", *words, "--resume", str(tmp_path))) == 0
     assert "run.json" in there and not {"report.html", "curve.png"} & set(there)
 
 
@@ -72,7 +74,10 @@ def opened(chromium, pushed):
     return viewed(chromium, pushed)
 
 
-RING = "(() => { const r = document.querySelector('.now'); return [Number(r.getAttribute('cx')), Number(r.getAttribute('cy'))] })()"  # fmt: skip
+RING = (
+    "(() => { const r = document.querySelector('.now'); return [Number(r.getAttribute('cx')),"
+    " Number(r.getAttribute('cy'))] })()"
+)
 
 
 class TestInABrowser:
@@ -84,9 +89,9 @@ class TestInABrowser:
         assert os.path.getsize(pushed) < MOST
         text = opened.value("document.body.innerText")
         assert "TUD-COMP-4" in text and "is not whole" not in text
-        assert re.search(r"Peak 11\d(\.\d)? kN at \d\.\d+ mm", text.replace("\u00a0", " "))  # fmt: skip
-        headings = opened.value("[...document.querySelectorAll('h1, h2, h3')].map(h => h.tagName)")  # fmt: skip
-        assert headings[0] == "H1" and headings.count("H1") == 1 and headings.count("H2") == 10  # fmt: skip
+        assert re.search(r"Peak 11\d(\.\d)? kN at \d\.\d+ mm", text.replace("\u00a0", " "))
+        headings = opened.value("[...document.querySelectorAll('h1, h2, h3')].map(h => h.tagName)")
+        assert headings[0] == "H1" and headings.count("H1") == 1 and headings.count("H2") == 10
 
     def test_the_slider_moves_the_picture_and_the_ring(self, opened, tmp_path):
         end = seen(opened, tmp_path, ".masonry-view")
@@ -96,7 +101,7 @@ class TestInABrowser:
         assert opened.value("view.frame") == 0 and opened.value(RING) != last
         start = seen(opened, tmp_path, ".masonry-view")
         assert near(start, RED) < near(end, RED) / 2
-        places = opened.value("document.querySelector('[data-frames]').dataset.frames").split()  # fmt: skip
+        places = opened.value("document.querySelector('[data-frames]').dataset.frames").split()
         assert len(places) == opened.value("view.head.frames.length")
         moved(opened, 3)
         assert opened.value(RING) == pytest.approx([*map(float, places[3].split(","))])
@@ -104,17 +109,25 @@ class TestInABrowser:
     def test_a_click_on_the_curve_shows_the_nearest_frame(self, opened):
         moved(opened, 0)
         opened.value("(document.querySelector('[data-frames]').scrollIntoView(), 0)")
-        place = opened.value("""(() => { const figure = document.querySelector('[data-frames]'), chart = figure.querySelector('svg');
+        place = opened.value(
+            """(() => { const figure = document.querySelector('[data-frames]'), chart = figure.querySelector('svg');
             const [x, y] = figure.dataset.frames.split(' ')[4].split(',').map(Number);
-            const at = new DOMPoint(x + 2, y).matrixTransform(chart.getScreenCTM()); return [at.x, at.y] })()""")  # fmt: skip
+            const at = new DOMPoint(x + 2, y).matrixTransform(chart.getScreenCTM()); return [at.x, at.y] })()"""
+        )
         opened.drag(place, place)
-        assert opened.value("new Promise(done => setTimeout(() => done(view.frame), 100))") == 4  # fmt: skip
+        assert opened.value("new Promise(done => setTimeout(() => done(view.frame), 100))") == 4
 
     def test_all_that_can_be_set_has_a_name_and_all_pictures_have_a_text(self, opened):
-        names = opened.value("[...document.querySelectorAll('canvas, input, select, button, summary')].map(e => e.getAttribute('aria-label') || (e.labels && e.labels[0] ? e.labels[0].textContent : e.textContent))")  # fmt: skip
+        names = opened.value(
+            "[...document.querySelectorAll('canvas, input, select, button, summary')].map(e =>"
+            " e.getAttribute('aria-label') || (e.labels && e.labels[0] ? e.labels[0].textContent :"
+            " e.textContent))"
+        )
         assert all(names) and len(names) >= 12
-        assert opened.value("[...document.images].every(i => i.alt && i.naturalWidth > 0)")  # fmt: skip
-        assert opened.value("[...document.querySelectorAll('[role=img]')].every(s => s.getAttribute('aria-label'))")  # fmt: skip
+        assert opened.value("[...document.images].every(i => i.alt && i.naturalWidth > 0)")
+        assert opened.value(
+            "[...document.querySelectorAll('[role=img]')].every(s => s.getAttribute('aria-label'))"
+        )
         assert opened.value("document.images.length") == 2  # mechanism and cracks
 
     def test_it_fits_on_a_narrow_screen_and_on_paper(self, chromium, pushed):
@@ -130,7 +143,12 @@ class TestInABrowser:
 @pytest.mark.xdist_group("browser")
 def test_the_program_needs_no_yade(comp4, tmp_path):
     path = str(tmp_path / "wall.html")
-    code = "import sys; from masonry.read.report.__main__ import main; assert main(sys.argv[1:]) == 0; assert 'yade' not in sys.modules"  # fmt: skip
-    done = subprocess.run([sys.executable, "-c", code, comp4, "-o", path], capture_output=True, text=True)  # fmt: skip
+    code = (
+        "import sys; from masonry.read.report.__main__ import main; assert main(sys.argv[1:]) == 0;"
+        " assert 'yade' not in sys.modules"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", code, comp4, "-o", path], capture_output=True, text=True
+    )
     assert done.returncode == 0, done.stderr
     assert open(path).read() == open(os.path.join(comp4, "report.html")).read()

@@ -22,7 +22,7 @@ def test_a_top_that_keeps_its_height_presses_more_when_the_pier_rocks(tmp_path):
     scene, top = pier(tmp_path)
     scene.hold(top, "zY")
     scene.push(top, 2)
-    force, up, turned = (scene.curve()[f"top_{n}"] for n in ("force_z_kN", "z_mm", "rotation_mrad"))  # fmt: skip
+    force, up, turned = (scene.curve()[f"top_{n}"] for n in ("force_z_kN", "z_mm", "rotation_mrad"))
     assert force[1] == pytest.approx(PRESSED, rel=1e-3)
     assert np.ptp(up[1:]) == np.ptp(turned[1:]) == 0
     assert force.max() > 1.1 * PRESSED
@@ -62,7 +62,9 @@ def test_drifts_are_over_the_height_of_what_turns_or_of_bricks(tmp_path, rotatio
 
 def test_a_handle_of_deformable_bricks_is_a_rigid_one_that_can_be_pushed(tmp_path):
     wall = bricks.Wall(length=0.44, height=0.324)
-    scene = standing(tmp_path, wall, materials.calciumSilicate(), rate=40, blocks="deformable", divisions="1")  # fmt: skip
+    scene = standing(
+        tmp_path, wall, materials.calciumSilicate(), rate=40, blocks="deformable", divisions="1"
+    )
     top = scene.handle(-1, "brick")
     scene.settle()
     scene.push(top, 0.2)

@@ -10,21 +10,21 @@ LEVEL = 1.2  # of the tie [m]
 
 def tied(tmp_path, *words):
     """A tall block on a platen on springs, with a tie, and a wall of two bricks with a fibre layer beside it."""
-    stack = bricks.stack(1, (WIDTH, DEPTH, HEIGHT)) + bricks.stack(3, (0.4, 0.3, 0.2)).moved(2)  # fmt: skip
+    stack = bricks.stack(1, (WIDTH, DEPTH, HEIGHT)) + bricks.stack(3, (0.4, 0.3, 0.2)).moved(2)
     stones = materials.dry(5.0, normalStiffness=1e11)
     scene = lean(tmp_path, stack, stones, *words, plane=False)
     base = scene.platen("bottom", springs={"x": 5e7})
     at = lambda x: (x, DEPTH / 2, LEVEL)
-    tie = scene.tie(at(0.2), anchor=at(-3.0), stiffness=1e7, strength=500.0, name="wire")  # fmt: skip
+    tie = scene.tie(at(0.2), anchor=at(-3.0), stiffness=1e7, strength=500.0, name="wire")
     soil = scene.spring((2.2, 0.15, 0.5), stiffness=(0, 3e6, 0), name="soil")
-    layer = scene.overlay((0, -1, 0), stiffness=4e6, strength=40e3, gauge=0.2, strain=0.02, name="textile")  # fmt: skip
+    layer = scene.overlay(
+        (0, -1, 0), stiffness=4e6, strength=40e3, gauge=0.2, strain=0.02, name="textile"
+    )
     return scene, base, tie, soil, layer
 
 
 def test_values_of_the_command_line_replace_those_of_the_scene(tmp_path):
-    words = (
-        "wire.strength=1e3 wire.stiffness=2e7 wire.prestress=100 soil.stiffness_y=4e6 "
-    )
+    words = "wire.strength=1e3 wire.stiffness=2e7 wire.prestress=100 soil.stiffness_y=4e6 "
     words += "base_spring.stiffness_x=6e7 textile.stiffness=8e6 textile.strain=0.01"
     words = [f"--set={word}" for word in words.split()]
     scene, _, tie, soil, layer = tied(tmp_path, *words)
@@ -62,18 +62,33 @@ def test_a_field_gives_each_bundle_and_each_tie_its_own_value(tmp_path):
     "word, text",
     [
         ("--set=wyre.strength=1", "no joint, beam, tie, spring or fibre layer 'wyre', there are "),
-        ("--set=wire.stength=1", "a tie has no such property, there are stiffness, strength, prestress, slack, breaking, did you mean 'strength'?"),
+        (
+            "--set=wire.stength=1",
+            (
+                "a tie has no such property, there are stiffness, strength, prestress, slack,"
+                " breaking, did you mean 'strength'?"
+            ),
+        ),
         ("--set=wire.strength=-2", "wire: strength -2.0 N must be above 0"),
         ("--set=wire.strength=much", "--set wire.strength=much: must be a number"),
         ("--set=wire.prestress=600", "wire: prestress 600 N must be below its strength, 500 N"),
         ("--set=soil.stiffness_x=1", "a spring has no such property, there are stiffness_y"),
         ("--set=soil.stiffness=1", "did you mean 'stiffness_y'?"),
-        ("--set=textile.gauge=1", "a fibre layer has no such property, there are stiffness, strength, strain"),
+        (
+            "--set=textile.gauge=1",
+            "a fibre layer has no such property, there are stiffness, strength, strain",
+        ),
         ("--field=wyre.strength=lognormal(cov=0.3,length=0,seed=4)", "no property 'wyre.strength'"),
-        ("--field=wire.length=lognormal(cov=0.3,length=0,seed=4)", "wire.length: a tie has no such property"),
-        ("--field=wire.breaking=lognormal(cov=0.3,length=0,seed=4)", "wire: breaking was not given, so nothing can vary about it"),
+        (
+            "--field=wire.length=lognormal(cov=0.3,length=0,seed=4)",
+            "wire.length: a tie has no such property",
+        ),
+        (
+            "--field=wire.breaking=lognormal(cov=0.3,length=0,seed=4)",
+            "wire: breaking was not given, so nothing can vary about it",
+        ),
     ],
-)  # fmt: skip
+)
 def test_what_cannot_be_set_is_refused(tmp_path, capsys, word, text):
     scene, *_ = tied(tmp_path, word)
     with pytest.raises(SystemExit):
@@ -149,13 +164,15 @@ def prepared(tmp_path, vary):
     (tmp_path / "study.py").write_text(STUDY.replace("{vary}", vary))
     out = str(tmp_path / "out")
     command = [sys.executable, "-m", "masonry.study", "study.py", "--out", out]
-    done = subprocess.run([*command, "--prepare"], cwd=tmp_path, capture_output=True, text=True)  # fmt: skip
+    done = subprocess.run([*command, "--prepare"], cwd=tmp_path, capture_output=True, text=True)
     table = os.path.join(out, "table.txt")
     return done, open(table).read() if os.path.exists(table) else ""
 
 
 def test_studies_vary_ties(tmp_path):
-    done, table = prepared(tmp_path, '{"wire.strength": lognormal(500, 0.2), "wire.stiffness": field(cov=0.1)}')  # fmt: skip
+    done, table = prepared(
+        tmp_path, '{"wire.strength": lognormal(500, 0.2), "wire.stiffness": field(cov=0.1)}'
+    )
     assert done.returncode == 0, done.stderr
     head = table.splitlines()[0]
     assert "wire.strength" in head and "field:wire.stiffness" in head.replace("!", "")
@@ -164,10 +181,19 @@ def test_studies_vary_ties(tmp_path):
 @pytest.mark.parametrize(
     "vary, text",
     [
-        ('{"wire.strength": normal(500, 0.5)}', "gives impossible values in 2.3 % of all rows: it must be at least 0 and at most 1e+15 N"),
-        ('{"wyre.strength": lognormal(500, 0.2)}', "no joint, beam, tie, spring or fibre layer 'wyre', there are bed, support, wire"),
+        (
+            '{"wire.strength": normal(500, 0.5)}',
+            (
+                "gives impossible values in 2.3 % of all rows: it must be at least 0 and at most"
+                " 1e+15 N"
+            ),
+        ),
+        (
+            '{"wyre.strength": lognormal(500, 0.2)}',
+            "no joint, beam, tie, spring or fibre layer 'wyre', there are bed, support, wire",
+        ),
     ],
-)  # fmt: skip
+)
 def test_studies_name_what_a_tie_cannot_have(tmp_path, vary, text):
     done, table = prepared(tmp_path, vary)
     assert done.returncode != 0 and not table

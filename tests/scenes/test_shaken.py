@@ -30,7 +30,9 @@ def shaken(folder, *words, **settings):
 def test_steps_have_the_impulse_of_the_record(tmp_path, monkeypatch):
     """Each step has the acceleration of its middle, which is the mean where that changes evenly."""
     steps, put = {}, Scheme.setGravity
-    monkeypatch.setattr(Scheme, "setGravity", lambda self, g: (steps.update({O.iter: g[0]}), put(self, g)))  # fmt: skip
+    monkeypatch.setattr(
+        Scheme, "setGravity", lambda self, g: (steps.update({O.iter: g[0]}), put(self, g))
+    )
     shaken(tmp_path, accelerations=[3.0, 0.0], every=0.02)
     assert sum(steps.values()) * O.dt == pytest.approx(-0.5 * 3.0 * 0.02, rel=1e-4)
     assert (max(steps) - min(steps)) * O.dt == pytest.approx(0.02, abs=O.dt)
@@ -40,7 +42,9 @@ def test_answers_have_the_sign_of_the_largest_displacement_and_the_first_fall():
     columns = {"top_x_mm": [1.0, -3.0, 2.0], "time_s": [5.0, 6.0, 7.0]}
     model = SimpleNamespace(fallen=lambda: {3: {"fell": 6.5}, 1: {"fell": 6.25}})
     scene = SimpleNamespace(collapsed=True, model=model)
-    scene.description = SimpleNamespace(targets={1: SimpleNamespace(name="top", fixed=False)}, drifts=[])  # fmt: skip
+    scene.description = SimpleNamespace(
+        targets={1: SimpleNamespace(name="top", fixed=False)}, drifts=[]
+    )
     found = displacements(scene, columns.get)
     assert [answer.value for answer in found] == [-3.0, 2.0, 1.25]
 
@@ -48,7 +52,12 @@ def test_answers_have_the_sign_of_the_largest_displacement_and_the_first_fall():
 @pytest.fixture
 def peer(tmp_path):
     """A record of the format of PEER that is twice as strong as RECORD, in g."""
-    lines = ["PEER", "none", "ACCELERATION TIME SERIES IN UNITS OF G", f"NPTS= {len(RECORD)}, DT= {EVERY} SEC"]  # fmt: skip
+    lines = [
+        "PEER",
+        "none",
+        "ACCELERATION TIME SERIES IN UNITS OF G",
+        f"NPTS= {len(RECORD)}, DT= {EVERY} SEC",
+    ]
     path = tmp_path / "strong.AT2"
     path.write_text("\n".join(lines + [repr(2 * a / 9.81) for a in RECORD]))
     return str(path)
@@ -70,7 +79,9 @@ def test_three_components_act_at_once(tmp_path):
     """Each by itself is what the one record is along its direction, and the vertical one is felt by the base."""
     paths = {name: str(tmp_path / name) for name in ("some", "none", "up")}
     for name, factor in (("some", 1), ("none", 0), ("up", 0.5)):
-        (tmp_path / name).write_text("# unit: m/s²\n" + "".join(f"{factor * a!r}\n" for a in RECORD))  # fmt: skip
+        (tmp_path / name).write_text(
+            "# unit: m/s²\n" + "".join(f"{factor * a!r}\n" for a in RECORD)
+        )
 
     def run(column, *three, **settings):
         scene = block(tmp_path / "".join(three), plane=False)
@@ -109,7 +120,9 @@ def test_only_the_first_shake_is_replaced(tmp_path, peer, capsys):
     scene = block(tmp_path / "a", "--scale", "0")
     scene.shake(RECORD, EVERY)
     scene.shake(RECORD, EVERY)
-    first, second = (a["value"] for a in scene.answers if a["name"] == "largest_displacement_of_top_x")  # fmt: skip
+    first, second = (
+        a["value"] for a in scene.answers if a["name"] == "largest_displacement_of_top_x"
+    )
     assert abs(first) < 1e-6 and abs(second) > 0.01
     scene.finish()
     scene = block(tmp_path / "b", "--record", peer)
@@ -121,10 +134,13 @@ def test_only_the_first_shake_is_replaced(tmp_path, peer, capsys):
 def test_a_record_that_drifts_is_named_with_its_numbers(tmp_path, capsys):
     shaken(tmp_path / "a", accelerations=[2.0] * 21)
     said = capsys.readouterr().out
-    assert "note: shake: the record drifts: its velocity at the end is 0.2 m/s, 100 % of its largest" in said  # fmt: skip
+    assert (
+        "note: shake: the record drifts: its velocity at the end is 0.2 m/s, 100 % of its largest"
+        in said
+    )
     rest = lambda t: math.sin(math.pi * t) ** 4 * math.sin(8 * math.pi * t) / 200
     h = 0.005
-    quiet = [(rest(n * h - h) - 2 * rest(n * h) + rest(n * h + h)) / h**2 for n in range(201)]  # fmt: skip
+    quiet = [(rest(n * h - h) - 2 * rest(n * h) + rest(n * h + h)) / h**2 for n in range(201)]
     assert accelerograms.drift(quiet, h).sentence() is None
     shaken(tmp_path / "b", accelerations=quiet)
     assert "record drifts" not in capsys.readouterr().out

@@ -59,7 +59,7 @@ def test_a_slab_slides_with_every_pulse_and_keeps_its_period(tmp_path, monkeypat
     assert {*rows["ended"]} == {"done"}
     # stopped within the second record, the run goes on and leaves the same
     stop = stopped.signalled(signal.SIGTERM, round(0.5 * steps))
-    assert stopped.carryOut(stopped.BEGIN + SCRIPT, "--out", "stopped", stop=stop)[0] == 130  # fmt: skip
+    assert stopped.carryOut(stopped.BEGIN + SCRIPT, "--out", "stopped", stop=stop)[0] == 130
     assert stopped.carryOut(stopped.BEGIN + SCRIPT, "--resume", "stopped")[0] == 0
     assert stopped.differences(stopped.left("whole"), stopped.left("stopped")) == []
     assert table("stopped") == rows
@@ -79,7 +79,7 @@ def test_a_sequence_ends_with_the_record_in_which_the_structure_falls(tmp_path):
 
 
 def test_options_for_the_record_of_one_shake_are_refused(tmp_path):
-    scene = standing(tmp_path, bricks.stack(1, (SIDE, SIDE, HIGH)), None, "--scale", "2")  # fmt: skip
+    scene = standing(tmp_path, bricks.stack(1, (SIDE, SIDE, HIGH)), None, "--scale", "2")
     scene.settle()
     with pytest.raises(ValueError, match="give records and scales here"):
         scene.shakeAgain([pulse()], every=EVERY)

@@ -12,35 +12,61 @@ sys.path.insert(1, os.path.join(ROOT, "tests", "gates"))
 import tree  # noqa: E402
 
 TUTORIAL = ("scripts/docs/",)
-PROGRAMS = ("yade", "bash", "/usr/bin/python3", "python3", "jupyter", "for", "cd", "seq", "squeue", "apt-get", "unshare")  # fmt: skip
+PROGRAMS = (
+    "yade",
+    "bash",
+    "/usr/bin/python3",
+    "python3",
+    "jupyter",
+    "for",
+    "cd",
+    "seq",
+    "squeue",
+    "apt-get",
+    "unshare",
+)
 
 #: Commands that are not run here, and why: who runs them, or what they need.
 REASONS = {
-    r"bash scripts/(setup|test|package|docs|try_release|container)\.sh": "installs packages, or runs the tests themselves",
-    r"bash scripts/run\.sh \w+$": "installs packages; the scene itself is run by tests/scenes/test_walls.py",
+    r"bash scripts/(setup|test|package|docs|try_release|container)\.sh": (
+        "installs packages, or runs the tests themselves"
+    ),
+    r"bash scripts/run\.sh \w+$": (
+        "installs packages; the scene itself is run by tests/scenes/test_walls.py"
+    ),
     r".*(view\.py|view_html)": "needs ParaView: tests/scenes/test_view.py",
     r".*apt-get": "installs packages",
     r".*--slurm|squeue|seq ": "needs a cluster: tests/studies/test_run.py has one of Slurm",
     r".*ACCURATE --cheap FAST": "needs two studies of many runs: tests/studies/test_estimate.py",
     r".*tests/references/references\.py": "tests/host/test_references.py",
-    r".*validation/\w+/?\w*\.py": "minutes or hours; tests/scenes/test_validation.py and its like run parts of them",
-    r".*(masonry\.study|masonry\.study\.report) (validation|results/validation)/": "minutes or hours: a study of validation/",
+    r".*validation/\w+/?\w*\.py": (
+        "minutes or hours; tests/scenes/test_validation.py and its like run parts of them"
+    ),
+    r".*(masonry\.study|masonry\.study\.report) (validation|results/validation)/": (
+        "minutes or hours: a study of validation/"
+    ),
     r".*wall_comp4\.py --accuracy": "minutes: tests/scenes/test_accuracy.py has a small wall",
     r".*check_host\.py (FOLDER|libyade)": "needs an unpacked YADE of another release",
     r".*-m masonry\.capacity": "a tenth of a push has no peak: tests/package/test_capacity.py",
     r"jupyter": "opens a browser",
     r"unshare": "needs namespaces of users, which containers may refuse",
-}  # fmt: skip
+}
 #: What is replaced in a command before it is run.
 REPLACED = (
     (r"bash scripts/run\.sh (\w+)", r"yade -n -x scripts/\1.py"),
-    (r"^((?:yade -n -x|/usr/bin/python3) (?:scripts/\w+|my_\w+)\.py\b(?!.*--(?:resume|preset bound|help)).*)", r"\1 --quick"),
+    (
+        (
+            r"^((?:yade -n -x|/usr/bin/python3) (?:scripts/\w+|my_\w+)\.py\b(?!.*--(?:resume|preset"
+            r" bound|help)).*)"
+        ),
+        r"\1 --quick",
+    ),
     (r"(/usr/bin/python3 scripts/plot\.py.*) --quick", r"\1"),
     (r"(.*--preset bound)", r"\1 --out results/bound"),
     (r"(.*scripts/wall_\w+\.py (?:--history|--joint).*)", r"\1 --lean --out results/other"),
     (r"\bFILE\b", "study.py"),
     (r"\bDIR\b", "study"),
-)  # fmt: skip
+)
 #: Documents with Python, and what becomes of it: a file that commands name, or a program of its own.
 BLOCKS = {
     "README.md": ["my_scene.py"],
@@ -90,15 +116,18 @@ def commands(text):
 
 
 ALL = {d: list(commands(tree.read(d))) for d in documents()}
-PYTHON = {d: re.findall(r"^```python\n(.*?)^```", tree.read(d), re.M | re.S) for d in documents()}  # fmt: skip
+PYTHON = {d: re.findall(r"^```python\n(.*?)^```", tree.read(d), re.M | re.S) for d in documents()}
 
 
 def reasonOf(command):
-    return next((why for pattern, why in REASONS.items() if re.match(pattern, command)), None)  # fmt: skip
+    return next((why for pattern, why in REASONS.items() if re.match(pattern, command)), None)
 
 
 def test_commands_are_found():
-    text = "    yade -n -x a.py \\\n        --quick   # why\n\n```python\nfor x in y:\n    yade\n```\n\n```bash\nbash b.sh\n```\n"
+    text = (
+        "    yade -n -x a.py \\\n        --quick   # why\n\n```python\nfor x in y:\n   "
+        " yade\n```\n\n```bash\nbash b.sh\n```\n"
+    )
     assert list(commands(text)) == ["yade -n -x a.py --quick", "bash b.sh"]
     assert sum(map(len, ALL.values())) > 50
 
@@ -134,8 +163,13 @@ def folder(tmp_path_factory):
         (path / f"{name}.csv").write_text("\n".join(["slide,stress", *rows]))
     (path / "records").mkdir()
     for hertz in (2, 3, 4):
-        wave = [math.sin(0.005 * n * math.pi) ** 4 * math.sin(0.01 * n * math.pi * hertz) for n in range(201)]  # fmt: skip
-        (path / "records" / f"sine{hertz}.AT2").write_text(PEER + "\n".join(f"{0.3 * a:.6E}" for a in wave))  # fmt: skip
+        wave = [
+            math.sin(0.005 * n * math.pi) ** 4 * math.sin(0.01 * n * math.pi * hertz)
+            for n in range(201)
+        ]
+        (path / "records" / f"sine{hertz}.AT2").write_text(
+            PEER + "\n".join(f"{0.3 * a:.6E}" for a in wave)
+        )
     (path / "measured.csv").write_text("displacement_mm\n0.1\n-0.1\n0\n")
     (path / "test.csv").write_text("d,F\n0,0\n1,50\n2,60\n")
     checkpoint = SCENE + (path / "checkpoint.py").read_text()
@@ -169,5 +203,10 @@ def test_every_command_that_has_no_reason_runs(folder):
         typed(folder, command)
         ran += 1
     assert ran >= 10
-    for path in ("results/wall_comp4/curve.png", "study/study.csv", "IDA/study.csv", "COUPLETS/calibration.png"):  # fmt: skip
+    for path in (
+        "results/wall_comp4/curve.png",
+        "study/study.csv",
+        "IDA/study.csv",
+        "COUPLETS/calibration.png",
+    ):
         assert (folder / path).exists()

@@ -60,7 +60,9 @@ def test_a_trial_puts_its_load_on_in_a_slow_period_and_waits_for_ten(soil, secon
     scene.args, scene.model = SimpleNamespace(density_scaling=1.0), model
     scene.description = SimpleNamespace(low=(0, 0, 0), high=(0, 0, 1))
     scene.running = SimpleNamespace(advance=nothing)
-    load = SimpleNamespace(put=loads.append, at=lambda began, share: share, shareOf=lambda factor: factor)  # fmt: skip
+    load = SimpleNamespace(
+        put=loads.append, at=lambda began, share: share, shareOf=lambda factor: factor
+    )
     at = growing.Growing(source=0.0, goal=1.0)
     assert not growing._Search(scene, at, load, 0.01)._trial()
     assert at.taken * O.dt == pytest.approx(seconds)

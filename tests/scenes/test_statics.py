@@ -26,7 +26,7 @@ def test_a_stage_obeys_newton_or_says_why_it_is_refused(stage):
 
 def test_every_stage_has_a_cell_that_is_allowed():
     for stage in statics.STAGES:
-        kind = {"drive": "driven", "release": "driven", "hold": "handle"}.get(stage, "free")  # fmt: skip
+        kind = {"drive": "driven", "release": "driven", "hold": "handle"}.get(stage, "free")
         cell = stage, kind, "x", "rigid", "softening"
         assert statics.carryOut(cell) is None, cell
 

@@ -285,8 +285,13 @@ def test_columns_are_read_as_often_in_a_run_of_many_rows(tmp_path, monkeypatch):
     counts = []
     for until in ("0.02", "0.2"):
         asked, read = [], Results.column
-        monkeypatch.setattr(Results, "column", lambda self, head: asked.append(head) or read(self, head))  # fmt: skip
-        carryOut(SMALL, parsed("--lean", "--rate", "50", "--until", until, "--out", str(tmp_path / until)))  # fmt: skip
+        monkeypatch.setattr(
+            Results, "column", lambda self, head: asked.append(head) or read(self, head)
+        )
+        carryOut(
+            SMALL,
+            parsed("--lean", "--rate", "50", "--until", until, "--out", str(tmp_path / until)),
+        )
         monkeypatch.undo()
         counts.append(len(asked))
     assert counts[1] <= counts[0] + 5

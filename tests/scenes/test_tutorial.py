@@ -35,9 +35,7 @@ def test_a_notebook_runs_from_top_to_bottom(tmp_path, name):
     pytest.importorskip("nbconvert", reason="jupyter-nbconvert is not installed")
     pytest.importorskip("ipykernel", reason="python3-ipykernel is not installed")
     shutil.copy(os.path.join(TUTORIAL, name), tmp_path)
-    words = (
-        "--to notebook --execute --inplace --ExecutePreprocessor.kernel_name=python3"
-    )
+    words = "--to notebook --execute --inplace --ExecutePreprocessor.kernel_name=python3"
     command = [sys.executable, "-m", "nbconvert", *words.split(), name]
     settings = dict(capture_output=True, text=True, timeout=300)
     run = subprocess.run(command, cwd=tmp_path, **settings)

@@ -16,7 +16,7 @@ from masonry.scene.settings import applySettings
 PATH = os.path.join(ROOT, "validation", "sensitivity", "tornado.py")
 ROWS = runpy.run_path(PATH)["ROWS"]
 
-CASES = sorted(path.parent.name for path in pathlib.Path(studies.HERE).glob("*/case.json"))  # fmt: skip
+CASES = sorted(path.parent.name for path in pathlib.Path(studies.HERE).glob("*/case.json"))
 QUICK = [case for case in CASES if "quick" in studies.readCase(case)]
 
 

@@ -21,7 +21,7 @@ def wall(tmp_path_factory):
 def view(*words):
     """Run scripts/view.py as a user does."""
     program = os.path.join(ROOT, "scripts", "view.py")
-    return subprocess.run(["/usr/bin/python3", program, *words], capture_output=True, text=True)  # fmt: skip
+    return subprocess.run(["/usr/bin/python3", program, *words], capture_output=True, text=True)
 
 
 def cracked(path):
@@ -97,7 +97,7 @@ def test_places_in_a_run(wall):
 def test_without_paraview_the_packages_are_named(wall, monkeypatch):
     monkeypatch.setattr(viewer.shutil, "which", lambda name: None)
     monkeypatch.setattr(viewer, "UNPACKED", "/nowhere")
-    with pytest.raises(Refused, match="apt-get install --no-install-recommends paraview xvfb"):  # fmt: skip
+    with pytest.raises(Refused, match="apt-get install --no-install-recommends paraview xvfb"):
         viewer.inParaView([wall], None, None)
 
 

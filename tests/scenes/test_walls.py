@@ -46,8 +46,14 @@ def test_the_squat_wall_leaves_what_is_promised(squat):
         assert os.path.getsize(os.path.join(squat, picture)) > 10000
     run = readRun(squat)
     assert not set(run) - documented()
-    promised = "peak_base_shear_kN displacement_at_peak_mm base_shear_end_kN initial_stiffness_kN_per_mm wall_clock_s "
-    promised += "microseconds_per_step nanoseconds_per_subcontact_step energy_balance_error commit versions time_step_s "
+    promised = (
+        "peak_base_shear_kN displacement_at_peak_mm base_shear_end_kN initial_stiffness_kN_per_mm"
+        " wall_clock_s "
+    )
+    promised += (
+        "microseconds_per_step nanoseconds_per_subcontact_step energy_balance_error commit versions"
+        " time_step_s "
+    )
     promised += "time_step_limit_s steps options joints columns"
     assert {*promised.split()} <= {*run}
     assert run["versions"]["masonry"] == masonry.__version__

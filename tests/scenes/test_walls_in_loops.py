@@ -113,7 +113,9 @@ def test_run_json_tells_the_history_and_the_cycles(looped):
     answers = {one["name"]: one["value"] for one in text["answers"]}
     assert answers["negative_peak"] == text["negative_peak_at_both_ends_kN"]
     cycles = text["cycles"]
-    amplitudes, works, losses = ([c[n] for c in cycles] for n in ("amplitude_mm", "work_J", "dissipated_J"))  # fmt: skip
+    amplitudes, works, losses = (
+        [c[n] for c in cycles] for n in ("amplitude_mm", "work_J", "dissipated_J")
+    )
     assert amplitudes == pytest.approx([0.1, 0.5, 0.5, 2], abs=0.01)
     whole = loops.work(data["displacement_mm"], shear)
     assert sum(works) == pytest.approx(whole, rel=0.01)
@@ -148,7 +150,10 @@ def test_figures_and_measures_show_both_sides(looped, monkeypatch, capsys):
     figures.draw(str(looped))
     data = arrays(looped)
     top = shown[0].axes[0]
-    for (low, high), name in ((top.get_xlim(), "displacement_mm"), (top.get_ylim(), "base_shear_kN")):  # fmt: skip
+    for (low, high), name in (
+        (top.get_xlim(), "displacement_mm"),
+        (top.get_ylim(), "base_shear_kN"),
+    ):
         assert low < data[name].min() < 0 < data[name].max() < high
     lines = {line.get_label(): line for line in top.lines}
     assert lines["envelope"].get_linewidth() > lines["supports"].get_linewidth()
@@ -237,7 +242,7 @@ def test_how_far_a_wall_may_move_against_its_push(whole, most):
 
 def test_a_wall_that_loses_its_force_in_a_loop_ends_the_run(tmp_path):
     """Without friction and with brittle bond the small wall slides on a bed joint as soon as the bond is gone."""
-    bare = ["residualCohesion=0", "friction=0", "residualFriction=0", "tensileStrength=1e4"]  # fmt: skip
+    bare = ["residualCohesion=0", "friction=0", "residualFriction=0", "tensileStrength=1e4"]
     words = [f"--set={name}.{value}" for name in ("bed", "head") for value in bare]
     words += ["--joints", "brittle", "--no-vtk", "--rate", "40"]
     assert run(tmp_path / "loop", *words, "--history", "0.02x2,3") == 0

@@ -14,11 +14,11 @@ PLACES = {
 }
 HERE = (lambda b: b, lambda x, y: (x, y, 0))
 #: Entries of run.json that no quantity lists.
-MORE = ["collapsed", "failure_mode", "recorded_height_m", "drift_height_m", "base_weight"]  # fmt: skip
+MORE = ["collapsed", "failure_mode", "recorded_height_m", "drift_height_m", "base_weight"]
 #: Numbers with noise: what is left where others cancel, and what belongs to the machine.
 NOISE = {"energy_balance_error", "energy_made", "wall corner_m", "wall pushed_towards"} | {
     one.key for one in quantities.QUANTITIES if one.group == "cost"
-}  # fmt: skip
+}
 
 
 def pushedWall(folder, stand, towards):
@@ -32,7 +32,9 @@ def pushedWall(folder, stand, towards):
 
 
 def leaningArch(folder, stand, towards):
-    blocks = bricks.Arch(thickness=0.15, depth=0.3, stones=7, radius=0.925, angle=157.5, skewback=0.2)  # fmt: skip
+    blocks = bricks.Arch(
+        thickness=0.15, depth=0.3, stones=7, radius=0.925, angle=157.5, skewback=0.2
+    )
     stones = materials.dry(friction=0.7, normalStiffness=1e11)
     scene = lean(folder, stand(blocks), stones)
     for brick, name in ((7, "left"), (8, "right")):
@@ -64,7 +66,7 @@ def answers(build, folder, stand, towards):
     build(folder, stand, towards)
     run = readRun(folder)
     measured = {key: run[key] for key in [*quantities.BY_KEY, *MORE] if key in run}
-    stages = {f"{n} {one['name']}": one["value"] for n, one in enumerate(run["answers"])}  # fmt: skip
+    stages = {f"{n} {one['name']}": one["value"] for n, one in enumerate(run["answers"])}
     wall = {f"wall {key}": value for key, value in run.get("wall", {}).items()}
     found = {**measured, **stages, **wall}
     # a crack in what falls is as wide as it was when the run happened to end

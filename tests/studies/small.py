@@ -9,9 +9,7 @@ from masonry.scene import options
 parser = options.parser(__doc__, until=1, rate=20)
 parser.add_argument("--fall", action="store_true", help="fail")
 args = parser.parse_args()
-scene = Scene(
-    "small", bricks.Wall(0.88, 0.648), materials.calciumSilicate(), arguments=args
-)
+scene = Scene("small", bricks.Wall(0.88, 0.648), materials.calciumSilicate(), arguments=args)
 scene.platen("bottom")
 top = scene.platen("top", drive="x")
 scene.press(top, 0.3e6)

@@ -166,15 +166,21 @@ def test_what_is_printed_for_studies_is_a_study(tmp_path):
     "make, message",
     [
         (lambda: Specimen("any", "t.csv:d:F"), "a curve needs it"),
-        (lambda: Specimen("any", {"peak": 80}), "'peak': 80 must be a value and a standard deviation"),
+        (
+            lambda: Specimen("any", {"peak": 80}),
+            "'peak': 80 must be a value and a standard deviation",
+        ),
         (lambda: Specimen("any", {"peak": (80, 0)}), "standard deviation above 0"),
         (lambda: Specimen("any", {}), "measured must be 'FILE:X:Y'"),
         (lambda: direct([0.3], names={}), "something unknown"),
         (lambda: direct([0.3], names={"bed.cohesion": (2, 1)}), "low 2 must be below high 1"),
-        (lambda: direct([0.3], runs=8, names={f"bed.a{n}": (0, 1) for n in range(3)}), "need 9 runs"),
+        (
+            lambda: direct([0.3], runs=8, names={f"bed.a{n}": (0, 1) for n in range(3)}),
+            "need 9 runs",
+        ),
         (lambda: direct([0.3], names={"bed cohesion": (0, 1)}), "'bed cohesion' must be an option"),
     ],
-)  # fmt: skip
+)
 def test_wrong_descriptions_are_refused(make, message):
     with pytest.raises(Refused, match=re.escape(message)):
         make()

@@ -28,7 +28,7 @@ def test_drawn_data_give_their_distribution_back():
     for seed in range(3):
         logs = 0.5 * np.random.default_rng(seed).standard_normal(1000)
         found = fragility.fit(*drawn(seed, 1000))
-        assert math.log(found.median.value / 0.8) == pytest.approx(logs.mean(), abs=0.015)  # fmt: skip
+        assert math.log(found.median.value / 0.8) == pytest.approx(logs.mean(), abs=0.015)
         assert found.dispersion.value == pytest.approx(logs.std(), abs=0.015)
         assert 0.05 < math.log(found.median.high / found.median.low) < 0.08
         assert 0.04 < found.dispersion.high - found.dispersion.low < 0.06
@@ -94,7 +94,7 @@ def test_the_unit_of_the_intensity_does_not_matter(seed, scale):
     assert other.dispersion == pytest.approx(one.dispersion, rel=1e-4)
     assert other.median == pytest.approx([scale * m for m in one.median], rel=1e-4)
     place = 0.7 * one.median.value
-    assert other.probability(scale * place) == pytest.approx(one.probability(place), abs=1e-4)  # fmt: skip
+    assert other.probability(scale * place) == pytest.approx(one.probability(place), abs=1e-4)
 
 
 @given(seed=some.integers(0, 1000))
@@ -134,14 +134,17 @@ def test_any_records_give_numbers_or_a_sentence(capacities, count):
     [
         ([0.5, 1.0], "needs 3 records or more, there are 2"),
         ([9, 9, 9], "at none of the 3 records is the limit reached; add higher levels"),
-        ([0.1, 0.1, 0.1, 0.1], "at all 4 records the limit is reached at the lowest level that was run; add lower"),
+        (
+            [0.1, 0.1, 0.1, 0.1],
+            "at all 4 records the limit is reached at the lowest level that was run; add lower",
+        ),
         ([0.5, 0.5, 0.5], "all records may reach the limit at one intensity, 0.434 to 0.638, so"),
         ([0.5, 0.8, 9], None),
         ([0.5, 0.7, 0.7], "all records may reach the limit at one intensity, 0.638, so"),
         ([2.5, 9, 9], "all records may reach the limit at one intensity, 3, so"),
         ([0.1, 9, 0.1, 9], "at their lowest level or not at all, so the dispersion has no bound"),
     ],
-)  # fmt: skip
+)
 def test_data_that_cannot_give_it_are_refused_with_a_sentence(capacities, message):
     refused = pytest.raises(Refused, match=message)
     with refused if message else contextlib.nullcontext():

@@ -31,10 +31,10 @@ def records(folder):
 def write(folder, **changes):
     """The file of a study of the rocking block, and its records."""
     records(folder)
-    said = dict(design="ida", records=["*.txt"], levels=LEVELS, options={"checkpoint_every": 0.002})  # fmt: skip
+    said = dict(design="ida", records=["*.txt"], levels=LEVELS, options={"checkpoint_every": 0.002})
     words = ", ".join(f"{n}={v!r}" for n, v in {**said, **changes}.items())
     path = folder / "study.py"
-    path.write_text(f"from masonry.study import *\nstudy = Study({ROCKING!r}, {words})\n")  # fmt: skip
+    path.write_text(f"from masonry.study import *\nstudy = Study({ROCKING!r}, {words})\n")
     return path
 
 
@@ -109,17 +109,17 @@ def test_the_report_has_curves_and_a_fragility(whole, capsys):
         assert (out / name).stat().st_size > 20_000
     fit = Demands(Record(out)).fragility()
     space = "{http://openquake.org/xmlns/nrml/0.5}"
-    [function] = ElementTree.parse(out / "fragility.xml").iter(f"{space}fragilityFunction")  # fmt: skip
+    [function] = ElementTree.parse(out / "fragility.xml").iter(f"{space}fragilityFunction")
     imls, params = function
-    assert (function.get("id"), imls.get("imt"), params.get("ls")) == ("out", "PGA", "collapse")  # fmt: skip
+    assert (function.get("id"), imls.get("imt"), params.get("ls")) == ("out", "PGA", "collapse")
     assert float(imls.get("maxIML")) == LEVELS[-1]
     mean, deviation = (float(params.get(name)) for name in ("mean", "stddev"))
-    assert math.log1p((deviation / mean) ** 2) == pytest.approx(fit.dispersion.value**2, rel=1e-3)  # fmt: skip
-    assert mean**2 / math.hypot(mean, deviation) == pytest.approx(fit.median.value, rel=1e-3)  # fmt: skip
+    assert math.log1p((deviation / mean) ** 2) == pytest.approx(fit.dispersion.value**2, rel=1e-3)
+    assert mean**2 / math.hypot(mean, deviation) == pytest.approx(fit.median.value, rel=1e-3)
     assert report.main([str(out), "--limit", "30", "--no-pictures"]) == 0
     said = capsys.readouterr().out
     assert "shake 2 largest displacement of corner x [mm] reaches 30" in said
-    for words in (["--limit", "-1"], ["--limit", "1,2"], ["--demand", "0"], ["--cheap", "x"]):  # fmt: skip
+    for words in (["--limit", "-1"], ["--limit", "1,2"], ["--demand", "0"], ["--cheap", "x"]):
         assert report.main([str(out), *words]) == 2
     assert report.main([str(out), "--measure", "height_m"]) == 2
 
@@ -202,7 +202,7 @@ def test_a_spectral_acceleration_is_reached_by_every_record(tmp_path):
 
     for (motion, scale), level in zip(made.ida.rows(), LEVELS * 3):
         scaled = [scale * a for a in motion.values]
-        assert spectralAcceleration(scaled, motion.every, 0.5) == pytest.approx(9.81 * level)  # fmt: skip
+        assert spectralAcceleration(scaled, motion.every, 0.5) == pytest.approx(9.81 * level)
     assert made.describe()["ida"]["measure"] == "Sa_0.5s_g"
     assert Sa(0.5, 0.02).name == "Sa_0.5s_2%_g"
 
@@ -250,19 +250,25 @@ def test_records_of_one_name_are_named_apart(tmp_path):
         (dict(levels=[0.2, 0.2]), r"levels: \[0.2, 0.2\] must grow"),
         (dict(levels=[0.0, 0.2]), r"levels: .* 0.0 must be above 0"),
         (dict(records=[3]), "records: 3 must be the name of a file"),
-        (dict(measure="PGV"), 'measure \'PGV\' must be "PGA" or Sa'),
+        (dict(measure="PGV"), "measure 'PGV' must be \"PGA\" or Sa"),
         (dict(unit="furlong"), "unit 'furlong' must be one of m/s², g, cm/s²"),
         (dict(runs=12), "runs 12: there are as many as records times levels"),
         (dict(options={"record": "x"}), "record: it is what an incremental analysis varies"),
-        (dict(design="random", vary={"rate": [1]}, runs=1), 'levels: only a study with design="ida" has it'),
+        (
+            dict(design="random", vary={"rate": [1]}, runs=1),
+            'levels: only a study with design="ida" has it',
+        ),
         (dict(records=["none*.AT2"]), "records: no file .*none"),
         (dict(records=["none.AT2"]), "cannot read .*none.AT2: No such file"),
         (dict(records=["long.txt", "long.txt"]), "long.txt is given twice"),
         (dict(records=["flat.dat"]), "flat.dat: its PGA_g is 0, it must be above 0"),
         (dict(records=["weak.dat"]), "the peak of the record is 0.4, .* is it in g"),
-        (dict(records=["odd.dat", "flat.dat"]), "(?s)odd.dat, line 2: 'x' is not a number.*flat.dat"),
+        (
+            dict(records=["odd.dat", "flat.dat"]),
+            "(?s)odd.dat, line 2: 'x' is not a number.*flat.dat",
+        ),
     ],
-)  # fmt: skip
+)
 def test_a_plan_that_cannot_be_is_refused(tmp_path, changes, message):
     (tmp_path / "flat.dat").write_text("# unit: g\n0 0\n0.01 0\n")
     (tmp_path / "weak.dat").write_text("0 0\n0.01 0.4\n")
@@ -278,7 +284,7 @@ def test_the_unit_of_a_study_is_for_files_that_do_not_say_theirs(tmp_path):
 
 
 def test_rows_of_one_record_follow_each_other():
-    plan = {"levels": [1, 2, 3], "scales": None, "records": [{}, {}], "measure": "PGA_g"}  # fmt: skip
+    plan = {"levels": [1, 2, 3], "scales": None, "records": [{}, {}], "measure": "PGA_g"}
     chains = Chains({"runs": 6, "ida": plan})
     assert [*chains.lower(6)] == [4, 5] and [*chains.higher(4)] == [5, 6]
     assert [*chains.lower(4)] == [*chains.higher(3)] == []
@@ -296,7 +302,10 @@ def test_a_scene_that_is_not_shaken_gives_no_data(tmp_path):
 
 def test_a_row_refuses_a_record_that_was_cut_off(tmp_path):
     out = pathlib.Path(fake(tmp_path, [0.3, 0.6], ["a"], {}))
-    lines = ["description lean record scale", *(f"000{n} True 'records/a.txt' {n}.0" for n in (1, 2))]  # fmt: skip
+    lines = [
+        "description lean record scale",
+        *(f"000{n} True 'records/a.txt' {n}.0" for n in (1, 2)),
+    ]
     (out / "table.txt").write_text("\n".join(lines) + "\n")
     (out / "records").mkdir()
     (out / "records" / "a.txt").write_text("# unit: g\n# every: 0.01 s\n0\n0.5\n")
@@ -325,16 +334,18 @@ def fake(tmp_path, levels, names, found, shaken=True):
     runs = len(levels) * len(names)
     record = {"options": {}, "vary": {}, "runs": runs, "design": "ida", "ida": plan}
     (out / "study.json").write_text(json.dumps({"study": record, "script": "x.py"}))
-    lines = ["run,record,scale,PGA_g,status,collapsed,shake_2_largest_displacement_of_top_x_mm"]  # fmt: skip
+    lines = ["run,record,scale,PGA_g,status,collapsed,shake_2_largest_displacement_of_top_x_mm"]
     if not shaken:
         (out / "rows" / "0001").mkdir()
-        (out / "rows" / "0001" / "run.json").write_text(json.dumps({"interrupted": False, "collapsed": True, "stages": [{"stage": "settle"}]}))  # fmt: skip
+        (out / "rows" / "0001" / "run.json").write_text(
+            json.dumps({"interrupted": False, "collapsed": True, "stages": [{"stage": "settle"}]})
+        )
     for r, name in enumerate(names):
         fell = False
         for k, level in enumerate(levels):
             number = r * len(levels) + k + 1
             value = found.get(number)
-            end = "failed,," if value is None else f"ended,{value == inf},{-min(value, 1e4)}"  # fmt: skip
+            end = "failed,," if value is None else f"ended,{value == inf},{-min(value, 1e4)}"
             end = "above collapse,," if fell else end
             fell = fell or value == inf
             lines.append(f"{number:04d},{name},1.0,{level},{end}")
@@ -423,7 +434,9 @@ def test_quantiles_are_those_of_numpy_where_all_is_finite(values, share):
     if len(finite) == len(values):
         assert found == pytest.approx(np.quantile(values, share), rel=1e-9, abs=1e-9)
     elif share * (len(values) - 1) <= len(finite) - 1:
-        assert found == pytest.approx(np.interp(share * (len(values) - 1), range(len(finite)), finite))  # fmt: skip
+        assert found == pytest.approx(
+            np.interp(share * (len(values) - 1), range(len(finite)), finite)
+        )
     else:
         assert found == math.inf
 
@@ -442,5 +455,5 @@ def test_between_levels_a_demand_changes_evenly_and_above_the_last_it_is_unknown
 
 def test_the_usual_demand_is_that_of_the_largest_amount():
     values = {"shake_2_largest_x_mm": [-5.0, 1.0], "shake_2_largest_y_mm": [2.0, 3.0]}
-    record = SimpleNamespace(measures=values, numbers=lambda name: np.array(values[name]))  # fmt: skip
+    record = SimpleNamespace(measures=values, numbers=lambda name: np.array(values[name]))
     assert _usual(record) == "shake_2_largest_x_mm"

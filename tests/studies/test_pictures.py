@@ -200,7 +200,9 @@ def writeStudy(folder, rows, measures, curves=0):
         run = folder / "rows" / f"{n:04d}"
         run.mkdir(parents=True)
         if n <= curves:
-            (run / "curve.csv").write_text("displacement_mm,base_shear_kN\r\n0,0\r\n1,100\r\n3,80\r\n")  # fmt: skip
+            (run / "curve.csv").write_text(
+                "displacement_mm,base_shear_kN\r\n0,0\r\n1,100\r\n3,80\r\n"
+            )
     (folder / "study.csv").write_text("\n".join(map(",".join, lines)) + "\n")
     (folder / "times.csv").write_text("\n".join(times) + "\n")
     return str(folder)
@@ -220,7 +222,7 @@ def studies(tmp_path):
     few = {"failure_mode": modes, PEAKS: texts(expensive[:15])}
     return (
         writeStudy(tmp_path / "accurate", rows[:15], few, curves=15),
-        writeStudy(tmp_path / "fast", [rows[i] for i in order], {PEAKS: texts(cheap[order])}),  # fmt: skip
+        writeStudy(tmp_path / "fast", [rows[i] for i in order], {PEAKS: texts(cheap[order])}),
         expensive,
     )
 
@@ -262,7 +264,7 @@ def test_studies_of_which_it_cannot_be_reported_what_they_share_are_refused(stud
 def test_studies_of_other_walls_or_options_are_not_joined(studies):
     def shared(scene="wall_comp4", **more):
         """How many rows studies of a scene and another one share, of which the other has more options."""
-        described = (("wall_comp4", {"preset": "accurate"}), (scene, {"preset": "fast", **more}))  # fmt: skip
+        described = (("wall_comp4", {"preset": "accurate"}), (scene, {"preset": "fast", **more}))
         for directory, (name, options) in zip(studies, described):
             study = {"scene": name, "runs": 15, "options": options, "vary": {}}
             text = json.dumps({"study": study, "script": name + ".py"})

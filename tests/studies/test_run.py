@@ -82,7 +82,7 @@ def test_a_row_by_hand_gives_the_same(whole, tmp_path):
     words = batch.optionWords(batch.readTable(str(out / "table.txt"))[3])
     words.remove("--lean")
     runProgram(SMALL, *words, "--out", tmp_path / "r")
-    curves = [read(folder, "curve.csv") for folder in (tmp_path / "r", out / "rows" / "0002")]  # fmt: skip
+    curves = [read(folder, "curve.csv") for folder in (tmp_path / "r", out / "rows" / "0002")]
     assert curves[0] == curves[1]
     numbers, row = measure(str(tmp_path / "r")), table(out)[1]
     alike = [n for n in row.keys() & numbers.keys() if row[n] and n != "failure_mode"]
@@ -206,7 +206,10 @@ study = Study({SMALL!r}, runs=20, seed=1, options={{"until": 1, "dance": 3}}, va
     for sentence in (
         "dance: the scene has no such option",
         "color: the scene has no such option",
-        "bed.friction: normal(mean=0.43, cov=0.5) gives impossible values in 2.3 % of all rows: it must be at least 0",
+        (
+            "bed.friction: normal(mean=0.43, cov=0.5) gives impossible values in 2.3 % of all rows:"
+            " it must be at least 0"
+        ),
         "support.cohesion: support joints of the scene are linear elastic and ignore it",
         "bed.stickiness: a MasonryJoint has no such property",
         "no joint 'wall', there are ",
@@ -234,13 +237,20 @@ scene.finish()
 
 
 def test_a_scene_that_ignores_what_varies_is_refused(tmp_path):
-    text = "from masonry.study import *\nstudy = Study('scene.py', vary={'bed.friction': [0.4, 0.5]}, design='grid')"
+    text = (
+        "from masonry.study import *\nstudy = Study('scene.py', vary={'bed.friction': [0.4, 0.5]},"
+        " design='grid')"
+    )
     for scene, name, message in (
         (DEAF, "bed", "takes no options from the command line"),
-        (DEAF.replace("arguments=[]", "until=1"), "head", "head.friction: the scene has no head joint and would ignore it"),
+        (
+            DEAF.replace("arguments=[]", "until=1"),
+            "head",
+            "head.friction: the scene has no head joint and would ignore it",
+        ),
         ("print('hello')", "bed", "no masonry.Scene began a stage"),
         ("import masonry\n1 / 0", "bed", "ZeroDivisionError: division by zero"),
-    ):  # fmt: skip
+    ):
         (tmp_path / "scene.py").write_text(scene)
         assert message in refused(tmp_path, text.replace("bed", name))
 
@@ -297,10 +307,14 @@ def test_a_changed_scene_is_another_study(packed):
 @pytest.mark.parametrize(
     "pattern, text, message",
     [
-        (r"(?m)^(0003 .*) 0\.4\d+", r"\g<1> 0.5", r"Line 4 is\n  0003 .* 0.5 .*\nand the study draws\n  0003 .* 0\.4\d+"),
+        (
+            r"(?m)^(0003 .*) 0\.4\d+",
+            r"\g<1> 0.5",
+            r"Line 4 is\n  0003 .* 0.5 .*\nand the study draws\n  0003 .* 0\.4\d+",
+        ),
         (r"(?m)^0004 .*\n", "", r"Line 5 is\n  \nand the study draws\n  0004"),
     ],
-)  # fmt: skip
+)
 def test_a_table_that_no_study_draws_is_refused(packed, pattern, text, message):
     again, out = packed
     table, whole = out / "table.txt", read(out, "table.txt")
@@ -344,7 +358,7 @@ def test_a_row_whose_checkpoint_has_other_values_begins_again(packed):
     assert (row / "run.checkpoint.refused").exists()
 
 
-@pytest.mark.parametrize("name, kind", [("study.csv", "link"), ("rows/0001.log", "pipe")])  # fmt: skip
+@pytest.mark.parametrize("name, kind", [("study.csv", "link"), ("rows/0001.log", "pipe")])
 def test_a_folder_with_links_or_pipes_is_refused(packed, tmp_path, name, kind):
     again, out = packed
     other = tmp_path / "other"

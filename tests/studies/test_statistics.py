@@ -47,7 +47,9 @@ def test_intervals_of_a_quantile_have_it_at_least_as_often_as_they_say(share):
     assert found == pytest.approx(exact, abs=CHANCE)
 
 
-@pytest.mark.parametrize("n, low, high", [(6, 1, 6), (10, 2, 9), (20, 6, 15), (50, 18, 33), (100, 40, 61)])  # fmt: skip
+@pytest.mark.parametrize(
+    "n, low, high", [(6, 1, 6), (10, 2, 9), (20, 6, 15), (50, 18, 33), (100, 40, 61)]
+)
 def test_the_interval_of_a_median_has_the_ranks_of_the_sign_test(n, low, high):
     """Ranks of the 95 % interval as in tables of the sign test: fewer than 2.5 % lie beyond each, and one rank further in
     it would be more."""

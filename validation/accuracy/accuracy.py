@@ -33,7 +33,18 @@ KNOWN = {"short-clamped_silicate", "short-cantilever_granite", "slender-clamped_
 
 RESULTS = os.path.join(studies.RESULTS, "accuracy")
 #: As of walls.py, which needs YADE.
-SHAPES = ["squat-clamped", "squat-cantilever", "slender-clamped", "slender-cantilever", "short-clamped", "short-cantilever", "window-clamped", "window-cantilever", "long-low", "tall-narrow"]  # fmt: skip
+SHAPES = [
+    "squat-clamped",
+    "squat-cantilever",
+    "slender-clamped",
+    "slender-cantilever",
+    "short-clamped",
+    "short-cantilever",
+    "window-clamped",
+    "window-cantilever",
+    "long-low",
+    "tall-narrow",
+]
 MASONRY = ["silicate", "weak", "strong", "granite"]
 WALLS = [f"{shape}_{kind}" for shape, kind in itertools.product(SHAPES, MASONRY)]
 KINDS = {"asked": ["--accuracy", f"{PERCENT:g}"], "reference": REFERENCE}
@@ -59,11 +70,23 @@ def runOne(wall, kind, cores):
     out, (shape, masonry) = folder(wall, kind), wall.split("_")
     os.makedirs(os.path.dirname(out), exist_ok=True)
     script = os.path.join(HERE, "walls.py")
-    command = ["taskset", "-c", str(core), sys.executable, script, "--shape", shape, "--masonry", masonry]  # fmt: skip
+    command = [
+        "taskset",
+        "-c",
+        str(core),
+        sys.executable,
+        script,
+        "--shape",
+        shape,
+        "--masonry",
+        masonry,
+    ]
     command += ["--lean", "--checkpoint-every", "0", "--out", out, *KINDS[kind]]
     try:
         with open(out + ".log", "w") as log:
-            done = subprocess.run(command, stdout=log, stderr=log, env={**os.environ, "OMP_NUM_THREADS": "1"})  # fmt: skip
+            done = subprocess.run(
+                command, stdout=log, stderr=log, env={**os.environ, "OMP_NUM_THREADS": "1"}
+            )
     finally:
         cores.put(core)
     if done.returncode or not over(wall, kind):
@@ -116,10 +139,20 @@ def report(rows):
         covered = sum(r["covered"] for r in mine)
         mean = sum(r["half_width_percent"] for r in mine) / max(1, len(mine))
         parts.append(
-            f"- {quantity}: {covered} of {len(mine)} intervals contain the reference; mean half-width {mean:.2f} %"
+            f"- {quantity}: {covered} of {len(mine)} intervals contain the reference; mean"
+            f" half-width {mean:.2f} %"
         )
     parts.append(f"- aims: {100 * COVERED:g} % of them, and below {WIDTH:g} %\n")
-    heads = ["wall", "quantity", "value ± %", "reference off %", "covered", "fidelity", "s", "reference s"]  # fmt: skip
+    heads = [
+        "wall",
+        "quantity",
+        "value ± %",
+        "reference off %",
+        "covered",
+        "fidelity",
+        "s",
+        "reference s",
+    ]
     cells = [
         [
             r["wall"] + " (known)" * (r["wall"] in KNOWN),
@@ -138,7 +171,7 @@ def report(rows):
 
 def main():
     arguments = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    arguments.add_argument("--walls", nargs="+", choices=WALLS, default=WALLS, metavar="WALL")  # fmt: skip
+    arguments.add_argument("--walls", nargs="+", choices=WALLS, default=WALLS, metavar="WALL")
     arguments.add_argument("--jobs", type=int, default=len(os.sched_getaffinity(0)))
     arguments.add_argument("--show", action="store_true", help="run nothing")
     args = arguments.parse_args()

@@ -23,10 +23,20 @@ SHAPES = {
 #: Kinds of masonry: changes of the calcium-silicate joints, by property; None: granite with dry joints.
 MASONRY = {
     "silicate": {},
-    "weak": {"cohesion": 0.5, "tensileStrength": 0.5, "modeIFractureEnergy": 0.5, "modeIIFractureEnergy": 0.5},
-    "strong": {"cohesion": 1.5, "tensileStrength": 1.5, "modeIFractureEnergy": 2.5, "modeIIFractureEnergy": 2.5},
+    "weak": {
+        "cohesion": 0.5,
+        "tensileStrength": 0.5,
+        "modeIFractureEnergy": 0.5,
+        "modeIIFractureEnergy": 0.5,
+    },
+    "strong": {
+        "cohesion": 1.5,
+        "tensileStrength": 1.5,
+        "modeIFractureEnergy": 2.5,
+        "modeIIFractureEnergy": 2.5,
+    },
     "granite": None,
-}  # fmt: skip
+}
 LOADED = 0.4  # [m] of a cantilever: the push is so far above the wall
 
 
@@ -51,7 +61,7 @@ def main():
     wall = bricks.Wall(length, height, UNIT, openings=openings)
     if args.masonry == "granite":
         args.crack_surfaces = "off"
-    scene = Scene(f"{args.shape}_{args.masonry}", wall, material(args.masonry), arguments=args)  # fmt: skip
+    scene = Scene(f"{args.shape}_{args.masonry}", wall, material(args.masonry), arguments=args)
     scene.platen("bottom")
     above = dict(rotation="free", upTo=height + LOADED) if turns else {}
     top = scene.platen("top", recorded=height, drive="x", **above)

@@ -134,9 +134,7 @@ def volumetric():
         )
         high[2] = low[2] + 0.081
         O.bodies.append(
-            polyhedra_utils.polyhedra(
-                mat, v=[Vector3(*p) for p in bricks.boxCorners(low, high)]
-            )
+            polyhedra_utils.polyhedra(mat, v=[Vector3(*p) for p in bricks.boxCorners(low, high)])
         )
     O.engines = [
         ForceResetter(),
@@ -156,9 +154,7 @@ def volumetric():
 def mortar():
     """A sphere in the place of every half brick, one contact a joint, without a collider as our walls."""
     O.reset()
-    O.materials.append(
-        MortarMat(density=1800, young=4.8e9, poisson=0.2, neverDamage=True)
-    )
+    O.materials.append(MortarMat(density=1800, young=4.8e9, poisson=0.2, neverDamage=True))
     length, height = 0.11, 0.081
     for block in BLOCKS:
         centre = [(a + b) / 2 for a, b in zip(block.low, block.high)]
@@ -196,9 +192,7 @@ CASES = {
     "    cyclic law, at the end": lambda: plugin("--joints cyclic", until=12),
     "    local damping": lambda: plugin("--damping-kind local"),
     "    no crack surfaces": lambda: plugin("--crack-surfaces off"),
-    "    dilatancy": lambda: plugin(
-        "--set bed.dilatancy=0.1 --set bed.dilatancyDecay=100"
-    ),
+    "    dilatancy": lambda: plugin("--set bed.dilatancy=0.1 --set bed.dilatancyDecay=100"),
     "    three points": lambda: plugin("--points 3"),
     "    twelve points": lambda: plugin("--points 12"),
     "    YADE's loop and integrator": lambda: plugin(functors=True),
@@ -227,9 +221,7 @@ def compare():
         }
     base = results["rigid units"]
     print(f"\n{threads.allowed()} threads; ratios to the first")
-    print(
-        f"{'':42}{'µs a step':>12}{'ratio':>8}{'contacts':>10}{'ns each':>10}{'ratio':>8}"
-    )
+    print(f"{'':42}{'µs a step':>12}{'ratio':>8}{'contacts':>10}{'ns each':>10}{'ratio':>8}")
     for name, r in results.items():
         ratio, each = (r[k] / base[k] for k in ("step_us", "contact_ns"))
         print(
@@ -253,8 +245,8 @@ def wholePush(name, *words):
     step = 1e6 * sum(stage["seconds"] for stage in stages) / steps
     row = 1e6 * run["seconds"]["rows"] / rows
     print(
-        f"{name}, plugin {run['commit']}, threads {run['threads']}: {step:.1f} µs a step of {steps}, "
-        f"{row:.1f} µs a row of {rows}, which is {row / step:.2f} of a step"
+        f"{name}, plugin {run['commit']}, threads {run['threads']}: {step:.1f} µs a step of"
+        f" {steps}, {row:.1f} µs a row of {rows}, which is {row / step:.2f} of a step"
     )
 
 

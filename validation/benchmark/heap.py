@@ -30,9 +30,7 @@ BRICK = (0.22, 0.102, 0.081)
 KINDS = ("engine", "stock")
 RATIO, DENSITY, G = 0.4, 1800, 9.81
 WINDOW = 0.01  # of the time of the heap, between two rows [s]
-RESTS = (
-    1e-6  # kinetic energy of a heap at rest, over the potential energy that it has lost
-)
+RESTS = 1e-6  # kinetic energy of a heap at rest, over the potential energy that it has lost
 
 
 def options():
@@ -57,7 +55,7 @@ def corners(middle, turn, size):
     from yade import Vector3
 
     units = [(x, y, z) for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)]
-    return [middle + turn * Vector3(*(s * u for s, u in zip(size, unit))) for unit in units]  # fmt: skip
+    return [middle + turn * Vector3(*(s * u for s, u in zip(size, unit))) for unit in units]
 
 
 def places(count):
@@ -72,7 +70,9 @@ def places(count):
         turn = Quaternion(*(dice.gauss(0, 1) for _ in range(4)))
         turn.normalize()
         shift = [0.02 * dice.uniform(-1, 1) for _ in range(2)]
-        yield Vector3(0.27 * (column % 3) + shift[0], 0.27 * (column // 3) + shift[1], 0.14 + 0.27 * level), turn  # fmt: skip
+        yield Vector3(
+            0.27 * (column % 3) + shift[0], 0.27 * (column // 3) + shift[1], 0.14 + 0.27 * level
+        ), turn
 
 
 def build(given):
@@ -101,12 +101,17 @@ def build(given):
 
         # Two equal materials: kn is half of `young`, ks that times `poisson`.
         shear = RATIO * BRICK[0] * BRICK[1]
-        mat = PolyhedraMat(density=DENSITY, young=2 * given.stiffness, poisson=shear, frictionAngle=math.atan(given.friction))  # fmt: skip
+        mat = PolyhedraMat(
+            density=DENSITY,
+            young=2 * given.stiffness,
+            poisson=shear,
+            frictionAngle=math.atan(given.friction),
+        )
         O.materials.append(mat)
     else:
         mat = MasonryMat(density=DENSITY, young=4.8e9, poisson=0.16)
     slab = Vector3(0.27, 0.27, -0.2), Quaternion.Identity, (6, 6, 0.4)
-    for middle, turn, size in [slab, *((*place, BRICK) for place in places(given.blocks))]:  # fmt: skip
+    for middle, turn, size in [slab, *((*place, BRICK) for place in places(given.blocks))]:
         points = corners(middle, turn, size)
         if kind == "stock":
             O.bodies.append(polyhedra_utils.polyhedra(mat, v=points))
@@ -114,16 +119,25 @@ def build(given):
             addBlock(points, mat)
     O.bodies[0].state.blockedDOFs = "xyzXYZ"
     if kind == "engine":
-        energies = MasonryContacts(normalStiffness=given.stiffness, friction=given.friction, restitution=0.3, tangentialRatio=RATIO)  # fmt: skip
+        energies = MasonryContacts(
+            normalStiffness=given.stiffness,
+            friction=given.friction,
+            restitution=0.3,
+            tangentialRatio=RATIO,
+        )
         contacts = [energies]
     else:
         energies = Law2_PolyhedraGeom_PolyhedraPhys_Volumetric(traceEnergy=True)
         contacts = [
             InsertionSortCollider([Bo1_Polyhedra_Aabb()], verletDist=0),
-            InteractionLoop([Ig2_Polyhedra_Polyhedra_PolyhedraGeom()], [Ip2_PolyhedraMat_PolyhedraMat_PolyhedraPhys()], [energies]),
-        ]  # fmt: skip
+            InteractionLoop(
+                [Ig2_Polyhedra_Polyhedra_PolyhedraGeom()],
+                [Ip2_PolyhedraMat_PolyhedraMat_PolyhedraPhys()],
+                [energies],
+            ),
+        ]
     damping = given.damping if kind == "stock" else 0
-    newton = NewtonIntegrator(gravity=(0, 0, -G), damping=damping, exactAsphericalRot=True)  # fmt: skip
+    newton = NewtonIntegrator(gravity=(0, 0, -G), damping=damping, exactAsphericalRot=True)
     O.engines = [ForceResetter(), *contacts, newton]
     O.trackEnergy = kind == "stock"
     return energies
@@ -148,24 +162,32 @@ class Heap:
         for b in self.O.bodies:
             s = b.state
             spin = s.ori.conjugate() * s.angVel
-            sum_ += 0.5 * s.mass * s.vel.squaredNorm() + 0.5 * sum(i * w * w for i, w in zip(s.inertia, spin))  # fmt: skip
+            sum_ += 0.5 * s.mass * s.vel.squaredNorm() + 0.5 * sum(
+                i * w * w for i, w in zip(s.inertia, spin)
+            )
         return sum_
 
     def touching(self):
-        return self.energies.touching() if self.given.child == "engine" else sum(1 for _ in self.O.interactions)  # fmt: skip
+        return (
+            self.energies.touching()
+            if self.given.child == "engine"
+            else sum(1 for _ in self.O.interactions)
+        )
 
     def lost(self):
         """Energy that friction and damping took [J]."""
         law = self.energies
         if self.given.child == "engine":
             return law.lostInFriction + law.lostInDamping
-        return dict(self.O.energy.items()).get("nonviscDamp", 0) + law.plasticDissipation()  # fmt: skip
+        return dict(self.O.energy.items()).get("nonviscDamp", 0) + law.plasticDissipation()
 
     def sunk(self):
         """How far the lowest corner is below the slab's face, and the least distance of two middles [m]."""
         bodies = [b for b in self.O.bodies if b.id > 0]
         low = min((b.state.pos + b.state.ori * v)[2] for b in bodies for v in b.shape.v)
-        near = min((a.state.pos - b.state.pos).norm() for n, a in enumerate(bodies) for b in bodies[:n])  # fmt: skip
+        near = min(
+            (a.state.pos - b.state.pos).norm() for n, a in enumerate(bodies) for b in bodies[:n]
+        )
         return max(0.0, -low), near
 
     def advance(self, until):
@@ -179,9 +201,19 @@ class Heap:
         self.took += took
         self.contacts += 0.5 * (before + self.touching()) * steps
         depth, near = self.sunk()
-        return dict(time=O.time, steps=O.iter, took=self.took, contacts=self.contacts, touching=self.touching(),
-                    kinetic=self.kinetic(), fallen=self.begin - self.height(), lost=self.lost(), depth=depth,
-                    near=near, dt=O.dt)  # fmt: skip
+        return dict(
+            time=O.time,
+            steps=O.iter,
+            took=self.took,
+            contacts=self.contacts,
+            touching=self.touching(),
+            kinetic=self.kinetic(),
+            fallen=self.begin - self.height(),
+            lost=self.lost(),
+            depth=depth,
+            near=near,
+            dt=O.dt,
+        )
 
 
 def child(given):
@@ -208,8 +240,7 @@ def child(given):
 class Process:
     def __init__(self, kind, given):
         words = [
-            f"--{k}={getattr(given, k)}"
-            for k in ("blocks", "stiffness", "damping", "friction")
+            f"--{k}={getattr(given, k)}" for k in ("blocks", "stiffness", "damping", "friction")
         ]
         command = [
             "yade",
@@ -222,7 +253,13 @@ class Process:
             kind,
         ]
         self.kind, self.rows, self.ended = kind, [], False
-        self.process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL if kind == "stock" else None, text=True)  # fmt: skip
+        self.process = subprocess.Popen(
+            command,
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.DEVNULL if kind == "stock" else None,
+            text=True,
+        )
         self.limit = self.answer().get("limit")
 
     def answer(self):
@@ -243,7 +280,11 @@ def main(given):
     limits = [h.limit for h in heaps if h.limit]
     heaps = [h for h in heaps if not h.ended]
     for h in heaps:
-        step = given.stock_step if h.kind == "stock" and given.stock_step else given.step * min(limits, default=1e-5)  # fmt: skip
+        step = (
+            given.stock_step
+            if h.kind == "stock" and given.stock_step
+            else given.step * min(limits, default=1e-5)
+        )
         h.say(f"dt {step!r}")
     ends = time.monotonic() + 60 * given.minutes
     for n in range(1, round(given.seconds / WINDOW) + 1):
@@ -263,11 +304,22 @@ def main(given):
 
 def table(heaps, given, limit):
     print(
-        f"{given.blocks} bricks, {given.stiffness:g} Pa/m, limit of the plugin's time step {limit:.3g} s"
+        f"{given.blocks} bricks, {given.stiffness:g} Pa/m, limit of the plugin's time step"
+        f" {limit:.3g} s"
     )
-    names = ["time reached, s", "time step, us", "a step, us", "a contact and step, us", "a second of the heap, s",
-             "pairs that touch at the end", "error of the energy, %", "potential energy lost, J", "at rest after, s",
-             "deepest corner below the slab, mm", "least distance of two middles, mm"]  # fmt: skip
+    names = [
+        "time reached, s",
+        "time step, us",
+        "a step, us",
+        "a contact and step, us",
+        "a second of the heap, s",
+        "pairs that touch at the end",
+        "error of the energy, %",
+        "potential energy lost, J",
+        "at rest after, s",
+        "deepest corner below the slab, mm",
+        "least distance of two middles, mm",
+    ]
     columns = []
     for h in heaps:
         last = h.rows[-1]
@@ -276,13 +328,22 @@ def table(heaps, given, limit):
             if row["kinetic"] > RESTS * max(row["fallen"], 1e-9):
                 break
             rest = row["time"]
-        error = 100 * (last["kinetic"] + last["lost"] - last["fallen"]) / last["fallen"]  # fmt: skip
-        columns.append([
-            f"{last['time']:.2f}", f"{1e6 * last['dt']:.1f}", f"{1e6 * last['took'] / last['steps']:.1f}",
-            f"{1e6 * last['took'] / last['contacts']:.2f}" if last["contacts"] else "-", f"{last['took'] / last['time']:.2f}",
-            last["touching"], f"{error:.3f}", f"{last['fallen']:.1f}", f"{rest:.2f}" if rest else "not yet",
-            f"{1e3 * max(r['depth'] for r in h.rows):.1f}", f"{1e3 * min(r['near'] for r in h.rows):.1f}",
-        ])  # fmt: skip
+        error = 100 * (last["kinetic"] + last["lost"] - last["fallen"]) / last["fallen"]
+        columns.append(
+            [
+                f"{last['time']:.2f}",
+                f"{1e6 * last['dt']:.1f}",
+                f"{1e6 * last['took'] / last['steps']:.1f}",
+                f"{1e6 * last['took'] / last['contacts']:.2f}" if last["contacts"] else "-",
+                f"{last['took'] / last['time']:.2f}",
+                last["touching"],
+                f"{error:.3f}",
+                f"{last['fallen']:.1f}",
+                f"{rest:.2f}" if rest else "not yet",
+                f"{1e3 * max(r['depth'] for r in h.rows):.1f}",
+                f"{1e3 * min(r['near'] for r in h.rows):.1f}",
+            ]
+        )
     print("| |", " | ".join(h.kind for h in heaps), "|")
     print("|---" * (len(heaps) + 1) + "|")
     for n, name in enumerate(names):

@@ -75,12 +75,11 @@ if __name__ == "__main__":
     program = build()
     results = {"plain program": [], "plugin": []}
     for _ in range(args.rounds):
-        results["plain program"].append(
-            plain(program, args.until, args.rate, args.plane)
-        )
+        results["plain program"].append(plain(program, args.until, args.rate, args.plane))
         results["plugin"].append(plugin(args.until, args.rate, wanted))
     for name, rounds in results.items():
         steps, seconds, peak, work = min(rounds, key=lambda r: r[1] / r[0])
         print(
-            f"{name:14}{1e6 * seconds / steps:8.1f} µs a step of {steps}, {seconds:.2f} s; peak {peak:.2f} kN, work {work:.1f} J"
+            f"{name:14}{1e6 * seconds / steps:8.1f} µs a step of {steps}, {seconds:.2f} s; peak"
+            f" {peak:.2f} kN, work {work:.1f} J"
         )

@@ -49,7 +49,9 @@ def ofPlain(folder, seconds, said):
 
 
 PLAIN = [*PYTHON, "validation/benchmark/plain.py", "--rounds", "1"]
-IMPORT = "import time, masonry, yade; t = time.time(); from masonry import Scene; print(time.time() - t)"
+IMPORT = (
+    "import time, masonry, yade; t = time.time(); from masonry import Scene; print(time.time() - t)"
+)
 #: Rows: the command, and a function of the folder of results, the seconds of the run, and what it said that gives number and unit.
 ROWS = {
     "fast": ([*YADE, COMP4, "--preset", "fast"], ofRun),
@@ -63,10 +65,21 @@ ROWS = {
     "house": ([*ONE, "scripts/house.py", "--lean"], ofSteps),
     "panel": ([*ONE, "scripts/panel.py", "--lean"], ofSteps),
     "gable": ([*ONE, "scripts/falling_gable.py", "--lean"], ofSteps),
-    "shaken": ([*ONE, "validation/benchmark/shaken_facade.py", "--lean", "--preset", "fast", "--seconds", "2"], ofSteps),
+    "shaken": (
+        [
+            *ONE,
+            "validation/benchmark/shaken_facade.py",
+            "--lean",
+            "--preset",
+            "fast",
+            "--seconds",
+            "2",
+        ],
+        ofSteps,
+    ),
     "wide": ([*YADE, "validation/benchmark/benchmark.py", "--wide", "224", "224"], ofWide),
     "import": ([*PYTHON, "-c", IMPORT], ofImport),
-}  # fmt: skip
+}
 
 
 def measured(row, site):
@@ -79,12 +92,12 @@ def measured(row, site):
     with tempfile.TemporaryDirectory() as folder:
         words = [*command, "--out", folder] if numberOf in (ofSteps, ofRun) else command
         began = time.monotonic()
-        run = subprocess.run(words, cwd=ROOT, env={**os.environ, **paths}, capture_output=True, text=True)  # fmt: skip
+        run = subprocess.run(
+            words, cwd=ROOT, env={**os.environ, **paths}, capture_output=True, text=True
+        )
         seconds = time.monotonic() - began
         try:
-            return (
-                numberOf(folder, seconds, run.stdout) if run.returncode == 0 else None
-            )
+            return numberOf(folder, seconds, run.stdout) if run.returncode == 0 else None
         except (OSError, TypeError, ValueError):
             return None
 

@@ -52,7 +52,9 @@ def child(halfUnits, courses):
         loops += time_(new) - time_(old)
         many += (new["steps"] - old["steps"]) * (new["threads"] > 1)
     step = 1e6 * took / count
-    result = dict(step=step, best=best, outside=step - loops / count, bodies=len(O.bodies), many=many / count)  # fmt: skip
+    result = dict(
+        step=step, best=best, outside=step - loops / count, bodies=len(O.bodies), many=many / count
+    )
     print("RESULT " + json.dumps(result), flush=True)
     os._exit(0)  # the scene has no end that would be of use
 
@@ -74,8 +76,10 @@ def table(rounds):
         quickest = [min(r[n]["best"] for r in results) for n in (0, 1)]
         middle = min(results, key=lambda r: abs(r[1]["step"] - two))[1]
         print(
-            f"{size:18}{one:10.1f}{two:10.1f}{one / two:8.2f}{quickest[0] / quickest[1]:8.2f}{100 * middle['many']:8.0f} %"
-            f"{middle['outside']:10.1f} µs, {100 * middle['outside'] / one:.1f} %",
+            (
+                f"{size:18}{one:10.1f}{two:10.1f}{one / two:8.2f}{quickest[0] / quickest[1]:8.2f}{100 * middle['many']:8.0f} %{middle['outside']:10.1f} µs,"
+                f" {100 * middle['outside'] / one:.1f} %"
+            ),
             flush=True,
         )
 
@@ -84,7 +88,10 @@ def main(rounds):
     cores = os.cpu_count()
     for busy in (0, cores):
         print(f"\n{cores} cores, {busy} of them used by other programs")
-        print(f"{'':18}{'one, µs':>10}{'two, µs':>10}{'gain':>8}{'best':>8}{'on two':>10}   outside the loops, of a step on one")  # fmt: skip
+        print(
+            f"{'':18}{'one, µs':>10}{'two, µs':>10}{'gain':>8}{'best':>8}{'on two':>10}   outside"
+            " the loops, of a step on one"
+        )
         others = [subprocess.Popen([sys.executable, "-c", BUSY]) for _ in range(busy)]
         try:
             table(rounds)

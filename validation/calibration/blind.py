@@ -76,15 +76,24 @@ def found(case, jobs):
     for path in glob.glob(os.path.join(PLACE, "specimen*_check*")):
         shutil.rmtree(path)  # of another case; the rounds are the same in all
     specimens = [
-        Specimen("couplet", os.path.join(PLACE, f"case{case}_{n}.csv:d:tau"), ERROR, CURVE, POINTS, options(stress))
+        Specimen(
+            "couplet",
+            os.path.join(PLACE, f"case{case}_{n}.csv:d:tau"),
+            ERROR,
+            CURVE,
+            POINTS,
+            options(stress),
+        )
         for n, stress in enumerate(STRESSES, 1)
-    ]  # fmt: skip
+    ]
     return Calibration(specimens, RANGES, runs=RUNS).find(PLACE, HERE, jobs)
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--jobs", type=int, default=len(os.sched_getaffinity(0)), help="runs at a time")  # fmt: skip
+    parser.add_argument(
+        "--jobs", type=int, default=len(os.sched_getaffinity(0)), help="runs at a time"
+    )
     jobs = parser.parse_args().jobs
     os.makedirs(PLACE, exist_ok=True)
     hidden, lines, inside, known = tested(jobs), [], [], []
@@ -100,9 +109,7 @@ def main():
         follows = not any("does not follow" in doubt for doubt in one.doubts())
         lines.append([case, *cells, "yes" if follows else "no"])
         if case == 1:
-            shutil.copy(
-                os.path.join(PLACE, "calibration.png"), os.path.join(HERE, "case1.png")
-            )
+            shutil.copy(os.path.join(PLACE, "calibration.png"), os.path.join(HERE, "case1.png"))
     heads = [
         "case",
         *(f"{name.removeprefix('bed.')}" for name in RANGES),
@@ -110,11 +117,11 @@ def main():
     ]
     counts = np.sum(inside, axis=0)
     lines.append(["in the interval", *(f"{n} of {CASES}" for n in counts), ""])
-    lines.append(
-        ["known from the test", *(f"{n} of {CASES}" for n in np.sum(known, axis=0)), ""]
-    )
+    lines.append(["known from the test", *(f"{n} of {CASES}" for n in np.sum(known, axis=0)), ""])
     text = table(heads, lines)
-    text += f"\n\nAll properties of a case at once: {int(np.all(inside, axis=1).sum())} of {CASES}.\n"
+    text += (
+        f"\n\nAll properties of a case at once: {int(np.all(inside, axis=1).sum())} of {CASES}.\n"
+    )
     print(text)
     with open(os.path.join(HERE, "table.md"), "w") as file:
         file.write(text)

@@ -155,7 +155,10 @@ def deflection(cells, length=0.4, section=0.05):
     return bent + 1.2 * load * length**2 / (2 * area * E / 2), moved
 
 
-STIFF = "zones of constant strain are too stiff in bending; the excess falls to a third with half their size"
+STIFF = (
+    "zones of constant strain are too stiff in bending; the excess falls to a third with half their"
+    " size"
+)
 
 
 @case(
@@ -204,9 +207,7 @@ def patch(deformable, force=(3.0, -2.0, -60.0), where=(0.02, -0.01)):
     O.reset()
     length, thickness, height = BRICK
     turn = Quaternion(Vector3(1, 2, 3).normalized(), 0.7)
-    put = lambda low, high, m: addBlock(
-        [turn * Vector3(*c) for c in corners(low, high)], m
-    )
+    put = lambda low, high, m: addBlock([turn * Vector3(*c) for c in corners(low, high)], m)
     base = put((0, 0, -height), (length, thickness, 0), mat())
     unit = MasonryMat(young=4.8e10, poisson=0.0, density=RHO)
     brick = put((0, 0, 0), (length, thickness, height), unit if deformable else mat())
@@ -217,9 +218,7 @@ def patch(deformable, force=(3.0, -2.0, -60.0), where=(0.02, -0.01)):
     load = MasonryLoad(body=top, point=turn * point)
     zones = None
     if deformable:
-        zones = MasonryZones(
-            bodies=[brick], divisions=[2, 1, 1], damping=0.5, dampingKind="local"
-        )
+        zones = MasonryZones(bodies=[brick], divisions=[2, 1, 1], damping=0.5, dampingKind="local")
     engines(
         [elastic(1e10)],
         loads=[load],
@@ -237,9 +236,7 @@ def patch(deformable, force=(3.0, -2.0, -60.0), where=(0.02, -0.01)):
         O.step()
     joint = next(i for i in made if base in (i.id1, i.id2))
     area = length * thickness
-    bent = (point - middle).cross(
-        Vector3(*force)
-    )  # moment about the middle of the joint
+    bent = (point - middle).cross(Vector3(*force))  # moment about the middle of the joint
     about = bent[0] / (area * thickness**2 / 12), -bent[1] / (area * length**2 / 12)
     errors, sizes = [], []
     back = turn.conjugate()
@@ -285,9 +282,7 @@ def together(seed, functors=False):
     turn.normalize()
     x, y, z = BRICK
     unit = MasonryMat(young=E, poisson=NU, density=RHO)
-    put = lambda low, high: addBlock(
-        [turn * Vector3(*c) for c in corners(low, high)], unit
-    )
+    put = lambda low, high: addBlock([turn * Vector3(*c) for c in corners(low, high)], unit)
     units = [put((0, 0, 0), (x, y, z)), put((0, 0, z), (x / 2, y, 2 * z))]
     zones = MasonryZones(bodies=units, divisions=[2, 1, 1], damping=0)
     around = dict(gravity=(0, 0, 0), damping=0, rows=2, functors=functors)
@@ -324,9 +319,7 @@ def frequency(cells, length=0.4, section=0.05):
     base = addBlock(corners((0, 0, -section), (section, section, 0)), mat())
     bar = addBlock(corners((0, 0, 0), (section, section, length)), unit)
     fix(base)
-    zones = MasonryZones(
-        bodies=[bar], divisions=[1, 1, cells], damping=0, gravity=(0, 0, 0)
-    )
+    zones = MasonryZones(bodies=[bar], divisions=[1, 1, cells], damping=0, gravity=(0, 0, 0))
     engines([elastic(1e16)], gravity=(0, 0, 0), damping=0, zones=zones)
     connect()
     O.dt = min(0.9 * criticalTimeStep()[0], 1e-7)  # so that the error is the zones'

@@ -188,9 +188,7 @@ def newmark_short(quick):
 B, H = 0.25, 1.0  # of the rocking block [m]
 
 
-def standing(
-    share, stiffness=1e10, size=(B, H), fraction=0.4, restitution=1.0, points=None
-):
+def standing(share, stiffness=1e10, size=(B, H), fraction=0.4, restitution=1.0, points=None):
     """A free block on a fixed one, turned about its edge by a share of its slenderness angle; returns its state."""
     O.reset()
     width, height = size
@@ -225,13 +223,7 @@ def quarter(share, stiffness=1e10):
     alpha, p = math.atan2(B, H), math.sqrt(0.75 * G / (0.5 * math.hypot(B, H)))
     from0 = lambda lean: math.cos(alpha - share * alpha) - math.cos(alpha - lean)
     # with lean = θ0·(1 − x²) the integrand has no pole where the block is at rest
-    slow = (
-        lambda x: share
-        * alpha
-        * 2
-        * x
-        / math.sqrt(2 * from0(share * alpha * (1 - x * x)))
-    )
+    slow = lambda x: share * alpha * 2 * x / math.sqrt(2 * from0(share * alpha * (1 - x * x)))
     expected = quad(slow, 0, 1)[0] / p
     state = standing(share, stiffness)
     last = angle(state)
@@ -242,16 +234,12 @@ def quarter(share, stiffness=1e10):
     return expected, O.time - O.dt * now / (now - last)
 
 
-@case(
-    ROCK, "quarter period [s], 0.25 × 1 m, θ0/α = 0.25", HOUSNER, aim=0.005, quick=True
-)
+@case(ROCK, "quarter period [s], 0.25 × 1 m, θ0/α = 0.25", HOUSNER, aim=0.005, quick=True)
 def rocking_25(quick):
     return quarter(0.25)
 
 
-@case(
-    ROCK, "quarter period [s], 0.25 × 1 m, θ0/α = 0.5", HOUSNER, aim=0.005, quick=True
-)
+@case(ROCK, "quarter period [s], 0.25 × 1 m, θ0/α = 0.5", HOUSNER, aim=0.005, quick=True)
 def rocking_50(quick):
     return quarter(0.5)
 
@@ -283,7 +271,10 @@ RIGID = "1 − 1.5·sin²α: rigid blocks, conserved angular momentum; Housner 1
 
 def impact(name, size, aim=0.02, points=3, of=0.0):
     """A case of the restitution at the first impact, with joints that have this restitution and as many points."""
-    what = f"restitution at the first impact, {size[0]} × {size[1]:g} m, {points} points, joint restitution {of:g}"
+    what = (
+        f"restitution at the first impact, {size[0]} × {size[1]:g} m, {points} points, joint"
+        f" restitution {of:g}"
+    )
     measure = lambda quick: restitution(size, restitution=of, points=points)
     measure.__name__ = name
     case(ROCK, what, RIGID, aim=aim, quick=True)(measure)
@@ -318,7 +309,9 @@ def housnerFalls(pulse, lasts, kept):
     y = [-1e-9, 0.0]
     while t < end:
         meets.direction = -math.copysign(1.0, y[0])
-        found = solve_ivp(rates, (t, end), y, events=(meets, over), max_step=0.002, rtol=1e-8, atol=1e-10)  # fmt: skip
+        found = solve_ivp(
+            rates, (t, end), y, events=(meets, over), max_step=0.002, rtol=1e-8, atol=1e-10
+        )
         if len(found.t_events[1]):
             return True
         spin = kept * found.y[1][-1]
@@ -355,7 +348,7 @@ def overturning(wave, lasts, of, quick):
     low, high = 1.01 * B / H, 2.0
     while high - low > 1e-4:
         middle = 0.5 * (low + high)
-        low, high = (low, middle) if housnerFalls(pulse(middle), lasts, kept) else (middle, high)  # fmt: skip
+        low, high = (low, middle) if housnerFalls(pulse(middle), lasts, kept) else (middle, high)
     stays = lambda a: not turnsOver(pulse(a), lasts, of)
     return low, between(stays, low, 0.02, quick, spread=0.1)
 
@@ -374,7 +367,7 @@ def overturning_short(quick):
     return overturning(SINE, 0.25, 0.0, quick)
 
 
-@case(ROCK, "half sine of 0.3 s that turns it over, without an impact [g]", EQUATION, aim=0.01)  # fmt: skip
+@case(ROCK, "half sine of 0.3 s that turns it over, without an impact [g]", EQUATION, aim=0.01)
 def overturning_half(quick):
     return overturning(HALF, 0.3, 0.0, quick)
 
@@ -391,9 +384,7 @@ def overturning_elastic(quick):
 # -- damping and work -------------------------------------------------------------------------------------------------
 
 
-def oscillator(
-    joint=None, blocked="xyXYZ", gravity=(0, 0, 0), zones=False, inPlane=False
-):
+def oscillator(joint=None, blocked="xyXYZ", gravity=(0, 0, 0), zones=False, inPlane=False):
     """A brick on a fixed one, with its angular frequency along z [1/s]."""
     O.reset()
     unit = MasonryMat(density=1800, young=4.8e9, poisson=0.16)
@@ -404,9 +395,7 @@ def oscillator(
     if not zones:
         O.bodies[1].state.blockedDOFs = blocked
     units = MasonryZones(bodies=[1], damping=0) if zones else None
-    engines(
-        [joint or MasonryJoint(elastic=True)], damping=0, gravity=gravity, zones=units
-    )
+    engines([joint or MasonryJoint(elastic=True)], damping=0, gravity=gravity, zones=units)
     (made,) = connect()
     stiffness = made.phys.normalStiffness * UNIT[0] * UNIT[1]
     return math.sqrt(stiffness / O.bodies[1].state.mass)
@@ -465,9 +454,7 @@ def decrement_stiffness(quick):
     return damped("stiffness", 0.05)
 
 
-@case(
-    DAMPED, "period of a brick on a joint [ms]", "2π·√(m/(kn·A))", aim=0.005, quick=True
-)
+@case(DAMPED, "period of a brick on a joint [ms]", "2π·√(m/(kn·A))", aim=0.005, quick=True)
 def period(quick):
     omega = oscillator(inPlane=True)
     O.dt = 2 * math.pi / omega / 400

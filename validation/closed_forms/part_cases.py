@@ -44,7 +44,10 @@ def tie_rocking_block(quick):
 @case(
     PARTS,
     "tie force [N] that holds an arch of 40 voussoirs on a support that can slide, t/R = 0.109",
-    "Cocchetti and Rizzi 2020: 0.621772 weight per length × R at the least thickness, many voussoirs",
+    (
+        "Cocchetti and Rizzi 2020: 0.621772 weight per length × R at the least thickness, many"
+        " voussoirs"
+    ),
     aim=0.01,
     quick=True,
 )
@@ -108,7 +111,9 @@ def sag(pieces, held, loaded):
 
 def bent(span, bending, shearing):
     """F l³ / (bending E I) + F l / (shearing 5/6 G A) for a force of 1 kN [m]."""
-    return 1e3 * (span**3 / (bending * YOUNG * INERTIA) + span / (shearing * 5 / 6 * SHEAR * AREA))  # fmt: skip
+    return 1e3 * (
+        span**3 / (bending * YOUNG * INERTIA) + span / (shearing * 5 / 6 * SHEAR * AREA)
+    )
 
 
 @case(PARTS, "sag [m] of a cantilever, Beam of 33 pieces", BEAM, aim=0.01, quick=True)
@@ -117,7 +122,7 @@ def beam_cantilever(quick):
     return bent(span, 3, 1), found
 
 
-@case(PARTS, "sag [m] of a simply supported beam, 33 pieces", BEAM, aim=0.01, quick=True)  # fmt: skip
+@case(PARTS, "sag [m] of a simply supported beam, 33 pieces", BEAM, aim=0.01, quick=True)
 def beam_supported(quick):
     found, span = sag(33, [(0, "xz"), (32, "z")], 16)
     return bent(span, 48, 4), found
@@ -129,7 +134,7 @@ def beam_supported_9(quick):
     return bent(span, 48, 4), found
 
 
-@case(PARTS, "sag [m] of a beam with fixed ends, 33 pieces", BEAM, aim=0.01, quick=True)  # fmt: skip
+@case(PARTS, "sag [m] of a beam with fixed ends, 33 pieces", BEAM, aim=0.01, quick=True)
 def beam_fixed(quick):
     found, span = sag(33, [(0, "xyzXYZ"), (32, "xyzXYZ")], 16)
     return bent(span, 192, 4), found
@@ -137,7 +142,10 @@ def beam_fixed(quick):
 
 @case(
     PARTS,
-    "share of the stiffer of two shear walls of 3 and 1 MN/m, floor with G t = 2 MN/m, force at a third",
+    (
+        "share of the stiffer of two shear walls of 3 and 1 MN/m, floor with G t = 2 MN/m, force at"
+        " a third"
+    ),
     STATICS + ": springs in series and side by side",
     aim=0.01,
     quick=True,
@@ -168,7 +176,7 @@ def floor_shares(quick):
 def floor_slips(quick):
     friction = 0.3
     floor = bricks.Floor((0, 0, 0.5), 2.0, 1.0, 0.2, strips=4)
-    walls = bricks.block((0, 0, 0), (0.2, 1.0, 0.5)) + bricks.block((1.8, 0, 0), (2.0, 1.0, 0.5))  # fmt: skip
+    walls = bricks.block((0, 0, 0), (0.2, 1.0, 0.5)) + bricks.block((1.8, 0, 0), (2.0, 1.0, 0.5))
     stones = materials.dry(5.0).withFloor(floor, 1e7, mass=200, bearing=friction)
     with sceneOf(walls + floor, stones, plane=False) as s:
         for n in (0, 1):
@@ -200,7 +208,7 @@ def overlay_moment(quick):
         moved = np.array(s.results.column("displacement_mm"))
         force = np.array(s.results.column("top_shear_kN"))
         swings = force[moved > 1]  # about its mean
-        return weight * depth / 2 + strength * width * depth, 1e3 * swings.mean() * height  # fmt: skip
+        return weight * depth / 2 + strength * width * depth, 1e3 * swings.mean() * height
 
 
 @case(
@@ -212,8 +220,10 @@ def overlay_moment(quick):
 )
 def portal(quick):
     span, height, deep, pieces = 3.0, 2.0, 0.05, 16
-    column = bricks.Beam((0, 0, 0), height, WIDE, deep, pieces=pieces, name="frame").turned(-90, "y")  # fmt: skip
-    beam = bricks.Beam((-deep, 0, height), span + deep, WIDE, deep, pieces=61, name="frame")  # fmt: skip
+    column = bricks.Beam((0, 0, 0), height, WIDE, deep, pieces=pieces, name="frame").turned(
+        -90, "y"
+    )
+    beam = bricks.Beam((-deep, 0, height), span + deep, WIDE, deep, pieces=61, name="frame")
     frame = column + column.moved(dx=span) + beam
     stones = materials.dry(0.6).withBeam(frame, young=YOUNG, density=500)
     with sceneOf(frame, stones, gravity=0.0) as s:
@@ -232,13 +242,15 @@ def portal(quick):
 @case(
     PARTS,
     "stiffness [N/m] of a hinged frame with an infill that touches it without bond, μ = 0",
-    STATICS + ": t h / 12 · k1 k2 L³ / (k1 h³ + k2 L³), infill against columns (k1) and beams (k2) over half a side each",
+    STATICS
+    + ": t h / 12 · k1 k2 L³ / (k1 h³ + k2 L³), infill against columns (k1) and beams (k2) over"
+    " half a side each",
     aim=0.01,
     quick=True,
-)  # fmt: skip
+)
 def infill(quick):
     length, height, thick, bar, force = 2.0, 1.5, 0.2, 0.2, 1e3
-    block = lambda low, high: bricks.block((low[0], 0, low[1]), (high[0], thick, high[1]))  # fmt: skip
+    block = lambda low, high: bricks.block((low[0], 0, low[1]), (high[0], thick, high[1]))
     panel = block((0, 0), (length, height))
     beams = block((0, -bar), (length, 0)) + block((0, height), (length, height + bar))
     columns = block((-bar, 0), (0, height)) + block((length, 0), (length + bar, height))
@@ -252,7 +264,11 @@ def infill(quick):
         s.settle(longest=20)
         found = {}
         for one in s.model.interactions:
-            found[sum(body in s.model.ids[1:3] for body in (one.id1, one.id2))] = one.phys.normalStiffness  # fmt: skip
+            found[
+                sum(body in s.model.ids[1:3] for body in (one.id1, one.id2))
+            ] = one.phys.normalStiffness
         k1, k2 = found[0], found[1]
-        expected = thick * height / 12 * k1 * k2 * length**3 / (k1 * height**3 + k2 * length**3)  # fmt: skip
+        expected = (
+            thick * height / 12 * k1 * k2 * length**3 / (k1 * height**3 + k2 * length**3)
+        )
         return expected, force / s.model.supports.moved(top)[0][0]

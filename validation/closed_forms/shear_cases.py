@@ -77,9 +77,7 @@ class Units(Structure):
         O.reset()
         unit, hard = MasonryMat(young=E, poisson=NU, density=RHO), mat()
         feet = [n for n, b in enumerate(blocks) if b.kind == "block"]
-        bodies = [
-            addBlock(b.corners, hard if b.kind == "block" else unit) for b in blocks
-        ]
+        bodies = [addBlock(b.corners, hard if b.kind == "block" else unit) for b in blocks]
         own = lambda n: 6 * n + np.arange(6)
         self.blocks, self.sides = blocks, {"feet": np.ravel([own(n) for n in feet])}
         for side in sides:
@@ -107,9 +105,7 @@ class Units(Structure):
         self.K, self.M = csr_matrix(np.array(rows)), np.array(masses)
 
     def forceAt(self, place, force):
-        found, middles = np.zeros(len(self.M)), [
-            np.mean(b.corners, 0) for b in self.blocks
-        ]
+        found, middles = np.zeros(len(self.M)), [np.mean(b.corners, 0) for b in self.blocks]
         n = int(np.argmin(np.abs(middles - np.array(place)).sum(1)))
         arm = np.subtract(place, O.bodies[n].state.pos)
         found[6 * n : 6 * n + 6] = [*force, *np.cross(arm, force)]
@@ -135,9 +131,7 @@ class Solid(Structure):
             part = parts.setdefault(tuple(np.round(size, 9)), _element(size))
             for at in np.ndindex(*count):
                 keys = np.round((low + (at + (CORNERS + 1) // 2) * size) * 1e6)
-                numbers = np.array(
-                    [nodes.setdefault(tuple(k), len(nodes)) for k in keys]
-                )
+                numbers = np.array([nodes.setdefault(tuple(k), len(nodes)) for k in keys])
                 own = (3 * numbers[:, None] + np.arange(3)).ravel()
                 cells.append((own, part, math.prod(size)))
         self.points, self.M = 1e-6 * np.array(list(nodes)), np.zeros(3 * len(nodes))
@@ -174,9 +168,7 @@ def _element(size):
         B = B.reshape(6, 33)
         K += B.T @ C @ B * math.prod(size) / 8
     outer, inner = slice(24), slice(24, 33)
-    return K[outer, outer] - K[outer, inner] @ np.linalg.solve(
-        K[inner, inner], K[inner, outer]
-    )
+    return K[outer, outer] - K[outer, inner] @ np.linalg.solve(K[inner, inner], K[inner, outer])
 
 
 # -- cases ------------------------------------------------------------------------------------------------------------
@@ -301,9 +293,7 @@ for name, what, aim, made, sides, misses in (
         "",
     ),
 ):
-    what, measure = f"first frequency, {what} [Hz]", lambda w=made, s=sides: frequency(
-        w, s
-    )
+    what, measure = f"first frequency, {what} [Hz]", lambda w=made, s=sides: frequency(w, s)
     add(f"frequency_{name}", SPACE, what, SOLID, aim, measure, misses)
 
 what = "stiffness in twist over that of the solid, 5 × 12"

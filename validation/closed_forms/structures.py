@@ -30,7 +30,9 @@ from yade import O, Vector3
 G = 9.81  # [m/s²]
 DENSITY = 1800.0  # [kg/m³]
 DAMPING = 0.3  # local, of :func:`falls`
-BALANCED = 1e-4  # of the weight of a block: what may be missing in the equilibrium of limit analysis
+BALANCED = (
+    1e-4  # of the weight of a block: what may be missing in the equilibrium of limit analysis
+)
 
 
 # -- body by body -----------------------------------------------------------------------------------------------------
@@ -53,9 +55,7 @@ def dry(stiffness=1e10, friction=0.7, **kw):
 
 def elastic(stiffness=1e10, **kw):
     """A joint that never gives way. Its stiffness is in Pa/m."""
-    return MasonryJoint(
-        elastic=True, normalStiffness=stiffness, shearStiffness=stiffness, **kw
-    )
+    return MasonryJoint(elastic=True, normalStiffness=stiffness, shearStiffness=stiffness, **kw)
 
 
 def mat(**kw):
@@ -182,7 +182,8 @@ def bound(towards=(1, 0, 0), assembly=None):
     rest = unbalanced(found)
     if rest > BALANCED:
         raise Refused(
-            f"limit analysis: no equilibrium: {100 * rest:.3g} % of the weight of a block is missing"
+            f"limit analysis: no equilibrium: {100 * rest:.3g} % of the weight of a block is"
+            " missing"
         )
     return found
 

@@ -95,8 +95,8 @@ def wall_10x5(quick):
 
 
 ASSOCIATED = (
-    "associated flow forbids the stepped crack, whose head joints open by less than friction times slide; the engine is "
-    "right, and the value an upper bound that is not met"
+    "associated flow forbids the stepped crack, whose head joints open by less than friction times"
+    " slide; the engine is right, and the value an upper bound that is not met"
 )
 
 
@@ -105,9 +105,7 @@ def wall_10x5_associated(quick):
     return leaning(10, 5, 0.65, quick, lambda: bound().factor)
 
 
-@case(
-    WALLS, "horizontal acceleration [g], 10 × 5 units, μ = 0.40 (slides)", "μ", aim=0.02
-)
+@case(WALLS, "horizontal acceleration [g], 10 × 5 units, μ = 0.40 (slides)", "μ", aim=0.02)
 def wall_10x5_slides(quick):
     return leaning(10, 5, 0.40, quick, lambda: 0.4)
 
@@ -345,9 +343,7 @@ def panelFactor(over, arm, guide):
     for x in (n / COURSES for n in range(1, COURSES)):
         upper = (1 - x) * h
         turned = x * h / (upper + guide)
-        lifted = (
-            x * t / 2 + (1 - x) * (t + t / 2 * turned) + over * t * (1 + arm * turned)
-        )
+        lifted = x * t / 2 + (1 - x) * (t + t / 2 * turned) + over * t * (1 + arm * turned)
         moved = x * x * h / 2 + (1 - x) * (x * h - turned * upper / 2)
         factors.append(lifted / moved)
     return min(factors)
@@ -430,9 +426,7 @@ def pier(friction, rate, stress=2e5, until=3.0):
         s.press(top, stress)
         s.settle()
         s.push(top, until)
-        rows = zip(
-            s.results.column("displacement_mm"), s.results.column("base_shear_kN")
-        )
+        rows = zip(s.results.column("displacement_mm"), s.results.column("base_shear_kN"))
         late = [row for row in rows if row[0] > until / 2]
         moved, shear = (sum(values) / len(late) for values in zip(*late))
         return 1e3 * shear, 1e-3 * moved

@@ -23,7 +23,9 @@ HEAD = "case, what, source, expected, measured, error, limit, CPU s".split(", ")
 def main(words=None):
     """Run cases. Returns whether one failed or missed a limit."""
     options = argparse.ArgumentParser(prog="contact.py", description=__doc__)
-    options.add_argument("--only", nargs="+", metavar="NAME", default=[], help="cases, or beginnings of their names")  # fmt: skip
+    options.add_argument(
+        "--only", nargs="+", metavar="NAME", default=[], help="cases, or beginnings of their names"
+    )
     options.add_argument("--quick", action="store_true", help="shorter runs")
     options.add_argument("--out", metavar="FILE", help="writes the table there, too")
     args = options.parse_args(words)
@@ -56,7 +58,7 @@ def main(words=None):
         for n, row in enumerate(rows):
             tell(line([name, *row.cells(), "" if n else seconds]))
             if row.met is False:
-                missed.append(f"- {name}, {row.what}: {row.misses or 'the reason is not known'}")  # fmt: skip
+                missed.append(f"- {name}, {row.what}: {row.misses or 'the reason is not known'}")
                 bad = True
     if missed:
         tell("", "Missed:", "", *missed)

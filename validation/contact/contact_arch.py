@@ -7,18 +7,21 @@ import numpy as np
 from contact_rows import Row, case
 from contact_scenes import G, balance, box, until
 
-from masonry import MasonryJoint, addBlock, bricks, connect, criticalTimeStep, engine, engines  # fmt: skip
+from masonry import MasonryJoint, addBlock, bricks, connect, criticalTimeStep, engine, engines
 from scipy.optimize import brentq
 from yade import O
 from yade.wrapper import *
 
 STONES, THICK, DEPTH, DENSITY, FRICTION = 21, 0.12, 0.3, 2600.0, 0.6  # mean radius 1 m
 STIFF = 1e11  # [Pa/m]
-SOFT = "edges give way, so that hinges lie inside of them and the thrust is larger by a part of what is between rest and fall"
-STEP = "stones meet face on face at 0.8 of the critical time step: see the cases heaps and two-blocks"
-EDGES = (
-    "a block that stands on its edge is softer in contact than on the points of a joint"
+SOFT = (
+    "edges give way, so that hinges lie inside of them and the thrust is larger by a part of what"
+    " is between rest and fall"
 )
+STEP = (
+    "stones meet face on face at 0.8 of the critical time step: see the cases heaps and two-blocks"
+)
+EDGES = "a block that stands on its edge is softer in contact than on the points of a joint"
 BELOW = 0.4  # of the springings, to the ground [m]
 
 
@@ -36,8 +39,11 @@ def statics(spread, hinges=(4, 10, 17)):
     :returns: thrust [N], and where it goes through each joint from the right to the left springing: 0 at the inner, 1 at the outer
         side
     """
-    along = [np.array([math.cos(k * math.pi / STONES), math.sin(k * math.pi / STONES)]) for k in range(STONES + 1)]  # fmt: skip
-    inner, outer = [(1 - THICK / 2) * a for a in along], [(1 + THICK / 2) * a for a in along]  # fmt: skip
+    along = [
+        np.array([math.cos(k * math.pi / STONES), math.sin(k * math.pi / STONES)])
+        for k in range(STONES + 1)
+    ]
+    inner, outer = [(1 - THICK / 2) * a for a in along], [(1 + THICK / 2) * a for a in along]
     right, top, left = hinges
     aside = np.array([spread, 0])
     feet = inner[right] + aside, inner[left]
@@ -70,12 +76,10 @@ def statics(spread, hinges=(4, 10, 17)):
     moment = lambda at, stones: sum(cross(middles[k] - at, weights[k]) for k in stones)
     arms = [crown - foot for foot in feet]
     known = [-moment(feet[0], range(right, top)), -moment(feet[1], range(top, left))]
-    force = np.linalg.solve([[-arms[0][1], arms[0][0]], [arms[1][1], -arms[1][0]]], known)  # fmt: skip
+    force = np.linalg.solve([[-arms[0][1], arms[0][0]], [arms[1][1], -arms[1][0]]], known)
 
     def share(k):
-        stone = (
-            k if right < k < top or k > left else k - 1
-        )  # any that the joint moves with
+        stone = k if right < k < top or k > left else k - 1  # any that the joint moves with
         side, stones = (1, range(k, top)) if k <= top else (-1, range(top, k))
         ends = [move(p[k], stone) for p in (inner, outer)]
         at = [side * cross(crown - end, force) + moment(end, stones) for end in ends]
@@ -89,7 +93,7 @@ def _middle(corners):
     one = np.array(corners)
     other = np.roll(one, -1, axis=0)
     cross = one[:, 0] * other[:, 1] - other[:, 0] * one[:, 1]
-    return cross.sum() / 2, ((one + other) * cross[:, None]).sum(axis=0) / (3 * cross.sum())  # fmt: skip
+    return cross.sum() / 2, ((one + other) * cross[:, None]).sum(axis=0) / (3 * cross.sum())
 
 
 def largestSpread():
@@ -119,10 +123,25 @@ class Arch:
         O.bodies[right].state.blockedDOFs = "yzXYZ"
         self.ground = box((8, 4, 0.4), (1, DEPTH / 2, -BELOW - 0.2), held=True)
         self.foot, self.key = O.bodies[right].state, O.bodies[ids[STONES // 2]].state
-        joint = MasonryJoint(name="dry", tensileStrength=0, cohesion=0, friction=FRICTION, residualFriction=FRICTION, cap=False, normalStiffness=stiffness, shearStiffness=stiffness / 2)  # fmt: skip
-        self.drive = MasonryLoad(body=right, point=self.foot.pos, direction=(1, 0, 0), driven=True)  # fmt: skip
+        joint = MasonryJoint(
+            name="dry",
+            tensileStrength=0,
+            cohesion=0,
+            friction=FRICTION,
+            residualFriction=FRICTION,
+            cap=False,
+            normalStiffness=stiffness,
+            shearStiffness=stiffness / 2,
+        )
+        self.drive = MasonryLoad(body=right, point=self.foot.pos, direction=(1, 0, 0), driven=True)
         engines([joint], gravity=(0, 0, 0), loads=[self.drive])
-        self.contacts = MasonryContacts(normalStiffness=stiffness, tangentialRatio=0.5, friction=FRICTION, restitution=0.3, takesJoints=True)  # fmt: skip
+        self.contacts = MasonryContacts(
+            normalStiffness=stiffness,
+            tangentialRatio=0.5,
+            friction=FRICTION,
+            restitution=0.3,
+            takesJoints=True,
+        )
         all = list(O.engines)
         loop = next(n for n, e in enumerate(all) if isinstance(e, MasonryJointLoop))
         O.engines = [*all[: loop + 1], self.contacts, *all[loop + 1 :]]
@@ -162,7 +181,9 @@ class Arch:
             if self.key.vel.norm() < 1e-5:
                 return True
             until(O.time + 0.05)
-        raise RuntimeError(f"at a spread of {1e3 * self.spread:.2f} mm the arch neither falls nor comes to rest")  # fmt: skip
+        raise RuntimeError(
+            f"at a spread of {1e3 * self.spread:.2f} mm the arch neither falls nor comes to rest"
+        )
 
 
 @case
@@ -177,7 +198,15 @@ def arch_spread(quick):
         arch.moveTo(spread, **hurry)
         if not arch.stands():
             raise RuntimeError(f"the arch falls at {1e3 * spread:g} mm already")
-        rows.append(Row(f"thrust at a spread of {1e3 * spread:g} mm [N]", source, -arch.drive.reaction, statics(spread)[0], 0.01))  # fmt: skip
+        rows.append(
+            Row(
+                f"thrust at a spread of {1e3 * spread:g} mm [N]",
+                source,
+                -arch.drive.reaction,
+                statics(spread)[0],
+                0.01,
+            )
+        )
     handed, last = arch.contacts.handed, arch.spread
     if quick:
         arch.moveTo(0.041, **hurry)
@@ -190,20 +219,57 @@ def arch_spread(quick):
                 break
             last = arch.spread
         rows += [
-            Row("spread at which it falls, supports at rest [mm]", f"{source}: {1e3 * expected:.2f} mm with rigid edges", 500 * (last + arch.spread), (37.0, 38.5), misses=SOFT),
+            Row(
+                "spread at which it falls, supports at rest [mm]",
+                f"{source}: {1e3 * expected:.2f} mm with rigid edges",
+                500 * (last + arch.spread),
+                (37.0, 38.5),
+                misses=SOFT,
+            ),
             Row("largest spread at which it came to rest [mm]", source, 1e3 * last, 1e3 * expected),
             Row("joints that are contacts before it falls [-]", "statics: three hinges", handed, 3),
-        ]  # fmt: skip
+        ]
     arch.mover.damping = 0  # real time
     began = O.time
     until(began + (0.8 if quick else 2.5))
     found, states = balance(), [O.bodies[b].state for b in arch.stones]
     rows += [
-        Row("middle of the keystone above the ground [m]", "0.06 to 0.07 if it lies on a side, more if it lies on others", arch.key.pos[2] + BELOW, (0.05, BELOW)),
-        Row("stones that lie above the springings at the end, on the feet [-]", "", sum(s.pos[2] > 0 for s in states)),
-        Row("lowest middle of a stone above the ground [m]", "none goes through it", min(s.pos[2] for s in states) + BELOW, (0.05, 1)),
-        Row("kinetic energy at the end over the work of gravity [-]", "0: at rest", found["kinetic"] / found["gravity"], limit=None if quick else 1e-5),
-        Row("error of the energy balance, over the work done [-]", "0", abs(found["error"]), limit=None if quick else 1e-3, misses=STEP),
-        Row("what the hand-overs have given, over the work of gravity [-]", "0", abs(found["handing"] / found["gravity"]), limit=None if quick else 1e-6, misses=EDGES),
-    ]  # fmt: skip
+        Row(
+            "middle of the keystone above the ground [m]",
+            "0.06 to 0.07 if it lies on a side, more if it lies on others",
+            arch.key.pos[2] + BELOW,
+            (0.05, BELOW),
+        ),
+        Row(
+            "stones that lie above the springings at the end, on the feet [-]",
+            "",
+            sum(s.pos[2] > 0 for s in states),
+        ),
+        Row(
+            "lowest middle of a stone above the ground [m]",
+            "none goes through it",
+            min(s.pos[2] for s in states) + BELOW,
+            (0.05, 1),
+        ),
+        Row(
+            "kinetic energy at the end over the work of gravity [-]",
+            "0: at rest",
+            found["kinetic"] / found["gravity"],
+            limit=None if quick else 1e-5,
+        ),
+        Row(
+            "error of the energy balance, over the work done [-]",
+            "0",
+            abs(found["error"]),
+            limit=None if quick else 1e-3,
+            misses=STEP,
+        ),
+        Row(
+            "what the hand-overs have given, over the work of gravity [-]",
+            "0",
+            abs(found["handing"] / found["gravity"]),
+            limit=None if quick else 1e-6,
+            misses=EDGES,
+        ),
+    ]
     return rows

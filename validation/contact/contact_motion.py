@@ -32,9 +32,16 @@ def rest(quick):
     return [
         Row("path of the fall, largest error [m]", "½·g·t·(t + Δt)", worst, limit=1e-9),
         Row("force on the ground [N]", "weight", contacts.forceOf(base, brick)[2], weight, 1e-6),
-        Row(f"what the brick moves from 2 s to {end} s [m]", "0", (s.pos - there).norm(), limit=1e-6),
-        Row("depth [m]", "weight over stiffness times area, without the rim", BRICK[2] / 2 - s.pos[2], weight / (1e10 * BRICK[0] * BRICK[1])),
-    ]  # fmt: skip
+        Row(
+            f"what the brick moves from 2 s to {end} s [m]", "0", (s.pos - there).norm(), limit=1e-6
+        ),
+        Row(
+            "depth [m]",
+            "weight over stiffness times area, without the rim",
+            BRICK[2] / 2 - s.pos[2],
+            weight / (1e10 * BRICK[0] * BRICK[1]),
+        ),
+    ]
 
 
 @case
@@ -48,13 +55,20 @@ def slope(quick):
         turn = Quaternion(Vector3(0, 1, 0), angle)
         ground(turn, (8, 2, 0.4))
         depth = 1800 * BRICK[2] * G * math.cos(angle) / 1e10
-        s = O.bodies[box(BRICK, turn * Vector3(-3, 0, BRICK[2] / 2 - depth), turn)].state  # fmt: skip
+        s = O.bodies[box(BRICK, turn * Vector3(-3, 0, BRICK[2] / 2 - depth), turn)].state
         prepare(0.9)
         if math.tan(angle) < 0.5:
             until(0.5)
             there = Vector3(s.pos)
             until(end)
-            rows.append(Row(f"creep at {degrees}° from 0.5 s to {end} s [m]", "0: tan 20° is below 0.5", (s.pos - there).norm(), limit=1e-6))  # fmt: skip
+            rows.append(
+                Row(
+                    f"creep at {degrees}° from 0.5 s to {end} s [m]",
+                    "0: tan 20° is below 0.5",
+                    (s.pos - there).norm(),
+                    limit=1e-6,
+                )
+            )
             continue
         down = turn * Vector3(1, 0, 0)
         until(0.05)
@@ -62,7 +76,9 @@ def slope(quick):
         until(0.6)
         found = (s.vel.dot(down) - first) / (O.time - then)
         expected = G * (math.sin(angle) - 0.5 * math.cos(angle))
-        rows.append(Row(f"acceleration at {degrees}° [m/s²]", "g·(sin − μ·cos)", found, expected, 1e-3))  # fmt: skip
+        rows.append(
+            Row(f"acceleration at {degrees}° [m/s²]", "g·(sin − μ·cos)", found, expected, 1e-3)
+        )
     return rows
 
 
@@ -80,7 +96,7 @@ def toppling(gap, friction, count=20, restitution=0.3, stiffness=1e9):
     pitch = THICK + gap
     ground(size=((count + 4) * pitch + 4 * TALL, 6 * WIDE, TALL))
     first = -0.5 * count * pitch
-    row = [box((THICK, WIDE, TALL), (first + n * pitch, 0, TALL / 2)) for n in range(count)]  # fmt: skip
+    row = [box((THICK, WIDE, TALL), (first + n * pitch, 0, TALL / 2)) for n in range(count)]
     prepare(0.5, friction=friction, restitution=restitution, normalStiffness=stiffness)
     s, spin = O.bodies[row[0]].state, 6.0
     s.angVel, s.vel = Vector3(0, spin, 0), 0.5 * spin * Vector3(TALL, 0, -THICK)
@@ -132,7 +148,9 @@ def theory(gap, friction, count=20, spin=6.0):
         angles, rates, factors = chain(front, number)
         _, more, _ = chain(front + step, number)
         _, less, _ = chain(front - step, number)
-        pull = factors @ moment(angles) - inertia * speed**2 * (factors @ (more - less)) / (2 * step)  # fmt: skip
+        pull = factors @ moment(angles) - inertia * speed**2 * (factors @ (more - less)) / (
+            2 * step
+        )
         return pull / (inertia * (factors @ rates))
 
     speed, speeds = spin, []
@@ -164,12 +182,26 @@ def dominoes(quick):
         ideal = theory(gap, 0.3)[0] / scale
         uneven = lambda all: abs(all[5:] / all[5:].mean() - 1).max()
         of = f"gap {1e3 * gap:g} mm"
-        dense = f"a dense row needs more than five dominoes: by the theory the difference is {uneven(ideal):.3f}"
+        dense = (
+            "a dense row needs more than five dominoes: by the theory the difference is"
+            f" {uneven(ideal):.3f}"
+        )
         rows += [
-            Row(f"speed after the fifth, largest difference from the mean, {of} [-]", "0: a wave of constant speed", uneven(speeds), limit=0.05, misses=dense if uneven(ideal) > 0.1 else ""),
-            Row(f"speed of the wave over √(g h), {of} [-]", "theory with plastic impacts, no slip at the feet, the same friction", speeds[-1], ideal[-1]),
+            Row(
+                f"speed after the fifth, largest difference from the mean, {of} [-]",
+                "0: a wave of constant speed",
+                uneven(speeds),
+                limit=0.05,
+                misses=dense if uneven(ideal) > 0.1 else "",
+            ),
+            Row(
+                f"speed of the wave over √(g h), {of} [-]",
+                "theory with plastic impacts, no slip at the feet, the same friction",
+                speeds[-1],
+                ideal[-1],
+            ),
             Row(f"the same, {of} [-]", "usual speeds of rows of dominoes", speeds[-1], (1, 2)),
-        ]  # fmt: skip
+        ]
     return rows
 
 
@@ -218,13 +250,29 @@ def rocking_period(quick):
     rows, p = [], pace(SLENDER)
     for share in (0.5,) if quick else (0.25, 0.5, 0.75):
         quarter = rocking(1, share, 1)[1][0]
-        rows.append(Row(f"quarter period, θ0/α = {share} [s]", "Housner 1963: acosh(1/(1 − θ0/α))/p", quarter, math.acosh(1 / (1 - share)) / p, 0.01))  # fmt: skip
+        rows.append(
+            Row(
+                f"quarter period, θ0/α = {share} [s]",
+                "Housner 1963: acosh(1/(1 − θ0/α))/p",
+                quarter,
+                math.acosh(1 / (1 - share)) / p,
+                0.01,
+            )
+        )
     if quick:
         return rows
     shares, times = rocking(0.3, 0.6, 5)
     for n in range(1, len(times)):
         half = 2 * math.acosh(1 / (1 - shares[n])) / p
-        rows.append(Row(f"half period after impact {n}, restitution 0.3, where θ/α = {shares[n]:.3f} [s]", "Housner 1963: 2·acosh(1/(1 − θ/α))/p", times[n] - times[n - 1], half, 0.01))  # fmt: skip
+        rows.append(
+            Row(
+                f"half period after impact {n}, restitution 0.3, where θ/α = {shares[n]:.3f} [s]",
+                "Housner 1963: 2·acosh(1/(1 − θ/α))/p",
+                times[n] - times[n - 1],
+                half,
+                0.01,
+            )
+        )
     return rows
 
 
@@ -240,7 +288,17 @@ def rocking_loss(quick):
         for restitution in values[:1] if quick else values:
             shares, _ = rocking(restitution, 0.5, 2, size, 1e11 if quick else 1e12)
             kept = energy(shares[1]) / energy(shares[0])
-            rows.append(Row(f"energy after the first impact over that before, α = {alpha:.4f}, restitution {restitution} [-]", "Housner 1963: (1 − 1.5·sin²α)²", kept, rigid))  # fmt: skip
+            rows.append(
+                Row(
+                    (
+                        f"energy after the first impact over that before, α = {alpha:.4f},"
+                        f" restitution {restitution} [-]"
+                    ),
+                    "Housner 1963: (1 − 1.5·sin²α)²",
+                    kept,
+                    rigid,
+                )
+            )
     return rows
 
 
@@ -272,7 +330,25 @@ def heaps(quick):
     until(end)
     found = balance()
     return [
-        Row(f"{count} half bricks: error of the energy balance after {end} s, over the work done [-]", "0", abs(found["error"]), limit=1e-3),
-        Row("kinetic energy at the end over the work of gravity [-]", "0: at rest", found["kinetic"] / found["gravity"], limit=1e-5),
-        Row("lowest middle of a block above the ground over half of its least size [-]", "1 or more: none has sunk in", min(O.bodies[b].state.pos[2] for b in bodies) / (0.081 / 2), (0.99, 100)),
-    ]  # fmt: skip
+        Row(
+            (
+                f"{count} half bricks: error of the energy balance after {end} s, over the work"
+                " done [-]"
+            ),
+            "0",
+            abs(found["error"]),
+            limit=1e-3,
+        ),
+        Row(
+            "kinetic energy at the end over the work of gravity [-]",
+            "0: at rest",
+            found["kinetic"] / found["gravity"],
+            limit=1e-5,
+        ),
+        Row(
+            "lowest middle of a block above the ground over half of its least size [-]",
+            "1 or more: none has sunk in",
+            min(O.bodies[b].state.pos[2] for b in bodies) / (0.081 / 2),
+            (0.99, 100),
+        ),
+    ]

@@ -14,7 +14,9 @@ BRICK = (0.22, 0.102, 0.081)  # [m]
 def box(size, middle=(0, 0, 0), turn=Quaternion.Identity, held=False, density=1800.0):
     """A box of a size [m] around a place, turned about it; returns its body id."""
     ends = [(x, y, z) for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)]
-    corners = [Vector3(*middle) + turn * Vector3(*[a * b for a, b in zip(size, end)]) for end in ends]  # fmt: skip
+    corners = [
+        Vector3(*middle) + turn * Vector3(*[a * b for a, b in zip(size, end)]) for end in ends
+    ]
     body = addBlock(corners, MasonryMat(density=density, young=4.8e9, poisson=0.16))
     if held:
         O.bodies[body].state.blockedDOFs = "xyzXYZ"
@@ -35,7 +37,7 @@ def prepare(step=0.5, gravity=(0, 0, -G), **properties):
     usual = dict(normalStiffness=1e10, friction=0.5, restitution=0.5)
     contacts = MasonryContacts(**{**usual, **properties})
     energy = MasonryEnergy(label="energy")
-    O.engines = [ForceResetter(), contacts, energy, MasonryIntegrator(damping=0, gravity=gravity)]  # fmt: skip
+    O.engines = [ForceResetter(), contacts, energy, MasonryIntegrator(damping=0, gravity=gravity)]
     O.dt = step * criticalTimeStep()[0]
     return contacts
 

@@ -16,8 +16,9 @@ BELOW, ABOVE = (0.3, 0.6, 0.95), (1.5, 3.0)
 MEETINGS = {
     "faces": Quaternion.Identity,
     "edge": Quaternion(Vector3(0, 1, 0), math.pi / 4),
-    "corner": Quaternion(Vector3(0, 1, 0), math.atan(math.sqrt(0.5))) * Quaternion(Vector3(0, 0, 1), math.pi / 4),
-}  # fmt: skip
+    "corner": Quaternion(Vector3(0, 1, 0), math.atan(math.sqrt(0.5)))
+    * Quaternion(Vector3(0, 0, 1), math.pi / 4),
+}
 #: Axes of the map of two blocks: sides of both [m], densities [kg/m³], stiffnesses [Pa/m], speeds [m/s].
 SIZES = ((0.01, 0.01), (0.01, 10), (10, 0.01), (0.1, 1), (1, 0.1), (10, 10))
 DENSITIES, STIFFNESSES, SPEEDS = (200, 2700), (1e9, 1e10, 1e12), (0.01, 1, 10)
@@ -34,10 +35,12 @@ def collide(step, meeting, sizes, density, stiffness, speed, restitution, phase)
     """
     O.reset()
     one = O.bodies[box((sizes[0],) * 3, density=density)].state
-    reach = 0.5 * (sizes[0] + sizes[1] * {"faces": 1, "edge": math.sqrt(2), "corner": math.sqrt(3)}[meeting])  # fmt: skip
+    reach = 0.5 * (
+        sizes[0] + sizes[1] * {"faces": 1, "edge": math.sqrt(2), "corner": math.sqrt(3)}[meeting]
+    )
     off = 0.1 * min(sizes)
     box((sizes[1],) * 3, (reach, off, 0.5 * off), MEETINGS[meeting], density=density)
-    contacts = prepare(step, gravity=(0, 0, 0), normalStiffness=stiffness, restitution=restitution)  # fmt: skip
+    contacts = prepare(step, gravity=(0, 0, 0), normalStiffness=stiffness, restitution=restitution)
     one.pos -= Vector3((2 + phase) * speed * O.dt, 0, 0)
     one.vel = Vector3(speed, 0, 0)
     met, before = False, energy()
@@ -66,17 +69,23 @@ def energy():
 def two_blocks(quick):
     """Collisions of two blocks over the whole map, at shares of the critical time step."""
     rows, dice = [], np.random.default_rng(1)
-    points = list(itertools.product(SIZES, DENSITIES, STIFFNESSES, SPEEDS))  # fmt: skip
+    points = list(itertools.product(SIZES, DENSITIES, STIFFNESSES, SPEEDS))
     if quick:
         points = points[:: len(points) // 8]
     for meeting, restitution in itertools.product(MEETINGS, (1, 0.5)):
         for step in BELOW:
-            kept = [collide(step, meeting, *point, restitution, dice.uniform()) for point in points]  # fmt: skip
+            kept = [collide(step, meeting, *point, restitution, dice.uniform()) for point in points]
             missed = ""
             if meeting == "faces":
-                missed = "all of both faces meets within one step; a spring that sets in within a step makes or takes up to (ω·Δt)²/4 of the energy"  # fmt: skip
-            what = f"{len(points)} meetings, {meeting}, restitution {restitution}, at {step} of the limit: largest energy after over before, less 1 [-]"  # fmt: skip
-            rows.append(Row(what, "0 or less", max(kept) - 1, limit=1e-3, misses=missed))  # fmt: skip
+                missed = (
+                    "all of both faces meets within one step; a spring that sets in within a step"
+                    " makes or takes up to (ω·Δt)²/4 of the energy"
+                )
+            what = (
+                f"{len(points)} meetings, {meeting}, restitution {restitution}, at {step} of the"
+                " limit: largest energy after over before, less 1 [-]"
+            )
+            rows.append(Row(what, "0 or less", max(kept) - 1, limit=1e-3, misses=missed))
     refused = 0
     for step in ABOVE:
         for point in points:
@@ -85,7 +94,18 @@ def two_blocks(quick):
             except RuntimeError as stopped:
                 refused += "the time step is" in str(stopped)
     of = len(ABOVE) * len(points)
-    rows.append(Row(f"share of {of} meetings at {ABOVE[0]} and {ABOVE[1]} of the limit that the engine refuses [-]", "all", refused / of, 1.0, 0.0))  # fmt: skip
+    rows.append(
+        Row(
+            (
+                f"share of {of} meetings at {ABOVE[0]} and {ABOVE[1]} of the limit that the engine"
+                " refuses [-]"
+            ),
+            "all",
+            refused / of,
+            1.0,
+            0.0,
+        )
+    )
     return rows
 
 
@@ -93,7 +113,7 @@ def two_blocks(quick):
 def twelve_blocks(quick):
     """Heaps of twelve blocks of three sizes at shares of the critical time step."""
     rows = []
-    for scale, density in ((1, 1800),) if quick else ((0.1, 1800), (1, 200), (1, 1800), (90, 2700)):  # fmt: skip
+    for scale, density in ((1, 1800),) if quick else ((0.1, 1800), (1, 200), (1, 1800), (90, 2700)):
         size = tuple(scale * side for side in (0.11, 0.102, 0.081))
         for step in BELOW[-1:] if quick else BELOW:
             O.reset()
@@ -106,10 +126,20 @@ def twelve_blocks(quick):
                 now = balance()
                 gone = now["gravity"] - now["kinetic"] - now["elastic_contacts"]
                 back, lost = max(back, lost - gone), max(lost, gone)
-            of = f"bricks {1e3 * size[0]:g} mm long, {density} kg/m³, at {step} of the limit"  # fmt: skip
+            of = f"bricks {1e3 * size[0]:g} mm long, {density} kg/m³, at {step} of the limit"
             rows += [
-                Row(f"{of}: kinetic energy at the end over the work of gravity [-]", "0: at rest", now["kinetic"] / now["gravity"], limit=1e-5),
-                Row(f"{of}: largest growth of the mechanical energy over the work of gravity [-]", "0", back / now["gravity"], limit=1e-3),
+                Row(
+                    f"{of}: kinetic energy at the end over the work of gravity [-]",
+                    "0: at rest",
+                    now["kinetic"] / now["gravity"],
+                    limit=1e-5,
+                ),
+                Row(
+                    f"{of}: largest growth of the mechanical energy over the work of gravity [-]",
+                    "0",
+                    back / now["gravity"],
+                    limit=1e-3,
+                ),
                 Row(f"{of}: error of the energy balance [-]", "0", abs(now["error"])),
-            ]  # fmt: skip
+            ]
     return rows

@@ -74,7 +74,8 @@ def runAll():
 
 
 HEADS = (
-    "varied, wall, run, peak kN, at mm, of the finest mesh, top less base kN, energy error, steps, µs a step, s"
+    "varied, wall, run, peak kN, at mm, of the finest mesh, top less base kN, energy error, steps,"
+    " µs a step, s"
 ).split(", ")
 
 

@@ -46,9 +46,7 @@ def draw(folder, out):
                 continue
             drawn += 1
             if path == "tension":
-                axes.plot(
-                    rows["opening_mm"], rows["normal_stress_MPa"], label=law, **style
-                )
+                axes.plot(rows["opening_mm"], rows["normal_stress_MPa"], label=law, **style)
             elif path == "closure":
                 axes.plot(-rows["opening_mm"], -rows["normal_stress_MPa"], **style)
             else:
@@ -63,9 +61,7 @@ def draw(folder, out):
     tension.legend(fontsize=8)
     for axes, path in zip(shears, SHEAR):
         stress = float(path.split("_")[1])
-        axes.set_title(
-            f"shear at {-stress:g} MPa" if stress else "shear without normal stress"
-        )
+        axes.set_title(f"shear at {-stress:g} MPa" if stress else "shear without normal stress")
         axes.set_xlabel("slide [mm]")
         axes.set_ylabel("shear stress [MPa]")
     closure.set_title("closure")
@@ -80,9 +76,7 @@ def draw(folder, out):
 
 def main(words=None):
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument(
-        "--results", default=os.path.join(RESULTS, "validation", "cyclic", "joint")
-    )
+    parser.add_argument("--results", default=os.path.join(RESULTS, "validation", "cyclic", "joint"))
     parser.add_argument("--out", default=os.path.join(HERE, "joint.png"))
     args = parser.parse_args(words)
     draw(args.results, args.out)

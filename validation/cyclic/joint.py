@@ -119,9 +119,7 @@ class Joint:
         """Close the joint elastically to a normal stress [Pa], then hold that by the force."""
         if stress:
             # slowly: the block has no damping, and would swing on the joint
-            self.drive(
-                self.vertical, stress / self.interaction.phys.normalStiffness, 400
-            )
+            self.drive(self.vertical, stress / self.interaction.phys.normalStiffness, 400)
         self.vertical.driven = False
         self.vertical.force = Vector3(0, 0, stress * AREA)
         self.advance(20 * self.steps)
@@ -162,9 +160,9 @@ def paths():
     """Every path by name: a function of a joint, the steps for a row and the rows for a way."""
     found = {"tension": tension, "closure": closure}
     for stress in STRESSES:
-        found[
-            f"shear_{abs(stress) / 1e6:g}"
-        ] = lambda joint, steps, rows, stress=stress: shear(joint, steps, rows, stress)
+        found[f"shear_{abs(stress) / 1e6:g}"] = lambda joint, steps, rows, stress=stress: shear(
+            joint, steps, rows, stress
+        )
     return found
 
 
@@ -198,9 +196,7 @@ def main():
     )
     parser.add_argument("--rows", type=int, default=400, help="for every way")
     parser.add_argument("--steps", type=int, default=50, help="for every row")
-    parser.add_argument(
-        "--out", default=os.path.join(RESULTS, "validation", "cyclic", "joint")
-    )
+    parser.add_argument("--out", default=os.path.join(RESULTS, "validation", "cyclic", "joint"))
     args = parser.parse_args()
     for law in args.laws:
         folder = os.path.join(args.out, law)

@@ -33,9 +33,7 @@ import studies  # noqa: E402
 CASE = "cyclic"
 WALLS = {"comp0a": "COMP-0a", "comp1": "COMP-1", "comp4": "COMP-4", "comp6": "COMP-6"}
 LAWS = {"softening": "tab:blue", "cyclic": "tab:red"}
-THRESHOLD = (
-    0.1  # [mm] smaller excursions are no cycles; the smallest amplitude is 0.5 mm
-)
+THRESHOLD = 0.1  # [mm] smaller excursions are no cycles; the smallest amplitude is 0.5 mm
 NAMES = (
     "wall",
     "law",
@@ -170,17 +168,11 @@ def drawDegradation(found, path):
                 amplitude = [n.cycle.amplitude_mm for n in chosen]
                 look = dict(color=LAWS[law], lw=1, ms=4, **style)
                 name = f"{law}, {'second' if repeat else 'first'} cycle"
-                column[0].plot(
-                    amplitude, [n.stiffness for n in chosen], label=name, **look
-                )
-                column[1].plot(
-                    amplitude, [100 * n.cycle.damping for n in chosen], **look
-                )
+                column[0].plot(amplitude, [n.stiffness for n in chosen], label=name, **look)
+                column[1].plot(amplitude, [100 * n.cycle.damping for n in chosen], **look)
                 if repeat == 0:
                     look["ls"] = "-"
-                    column[2].plot(
-                        amplitude, [n.positive for n in chosen], label=law, **look
-                    )
+                    column[2].plot(amplitude, [n.positive for n in chosen], label=law, **look)
                     look.update(ls="--", mfc="white")
                     column[2].plot(
                         amplitude,
@@ -216,15 +208,11 @@ def main(words=None):
     parser.add_argument("--walls", nargs="+", choices=list(WALLS), default=list(WALLS))
     parser.add_argument("--laws", nargs="+", choices=list(LAWS), default=list(LAWS))
     parser.add_argument("--jobs", type=int, default=1, help="runs at a time")
-    parser.add_argument(
-        "--results", default=os.path.join(studies.RESULTS, "validation", CASE)
-    )
+    parser.add_argument("--results", default=os.path.join(studies.RESULTS, "validation", CASE))
     parser.add_argument("--out", default=HERE, help="folder of table and figures")
     args = parser.parse_args(words)
     runs = studies.readCase(CASE)
-    names = [
-        f"{wall}-{kind}" for wall in args.walls for kind in ("monotonic", *args.laws)
-    ]
+    names = [f"{wall}-{kind}" for wall in args.walls for kind in ("monotonic", *args.laws)]
     studies.runMissing(
         [
             (
@@ -245,7 +233,10 @@ def main(words=None):
             rows += tableRows(wall, law, each)
         drawLoops(wall, monotonic, curves, os.path.join(args.out, f"loops_{wall}.png"))
     drawDegradation(found, os.path.join(args.out, "degradation.png"))
-    text = f"# Cycles of the calcium-silicate walls\n\nMade by `walls.py`.\n\n{studies.table(NAMES, rows)}\n"
+    text = (
+        "# Cycles of the calcium-silicate walls\n\nMade by"
+        f" `walls.py`.\n\n{studies.table(NAMES, rows)}\n"
+    )
     with open(os.path.join(args.out, "walls.md"), "w") as f:
         f.write(text)
     print(text)

@@ -104,9 +104,7 @@ def draw():
             moved, shear, run = computed(f"{model}-{level}")
             start.plot(moved, shear, color=colour, lw=1.2)
             for sign in (1, -1):
-                whole.plot(
-                    sign * moved, sign * shear, color=colour, lw=1.2, label=model
-                )
+                whole.plot(sign * moved, sign * shear, color=colour, lw=1.2, label=model)
         for sign in (1, -1):
             line = dict(color="black", lw=0.8, ls="--", label="rigid rocking")
             whole.axhline(sign * rocking(run), **line)
@@ -126,16 +124,14 @@ def draw():
 
 
 def table():
-    print(
-        "level  measured: V+, V-, mean, secant at 1/4, 1/2 of the peak    rigid rocking"
-    )
+    print("level  measured: V+, V-, mean, secant at 1/4, 1/2 of the peak    rigid rocking")
     for level in LEVELS:
         positive, negative = peaks(level).mean(axis=0)
         mean = (positive + negative) / 2
         quarter, half = (measuredSecants(level, share).mean() for share in (0.25, 0.5))
         print(
-            f"{level:5}  {positive:.1f} {negative:.1f} {mean:.1f} kN  {quarter:.1f} {half:.1f} kN/mm"
-            f"  {rocking(computed(f'rigid-{level}')[2]):.1f} kN"
+            f"{level:5}  {positive:.1f} {negative:.1f} {mean:.1f} kN "
+            f" {quarter:.1f} {half:.1f} kN/mm  {rocking(computed(f'rigid-{level}')[2]):.1f} kN"
         )
     print("run                 peak kN  over V+, V-, mean    secant 1/4, 1/2 kN/mm")
     for directory in sorted(glob.glob(os.path.join(RESULTS, "*", "run.json"))):

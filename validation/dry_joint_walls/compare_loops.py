@@ -39,9 +39,7 @@ RANGES = (
     (12, 17),
     (17, 46),
 )  # of amplitudes [mm]
-POINTS = (
-    6  # along a joint; the peak is within 1 % of that with 16, in a third of the time
-)
+POINTS = 6  # along a joint; the peak is within 1 % of that with 16, in a third of the time
 RATE = 20  # [mm/s]
 COLOURS = {"softening": "tab:blue", "cyclic": "tab:red"}
 
@@ -86,18 +84,15 @@ def pairs(wall, moved, force):
     ours = loops.cycles(moved, force, measured.THRESHOLD)
     found = []
     for (test, doubtful), own in zip(tests, ours):
-        far = abs(test.largest_mm - own.largest_mm) + abs(
-            test.smallest_mm - own.smallest_mm
-        )
+        far = abs(test.largest_mm - own.largest_mm) + abs(test.smallest_mm - own.smallest_mm)
         if far > 2 * measured.THRESHOLD:
             raise ValueError(
-                f"{wall}: the measured cycle from {test.smallest_mm:.2f} to {test.largest_mm:.2f} mm was calculated from "
-                f"{own.smallest_mm:.2f} to {own.largest_mm:.2f} mm"
+                f"{wall}: the measured cycle from {test.smallest_mm:.2f} to"
+                f" {test.largest_mm:.2f} mm was calculated from {own.smallest_mm:.2f} to"
+                f" {own.largest_mm:.2f} mm"
             )
         if not doubtful:
-            residuals = [
-                (c.residual_positive_mm, c.residual_negative_mm) for c in (test, own)
-            ]
+            residuals = [(c.residual_positive_mm, c.residual_negative_mm) for c in (test, own)]
             found.append(
                 Pair(
                     test.amplitude_mm,
@@ -133,11 +128,7 @@ def peakRows(curves):
             ours.append((force.max(), -force.min()))
             rows.append(_peakRow(wall, pair, ours[-1]))
         if len(ours) > 1:
-            rows.append(
-                _peakRow(
-                    f"mean {level} kN", np.mean(measuredPeaks, 0), np.mean(ours, 0)
-                )
-            )
+            rows.append(_peakRow(f"mean {level} kN", np.mean(measuredPeaks, 0), np.mean(ours, 0)))
     return rows
 
 
@@ -194,9 +185,7 @@ def _compared(values, digits, share):
     if not len(values):
         return "–", "–"
     mean, low, high = values.mean(0), values.min(0), values.max(0)
-    show = (
-        lambda i: f"{mean[i]:.{digits}f} ({low[i]:.{digits}f} to {high[i]:.{digits}f})"
-    )
+    show = lambda i: f"{mean[i]:.{digits}f} ({low[i]:.{digits}f} to {high[i]:.{digits}f})"
     ratio = f"{mean[1] / mean[0]:.2f} " if mean[0] else ""
     return f"{show(0)}; {show(1)}", ratio + said(within(mean[1], mean[0], share))
 
@@ -221,7 +210,10 @@ def tables(joints, curves):
     found = {wall: pairs(wall, *curve) for wall, curve in curves.items()}
     parts = [
         f"# Loops of the dry-joint walls, `--joints {joints}`",
-        "Made by `compare_loops.py`. In every cell the test stands first. Ratios are calculated over measured.",
+        (
+            "Made by `compare_loops.py`. In every cell the test stands first. Ratios are calculated"
+            " over measured."
+        ),
         f"Peaks, limit ± {100 * LIMITS['peak']:g} %:",
         studies.table(
             [
@@ -235,8 +227,12 @@ def tables(joints, curves):
             ],
             peakRows(curves),
         ),
-        f"Means over the cycles of a range of half amplitudes, with smallest and largest. Limits: work ± {100 * LIMITS['work']:g} %, "
-        f"residual displacements ± {100 * LIMITS['residual']:g} %. The width of a loop is the distance between both residual displacements.",
+        (
+            "Means over the cycles of a range of half amplitudes, with smallest and largest."
+            f" Limits: work ± {100 * LIMITS['work']:g} %, residual displacements ±"
+            f" {100 * LIMITS['residual']:g} %. The width of a loop is the distance between both"
+            " residual displacements."
+        ),
         studies.table(
             [
                 "level kN",
@@ -282,9 +278,7 @@ def draw(joints, level, curves, path):
 def main(words=None):
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--joints", choices=list(COLOURS), default="cyclic")
-    parser.add_argument(
-        "--walls", nargs="+", choices=measured.walls(), default=measured.walls()
-    )
+    parser.add_argument("--walls", nargs="+", choices=measured.walls(), default=measured.walls())
     parser.add_argument("--rate", type=float, default=RATE, help="[mm/s]")
     parser.add_argument("--jobs", type=int, default=1, help="runs at a time")
     parser.add_argument(

@@ -38,8 +38,8 @@ STRAY = (0.5, 4.0)
 #: - ("swap", piece, why): this piece and the next one change places
 #: - ("hole", piece, why): after this piece rows are missing on a curved stretch, so that no work can be found there
 _ARTEFACT = (
-    "the last row of the first piece is about (-1.6 mm, -16.4 kN) in eight of the ten files, at all three vertical loads "
-    "and far from the row before: it belongs to none of these curves"
+    "the last row of the first piece is about (-1.6 mm, -16.4 kN) in eight of the ten files, at all"
+    " three vertical loads and far from the row before: it belongs to none of these curves"
 )
 _TAIL = "the piece is the end of the next one, which stops where it begins"
 REPAIRS = {
@@ -47,7 +47,10 @@ REPAIRS = {
         (
             "hole",
             7,
-            "the cycle stops at 0.4 mm and -18.8 kN on its way down, and the next piece begins at -23.8 mm",
+            (
+                "the cycle stops at 0.4 mm and -18.8 kN on its way down, and the next piece begins"
+                " at -23.8 mm"
+            ),
         )
     ],
     "WS1175": [("drop", 0, -1, None, _ARTEFACT)],
@@ -58,16 +61,20 @@ REPAIRS = {
             9,
             0,
             37,
-            "down to -27.9 mm the piece repeats the end of the one before; from there on it is the push to the next "
-            "turning point",
+            (
+                "down to -27.9 mm the piece repeats the end of the one before; from there on it is"
+                " the push to the next turning point"
+            ),
         ),
         (
             "drop",
             11,
             0,
             14,
-            "12 rows at -33.7 mm and -102 kN and the two that lead back: 6 kN within half a millimetre, above the peak of "
-            "-95.7 kN that the database gives",
+            (
+                "12 rows at -33.7 mm and -102 kN and the two that lead back: 6 kN within half a"
+                " millimetre, above the peak of -95.7 kN that the database gives"
+            ),
         ),
     ],
     "WS2100": [("drop", 0, -1, None, _ARTEFACT)],
@@ -91,14 +98,19 @@ REPAIRS = {
 DOUBTFUL = {
     "WS2100": (
         4,
-        "from here on the forces are no longer those of the wall before: on the way up the force falls from 31 to 6 kN "
-        "within a millimetre, afterwards the wall carries 26 to 31 kN in the negative direction where it carried 41, and "
-        "its cycles take two to five times the work of those of the other three walls at 100 kN",
+        (
+            "from here on the forces are no longer those of the wall before: on the way up the"
+            " force falls from 31 to 6 kN within a millimetre, afterwards the wall carries 26 to 31"
+            " kN in the negative direction where it carried 41, and its cycles take two to five"
+            " times the work of those of the other three walls at 100 kN"
+        ),
     ),
     "WS3175": (
         11,
-        "from here on the curve is that of WS2.175: mean distance 0.03 mm, against 0.1 to 0.4 mm in the cycles before. The "
-        "same loops stand in both files, and count once",
+        (
+            "from here on the curve is that of WS2.175: mean distance 0.03 mm, against 0.1 to 0.4"
+            " mm in the cycles before. The same loops stand in both files, and count once"
+        ),
     ),
 }
 
@@ -176,9 +188,7 @@ def pieces(wall):
     :returns: a list of (number of the piece in the file, array of displacement [mm] and force [kN])
     """
     numbered = list(
-        enumerate(
-            rawPieces(os.path.join(REFERENCE, f"FD_{wall}_Vasconcelos2009.csv"))[0]
-        )
+        enumerate(rawPieces(os.path.join(REFERENCE, f"FD_{wall}_Vasconcelos2009.csv"))[0])
     )
     for action, piece, *rest in REPAIRS[wall]:
         if action == "drop":
@@ -189,10 +199,7 @@ def pieces(wall):
             numbered[piece] = number, points[kept]
         elif action == "swap":
             numbered[piece : piece + 2] = numbered[piece : piece + 2][::-1]
-    return [
-        (number, np.delete(points, strays(points), axis=0))
-        for number, points in numbered
-    ]
+    return [(number, np.delete(points, strays(points), axis=0)) for number, points in numbered]
 
 
 @functools.lru_cache(None)
@@ -279,15 +286,18 @@ def main(words=None):
                 f.write(historyText(wall))
         return
     print(
-        "| wall | amplitude mm | from, to mm | V−, V+ kN | work J | damping | stiffness kN/mm | residual after +, − mm |"
+        "| wall | amplitude mm | from, to mm | V−, V+ kN | work J | damping | stiffness kN/mm |"
+        " residual after +, − mm |"
     )
     print("|" + " --- |" * 8)
     for wall in walls():
         for c, doubtful in cycles(wall):
             print(
-                f"| {wall}{' (doubtful)' if doubtful else ''} | {c.amplitude_mm:.1f} | {c.smallest_mm:.1f}, "
-                f"{c.largest_mm:.1f} | {c.smallest_kN:.1f}, {c.largest_kN:.1f} | {c.work_J:.0f} | {c.damping:.3f} | "
-                f"{c.stiffness_kN_per_mm:.2f} | {c.residual_positive_mm:.2f}, {c.residual_negative_mm:.2f} |"
+                f"| {wall}{' (doubtful)' if doubtful else ''} | {c.amplitude_mm:.1f} |"
+                f" {c.smallest_mm:.1f}, {c.largest_mm:.1f} | {c.smallest_kN:.1f},"
+                f" {c.largest_kN:.1f} | {c.work_J:.0f} | {c.damping:.3f} |"
+                f" {c.stiffness_kN_per_mm:.2f} | {c.residual_positive_mm:.2f},"
+                f" {c.residual_negative_mm:.2f} |"
             )
 
 

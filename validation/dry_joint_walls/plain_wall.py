@@ -64,9 +64,7 @@ VARIANTS = {
 def build(program=PROGRAM):
     """Compile the model, if it is older than its source. Returns the program."""
     source = os.path.join(HERE, "plain_wall.cpp")
-    if not os.path.exists(program) or os.path.getmtime(program) < os.path.getmtime(
-        source
-    ):
+    if not os.path.exists(program) or os.path.getmtime(program) < os.path.getmtime(source):
         os.makedirs(os.path.dirname(program), exist_ok=True)
         command = ["g++", "-std=c++17", "-O3", "-march=native", "-o", program, source]
         subprocess.run(command, check=True)
@@ -105,9 +103,7 @@ def describe(moved, force):
 
 def main(words=None):
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument(
-        "variants", nargs="*", help=f"of {', '.join(VARIANTS)} (default: all)"
-    )
+    parser.add_argument("variants", nargs="*", help=f"of {', '.join(VARIANTS)} (default: all)")
     args = parser.parse_args(words)
     unknown = set(args.variants) - set(VARIANTS)
     if unknown:

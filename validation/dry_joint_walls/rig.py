@@ -26,8 +26,14 @@ WALL = "WS2175"
 BLOCK, LOAD_HEIGHT = (0.200, 0.200, 0.150), 1.325  # [m], as of scripts/wall_dry.py
 
 parser = options.parser(__doc__, until=30, rate=compare_loops.RATE)
-parser.add_argument("--rig", metavar="KN_PER_MM", type=float, default=37.0, help="stiffness of the base along x (default: 37); 0: held")  # fmt: skip
-parser.set_defaults(crack_surfaces="off", points="6,6", history=measured.historyPath(WALL))  # fmt: skip
+parser.add_argument(
+    "--rig",
+    metavar="KN_PER_MM",
+    type=float,
+    default=37.0,
+    help="stiffness of the base along x (default: 37); 0: held",
+)
+parser.set_defaults(crack_surfaces="off", points="6,6", history=measured.historyPath(WALL))
 args = parser.parse_args()
 if args.blocks == "deformable":
     args.points = None  # their joints have the points of their cells
@@ -42,7 +48,7 @@ scene = Scene(
     arguments=args,
 )
 scene.platen("bottom", springs={"x": 1e6 * args.rig} if args.rig else None)
-top = scene.platen("top", rotation="free", upTo=LOAD_HEIGHT, recorded=LOAD_HEIGHT, drive="x")  # fmt: skip
+top = scene.platen("top", rotation="free", upTo=LOAD_HEIGHT, recorded=LOAD_HEIGHT, drive="x")
 scene.press(top, level * 1e3 / BLOCK[1], riding=False)
 scene.settle(damping="local", record=False)
 scene.push(top)
@@ -52,7 +58,10 @@ moved, force = compare_loops.calculated(scene.results.directory)
 own = loops.cycles(moved, force, measured.THRESHOLD)[0]
 (test, _), *_ = measured.cycles(WALL)
 print(f"{WALL}: test, calculated")
-print(f"stiffness of the first cycle kN/mm: {test.stiffness_kN_per_mm:.1f}, {own.stiffness_kN_per_mm:.1f}")  # fmt: skip
+print(
+    f"stiffness of the first cycle kN/mm: {test.stiffness_kN_per_mm:.1f},"
+    f" {own.stiffness_kN_per_mm:.1f}"
+)
 ends = measured.peaks(level)[WALL]
 print(f"V+, V- kN: {ends[0]:.1f}, {ends[1]:.1f}; {force.max():.1f}, {-force.min():.1f}")
 cycles = compare_loops.pairs(WALL, moved, force)
@@ -60,4 +69,4 @@ for low, high in compare_loops.RANGES:
     work = np.array([c.work for c in cycles if low <= c.amplitude < high])
     if len(work):
         test, own = work.mean(axis=0)
-        print(f"work J a cycle, {low:g} to {high:g} mm: {test:.0f}, {own:.0f} ({own / test:.2f})")  # fmt: skip
+        print(f"work J a cycle, {low:g} to {high:g} mm: {test:.0f}, {own:.0f} ({own / test:.2f})")

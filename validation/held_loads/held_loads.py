@@ -26,7 +26,17 @@ LEAST, MOST = (
     0.94,
     1.02,
 )  # of limit analysis without dilatancy, and of the associated one [-]
-HEAD = ["structure", "held", "not held", "associated", "without dilatancy", "held over them", "slower", "steps of the search over those of the growth", "CPU s"]  # fmt: skip
+HEAD = [
+    "structure",
+    "held",
+    "not held",
+    "associated",
+    "without dilatancy",
+    "held over them",
+    "slower",
+    "steps of the search over those of the growth",
+    "CPU s",
+]
 
 
 def strip(stiffness):
@@ -51,13 +61,15 @@ def corner(openings):
         return blocks, dry, {}, (1, 0, 0), 0.3, 0.2
     lintel = bricks.Lintel(0.22, 0.162)
     window = [bricks.Opening(0.88, 0.81, 0.66, 0.81, lintel)]
-    blocks = bricks.Corner(2.2, 2.2, 2.106, halves=False, openings=window, openings2=window)  # fmt: skip
+    blocks = bricks.Corner(2.2, 2.2, 2.106, halves=False, openings=window, openings2=window)
     return blocks, dry, {}, (-1, -1, 0), 0.5, 0.2
 
 
 def arch():
     """Oppenheim's arch of seven voussoirs."""
-    blocks = bricks.Arch(thickness=0.15, depth=0.3, stones=7, radius=0.925, angle=157.5, skewback=0.2)  # fmt: skip
+    blocks = bricks.Arch(
+        thickness=0.15, depth=0.3, stones=7, radius=0.925, angle=157.5, skewback=0.2
+    )
     dry = materials.dry(friction=0.7, normalStiffness=1e11)
     return blocks, dry, {}, (1, 0, 0), 0.6, 0.2
 
@@ -99,9 +111,7 @@ def grown(name, slower=1.0):
         scene.hold(7, name="one"), scene.hold(8, name="other")
     else:
         scene.platen("bottom")
-    highest = max(
-        range(len(blocks)), key=lambda n: max(p[2] for p in blocks[n].corners)
-    )
+    highest = max(range(len(blocks)), key=lambda n: max(p[2] for p in blocks[n].corners))
     scene.watch(highest, name="top")
     scene.settle()
     began = time.process_time()
@@ -150,9 +160,7 @@ def row(name, slow=True):
         slower.finish()
         moved = again.held[0] / held - 1
     met = (
-        lost - held <= 0.0101 * lost
-        and LEAST * least <= held <= MOST * most
-        and abs(moved) < 0.01
+        lost - held <= 0.0101 * lost and LEAST * least <= held <= MOST * most and abs(moved) < 0.01
     )
     cells = [name, f"{held:.4f}", f"{lost:.4f}", f"{most:.4f}", f"{least:.4f}"]
     cells.append(f"{held / most:.3f}, {held / least:.3f}")
@@ -164,10 +172,12 @@ def row(name, slow=True):
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--only", nargs="*", choices=list(CASES), default=None)
-    parser.add_argument("--quick", action="store_true", help="two of the structures, without the slower growth")  # fmt: skip
+    parser.add_argument(
+        "--quick", action="store_true", help="two of the structures, without the slower growth"
+    )
     parser.add_argument("--out", default=None, help="file of the table")
     args = parser.parse_args()
-    names, lines, missed = args.only or (QUICK if args.quick else list(CASES)), [head(HEAD)], []  # fmt: skip
+    names, lines, missed = args.only or (QUICK if args.quick else list(CASES)), [head(HEAD)], []
     print(*lines, sep="\n", flush=True)
     for name in names:
         said = io.StringIO()

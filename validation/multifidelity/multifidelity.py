@@ -91,12 +91,8 @@ def recorded(wall, name):
     found = Record(folder(wall, name))
     curves = found.curves(range(len(found)), "top_shear_kN", "base_shear_kN")
     if len(curves) < len(found):
-        raise Refused(
-            f"{found.directory}: {len(found) - len(curves)} rows have no curve"
-        )
-    found.cells[BOTH_ENDS] = [
-        repr(float(max(map(min, zip(*curve))))) for curve in curves
-    ]
+        raise Refused(f"{found.directory}: {len(found) - len(curves)} rows have no curve")
+    found.cells[BOTH_ENDS] = [repr(float(max(map(min, zip(*curve))))) for curve in curves]
     return found
 
 
@@ -108,7 +104,8 @@ def check(wall, cheap):
     )
     if few != many[: len(few)]:
         raise Refused(
-            f"{wall}: the first {len(few)} of {len(many)} rows are not the {len(few)} rows of the same seed"
+            f"{wall}: the first {len(few)} of {len(many)} rows are not the {len(few)} rows of the"
+            " same seed"
         )
 
 
@@ -158,9 +155,7 @@ def compare(wall, cheap, measure):
         known = reference[found.name]
         paid = estimate.saved(found, prices)
         reach = math.hypot(_half(found), _half(known))
-        measured = math.isfinite(
-            reach
-        )  # a few rows alone give no interval of a quantile far out
+        measured = math.isfinite(reach)  # a few rows alone give no interval of a quantile far out
         agrees = abs(found.value - known.value) <= reach
         met[0] &= agrees or not measured
         met[1] &= paid.share <= SHARE
@@ -179,9 +174,10 @@ def compare(wall, cheap, measure):
         )
     correlation = np.corrcoef(y, x[: len(y)])[0, 1]
     summary = (
-        f"{title}: correlation {correlation:.4f} over {len(y)} shared rows; a run of accurate takes {prices[0]:.1f} s, one of fast "
-        f"{prices[1]:.1f} s; {len(y)} and {len(x)} of them {spent / 60:.0f} min, {len(values)} accurate runs alone {whole / 60:.0f} min "
-        f"({100 * spent / whole:.0f} %)"
+        f"{title}: correlation {correlation:.4f} over {len(y)} shared rows; a run of accurate takes"
+        f" {prices[0]:.1f} s, one of fast {prices[1]:.1f} s; {len(y)} and {len(x)} of them"
+        f" {spent / 60:.0f} min, {len(values)} accurate runs alone {whole / 60:.0f} min"
+        f" ({100 * spent / whole:.0f} %)"
     )
     notes = [summary, *(f"{title}: {doubt}" for doubt in estimate.doubts(y, x))]
     return lines, met, notes, (y, x[: len(y)], values)
@@ -239,9 +235,7 @@ def main():
     parser.add_argument(
         "--jobs", type=int, default=len(os.sched_getaffinity(0)), help="runs at a time"
     )
-    parser.add_argument(
-        "--compare", action="store_true", help="compare what is there, run nothing"
-    )
+    parser.add_argument("--compare", action="store_true", help="compare what is there, run nothing")
     args = parser.parse_args()
     try:
         if not args.compare and not run(args.jobs):

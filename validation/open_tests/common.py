@@ -76,7 +76,9 @@ def main(description, names, cases):
     :returns: whether one failed
     """
     options = argparse.ArgumentParser(description=description)
-    options.add_argument("--only", nargs="+", metavar="NAME", default=[], help="cases, or beginnings of their names")  # fmt: skip
+    options.add_argument(
+        "--only", nargs="+", metavar="NAME", default=[], help="cases, or beginnings of their names"
+    )
     asked = tuple(options.parse_args().only) or ("",)
     bad = False
     print(head(["case", *names, "CPU s"]), flush=True)

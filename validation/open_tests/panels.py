@@ -20,12 +20,10 @@ BRICK, MORTAR = (0.230, 0.110, 0.076), 0.010  # [m]
 UNIT, COURSES, UNITS = (0.240, 0.110, 0.086), 29, 17
 RETURN = 0.480  # [m]
 HEIGHT, LENGTH = COURSES * UNIT[2], UNITS * UNIT[0]
-BALLAST = (
-    0.02  # [m] height of a load that lies on each brick of the top course by itself
-)
+BALLAST = 0.02  # [m] height of a load that lies on each brick of the top course by itself
 MOST = 16e3  # [Pa]
 #: Bond wrench, friction, compressive strength, moduli, modulus of rupture of bricks: README.
-DATA = dict(E=3.54e9, unit_E=52.7e9, fc=16e6, friction=0.576, density=1900, unit_ft=3.55e6 / 1.5)  # fmt: skip
+DATA = dict(E=3.54e9, unit_E=52.7e9, fc=16e6, friction=0.576, density=1900, unit_ft=3.55e6 / 1.5)
 PER_G = DATA["density"] * 9.81 * UNIT[1]  # [Pa] pressure of an acceleration of 1 g
 WRENCH, RUPTURE = 0.61e6, 3.55e6  # [Pa]
 INDEX = 0.029e-3  # [m] GfI over ft, as materials.masonry() assumes
@@ -72,7 +70,7 @@ def hold(scene, blocks, edges):
 def support(scene, blocks, stress, top):
     """Hold the top against moving out of the plane, and press it, through a beam that turns or each brick by itself."""
     if stress and top == "beam":
-        beam = scene.platen("top", rotation="free", guided="xy", height=0.02, part=blocks[0].part)  # fmt: skip
+        beam = scene.platen("top", rotation="free", guided="xy", height=0.02, part=blocks[0].part)
         scene.press(beam, stress)
         return
     kind = "ballast" if stress else blocks[0].kind
@@ -82,15 +80,22 @@ def support(scene, blocks, stress, top):
             scene.hold(n, axes="y")
 
 
-def panel(stress=0.1e6, edges="returns", top="beam", halves=True, base=None, options=(), **changed):  # fmt: skip
+def panel(stress=0.1e6, edges="returns", top="beam", halves=True, base=None, options=(), **changed):
     """Cells of a case: pressure that is held [kPa], over the test."""
     blocks, masonry = blocksOf(edges, halves), masonryOf(**changed)
     if top == "ballast" and stress:
         on = [b for b in blocks.top() if b.part in ("front", "wall")]
         for b in on:
-            blocks += bricks.block((b.low[0], b.low[1], HEIGHT), (b.high[0], b.high[1], HEIGHT + BALLAST), part="ballast", kind="ballast")  # fmt: skip
-        masonry.units["ballast"] = MasonryMat(label="ballast", young=30e9, poisson=0.2, density=stress / 9.81 / BALLAST)  # fmt: skip
-    scene = Scene("panel", blocks, masonry, plane=False, arguments=words("panel", *options))  # fmt: skip
+            blocks += bricks.block(
+                (b.low[0], b.low[1], HEIGHT),
+                (b.high[0], b.high[1], HEIGHT + BALLAST),
+                part="ballast",
+                kind="ballast",
+            )
+        masonry.units["ballast"] = MasonryMat(
+            label="ballast", young=30e9, poisson=0.2, density=stress / 9.81 / BALLAST
+        )
+    scene = Scene("panel", blocks, masonry, plane=False, arguments=words("panel", *options))
     scene.platen("bottom", springs={"X": 1.0} if base == "hinged" else None)
     support(scene, blocks, stress, top)
     hold(scene, blocks, edges)
@@ -145,7 +150,7 @@ VARIANTS = {
 CASES = {name: lambda v=v: panel(**v) for name, v in VARIANTS.items()}
 CASES["by hand, both ways of bending at once"] = lambda: byHand(True)
 CASES["by hand, along the courses alone"] = lambda: byHand(False)
-CASES["by hand, along the courses alone, hinged at its edges"] = lambda: byHand(False, fixed=False)  # fmt: skip
+CASES["by hand, along the courses alone, hinged at its edges"] = lambda: byHand(False, fixed=False)
 
 if __name__ == "__main__":
     sys.exit(main(__doc__, ["held kPa", "over test"], CASES))

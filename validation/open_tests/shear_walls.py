@@ -31,7 +31,9 @@ FRICTION = 0.75  # [-] initial and residual
 CLOSURE = 0.09e-3  # [m] plastic closure at fc
 GC, RESIDUAL, ELASTIC, CAP = 5000.0, 1 / 7, 1 / 3, 9.0  # [J/m²], [-] of fc, Css
 YOUNG, POISSON, DENSITY = 16.7e9, 0.15, 1900.0
-BRICK = dict(tensileStrength=2.0e6, modeIFractureEnergy=80.0, cohesion=4.0e6, modeIIFractureEnergy=800.0)  # fmt: skip
+BRICK = dict(
+    tensileStrength=2.0e6, modeIFractureEnergy=80.0, cohesion=4.0e6, modeIIFractureEnergy=800.0
+)
 
 
 def masonryOf(wall):
@@ -53,7 +55,15 @@ def masonryOf(wall):
         elasticLimitRatio=ELASTIC,
         capShear=CAP,
     )
-    crack = MasonryJoint(name="crack", normalStiffness=1e15, shearStiffness=1e15, friction=FRICTION, residualFriction=FRICTION, cap=False, **BRICK)  # fmt: skip
+    crack = MasonryJoint(
+        name="crack",
+        normalStiffness=1e15,
+        shearStiffness=1e15,
+        friction=FRICTION,
+        residualFriction=FRICTION,
+        cap=False,
+        **BRICK,
+    )
     joints = {name: MasonryJoint(name=name, **mortar) for name in ("bed", "head")}
     unit = MasonryMat(label="brick", young=YOUNG, poisson=POISSON, density=DENSITY)
     return materials.Masonry(unit, {**joints, "crack": crack})
@@ -63,7 +73,12 @@ def run(wall, heightHeld, *options):
     """Cells of a wall."""
     stress, measured = WALLS[wall][0], WALLS[wall][-1]
     length, thickness, height = 4.5 * UNIT[0], UNIT[1], COURSES * UNIT[2]
-    scene = Scene("shear_wall", bricks.Wall(length, height, unit=UNIT), masonryOf(wall), arguments=words("shear_wall", *options))  # fmt: skip
+    scene = Scene(
+        "shear_wall",
+        bricks.Wall(length, height, unit=UNIT),
+        masonryOf(wall),
+        arguments=words("shear_wall", *options),
+    )
     scene.platen("bottom")
     top = scene.platen("top", recorded=height, drive="x")
     scene.press(top, stress)
@@ -92,12 +107,21 @@ def run(wall, heightHeld, *options):
 CASES = {
     f"{wall}, {how}, {blocks}": lambda w=wall, h=how, b=blocks: run(
         w, h == "height held", "--blocks", b
-    )  # fmt: skip
+    )
     for blocks in ("rigid", "deformable")
     for wall in WALLS
     for how in ("height held", "load held")
 }
-NAMES = ["peak kN", "at mm", "end kN", "vertical stress, beginning MPa", "at the peak", "end", "tests kN", "over tests"]  # fmt: skip
+NAMES = [
+    "peak kN",
+    "at mm",
+    "end kN",
+    "vertical stress, beginning MPa",
+    "at the peak",
+    "end",
+    "tests kN",
+    "over tests",
+]
 
 if __name__ == "__main__":
     sys.exit(main(__doc__, NAMES, CASES))

@@ -30,7 +30,13 @@ def triplet():
     """Cohesion [MPa] and friction [-] by the line through the peaks of three bricks at 0.2, 0.6 and 1.0 MPa, and the inputs."""
     stresses, peaks = (0.2, 0.6, 1.0), []
     for stress in stresses:
-        scene = Scene("triplet", bricks.stack(3, UNIT), materials.calciumSilicate(), gravity=0, arguments=words("triplet", "--rate", "5"))  # fmt: skip
+        scene = Scene(
+            "triplet",
+            bricks.stack(3, UNIT),
+            materials.calciumSilicate(),
+            gravity=0,
+            arguments=words("triplet", "--rate", "5"),
+        )
         scene.platen("bottom")
         top = scene.platen("top", guided="x")
         middle = scene.handle(1, name="middle")
@@ -52,7 +58,20 @@ def wrench(blocks):
     """Flexural strength of a bond by a wrench with an arm of 1 m, over its direct tensile strength: run, and integral."""
     arm, size = 1.0, (T, L, H)  # [m] bent about the long side
     stack = bricks.stack(2, size)
-    scene = Scene("wrench", stack, materials.calciumSilicate(), gravity=0, arguments=words("wrench", "--blocks", blocks, "--rate", "5", *(POINTS if blocks == "rigid" else ("--divisions", "6"))))  # fmt: skip
+    scene = Scene(
+        "wrench",
+        stack,
+        materials.calciumSilicate(),
+        gravity=0,
+        arguments=words(
+            "wrench",
+            "--blocks",
+            blocks,
+            "--rate",
+            "5",
+            *(POINTS if blocks == "rigid" else ("--divisions", "6")),
+        ),
+    )
     scene.platen("bottom")
     top = scene.platen("top", rotation="free", upTo=H + arm)
     scene.settle()
@@ -84,16 +103,23 @@ def wallette(parallel, bound=False, masonry=None, unit=UNIT, most=0.6e6):
     places = [step * (n + 0.5) for n in (0, 3, 6, 9)]
     blocks = bricks.Wall(halves * L / 2, courses * H, unit=unit)
     on = lambda b, place: abs(b.middle[axis] - place) < 0.1 * step
-    blocks = bricks.Bricks(replace(b, part="line") if on(b, places[1]) or on(b, places[2]) else b for b in blocks)  # fmt: skip
-    scene = Scene("wallette", blocks, masonry or materials.calciumSilicate(), gravity=0, plane=False, arguments=words("wallette", *(("--preset", "bound") if bound else ())))  # fmt: skip
+    blocks = bricks.Bricks(
+        replace(b, part="line") if on(b, places[1]) or on(b, places[2]) else b for b in blocks
+    )
+    scene = Scene(
+        "wallette",
+        blocks,
+        masonry or materials.calciumSilicate(),
+        gravity=0,
+        plane=False,
+        arguments=words("wallette", *(("--preset", "bound") if bound else ())),
+    )
     for n, block in enumerate(blocks):
         if on(block, places[0]) or on(block, places[3]):
             scene.hold(n, axes="xyz" if on(block, places[0]) else "y")
     scene.settle()
     arm = 3 * step
-    share = (
-        step * arm * 6 / T**2
-    )  # stress over pressure, as M = pressure · step · arm
+    share = step * arm * 6 / T**2  # stress over pressure, as M = pressure · step · arm
     scene.growWind(most / share, (0, 1, 0), part="line", over=0.5, within=0.02)
     if bound:
         scene.finish()
@@ -117,7 +143,9 @@ def shoe(corner, sign):
     (x, z), reach = corner, sign * SHOE
     lying = sorted((x - reach, x + sign * PLATE)), sorted((z, z + sign * PLATE))
     standing = sorted((x, x + sign * PLATE)), sorted((z - reach, z))
-    box = lambda xs, zs: bricks.block((xs[0], 0, zs[0]), (xs[1], T, zs[1]), part="shoe", kind="shoe")  # fmt: skip
+    box = lambda xs, zs: bricks.block(
+        (xs[0], 0, zs[0]), (xs[1], T, zs[1]), part="shoe", kind="shoe"
+    )
     return box(*lying) + box(*standing)
 
 
@@ -126,15 +154,19 @@ def diagonal(bound=False):
     panel = bricks.Wall(SIDES[0], SIDES[1])
     blocks = panel + shoe((0, 0), -1) + shoe(SIDES, 1)
     masonry = materials.calciumSilicate()
-    seat = dict(elastic=True, normalStiffness=BED.normalStiffness, shearStiffness=BED.shearStiffness)  # fmt: skip
+    seat = dict(
+        elastic=True, normalStiffness=BED.normalStiffness, shearStiffness=BED.shearStiffness
+    )
     masonry.joints["seat"] = MasonryJoint(name="seat", **seat)
-    masonry.units["shoe"] = MasonryMat(label="steel", young=200e9, poisson=0.0, density=7850)  # fmt: skip
-    masonry.choose = lambda one, two, geom: "seat" if one and two and "shoe" in (one.kind, two.kind) else None  # fmt: skip
+    masonry.units["shoe"] = MasonryMat(label="steel", young=200e9, poisson=0.0, density=7850)
+    masonry.choose = lambda one, two, geom: (
+        "seat" if one and two and "shoe" in (one.kind, two.kind) else None
+    )
     more = ("--preset", "bound") if bound else ("--rate", "5")
-    scene = Scene("diagonal", blocks, masonry, gravity=0, arguments=words("diagonal", *more))  # fmt: skip
+    scene = Scene("diagonal", blocks, masonry, gravity=0, arguments=words("diagonal", *more))
     for n in (-4, -3):
         scene.hold(len(blocks) + n)
-    pushed = scene.handle((SIDES[0] + PLATE / 2, T / 2, SIDES[1] + PLATE / 2), name="shoe")  # fmt: skip
+    pushed = scene.handle((SIDES[0] + PLATE / 2, T / 2, SIDES[1] + PLATE / 2), name="shoe")
     scene.settle()
     scene.push(pushed, 1.5, direction=(-SIDES[0], 0, -SIDES[1]))
     if bound:
@@ -159,7 +191,12 @@ def bent(parallel):
     """Cells of a wallette."""
     aim = dict(most=0.6e6 if parallel else 2e6)
     held, most = wallette(parallel, **aim), wallette(parallel, bound=True, **aim)
-    return rowOf("flexural strength MPa", held, f"limit analysis {most:.4g}", *others(parallel, BED, lumped(), T))  # fmt: skip
+    return rowOf(
+        "flexural strength MPa",
+        held,
+        f"limit analysis {most:.4g}",
+        *others(parallel, BED, lumped(), T),
+    )
 
 
 def others(parallel, bed, soft, depth):
@@ -172,12 +209,15 @@ def others(parallel, bed, soft, depth):
 def bentClay(parallel, **changed):
     """Cells of a wallette of the brickwork of panels.py, beside AS 3700: stepped and straight cracks."""
     masonry = panels.masonryOf(**changed)
-    held = wallette(parallel, masonry=masonry, unit=panels.UNIT, most=2e6 if parallel else 4e6)  # fmt: skip
+    held = wallette(parallel, masonry=masonry, unit=panels.UNIT, most=2e6 if parallel else 4e6)
     bond, rupture = 1e-6 * panels.WRENCH, 1e-6 * panels.RUPTURE
-    texts = [f"AS 3700 stepped {2 * bond**0.5:.3g}, straight {0.44 * rupture + 0.56 * bond:.3g}"]  # fmt: skip
+    texts = [f"AS 3700 stepped {2 * bond**0.5:.3g}, straight {0.44 * rupture + 0.56 * bond:.3g}"]
     if parallel:
         soft = panels.UNIT[2] / masonry.unit.young
-        texts = [f"bond wrench {bond:g}", *others(True, masonry.joints["bed"], soft, panels.UNIT[1])]  # fmt: skip
+        texts = [
+            f"bond wrench {bond:g}",
+            *others(True, masonry.joints["bed"], soft, panels.UNIT[1]),
+        ]
     return rowOf("flexural strength MPa", held, *texts)
 
 
@@ -191,7 +231,13 @@ def compressed():
     """Cells of the diagonal compression."""
     force, most = diagonal(), diagonal(bound=True)
     stress = 0.707 * force / (1e3 * T * sum(SIDES) / 2)
-    return rowOf("force kN", force, f"first slip {firstSlip():.3g}", f"limit analysis {most:.4g}", f"ASTM shear stress {stress:.3g} MPa")  # fmt: skip
+    return rowOf(
+        "force kN",
+        force,
+        f"first slip {firstSlip():.3g}",
+        f"limit analysis {most:.4g}",
+        f"ASTM shear stress {stress:.3g} MPa",
+    )
 
 
 CASES = {
@@ -202,12 +248,8 @@ CASES = {
     "diagonal compression": compressed,
     "clay wallette, parallel": lambda: bentClay(True),
     "clay wallette, perpendicular": lambda: bentClay(False),
-    "clay wallette, perpendicular, bricks do not crack": lambda: bentClay(
-        False, unit_ft=None
-    ),
-    "clay wallette, perpendicular, cohesion 0.7 of ft": lambda: bentClay(
-        False, cohesion=0.7
-    ),
+    "clay wallette, perpendicular, bricks do not crack": lambda: bentClay(False, unit_ft=None),
+    "clay wallette, perpendicular, cohesion 0.7 of ft": lambda: bentClay(False, cohesion=0.7),
 }
 
 if __name__ == "__main__":

@@ -22,25 +22,38 @@ HEIGHT, THICKNESS = COURSES * UNIT[2], UNIT[0]
 MIDDLE = COURSES // 2  # the crack is below this course
 CRACK = MIDDLE * UNIT[2]
 DENSITY, YOUNG, COURSE = 1900.0, 52.7e9, 3.54e9
-KN = 1 / (
-    UNIT[2] * (1 / COURSE - 1 / YOUNG)
-)  # [Pa/m] of a joint in masonry of 3.54 GPa
+KN = 1 / (UNIT[2] * (1 / COURSE - 1 / YOUNG))  # [Pa/m] of a joint in masonry of 3.54 GPa
 G = 9.81
 
 
 def masonryOf(softer):
     """Elastic joints, and dry ones where it has cracked, which are softer by a factor."""
-    crack = dict(normalStiffness=KN / softer, shearStiffness=0.4 * KN, tensileStrength=0, cohesion=0, friction=0.6, residualFriction=0.6, cap=False)  # fmt: skip
+    crack = dict(
+        normalStiffness=KN / softer,
+        shearStiffness=0.4 * KN,
+        tensileStrength=0,
+        cohesion=0,
+        friction=0.6,
+        residualFriction=0.6,
+        cap=False,
+    )
     joints = {name: MasonryJoint(name=name, **crack) for name in ("support", "gap")}
-    bed = MasonryJoint(name="bed", elastic=True, normalStiffness=KN, shearStiffness=0.4 * KN)  # fmt: skip
+    bed = MasonryJoint(name="bed", elastic=True, normalStiffness=KN, shearStiffness=0.4 * KN)
     unit = MasonryMat(label="clay", young=YOUNG, poisson=0.2, density=DENSITY)
-    own = lambda one, two, geom: "gap" if one and two and {one.course, two.course} == {MIDDLE - 1, MIDDLE} else None  # fmt: skip
+    own = lambda one, two, geom: (
+        "gap" if one and two and {one.course, two.course} == {MIDDLE - 1, MIDDLE} else None
+    )
     return materials.Masonry(unit, {**joints, "bed": bed}, choose=own)
 
 
 def rocking(overburden, softer=1.0, points="12"):
     """Cells of a strip: its largest force beside that of rigid halves."""
-    scene = Scene("strip", bricks.stack(COURSES, UNIT), masonryOf(softer), arguments=words("strip", "--points", points))  # fmt: skip
+    scene = Scene(
+        "strip",
+        bricks.stack(COURSES, UNIT),
+        masonryOf(softer),
+        arguments=words("strip", "--points", points),
+    )
     scene.platen("bottom")
     if overburden:
         top = scene.platen("top", rotation="free", height=0.001)
@@ -81,8 +94,19 @@ VARIANTS = {
     "cracks 10 times softer": dict(softer=10),
     "cracks 100 times softer": dict(softer=100),
 }
-CASES = {f"{level}, {name}": lambda o=o, v=v: rocking(o, **v) for level, o in LEVELS.items() for name, v in VARIANTS.items()}  # fmt: skip
-NAMES = ["rigid F0 kN", "peak kN", "peak over F0", "du mm", "d of the peak/du", "over rigid at du/2"]  # fmt: skip
+CASES = {
+    f"{level}, {name}": lambda o=o, v=v: rocking(o, **v)
+    for level, o in LEVELS.items()
+    for name, v in VARIANTS.items()
+}
+NAMES = [
+    "rigid F0 kN",
+    "peak kN",
+    "peak over F0",
+    "du mm",
+    "d of the peak/du",
+    "over rigid at du/2",
+]
 
 if __name__ == "__main__":
     sys.exit(main(__doc__, NAMES, CASES))

@@ -21,7 +21,10 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 #: Of every structure the point whose largest displacement out of the plane is the demand, and half the thickness [mm].
 POINTS = {"parapet": ("crest", 100), "gable": ("ridge", 150), "facade": ("top", 200)}
 MEASURES = Measure(), Sa(0.3), Sa(1.0)
-WHAT = "collapse of three structures of dry stones, twelve records of three components; PGA is the geometric mean of both horizontal components"  # fmt: skip
+WHAT = (
+    "collapse of three structures of dry stones, twelve records of three components; PGA is the"
+    " geometric mean of both horizontal components"
+)
 
 
 def fits(found, folder, limit=None):
@@ -31,7 +34,9 @@ def fits(found, folder, limit=None):
     :param limit: of the demand in place of collapse [mm]
     """
     low, high = found.intervals(limit)
-    motions = [readRecord(os.path.join(folder, "records", f"{name}.txt"), None) for name in found.names]  # fmt: skip
+    motions = [
+        readRecord(os.path.join(folder, "records", f"{name}.txt"), None) for name in found.names
+    ]
     peaks = np.array([Measure().of(*motion) for motion in motions])
     made = {}
     for measure in MEASURES:
@@ -43,15 +48,21 @@ def fits(found, folder, limit=None):
 def tell(name, made):
     """Print median and dispersion with their intervals, for every measure of intensity."""
     for measure, fit in made.items():
-        numbers = [f"{one.value:.2f} ({one.low:.2f} … {one.high:.2f})" for one in (fit.median, fit.dispersion)]  # fmt: skip
-        print(f"| {name} | {measure} | {' | '.join(numbers)} | {fit.reached} of {fit.records} |")  # fmt: skip
+        numbers = [
+            f"{one.value:.2f} ({one.low:.2f} … {one.high:.2f})"
+            for one in (fit.median, fit.dispersion)
+        ]
+        print(f"| {name} | {measure} | {' | '.join(numbers)} | {fit.reached} of {fit.records} |")
 
 
 def demands(name, found):
     """Print the level at which every record makes a structure fall, and the quantiles of the demand at every level [mm]."""
     print(f"{name}: falls at {', '.join(f'{level:g}' for level in found.fell)} g")
     for level, fell, known in found.counts():
-        print(f"| {level:g} | {' | '.join(f'{q:.0f}' for q in found.quantiles(level))} | {fell} of {known} |")  # fmt: skip
+        print(
+            f"| {level:g} | {' | '.join(f'{q:.0f}' for q in found.quantiles(level))} | {fell} of"
+            f" {known} |"
+        )
 
 
 def draw(path, all):
@@ -60,9 +71,17 @@ def draw(path, all):
         axis = figure.subplots()
         for n, (name, (found, made)) in enumerate(all.items()):
             x, fit = np.linspace(0.02, 1.1 * found.levels[-1], 300), made["PGA_g"]
-            label = f"{name}: median {fit.median.value:.2f} g, dispersion {fit.dispersion.value:.2f}"  # fmt: skip
-            axis.plot(x, [fit.probability(v).value for v in x], color=f"C{n}", label=label)  # fmt: skip
-            axis.plot(*zip(*((v, k / of) for v, k, of in found.counts() if of)), ls="", marker="o", ms=4, color=f"C{n}")  # fmt: skip
+            label = (
+                f"{name}: median {fit.median.value:.2f} g, dispersion {fit.dispersion.value:.2f}"
+            )
+            axis.plot(x, [fit.probability(v).value for v in x], color=f"C{n}", label=label)
+            axis.plot(
+                *zip(*((v, k / of) for v, k, of in found.counts() if of)),
+                ls="",
+                marker="o",
+                ms=4,
+                color=f"C{n}",
+            )
         drawing.finish(axis, "PGA [g]", "probability of collapse", loc="lower right")
 
 
@@ -72,7 +91,7 @@ def main(folder):
     for name, (point, half) in POINTS.items():
         place = os.path.join(folder, name)
         try:
-            found = Demands(Record(place), f"shake_2_largest_displacement_of_{point}_y_mm")  # fmt: skip
+            found = Demands(Record(place), f"shake_2_largest_displacement_of_{point}_y_mm")
             all[name] = found, fits(found, place)
         except Refused as refused:
             print(refused)
@@ -82,7 +101,10 @@ def main(folder):
         demands(name, found)
     models = {name: made["PGA_g"] for name, (_, made) in all.items()}
     highest = max(found.levels[-1] for found, _ in all.values())
-    written(os.path.join(HERE, "fragility.xml"), fragility.nrml(models, "PGA_g", "collapse", WHAT, highest))  # fmt: skip
+    written(
+        os.path.join(HERE, "fragility.xml"),
+        fragility.nrml(models, "PGA_g", "collapse", WHAT, highest),
+    )
     draw(os.path.join(HERE, "fragility.png"), all)
 
 

@@ -293,9 +293,7 @@ ROWS = [
 def folder(wall, row=None, end=None):
     """Folder of a run's results; without a row, or at an end without options, that of the run with all defaults."""
     name = f"{row.name} {end}" if row and getattr(row, end) else "default"
-    return os.path.join(
-        RESULTS, "validation", "sensitivity", wall, nameOf(name).replace("-", "_")
-    )
+    return os.path.join(RESULTS, "validation", "sensitivity", wall, nameOf(name).replace("-", "_"))
 
 
 def runAll():
@@ -347,9 +345,7 @@ def draw(ranges):
     ]
     reach = lambda row: max(abs(v) for p in panels for v in change(p[0], row, p[1]))
     rows = sorted(ROWS, key=reach)
-    figure, axes = plt.subplots(
-        1, len(panels), figsize=(13, 0.27 * len(rows) + 1.3), sharey=True
-    )
+    figure, axes = plt.subplots(1, len(panels), figsize=(13, 0.27 * len(rows) + 1.3), sharey=True)
     for axis, (wall, title) in zip(axes, panels):
         for y, row in enumerate(rows):
             for end, color, value, result in zip(
@@ -370,7 +366,8 @@ def draw(ranges):
     axes[0].margins(y=0.01)
     axes[0].set_yticks(range(len(rows)), [row.name for row in rows], fontsize=8)
     figure.suptitle(
-        "blue: lower end of the range, red: upper end; hatched: no crack along the diagonal; rigid units"
+        "blue: lower end of the range, red: upper end; hatched: no crack along the diagonal; rigid"
+        " units"
     )
     figure.tight_layout()
     figure.savefig(os.path.join(HERE, "tornado.png"), dpi=90)

@@ -140,7 +140,7 @@ class Case:
         return 0.0 if self.dice.often(0.2) else self.dice.power(0, 12)
 
     def _byJoints(self, density, friction, kn):
-        dice, ks, young = self.dice, kn * self.dice.uniform(0.1, 1), self.dice.power(7, 12)  # fmt: skip
+        dice, ks, young = self.dice, kn * self.dice.uniform(0.1, 1), self.dice.power(7, 12)
         lumped = 0.0 if self.deformable else max(self.unit) / young  # [m/Pa]
         cohesion, tension = self._strength(), self._strength()
         if friction and dice.often(0.9):  # else it may be refused
@@ -153,11 +153,7 @@ class Case:
             values = dict(
                 compressiveStrength=fc,
                 peakRatio=ratio,
-                compressiveFractureEnergy=fc
-                * fc
-                * (ratio / kn + lumped)
-                * enough()
-                * 2,
+                compressiveFractureEnergy=fc * fc * (ratio / kn + lumped) * enough() * 2,
             )
         if tension:
             values["modeIFractureEnergy"] = energy(tension, kn, lumped)
@@ -301,7 +297,7 @@ class Play:
     def _bricks(self):
         case = self.case
         if case.kind == "wall":
-            return bricks.Wall(case.length, case.top, case.unit, halves=False)  # fmt: skip
+            return bricks.Wall(case.length, case.top, case.unit, halves=False)
         return bricks.stack(case.courses, case.unit)
 
     def _target(self):
@@ -310,7 +306,7 @@ class Play:
         if case.rotation:
             self.drive = "x" if self.dice.often(0.15) else ""
             self.driven = bool(self.drive)
-            top = scene.platen("top", rotation=case.rotation, height=case.platen, drive=self.drive)  # fmt: skip
+            top = scene.platen("top", rotation=case.rotation, height=case.platen, drive=self.drive)
             if case.stress:
                 scene.press(top, case.stress)
             self.height = case.top + case.platen
@@ -379,7 +375,7 @@ class Play:
         need = self.case.carried()
         size = need if abs(need) > 1e-6 * self.case.own else self.case.own
         if not abs(found - need) <= MISSING * abs(size):
-            raise Wrong(f"the support carries {found} N, weights and loads are {need} N")  # fmt: skip
+            raise Wrong(f"the support carries {found} N, weights and loads are {need} N")
         self.found.append(f"supports {found / need:.4f}")
 
     def _stage(self):
@@ -398,7 +394,11 @@ class Play:
     # Each stage draws its numbers about those of its closed form, so that some scenes stand and some fall.
 
     def _about(self, most):
-        return float(f"{most * self.dice.power(-0.7, 0.5):.4g}") if most > 0 else self.dice.power(-3, 0)  # fmt: skip
+        return (
+            float(f"{most * self.dice.power(-0.7, 0.5):.4g}")
+            if most > 0
+            else self.dice.power(-3, 0)
+        )
 
     def _path(self, least=1e-5):
         """How far a push goes [mm], and its rate [mm/s].
@@ -440,7 +440,7 @@ class Play:
         base = scene.results.column("base_shear_kN")[first:]
         moved = self.moved
         if name == "cycle":
-            moved += 1e-3 * max(map(abs, scene.results.column("displacement_mm")[first:]))  # fmt: skip
+            moved += 1e-3 * max(map(abs, scene.results.column("displacement_mm")[first:]))
         most = case.mostPush(self.loaded, self.height, moved)
         peak = 1e3 * max(map(abs, base), default=0.0)
         self.found.append(("push", peak, most))
@@ -459,19 +459,25 @@ class Play:
     def _lean(self):
         most = self.case.mostAcceleration(False)
         factor = min(self._about(most), 1e3)
-        return self._factor(most, lambda: self.scene.lean(factor, self._towards(), longest=self.longest))  # fmt: skip
+        return self._factor(
+            most, lambda: self.scene.lean(factor, self._towards(), longest=self.longest)
+        )
 
     def _accelerate(self):
         most = self.case.mostAcceleration(False)
         aim = min(2 * self._about(most), 1e3)
         rate = min(max(aim / self._duration(), 1e-6), 1e6)
-        return self._factor(most, lambda: self.scene.accelerate(aim, self._towards(), rate=rate, within=0.05))  # fmt: skip
+        return self._factor(
+            most, lambda: self.scene.accelerate(aim, self._towards(), rate=rate, within=0.05)
+        )
 
     def _tilt(self):
         most = self.case.mostAcceleration(True)
         degrees = min(89.0, math.degrees(math.atan(2 * self._about(most))))
         rate = min(max(degrees / self._duration(), 1e-6), 1e6)
-        return self._factor(most, lambda: self.scene.tilt(degrees, self._towards(), rate=rate, within=0.05))  # fmt: skip
+        return self._factor(
+            most, lambda: self.scene.tilt(degrees, self._towards(), rate=rate, within=0.05)
+        )
 
     def _force(self):
         """The closed form of a horizontal load [N], and one about as large; there is none on what is only watched."""
@@ -482,38 +488,53 @@ class Play:
     def _growLoad(self):
         most, force = self._force()
         over = min(self._duration(), 86400)
-        return self._factor(1e-3 * most, lambda: self.scene.growLoad(self.target, force, over=over, within=0.05))  # fmt: skip
+        return self._factor(
+            1e-3 * most, lambda: self.scene.growLoad(self.target, force, over=over, within=0.05)
+        )
 
     def _load(self):
         """Another dead load, which replaces the one that was there."""
         most, force = self._force()
         if self.case.down:
             self.clean = False
-        return self._factor(1e-3 * most, lambda: self.scene.load(self.target, force, longest=self.longest))  # fmt: skip
+        return self._factor(
+            1e-3 * most, lambda: self.scene.load(self.target, force, longest=self.longest)
+        )
 
     def _growWind(self):
         most = self.case.mostWind()
         pressure, over = min(self._about(most), 1e8), min(self._duration(), 86400)
-        return self._factor(1e-3 * most, lambda: self.scene.growWind(pressure, self._towards(), over=over, within=0.05))  # fmt: skip
+        return self._factor(
+            1e-3 * most,
+            lambda: self.scene.growWind(pressure, self._towards(), over=over, within=0.05),
+        )
 
     def _wind(self):
         most = self.case.mostWind()
         pressure = min(self._about(most), 1e8)
-        return self._factor(1e-3 * most, lambda: self.scene.wind(pressure, self._towards(), longest=self.longest))  # fmt: skip
+        return self._factor(
+            1e-3 * most, lambda: self.scene.wind(pressure, self._towards(), longest=self.longest)
+        )
 
     def _press(self):
         stress = self.case._stress()
-        return self._factor(math.inf, lambda: self.scene.press(self.target, stress, longest=self.longest))  # fmt: skip
+        return self._factor(
+            math.inf, lambda: self.scene.press(self.target, stress, longest=self.longest)
+        )
 
     def _growPress(self):
         stress, over = self.case._stress(), min(self._duration(), 86400)
-        return self._factor(math.inf, lambda: self.scene.growPress(self.target, stress, over=over, within=0.05))  # fmt: skip
+        return self._factor(
+            math.inf, lambda: self.scene.growPress(self.target, stress, over=over, within=0.05)
+        )
 
     def _shake(self):
         dice = self.dice
         most = min(self.case.mostAcceleration(False), 100) * GRAVITY
         wave = [0.0, *(round(most * dice.uniform(-2, 2), 6) for _ in range(6)), 0.0]
-        return self.scene.shake(wave, every=self._duration() / 4, damping=dice.choice([0, 0.2]), unit="m/s²")  # fmt: skip
+        return self.scene.shake(
+            wave, every=self._duration() / 4, damping=dice.choice([0, 0.2]), unit="m/s²"
+        )
 
     def _run(self):
         return self.scene.run(min(self._duration(), 86400))
@@ -648,7 +669,9 @@ class Falling(Play):
 
     def __init__(self, dice, folder):
         self.found, self.stages, self.steps = [], ["settle"], 0
-        self.dice, self.how = dice, dice.choice(["overhangs", "is blown over", "is pushed over", "is crushed", "has soft joints"])  # fmt: skip
+        self.dice, self.how = dice, dice.choice(
+            ["overhangs", "is blown over", "is pushed over", "is crushed", "has soft joints"]
+        )
         long, high = dice.power(-1.5, 0.3), dice.power(-1.5, 0)
         unit, courses = (long, long / 2, high), dice.randint(2, 5)
         kn = dice.power(5, 7) if self.how == "has soft joints" else dice.power(8, 11)
@@ -665,7 +688,9 @@ class Falling(Play):
         structure = bricks.stack(courses, unit)
         if self.how == "overhangs":
             shift = long * dice.uniform(0.51, 0.9)
-            box = lambda n: bricks.block((n * shift, 0, n * high), (n * shift + long, long / 2, (n + 1) * high), part=f"b{n}")  # fmt: skip
+            box = lambda n: bricks.block(
+                (n * shift, 0, n * high), (n * shift + long, long / 2, (n + 1) * high), part=f"b{n}"
+            )
             structure = box(0) + box(1)
         elif dice.often(0.5):
             structure = bricks.Wall(2 * long, courses * high, unit, halves=False)
@@ -675,13 +700,15 @@ class Falling(Play):
         self.base = scene.platen("bottom")
         weight = density * GRAVITY * high
         if self.how == "is blown over":
-            side = dice.power(0.3, 1.5) * courses * weight * (1 + friction) * (1 + 2 * long / high)  # fmt: skip
+            side = dice.power(0.3, 1.5) * courses * weight * (1 + friction) * (1 + 2 * long / high)
             scene.wind(min(side, 1e8), (1, 0, 0))
         elif self.how == "is pushed over":
-            size = dice.power(0.3, 1.5) * courses * weight * long * long * (1 + friction)  # fmt: skip
+            size = dice.power(0.3, 1.5) * courses * weight * long * long * (1 + friction)
             scene.load(scene.handle(-1), (size, 0, 0))
         elif self.how == "is crushed":
-            scene.press(scene.platen("top", rotation="free", height=high), 1e5 * dice.power(0.1, 1.5))  # fmt: skip
+            scene.press(
+                scene.platen("top", rotation="free", height=high), 1e5 * dice.power(0.1, 1.5)
+            )
         elif self.how == "has soft joints":
             stress = kn * high * dice.power(-0.2, 0.5)
             scene.press(scene.platen("top", rotation="free", height=high), stress)
@@ -695,12 +722,19 @@ class Falling(Play):
 def describe(number, found):
     """A line on a scene."""
     compared = [
-        one if isinstance(one, str) else f"{one[0]} {one[1] / one[2]:.4f}" if one[2] else f"{one[0]} {one[1]:.3g}/0"
+        (
+            one
+            if isinstance(one, str)
+            else f"{one[0]} {one[1] / one[2]:.4f}"
+            if one[2]
+            else f"{one[0]} {one[1]:.3g}/0"
+        )
         for one in found.get("compared", [])
-    ]  # fmt: skip
+    ]
     return (
-        f"{number:4} {found['class']:12} {found.get('steps', 0):7} steps, balance {found.get('balance', 0):.1e}, "
-        f"{' '.join(found.get('stages', []))}: {', '.join(compared)} {found['why']}"
+        f"{number:4} {found['class']:12} {found.get('steps', 0):7} steps, balance"
+        f" {found.get('balance', 0):.1e}, {' '.join(found.get('stages', []))}:"
+        f" {', '.join(compared)} {found['why']}"
     )
 
 

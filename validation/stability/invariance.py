@@ -81,11 +81,7 @@ def curve(
     boxes = [(b.low, b.high, mats[0]) for b in bricks.Wall(long, high, UNIT)]
     boxes.append(((0, 0, -0.1), (long, UNIT[1], 0), mats[1]))
     boxes.append(((0, 0, high), (long, UNIT[1], high + 0.1), mats[1]))
-    order = (
-        np.random.default_rng(3).permutation(len(boxes))
-        if shuffle
-        else range(len(boxes))
-    )
+    order = np.random.default_rng(3).permutation(len(boxes)) if shuffle else range(len(boxes))
     ids = {}
     for n in order:
         low, top, mat = boxes[n]
@@ -112,9 +108,7 @@ def curve(
     stiff.updateAttrs(
         {k: v for k, v in scaled.items() if k in ("normalStiffness", "shearStiffness")}
     )
-    joint = MasonryJoint(
-        name="joint", peakRatio=20, residualFriction=0.3, dilatancy=0.1
-    )
+    joint = MasonryJoint(name="joint", peakRatio=20, residualFriction=0.3, dilatancy=0.1)
     joint.updateAttrs(scaled)
     down = size * sign(0, 0, -9.81)
     engines([stiff, joint], damping, down, loads=[load], zones=zones, rows=2)

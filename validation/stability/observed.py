@@ -89,9 +89,7 @@ class Observed(Scene):
         self.begin()
 
     def look(self):
-        every = lambda what: np.array(
-            [[*v] for i in self.model.interactions for v in what(i)]
-        )
+        every = lambda what: np.array([[*v] for i in self.model.interactions for v in what(i)])
         memory = np.hstack(
             [
                 every(lambda i: i.phys.damage),
@@ -100,9 +98,7 @@ class Observed(Scene):
             ]
         )
         energies = list(self.model.energy.balance().values())
-        bodies = np.array(
-            [[*b.state.pos, *b.state.vel, *b.state.ori] for b in O.bodies]
-        )
+        bodies = np.array([[*b.state.pos, *b.state.vel, *b.state.ori] for b in O.bodies])
         stresses = every(lambda i: i.phys.stress)
         jumps = every(lambda i: i.geom.jumps)
         yields = every(lambda i: i.phys.yielding)

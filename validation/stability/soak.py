@@ -50,11 +50,7 @@ def soak(blocks, steps):
 
 
 def main(steps=2_000_000):
-    print(
-        head(
-            "units, steps, memory MB, balance error, base shear kN, lost J".split(", ")
-        )
-    )
+    print(head("units, steps, memory MB, balance error, base shear kN, lost J".split(", ")))
     fine = True
     for blocks in BLOCKS:
         rows = soak(blocks, steps)

@@ -54,7 +54,7 @@ def run(point, blocks):
             # of an engine; all but a time step over the limit is our failure
             said = "the time step is" in str(stopped) and " sets" in str(stopped)
             took = O.iter - settled
-            fine = said and point.dt and point.dt > 1 and took <= 100 + undampedSteps(m, point.dt)  # fmt: skip
+            fine = said and point.dt and point.dt > 1 and took <= 100 + undampedSteps(m, point.dt)
             found.update(verdict="warned" if fine else "failed")
             found.update(why=f"after {took} steps: {stopped}")
         except AssertionError as broken:
@@ -70,11 +70,7 @@ def run(point, blocks):
             for what, bound in (("yield", ROUND_OFF), ("healed", 0))
             if found[what] > bound
         ]
-        off = [
-            f"{n} {100 * found[n]:.1f} %"
-            for n in ("balance", "made")
-            if found[n] > SHARE
-        ]
+        off = [f"{n} {100 * found[n]:.1f} %" for n in ("balance", "made") if found[n] > SHARE]
         if problems and found["verdict"] != "warned":
             found.update(verdict="failed", why="; ".join(problems))
         elif off and found["verdict"] == "green":
@@ -143,9 +139,7 @@ def friction(value):
 def stiffness(contrast):
     """Crack surfaces `contrast` times as stiff as bed joints; masses go along, so that the steps are as many."""
     k = dict(normalStiffness=contrast * 3.352e11, shearStiffness=contrast * 1.445e11)
-    return dict(
-        joints={"crack": k}, words=f"--density-scaling {max(1, contrast / 10)!r}"
-    )
+    return dict(joints={"crack": k}, words=f"--density-scaling {max(1, contrast / 10)!r}")
 
 
 def losing(value, name="shearStiffnessLoss"):
@@ -187,7 +181,10 @@ def drawn(seed):
     kind = dice.choice(["local", "combined"])
     return dict(
         joints=joints,
-        words=f"--damping {dice.uniform(0, 0.95)!r} --damping-kind {kind} --density-scaling {power(0, 4)!r}",
+        words=(
+            f"--damping {dice.uniform(0, 0.95)!r} --damping-kind {kind} --density-scaling"
+            f" {power(0, 4)!r}"
+        ),
         wall=dict(
             precompression=power(3, 5.5),
             courses=int(dice.integers(1, 8)),
@@ -206,9 +203,7 @@ AXES = {
     "time step / limit, COMP-4": points(
         [0.5, 0.95, 0.99, 1.02, 1.5], lambda v: dict(dt=v, whole=True, until=0.2)
     ),
-    "stiffness of crack / bed joint": points(
-        [1, 10, 1e2, 1e3, 1e4, 1e5, 1e6], stiffness
-    ),
+    "stiffness of crack / bed joint": points([1, 10, 1e2, 1e3, 1e4, 1e5, 1e6], stiffness),
     "density scaling": points(
         [1, 10, 1e2, 1e3, 1e4, 1e5, 1e6], lambda v: dict(words=f"--density-scaling {v}")
     ),
@@ -219,9 +214,7 @@ AXES = {
         [0, 0.1, 0.3, 0.5, 0.8, 0.95, 0.99],
         lambda v: dict(words=f"--damping {v} --damping-kind local"),
     ),
-    "rate, mm/s": points(
-        [0.1, 1, 10, 100, 1000], lambda v: dict(rate=v, until=0.05 * v**0.5)
-    ),
+    "rate, mm/s": points([0.1, 1, 10, 100, 1000], lambda v: dict(rate=v, until=0.05 * v**0.5)),
     "rate, mm/s, COMP-4": points(
         [10, 100, 1000], lambda v: dict(rate=v, until=0.02 * v**0.5, whole=True)
     ),
@@ -229,9 +222,7 @@ AXES = {
     "fracture energies / usual": points(
         [1e-6, 1e-3, 1, 1e3, 1e6],
         lambda v: dict(
-            joints={
-                "all": dict(modeIFractureEnergy=16 * v, modeIIFractureEnergy=160 * v)
-            }
+            joints={"all": dict(modeIFractureEnergy=16 * v, modeIIFractureEnergy=160 * v)}
         ),
     ),
     "friction": points([0, 0.1, 0.43, 1, 2], friction),
@@ -246,22 +237,16 @@ AXES = {
         [0, 1, 9, 100, 1000],
         lambda v: dict(joints={"bed": dict(capShear=v), "head": dict(capShear=v)}),
     ),
-    "compressive strength, MPa": points(
-        [0.1, 0.3, 1, 10, 100, 1000], lambda v: crushing(v * 1e6)
-    ),
+    "compressive strength, MPa": points([0.1, 0.3, 1, 10, 100, 1000], lambda v: crushing(v * 1e6)),
     "precompression / fc": points(
         [0, 0.01, 0.1, 0.3, 0.5, 0.7, 0.9, 0.99],
         lambda v: dict(wall=dict(precompression=v * 7.55e6)),
     ),
     "half brick, length / height": points([0.02, 0.1, 0.3, 1, 3, 10, 50], shape),
-    "courses": points(
-        [1, 2, 10, 50, 200], lambda v: dict(wall=dict(courses=v), until=0.2)
-    ),
+    "courses": points([1, 2, 10, 50, 200], lambda v: dict(wall=dict(courses=v), until=0.2)),
     "size / usual": points([1 / 220, 0.01, 0.1, 1, 10 / 0.22], size),
     "gravity": [Point("off", gravity=False), Point("on")],
-    "points along a joint": points(
-        [3, 4, 6, 10, 30], lambda v: dict(words=f"--points {v}")
-    ),
+    "points along a joint": points([3, 4, 6, 10, 30], lambda v: dict(words=f"--points {v}")),
     "loss of shear stiffness, cyclic law": points([0, 0.3, 0.6, 0.9, 0.99], losing),
     "loss of stiffness by crushing": points(
         [0, 0.25, 0.5, 0.75, 0.99], lambda v: losing(v, "compressionStiffnessLoss")
@@ -285,8 +270,10 @@ def runAll(axes):
                 result = {"value": point.value, **run(point, blocks)}
                 found.setdefault(axis, {}).setdefault(blocks, []).append(result)
                 print(
-                    f"{axis:32} {blocks:10} {shown(point.value):8} {result['verdict']:7} {result['seconds']:6.1f} s "
-                    f"{result['why']}",
+                    (
+                        f"{axis:32} {blocks:10} {shown(point.value):8} {result['verdict']:7} {result['seconds']:6.1f} s"
+                        f" {result['why']}"
+                    ),
                     flush=True,
                 )
     return found

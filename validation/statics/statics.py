@@ -29,7 +29,8 @@ from masonry.assembly.columns import Reading
 from yade import O
 
 STAGES = (
-    "settle push cycle drive lean tilt accelerate load growLoad wind growWind press growPress move release hold shake run"
+    "settle push cycle drive lean tilt accelerate load growLoad wind growWind press growPress move"
+    " release hold shake run"
 ).split()
 TARGETS = "free held guided driven handle brick".split()
 DIRECTIONS = {
@@ -77,15 +78,11 @@ def build(cell, folder):
         "--rate",
         "20",
     ]
-    scene = Scene("statics", wall, materials.calciumSilicate(), plane=plane, arguments=words)  # fmt: skip
+    scene = Scene("statics", wall, materials.calciumSilicate(), plane=plane, arguments=words)
     base = scene.platen("bottom")
-    guided, drive = ("x" if kind == "guided" else ""), (
-        "xz" if kind == "driven" else ""
-    )
+    guided, drive = ("x" if kind == "guided" else ""), ("xz" if kind == "driven" else "")
     rotation = "free" if kind == "free" else "held"
-    top = scene.platen(
-        "top", rotation=rotation, height=0.05, guided=guided, drive=drive
-    )
+    top = scene.platen("top", rotation=rotation, height=0.05, guided=guided, drive=drive)
     if kind != "driven":
         scene.press(top, 0.2e6)
     target = top
@@ -155,8 +152,8 @@ def _momenta(model):
         if body.id in divided:
             first, end = zones.nodesOf(body.id)
             for node in range(first, end):
-                place = zones.referencePoint(body.id, node) + zones.displacements[node]  # fmt: skip
-                found.append((zones.masses[node], place, zones.velocities[node], np.zeros(3)))  # fmt: skip
+                place = zones.referencePoint(body.id, node) + zones.displacements[node]
+                found.append((zones.masses[node], place, zones.velocities[node], np.zeros(3)))
             continue
         turn = np.array([list(row) for row in _rows(state.ori.toRotationMatrix())])
         own = turn.T @ np.array(state.angVel)
@@ -191,15 +188,13 @@ def stepped(scene):
         spin += np.cross(r, m * (v2 - v) / O.dt) + (s2 - s) / O.dt
         size, arm = max(size, np.abs(weight).max()), max(arm, np.abs(r).max())
     for load, point in zip(loads, points):
-        one = np.array(load.force) + load.reaction * np.array(load.direction.normalized())  # fmt: skip
+        one = np.array(load.force) + load.reaction * np.array(load.direction.normalized())
         force += one
         moment += np.cross(point, one)
         size = max(size, np.abs(one).max())
     for (
         target
-    ) in (
-        model.supports.held
-    ):  # what holds them takes all that acts on them along these axes
+    ) in model.supports.held:  # what holds them takes all that acts on them along these axes
         state = O.bodies[target.body].state
         on, twist = np.array(O.forces.f(target.body)), np.array(O.forces.t(target.body))
         on = on + state.mass * gravity
@@ -220,16 +215,12 @@ def checkNewton(scene):
     model = scene.model
     away = np.abs(force - change).max() / size
     if not away < ROUND_OFF:
-        raise Wrong(
-            f"forces {force} N from outside, mass times acceleration {change} N"
-        )
+        raise Wrong(f"forces {force} N from outside, mass times acceleration {change} N")
     # a step turns bodies about where they stood: the second order of the rotation in a step remains; forces on the faces of
     # deformable units go to their nodes as these stood when the unit was whole
     away = np.abs(moment - spin).max() / couple
     if not away < (1e-4 if model.zones else 1e-6):
-        raise Wrong(
-            f"moments {moment} N m from outside, change of angular momentum {spin} N m"
-        )
+        raise Wrong(f"moments {moment} N m from outside, change of angular momentum {spin} N m")
 
 
 def checkColumns(scene):
@@ -240,17 +231,28 @@ def checkColumns(scene):
     after = _momenta(model)
     reading = Reading(model)
     values = {c.head: c.value(reading) for c in scene.columns}
-    held = {t.body for t in model.supports.held if not set("xyz") - set(O.bodies[t.body].state.blockedDOFs)}  # fmt: skip
+    held = {
+        t.body
+        for t in model.supports.held
+        if not set("xyz") - set(O.bodies[t.body].state.blockedDOFs)
+    }
     gravity = np.array(model.scheme.now)
     named = {t.body: t for t in scene.targets.values()}
     # the vertical column of a platen that no drive holds along z is the force of its joints, so its weight and loads are not missing
-    pressed = {b for b, t in named.items() if t.box and not t.fixed and "z" not in t.drives and f"{t.name}_force_z_kN" in values}  # fmt: skip
+    pressed = {
+        b
+        for b, t in named.items()
+        if t.box and not t.fixed and "z" not in t.drives and f"{t.name}_force_z_kN" in values
+    }
     counts = lambda body: np.array([1, 1, body not in pressed])
     bodies = [*_owners(model)]
     free = [n for n, body in enumerate(bodies) if body not in held]
-    need = sum(counts(bodies[n]) * before[n][0] * (gravity - (after[n][2] - before[n][2]) / O.dt) for n in free)  # fmt: skip
+    need = sum(
+        counts(bodies[n]) * before[n][0] * (gravity - (after[n][2] - before[n][2]) / O.dt)
+        for n in free
+    )
     size = np.abs(need).max()
-    handles = {t.body for t in named.values() if t.brick is not None and t.loaded and not t.fixed}  # fmt: skip
+    handles = {t.body for t in named.values() if t.brick is not None and t.loaded and not t.fixed}
     for label, load in model.loading.loads.items():
         if label == "push":
             continue
@@ -258,8 +260,10 @@ def checkColumns(scene):
         if load.body not in handles:
             need = need + counts(load.body) * np.array(load.force)
             recorded = named[load.body].drives if load.body in named else ""
-            if load.driven and not any(abs(load.direction["xyz".index(a)]) > 0.5 for a in recorded):  # fmt: skip
-                need = need + counts(load.body) * load.reaction * np.array(load.direction.normalized())  # fmt: skip
+            if load.driven and not any(abs(load.direction["xyz".index(a)]) > 0.5 for a in recorded):
+                need = need + counts(load.body) * load.reaction * np.array(
+                    load.direction.normalized()
+                )
     for i, axis in enumerate("xyz"):
         if plane and axis == "y":
             continue
@@ -270,7 +274,7 @@ def checkColumns(scene):
             column = f"{target.name}_force_{axis}_kN"
             if column in values:
                 total += 1e3 * values[column]
-                if axis in on and target.body not in held and target.body not in handles:  # fmt: skip
+                if axis in on and target.body not in held and target.body not in handles:
                     # the weight of a guided platen along the guide is carried there, and the column leaves it out
                     total += O.bodies[target.body].state.mass * gravity[i]
             elif axis in on and target.body not in held:
@@ -299,7 +303,7 @@ def _owners(model):
 def checkWork(scene, first):
     """The work of what was pushed, from its columns, against the ledger's work of the loads."""
     column = scene.results.column
-    top, moved = (np.array(column(n)[first:]) for n in ("top_shear_kN", "displacement_mm"))  # fmt: skip
+    top, moved = (np.array(column(n)[first:]) for n in ("top_shear_kN", "displacement_mm"))
     done = np.array(column("external_J")[first:])
     if len(top) < 5:
         raise Wrong(f"a push has {len(top)} rows")
@@ -307,7 +311,7 @@ def checkWork(scene, first):
     size = float(np.sum(np.abs(0.5 * (top[1:] + top[:-1]) * np.diff(moved))))
     press = scene.model.loading.loads.get("top_force")
     if press:  # which does work, too, and keeps its force
-        work += 1e-3 * press.force[2] * (column("top_z_mm")[-1] - column("top_z_mm")[first])  # fmt: skip
+        work += 1e-3 * press.force[2] * (column("top_z_mm")[-1] - column("top_z_mm")[first])
     between = float(
         np.sum(np.abs(0.5 * np.diff(top) * np.diff(moved)))
     )  # where it falls between two rows
@@ -322,9 +326,9 @@ def checkAnswers(scene):
     rows, column = scene.running.results, scene.results.column
     for answer in scene.answers:
         if answer["name"] == "peak":
-            carried = [min(*both) for both in zip(column("base_shear_kN"), column("top_shear_kN"))]  # fmt: skip
+            carried = [min(*both) for both in zip(column("base_shear_kN"), column("top_shear_kN"))]
             at = carried.index(max(carried))
-            where = next(a["value"] for a in scene.answers if a["name"] == "displacement_at_peak")  # fmt: skip
+            where = next(a["value"] for a in scene.answers if a["name"] == "displacement_at_peak")
             if column("displacement_mm")[at] != where:
                 raise Wrong(f"the peak is not at {where} mm in the curve")
     for what, factor in scene.running.at.held.items():
@@ -391,14 +395,20 @@ def main():
         )
         if refusal not in (None, "wrong"):
             refusals.setdefault((cell[0], refusal), []).append(cell)
-    lines = ["| stage | " + " | ".join(TARGETS) + " |", "|---" * (len(TARGETS) + 1) + "|"]  # fmt: skip
+    lines = ["| stage | " + " | ".join(TARGETS) + " |", "|---" * (len(TARGETS) + 1) + "|"]
     for stage in STAGES:
         found = [table.get((stage, target)) for target in TARGETS]
         if any(found):
             texts = [
-                "" if f is None else f"{f[0]} hold" + f", {f[1]} refused" * (f[1] > 0) + f", **{f[2]} wrong**" * (f[2] > 0)
+                (
+                    ""
+                    if f is None
+                    else f"{f[0]} hold"
+                    + f", {f[1]} refused" * (f[1] > 0)
+                    + f", **{f[2]} wrong**" * (f[2] > 0)
+                )
                 for f in found
-            ]  # fmt: skip
+            ]
             lines.append(f"| {stage} | " + " | ".join(texts) + " |")
     lines.append("")
     for (stage, text), refused in sorted(refusals.items()):

@@ -33,9 +33,7 @@ TABLE = {
 } | {"E1": (0.0, 0.0)}
 
 CODE_FRICTION = 0.4  # of a bed joint: EN 1998-3:2005, C.4.3.1; NTC 2018, 7.8.2.2.2
-UNIT_TENSION = (
-    0.1  # over the compressive strength of the unit: Circolare 7/2019, C8.7.1.3.1.1
-)
+UNIT_TENSION = 0.1  # over the compressive strength of the unit: Circolare 7/2019, C8.7.1.3.1.1
 #: Height of a unit over the overlap where the row has no units: the one at which the equivalent friction is 0.4, which the
 #: Circolare gives for good bond.
 GOOD_BOND = 1 / 0.4 - 1 / LOCAL_FRICTION
@@ -159,14 +157,10 @@ def diagonal(wall: Wall, tension: float) -> float:
 
 def stepped(wall: Wall, cohesion: float) -> float:
     """Strength [N] of a crack in steps, at most that of the units: Circolare 7/2019, C8.7.1.17 and C8.7.1.18."""
-    joints = (cohesion + LOCAL_FRICTION * wall.stress) / (
-        1 + LOCAL_FRICTION * wall.slope
-    )
+    joints = (cohesion + LOCAL_FRICTION * wall.stress) / (1 + LOCAL_FRICTION * wall.slope)
     found = wall.area / wall.shape * joints
     return (
-        found
-        if wall.unit is None
-        else min(found, diagonal(wall, UNIT_TENSION * wall.unit) / 2.3)
+        found if wall.unit is None else min(found, diagonal(wall, UNIT_TENSION * wall.unit) / 2.3)
     )
 
 
@@ -206,9 +200,7 @@ def eurocodeDraft(wall: Wall) -> Prediction:
         strengths["shear"] = diagonal(wall, 1.5 * wall.tau0)
     else:
         strengths |= sliding(wall, wall.fv0, LOCAL_FRICTION, MOST_SHEAR)
-        strengths["shear"] = min(
-            strengths.get("shear", math.inf), stepped(wall, wall.fv0)
-        )
+        strengths["shear"] = min(strengths.get("shear", math.inf), stepped(wall, wall.fv0))
     drifts = {
         "flexure": 0.01 * (1 - wall.stress / wall.strength),
         "shear": 0.006,
@@ -234,9 +226,7 @@ def italian(wall: Wall) -> Prediction:
         strengths["shear"] = diagonal(wall, 1.5 * wall.tau0)
     else:
         strengths |= sliding(wall, wall.fv0, CODE_FRICTION, MOST_SHEAR / 0.7)
-        strengths["shear"] = min(
-            strengths.get("shear", math.inf), stepped(wall, wall.fv0)
-        )
+        strengths["shear"] = min(strengths.get("shear", math.inf), stepped(wall, wall.fv0))
     return smallest(strengths, {"flexure": 0.010, "shear": 0.005, "sliding": 0.005})
 
 
@@ -279,9 +269,7 @@ def main() -> None:
         cells = [row["Test unit name"], row["Reference"], row["Stone masonry typology"]]
         print(
             "| "
-            + " | ".join(
-                cells + [text(prediction) for prediction in predict(row).values()]
-            )
+            + " | ".join(cells + [text(prediction) for prediction in predict(row).values()])
             + " |"
         )
 

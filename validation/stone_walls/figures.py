@@ -28,19 +28,23 @@ def peaks(studies):
     """Predicted over measured peaks of this model and of two codes, a panel each."""
     made, tests, walls = results.predictions(*studies), results.measured(), rules.read()
     said = {row["ID"]: codes.predict(row) for row in codes.rows()}
-    figure, panels = plt.subplots(1, 3, figsize=(11, 4), sharey=True, constrained_layout=True)  # fmt: skip
+    figure, panels = plt.subplots(1, 3, figsize=(11, 4), sharey=True, constrained_layout=True)
     for panel, title in zip(panels, ("this model, 10 to 90 %", *SHOWN)):
         for wall, test in tests.items():
             own, colour = made[wall], COLOURS[walls[wall].typology]
             if title in SHOWN:
-                panel.plot(test["peak"], said[wall][title].peak, "o", color=colour, markersize=4)  # fmt: skip
+                panel.plot(test["peak"], said[wall][title].peak, "o", color=colour, markersize=4)
                 continue
             best = own.best["peak"]
             ends = [[max(best - own.low["peak"], 0)], [max(own.high["peak"] - best, 0)]]
-            panel.errorbar(test["peak"], best, ends, fmt="o", color=colour, markersize=4, linewidth=0.8)  # fmt: skip
+            panel.errorbar(
+                test["peak"], best, ends, fmt="o", color=colour, markersize=4, linewidth=0.8
+            )
         for factor, style in ((1, "-"), (1.25, ":"), (0.8, ":")):
-            panel.plot([10, 300], [10 * factor, 300 * factor], style, color="0.5", linewidth=0.8)  # fmt: skip
-        panel.set(xscale="log", yscale="log", title=title, xlabel="measured peak, mean of both sides, kN")  # fmt: skip
+            panel.plot([10, 300], [10 * factor, 300 * factor], style, color="0.5", linewidth=0.8)
+        panel.set(
+            xscale="log", yscale="log", title=title, xlabel="measured peak, mean of both sides, kN"
+        )
     panels[0].set_ylabel("predicted peak, kN")
     for kind, colour in COLOURS.items():
         panels[2].plot([], [], "o", color=colour, markersize=4, label=kind)
@@ -51,11 +55,13 @@ def peaks(studies):
 def cracks(folders):
     """The crack patterns of some runs, with what was measured of the failure."""
     tests = results.measured()
-    figure, panels = plt.subplots(1, len(folders), figsize=(3 * len(folders), 4), constrained_layout=True)  # fmt: skip
+    figure, panels = plt.subplots(
+        1, len(folders), figsize=(3 * len(folders), 4), constrained_layout=True
+    )
     for panel, folder in zip(panels, folders):
         run = readRun(folder)
         wall = run["scene"].rsplit("_", 1)[-1]
-        failure = results.TYPES[tests[wall]["failure"]] if wall in tests else "kept back"  # fmt: skip
+        failure = results.TYPES[tests[wall]["failure"]] if wall in tests else "kept back"
         panel.imshow(plt.imread(os.path.join(folder, "cracks.png")))
         panel.set_title(f"{rules.read()[wall].name}; test: {failure}", size=9)
         panel.axis("off")

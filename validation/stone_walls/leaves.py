@@ -11,9 +11,7 @@ import os
 import sys
 from dataclasses import replace
 
-sys.path.insert(
-    0, os.path.dirname(os.path.abspath(sys.argv[0]))
-)  # in YADE, __file__ is YADE
+sys.path.insert(0, os.path.dirname(os.path.abspath(sys.argv[0])))  # in YADE, __file__ is YADE
 import rules
 from masonry import Scene, bricks, materials
 from masonry.scene import options
@@ -27,7 +25,9 @@ row = rules.read()[args.wall]
 thick = row.thickness / args.leaves
 wall = bricks.Bricks()
 for leaf in range(args.leaves):
-    guess = rules.Guess(replace(row, thickness=thick, force=row.force / args.leaves), *rules.CHOSEN, leaf)  # fmt: skip
+    guess = rules.Guess(
+        replace(row, thickness=thick, force=row.force / args.leaves), *rules.CHOSEN, leaf
+    )
     wall += guess.bricks(bricks).moved(dy=leaf * thick).named(f"leaf {leaf + 1}")
 stones = guess.masonry(materials)
 stones.joints["collar"] = stones.joints["bed"]

@@ -21,17 +21,13 @@ import rules
 from masonry.read import curves
 from masonry.read.files import readCurve, readRun
 
-FLEXURE = (
-    0.8  # least peak over the strength in flexure of a wall that fails in flexure [-]
-)
+FLEXURE = 0.8  # least peak over the strength in flexure of a wall that fails in flexure [-]
 LOST, COLLAPSED = (
     0.8,
     0.5,
 )  # share of the peak at the ultimate drift and at collapse [-]
 ELASTIC, EFFECTIVE = 0.15, 0.7  # share of the peak at the secants [-]
-BEYOND = NormalDist().inv_cdf(
-    0.9
-)  # standard deviations from the median to the 90 % quantile
+BEYOND = NormalDist().inv_cdf(0.9)  # standard deviations from the median to the 90 % quantile
 STANDS = 0.05  # drift that a wall reaches which carries its vertical load [%]
 WAVE = 0.2  # a fall of the force that is over within this displacement is a wave [mm]
 TYPES = {0.0: "shear", 0.5: "hybrid", 1.0: "flexure"}
@@ -57,12 +53,19 @@ class Numbers:
 
 
 #: Strength in flexure by number of a wall [kN].
-STRENGTHS = {row["ID"]: 1e-3 * codes.flexure(codes.read(row), 1.15) for row in codes.rows()}  # fmt: skip
+STRENGTHS = {row["ID"]: 1e-3 * codes.flexure(codes.read(row), 1.15) for row in codes.rows()}
 
 
 NAMES = [one.name for one in fields(Numbers)]
-MEANINGS = dict(peak="peak", elastic="initial stiffness", effective="effective stiffness", atPeak="drift at the peak", ultimate="ultimate drift", collapse="drift of collapse")  # fmt: skip
-UNITS = dict(peak="kN", elastic="kN/mm", effective="kN/mm", atPeak="%", ultimate="%", collapse="%")  # fmt: skip
+MEANINGS = dict(
+    peak="peak",
+    elastic="initial stiffness",
+    effective="effective stiffness",
+    atPeak="drift at the peak",
+    ultimate="ultimate drift",
+    collapse="drift of collapse",
+)
+UNITS = dict(peak="kN", elastic="kN/mm", effective="kN/mm", atPeak="%", ultimate="%", collapse="%")
 
 
 def ofRun(folder, height):
@@ -87,20 +90,29 @@ def ofRun(folder, height):
 def _fallen(moved, force, at, level):
     """Displacement after the peak at which the force has fallen to a level, or the end [mm]."""
     place = curves.fallen(moved, force, at, level, WAVE)
-    return float(moved[-1] if place is None else np.interp(place, np.arange(len(moved)), moved))  # fmt: skip
+    return float(moved[-1] if place is None else np.interp(place, np.arange(len(moved)), moved))
 
 
 def _secant(moved, force, share):
     """Secant stiffness at a share of the peak, on the way to it [kN/mm]."""
     level = share * force.max()
     row = int(np.flatnonzero(force >= level)[0])
-    reached = np.interp(level, force[row - 1 : row + 1], moved[row - 1 : row + 1]) if row else moved[0]  # fmt: skip
+    reached = (
+        np.interp(level, force[row - 1 : row + 1], moved[row - 1 : row + 1]) if row else moved[0]
+    )
     return float(level / max(reached, 1e-6))
 
 
 def measured():
     """By number of a wall, what was measured: dict of means of both sides by the names of :class:`Numbers`, and each side."""
-    columns = dict(peak="Vmax,{} [kN]", elastic="Kel,{} [kN/mm]", effective="Keff,{} [kN/mm]", atPeak="dmax,{} [%]", ultimate="du,{} [%]", collapse="dc,{} [%]")  # fmt: skip
+    columns = dict(
+        peak="Vmax,{} [kN]",
+        elastic="Kel,{} [kN/mm]",
+        effective="Keff,{} [kN/mm]",
+        atPeak="dmax,{} [%]",
+        ultimate="du,{} [%]",
+        collapse="dc,{} [%]",
+    )
     found = {}
     with open(rules.WALLS, encoding="utf-8-sig", newline="") as f:
         for cells in csv.DictReader(f):
@@ -147,12 +159,15 @@ def choose(folder):
     for values, numbers in runs(folder):
         key = values["bond"], values["stiffness"]
         found.setdefault(key, {})[values["wall"]] = numbers
-    print("| bond | stiffness | walls | peak | effective stiffness | initial stiffness | ultimate drift | failure right |")  # fmt: skip
+    print(
+        "| bond | stiffness | walls | peak | effective stiffness | initial stiffness | ultimate"
+        " drift | failure right |"
+    )
     print("|---|---|---|---|---|---|---|---|")
     for (bond, stiffness), of in found.items():
         cells = []
         for name in ("peak", "effective", "elastic", "ultimate"):
-            mean, cov = spread([getattr(n, name) / tests[w][name] for w, n in of.items()])  # fmt: skip
+            mean, cov = spread([getattr(n, name) / tests[w][name] for w, n in of.items()])
             cells.append(f"{mean:.2f} ({100 * cov:.0f} %)")
         right = sum(n.failure(w) == tests[w]["failure"] for w, n in of.items())
         print(f"| {bond} | {stiffness} | {len(of)} | {' | '.join(cells)} | {right} |")
@@ -190,30 +205,30 @@ def predictions(pushes, cycles):
         firsts = [n for n in (0, 1) if n in samples] or [*samples]
         for name in NAMES:
             own = [getattr(numbers, name) for numbers in samples.values()]
-            ends = quantiles(own if len(own) > 1 else 2 * own, n=10, method="inclusive")  # fmt: skip
+            ends = quantiles(own if len(own) > 1 else 2 * own, n=10, method="inclusive")
             low[name], high[name] = ends[0], ends[-1]
             best[name] = fmean(getattr(samples[n], name) for n in firsts)
         # two best estimates that differ are the hybrid of both
         best["failure"] = fmean(samples[n].failure(wall) for n in firsts)
         best["failure"] = round(2 * best["failure"]) / 2
         sides = [_peakOf(samples, side) for side in (0, 1)]
-        made[wall] = Prediction(
-            best, low, high, len(samples), sides, loops.get(wall, {})
-        )
+        made[wall] = Prediction(best, low, high, len(samples), sides, loops.get(wall, {}))
     return made
 
 
 def _peakOf(samples, side):
     """The peak to a side: of its best estimate, else of its other draws, else of all [kN]."""
     own = [samples[n].peak for n in samples if n % 2 == side]
-    return samples[side].peak if side in samples else fmean(own or [n.peak for n in samples.values()])  # fmt: skip
+    return (
+        samples[side].peak if side in samples else fmean(own or [n.peak for n in samples.values()])
+    )
 
 
 def errors(made):
     """What the walls with results say of the model: mean and standard deviation of the logarithms of measured over predicted
     values, by the names of :class:`Numbers`."""
     tests = measured()
-    logs = {name: [math.log(tests[w][name] / made[w].best[name]) for w in tests] for name in NAMES}  # fmt: skip
+    logs = {name: [math.log(tests[w][name] / made[w].best[name]) for w in tests] for name in NAMES}
     return {name: (fmean(values), stdev(values)) for name, values in logs.items()}
 
 
@@ -260,8 +275,12 @@ def write(made):
     ]
     for name in NAMES:
         unit = UNITS[name].replace("/", "_per_").replace("%", "percent")
-        head += [f"{name}_{unit}"] + [f"{name}_{end}" for end in ("low", "high", "from", "to")]  # fmt: skip
-    head += [f"{what}_{law}" for what in ("work_J", "damping", "residual_percent") for law in ("paper", "cyclic")]  # fmt: skip
+        head += [f"{name}_{unit}"] + [f"{name}_{end}" for end in ("low", "high", "from", "to")]
+    head += [
+        f"{what}_{law}"
+        for what in ("work_J", "damping", "residual_percent")
+        for law in ("paper", "cyclic")
+    ]
     for number, row in walls.items():
         own = made[number]
         line = [number, row.campaign, row.name, own.draws, TYPES[own.best["failure"]]]
@@ -270,11 +289,11 @@ def write(made):
         for name in NAMES:
             cells = own.best[name], own.low[name], own.high[name], *ends[name]
             line += [f"{value:.3g}" for value in cells]
-        for what, scale in (("work", 1.0), ("damping", 1.0), ("residual", 0.1 / row.height)):  # fmt: skip
+        for what, scale in (("work", 1.0), ("damping", 1.0), ("residual", 0.1 / row.height)):
             laws = [own.cycles.get(law) for law in ("softening", "cyclic")]
             line += [f"{scale * one[what]:.3g}" if one else "" for one in laws]
         lines.append(line)
-    with open(os.path.join(HERE, "predictions.csv"), "w", encoding="utf-8", newline="") as f:  # fmt: skip
+    with open(os.path.join(HERE, "predictions.csv"), "w", encoding="utf-8", newline="") as f:
         csv.writer(f, lineterminator="\n").writerows([head, *lines])
 
 
@@ -283,33 +302,43 @@ def table(made):
     tests, walls = measured(), rules.read()
     of = lambda kind: [w for w in tests if kind in ("all", walls[w].typology)]
     kinds = [kind for kind in (*rules.TABLE, "all") if of(kind)]
-    cell = lambda ratios: "{:.2f} ({:.0f} %)".format(spread(ratios)[0], 100 * spread(ratios)[1]) if ratios else "–"  # fmt: skip
-    yield "| predicted over measured | " + " | ".join(f"{k} ({len(of(k))})" for k in kinds) + " |"  # fmt: skip
+    cell = lambda ratios: (
+        "{:.2f} ({:.0f} %)".format(spread(ratios)[0], 100 * spread(ratios)[1]) if ratios else "–"
+    )
+    yield "| predicted over measured | " + " | ".join(f"{k} ({len(of(k))})" for k in kinds) + " |"
     yield "|---" * (len(kinds) + 1) + "|"
     for name in NAMES:
-        cells = [cell([made[w].best[name] / tests[w][name] for w in of(k)]) for k in kinds]  # fmt: skip
+        cells = [cell([made[w].best[name] / tests[w][name] for w in of(k)]) for k in kinds]
         yield f"| this model: {MEANINGS[name]} | {' | '.join(cells)} |"
     error = errors(made)
     known = {w: expected(made[w], error) for w in tests}
     for name in ("peak", "ultimate"):
-        narrow = lambda k: sum(made[w].low[name] <= tests[w][name] <= made[w].high[name] for w in of(k))  # fmt: skip
-        wide = lambda k: sum(known[w][name][0] <= tests[w][name] <= known[w][name][1] for w in of(k))  # fmt: skip
-        yield f"| {MEANINGS[name]} within the interval of what is unknown | {' | '.join(str(narrow(k)) for k in kinds)} |"  # fmt: skip
-        yield f"| {MEANINGS[name]} within that and the error of the model | {' | '.join(str(wide(k)) for k in kinds)} |"  # fmt: skip
+        narrow = lambda k: sum(
+            made[w].low[name] <= tests[w][name] <= made[w].high[name] for w in of(k)
+        )
+        wide = lambda k: sum(
+            known[w][name][0] <= tests[w][name] <= known[w][name][1] for w in of(k)
+        )
+        yield (
+            f"| {MEANINGS[name]} within the interval of what is unknown |"
+            f" {' | '.join(str(narrow(k)) for k in kinds)} |"
+        )
+        yield (
+            f"| {MEANINGS[name]} within that and the error of the model |"
+            f" {' | '.join(str(wide(k)) for k in kinds)} |"
+        )
     right = lambda k: sum(made[w].best["failure"] == tests[w]["failure"] for w in of(k))
     yield f"| failure type right | {' | '.join(str(right(k)) for k in kinds)} |"
     said = {row["ID"]: codes.predict(row) for row in codes.rows()}
     for rule in said["1"]:
         peaks = {w: said[w][rule].peak for w in tests}
         drifts = {w: said[w][rule].drift for w in tests}
-        for what, own, name in (("peak", peaks, "peak"), ("drift capacity", drifts, "ultimate")):  # fmt: skip
+        for what, own, name in (("peak", peaks, "peak"), ("drift capacity", drifts, "ultimate")):
             if any(own.values()):
-                cells = [cell([own[w] / tests[w][name] for w in of(k) if own[w]]) for k in kinds]  # fmt: skip
+                cells = [cell([own[w] / tests[w][name] for w in of(k) if own[w]]) for k in kinds]
                 yield f"| {rule}: {what} | {' | '.join(cells)} |"
-        right = lambda k: sum(
-            _type(said[w][rule]) == tests[w]["failure"] for w in of(k)
-        )
-        yield f"| {rule}: failure type right | {' | '.join(str(right(k)) for k in kinds)} |"  # fmt: skip
+        right = lambda k: sum(_type(said[w][rule]) == tests[w]["failure"] for w in of(k))
+        yield f"| {rule}: failure type right | {' | '.join(str(right(k)) for k in kinds)} |"
 
 
 def _type(prediction):

@@ -20,13 +20,17 @@ WALLS = os.path.join(HERE, "reference", "walls.csv")
 WEIGHT = 20e3  # of masonry, as the database counts it [N/m³]
 GRAVITY = 9.81  # [m/s²]
 SAMPLES = 6  # draws of the interval of a wall, beside two best estimates
-LOWEST = 0.01  # least height of the force of a drive above a wall, the thickness of what it pushes [m]
+LOWEST = (
+    0.01  # least height of the force of a drive above a wall, the thickness of what it pushes [m]
+)
 POINTS = ("8", "5", "12")  # along a joint, by turns
 #: Drifts of the cycles [%].
 DRIFTS = (0.1, 0.2, 0.4, 0.6, 1.0, 1.5, 2.0)
 
 #: Rows of table C8.5.I of Circolare 2019 by typology, and what their mean values say; E1 is E without mortar.
-ROWS = dict(A="rubble", B="roughly cut stone", C="split stone", D="squared soft stone", E="squared stone")  # fmt: skip
+ROWS = dict(
+    A="rubble", B="roughly cut stone", C="split stone", D="squared soft stone", E="squared stone"
+)
 TABLE = {kind: ntc2018(row, "LC2", confidence=1) for kind, row in ROWS.items()}
 TABLE["E1"] = {**TABLE["E"], "fv0": 0.0}
 
@@ -46,12 +50,18 @@ UNKNOWN_SIZE = 0.7, 1.4
 #: Line of minimum trace of rubble and uncut stone where none was measured, that of the other such walls of the database [-].
 TRACE = {"A": 1.1, "B": 1.1}
 #: Assumed sizes of such stones by typology: length and height [m].
-SIZES = {"A": (0.25, 0.15), "B": (0.25, 0.15), "C": (0.25, 0.15), "D": (0.30, 0.15), "E": (0.30, 0.15)}  # fmt: skip
+SIZES = {
+    "A": (0.25, 0.15),
+    "B": (0.25, 0.15),
+    "C": (0.25, 0.15),
+    "D": (0.30, 0.15),
+    "E": (0.30, 0.15),
+}
 
 
 def _byMortar(row, table):
     """A value by the strength of the mortar; mortar of unknown strength counts as the weakest."""
-    return 0.0 if row.dry else next(c for least, c in table if (row.mortar or 0.0) >= least)  # fmt: skip
+    return 0.0 if row.dry else next(c for least, c in table if (row.mortar or 0.0) >= least)
 
 
 #: Cohesion [Pa] and friction [-] of joints, functions of a row by the name of a rule: OTHERS is of natural stone in general
@@ -122,17 +132,25 @@ def _row(cells):
         get("Eb [MPa]", 1e6),
         get("fc,m  [MPa]"),
         get("Ntot [kN]", 1e3),
-        cells["HC"] == "R"
-        or not cells["HC"]
-        and cells["Stone masonry typology"] in "DE1",
+        cells["HC"] == "R" or not cells["HC"] and cells["Stone masonry typology"] in "DE1",
         trace or TRACE.get(cells["Stone masonry typology"]),  # 0 stands for unknown
         cells["Cyclic / Monotonic"] == "Cyclic",
     )
 
 
 #: Numbers of the walls whose results are given, and of those whose results are kept back.
-KNOWN = [str(n) for n in (*range(1, 25), *range(47, 52), *range(99, 103), *range(118, 124))]  # fmt: skip
-BLIND = [str(n) for n in (*range(25, 29), *range(33, 37), *range(69, 73), *range(80, 99), *range(103, 117), *range(124, 136))]  # fmt: skip
+KNOWN = [str(n) for n in (*range(1, 25), *range(47, 52), *range(99, 103), *range(118, 124))]
+BLIND = [
+    str(n)
+    for n in (
+        *range(25, 29),
+        *range(33, 37),
+        *range(69, 73),
+        *range(80, 99),
+        *range(103, 117),
+        *range(124, 136),
+    )
+]
 
 
 def read():

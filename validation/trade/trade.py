@@ -67,9 +67,7 @@ RUNS = {
     "rigid: no crack surfaces": ["--crack-surfaces off"],
     "deformable": [f"{QUICK} --rate 50"],
     "deformable: rate": [f"{QUICK} --rate {v}" for v in (100, 200)],
-    "deformable: mesh and rate": [
-        f"{QUICK} --divisions 2 --rate {v}" for v in (50, 100, 200)
-    ],
+    "deformable: mesh and rate": [f"{QUICK} --divisions 2 --rate {v}" for v in (50, 100, 200)],
     "deformable: true masses": [f"{SOFT} --divisions 2 --rate 50"],
     "deformable: mass scaling": [f"{SOFT} --mass-scaling 5 --divisions 2 --rate 50"],
     **{f"preset {name}": [asOptions(name)] for name in PRESETS},
@@ -111,9 +109,7 @@ def done(wall, options):
 
 def repeats(series):
     """All runs of a series that is repeated: its own and those with other time steps."""
-    return RUNS[series] + [
-        f"{o} --dt-fraction {f}" for o in RUNS[series] for f in AGAIN
-    ]
+    return RUNS[series] + [f"{o} --dt-fraction {f}" for o in RUNS[series] for f in AGAIN]
 
 
 def allRuns():
@@ -140,9 +136,7 @@ def pattern(directory):
     entry = readRun(directory)["wall"]
     half, thickness, height = entry["unit_m"][0] / 2, *entry["unit_m"][1:]
     bed, upright = layOut(readFrame(directory, "joints"), entry)
-    patches = np.zeros(
-        (-(-entry["courses"] // PATCH[1]), -(-entry["half_units"] // PATCH[0]))
-    )
+    patches = np.zeros((-(-entry["courses"] // PATCH[1]), -(-entry["half_units"] // PATCH[0])))
     for joints, area in ((bed, half * thickness), (upright, height * thickness)):
         moved = joints["opening"] + joints["slide"]
         rows, columns = np.indices(moved.shape)
@@ -180,9 +174,7 @@ def errors(wall, runs):
     shares = [share(pattern(folder(wall, r))) for r in runs]
     result["pattern"] = [0.5 * float(np.abs(s - aim).sum()) for s in shares]
     curves = [readCurve(folder(wall, r)) for r in runs]
-    result["imbalance"] = [
-        dynamicImbalance(c["top_shear_kN"], c["base_shear_kN"]) for c in curves
-    ]
+    result["imbalance"] = [dynamicImbalance(c["top_shear_kN"], c["base_shear_kN"]) for c in curves]
     return result
 
 
@@ -415,9 +407,7 @@ def draw(found, wall, bound):
     :param bound: the wall's entry of :func:`bounds`, or None
     """
     entries = [e for e in found if e["wall"] == wall and e["series"] != "reference"]
-    reference = next(
-        e for e in found if e["wall"] == wall and e["series"] == "reference"
-    )
+    reference = next(e for e in found if e["wall"] == wall and e["series"] == "reference")
     named = list(dict.fromkeys(e["options"] for e in entries))
     entries = [next(e for e in entries if e["options"] == o) for o in named]
     presets = {asOptions(name): name for name in PRESETS}
@@ -427,10 +417,7 @@ def draw(found, wall, bound):
     figure, axes = plt.subplots(1, 2, figsize=(10, 5.6), sharex=True, sharey=True)
     listed = []
     for axis, name in zip(axes, ("peak", "work")):
-        points = [
-            (e["seconds"][THREADS[-1]], max(FLOOR, min(1, abs(e[name]))))
-            for e in entries
-        ]
+        points = [(e["seconds"][THREADS[-1]], max(FLOOR, min(1, abs(e[name])))) for e in entries]
         for (x, y), e in zip(points, entries):
             soft = SOFT in e["options"]
             mark, color = MARKS["deformable" if soft else "rigid"]
@@ -479,8 +466,10 @@ def draw(found, wall, bound):
     for i, column in enumerate(columns):
         figure.text(0.02 + 0.5 * i, 0.01, "\n".join(column), fontsize=7.5, va="bottom")
     figure.suptitle(
-        f"{wall}: circles rigid, squares deformable, triangles with two by two cells; white with local damping;\n"
-        "ringed presets; diamond the bound; dashed the reference's time",
+        (
+            f"{wall}: circles rigid, squares deformable, triangles with two by two cells; white"
+            " with local damping;\nringed presets; diamond the bound; dashed the reference's time"
+        ),
         fontsize=9,
     )
     figure.tight_layout(rect=(0, 0.03 * len(columns[0]) + 0.02, 1, 1))
@@ -490,14 +479,10 @@ def draw(found, wall, bound):
 
 def main():
     arguments = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    arguments.add_argument(
-        "--walls", nargs="+", choices=list(WALLS), default=list(WALLS)
-    )
+    arguments.add_argument("--walls", nargs="+", choices=list(WALLS), default=list(WALLS))
     arguments.add_argument("--jobs", type=int, default=1, help="runs at a time")
     arguments.add_argument("--draw", action="store_true", help="run nothing")
-    arguments.add_argument(
-        "--time-only", action="store_true", help="measure times anew"
-    )
+    arguments.add_argument("--time-only", action="store_true", help="measure times anew")
     args = arguments.parse_args()
     if not args.draw:
         if not args.time_only:

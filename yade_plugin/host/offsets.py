@@ -14,13 +14,9 @@ import sys
 
 import yade.wrapper
 
-HEADER = (
-    object.__basicsize__
-)  # [bytes] of every Python object: reference count and type
+HEADER = object.__basicsize__  # [bytes] of every Python object: reference count and type
 POINTER = ctypes.sizeof(ctypes.c_void_p)
-DATA_MEMBER = (
-    b"6callerINS3_6memberI"  # "caller<member<" in the mangled type name of a caller
-)
+DATA_MEMBER = b"6callerINS3_6memberI"  # "caller<member<" in the mangled type name of a caller
 
 
 def pointerAt(address):

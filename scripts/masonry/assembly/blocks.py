@@ -79,19 +79,19 @@ def addBlock(
     return placeBlock(vertices, material, inPlane, color)
 
 
-def placeBlock(
-    vertices: Sequence[Any], material: Any, inPlane: bool, color: Any = PALE
-) -> int:
+def placeBlock(vertices: Sequence[Any], material: Any, inPlane: bool, color: Any = PALE) -> int:
     """As :func:`addBlock`, of arguments that are known to be such."""
     points = [vector(v, f"block: corner {n} [m]") for n, v in enumerate(vertices)]
     length, thickness = _extent(points)
     if not thickness > THINNEST * length:
         raise ValueError(
-            f"block: its {len(points)} corners span {length:g} m but only {thickness:g} m out of a plane: no volume"
+            f"block: its {len(points)} corners span {length:g} m but only {thickness:g} m out of a"
+            " plane: no volume"
         )
     if length < 1e-8 * max(map(Vector3.norm, points)):
         raise ValueError(
-            f"block: {length:g} m is too small to be told so far from the origin, corner 0 at {vertices[0]} m"
+            f"block: {length:g} m is too small to be told so far from the origin, corner 0 at"
+            f" {vertices[0]} m"
         )
     shape, centroid, orientation = MasonryBlock.around(points)
     shape.color = color
@@ -107,11 +107,13 @@ def placeBlock(
             problems.append(f"block: corner {n} {vertices[n]} m is given twice")
         elif all((state.pos + state.ori * v - p).norm() > 1e-6 * length for v in hull):
             problems.append(
-                f"block: corner {n} {vertices[n]} m is no corner of the convex block around all of them"
+                f"block: corner {n} {vertices[n]} m is no corner of the convex block around all of"
+                " them"
             )
     if not all(0 < v < math.inf for v in (state.mass, *state.inertia)):
         problems.append(
-            f"block: {length:g} m long, its mass of {state.mass:g} kg and inertia are no numbers above 0"
+            f"block: {length:g} m long, its mass of {state.mass:g} kg and inertia are no numbers"
+            " above 0"
         )
     refuse(problems)
     state.refPos, state.refOri = state.pos, state.ori

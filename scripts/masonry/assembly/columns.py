@@ -95,7 +95,10 @@ def _energies(names):
 CRACKS = Column(
     "largest_crack",
     "mm",
-    "largest opening of a point of any joint, without slide, 0 if none is open; looked for every 300 steps or more",
+    (
+        "largest opening of a point of any joint, without slide, 0 if none is open; looked for"
+        " every 300 steps or more"
+    ),
     lambda r: r.structure.widest,
 )
 
@@ -133,13 +136,19 @@ PUSH = [
     Column(
         "displacement",
         "mm",
-        "displacement of the pushed point along the push, or of the watched one along a load that grows, since that began",
+        (
+            "displacement of the pushed point along the push, or of the watched one along a load"
+            " that grows, since that began"
+        ),
         lambda r: 1e3 * r.along,
     ),
     Column(
         "base_shear",
         "kN",
-        "force of the structure on all that is held, along the push or load; of a push without dead weight and dead loads",
+        (
+            "force of the structure on all that is held, along the push or load; of a push without"
+            " dead weight and dead loads"
+        ),
         lambda r: 1e-3 * r.baseShear,
     ),
     Column(
@@ -167,7 +176,10 @@ OF_PLATEN = [
     Column(
         "masonry_displacement",
         "mm",
-        "displacement of the bricks at the pushed or watched platen along the push or load since that began; elsewhere of that point",
+        (
+            "displacement of the bricks at the pushed or watched platen along the push or load"
+            " since that began; elsewhere of that point"
+        ),
         lambda r: 1e3 * r.structure.loading.masonryAlong(),
     )
 ]

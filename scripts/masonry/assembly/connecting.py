@@ -105,7 +105,8 @@ def _pairs(tolerance, allowGaps):
     for one in O.interactions.all():
         if isinstance(one.geom, MasonryJointGeom):
             raise ValueError(
-                f"bodies {one.id1} and {one.id2} have a joint: connect() is called once, when all blocks are there"
+                f"bodies {one.id1} and {one.id2} have a joint: connect() is called once, when all"
+                " blocks are there"
             )
     problems = []
     for one, two, gap, bound in misfits:
@@ -117,12 +118,15 @@ def _pairs(tolerance, allowGaps):
             problems.append(f"bodies {one} and {two} {how}")
     refuse(
         problems,
-        "move them, or allow gaps on purpose with allowGaps=True, of Scene or of connect; see help(masonry.connect) for its tolerance",
+        (
+            "move them, or allow gaps on purpose with allowGaps=True, of Scene or of connect; see"
+            " help(masonry.connect) for its tolerance"
+        ),
     )
     if not pairs:
         raise ValueError(
-            f"no joint can be made: none of {len(O.bodies)} bodies shares a face with another (tolerance "
-            f"{tolerance:g} of the smaller block's size)"
+            f"no joint can be made: none of {len(O.bodies)} bodies shares a face with another"
+            f" (tolerance {tolerance:g} of the smaller block's size)"
         )
     return pairs, sizes
 
@@ -151,7 +155,8 @@ def _connect(pairs, physics, rule):
                     joints[id(joint)] = joint
                 elif joint is not None:
                     problems.append(
-                        f"rule must return a MasonryJoint or None, got {joint!r} for bodies {id1} and {id2}"
+                        f"rule must return a MasonryJoint or None, got {joint!r} for bodies"
+                        f" {id1} and {id2}"
                     )
         refuse([*dict.fromkeys(problems)])  # joints of a kind are refused alike
     except BaseException:
@@ -179,7 +184,8 @@ def _warn(pairs, joints, sizes, engines):
     for label, _, density in mats:  # density scaling keeps the weight
         if gravity and not 1e3 <= density * gravity <= 1e5:
             say(
-                f'warning: MasonryMat "{label}": density {density:g} kg/m³ weighs {density * gravity:g} N/m³: is it in kg/m³?'
+                f'warning: MasonryMat "{label}": density {density:g} kg/m³ weighs'
+                f" {density * gravity:g} N/m³: is it in kg/m³?"
             )
     alone = sorted(set(bodies).difference(*zip(*pairs)))
     if alone:
@@ -191,7 +197,8 @@ def _warn(pairs, joints, sizes, engines):
             away = (engine.point - body.state.refPos).norm()
             if away > 20 * max(v.norm() for v in body.shape.v):
                 say(
-                    f"warning: MasonryLoad: its point lies {away:g} m from body {body.id}: is it in m?"
+                    f"warning: MasonryLoad: its point lies {away:g} m from body {body.id}: is it"
+                    " in m?"
                 )
         if isinstance(engine, MasonryZones):
             _warnOfZones(engine, bodies)
@@ -215,7 +222,9 @@ def _warnOfIdle(joints):
     """Warn of properties that were given and that the law of their joint does not read; of an elastic joint, of those that one law
     alone reads."""
     default, read = MasonryJoint(), [law["properties"] for law in LAWS.values()]
-    readers = {p["name"]: sum(p["name"] in names for names in read) for p in properties(MasonryJoint)}  # fmt: skip
+    readers = {
+        p["name"]: sum(p["name"] in names for names in read) for p in properties(MasonryJoint)
+    }
     for joint in joints:
         own, idle = LAWS[joint.law]["properties"], []
         for name, count in readers.items():
@@ -240,5 +249,6 @@ def _warnOfZones(zones, bodies):
             stars.append(i)
     if stars and zones.divisions != [1, 1, 1]:
         say(
-            f"warning: MasonryZones: divisions do not apply to bodies {stars[:10]}, which are no hexahedra"
+            f"warning: MasonryZones: divisions do not apply to bodies {stars[:10]}, which are no"
+            " hexahedra"
         )

@@ -61,9 +61,9 @@ class Connectors:
         """Sentences on connectors that have yielded or broken since this was asked last."""
         since, self.saidUntil = min(self.saidUntil, O.iter), O.iter
         for kind, made in self.engines.items():
-            for one, what in kind.events(self.description.connectorsOf(kind), made, since):  # fmt: skip
+            for one, what in kind.events(self.description.connectorsOf(kind), made, since):
                 # fibres are named by their layer, once
                 subject = one.overlay or one.name
                 if (what, subject) not in self.reported:
                     self.reported.add((what, subject))
-                    yield f"{subject} {what}: between {one.ends[0].words} and {one.ends[1].words}"  # fmt: skip
+                    yield f"{subject} {what}: between {one.ends[0].words} and {one.ends[1].words}"

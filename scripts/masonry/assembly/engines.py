@@ -10,7 +10,7 @@ from yade.wrapper import Ip2_MasonryMat_MasonryMat_MasonryJointPhys, MasonryEner
 from yade.wrapper import MasonryIntegrator, MasonryJoint, MasonryJointLoop, MasonryLoad
 from yade.wrapper import MasonrySprings, MasonryTies, MasonryZones, NewtonIntegrator
 
-from ..common.arguments import Numbers, isA, listOf, number, oneOf, shown, validated, vector, whole  # fmt: skip
+from ..common.arguments import Numbers, isA, listOf, number, oneOf, shown, validated, vector, whole
 
 MOST_STEPS = 10**15  # that no run has time for
 
@@ -76,9 +76,7 @@ def engines(
     """
     if functors and dampingKind == "combined":
         raise ValueError("engines: dampingKind must be local with functors")
-    geometry = _GEOMETRY(
-        subcontacts=subcontacts or 3, rows=rows or 0, rowDirection=(0, inPlane, 0)
-    )
+    geometry = _GEOMETRY(subcontacts=subcontacts or 3, rows=rows or 0, rowDirection=(0, inPlane, 0))
     physics = Ip2_MasonryMat_MasonryMat_MasonryJointPhys(joints=joints)
     moving = dict(damping=damping, gravity=gravity, label="integrator")
     if zones:

@@ -75,7 +75,7 @@ class Loading:
             label, force = f"{target.name}_force", Vector3(*(target.force or (0, 0, 0)))
             if target.pressed is not None:
                 load, own = self.loads[label], self.supports.weightOf(target)
-                force -= (target.pressed * self._centre(load, target) - own) * Vector3.UnitZ  # fmt: skip
+                force -= (target.pressed * self._centre(load, target) - own) * Vector3.UnitZ
                 self._lines[target.name] = Vector3(*load.point)
             self._grown[label] = force
         for n, (_, force, _) in enumerate(self.description.winds):
@@ -109,7 +109,7 @@ class Loading:
         """The engine of a press, and the area of what the platen presses [m²]."""
         known = f"{target.name}_force" in self.loads
         load = self.forceOf(target)
-        return load, self.supports.contactOf(target)[0] if known else self._centre(load, target)  # fmt: skip
+        return load, self.supports.contactOf(target)[0] if known else self._centre(load, target)
 
     def onBricks(self, label, places):
         """The engines of forces at pairs of the number of a brick and a point [m], by how their labels begin; they are made if they are
@@ -128,7 +128,7 @@ class Loading:
     def _loadsOf(self, made):
         """Loads by their labels; those that are missing get their attributes and are made all at once, before the engine of the energy
         balance."""
-        new = {n: MasonryLoad(label=n, **of) for n, of in made.items() if n not in self.loads}  # fmt: skip
+        new = {n: MasonryLoad(label=n, **of) for n, of in made.items() if n not in self.loads}
         if new:
             before = list(O.engines)
             at = next(n for n, one in enumerate(before) if one.label == "energy")
@@ -156,7 +156,7 @@ class Loading:
     def pushOf(self, target, axis):
         """The drive that a push made, if it holds a target along an axis, alone or with others, else None."""
         made = map(self.loads.get, (f"{target.name}_drive", PATTERN))
-        return next((load for load in made if load and isAlong(load, axis, target.body)), None)  # fmt: skip
+        return next((load for load in made if load and isAlong(load, axis, target.body)), None)
 
     def stopDrives(self):
         """Let drives hold what they have moved. Returns them."""
@@ -239,9 +239,9 @@ class Loading:
     def putState(self, state):
         """Give it a state of :meth:`state`. Raises KeyError if it names a target or a load that is not there."""
         targets = {"": None, **self.description.targets}
-        self.target, self.followed = targets[state["target"]], targets[state["followed"]]  # fmt: skip
+        self.target, self.followed = targets[state["target"]], targets[state["followed"]]
         self.push = {"": None, **self.loads}[state["push"]]
-        self.direction, self.origin = Vector3(*state["direction"]), tuple(state["origin"])  # fmt: skip
+        self.direction, self.origin = Vector3(*state["direction"]), tuple(state["origin"])
         self.pushing, self.grown = state["pushing"], state["grown"]
         self.goal, self.loadFactor = tuple(state["goal"]), state["loadFactor"]
 
@@ -277,7 +277,8 @@ def pushTo(loading, pushed, control, direction, name="push"):
         blocked = O.bodies[body].state.blockedDOFs
         if not any(v and a not in blocked for a, v in zip("xyz", direction)):
             raise ValueError(
-                f"{name}: {pushed.name} is held along {tuple(direction)}, and cannot be pushed there"
+                f"{name}: {pushed.name} is held along {tuple(direction)}, and cannot be pushed"
+                " there"
             )
     drive = _drivePattern if isinstance(pushed, Pattern) else _driveOf
     load = drive(loading, pushed, direction, name)
@@ -298,12 +299,14 @@ def _driveOf(loading, target, direction, name):
         load = loading.driveOf(target, along[0]) if along else None
         if load is None:
             raise ValueError(
-                f"{name}: {target.name} has drives along {', '.join(target.drives)} alone, not along {tuple(direction)}"
+                f"{name}: {target.name} has drives along {', '.join(target.drives)} alone, not"
+                f" along {tuple(direction)}"
             )
     elif load.driven and load.direction.cross(direction).norm() > 1e-12:
         raise ValueError(
-            f"{name}: the drive of {target.name} holds it along {tuple(load.direction)}, and would let go of it to push "
-            f"along {tuple(direction)}; drive='xz' and the like give it a drive for every axis"
+            f"{name}: the drive of {target.name} holds it along {tuple(load.direction)}, and would"
+            f" let go of it to push along {tuple(direction)}; drive='xz' and the like give it a"
+            " drive for every axis"
         )
     load.damped = False
     return load
@@ -314,7 +317,7 @@ def _drivePattern(loading, pattern, direction, name):
     bodies, points, shares = zip(*pattern.parts)
     for other in loading.loads.values():
         if other.driven and set(bodies) & set(bodiesOf(other)):
-            same = bodiesOf(other) == bodies and np.allclose(other.shares or (1,), shares)  # fmt: skip
+            same = bodiesOf(other) == bodies and np.allclose(other.shares or (1,), shares)
             if not same or other.direction.cross(direction).norm() > 1e-12:
                 _refuseHeld(name, pattern, other)
     load = loading.patternDrive()
@@ -334,7 +337,8 @@ def _drivePattern(loading, pattern, direction, name):
 def _refuseHeld(name, pushed, drive):
     """Refuse to push what another drive holds. Raises ValueError."""
     raise ValueError(
-        f"{name}: a drive holds {pushed.name} or some of it along {tuple(drive.direction)} already; release() lets it go"
+        f"{name}: a drive holds {pushed.name} or some of it along {tuple(drive.direction)} already;"
+        " release() lets it go"
     )
 
 

@@ -81,7 +81,10 @@ class Motion:
         """Velocity over that of a block that has fallen [-], of the fastest one that has moved so far since the last state at rest, over
         its largest side [-]."""
         blocks = zip(self._speeds(), self._falling, self._moved(), self._sizes)
-        return max((v / falling for v, falling, moved, size in blocks if moved.norm() >= far * size), default=0.0)  # fmt: skip
+        return max(
+            (v / falling for v, falling, moved, size in blocks if moved.norm() >= far * size),
+            default=0.0,
+        )
 
     def _moved(self):
         return [state.pos - place for state, place in zip(self._states, self._places)]
@@ -96,6 +99,6 @@ class Motion:
                 at = ", ".join(f"{v:.3g}" for v in self.description.middle(index))
                 x, y, z = 1e3 * moved[index]
                 raise Collapsed(
-                    f"brick {index} at ({at}) m has moved by ({x:.3g}, {y:.3g}, {z:.3g}) mm and falls "
-                    f"at {1e3 * speeds[index]:.3g} mm/s"
+                    f"brick {index} at ({at}) m has moved by ({x:.3g}, {y:.3g}, {z:.3g}) mm and"
+                    f" falls at {1e3 * speeds[index]:.3g} mm/s"
                 )

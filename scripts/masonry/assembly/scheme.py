@@ -61,7 +61,8 @@ class Scheme:
         :meth:`chooseTimeStep` follows it."""
         if self.zones and self.massScaling:
             say(
-                f"note: {stage} runs in real time with true masses, without --mass-scaling {self.massScaling:g}"
+                f"note: {stage} runs in real time with true masses, without --mass-scaling"
+                f" {self.massScaling:g}"
             )
             self.scaleMasses(0.0)
 

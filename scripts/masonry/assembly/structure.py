@@ -61,7 +61,7 @@ class Structure:
             self.zones = self._deformableUnits()
         if self.description.contact:
             contact = self.description.contact.of(self.joints["bed"])
-            self.contacts = MasonryContacts(takesJoints=True, label="contacts", **contact)  # fmt: skip
+            self.contacts = MasonryContacts(takesJoints=True, label="contacts", **contact)
         self._addEngines()
         self.scheme = Scheme(self.args, self.zones)
         blocks = dict(zip(self.ids, self.description.bricks))
@@ -99,9 +99,7 @@ class Structure:
                 if target.fixed:
                     O.bodies[target.body].state.blockedDOFs = target.freedom
         if not any(target.fixed and target.joined for target in targets):
-            raise Refused(
-                "nothing is held: a scene needs a platen at the bottom, or hold()"
-            )
+            raise Refused("nothing is held: a scene needs a platen at the bottom, or hold()")
 
     def _addPlaten(self, target, material):
         corners = boxCorners(*target.box)
@@ -116,7 +114,10 @@ class Structure:
         for body in held.union(self.ids[n] for n in loaded | stiff):
             self.bricks.pop(body, None)
         if loaded - stiff:
-            say(f"note: {len(loaded - stiff)} of {len(description.bricks)} bricks are rigid, because ties, springs or fibre layers end at them")  # fmt: skip
+            say(
+                f"note: {len(loaded - stiff)} of {len(description.bricks)} bricks are rigid,"
+                " because ties, springs or fibre layers end at them"
+            )
         if args.mass_scaling and "crack" in self.joints:
             # the halves of a brick move as one, as far as masses are scaled, until their crack surface yields
             self.joints["crack"].monolithic = True
@@ -174,7 +175,7 @@ class Structure:
         that [s]."""
         if not self.contacts:
             return {}
-        known = {b: one for b, one in self.contacts.fallen().items() if one["fell"] is not None}  # fmt: skip
+        known = {b: one for b, one in self.contacts.fallen().items() if one["fell"] is not None}
         return {n: known[body] for n, body in enumerate(self.ids) if body in known}
 
     def checkFallen(self):
@@ -183,7 +184,7 @@ class Structure:
         if fallen:
             first = min(fallen, key=lambda index: fallen[index]["fell"])
             at = ", ".join(f"{v:.3g}" for v in self.description.middle(first))
-            others = f", and so have {len(fallen) - 1} others since" if len(fallen) > 1 else ""  # fmt: skip
+            others = f", and so have {len(fallen) - 1} others since" if len(fallen) > 1 else ""
             raise Collapsed(
                 f"brick {first} at ({at}) m has fallen at {fallen[first]['fell']:.4g} s{others}"
             )

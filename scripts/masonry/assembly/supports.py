@@ -11,7 +11,9 @@ from .motion import FALLEN
 
 #: Share of all loads above which the horizontal ones must be carried on their own at rest [-].
 HORIZONTAL = 1e-3
-LOST = 0.5  # of its height [-]: a structure that would swing by more under its loads is not waited for
+LOST = (
+    0.5  # of its height [-]: a structure that would swing by more under its loads is not waited for
+)
 FILLED = 1e-9  # of a platen's side: what may be free of bricks if it is said to be full
 
 
@@ -44,7 +46,7 @@ class Supports:
         self._deformable = set(zones.bodies) if zones else set()
         # Rows are read at every few steps: what does not change is kept.
         self._points = {t.name: _Point(t.body, t.recorded) for t in targets}
-        self._faces = {t.name: [*self._faceOf(t)] for t in targets if t.box and not t.fixed}  # fmt: skip
+        self._faces = {t.name: [*self._faceOf(t)] for t in targets if t.box and not t.fixed}
         held = {target.body for target in self.held}
         self.freeMass = sum(b.state.mass for b in O.bodies if b.id not in held)
 
@@ -59,8 +61,8 @@ class Supports:
         for one in joints:
             brick = one.id2 if one.id1 == target.body else one.id1
             areas, area = one.geom.areas, sum(one.geom.areas)
-            middle = sum((a * c for a, c in zip(areas, one.geom.centres)), Vector3.Zero) / area  # fmt: skip
-            middle = O.bodies[brick].state.refPos if brick in self._deformable else middle  # fmt: skip
+            middle = sum((a * c for a, c in zip(areas, one.geom.centres)), Vector3.Zero) / area
+            middle = O.bodies[brick].state.refPos if brick in self._deformable else middle
             yield area / whole, _Point(brick, middle)
 
     def holdAlso(self, target, axes):
@@ -175,9 +177,7 @@ class Supports:
         least = min(description.size(n) for n in range(len(structure.ids)))
         if not FALLEN * least < 2 * sinking < LOST * height:
             return 0.0
-        return (
-            2 * math.pi * math.sqrt(sinking * structure.args.density_scaling / GRAVITY)
-        )
+        return 2 * math.pi * math.sqrt(sinking * structure.args.density_scaling / GRAVITY)
 
     def _softest(self):
         """The least modulus of the masonry across any of its joints [Pa]; deformable bricks add their own compliance."""

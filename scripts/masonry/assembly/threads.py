@@ -28,7 +28,7 @@ def _isAsked():
     """Whether the user says how many threads: by an option of ``yade``, or by ``OMP_NUM_THREADS`` in the environment with which
     the process began. Without such an option ``yade`` itself sets that variable to 1.
     """
-    with open("/proc/self/cmdline", "rb") as words, open("/proc/self/environ", "rb") as names:  # fmt: skip
+    with open("/proc/self/cmdline", "rb") as words, open("/proc/self/environ", "rb") as names:
         options = words.read().partition(b"\0-x\0")[0]
         return bool(
             re.search(rb"\0(-\w*j|--thr|--cor)", options)
@@ -86,7 +86,7 @@ def used():
             "microseconds_per_step": 1e6 * r["time"] / r["steps"] if r["steps"] else None,
         }
         for r in records()
-    ]  # fmt: skip
+    ]
 
 
 def remark():
@@ -101,7 +101,8 @@ def remark():
     each.remove(most)
     others = [f"{r['microseconds_per_step']:.0f} µs on {r['threads']}" for r in each]
     return (
-        f"{_allowed} threads were allowed, and {100 * most['steps'] / taken:.0f} % of the steps used {most['threads']}, "
-        f"which was quicker: a step took {most['microseconds_per_step']:.0f} µs"
+        f"{_allowed} threads were allowed, and {100 * most['steps'] / taken:.0f} % of the steps"
+        f" used {most['threads']}, which was quicker: a step took"
+        f" {most['microseconds_per_step']:.0f} µs"
         + (f", and {', '.join(others)}" if others else "")
     )

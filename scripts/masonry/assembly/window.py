@@ -122,7 +122,7 @@ def _qt():
             raise ImportError("no application")
     except ImportError as error:
         raise ValueError(
-            "window.show needs YADE's graphical interface: start yade without -n, on a display or under xvfb-run"
-            f" ({error})"
+            "window.show needs YADE's graphical interface: start yade without -n, on a display or"
+            f" under xvfb-run ({error})"
         ) from None
     return qt

@@ -10,7 +10,20 @@ from collections import Counter, defaultdict
 from dataclasses import dataclass, replace
 from typing import Annotated, Any, Callable, Iterable, Iterator, get_args
 
-from ..common.arguments import Direction, Numbers, isA, items, isNumber, number, oneOf, shown, text, validated, vector, whole  # fmt: skip
+from ..common.arguments import (
+    Direction,
+    Numbers,
+    isA,
+    items,
+    isNumber,
+    number,
+    oneOf,
+    shown,
+    text,
+    validated,
+    vector,
+    whole,
+)
 from .. import basics
 from ..basics import firstOf
 from . import checks
@@ -76,18 +89,15 @@ class Block:
         except TypeError:
             corners = ()
         if len(corners) < 4:
-            problems.append(
-                f"corners must be at least 4 points, got {shown(self.corners)}"
-            )
+            problems.append(f"corners must be at least 4 points, got {shown(self.corners)}")
         for n, corner in enumerate(corners):
             fine = all(type(x) is float or isNumber(x) for x in corner)
             if len(corner) != 3 or not fine:
-                problems.append(
-                    f"corner {n} must be three numbers [m], got {shown(corner)}"
-                )
+                problems.append(f"corner {n} must be three numbers [m], got {shown(corner)}")
             elif not all(abs(x) <= FARTHEST for x in corner):
                 problems.append(
-                    f"corner {n} [m] must be finite, and at most {FARTHEST:g} m from the origin, got {shown(corner)}"
+                    f"corner {n} [m] must be finite, and at most {FARTHEST:g} m from the origin,"
+                    f" got {shown(corner)}"
                 )
         for what in ("brick", "course", "part", "kind"):
             try:
@@ -211,9 +221,7 @@ class Bricks:
     # -- moving and naming ----------------------------------------------------------------------------------------
 
     @validated
-    def moved(
-        self, dx: Coordinate = 0.0, dy: Coordinate = 0.0, dz: Coordinate = 0.0
-    ) -> Bricks:
+    def moved(self, dx: Coordinate = 0.0, dy: Coordinate = 0.0, dz: Coordinate = 0.0) -> Bricks:
         """The blocks moved along the axes [m]."""
         return self._mapped(lambda c: tuple(x + d for x, d in zip(c, (dx, dy, dz))))
 
@@ -253,9 +261,7 @@ class Bricks:
         return Bricks(replace(b, kind=kind) for b in self._blocks)
 
     def _mapped(self, function):
-        return Bricks(
-            replace(b, corners=tuple(map(function, b.corners))) for b in self._blocks
-        )
+        return Bricks(replace(b, corners=tuple(map(function, b.corners))) for b in self._blocks)
 
     # -- choosing -------------------------------------------------------------------------------------------------
 
@@ -265,21 +271,15 @@ class Bricks:
         return Bricks([b for b in self._blocks if function(b)])
 
     @validated
-    def within(
-        self, low: Annotated[Numbers, corner], high: Annotated[Numbers, corner]
-    ) -> Bricks:
+    def within(self, low: Annotated[Numbers, corner], high: Annotated[Numbers, corner]) -> Bricks:
         """The blocks whose middle lies in a box, its sides included.
 
         :param low: opposite corners of the box [m]; ``math.inf`` is allowed
         :param high:
         """
         if not all(a <= b for a, b in zip(low, high)):
-            refuse(
-                "within", [f"low corner {low} m must lie below high corner {high} m"]
-            )
-        return self.where(
-            lambda b: all(p <= x <= q for p, x, q in zip(low, b.middle, high))
-        )
+            refuse("within", [f"low corner {low} m must lie below high corner {high} m"])
+        return self.where(lambda b: all(p <= x <= q for p, x, q in zip(low, b.middle, high)))
 
     def top(self) -> Bricks:
         """The blocks with a face in the highest horizontal plane."""
@@ -331,7 +331,9 @@ class Bricks:
     def _convex(self, purpose):
         """The solids of the blocks. Refuses a purpose for which some of them are not convex."""
         problems = sorted(self._solids.problems.items())
-        refuse(purpose, [f"block {n} of brick {self._blocks[n].brick}: {what}" for n, what in problems])  # fmt: skip
+        refuse(
+            purpose, [f"block {n} of brick {self._blocks[n].brick}: {what}" for n, what in problems]
+        )
         return self._solids
 
     def whole(self) -> Bricks:

@@ -66,7 +66,7 @@ def findJoints(solids):
         if middle is None or size < 0.5 * perimeter * w:
             continue
         (x, y, z), (nx, ny, nz) = theirs[0], other
-        widest = max(abs((p - x) * nx + (q - y) * ny + (r - z) * nz) for p, q, r in shared)  # fmt: skip
+        widest = max(abs((p - x) * nx + (q - y) * ny + (r - z) * nz) for p, q, r in shared)
         if widest <= w and cos < OPPOSITE:
             joints.append(Joint(i, j, normal, tuple(shared), size, middle))
         elif size > 0.01 * min(area, otherArea):
@@ -123,7 +123,7 @@ def freeParts(solids, joints, direction, least):
                     covers.append(joint.polygon)
             if free > COINCIDENT * area:
                 place = tuple(moment / free)
-                faces.append(FreePart(n, tuple(normal), float(free), place, whole, covers))  # fmt: skip
+                faces.append(FreePart(n, tuple(normal), float(free), place, whole, covers))
     return faces
 
 
@@ -173,8 +173,8 @@ def findProblems(blocks, solids, joints, misfits):
         for n in members:
             if thickness[n] < least * (1 - 1e-9):
                 found.append(
-                    f"{nameOf(n)} near {where(blocks[n].middle)} is a sliver: {thickness[n]:.3g} m thin, less than {least:.3g} m, "
-                    f"a quarter of what is usual for a {kind} here"
+                    f"{nameOf(n)} near {where(blocks[n].middle)} is a sliver: {thickness[n]:.3g} m"
+                    f" thin, less than {least:.3g} m, a quarter of what is usual for a {kind} here"
                 )
     for joint in joints:
         i, j, polygon = joint.first, joint.second, joint.polygon
@@ -182,8 +182,9 @@ def findProblems(blocks, solids, joints, misfits):
         width, least = joint.area / longest, NARROW * min(thickness[i], thickness[j])
         if width < least:
             found.append(
-                f"{nameOf(i)} and {nameOf(j)} share a joint of odd size near {where(joint.middle)}: {longest:.3g} m long but "
-                f"{width:.3g} m wide, less than {least:.3g} m, a tenth of the thinner block"
+                f"{nameOf(i)} and {nameOf(j)} share a joint of odd size near {where(joint.middle)}:"
+                f" {longest:.3g} m long but {width:.3g} m wide, less than {least:.3g} m, a tenth of"
+                " the thinner block"
             )
     partOf = components(len(blocks), joints)
     for n in good:
@@ -194,7 +195,8 @@ def findProblems(blocks, solids, joints, misfits):
             what = nameOf(members[0])
             what = f"{len(members)} blocks from {what} on" if len(members) > 1 else what
             found.append(
-                f"{what}, near {where(blocks[members[0]].middle)}: no joint with the other {len(good) - len(members)} blocks"
+                f"{what}, near {where(blocks[members[0]].middle)}: no joint with the other"
+                f" {len(good) - len(members)} blocks"
             )
     return found
 

@@ -39,17 +39,19 @@ def read(path: str, layer: str | None) -> list[Outline]:
 
     :param layer: only those of this layer of a DXF file, or group of an SVG file
     """
-    readers = {".csv": _csv, ".dxf": _dxf, ".geojson": _geoJson, ".json": _geoJson, ".svg": _svg}  # fmt: skip
+    readers = {".csv": _csv, ".dxf": _dxf, ".geojson": _geoJson, ".json": _geoJson, ".svg": _svg}
     ending = os.path.splitext(path)[1].lower()
     if layer is not None and ending in (".csv", ".geojson", ".json"):
         raise ValueError(f"{path}: files that end with {ending} have no layers")
     found = readBy(readers, path, layer)
     if not found:
-        raise ValueError(f"{path}: no outlines" + (f" in layer {layer!r}" if layer else ""))  # fmt: skip
+        raise ValueError(f"{path}: no outlines" + (f" in layer {layer!r}" if layer else ""))
     for outline in found:
         ring = np.asarray(outline.ring, float)
         if ring.ndim != 2 or not np.isfinite(ring).all():
-            raise ValueError(f"{path}: outline {outline.name} has a corner that is not of two finite numbers")  # fmt: skip
+            raise ValueError(
+                f"{path}: outline {outline.name} has a corner that is not of two finite numbers"
+            )
         ring = ring[:, :2]
         same = np.all(ring == np.roll(ring, 1, axis=0), axis=1)
         outline.closed |= bool(same[0])
@@ -66,7 +68,7 @@ def _csv(path, layer):
             except (IndexError, ValueError):
                 if number == 1 or not row:
                     continue  # the heads of the columns
-                raise ValueError(f"line {number}: {','.join(row)!r} is not name,x,z") from None  # fmt: skip
+                raise ValueError(f"line {number}: {','.join(row)!r} is not name,x,z") from None
             rows[name].append((x, z))
     return [Outline(name, ring) for name, ring in rows.items()]
 
@@ -93,7 +95,7 @@ def _dxf(path, layer):
     from ezdxf.path import make_path
 
     try:
-        lines = ezdxf.readfile(path).modelspace().query("LWPOLYLINE POLYLINE SPLINE CIRCLE ELLIPSE")  # fmt: skip
+        lines = ezdxf.readfile(path).modelspace().query("LWPOLYLINE POLYLINE SPLINE CIRCLE ELLIPSE")
     except ezdxf.DXFError as error:
         raise ValueError(error) from None
     for entity in lines:
@@ -102,7 +104,7 @@ def _dxf(path, layer):
             corners = np.array([tuple(v)[:2] for v in curve.control_vertices()])
             fine = FLATTENED * np.ptp(corners, axis=0).max() or 1.0
             ring = [tuple(v)[:2] for v in curve.flattening(fine)]
-            yield Outline(f"{entity.dxftype()} {entity.dxf.handle}", ring, curve.is_closed)  # fmt: skip
+            yield Outline(f"{entity.dxftype()} {entity.dxf.handle}", ring, curve.is_closed)
 
 
 def _svg(path, layer):
@@ -119,13 +121,13 @@ def _inGroup(element, matrix, wanted, layer):
     tag = element.tag.rpartition("}")[2] if isinstance(element.tag, str) else ""
     if tag in ("defs", "clipPath", "symbol", "marker", "pattern"):
         return
-    names = [value for key, value in element.items() if key.rpartition("}")[2] in ("id", "label")]  # fmt: skip
+    names = [value for key, value in element.items() if key.rpartition("}")[2] in ("id", "label")]
     wanted = wanted or layer in names
-    for word, numbers in re.findall(r"(\w+)\s*\(([^)]*)\)", element.get("transform", "")):  # fmt: skip
-        matrix = matrix @ _matrix(word, [float(n) for n in re.findall(_NUMBER, numbers)])  # fmt: skip
+    for word, numbers in re.findall(r"(\w+)\s*\(([^)]*)\)", element.get("transform", "")):
+        matrix = matrix @ _matrix(word, [float(n) for n in re.findall(_NUMBER, numbers)])
     name = names[0] if names else tag
     for ring, closed in _drawn(element, tag, name) if wanted else ():
-        yield Outline(name, np.column_stack([ring, np.ones(len(ring))]) @ matrix[:2].T, closed)  # fmt: skip
+        yield Outline(name, np.column_stack([ring, np.ones(len(ring))]) @ matrix[:2].T, closed)
     for child in element:
         yield from _inGroup(child, matrix, wanted, layer)
 
@@ -136,7 +138,7 @@ def _matrix(word, numbers):
     elif word == "scale":
         numbers = numbers[0], 0, 0, numbers[-1], 0, 0
     elif word != "matrix":
-        raise ValueError(f"transform {word} is not known here: translate, scale and matrix are")  # fmt: skip
+        raise ValueError(f"transform {word} is not known here: translate, scale and matrix are")
     return np.vstack([np.reshape(numbers, (3, 2)).T, [0, 0, 1]])
 
 
@@ -148,7 +150,7 @@ def _drawn(element, tag, name):
         yield np.reshape(numbers, (-1, 2)), tag == "polygon"
     elif tag == "rect":
         x, y, width, height = map(number, ("x", "y", "width", "height"))
-        yield np.array([(x, y), (x + width, y), (x + width, y + height), (x, y + height)]), True  # fmt: skip
+        yield np.array([(x, y), (x + width, y), (x + width, y + height), (x, y + height)]), True
     elif tag in ("circle", "ellipse"):
         raise ValueError(f"{tag} {name} is a curve: make it a path of straight lines")
     elif tag == "path":
@@ -162,7 +164,10 @@ def _subpaths(text, name):
         if tokens[-1].isalpha():
             word = tokens.pop()
         if word not in tuple("MmLlHhVvZz"):
-            raise ValueError(f"path {name} has the command {word or tokens[-1]!r}, a curve or none: make it one of straight lines")  # fmt: skip
+            raise ValueError(
+                f"path {name} has the command {word or tokens[-1]!r}, a curve or none: make it one"
+                " of straight lines"
+            )
         if word in "Zz":
             if ring:
                 yield np.array(ring), True

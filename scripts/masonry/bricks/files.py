@@ -56,7 +56,11 @@ def fromFile(
     """
     problems = []
     surfaces = readBy(_READERS, path)
-    solids = [(surface.name, corners) for surface in surfaces for corners in _solids(surface, scale, problems)]  # fmt: skip
+    solids = [
+        (surface.name, corners)
+        for surface in surfaces
+        for corners in _solids(surface, scale, problems)
+    ]
     names, bodies = zip(*solids) if solids else ((), ())
     if mortar and not problems:
         bodies = closed(bodies, mortar, problems)
@@ -134,9 +138,7 @@ def _point(words, number):
     except ValueError:
         point = ()
     if len(point) != 3 or not all(map(math.isfinite, point)):
-        raise ValueError(
-            f"line {number}: {' '.join(words)} is no point of three finite numbers"
-        )
+        raise ValueError(f"line {number}: {' '.join(words)} is no point of three finite numbers")
     return point
 
 
@@ -150,9 +152,7 @@ def _readOff(path):
         (_, head), *lines = lines
     count, faces = int(head[0]), int(head[1])
     if count < 0 or faces < 0 or len(lines) < count + faces:
-        raise ValueError(
-            f"{count} points and {faces} faces are told, fewer lines are there"
-        )
+        raise ValueError(f"{count} points and {faces} faces are told, fewer lines are there")
     points = [_point(words[:3], n) for n, words in lines[:count]]
     found = []
     for number, words in lines[count : count + faces]:
@@ -172,9 +172,7 @@ def _readStl(path):
         yield from _byMeshio(path)
         return
     if not head.lstrip().startswith(b"solid"):
-        raise ValueError(
-            f"neither text that starts with solid, nor bytes of {count} triangles"
-        )
+        raise ValueError(f"neither text that starts with solid, nor bytes of {count} triangles")
     points, name = None, ""
     for number, words in _lines(path):
         what = words[0].lower()
@@ -184,9 +182,7 @@ def _readStl(path):
             points.append(_point(words[1:4], number))
         elif what == "endsolid" and points is not None:
             if len(points) % 3:
-                raise ValueError(
-                    f"line {number}: solid {name} has a facet without three points"
-                )
+                raise ValueError(f"line {number}: solid {name} has a facet without three points")
             faces = [(n, n + 1, n + 2) for n in range(0, len(points), 3)]
             if faces:
                 yield _Surface(name, np.array(points), faces)
@@ -279,7 +275,8 @@ def _solids(surface, scale, problems):
     far = np.abs(points).max()
     if not far <= FARTHEST:
         problems.append(
-            f"{name}: a coordinate of {far:g} m is above {FARTHEST:g} m: is scale, metres in one unit of the file, right?"
+            f"{name}: a coordinate of {far:g} m is above {FARTHEST:g} m: is scale, metres in one"
+            " unit of the file, right?"
         )
         return
     used = sorted({n for face in surface.faces for n in face})
@@ -309,8 +306,8 @@ def _solids(surface, scale, problems):
     for face, (a, b) in open_[:3]:
         middle = (points[a] + points[b]) / 2
         problems.append(
-            f"{name}, face {numbers[face]}: an edge at {where(middle)} without a second face that runs the other way: "
-            f"the solid is open, or its faces run in different senses"
+            f"{name}, face {numbers[face]}: an edge at {where(middle)} without a second face that"
+            " runs the other way: the solid is open, or its faces run in different senses"
         )
     if len(open_) > 3:
         problems.append(f"{name}: {len(open_) - 3} more such edges")
@@ -407,8 +404,8 @@ def _corners(points, faces, numbers, members, solid, problems):
         beyond = ((own - middle) @ normal).max()
         if beyond > width:
             problems.append(
-                f"{solid}, face {numbers[face]} at {place}: the solid reaches {beyond:.3g} m beyond its plane, so it is not "
-                f"convex"
+                f"{solid}, face {numbers[face]} at {place}: the solid reaches {beyond:.3g} m beyond"
+                " its plane, so it is not convex"
             )
             return None
         alike = lambda n, at: n @ normal > 1 - 1e-6 and abs((middle - at) @ n) <= width

@@ -51,9 +51,7 @@ def hull(corners):
     try:
         found = ConvexHull(centred)
     except QhullError:
-        raise ValueError(
-            f"its {len(corners)} corners lie in one plane: no volume"
-        ) from None
+        raise ValueError(f"its {len(corners)} corners lie in one plane: no volume") from None
     triangles = centred[found.simplices]
     first, second = (triangles[:, n] - triangles[:, 0] for n in (1, 2))
     areas = np.linalg.norm(np.cross(first, second), axis=1)
@@ -68,7 +66,8 @@ def hull(corners):
     for n in range(len(corners)):
         if sum(n in face for face in faces) < 3:
             raise ValueError(
-                f"corner {n} at {_place(corners[n])} m is no corner of the convex solid around all of them"
+                f"corner {n} at {_place(corners[n])} m is no corner of the convex solid around all"
+                " of them"
             )
     return tuple(faces)
 
@@ -158,7 +157,8 @@ class Solids:
                 alike = Alike(index, corners, hull(corners[0]))
                 if not alike.fit[0]:
                     raise ValueError(
-                        "its corners lie so near to one another, or to one plane, that its faces are not to be told"
+                        "its corners lie so near to one another, or to one plane, that its faces"
+                        " are not to be told"
                     )
                 fit = alike.fit
                 self.groups.append(
@@ -238,13 +238,15 @@ class Solids:
         # the face of the other solid that looks at this one
         cosines = np.einsum("nk,ngk->ng", normals[here, face], normals[there])
         faces = np.array([face, cosines.argmin(axis=1)])
-        return np.maximum(mine, theirs), np.where(first, faces, faces[::-1]), cosines.min(axis=1)  # fmt: skip
+        return np.maximum(mine, theirs), np.where(first, faces, faces[::-1]), cosines.min(axis=1)
 
     def beyond(self, pairs):
         """How far both solids of pairs (2, n) are beyond each face of the other [m]: (2, n, faces), those of the first one first."""
         corners, normals, offsets = map(self.padded, ("corners", "normals", "offsets"))
         parts = np.array_split(pairs, pairs.shape[1] // _CHUNK + 1, axis=1)
-        heights = [np.einsum("pnfk,pnck->pnfc", normals[p], corners[p[::-1]]).min(axis=3) for p in parts]  # fmt: skip
+        heights = [
+            np.einsum("pnfk,pnck->pnfc", normals[p], corners[p[::-1]]).min(axis=3) for p in parts
+        ]
         return np.concatenate(heights, axis=1) - offsets[pairs]
 
     def separation(self, one, two):
@@ -373,5 +375,5 @@ def boxCorners(low: Numbers, high: Numbers) -> tuple[tuple[float, float, float],
     """The eight corners of an axis-parallel box, x slowest and z fastest."""
     for corner, what in ((low, "low"), (high, "high")):
         if len(items(corner) or ()) != 3:
-            raise ValueError(f"boxCorners: {what} [m] must be three numbers, got {shown(corner)}")  # fmt: skip
+            raise ValueError(f"boxCorners: {what} [m] must be three numbers, got {shown(corner)}")
     return tuple(itertools.product(*zip(low, high)))

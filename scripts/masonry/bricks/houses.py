@@ -4,7 +4,7 @@
 from dataclasses import dataclass, replace
 from typing import Annotated, Any, Sequence
 
-from ..common.arguments import isA, isNumber, items, listOf, number, oneOf, shown, validated, whole  # fmt: skip
+from ..common.arguments import isA, isNumber, items, listOf, number, oneOf, shown, validated, whole
 from ..basics import GRAVITY
 from .beams import Beam, Floor
 from .blocks import Block, Bricks, Gap, Length, Sides, refuse
@@ -81,7 +81,15 @@ class House(Bricks):
                 z += storey.ring
             across = width if storey.span == "x" else length
             span = length + width - across
-            blocks += Floor((0, 0, z), span, across, thickness, storey.span, max(2, round(across / unit[1])), f"floor {n}")  # fmt: skip
+            blocks += Floor(
+                (0, 0, z),
+                span,
+                across,
+                thickness,
+                storey.span,
+                max(2, round(across / unit[1])),
+                f"floor {n}",
+            )
             z += thickness
             blocks += self._ballast(n, z)
         super().__init__(blocks)
@@ -92,7 +100,10 @@ class House(Bricks):
         low = max((o.z for o in openings), default=0.0) + z
         high = min((o.z + o.height for o in openings), default=storey.height) + z
         if not low < high:
-            refuse("House", [f"storey {n}: no height is common to all its openings, so it has no piers there"])  # fmt: skip
+            refuse(
+                "House",
+                [f"storey {n}: no height is common to all its openings, so it has no piers there"],
+            )
         between = walls.where(lambda block: low < block.middle[2] < high)
         courses = {block.middle[2] for block in between}
         course = min(courses, key=lambda at: abs(at - (low + high) / 2))
@@ -101,7 +112,7 @@ class House(Bricks):
         for side in SIDES:
             axis = SIDES.index(side) % 2
             found = []
-            for a, b in sorted((b.low[axis], b.high[axis]) for b in between if b.part == side):  # fmt: skip
+            for a, b in sorted((b.low[axis], b.high[axis]) for b in between if b.part == side):
                 if found and a <= found[-1][1] + WHOLE:
                     a, b = found[-1][0], max(b, found.pop()[1])
                 found.append((a, b))
@@ -113,7 +124,9 @@ class House(Bricks):
             if not low < block.middle[2] < high:
                 return f"{block.part} {n}"
             at = block.middle[SIDES.index(block.part) % 2]
-            return next(name for name, (side, a, b) in piers.items() if side == block.part and a <= at <= b)  # fmt: skip
+            return next(
+                name for name, (side, a, b) in piers.items() if side == block.part and a <= at <= b
+            )
 
         return Bricks(replace(block, part=part(block)) for block in walls)
 
@@ -124,14 +137,14 @@ class House(Bricks):
         return sum(
             Beam((x, y, z), long, thick, height, along, max(2, round(long / unit[0])), f"ring {n}")
             for x, y, long, along in rows
-        )  # fmt: skip
+        )
 
     def _ballast(self, n, z):
         """A strip along the wall to which the mass of a floor is moved."""
         found, thick = Bricks(), self.thick
         for axis, share in enumerate(self.eccentricity):
             if share:
-                low, high = [thick, thick, z], [a - thick for a in self.size] + [z + thick]  # fmt: skip
+                low, high = [thick, thick, z], [a - thick for a in self.size] + [z + thick]
                 if axis:  # both strips have space
                     low[0], high[0] = 2 * thick, self.size[0] - 2 * thick
                 if share < 0:
@@ -146,7 +159,9 @@ class House(Bricks):
         """The blocks of a part."""
         return self.where(lambda block: block.part == name)
 
-    def withFloors(self, masonry: Any, shear: float, mass: Any, bearing: Any = "fixed", ring: float = 30e9) -> Any:  # fmt: skip
+    def withFloors(
+        self, masonry: Any, shear: float, mass: Any, bearing: Any = "fixed", ring: float = 30e9
+    ) -> Any:
         """Say what floors and ring beams are made of, by ``withFloor`` and ``withBeam`` of the masonry. Returns it.
 
         :param masonry: :class:`masonry.scene.materials.Masonry`
@@ -157,10 +172,16 @@ class House(Bricks):
         """
         masses = [mass] * len(self.piers) if isNumber(mass) else items(mass)
         if masses is None or len(masses) != len(self.piers):
-            refuse("withFloors", [f"mass {shown(mass)} must be a number, or one for each of the {len(self.piers)} floors"])  # fmt: skip
+            refuse(
+                "withFloors",
+                [
+                    f"mass {shown(mass)} must be a number, or one for each of the"
+                    f" {len(self.piers)} floors"
+                ],
+            )
         for n, own in enumerate(masses, 1):
             if len(beams := self.part(f"ring {n}")):
-                masonry.withBeam(beams, young=ring, density=2400, bearing="fixed")  # fmt: skip
+                masonry.withBeam(beams, young=ring, density=2400, bearing="fixed")
             moved = 0.0
             for axis, share in enumerate(self.eccentricity):
                 if share:
@@ -169,12 +190,16 @@ class House(Bricks):
                     part = abs(share) * self.size[axis] / lever
                     moved += part
                     density = part * own * self.size[0] * self.size[1] / ballast.volume
-                    masonry.units[strip.kind] = type(masonry.unit)(label=strip.kind, young=masonry.unit.young, density=density)  # fmt: skip
-            masonry.withFloor(self.part(f"floor {n}"), shear=shear, mass=own * (1 - moved), bearing=bearing)  # fmt: skip
+                    masonry.units[strip.kind] = type(masonry.unit)(
+                        label=strip.kind, young=masonry.unit.young, density=density
+                    )
+            masonry.withFloor(
+                self.part(f"floor {n}"), shear=shear, mass=own * (1 - moved), bearing=bearing
+            )
         return masonry
 
     @validated
-    def weights(self, masonry: Any, storey: Annotated[int, whole(1)] = 1) -> dict[str, float]:  # fmt: skip
+    def weights(self, masonry: Any, storey: Annotated[int, whole(1)] = 1) -> dict[str, float]:
         """Weight on each pier of a storey as by hand [kN]: of all above the section through the piers.
 
         What is above a pier or nearer to it than to the next one of its wall goes to it, and half of each strip of a floor to
@@ -187,7 +212,7 @@ class House(Bricks):
 
         def carry(side, at, weight):
             off = lambda name: max(piers[name][1] - at, at - piers[name][2])
-            found[min((name for name in piers if piers[name][0] == side), key=off)] += weight  # fmt: skip
+            found[min((name for name in piers if piers[name][0] == side), key=off)] += weight
 
         for block, volume in zip(self, self._solids.volumes()):
             if block.middle[2] < z:
@@ -199,7 +224,11 @@ class House(Bricks):
                 strips = self.part(f"floor {block.part.split()[1].strip('xy')}")
                 axis = int(strips[:1].length < strips[0].high[1] - strips[0].low[1])
                 share, across = block.middle[axis] / self.size[axis], 1 - axis
-                over = [s.middle[across] for s in strips if block.low[across] < s.middle[across] < block.high[across]]  # fmt: skip
+                over = [
+                    s.middle[across]
+                    for s in strips
+                    if block.low[across] < s.middle[across] < block.high[across]
+                ]
                 over = over or [block.middle[across]]
                 for at in over:
                     carry(("left", "front")[axis], at, weight * (1 - share) / len(over))
@@ -207,7 +236,7 @@ class House(Bricks):
                 continue
             side = block.part.split()[0]
             if side not in SIDES:  # a ring beam
-                away = {"front": y, "right": self.size[0] - x, "back": self.size[1] - y, "left": x}  # fmt: skip
+                away = {"front": y, "right": self.size[0] - x, "back": self.size[1] - y, "left": x}
                 side = min(away, key=away.get)
             carry(side, (x, y)[SIDES.index(side) % 2], weight)
         return found

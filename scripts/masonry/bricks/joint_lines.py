@@ -137,7 +137,12 @@ def _joined(lines, places, fine):
             starts[points[0]].append((k, side, _direction(places[points], fine)))
     mates = {}
     for here in starts.values():
-        pairs = [(float(u @ v), a, i, b, j) for n, (a, i, u) in enumerate(here) for b, j, v in here[:n] if a != b]  # fmt: skip
+        pairs = [
+            (float(u @ v), a, i, b, j)
+            for n, (a, i, u) in enumerate(here)
+            for b, j, v in here[:n]
+            if a != b
+        ]
         if len(here) > 2 and pairs:
             _, a, i, b, j = min(pairs)
             mates[a, i], mates[b, j] = (b, j), (a, i)

@@ -26,7 +26,11 @@ def closed(solids, mortar, problems):
     :param problems: list that takes sentences on faces that fit no plane
     """
     found = Solids(solids)
-    gaps = [gap for pair in zip(*found.nearPairs(np.full(found.count, mortar / 2))) for gap in _gaps(found, mortar, *map(int, pair))]  # fmt: skip
+    gaps = [
+        gap
+        for pair in zip(*found.nearPairs(np.full(found.count, mortar / 2)))
+        for gap in _gaps(found, mortar, *map(int, pair))
+    ]
     faces = sorted({face for gap in gaps for face in (gap.one, gap.two)})
     number = {face: n for n, face in enumerate(faces)}
     group = components(len(faces), [(number[g.one], number[g.two]) for g in gaps])
@@ -37,14 +41,21 @@ def closed(solids, mortar, problems):
     for members in together.values():
         first = members[0].normal
         areas = [g.area for g in members]
-        normal = np.average([g.normal * np.sign(g.normal @ first) for g in members], axis=0, weights=areas)  # fmt: skip
+        normal = np.average(
+            [g.normal * np.sign(g.normal @ first) for g in members], axis=0, weights=areas
+        )
         normal /= np.linalg.norm(normal)
         offset = np.average([g.middle @ normal for g in members], weights=areas)
         for gap in members:
             for solid, face in (gap.one, gap.two):
                 away = abs(found.face(solid, face) @ normal - offset).max()
                 if away > mortar:
-                    problems.append(f"a face of solid {solid} at {where(found.face(solid, face).mean(axis=0))} is {away:.3g} m off the plane that it shares with the faces across the mortar, more than {mortar:g} m")  # fmt: skip
+                    problems.append(
+                        f"a face of solid {solid} at"
+                        f" {where(found.face(solid, face).mean(axis=0))} is {away:.3g} m off the"
+                        " plane that it shares with the faces across the mortar, more than"
+                        f" {mortar:g} m"
+                    )
                 side = np.sign(_plane(found, solid, face)[0] @ normal)
                 planes[solid, face] = side * normal, side * offset
     return [_grown(found, n, corners, planes) for n, corners in enumerate(solids)]
@@ -71,9 +82,12 @@ def _gaps(solids, mortar, one, two):
         if spot is None:
             continue
         # how high both planes are over the spot, along the common normal
-        heights = [(d - n @ spot) / (n @ normal) for n, d in (_plane(solids, one, f), _plane(solids, two, g))]  # fmt: skip
+        heights = [
+            (d - n @ spot) / (n @ normal)
+            for n, d in (_plane(solids, one, f), _plane(solids, two, g))
+        ]
         if -mortar / 10 <= heights[1] - heights[0] <= mortar:
-            yield _Gap((one, f), (two, g), area, np.array(spot) + sum(heights) / 2 * normal, normal)  # fmt: skip
+            yield _Gap((one, f), (two, g), area, np.array(spot) + sum(heights) / 2 * normal, normal)
 
 
 def _grown(solids, n, corners, planes):

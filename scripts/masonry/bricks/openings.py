@@ -114,7 +114,8 @@ def _holes(openings, unit, levels, ends, crossed, problems):
         x0, _, x1, z1 = box
         if x0 < ends[0] or x1 > ends[1]:
             problems.append(
-                f"{name} reaches from x = {x0:g} to {x1:g} m, off the wall, where it may be from {ends[0]:g} to {ends[1]:g} m"
+                f"{name} reaches from x = {x0:g} to {x1:g} m, off the wall, where it may be from"
+                f" {ends[0]:g} to {ends[1]:g} m"
             )
         if z1 > top:
             problems.append(f"{name} reaches up to {z1:g} m, off the wall of {top:g} m")
@@ -169,11 +170,15 @@ def _slivers(bricks, holes, unit, levels):
             name = next(name for name, hole in holes if _touch(box, hole))
             middle = [(p + q) / 2 for p, q in zip(brick.low, brick.high)]
             slivers.append(
-                f"{name} leaves a sliver of brick {brick.number} in course {brick.course}, {size:.3g} m {word}, at {where(middle)}; "
-                f"a piece must have a quarter of the unit, {least:.3g} m"
+                f"{name} leaves a sliver of brick {brick.number} in course {brick.course},"
+                f" {size:.3g} m {word}, at {where(middle)}; a piece must have a quarter of the"
+                f" unit, {least:.3g} m"
             )
     if slivers:
-        hint = f"edges at multiples of {unit[0] / 4:g} m along the wall, and at bed joints, leave no slivers"
+        hint = (
+            f"edges at multiples of {unit[0] / 4:g} m along the wall, and at bed joints, leave no"
+            " slivers"
+        )
         slivers[-1] += f" ({hint})"
     return slivers
 
@@ -191,7 +196,10 @@ def _whole(bricks, part):
     loose = [box for box, one in zip(boxes, parts) if one != parts[0]]
     if loose:
         one, count = loose[0], len({box.brick for box in loose})
-        problem = f"its openings cut it in parts: {count} bricks, such as brick {one.brick} at {where(one.middle)}, have no joint with the rest"
+        problem = (
+            f"its openings cut it in parts: {count} bricks, such as brick {one.brick} at"
+            f" {where(one.middle)}, have no joint with the rest"
+        )
         refuse(part, [problem])
 
 

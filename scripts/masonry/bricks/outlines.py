@@ -71,7 +71,9 @@ class DrawnWall(Bricks):
         for name in (n for n in ("bed", "head") if n in masonry.joints):
             masonry.vary([f"{name}.normalStiffness", f"{name}.shearStiffness"], thinner)
             if masonry.joints[name].cap:
-                masonry.vary(f"{name}.compressiveFractureEnergy", lambda *place: 1 / thinner(*place))  # fmt: skip
+                masonry.vary(
+                    f"{name}.compressiveFractureEnergy", lambda *place: 1 / thinner(*place)
+                )
         return masonry
 
 
@@ -117,13 +119,17 @@ def fromOutlines(
     for hole in holes:
         size = " x ".join(f"{a:.3g}" for a in np.ptp(hole, axis=0))
         say(
-            f"note: fromOutlines: a hole of {size} m near {_at(hole)}; one in the mortar closes with a larger mortar="
+            f"note: fromOutlines: a hole of {size} m near {_at(hole)}; one in the mortar closes"
+            " with a larger mortar="
         )
     blocks, problems = [], []
     for n, stone in enumerate(stones):
         ring = withoutStraight(places[rings[n]]) if n in rings else []
         if len(ring) < 3 or crossing(ring) is not None:
-            problems.append(f"{stone.name} near {_at(stone.ring)}: nothing is left of it, or it crosses itself, at a tolerance of {fine:g} m")  # fmt: skip
+            problems.append(
+                f"{stone.name} near {_at(stone.ring)}: nothing is left of it, or it crosses itself,"
+                f" at a tolerance of {fine:g} m"
+            )
             continue
         for face in convexParts(ring):
             blocks.append(Block(prism(face.tolist(), 0.0, thickness), n, part))
@@ -147,18 +153,23 @@ def _checked(path, drawn, fine, mend):
             fatal.append(f"{outline.name} crosses itself near {where(spot)}")
             continue
         if not outline.closed:
-            found.append(f"{outline.name} is open between {where(ring[-1])} and {where(ring[0])}: close it")  # fmt: skip
+            found.append(
+                f"{outline.name} is open between {where(ring[-1])} and {where(ring[0])}: close it"
+            )
         size = area(ring)
         thin = abs(size) / max(np.linalg.norm(np.ptp(ring, axis=0)), 1e-300)
         if thin < 2 * fine:
-            found.append(f"{outline.name} near {_at(ring)} is a sliver, {thin:.3g} m thin, below two tolerances of {fine:g} m: leave it out")  # fmt: skip
+            found.append(
+                f"{outline.name} near {_at(ring)} is a sliver, {thin:.3g} m thin, below two"
+                f" tolerances of {fine:g} m: leave it out"
+            )
             continue
         outline.ring = ring if size > 0 else ring[::-1]
         kept.append(outline)
     stones = [s for s in kept if not _overlapping(s, kept, fine, found)]
     if not stones:
         fatal.append(f"no stones are left at a tolerance of {fine:g} m")
-    refuse(path, fatal + ([] if mend else [*found, *["mend=True does so"] * bool(found)]))  # fmt: skip
+    refuse(path, fatal + ([] if mend else [*found, *["mend=True does so"] * bool(found)]))
     for one in found:
         say(f"note: fromOutlines: {one}")
     return stones
@@ -170,7 +181,11 @@ def _overlapping(stone, others, fine, found):
     points, normals = _along(ring, fine)
     points = points - fine / 2 * normals  # two equal outlines lie within each other
     for other in others:
-        if other is stone or (ring.min(0) > other.ring.max(0)).any() or (ring.max(0) < other.ring.min(0)).any():  # fmt: skip
+        if (
+            other is stone
+            or (ring.min(0) > other.ring.max(0)).any()
+            or (ring.max(0) < other.ring.min(0)).any()
+        ):
             continue
         shared = points[inside(points, other.ring)]
         if not len(shared):
@@ -181,11 +196,17 @@ def _overlapping(stone, others, fine, found):
         first = others.index(stone) < others.index(other)
         both = f"{stone.name} and {other.name}"
         # of two equal ones the second goes
-        if len(shared) > 0.9 * len(points) and (np.ptp(ring, 0).prod(), first) <= (np.ptp(other.ring, 0).prod(), False):  # fmt: skip
-            found.append(f"{stone.name} near {_at(ring)} lies within {other.name}: leave it out")  # fmt: skip
+        if len(shared) > 0.9 * len(points) and (np.ptp(ring, 0).prod(), first) <= (
+            np.ptp(other.ring, 0).prod(),
+            False,
+        ):
+            found.append(f"{stone.name} near {_at(ring)} lies within {other.name}: leave it out")
             return True
         if depths.max() > fine:
-            found.append(f"{both} overlap by {depths.max():.3g} m near {where(shared[depths.argmax()])}: share it")  # fmt: skip
+            found.append(
+                f"{both} overlap by {depths.max():.3g} m near {where(shared[depths.argmax()])}:"
+                " share it"
+            )
     return False
 
 
@@ -209,9 +230,15 @@ def _along(ring, step):
 
 
 def _sampled(stones, step):
-    length = sum(np.linalg.norm(s.ring - np.roll(s.ring, 1, axis=0), axis=1).sum() for s in stones)  # fmt: skip
+    length = sum(np.linalg.norm(s.ring - np.roll(s.ring, 1, axis=0), axis=1).sum() for s in stones)
     if length / step > MOST_POINTS:
-        refuse("fromOutlines", [f"outlines of {length:.3g} m and a tolerance of {step / SPACING:g} m need more than {MOST_POINTS} points: is scale, metres in one unit of the file, right?"])  # fmt: skip
+        refuse(
+            "fromOutlines",
+            [
+                f"outlines of {length:.3g} m and a tolerance of {step / SPACING:g} m need more than"
+                f" {MOST_POINTS} points: is scale, metres in one unit of the file, right?"
+            ],
+        )
     found = [_along(stone.ring, step) for stone in stones]
     numbers = np.repeat(np.arange(len(stones)), [len(p) for p, _ in found])
     return _Points(*map(np.concatenate, zip(*found)), numbers, step)
@@ -264,5 +291,5 @@ def _grown(points, stones, radius):
     both = (labels[pairs] >= 0).all(axis=1)
     gaps = np.linalg.norm(sites[pairs[:, 0]] - sites[pairs[:, 1]], axis=1) - 2 * inset
     lengths = np.linalg.norm(along, axis=1)
-    mean = np.average(np.maximum(gaps[both], inset), weights=lengths[both]) if both.any() else inset  # fmt: skip
+    mean = np.average(np.maximum(gaps[both], inset), weights=lengths[both]) if both.any() else inset
     return _Cells(diagram.vertices, ends, labels[pairs], float(mean))

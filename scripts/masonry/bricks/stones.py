@@ -72,13 +72,21 @@ def StoneWall(
     problems = []
     for what, stone, wall in (("length", unit[0], length), ("height", unit[2], height)):
         if stone > wall:
-            problems.append(f"{what} of a stone, {stone:g} m, must be at most that of the wall, {wall:g} m")  # fmt: skip
+            problems.append(
+                f"{what} of a stone, {stone:g} m, must be at most that of the wall, {wall:g} m"
+            )
     refuse("stone wall", problems)
     counts = length / unit[0], round(height / unit[2])
     if pattern == "irregular":
         counts = round(counts[0]), counts[1]
     if counts[0] * counts[1] > MOST_STONES:
-        refuse("stone wall", [f"{counts[0] * counts[1]:.3g} stones are more than {MOST_STONES}: are all lengths in m?"])  # fmt: skip
+        refuse(
+            "stone wall",
+            [
+                f"{counts[0] * counts[1]:.3g} stones are more than {MOST_STONES}: are all lengths"
+                " in m?"
+            ],
+        )
     lay = _squared if pattern == "squared" else _irregular
     draw, best = Random(seed), None
     for n in range(1 if trace is None else DRAWS):
@@ -90,7 +98,7 @@ def StoneWall(
             own, overlap = (own, 0.5 * draw.random()) if n else (0.0, 0.5)
         stones = lay(counts, overlap, own, draw)
         wide, high = length / counts[0], height / counts[1]  # of a stone
-        faces = ((n, [(float(x) * wide, float(z) * high) for x, z in ring]) for n, ring in stones)  # fmt: skip
+        faces = ((n, [(float(x) * wide, float(z) * high) for x, z in ring]) for n, ring in stones)
         bricks = Bricks(
             Block(prism(face, 0.0, float(unit[1])), n, part, course)
             for n, (course, face) in enumerate(faces)
@@ -103,7 +111,10 @@ def StoneWall(
         if miss <= NEAR:
             break
     if best[0] > NEAR:
-        say(f"note: stone wall: the nearest of {DRAWS} walls has a trace of {leastTrace(best[1]):.3g}, not {trace:g}")  # fmt: skip
+        say(
+            f"note: stone wall: the nearest of {DRAWS} walls has a trace of"
+            f" {leastTrace(best[1]):.3g}, not {trace:g}"
+        )
     return best[1]
 
 
@@ -199,7 +210,7 @@ def _withoutShort(rings, corners, counts):
     :param rings: corners of each stone, by number
     :param corners: (x, z) of all, in lengths and heights of a stone
     """
-    edges = {tuple(sorted(pair)) for ring in rings for pair in zip(ring, ring[1:] + ring[:1])}  # fmt: skip
+    edges = {tuple(sorted(pair)) for ring in rings for pair in zip(ring, ring[1:] + ring[:1])}
     long = lambda edge: math.dist(corners[edge[0]], corners[edge[1]])
     fixed = (corners == 0) | (corners == np.array(counts))  # on a side of the wall
     for one, two in sorted(edges, key=long):

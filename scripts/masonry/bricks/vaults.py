@@ -193,9 +193,7 @@ def _ring(what, stones, span, radius, angle, thickness, problems):
     for n in range(stones + 1):
         share = 2 * n / stones - 1
         cos, sin = cosSin(quarters * share, half * share)
-        inner, outer = (
-            (across + r * sin, r * cos - up) for r in (radius, radius + thickness)
-        )
+        inner, outer = ((across + r * sin, r * cos - up) for r in (radius, radius + thickness))
         if n in (0, stones):  # the inner springings
             inner = (0.0 if n == 0 else 2 * across), 0.0
         points.append((inner, outer))

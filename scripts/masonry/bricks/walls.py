@@ -83,19 +83,23 @@ def Wall(
             f"{bond} bond has headers that go through the wall and needs wythes=2, got {wythes}"
         )
     size = length, 1 if bond == "stack" else 0.5, 1
-    unit, (quarters,), levels = _counted("wall", unit, joint, height, courses, problems, wythes, length=size)  # fmt: skip
+    unit, (quarters,), levels = _counted(
+        "wall", unit, joint, height, courses, problems, wythes, length=size
+    )
     thickness, deep = unit[1], unit[0] - joint  # of the wall, where headers go through
     if through:
         fitting = deep - 2 * thickness
         collar = max(fitting, 0.0) if collar is None else collar
         if abs(collar - fitting) > WHOLE * unit[0]:
-            fits = f"collar {fitting:g} m" if fitting >= 0 else f"a thickness of {deep / 2:g} m"  # fmt: skip
+            fits = f"collar {fitting:g} m" if fitting >= 0 else f"a thickness of {deep / 2:g} m"
             problems.append(
-                f"headers of {deep:g} m do not fit through two wythes of {thickness:g} m with a collar of {collar:g} m; {fits} fits"
+                f"headers of {deep:g} m do not fit through two wythes of {thickness:g} m with a"
+                f" collar of {collar:g} m; {fits} fits"
             )
     if bond == "header" and quarters < 6:
         problems.append(
-            f"header bond needs a length of at least 1.5 units, {1.5 * unit[0]:g} m, got {length:g} m"
+            f"header bond needs a length of at least 1.5 units, {1.5 * unit[0]:g} m, got"
+            f" {length:g} m"
         )
     refuse("wall", problems)
     collar = collar or 0.0
@@ -142,9 +146,7 @@ def Corner(
     :param height: as for :func:`Wall`, like ``unit``, ``courses``, ``halves`` and ``joint``
     """
     sizes = dict(length=(length, 0.5, 1.5), length2=(length2, 0.5, 1.5))
-    unit, (one, two), levels = _counted(
-        "corner", unit, joint, height, courses, [], 1, **sizes
-    )
+    unit, (one, two), levels = _counted("corner", unit, joint, height, courses, [], 1, **sizes)
     lay = functools.partial(_leaf, levels, unit, halves, ys=(0.0, unit[1]))
     return _joined(
         lay(one, "wall", openings, meets=(0, None)),
@@ -179,19 +181,18 @@ def Tee(
     problems, long = [], unit[0] + joint
     if unit[1] > 0.75 * long:
         problems.append(
-            f"a junction needs a unit no thicker than 0.75 of its length, got {unit[1]:g} m and {long:g} m"
+            f"a junction needs a unit no thicker than 0.75 of its length, got {unit[1]:g} m and"
+            f" {long:g} m"
         )
     sizes = dict(length=(length, 0.5, 2), length2=(length2, 0.5, 1.5))
-    unit, (one, two), levels = _counted(
-        "tee", unit, joint, height, courses, problems, 1, **sizes
-    )
+    unit, (one, two), levels = _counted("tee", unit, joint, height, courses, problems, 1, **sizes)
     middle, most = at / unit[0] - 0.5, one // 4 - 1
     nearest = round(middle)
     nearest = min(max(nearest, 1), most - 1) if most > 1 else nearest
     if abs(middle - nearest) > WHOLE:
         raise ValueError(
-            f"tee: at {at:g} m: the stem must stand over the middle of a brick of the even courses, with a brick on each "
-            f"side; nearest: {(nearest + 0.5) * unit[0]:g} m"
+            f"tee: at {at:g} m: the stem must stand over the middle of a brick of the even courses,"
+            f" with a brick on each side; nearest: {(nearest + 0.5) * unit[0]:g} m"
         )
     axis = (4 * nearest + 2) * unit[0] / 4
     across = (axis - unit[1] / 2, axis + unit[1] / 2)
@@ -232,9 +233,7 @@ def Room(
             f"a room needs a unit no thicker than its length, got {unit[1]:g} m and {long:g} m"
         )
     sizes = dict(length=(length, 1, 3), width=(width, 1, 3))
-    unit, (one, two), levels = _counted(
-        "room", unit, joint, height, courses, problems, 2, **sizes
-    )
+    unit, (one, two), levels = _counted("room", unit, joint, height, courses, problems, 2, **sizes)
     near = (0.0, unit[1])
     far = [(end - unit[1], end) for end in (one * unit[0] / 4, two * unit[0] / 4)]
     lay = functools.partial(_leaf, levels, unit, halves)
@@ -247,9 +246,7 @@ def Room(
 
 
 @validated
-def stack(
-    count: Annotated[int, whole(1, MOST_BRICKS)], size: Sides, part: str = "stack"
-) -> Bricks:
+def stack(count: Annotated[int, whole(1, MOST_BRICKS)], size: Sides, part: str = "stack") -> Bricks:
     """Blocks on top of each other, the lowest one's lower left front corner at the origin: a :class:`Bricks`.
 
     :param count: number of blocks
@@ -265,7 +262,8 @@ def block(low: Point, high: Point, part: str = "block", kind: str = "block") -> 
     """One block, a box between two opposite corners [m]: a :class:`Bricks`. It can be a platen, a pier or a beam."""
     if not all(a < b for a, b in zip(low, high)):
         raise ValueError(
-            f"block: low corner {tuple(low)} m must lie below high corner {tuple(high)} m on every axis"
+            f"block: low corner {tuple(low)} m must lie below high corner {tuple(high)} m on every"
+            " axis"
         )
     return Bricks([Block(boxCorners(low, high), 0, part, -1, kind)])
 
@@ -285,7 +283,10 @@ def _counted(name, unit, joint, height, courses, problems, times, **sizes):
             f"{name}: joint {joint:g} m must be below length and height of the unit {unit} m"
         )
     unit = unit[0] + joint, unit[1], unit[2] + joint
-    units = [_multiple(what, size, unit[0], "units", *bounds, problems) for what, (size, *bounds) in sizes.items()]  # fmt: skip
+    units = [
+        _multiple(what, size, unit[0], "units", *bounds, problems)
+        for what, (size, *bounds) in sizes.items()
+    ]
     levels = _levels(height, courses, unit, problems)
     refuse(name, problems)
     bricks = times * sum(units) * (len(levels) - 1)
@@ -313,8 +314,8 @@ def _multiple(what, size, one, word, share, least, problems):
         choices = (n * share for n in sorted({below, above}))
         choices = " or ".join(f"{n * one:.6g} m ({n:g})" for n in choices)
         problems.append(
-            f"{what} {size:g} m is {size / one:.6g} {word} of {one:g} m; it must be whole {'half ' * (share < 1)}{word}, "
-            f"at least {least:g}; nearest: {choices}"
+            f"{what} {size:g} m is {size / one:.6g} {word} of {one:g} m; it must be whole"
+            f" {'half ' * (share < 1)}{word}, at least {least:g}; nearest: {choices}"
         )
         return None
     return nearest * share
@@ -327,9 +328,7 @@ def _levels(height, courses, unit, problems):
         least = FLAT * max(unit)
         for n, flat in enumerate(courses):
             if flat <= least:
-                problems.append(
-                    f"course {n}: {flat:g} m is too flat, it must be above {least:g} m"
-                )
+                problems.append(f"course {n}: {flat:g} m is too flat, it must be above {least:g} m")
                 return None
         levels = [0.0, *itertools.accumulate(courses)]
         if height is not None and abs(height - levels[-1]) > WHOLE * levels[-1]:
@@ -347,9 +346,7 @@ def _levels(height, courses, unit, problems):
 # -- leaves that meet others ------------------------------------------------------------------------------------------
 
 
-def _leaf(
-    levels, unit, halves, quarters, part, openings, ys, meets=(None, None), crossed=None
-):
+def _leaf(levels, unit, halves, quarters, part, openings, ys, meets=(None, None), crossed=None):
     """A leaf in running bond, as (bricks, lintels), along x between the two ``ys``.
 
     :param meets: for both ends, where another wall may meet this one, the remainder by 2 of the courses that go through to
@@ -411,7 +408,7 @@ def _along(leaf):
     """A leaf turned so that it runs along y: x and y change places, so that all coordinates stay exact."""
     swap = lambda p: (p[1], p[0], p[2])
     split = lambda cut: cut and (1 - cut[0], cut[1])
-    turn = lambda b: replace(b, low=swap(b.low), high=swap(b.high), split=split(b.split))  # fmt: skip
+    turn = lambda b: replace(b, low=swap(b.low), high=swap(b.high), split=split(b.split))
     return tuple(list(map(turn, bricks)) for bricks in leaf)
 
 

@@ -69,13 +69,17 @@ class Domain:
         """
         forces = [one.normal for one in self.bounds]
         if not forces or not forces[0] <= normal <= forces[-1]:
-            reach = f"it goes from {forces[0]:.4g} to {forces[-1]:.4g} kN" if forces else "it is empty"  # fmt: skip
+            reach = (
+                f"it goes from {forces[0]:.4g} to {forces[-1]:.4g} kN" if forces else "it is empty"
+            )
             raise Refused(f"the domain has no normal force of {normal:.4g} kN: {reach}")
         return float(np.interp(normal, forces, [one.largest for one in self.bounds]))
 
     def entries(self) -> dict[str, Any]:
         """The domain as an entry of a JSON file, with units in the names."""
-        named = lambda ones: [{ENTRIES.get(n, n): v for n, v in asdict(one).items()} for one in ones]  # fmt: skip
+        named = lambda ones: [
+            {ENTRIES.get(n, n): v for n, v in asdict(one).items()} for one in ones
+        ]
         return dict(bounds=named(self.bounds), runs=named(self.runs), notes=self.notes)
 
 
@@ -93,7 +97,7 @@ def runPoint(directory: FilePath) -> RunPoint:
     at = push.data.peak()
     normal, source = _normal(push, at)
     name = os.path.basename(os.path.normpath(push.directory))
-    return RunPoint(name, normal, float(push.force[at]), float(push.displacement[at]), source)  # fmt: skip
+    return RunPoint(name, normal, float(push.force[at]), float(push.displacement[at]), source)
 
 
 def _normal(push, at):
@@ -108,8 +112,9 @@ def _normal(push, at):
         wall, material = run.get("wall"), run.get("unit_material")
         if not (wall and material):
             raise Refused(
-                f"{push.directory}: the normal force at the peak is not known: curve.csv has no column "
-                f"{', '.join(missing) or 'of a vertical force'}; run the scene with all columns"
+                f"{push.directory}: the normal force at the peak is not known: curve.csv has no"
+                f" column {', '.join(missing) or 'of a vertical force'}; run the scene with all"
+                " columns"
             )
         area = wall["length_m"] * wall["thickness_m"]
         weight = material["density_kg_per_m3"] * GRAVITY * area * wall["height_m"]
@@ -137,19 +142,31 @@ def domain(
                 continue
             normal, largest = found = entry["normal_kN"], entry["factor"]
             if not all(isNumber(one) and math.isfinite(one) for one in found):
-                raise Refused(f"{directory}: {entry['load']}: the normal force and the bound must be finite numbers, not {[*found]}")  # fmt: skip
-            bounds.append(BoundPoint(normal, largest, entry.get("without_dilatancy"), entry["exact"]))  # fmt: skip
+                raise Refused(
+                    f"{directory}: {entry['load']}: the normal force and the bound must be finite"
+                    f" numbers, not {[*found]}"
+                )
+            bounds.append(
+                BoundPoint(normal, largest, entry.get("without_dilatancy"), entry["exact"])
+            )
     if not bounds:
         none = (
-            f"{directory}: run.json has no domain: say scene.domain(top, normal=[...]) in the scene, after its presses, and run it, "
-            "for limit analysis alone with --preset bound"
+            f"{directory}: run.json has no domain: say scene.domain(top, normal=[...]) in the"
+            " scene, after its presses, and run it, for limit analysis alone with --preset bound"
         )
         raise Refused("\n".join(notes or [none]))
     points = []
     for one in runs:
         points.append(runPoint(one))
         other = readRun(one)
-        unlike = [what for key, what in ALIKE.items() if key in run and key in other and run[key] != other[key]]  # fmt: skip
+        unlike = [
+            what
+            for key, what in ALIKE.items()
+            if key in run and key in other and run[key] != other[key]
+        ]
         if unlike:
-            notes.append(f"{points[-1].name}: its {' and its '.join(unlike)} are not those of the domain: is it the same pier?")  # fmt: skip
+            notes.append(
+                f"{points[-1].name}: its {' and its '.join(unlike)} are not those of the domain: is"
+                " it the same pier?"
+            )
     return Domain(sorted(bounds, key=lambda one: one.normal), points, notes)

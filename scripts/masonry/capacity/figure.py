@@ -23,10 +23,10 @@ def _corners(curve):
 
 def forces(push: Pushover, curve: Bilinear, path: FilePath) -> None:
     """Draw the curve of a push and its bilinear one: force over displacement. Writes a PNG file."""
-    ends = f"du {curve.ultimateDisplacement:.4g} mm{'' if curve.reached else ' (not reached)'}"  # fmt: skip
+    ends = f"du {curve.ultimateDisplacement:.4g} mm{'' if curve.reached else ' (not reached)'}"
     label = (
-        f"bilinear, {curve.rule}: Vy {curve.yieldForce:.4g} kN, dy {curve.yieldDisplacement:.3g} mm,\n"
-        f"{ends}, ductility {curve.ductility:.3g}"
+        f"bilinear, {curve.rule}: Vy {curve.yieldForce:.4g} kN, dy"
+        f" {curve.yieldDisplacement:.3g} mm,\n{ends}, ductility {curve.ductility:.3g}"
     )
     with drawing.picture(path, 7, 4.6, DPI) as figure:
         axes = figure.subplots()
@@ -45,33 +45,71 @@ def capacity(push: Pushover, found: Demand, path: FilePath) -> None:
     with drawing.picture(path, 7, 5.2, DPI) as figure:
         axes = figure.subplots()
         sd = 1e3 * spectrum.accelerations * (spectrum.periods / (2 * math.pi)) ** 2
-        axes.plot(sd, spectrum.accelerations, color=SPECTRUM, lw=1.4, label="elastic spectrum")  # fmt: skip
-        axes.plot(push.displacement / gamma, asAcceleration(push.force), color=CURVE, lw=1.0, label="the push")  # fmt: skip
+        axes.plot(sd, spectrum.accelerations, color=SPECTRUM, lw=1.4, label="elastic spectrum")
+        axes.plot(
+            push.displacement / gamma,
+            asAcceleration(push.force),
+            color=CURVE,
+            lw=1.0,
+            label="the push",
+        )
         moved, force = _corners(found.curve)
-        axes.plot(moved / gamma, asAcceleration(force), color=IDEAL, lw=1.8, label=f"bilinear, {found.curve.rule}")  # fmt: skip
+        axes.plot(
+            moved / gamma,
+            asAcceleration(force),
+            color=IDEAL,
+            lw=1.8,
+            label=f"bilinear, {found.curve.rule}",
+        )
         elastic = found.elasticDisplacement, found.elasticAcceleration
-        axes.plot([0, elastic[0]], [0, elastic[1]], color="0.3", lw=0.8, ls=(0, (4, 3)), label=f"T* = {found.period:.3g} s")  # fmt: skip
+        axes.plot(
+            [0, elastic[0]],
+            [0, elastic[1]],
+            color="0.3",
+            lw=0.8,
+            ls=(0, (4, 3)),
+            label=f"T* = {found.period:.3g} s",
+        )
         target = found.equivalentDisplacement
         axes.axvline(target, color=TARGET, lw=1.0, ls=(0, (6, 3)))
         height = min(found.strength, found.strength * found.ductility)
-        axes.plot(target, height, "o", color=TARGET, ms=6, label=f"demand dt* = {target:.4g} mm")  # fmt: skip
+        axes.plot(target, height, "o", color=TARGET, ms=6, label=f"demand dt* = {target:.4g} mm")
         axes.set_xlim(0, 1.25 * max(target, moved[-1] / gamma, elastic[0]))
-        axes.set_ylim(0, 1.1 * max(spectrum.accelerations.max(), asAcceleration(push.force).max()))  # fmt: skip
+        axes.set_ylim(0, 1.1 * max(spectrum.accelerations.max(), asAcceleration(push.force).max()))
         axes.set_title(f"{push.run.get('title', '')}\n{spectrum.name}", fontsize=9)
-        drawing.finish(axes, "displacement of the equivalent system [mm]", "acceleration [m/s²]", fontsize=9)  # fmt: skip
+        drawing.finish(
+            axes, "displacement of the equivalent system [mm]", "acceleration [m/s²]", fontsize=9
+        )
 
 
 def domain(found: Domain, path: FilePath) -> None:
     """Draw an N-V domain, and runs as points. Writes a PNG file."""
     with drawing.picture(path, 7, 4.6, DPI) as figure:
         axes = figure.subplots()
-        for key, label, dash in (("largest", "limit analysis, at most", "-"), ("withoutDilatancy", "limit analysis, without dilatancy", (0, (5, 3)))):  # fmt: skip
-            points = [(one.normal, getattr(one, key)) for one in found.bounds if getattr(one, key) is not None]  # fmt: skip
+        for key, label, dash in (
+            ("largest", "limit analysis, at most", "-"),
+            ("withoutDilatancy", "limit analysis, without dilatancy", (0, (5, 3))),
+        ):
+            points = [
+                (one.normal, getattr(one, key))
+                for one in found.bounds
+                if getattr(one, key) is not None
+            ]
             if points:
                 axes.plot(*zip(*points), marker=".", color=IDEAL, ls=dash, label=label)
         for n, run in enumerate(found.runs):
-            axes.plot(run.normal, run.shear, "o", color=TARGET, ms=6, label="runs" if n == 0 else None)  # fmt: skip
-            axes.annotate(run.name, (run.normal, run.shear), textcoords="offset points", xytext=(6, -10), fontsize=8)  # fmt: skip
+            axes.plot(
+                run.normal, run.shear, "o", color=TARGET, ms=6, label="runs" if n == 0 else None
+            )
+            axes.annotate(
+                run.name,
+                (run.normal, run.shear),
+                textcoords="offset points",
+                xytext=(6, -10),
+                fontsize=8,
+            )
         axes.set_xlim(left=0)
         axes.set_ylim(bottom=0)
-        drawing.finish(axes, "normal force at the base, compression [kN]", "shear force [kN]", fontsize=9)  # fmt: skip
+        drawing.finish(
+            axes, "normal force at the base, compression [kN]", "shear force [kN]", fontsize=9
+        )

@@ -59,19 +59,27 @@ def ofMasses(
     :raises Refused: with what is wrong
     """
     if len(masses) != len(shape):
-        raise Refused("masses and shape must be lists of equal length: a mass [kg] and a displacement [-] for each point")  # fmt: skip
+        raise Refused(
+            "masses and shape must be lists of equal length: a mass [kg] and a displacement [-] for"
+            " each point"
+        )
     mass = float(sum(m * p for m, p in zip(masses, shape)))
     squares = float(sum(m * p * p for m, p in zip(masses, shape)))
     if mass <= 0:
-        raise Refused(f"the equivalent mass of masses {masses!r} with the shape {shape!r} is {mass:.4g} kg, it must be above 0")  # fmt: skip
+        raise Refused(
+            f"the equivalent mass of masses {masses!r} with the shape {shape!r} is {mass:.4g} kg,"
+            " it must be above 0"
+        )
     listed = lambda values: ", ".join(f"{v:g}" for v in values)
-    return Equivalent(mass, mass / squares, f"masses of {listed(masses)} kg with the shape {listed(shape)}, equations (B.2) and (B.3)")  # fmt: skip
+    return Equivalent(
+        mass,
+        mass / squares,
+        f"masses of {listed(masses)} kg with the shape {listed(shape)}, equations (B.2) and (B.3)",
+    )
 
 
 @validated
-def ofRun(
-    run: Annotated[dict[str, Any], isA(dict)], directory: str = "run.json"
-) -> Equivalent:
+def ofRun(run: Annotated[dict[str, Any], isA(dict)], directory: str = "run.json") -> Equivalent:
     """The equivalent system that a run has: its script says it by
     ``scene.result("equivalent_mass", 30e3, "kg")`` and ``scene.result("participation_factor", 1.0)``.
 
@@ -87,14 +95,18 @@ def ofRun(
         if not isNumber(one.get("value")):
             missing.append(name)
         elif one.get("unit") != unit:
-            raise Refused(f"{directory}: the answer {name} has the unit {one.get('unit')!r}, it must be in {unit!r}")  # fmt: skip
+            raise Refused(
+                f"{directory}: the answer {name} has the unit {one.get('unit')!r}, it must be in"
+                f" {unit!r}"
+            )
         else:
             found.append(one["value"])
     if missing:
         raise Refused(
-            f"{directory}: run.json has no {' and no '.join(missing)}, and neither is guessed: give the equivalent mass m* and the "
-            "factor Γ (--mass KG --gamma G; --masses KG,KG --shape PHI,PHI), or say them in the script: "
-            f'scene.result("{MASS[0]}", 30e3, "kg") and scene.result("{GAMMA[0]}", 1.0)'
+            f"{directory}: run.json has no {' and no '.join(missing)}, and neither is guessed: give"
+            " the equivalent mass m* and the factor Γ (--mass KG --gamma G; --masses KG,KG --shape"
+            f' PHI,PHI), or say them in the script: scene.result("{MASS[0]}", 30e3, "kg") and'
+            f' scene.result("{GAMMA[0]}", 1.0)'
         )
     known = equivalent(*found)
     return Equivalent(known.mass, known.gamma, f"answers of the script in {directory}")
@@ -122,35 +134,136 @@ class Demand:
 
     def verdict(self) -> str:
         """Whether the capacity exceeds the demand, as a sentence."""
-        has, needs = f"{self.curve.ultimateDisplacement:.4g} mm", f"{self.targetDisplacement:.4g} mm"  # fmt: skip
+        has, needs = (
+            f"{self.curve.ultimateDisplacement:.4g} mm",
+            f"{self.targetDisplacement:.4g} mm",
+        )
         if self.holds is None:
-            return f"not known: the demand is {needs}, and the push was not taken to its ultimate displacement, it ends at {has}: push farther"  # fmt: skip
+            return (
+                f"not known: the demand is {needs}, and the push was not taken to its ultimate"
+                f" displacement, it ends at {has}: push farther"
+            )
         over = self.curve.ultimateDisplacement / self.targetDisplacement
         if self.holds:
             return f"the capacity exceeds the demand: {has} is {over:.3g} times {needs}"
-        return f"the capacity does not reach the demand: {has} is {over:.3g} times {needs}"  # fmt: skip
+        return f"the capacity does not reach the demand: {has} is {over:.3g} times {needs}"
 
     def numbers(self) -> list[Number]:
         """All numbers, each with its unit, its meaning and its source."""
         b = lambda equation: f"{ANNEX}, equation (B.{equation})"
         curve, gamma = self.curve, self.system.gamma
-        end = "" if curve.reached else "the push was not taken to its ultimate displacement: the end of the curve stands for it"  # fmt: skip
+        end = (
+            ""
+            if curve.reached
+            else (
+                "the push was not taken to its ultimate displacement: the end of the curve stands"
+                " for it"
+            )
+        )
         return [
-            Number("equivalent_mass_kg", self.system.mass, "kg", "Mass m* of the equivalent system.", self.system.source),
-            Number("participation_factor", gamma, "-", "Factor by which displacements and forces of the structure are those of the equivalent system.", self.system.source),
-            Number("equivalent_yield_force_kN", curve.yieldForce / gamma, "kN", "Yield force Fy* of the equivalent system.", b(4)),
-            Number("equivalent_yield_displacement_mm", curve.yieldDisplacement / gamma, "mm", "Yield displacement dy* of the equivalent system.", b(5)),
-            Number("equivalent_period_s", self.period, "s", "Period T* of the equivalent system.", b(7)),
-            Number("elastic_acceleration_m_per_s2", self.elasticAcceleration, "m/s²", "Acceleration Se of the elastic spectrum at T*.", self.spectrum.source),
-            Number("yield_acceleration_m_per_s2", self.strength, "m/s²", "Yield force over mass of the equivalent system.", b(11)),
-            Number("force_ratio", self.reduction, "-", "Ratio qu of the force that an elastic system would feel to the yield force.", b(11)),
-            Number("elastic_displacement_mm", self.elasticDisplacement, "mm", "Displacement det* of an elastic system with the period T*.", b(8)),
-            Number("equivalent_target_displacement_mm", self.equivalentDisplacement, "mm", "Target displacement dt* of the equivalent system.", f"{ANNEX}, equation ({self.branch})"),
-            Number("target_displacement_mm", self.targetDisplacement, "mm", "Target displacement dt of the structure: the demand.", b(13)),
-            Number("ductility_demand", self.ductility, "-", "Target displacement over yield displacement.", ANNEX),
-            Number("capacity_over_demand", curve.ultimateDisplacement / self.targetDisplacement, "-", "Ultimate displacement over target displacement.", "capacity over demand", end),
-            Number("spectrum_factor_held", self.scale, "-", "Factor by which the spectrum may be multiplied until the target displacement is the ultimate displacement.", f"{ANNEX}, solved for the spectrum", end),
-        ]  # fmt: skip
+            Number(
+                "equivalent_mass_kg",
+                self.system.mass,
+                "kg",
+                "Mass m* of the equivalent system.",
+                self.system.source,
+            ),
+            Number(
+                "participation_factor",
+                gamma,
+                "-",
+                (
+                    "Factor by which displacements and forces of the structure are those of the"
+                    " equivalent system."
+                ),
+                self.system.source,
+            ),
+            Number(
+                "equivalent_yield_force_kN",
+                curve.yieldForce / gamma,
+                "kN",
+                "Yield force Fy* of the equivalent system.",
+                b(4),
+            ),
+            Number(
+                "equivalent_yield_displacement_mm",
+                curve.yieldDisplacement / gamma,
+                "mm",
+                "Yield displacement dy* of the equivalent system.",
+                b(5),
+            ),
+            Number(
+                "equivalent_period_s", self.period, "s", "Period T* of the equivalent system.", b(7)
+            ),
+            Number(
+                "elastic_acceleration_m_per_s2",
+                self.elasticAcceleration,
+                "m/s²",
+                "Acceleration Se of the elastic spectrum at T*.",
+                self.spectrum.source,
+            ),
+            Number(
+                "yield_acceleration_m_per_s2",
+                self.strength,
+                "m/s²",
+                "Yield force over mass of the equivalent system.",
+                b(11),
+            ),
+            Number(
+                "force_ratio",
+                self.reduction,
+                "-",
+                "Ratio qu of the force that an elastic system would feel to the yield force.",
+                b(11),
+            ),
+            Number(
+                "elastic_displacement_mm",
+                self.elasticDisplacement,
+                "mm",
+                "Displacement det* of an elastic system with the period T*.",
+                b(8),
+            ),
+            Number(
+                "equivalent_target_displacement_mm",
+                self.equivalentDisplacement,
+                "mm",
+                "Target displacement dt* of the equivalent system.",
+                f"{ANNEX}, equation ({self.branch})",
+            ),
+            Number(
+                "target_displacement_mm",
+                self.targetDisplacement,
+                "mm",
+                "Target displacement dt of the structure: the demand.",
+                b(13),
+            ),
+            Number(
+                "ductility_demand",
+                self.ductility,
+                "-",
+                "Target displacement over yield displacement.",
+                ANNEX,
+            ),
+            Number(
+                "capacity_over_demand",
+                curve.ultimateDisplacement / self.targetDisplacement,
+                "-",
+                "Ultimate displacement over target displacement.",
+                "capacity over demand",
+                end,
+            ),
+            Number(
+                "spectrum_factor_held",
+                self.scale,
+                "-",
+                (
+                    "Factor by which the spectrum may be multiplied until the target displacement"
+                    " is the ultimate displacement."
+                ),
+                f"{ANNEX}, solved for the spectrum",
+                end,
+            ),
+        ]
 
 
 @validated
@@ -176,9 +289,11 @@ def demand(
     try:
         needed = spectrum.acceleration(period)
     except Refused as refused:
-        raise Refused(f"the equivalent period (B.7) is {period:.4g} s: {refused}") from None  # fmt: skip
+        raise Refused(f"the equivalent period (B.7) is {period:.4g} s: {refused}") from None
     if not needed > 0:
-        raise Refused(f"the spectrum ({spectrum.name}) is zero at the equivalent period, {period:.4g} s")  # fmt: skip
+        raise Refused(
+            f"the spectrum ({spectrum.name}) is zero at the equivalent period, {period:.4g} s"
+        )
     elastic = spectrum.displacement(period)
     ratio, corner = needed / strength, spectrum.corner
     short = period < corner
@@ -191,11 +306,12 @@ def demand(
                 target, branch = MOST * elastic, "B.10, at most 3 det*"
             else:
                 notes.append(
-                    f"annex B lets the target displacement of the equivalent system be at most 3 det*, {MOST * elastic:.4g} mm, in place of "
-                    f"{target:.4g} mm (limited=True, --limited)"
+                    "annex B lets the target displacement of the equivalent system be at most 3"
+                    f" det*, {MOST * elastic:.4g} mm, in place of {target:.4g} mm (limited=True,"
+                    " --limited)"
                 )
     ultimate = curve.ultimateDisplacement / gamma
-    scale = _scale(ultimate / yields, corner / period if short else 1.0, limited) / ratio  # fmt: skip
+    scale = _scale(ultimate / yields, corner / period if short else 1.0, limited) / ratio
     moved = gamma * target
     enough = curve.ultimateDisplacement >= moved
     return Demand(
@@ -221,8 +337,9 @@ def _remarks(curve, target, ratio):
     """Sentences on a capacity curve, the target displacement of its structure [mm] and the ratio qu."""
     if curve.ultimateDisplacement < 1.5 * target and not curve.reached:
         yield (
-            f"EN 1998-1:2004, 4.3.3.4.2.3(1), wants a capacity curve up to 1.5 times the target displacement, {1.5 * target:.4g} mm; this one "
-            f"ends at {curve.ultimateDisplacement:.4g} mm"
+            "EN 1998-1:2004, 4.3.3.4.2.3(1), wants a capacity curve up to 1.5 times the target"
+            f" displacement, {1.5 * target:.4g} mm; this one ends at"
+            f" {curve.ultimateDisplacement:.4g} mm"
         )
     if ratio <= 1:
         yield "the structure stays below its yield force"
@@ -258,16 +375,25 @@ def iterated(
         if abs(target - before.mechanism) <= SAME * target:
             return found
         if target > before.ultimateDisplacement:
-            return _notIterated(found, f"the target displacement, {target:.4g} mm, is beyond the ultimate displacement")  # fmt: skip
+            return _notIterated(
+                found,
+                f"the target displacement, {target:.4g} mm, is beyond the ultimate displacement",
+            )
         try:
             curve = bilinearOf(push, "en1998", mechanism=target)
         except Refused as refused:
             return _notIterated(found, str(refused))
         found = demand(curve, system, spectrum, limited)
-    return _notIterated(found, f"the last two target displacements are {target:.4g} and {found.targetDisplacement:.4g} mm")  # fmt: skip
+    return _notIterated(
+        found,
+        f"the last two target displacements are {target:.4g} and {found.targetDisplacement:.4g} mm",
+    )
 
 
 def _notIterated(found, why):
     """The same demand, with a note that its mechanism does not form at the target displacement."""
-    note = f"the iteration of annex B was ended with a mechanism at {found.curve.mechanism:.4g} mm: {why}"
+    note = (
+        f"the iteration of annex B was ended with a mechanism at {found.curve.mechanism:.4g} mm:"
+        f" {why}"
+    )
     return replace(found, notes=(note, *found.notes))

@@ -20,9 +20,11 @@ from .spectra import Spectrum
 CAPACITY, DOMAIN = ("capacity.json", "capacity.png"), ("domain.json", "domain.png")
 #: What the equivalent system of a wall is, as the report says it.
 ASSUMED = (
-    "The structure is taken as one mass on a spring that follows the bilinear curve: it moves in one shape, that of the push, and keeps it "
-    "after it yields. Of a wall that is pushed at its top the mass is what the wall holds back in an earthquake, floors and masonry at the "
-    "height of the loaded point, with a factor of 1; it is not the mass that presses the wall, unless that also moves with it."
+    "The structure is taken as one mass on a spring that follows the bilinear curve: it moves in"
+    " one shape, that of the push, and keeps it after it yields. Of a wall that is pushed at its"
+    " top the mass is what the wall holds back in an earthquake, floors and masonry at the height"
+    " of the loaded point, with a factor of 1; it is not the mass that presses the wall, unless"
+    " that also moves with it."
 )
 
 
@@ -58,7 +60,8 @@ def assess(
     """
     if iterate and (rule != "en1998" or mechanism is not None or not spectrum):
         raise Refused(
-            "iterate: it is of the rule en1998 with a spectrum, and finds the mechanism itself: leave rule= and mechanism= away"
+            "iterate: it is of the rule en1998 with a spectrum, and finds the mechanism itself:"
+            " leave rule= and mechanism= away"
         )
     push = bilinear.pushover(directory, column)
     if spectrum:
@@ -74,13 +77,18 @@ def assess(
         numbers += bilinear.drifts(push, height)
     except Refused as refused:
         notes.append(str(refused))
-    found = {"scene": push.run.get("scene"), "title": push.run.get("title"), "rule": rule}  # fmt: skip
+    found = {"scene": push.run.get("scene"), "title": push.run.get("title"), "rule": rule}
     if needs:
         numbers += needs.numbers()
         notes += needs.notes
-        found.update(spectrum=needs.spectrum.name, holds=needs.holds, verdict=needs.verdict(), assumed=ASSUMED)  # fmt: skip
+        found.update(
+            spectrum=needs.spectrum.name,
+            holds=needs.holds,
+            verdict=needs.verdict(),
+            assumed=ASSUMED,
+        )
     found.update(numbers=[one.entry() for one in numbers], notes=notes)
-    draw = partial(figure.capacity, push, needs) if needs else partial(figure.forces, push, curve)  # fmt: skip
+    draw = partial(figure.capacity, push, needs) if needs else partial(figure.forces, push, curve)
     _write(out or directory, CAPACITY, found, draw)
     return found
 

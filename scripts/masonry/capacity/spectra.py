@@ -13,7 +13,11 @@ from ..basics import ACCELERATION_UNITS, GRAVITY, Refused
 from ..read.files import readText
 
 #: Units of accelerations in m/s², those with a raised 2 also as a keyboard writes them.
-UNITS = {**ACCELERATION_UNITS, "m/s2": ACCELERATION_UNITS["m/s²"], "cm/s2": ACCELERATION_UNITS["cm/s²"]}  # fmt: skip
+UNITS = {
+    **ACCELERATION_UNITS,
+    "m/s2": ACCELERATION_UNITS["m/s²"],
+    "cm/s2": ACCELERATION_UNITS["cm/s²"],
+}
 #: EN 1998-1:2004, tables 3.2 (type 1) and 3.3 (type 2): S [-], TB, TC and TD [s] by the ground type. These are the recommended
 #: values; a National Annex may have others.
 PARAMETERS: dict[int, dict[str, tuple[float, float, float, float]]] = {
@@ -46,7 +50,9 @@ class Spectrum:
     accelerations: np.ndarray  #: at these periods [m/s²]
     corner: float  #: TC, upper limit of the periods with constant acceleration [s]
     longest: float  #: longest period [s]
-    formula: Any = None  #: function of a period that gives the acceleration; None: lines between the points
+    formula: Any = (
+        None  #: function of a period that gives the acceleration; None: lines between the points
+    )
 
     def acceleration(self, period: float) -> float:
         """Se at a period [m/s²].
@@ -57,7 +63,8 @@ class Spectrum:
         first = float(self.periods[0])
         if not first <= period <= self.longest:
             raise Refused(
-                f"the spectrum ({self.name}) has no period of {period:.4g} s: it goes from {first:g} to {self.longest:g} s"
+                f"the spectrum ({self.name}) has no period of {period:.4g} s: it goes from"
+                f" {first:g} to {self.longest:g} s"
             )
         if self.formula:
             return float(self.formula(period))
@@ -89,12 +96,13 @@ def elastic(
     :param parameters: S [-], TB, TC and TD [s] of a National Annex; None: the recommended values of tables 3.2 and 3.3
     :raises Refused: with what is wrong
     """
-    soil, tb, tc, td = PARAMETERS[type][ground] if parameters is None else _four(parameters)  # fmt: skip
+    soil, tb, tc, td = PARAMETERS[type][ground] if parameters is None else _four(parameters)
     correction = max(math.sqrt(10 / (5 + damping)), LEAST_CORRECTION)
     peak = ag * UNITS[unit] * importance
     if peak > 3 * GRAVITY:
         raise Refused(
-            f"elastic: a ground acceleration of {peak:.4g} m/s² is more than 3 g: is ag {ag:g} {unit} in another unit?"
+            f"elastic: a ground acceleration of {peak:.4g} m/s² is more than 3 g: is ag"
+            f" {ag:g} {unit} in another unit?"
         )
     plateau = 2.5 * correction
 
@@ -110,7 +118,10 @@ def elastic(
     periods = np.unique([0.0, tb, tc, td, *np.linspace(0, LONGEST, 801)])
     where = "recommended values" if parameters is None else "given values"
     return Spectrum(
-        name=f"EN 1998-1 type {type}, ground {ground}, agR {ag:g} {unit}, importance {importance:g}, damping {damping:g} %",
+        name=(
+            f"EN 1998-1 type {type}, ground {ground}, agR {ag:g} {unit}, importance {importance:g},"
+            f" damping {damping:g} %"
+        ),
         source=f"EN 1998-1:2004, 3.2.2.2, {where} of S, TB, TC and TD",
         periods=periods,
         accelerations=np.array([formula(period) for period in periods]),
@@ -126,12 +137,13 @@ def _four(parameters):
         soil, tb, tc, td = (float(value) for value in parameters)
     except (TypeError, ValueError):
         raise Refused(
-            f"elastic: parameters must be four numbers, S [-], TB, TC and TD [s], got {parameters!r}"
+            "elastic: parameters must be four numbers, S [-], TB, TC and TD [s], got"
+            f" {parameters!r}"
         ) from None
     if not (0 < soil < 10 and 0 < tb <= tc <= td <= LONGEST):
         raise Refused(
-            f"elastic: parameters S {soil:g}, TB {tb:g} s, TC {tc:g} s, TD {td:g} s must have 0 < S < 10 and 0 < TB <= TC <= TD "
-            f"<= {LONGEST:g} s"
+            f"elastic: parameters S {soil:g}, TB {tb:g} s, TC {tc:g} s, TD {td:g} s must have 0 < S"
+            f" < 10 and 0 < TB <= TC <= TD <= {LONGEST:g} s"
         )
     return soil, tb, tc, td
 
@@ -166,26 +178,32 @@ def readSpectrum(
             raise Refused(f"{path}, line {count}: {error}") from None
         if len(row) != 2 or not all(map(math.isfinite, row)) or min(row) < 0:
             raise Refused(
-                f"{path}, line {count}: it must have a period [s] and an acceleration, neither below zero, has {line.strip()[:60]!r}"
+                f"{path}, line {count}: it must have a period [s] and an acceleration, neither"
+                f" below zero, has {line.strip()[:60]!r}"
             )
         if rows and row[0] <= rows[-1][0]:
-            raise Refused(f"{path}, line {count}: periods must grow, {row[0]:g} s comes after {rows[-1][0]:g} s")  # fmt: skip
+            raise Refused(
+                f"{path}, line {count}: periods must grow, {row[0]:g} s comes after"
+                f" {rows[-1][0]:g} s"
+            )
         rows.append(row)
     if len(rows) < 2:
         raise Refused(f"{path}: there must be two rows at least")
     periods, accelerations = np.array(rows).T * [[1], [UNITS[unit]]]
     if not 0 < accelerations.max() < 100 * GRAVITY:
         raise Refused(
-            f"{path}: the largest acceleration is {accelerations.max():.4g} m/s², which must be above 0 and below 100 g: is the unit "
-            f"{unit!r}?"
+            f"{path}: the largest acceleration is {accelerations.max():.4g} m/s², which must be"
+            f" above 0 and below 100 g: is the unit {unit!r}?"
         )
     if corner is None:
         raise Refused(
-            f"{path}: a file does not say where the constant accelerations end: give TC in s, corner= in Python or --corner"
+            f"{path}: a file does not say where the constant accelerations end: give TC in s,"
+            " corner= in Python or --corner"
         )
     if not periods[0] < corner <= periods[-1]:
         raise Refused(
-            f"{path}: the corner, {corner:g} s, must be within the periods, {periods[0]:g} to {periods[-1]:g} s"
+            f"{path}: the corner, {corner:g} s, must be within the periods, {periods[0]:g} to"
+            f" {periods[-1]:g} s"
         )
     return Spectrum(
         name=str(path),

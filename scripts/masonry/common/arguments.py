@@ -103,7 +103,7 @@ def number(unit="", low=-math.inf, high=math.inf, above=False, below=False):
         must(f"a number{bounds and ' '}{bounds}{of}", isNumber(value), value)
         found = plain(value)
         if not math.isfinite(found):
-            raise ValueError(f"{shown(value)}{of} must be a finite number{bounds and ' '}{bounds}")  # fmt: skip
+            raise ValueError(f"{shown(value)}{of} must be a finite number{bounds and ' '}{bounds}")
         outside = above and found == low or below and found == high
         if outside or not low <= found <= high:
             raise ValueError(f"{shown(value)}{of} must be {bounds}")
@@ -203,7 +203,7 @@ def byName(kind, *needed):
         must("a dict by name", fine, value)
         missing = [n for n in needed if n not in value]
         if missing:
-            raise ValueError(f"{shown(value)} must have {', '.join(map(repr, missing))}")  # fmt: skip
+            raise ValueError(f"{shown(value)} must have {', '.join(map(repr, missing))}")
         problems = []
         for one, thing in value.items():
             try:
@@ -386,9 +386,9 @@ def validated(act: F) -> F:
 
 def _checked(word, signature, kinds, args, settings):
     parameters, problems = signature.parameters, []
-    more = {n for n, p in parameters.items() if p.kind in (p.VAR_POSITIONAL, p.VAR_KEYWORD)}  # fmt: skip
+    more = {n for n, p in parameters.items() if p.kind in (p.VAR_POSITIONAL, p.VAR_KEYWORD)}
     known = {n: v for n, v in settings.items() if more or n in parameters}
-    offered = [n for n in parameters if n not in more | {"self", "scene", "description"}]  # fmt: skip
+    offered = [n for n in parameters if n not in more | {"self", "scene", "description"}]
     for unknown in settings.keys() - known.keys():
         close = nearest(unknown, offered) or f"; there are {', '.join(offered)}"
         problems.append(f"{word}: no argument {unknown!r}{close}")

@@ -36,8 +36,8 @@ def check(*folders):
         if names:
             named = ", ".join(sorted(names)[:MOST]) + " and more" * (len(names) > MOST)
             problems.append(
-                f"{folder} holds {named}: nothing is written where a name can lead elsewhere; remove these, or name another "
-                "folder"
+                f"{folder} holds {named}: nothing is written where a name can lead elsewhere;"
+                " remove these, or name another folder"
             )
     refuse(problems)
 
@@ -54,7 +54,9 @@ def inside(path, flags):
     try:
         number = os.open(path, flags & ~os.O_TRUNC | safe, 0o666)
     except OSError as error:
-        why = {errno.ELOOP: "it is a symbolic link", errno.ENXIO: "it is no regular file"}.get(error.errno)  # fmt: skip
+        why = {errno.ELOOP: "it is a symbolic link", errno.ENXIO: "it is no regular file"}.get(
+            error.errno
+        )
         if not why:
             raise
         raise OSError(error.errno, why, path) from None

@@ -83,8 +83,11 @@ class Loader(importlib.machinery.SourceFileLoader):
                 raise
             path = interpreter()[0] or "/usr/bin/python3"
             raise ImportError(
-                f"YADE needs the Python module {error.name!r}, which {sys.executable} does not find: run the script with "
-                f"{path}, or make the virtual environment with {path} -m venv --system-site-packages",
+                (
+                    f"YADE needs the Python module {error.name!r}, which {sys.executable} does not"
+                    f" find: run the script with {path}, or make the virtual environment with"
+                    f" {path} -m venv --system-site-packages"
+                ),
                 name=error.name,
             ) from error
         finally:
@@ -138,7 +141,7 @@ def folders():
     libraries = os.path.join(prefix, "lib", sysconfig.get_config_var("MULTIARCH") or "")
     # a build of another precision is of no use to the plugin
     beside = [os.path.join(libraries, one, "py") for one in ("yade", "yade-double")]
-    others = glob.glob(os.path.join(glob.escape(prefix), "lib", "*", "yade-double", "py"))  # fmt: skip
+    others = glob.glob(os.path.join(glob.escape(prefix), "lib", "*", "yade-double", "py"))
     return list(dict.fromkeys([*named, *beside, *sorted(others)]))
 
 
@@ -166,8 +169,11 @@ def _installed():
     path, version = interpreter()
     if version and version != sys.version_info[:2]:
         raise ImportError(
-            f"the YADE of this machine is built for Python {version[0]}.{version[1]}, and this is {sys.executable}, Python "
-            f"{sys.version_info[0]}.{sys.version_info[1]}: run the script with {path}",
+            (
+                f"the YADE of this machine is built for Python {version[0]}.{version[1]}, and this"
+                f" is {sys.executable}, Python {sys.version_info[0]}.{sys.version_info[1]}: run the"
+                f" script with {path}"
+            ),
             name=YADE,
         )
     places = folders()
@@ -176,7 +182,10 @@ def _installed():
             sys.path.append(folder)
             return importlib.machinery.PathFinder.find_spec(YADE, [folder])
     raise ModuleNotFoundError(
-        f"masonry runs in YADE, which is not installed: {INSTALLED} (looked for {MARK} in {', '.join(places)})",
+        (
+            f"masonry runs in YADE, which is not installed: {INSTALLED} (looked for {MARK} in"
+            f" {', '.join(places)})"
+        ),
         name=YADE,
     )
 

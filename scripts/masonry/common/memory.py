@@ -7,7 +7,9 @@ import mmap
 #: matrices, of which it uses little. Where it gets none it asks for it again without end.
 BUFFER = 160 << 20
 #: What is said when there is too little.
-FULL = "there is too little memory for this run: a larger limit (ulimit -v) or a smaller scene helps"
+FULL = (
+    "there is too little memory for this run: a larger limit (ulimit -v) or a smaller scene helps"
+)
 LARGE = 128  # rows of matrices for whose product the buffer is taken in any case
 
 

@@ -65,7 +65,7 @@ def ended(name, status, folder, error):
     :param error: what ended it, or None
     """
     if status == 130:
-        kept = f"; scene.resume() goes on, and its results so far are in {folder}" if folder else ""  # fmt: skip
+        kept = f"; scene.resume() goes on, and its results so far are in {folder}" if folder else ""
         return Stopped(f"{name}: interrupted{kept}")
     why = f": {error}" if error else ", as was said above"
     return Failed(f"{name}: the run ended before its time{why}")
@@ -85,7 +85,9 @@ def picture(figure, dpi):
 
 def table(rows, heads=()):
     """Rows of texts as a table; the first of each row is its head."""
-    cell = lambda text, kind="td": f'<{kind} style="text-align:left">{html.escape(str(text))}</{kind}>'  # fmt: skip
+    cell = (
+        lambda text, kind="td": f'<{kind} style="text-align:left">{html.escape(str(text))}</{kind}>'
+    )
     lines = ["".join(cell(head, "th") for head in heads)] * bool(heads)
     lines += [cell(first, "th") + "".join(map(cell, others)) for first, *others in rows]
     return f"<table>{''.join(f'<tr>{line}</tr>' for line in lines)}</table>"

@@ -97,9 +97,7 @@ class Assembly:
         load[:, :3] = self.masses[:, None] * np.asarray(acceleration, float)
         return load
 
-    def force(
-        self, block: int, vector: Numbers, point: Numbers | None = None
-    ) -> np.ndarray:
+    def force(self, block: int, vector: Numbers, point: Numbers | None = None) -> np.ndarray:
         """A force on a block, as a load.
 
         :param block: its number in the assembly
@@ -256,14 +254,14 @@ class Assembly:
                     fast = carried.fastest()
                     at = ", ".join(f"{v:.3g}" for v in self.centres[fast])
                     return Refused(
-                        f"{message}the structure does not stand under its dead loads alone: body {self.ids[fast]} at ({at}) m "
-                        "moves first"
+                        f"{message}the structure does not stand under its dead loads alone: body"
+                        f" {self.ids[fast]} at ({at}) m moves first"
                     )
             endless = 1e-3 * self._endless(live, dead)
             if self._solve(live, dead, sense, turn, most=endless).value > 0.9 * endless:
                 return Endless(
-                    f"{message}nothing gives way, however large the load is: the blocks on which it acts are locked between "
-                    "others, or joined by joints that never fail"
+                    f"{message}nothing gives way, however large the load is: the blocks on which it"
+                    " acts are locked between others, or joined by joints that never fail"
                 )
         except Unsolved:
             pass

@@ -146,9 +146,7 @@ class Bound:
         opening, slide = self.jumps(c.joint, c.at)
         speed = np.linalg.norm(slide, axis=1)
         least = GIVES * max(np.abs(opening).max(initial=0), speed.max(initial=0))
-        states[
-            c.joint[(-opening > least) & np.isfinite(a.crushing[c.joint])]
-        ] = "crushes"
+        states[c.joint[(-opening > least) & np.isfinite(a.crushing[c.joint])]] = "crushes"
         states[c.joint[speed > least]] = "slides"
         # what slides as friction tells opens by the friction coefficient of it
         ofSlide = 1.001 * a.friction[c.joint] * speed + 1e-9 * least
@@ -171,7 +169,10 @@ class Bound:
             what = "joints that slip do not open"
             if not self.settled:
                 what += f"; {100 * self.overstressed:.1g} % of the forces are above friction"
-        return f"limit analysis: {load} {self.factor:.{digits}g} {unit} ({what}); joints: {counts or 'none moves'}"
+        return (
+            f"limit analysis: {load} {self.factor:.{digits}g} {unit} ({what}); joints:"
+            f" {counts or 'none moves'}"
+        )
 
     def _counts(self):
         """How many joints do what in the mechanism."""
@@ -209,7 +210,7 @@ class Bound:
         """
         a = self.assembly
         sizes = [len(c) for c in a.corners]
-        numbers, points = np.repeat(np.arange(len(sizes)), sizes), np.concatenate(a.corners)  # fmt: skip
+        numbers, points = np.repeat(np.arange(len(sizes)), sizes), np.concatenate(a.corners)
         moved = self.motion(numbers, points)
         far = np.linalg.norm(moved, axis=1).max() or 1.0
         scale = SHOWN * np.ptp(points, axis=0).max() / far
@@ -263,7 +264,7 @@ class Bound:
         for number, (first, *others) in enumerate(joints["cells"]):
             fans += [(first, *two) for two in zip(others, others[1:])]
             owner += [number] * (len(others) - 1)
-        names = ("opening", "slide", "crushing", "normal", "damage_tension", "damage_shear")  # fmt: skip
+        names = ("opening", "slide", "crushing", "normal", "damage_tension", "damage_shear")
         values = {"body": [np.array(body)]}, {n: [joints[n][owner]] for n in names}
         found = zip(MECHANISM, (blocks, joints), (faces, fans), values)
         for name, frame, triangles, ofCells in found:
@@ -289,6 +290,8 @@ class Bound:
         with drawing.style():
             blocks, joints = self.frames()
             masonry = {body for part in (parts or {}).values() for body in part}
-            shades = {int(b): "platen" for b in blocks["body"] if masonry and b not in masonry}  # fmt: skip
-            structure = Structure(blocks, joints, parts or {}, shades, sights=views or {}, seams=(1,))  # fmt: skip
+            shades = {int(b): "platen" for b in blocks["body"] if masonry and b not in masonry}
+            structure = Structure(
+                blocks, joints, parts or {}, shades, sights=views or {}, seams=(1,)
+            )
             drawing.save(figureOf(structure, title, 1), path, 90)

@@ -55,12 +55,8 @@ class Programme:
         """Let variables act as forces in a direction, or as moments about it, on both blocks of a joint."""
         for side, sign in ((0, -1), (1, 1)):
             block = self.assembly.pairs[joint, side]
-            moment = np.cross(
-                (at - self.assembly.centres[block]) / self.size, direction
-            )
-            six = np.hstack(
-                [0 * direction, direction] if turns else [direction, moment]
-            )
+            moment = np.cross((at - self.assembly.centres[block]) / self.size, direction)
+            six = np.hstack([0 * direction, direction] if turns else [direction, moment])
             rows = self.rows[block]
             kept = (rows >= 0) & (six != 0)
             which = np.broadcast_to(columns[:, None], rows.shape)
@@ -129,9 +125,7 @@ class Programme:
         limits = len(self.limits) + np.arange(len(first))
         self.limits = np.append(self.limits, strength)
         self._unequal.append((limits[group], columns, -slope[group]))
-        directions = (
-            [one[first], -one[first]] if a.plane else _polygon(turn[which], one, two)
-        )
+        directions = [one[first], -one[first]] if a.plane else _polygon(turn[which], one, two)
         for direction in directions:
             along = self._new(len(first), 0)
             self._forces(joint[first], at[first], direction, along)
@@ -164,7 +158,8 @@ class Programme:
         off, over = np.abs(over[:count]).max(), over[count:].max(initial=0)
         if max(off, over) > KEPT * max(1, np.abs(values).max()):
             raise Unsolved(
-                f"its solution misses equilibrium by {off:.1g} and strength by {over:.1g} of a block's usual load"
+                f"its solution misses equilibrium by {off:.1g} and strength by {over:.1g} of a"
+                " block's usual load"
             )
         return values[self._last], values, dual[: len(still)]
 

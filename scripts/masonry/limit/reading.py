@@ -130,9 +130,7 @@ class _Placement:
         states = [b.state for b in blocks]
         self.was = np.array(_rows([s.refPos for s in states]))
         self.now = np.array(_rows([s.pos for s in states]))
-        self.turns = np.array(
-            [(s.ori * s.refOri.conjugate()).toRotationMatrix() for s in states]
-        )
+        self.turns = np.array([(s.ori * s.refOri.conjugate()).toRotationMatrix() for s in states])
         sizes = np.array([max(v.norm() for v in b.shape.v) for b in blocks])
         angles = np.linalg.norm(self.turns - np.eye(3), axis=(1, 2))
         moved = np.linalg.norm(self.now - self.was, axis=1) + sizes * angles
@@ -149,9 +147,7 @@ class _Placement:
 
     def turned(self, pairs, vectors):
         """The mean of directions fixed to both blocks of pairs (k, 2), from the reference state (k, 3)."""
-        return 0.5 * (
-            self._turn(pairs[:, 0], vectors) + self._turn(pairs[:, 1], vectors)
-        )
+        return 0.5 * (self._turn(pairs[:, 0], vectors) + self._turn(pairs[:, 1], vectors))
 
     def _turn(self, blocks, vectors):
         return np.einsum("kij,kj->ki", self.turns[blocks], vectors)
@@ -167,7 +163,7 @@ def _strengths(p):
     crushing = math.inf
     if p.cap and not p.elastic:
         # of eq. (8c) without shear: Cnn σ² - Cn σ = fc²
-        half, root = p.capLinear / (2 * p.capNormal), p.compressiveStrength**2 / p.capNormal  # fmt: skip
+        half, root = p.capLinear / (2 * p.capNormal), p.compressiveStrength**2 / p.capNormal
         crushing = half + math.sqrt(half * half + root)
     cohesion = max(p.cohesion, p.residualCohesion)
     friction = max(p.friction, p.residualFriction)

@@ -58,7 +58,8 @@ def _solved(whole, limits, seconds):
         clp = ctypes.CDLL(LIBRARY)
     except OSError:
         raise Refused(
-            f"limit analysis needs {LIBRARY}, which is not installed: apt-get install --no-install-recommends coinor-libclp1"
+            f"limit analysis needs {LIBRARY}, which is not installed: apt-get install"
+            " --no-install-recommends coinor-libclp1"
         ) from None
     clp.Clp_newModel.restype = clp.ClpSolve_new.restype = ctypes.c_void_p
     for name in SOLUTION:

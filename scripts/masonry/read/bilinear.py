@@ -108,21 +108,58 @@ class Bilinear:
         source = RULES[self.rule]
         if self.rule == "masonry":
             line = f"Secant stiffness at {self.secant:g} of the peak, on the way to it."
-            force = "Force of the plateau for which both curves have the same area up to the ultimate displacement."
+            force = (
+                "Force of the plateau for which both curves have the same area up to the ultimate"
+                " displacement."
+            )
         else:
             line = "Yield force over yield displacement."
             force = f"Force at which the plastic mechanism forms, at {self.mechanism:.4g} mm."
-        ultimate = f"Displacement after the peak at which the force has fallen to {self.fall:g} of it."
+        ultimate = (
+            f"Displacement after the peak at which the force has fallen to {self.fall:g} of it."
+        )
         missing = self.unreached
         return [
             Number("bilinear_stiffness_kN_per_mm", self.stiffness, "kN/mm", line, source),
             Number("yield_force_kN", self.yieldForce, "kN", force, source),
-            Number("yield_displacement_mm", self.yieldDisplacement, "mm", "Displacement at which the elastic line reaches the yield force.", source),
-            Number("ultimate_displacement_mm", self.ultimateDisplacement, "mm", ultimate, CONVENTION, missing),
-            Number("displacement_ductility", self.ductility, "-", "Ultimate displacement over yield displacement.", CONVENTION, missing),
-            Number("peak_force_kN", self.peakForce, "kN", "The largest force of the curve.", "the curve"),
-            Number("peak_displacement_mm", self.peakDisplacement, "mm", "Displacement at the largest force.", "the curve"),
-        ]  # fmt: skip
+            Number(
+                "yield_displacement_mm",
+                self.yieldDisplacement,
+                "mm",
+                "Displacement at which the elastic line reaches the yield force.",
+                source,
+            ),
+            Number(
+                "ultimate_displacement_mm",
+                self.ultimateDisplacement,
+                "mm",
+                ultimate,
+                CONVENTION,
+                missing,
+            ),
+            Number(
+                "displacement_ductility",
+                self.ductility,
+                "-",
+                "Ultimate displacement over yield displacement.",
+                CONVENTION,
+                missing,
+            ),
+            Number(
+                "peak_force_kN",
+                self.peakForce,
+                "kN",
+                "The largest force of the curve.",
+                "the curve",
+            ),
+            Number(
+                "peak_displacement_mm",
+                self.peakDisplacement,
+                "mm",
+                "Displacement at the largest force.",
+                "the curve",
+            ),
+        ]
 
 
 def _reached(moved, force, level):
@@ -154,19 +191,21 @@ def _checked(moved, force):
     reach, peak = float(moved.max()), float(force.max())
     if len(moved) < 3 or reach <= 0 or peak <= 0:
         raise Refused(
-            f"the curve is no push: it has {len(moved)} rows, goes to {reach:.4g} mm, and its largest force is {peak:.4g} kN"
+            f"the curve is no push: it has {len(moved)} rows, goes to {reach:.4g} mm, and its"
+            f" largest force is {peak:.4g} kN"
         )
     back = float((np.maximum.accumulate(moved) - moved).max())
     if back > BACK * reach:
         raise Refused(
-            f"the displacement goes back by {back:.4g} mm: the curve is of cycles or of several pushes, and a bilinear curve is "
-            "of one push"
+            f"the displacement goes back by {back:.4g} mm: the curve is of cycles or of several"
+            " pushes, and a bilinear curve is of one push"
         )
     at = int(force.argmax())
     if abs(force[0]) > BEGIN * peak or abs(moved[0]) > BEGIN * max(moved[at], 0):
         raise Refused(
-            f"the curve begins with {force[0]:.4g} kN at {moved[0]:.4g} mm: a bilinear curve is of a push that begins at rest, "
-            f"with at most {100 * BEGIN:g} % of the peak, {peak:.4g} kN, and of the displacement there, {moved[at]:.4g} mm"
+            f"the curve begins with {force[0]:.4g} kN at {moved[0]:.4g} mm: a bilinear curve is of"
+            f" a push that begins at rest, with at most {100 * BEGIN:g} % of the peak,"
+            f" {peak:.4g} kN, and of the displacement there, {moved[at]:.4g} mm"
         )
     return np.maximum.accumulate(moved), force
 
@@ -190,8 +229,9 @@ def _checkPeak(moved, force, stiffness):
     highest = float(force.max())
     if highest <= 1.001 * float(force[-3:].max()) and slope > GROWS * stiffness:
         raise Refused(
-            f"the curve has no peak: its force still grows at its end, {end:.4g} mm, with {slope:.3g} kN/mm, which is more than "
-            f"{100 * GROWS:g} % of its stiffness, {stiffness:.3g} kN/mm; push farther"
+            f"the curve has no peak: its force still grows at its end, {end:.4g} mm, with"
+            f" {slope:.3g} kN/mm, which is more than {100 * GROWS:g} % of its stiffness,"
+            f" {stiffness:.3g} kN/mm; push farther"
         )
 
 
@@ -226,7 +266,8 @@ def bilinear(
     end, unreached, notes = _end(moved, forces, at, fall, pulse)
     if at >= len(forces) - 3:
         notes.append(
-            "the force is largest at the end of the curve, on a plateau: farther on it may be larger"
+            "the force is largest at the end of the curve, on a plateau: farther on it may be"
+            " larger"
         )
     area, _ = _area(moved, forces, end)
     forms = float(moved[at]) if mechanism is None else mechanism
@@ -238,8 +279,8 @@ def bilinear(
             notes += _onPlateau(moved, forces, forms, stiffness)
     if yieldForce > peak * (1 + SMALL):
         notes.append(
-            f"the yield force is above the peak, {peak:.4g} kN: the curve lies far above its secant at {secant:g} of the peak; one at "
-            "a smaller share (secant=) has a lower yield force"
+            f"the yield force is above the peak, {peak:.4g} kN: the curve lies far above its secant"
+            f" at {secant:g} of the peak; one at a smaller share (secant=) has a lower yield force"
         )
     return Bilinear(
         rule=rule,
@@ -262,17 +303,21 @@ def _end(moved, force, at, fall, pulse):
     level = fall * float(force[at])
     place = curves.fallen(moved, force, at, level, pulse)
     if place is None:
-        wave = f" for longer than a wave of {pulse:.2g} mm" if (force[at:] < level).any() else ""  # fmt: skip
+        wave = f" for longer than a wave of {pulse:.2g} mm" if (force[at:] < level).any() else ""
         unreached = (
-            f"not reached: the force never falls to {fall:g} of its peak{wave}, so the ultimate displacement is the end of the curve, and "
-            "the ductility is that of the part which was run"
+            f"not reached: the force never falls to {fall:g} of its peak{wave}, so the ultimate"
+            " displacement is the end of the curve, and the ductility is that of the part which"
+            " was run"
         )
         return float(moved[-1]), unreached, []
     end = float(np.interp(place, np.arange(len(moved)), moved))
     again = moved[(moved > end + pulse) & (force >= level)]
     if not len(again):
         return end, "", []
-    note = f"after it fell to {fall:g} of its peak at {end:.4g} mm, the force came back above that, up to {again.max():.4g} mm"
+    note = (
+        f"after it fell to {fall:g} of its peak at {end:.4g} mm, the force came back above that, up"
+        f" to {again.max():.4g} mm"
+    )
     return end, "", [note]
 
 
@@ -280,14 +325,16 @@ def _annexB(moved, force, forms, end):
     """Stiffness and yield force by equation (B.6), for a mechanism that forms at a displacement."""
     if forms > end * (1 + SMALL):
         raise Refused(
-            f"the plastic mechanism forms at {forms:.4g} mm, which is beyond the ultimate displacement, {end:.4g} mm"
+            f"the plastic mechanism forms at {forms:.4g} mm, which is beyond the ultimate"
+            f" displacement, {end:.4g} mm"
         )
     work, yieldForce = _area(moved, force, forms)
     yields = 2 * (forms - work / yieldForce) if yieldForce > 0 else -1.0
     if not 0 < yields <= forms * (1 + SMALL):
         raise Refused(
-            f"equation (B.6) of EN 1998-1:2004 gives no yield displacement between 0 and {forms:.4g} mm, where the mechanism "
-            f"forms with {yieldForce:.4g} kN: the area up to there is {work:.4g} J"
+            "equation (B.6) of EN 1998-1:2004 gives no yield displacement between 0 and"
+            f" {forms:.4g} mm, where the mechanism forms with {yieldForce:.4g} kN: the area up to"
+            f" there is {work:.4g} J"
         )
     return yieldForce / yields, yieldForce
 
@@ -301,9 +348,10 @@ def _onPlateau(moved, force, forms, stiffness):
     if early > LONG * forms or yields <= 0:
         return []
     return [
-        f"the force is above {PLATEAU:g} of its peak from {early:.4g} mm on, and the peak is at {forms:.4g} mm: where the mechanism forms is not "
-        f"sharp, and the stiffness of annex B.3 is {highest / yields:.4g} kN/mm with the first and {stiffness:.4g} kN/mm with the second "
-        "(mechanism=, --mechanism)"
+        f"the force is above {PLATEAU:g} of its peak from {early:.4g} mm on, and the peak is at"
+        f" {forms:.4g} mm: where the mechanism forms is not sharp, and the stiffness of annex B.3"
+        f" is {highest / yields:.4g} kN/mm with the first and {stiffness:.4g} kN/mm with the second"
+        " (mechanism=, --mechanism)"
     ]
 
 
@@ -312,9 +360,10 @@ def _equalArea(stiffness, end, area):
     rest = end * end - 2 * area / stiffness
     if rest < -SMALL * end * end:
         raise Refused(
-            f"no bilinear curve with the stiffness {stiffness:.4g} kN/mm has the area of the curve up to {end:.4g} mm, {area:.4g} J: the "
-            f"whole triangle has {0.5 * stiffness * end * end:.4g} J, because the curve lies far above its secant; take the stiffness at "
-            "another share of the peak (secant=)"
+            f"no bilinear curve with the stiffness {stiffness:.4g} kN/mm has the area of the curve"
+            f" up to {end:.4g} mm, {area:.4g} J: the whole triangle has"
+            f" {0.5 * stiffness * end * end:.4g} J, because the curve lies far above its secant;"
+            " take the stiffness at another share of the peak (secant=)"
         )
     return stiffness * (end - math.sqrt(max(rest, 0.0)))
 
@@ -348,13 +397,15 @@ def pushover(directory: FilePath, column: str | None = None) -> Pushover:
     run = data.run
     if run.get("interrupted"):
         raise Refused(
-            f"{directory}: the run was interrupted, so its curve is not whole; continue it with --resume {directory}"
+            f"{directory}: the run was interrupted, so its curve is not whole; continue it with"
+            f" --resume {directory}"
         )
     if run.get("error"):
         raise Refused(f"{directory}: the run ended by an error: {run['error']}")
     if data.isLooped:
         raise Refused(
-            f"{directory}: the run goes along a history of loading, there and back, and a bilinear curve is of one push"
+            f"{directory}: the run goes along a history of loading, there and back, and a bilinear"
+            " curve is of one push"
         )
     missing = [head for head in (MOVED, BASE, TOP) if data.column(head) is None]
     with filesOf(directory):
@@ -404,8 +455,9 @@ def ofRun(
     if not found.unreached or push.data.collapse is None:
         return found
     unreached = (
-        f"not reached: the structure collapsed at {found.ultimateDisplacement:.4g} mm before the force had fallen to {fall:g} of its "
-        "peak, so the ultimate displacement is that of the collapse"
+        f"not reached: the structure collapsed at {found.ultimateDisplacement:.4g} mm before the"
+        f" force had fallen to {fall:g} of its peak, so the ultimate displacement is that of the"
+        " collapse"
     )
     return replace(found, unreached=unreached)
 
@@ -430,12 +482,19 @@ def drifts(
     data = RunData(push.run, push.data.column, height=height)
     if not data.height:
         raise Refused(
-            f"{push.directory}: run.json does not have the height of the recorded point above the base, so drifts need height=, in m"
+            f"{push.directory}: run.json does not have the height of the recorded point above the"
+            " base, so drifts need height=, in m"
         )
     found = []
     for state in quantities.STATES:
         place = data.fallenTo(fall) if state.share else data.place(state.find)
-        one = Number(state.drift, data.drift(place), "mrad", f"Over the height, {data.height:.4g} m. {state.meaning}", "displacement over height")  # fmt: skip
+        one = Number(
+            state.drift,
+            data.drift(place),
+            "mrad",
+            f"Over the height, {data.height:.4g} m. {state.meaning}",
+            "displacement over height",
+        )
         found.append(one if place is not None else one._replace(note=state.missing))
     return found
 
@@ -449,7 +508,7 @@ def lines(numbers: list[Number], notes: Sequence[str] = ()) -> list[str]:
     marks: dict[str, int] = {}
     found = []
     for one in numbers:
-        value = "none" if one.value is None else f"{one.value:.6g} {one.unit}".removesuffix(" -")  # fmt: skip
+        value = "none" if one.value is None else f"{one.value:.6g} {one.unit}".removesuffix(" -")
         mark = f" [{marks.setdefault(one.note, len(marks) + 1)}]" if one.note else ""
         found.append(f"{one.name:34} {value + mark:20} {one.meaning}")
     found += [f"[{mark}] {note}" for note, mark in marks.items()]

@@ -29,7 +29,10 @@ def readMeasured(text: str) -> tuple[np.ndarray, np.ndarray, list[str]]:
     """
     parts = text.rsplit(":", 2)
     if len(parts) != 3 or not all(parts):
-        raise Refused(f"--csv: '{text}' must be FILE:X:Y, with the names of two columns, or their numbers from 1")  # fmt: skip
+        raise Refused(
+            f"--csv: '{text}' must be FILE:X:Y, with the names of two columns, or their numbers"
+            " from 1"
+        )
     path, *wanted = parts
     try:
         with open(path, newline="", encoding="utf-8-sig") as f:
@@ -46,7 +49,7 @@ def readMeasured(text: str) -> tuple[np.ndarray, np.ndarray, list[str]]:
     numbered = {str(n + 1): n for n in range(len(names))}
     for name in wanted:
         if name not in names and name not in numbered:
-            raise Refused(f"{path}: there is no column {name}, there are {', '.join(names)}")  # fmt: skip
+            raise Refused(f"{path}: there is no column {name}, there are {', '.join(names)}")
     places = [names.index(n) if n in names else numbered[n] for n in wanted]
     rows = []
     for number, row in enumerate(csv.reader(lines[1:], delimiter=mark), start=2):
@@ -86,13 +89,17 @@ def readRuns(
             run = {}
         spec = run.get("figure")
         if not spec and not (x and y):
-            raise Refused(f'{directory}: run.json has no entry "figure": name the columns by --x and --y')  # fmt: skip
+            raise Refused(
+                f'{directory}: run.json has no entry "figure": name the columns by --x and --y'
+            )
         if labels is None:
             x, y = x or spec["x"]["column"], y or spec["y"][0]["column"]
             labels = [_label(name, spec) for name in (x, y)]
         for name in (x, y):
             if name not in data:
-                raise Refused(f"{directory}: curve.csv has no column {name}, it has {', '.join(data)}")  # fmt: skip
+                raise Refused(
+                    f"{directory}: curve.csv has no column {name}, it has {', '.join(data)}"
+                )
         curves.append((np.array(data[x]), np.array(data[y])))
     return curves, labels
 
@@ -157,7 +164,7 @@ def _draw(out, tests, curves, names, labels, title):
             colour = COLOURS[n % len(COLOURS)]
             dash = DASHES[n // len(COLOURS) % len(DASHES)]
             axes.plot(a, b, color=colour, lw=1.3, ls=dash, label=names[n], zorder=2)
-        for low, high, line in ((*axes.get_xlim(), axes.axvline), (*axes.get_ylim(), axes.axhline)):  # fmt: skip
+        for low, high, line in ((*axes.get_xlim(), axes.axvline), (*axes.get_ylim(), axes.axhline)):
             if low < -0.05 * high < 0:  # both sides are more than a margin
                 line(0, color="0.4", lw=0.8, zorder=0)
         axes.set_title(title)
@@ -191,11 +198,32 @@ def main(words: Sequence[str] | None = None) -> None:
         description="Draw curves of runs and of measured CSV files over each other."
     )
     parser.add_argument("result", nargs="*", help="folder of results")
-    parser.add_argument("--csv", action="append", default=[], metavar="FILE:X:Y", help="a measured curve: a file and the names of its two columns, or their numbers from 1; may be repeated")  # fmt: skip
-    parser.add_argument("--x", metavar="COLUMN", help="column of curve.csv; else that of curve.png")  # fmt: skip
-    parser.add_argument("--y", metavar="COLUMN", help="column of curve.csv; else the first one of curve.png")  # fmt: skip
-    parser.add_argument("--label", action="append", default=[], help="name of a curve, in the order of the folders and then of the CSV files; may be repeated")  # fmt: skip
+    parser.add_argument(
+        "--csv",
+        action="append",
+        default=[],
+        metavar="FILE:X:Y",
+        help=(
+            "a measured curve: a file and the names of its two columns, or their numbers from 1;"
+            " may be repeated"
+        ),
+    )
+    parser.add_argument("--x", metavar="COLUMN", help="column of curve.csv; else that of curve.png")
+    parser.add_argument(
+        "--y", metavar="COLUMN", help="column of curve.csv; else the first one of curve.png"
+    )
+    parser.add_argument(
+        "--label",
+        action="append",
+        default=[],
+        help=(
+            "name of a curve, in the order of the folders and then of the CSV files; may be"
+            " repeated"
+        ),
+    )
     parser.add_argument("--title", default="", help="of the picture")
-    parser.add_argument("--out", default="plot.png", help=".png, .pdf or .svg file (default plot.png)")  # fmt: skip
+    parser.add_argument(
+        "--out", default="plot.png", help=".png, .pdf or .svg file (default plot.png)"
+    )
     args = parser.parse_args(words)
-    say(compare(args.result, args.csv, args.x, args.y, args.label, args.out, args.title))  # fmt: skip
+    say(compare(args.result, args.csv, args.x, args.y, args.label, args.out, args.title))

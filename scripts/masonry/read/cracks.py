@@ -49,7 +49,14 @@ def widest(joints: Any) -> tuple[float, Any, Any, dict[str, float]]:
 
 #: Damage visible on walls by the width of its cracks [mm]: classes 0 to 5 with their names, of Burland, Broms and De Mello (1977) and
 #: BRE Digest 251, which also say how easily each is repaired.
-CLASSES = {0.1: "negligible", 1: "very slight", 5: "slight", 15: "moderate", 25: "severe", math.inf: "very severe"}  # fmt: skip
+CLASSES = {
+    0.1: "negligible",
+    1: "very slight",
+    5: "slight",
+    15: "moderate",
+    25: "severe",
+    math.inf: "very severe",
+}
 
 
 def damageClass(width: float) -> int:
@@ -66,7 +73,17 @@ def crushed(frame: dict[str, Any]) -> np.ndarray:
 
 
 #: The arrays of a frame from which a pattern is found, beside its cells.
-NEEDED = ["area", "bodies", "crushing", "damage_compression", "joint_dissipated", "normal", "opening", "points", "slide"]  # fmt: skip
+NEEDED = [
+    "area",
+    "bodies",
+    "crushing",
+    "damage_compression",
+    "joint_dissipated",
+    "normal",
+    "opening",
+    "points",
+    "slide",
+]
 
 
 def layOut(
@@ -89,7 +106,7 @@ def layOut(
     names = ("opening", "slide", "shear", "crushing", "past")
     beds = {name: np.zeros((courses + 1, columns)) for name in names}
     upright = {name: np.zeros((courses, columns - 1)) for name in names}
-    _, first, joint = np.unique(frame["bodies"], axis=0, return_index=True, return_inverse=True)  # fmt: skip
+    _, first, joint = np.unique(frame["bodies"], axis=0, return_index=True, return_inverse=True)
     area = frame["area"]
     total = lambda values: np.bincount(joint, area * values)
     centres = centresOf(frame["points"], frame["cells"])
@@ -165,9 +182,7 @@ def acrossDiagonal(shape: Sequence[int], upright: bool) -> np.ndarray:
     return np.where(inner, level - courses * (1 - place / length), np.nan)
 
 
-def narrowestBand(
-    positions: np.ndarray, weights: np.ndarray, share: float = 0.5
-) -> float:
+def narrowestBand(positions: np.ndarray, weights: np.ndarray, share: float = 0.5) -> float:
     """Width of the narrowest interval of ``positions`` that holds ``share`` of the sum of ``weights``, which is above 0."""
     order = np.argsort(positions)
     positions, held = positions[order], np.append(0, np.cumsum(weights[order]))
@@ -177,9 +192,7 @@ def narrowestBand(
     return float((positions[ends[starts]] - positions[starts]).min())
 
 
-def diagonal(
-    bed: dict[str, np.ndarray], upright: dict[str, np.ndarray]
-) -> dict[str, Any]:
+def diagonal(bed: dict[str, np.ndarray], upright: dict[str, np.ndarray]) -> dict[str, Any]:
     """Numbers of the diagonal crack; ``bed`` and ``upright`` as in :func:`layOut`. A wall so low that it has no inner joints, or no inner
     course, has no numbers of them, and one whose inner joints lost no energy has no band.
 
@@ -271,9 +284,7 @@ def sliding(bed: dict[str, np.ndarray]) -> dict[str, Any]:
     }
 
 
-def patternNumbers(
-    bed: dict[str, np.ndarray], upright: dict[str, np.ndarray]
-) -> dict[str, Any]:
+def patternNumbers(bed: dict[str, np.ndarray], upright: dict[str, np.ndarray]) -> dict[str, Any]:
     """Numbers of the crack pattern of a wall; ``bed`` and ``upright`` as in :func:`layOut`."""
     found = {**diagonal(bed, upright), **flexure(bed), **crushing(bed), **sliding(bed)}
     return {name: np.asarray(value).item() for name, value in found.items()}
@@ -282,19 +293,33 @@ def patternNumbers(
 #: The numbers of a pattern, by the functions that find them.
 MEASURED = {
     **dict.fromkeys(
-        ("diagonal_energy_share", "diagonal_joint_share", "diagonal_band_courses", "diagonal_reach", "parallel_cracks"),
+        (
+            "diagonal_energy_share",
+            "diagonal_joint_share",
+            "diagonal_band_courses",
+            "diagonal_reach",
+            "parallel_cracks",
+        ),
         "masonry.read.cracks.diagonal",
     ),
-    **{f"flexural_{what}": "masonry.read.cracks.flexure" for end in ("base", "top") for what in (f"cracks_{end}", f"opening_{end}_mm", f"course_{end}")},
+    **{
+        f"flexural_{what}": "masonry.read.cracks.flexure"
+        for end in ("base", "top")
+        for what in (f"cracks_{end}", f"opening_{end}_mm", f"course_{end}")
+    },
     **dict.fromkeys(
-        ("crushed_volume_cm3", "crushed_share_toe", "crushed_share_top_left", "past_peak_area_cm2"), "masonry.read.cracks.crushing"
+        ("crushed_volume_cm3", "crushed_share_toe", "crushed_share_top_left", "past_peak_area_cm2"),
+        "masonry.read.cracks.crushing",
     ),
-    **dict.fromkeys(("sliding_course", "sliding_energy_share", "slid_share", "slid_mm"), "masonry.read.cracks.sliding"),
+    **dict.fromkeys(
+        ("sliding_course", "sliding_energy_share", "slid_share", "slid_mm"),
+        "masonry.read.cracks.sliding",
+    ),
     "failure_mode": "masonry.read.cracks.failureMode",
-}  # fmt: skip
+}
 
 
-def pattern(frame: dict[str, Any], wall: dict[str, Any], looped: bool = False) -> dict[str, Any]:  # fmt: skip
+def pattern(frame: dict[str, Any], wall: dict[str, Any], looped: bool = False) -> dict[str, Any]:
     """Numbers of the crack pattern of a wall, seen from the side from which it is pushed to the right; ``frame``, of which the
     arrays NEEDED are enough, and ``wall`` as in :func:`layOut`.
 

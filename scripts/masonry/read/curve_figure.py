@@ -15,9 +15,7 @@ from .files import readCurve, readRun
 LINES = ["black", "tab:orange", "tab:green", "tab:purple", "tab:brown", "tab:cyan"]
 
 
-def plan(
-    run: dict[str, Any], data: dict[str, Any], directory: FilePath
-) -> dict[str, Any]:
+def plan(run: dict[str, Any], data: dict[str, Any], directory: FilePath) -> dict[str, Any]:
     """The entry ``figure`` of run.json, with all that may be left out. Raises Refused for one that cannot be drawn.
 
     :param run: what :func:`masonry.read.files.readRun` returns
@@ -27,13 +25,15 @@ def plan(
     spec = run.get("figure")
     if spec is None:
         raise Refused(
-            f'{directory}: run.json has no entry "figure", which says what to draw: an older version of the plugin made it'
+            f'{directory}: run.json has no entry "figure", which says what to draw: an older'
+            " version of the plugin made it"
         )
     spec = {"y_label": "", "looped": False, "marks": [], "bounds": [], **spec}
     for axis in (spec["x"], *spec["y"]):
         if axis["column"] not in data:
             raise Refused(
-                f"{directory}: figure: curve.csv has no column {axis['column']}, it has {', '.join(data)}"
+                f"{directory}: figure: curve.csv has no column {axis['column']}, it has"
+                f" {', '.join(data)}"
             )
     if not spec["y"]:
         raise Refused(f'{directory}: figure: "y" must name one column at least')
@@ -182,8 +182,8 @@ def limits(spec: dict[str, Any], data: dict[str, Any]) -> tuple[float, float]:
     """Range of the upper panel that has all of the first curve, and of the others what is more than single swings."""
     columns = [data[axis["column"]] for axis in spec["y"]]
     marks = [thing["y"] for key in ("marks", "bounds") for thing in spec[key]]
-    low = min([np.nanmin(columns[0]), *(np.nanquantile(c, 0.01) for c in columns), *marks])  # fmt: skip
-    high = max([np.nanmax(columns[0]), *(np.nanquantile(c, 0.99) for c in columns), *marks])  # fmt: skip
+    low = min([np.nanmin(columns[0]), *(np.nanquantile(c, 0.01) for c in columns), *marks])
+    high = max([np.nanmax(columns[0]), *(np.nanquantile(c, 0.99) for c in columns), *marks])
     reach = max(high, 0) - min(low, 0) or 1.0
     if low >= -0.02 * reach:
         return 0, 1.15 * reach

@@ -75,7 +75,7 @@ def stiffness(displacement: Numbers, force: Numbers, ramp: int = 0) -> float:
     return work / squares if squares else 0.0
 
 
-def suddenLoss(displacement: Numbers, top: Numbers, base: Numbers) -> tuple[float, float]:  # fmt: skip
+def suddenLoss(displacement: Numbers, top: Numbers, base: Numbers) -> tuple[float, float]:
     """The largest fall of the force of a push within :data:`SUDDEN`, over its peak [-], and the displacement at which it begins.
 
     The force is the mean of both ends, which leaves out waves that pass through. Rows that lie farther apart show none.
@@ -90,7 +90,7 @@ def suddenLoss(displacement: Numbers, top: Numbers, base: Numbers) -> tuple[floa
     return found
 
 
-def fallen(displacement: Any, force: Any, at: int, level: float, pulse: float) -> float | None:  # fmt: skip
+def fallen(displacement: Any, force: Any, at: int, level: float, pulse: float) -> float | None:
     """Where the force falls below a level after a row and stays below for longer than a pulse: a number of a row with a fraction, or
     None. What falls within a pulse before the end of the curve may be a wave, too. Without pulses the first fall counts.
 
@@ -142,9 +142,7 @@ def initialStiffness(displacement: Numbers, force: Numbers) -> float:
     return float(away @ forces[rows] / spread) if spread > 0 else 0.0
 
 
-def firstCrack(
-    column: Callable[[str], Numbers], rows: slice = slice(None)
-) -> int | None:
+def firstCrack(column: Callable[[str], Numbers], rows: slice = slice(None)) -> int | None:
     """Number of the row at which the first crack of a push is seen, or None.
 
     It is the first row at which the joints have dissipated, in tension and shear since the first of these rows, more than
@@ -161,9 +159,7 @@ def firstCrack(
     return int(cracked[0]) + (rows.start or 0) if len(cracked) else None
 
 
-def cycleNumbers(
-    column: Callable[[str], Numbers], threshold: float
-) -> list[dict[str, Any]]:
+def cycleNumbers(column: Callable[[str], Numbers], threshold: float) -> list[dict[str, Any]]:
     """Numbers of every cycle of a wall that follows a history: a list of dicts, for run.json.
 
     They are those of :class:`masonry.read.loops.Cycle`, None in place of NaN, with the base shear as the force. In place of

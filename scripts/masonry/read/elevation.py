@@ -26,7 +26,10 @@ from .views import spaceViewOf, viewOf
 INSIDE = 0.25
 
 #: Arrays of frames of blocks and of joints that are drawn.
-NEEDED = "area bodies body cells crushing damage_shear damage_tension displacement kind normal opening points second_displacement slide".split()  # fmt: skip
+NEEDED = (
+    "area bodies body cells crushing damage_shear damage_tension displacement kind normal opening"
+    " points second_displacement slide".split()
+)
 
 LONGEST = 80  # of the scale on paper [1/72 inch]
 
@@ -68,7 +71,9 @@ class Structure:
         both = np.concatenate([points[nodes], (points + self.moved)[nodes]])
         (*low, _), (*high, _) = both.min(axis=0), both.max(axis=0)
         margin = 0.05 * np.ptp(both, axis=0).max()
-        slab = boxCorners((*np.array(low) - margin, level - margin), (*np.array(high) + margin, level))  # fmt: skip
+        slab = boxCorners(
+            (*np.array(low) - margin, level - margin), (*np.array(high) + margin, level)
+        )
         self.blocks = {**self.blocks, "points": np.concatenate([points, slab])}
         self.moved = np.concatenate([self.moved, np.zeros((8, 3))])
         self.corners[self.ground] = np.arange(len(points), len(points) + 8)
@@ -84,7 +89,7 @@ class Structure:
         if len(own) <= 8:
             return own
         points = self.blocks["points"][own]
-        shape = np.rint((points - points[0]) / (1e-6 * np.ptp(points))).astype(int).tobytes()  # fmt: skip
+        shape = np.rint((points - points[0]) / (1e-6 * np.ptp(points))).astype(int).tobytes()
         if shape not in self._outer:  # those of blocks of one shape are the same
             from scipy.spatial import ConvexHull
 
@@ -110,8 +115,17 @@ class Structure:
         for size in np.unique(sizes):
             here = chosen[sizes == size]
             cells = np.array([j["cells"][n] for n in here])
-            for own, name in zip(j["bodies"][here].T, ("displacement", "second_displacement")):  # fmt: skip
-                found.append((own, here, kinds[here], closures[here], j["points"][cells], j[name][cells] - self.still))  # fmt: skip
+            for own, name in zip(j["bodies"][here].T, ("displacement", "second_displacement")):
+                found.append(
+                    (
+                        own,
+                        here,
+                        kinds[here],
+                        closures[here],
+                        j["points"][cells],
+                        j[name][cells] - self.still,
+                    )
+                )
         return found
 
 
@@ -136,7 +150,7 @@ class Elevation:
             if abs(farthest) > 0.5 * np.linalg.norm(moved @ self.to, axis=1).max():
                 self.across = abs(farthest)
                 sense = "towards" if farthest > 0 else "away from"
-                self.note += f"\n(moved up to {1e3 * self.across:.3g} mm {sense} the viewer)"  # fmt: skip
+                self.note += f"\n(moved up to {1e3 * self.across:.3g} mm {sense} the viewer)"
 
     def flat(self, points):
         return (points - self.view.start) @ self.to
@@ -149,7 +163,9 @@ class Elevation:
         reach = REACH * (high - low).max()
         low = np.maximum(np.minimum(low, now.min(axis=0)), low - reach)
         high = np.minimum(np.maximum(high, now.max(axis=0)), high + reach)
-        return np.array([low, high]) + (high - low).max() * np.array([[-0.045, -0.12], [0.045, 0.045]])  # fmt: skip
+        return np.array([low, high]) + (high - low).max() * np.array(
+            [[-0.045, -0.12], [0.045, 0.045]]
+        )
 
     def draw(self, axes, magnification, scale):
         """Draw it.
@@ -166,10 +182,17 @@ class Elevation:
         thin, bold = np.clip(0.06 * course, 0.15, 0.5), np.clip(0.21 * course, 0.7, 1.8)
         painting = Painting(self.view.towards, thin, bold)
         now = copy.copy(built)
-        now.groups = [Alike(g.index, g.corners + magnification * s.moved[np.array([nodes[n] for n in g.index])], g.faces) for g in built.groups]  # fmt: skip
+        now.groups = [
+            Alike(
+                g.index,
+                g.corners + magnification * s.moved[np.array([nodes[n] for n in g.index])],
+                g.faces,
+            )
+            for g in built.groups
+        ]
         for g in built.groups if magnification else ():
             painting.blocks(np.full(len(g.index), -1), g)
-        colours = np.array([rgb(SHADES[s.shades.get(body, "brick")]) for body in self.bodies])  # fmt: skip
+        colours = np.array([rgb(SHADES[s.shades.get(body, "brick")]) for body in self.bodies])
         # the joints of a block come after it and before the next block
         places = 10**9 * np.argsort(fromBackToFront(now, sight))
         for g in now.groups:
@@ -177,19 +200,29 @@ class Elevation:
         number = {body: n for n, body in enumerate(self.bodies)}
         for own, *crack, moved in s.cracks:
             block = np.array([number.get(body, -1) for body in own.tolist()])
-            crack = [v[block >= 0] for v in (block, *crack, crack[-1] + magnification * moved)]  # fmt: skip
+            crack = [v[block >= 0] for v in (block, *crack, crack[-1] + magnification * moved)]
             painting.cracks(places, crack, built, now, colours)
         painting.finish(axes, self.flat, s.joints is not None)
         for shade in sorted({s.shades[b] for b in self.bodies if b in s.shades}):
-            axes.add_collection(PolyCollection([], facecolor=SHADES[shade], edgecolor=MORTAR, label=shade))  # fmt: skip
+            axes.add_collection(
+                PolyCollection([], facecolor=SHADES[shade], edgecolor=MORTAR, label=shade)
+            )
         for body in set(s.names) & set(self.bodies):
             middle = self.flat(s.blocks["points"][s.corners[body]]).mean(axis=0)
             axes.annotate(s.names[body], middle, ha="center", va="center", fontsize=8)
         for state, (colour, dash) in TIES.items():
-            ends = [self._tie(one, magnification) for one in s.ties if one["state"] == state and set(one["bodies"]) & set(self.bodies)]  # fmt: skip
+            ends = [
+                self._tie(one, magnification)
+                for one in s.ties
+                if one["state"] == state and set(one["bodies"]) & set(self.bodies)
+            ]
             if ends:
                 label = "tie" if state == "elastic" else f"tie, {state}"
-                axes.add_collection(LineCollection(ends, color=colour, lw=1.2 * bold, ls=dash, label=label, zorder=4))  # fmt: skip
+                axes.add_collection(
+                    LineCollection(
+                        ends, color=colour, lw=1.2 * bold, ls=dash, label=label, zorder=4
+                    )
+                )
         self._frame(axes, magnification, scale)
 
     def _frame(self, axes, magnification, scale):
@@ -207,8 +240,17 @@ class Elevation:
         power = 10.0 ** np.floor(np.log10(most))
         length = max(n * power for n in (1, 2, 5) if n * power <= most)
         x, y = low + 8 / scale
-        axes.plot([x, x + length], [y, y], color="black", lw=2, solid_capstyle="butt", label="_scale")  # fmt: skip
-        axes.annotate(f"{length:g} m", (x + length, y), xytext=(4, 0), textcoords="offset points", va="center", fontsize=8)  # fmt: skip
+        axes.plot(
+            [x, x + length], [y, y], color="black", lw=2, solid_capstyle="butt", label="_scale"
+        )
+        axes.annotate(
+            f"{length:g} m",
+            (x + length, y),
+            xytext=(4, 0),
+            textcoords="offset points",
+            va="center",
+            fontsize=8,
+        )
 
     def _tie(self, tie, magnification):
         s, ends = self.structure, []
@@ -226,7 +268,9 @@ class Elevation:
 def elevationsOf(structure):
     """One elevation for each façade: the largest parts first, and none for a part that is seen in another one's or is held."""
     stands = lambda part: any(structure.shades.get(body) != "held" for body in part)
-    parts = {n: part for n, part in structure.parts.items() if stands(part)} or {"": list(structure.corners)}  # fmt: skip
+    parts = {n: part for n, part in structure.parts.items() if stands(part)} or {
+        "": list(structure.corners)
+    }
     found, seen = {}, set()
     for name, members in sorted(parts.items(), key=lambda part: -len(part[1])):
         if len(seen.intersection(members)) <= 0.5 * len(members):
@@ -270,7 +314,7 @@ def figureOf(structure, title, magnification=None, later=None):
     if magnification is None:
         nodes = structure.points(structure.corners)
         blocks = [structure.blocks["points"][own] for own in structure.corners.values()]
-        magnification = magnificationOf(structure.joints, structure.moved[nodes], blocks)  # fmt: skip
+        magnification = magnificationOf(structure.joints, structure.moved[nodes], blocks)
     scales = [magnification] * len(elevations)
     front = max(elevations, key=lambda one: (one.across, len(one.bodies))).view.towards
     names = {one.view.name for one in elevations}
@@ -288,10 +332,13 @@ def figureOf(structure, title, magnification=None, later=None):
     columns = max(range(1, len(sizes) + 1), key=lambda n: _scale(sizes, n))
     scale = _scale(sizes, columns)
     wides = [scale * max(sizes[c::columns, 0]) for c in range(columns)]
-    highs = [scale * max(sizes[n : n + columns, 1]) for n in range(0, len(sizes), columns)]  # fmt: skip
+    highs = [scale * max(sizes[n : n + columns, 1]) for n in range(0, len(sizes), columns)]
     # inches for labels beside and below each, for the legend at the right, and for the title
     above = 0.85 if title else 0.3
-    width, height = max(sum(wides) + 0.85 * columns + 1.6, 7.0), sum(highs) + 0.75 * len(highs) + above  # fmt: skip
+    width, height = (
+        max(sum(wides) + 0.85 * columns + 1.6, 7.0),
+        sum(highs) + 0.75 * len(highs) + above,
+    )
     figure, handles = drawing.empty(width, height), {}
     for n, one in enumerate(elevations):
         row, column = divmod(n, columns)
@@ -302,13 +349,19 @@ def figureOf(structure, title, magnification=None, later=None):
         one.draw(axes, scales[n], 72 * scale)
         head = f"{one.name if len(sizes) > 1 else ''} {one.note}".strip()
         axes.set_title(head, fontsize=9, pad=3)
-        handles.update((label, handle) for handle, label in zip(*axes.get_legend_handles_labels()))  # fmt: skip
+        handles.update((label, handle) for handle, label in zip(*axes.get_legend_handles_labels()))
     if title:
         if structure.joints is not None:  # else nothing has moved
             title = title.replace("{}", scaleText(structure.joints, magnification))
-        figure.suptitle(title, fontsize=9, x=0.3 / width, y=1 - 0.1 / height, ha="left")  # fmt: skip
+        figure.suptitle(title, fontsize=9, x=0.3 / width, y=1 - 0.1 / height, ha="left")
     if handles:
-        figure.legend(handles.values(), handles, loc="upper right", fontsize=8, bbox_to_anchor=(1 - 0.08 / width, 1 - above / height))  # fmt: skip
+        figure.legend(
+            handles.values(),
+            handles,
+            loc="upper right",
+            fontsize=8,
+            bbox_to_anchor=(1 - 0.08 / width, 1 - above / height),
+        )
     return figure
 
 
@@ -317,7 +370,11 @@ def _scale(sizes, columns):
     wide = sum(max(sizes[c::columns, 0]) for c in range(columns))
     high = sum(max(sizes[n : n + columns, 1]) for n in range(0, len(sizes), columns))
     rows = -(-len(sizes) // columns)
-    return min((10.0 - 0.85 * columns) / wide, (9.5 - 0.75 * rows) / high, 7.2 / wide if len(sizes) == 1 else np.inf)  # fmt: skip
+    return min(
+        (10.0 - 0.85 * columns) / wide,
+        (9.5 - 0.75 * rows) / high,
+        7.2 / wide if len(sizes) == 1 else np.inf,
+    )
 
 
 def structureOf(run, blocks, joints, directory):
@@ -338,7 +395,10 @@ def structureOf(run, blocks, joints, directory):
         else:
             wrong.add(reference)
     if wrong:
-        raise Refused(f"{directory}: run.json names bodies {sorted(wrong)[:10]}, which are not in the ParaView files")  # fmt: skip
+        raise Refused(
+            f"{directory}: run.json names bodies {sorted(wrong)[:10]}, which are not in the"
+            " ParaView files"
+        )
     for name, part in parts.items():
         if not part:
             raise Refused(f"{directory}: parts: {name} has no bodies")
@@ -369,7 +429,9 @@ def cracksOfFrame(run, directory, number=None):
     """
     last = len(frameTimes(directory)) - 1
     chosen = frameOfCracks(run, directory) if number is None else number % (last + 1)
-    later, frames = None, lambda n: [readFrame(directory, k, n, NEEDED) for k in ("blocks", "joints")]  # fmt: skip
+    later, frames = None, lambda n: [
+        readFrame(directory, k, n, NEEDED) for k in ("blocks", "joints")
+    ]
     if number is None and chosen != last:
         end = structureOf(run, *frames(last), directory)
         later = f"{whenOf(run, directory, last)}, true to scale", end
@@ -393,8 +455,8 @@ MOMENTS = {
 
 def _moments(run, directory):
     """Numbers of the frames nearest to the moments of a collapse, and what they are, the first one first."""
-    times = {a["name"]: a["value"] for a in run.get("answers") or [] if a["stage"] == "fall"}  # fmt: skip
-    found = sorted((times[name], text) for name, text in MOMENTS.items() if name in times)  # fmt: skip
+    times = {a["name"]: a["value"] for a in run.get("answers") or [] if a["stage"] == "fall"}
+    found = sorted((times[name], text) for name, text in MOMENTS.items() if name in times)
     return [(frameAt(directory, time), text) for time, text in found]
 
 
@@ -417,7 +479,9 @@ def whenOf(run, directory, number):
     if "time_s" in data:
         spec = plan(run, data, directory)["x"]
         if spec["column"] != "time_s":
-            value, unit = np.interp(times[number], data["time_s"], data[spec["column"]]), unitOf(spec)  # fmt: skip
+            value, unit = np.interp(times[number], data["time_s"], data[spec["column"]]), unitOf(
+                spec
+            )
             name = spec["label"].rsplit(" [", 1)[0]
             texts.append(f"{name} = {value:{'.1f' if unit == 'mm' else '.3g'}} {unit}")
     return f"{names.get(number, 'during the run')}: {', '.join(texts)}"

@@ -71,7 +71,8 @@ def filesOf(directory: FilePath) -> Iterator[None]:
         yield
     except (KeyError, IndexError, AttributeError, TypeError, SyntaxError) as problem:
         raise Refused(
-            f"{directory}: these are not the files of a finished run ({type(problem).__name__}: {problem})"
+            f"{directory}: these are not the files of a finished run ({type(problem).__name__}:"
+            f" {problem})"
         ) from problem
 
 

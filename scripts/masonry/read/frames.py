@@ -63,7 +63,9 @@ def frameAt(directory: FilePath, time: Annotated[float, number("s")]) -> int:
 
 
 @validated
-def readFrame(directory: FilePath, kind: Kind, number: FrameNumber = -1, names: Names | None = None) -> dict[str, Any]:  # fmt: skip
+def readFrame(
+    directory: FilePath, kind: Kind, number: FrameNumber = -1, names: Names | None = None
+) -> dict[str, Any]:
     """A frame of blocks, joints or connectors as a dict: ``points`` [m], ``cells`` (arrays of point numbers), and every data
     array.
 
@@ -183,12 +185,12 @@ def _frame(root, names):
     """What :func:`readFrame` returns, of the parsed file."""
     piece, read = _opened(root)
     data = piece.findall("PointData/DataArray") + piece.findall("CellData/DataArray")
-    found = {"points": piece.find("Points/DataArray"), **{a.get("Name"): a for a in data}}  # fmt: skip
+    found = {"points": piece.find("Points/DataArray"), **{a.get("Name"): a for a in data}}
     frame = {n: read(a) for n, a in found.items() if names is None or n in names}
     if names is not None and "cells" not in names:
         return frame
     frame["cells"] = []
-    for kind in ("Verts", "Lines", "Polys") if root.get("type") == "PolyData" else ("Cells",):  # fmt: skip
+    for kind in ("Verts", "Lines", "Polys") if root.get("type") == "PolyData" else ("Cells",):
         of = {a.get("Name"): a for a in piece.findall(f"{kind}/DataArray")}
         ends, corners = read(of["offsets"]), read(of["connectivity"])
         if not len(ends):

@@ -16,7 +16,11 @@ from .model import CRUSHED_TOO, LOOKS, OPEN, SLID, Model
 
 FLOAT, BYTE = 5126, 5121  # numbers of glTF for types of numbers
 UP = [-(0.5**0.5), 0.0, 0.0, 0.5**0.5]  # turns z to y, (x, y, z, w)
-KINDS = {OPEN: painting.CRACKS["open"], SLID: painting.CRACKS["slid"], CRUSHED_TOO: painting.CRUSHED}  # fmt: skip
+KINDS = {
+    OPEN: painting.CRACKS["open"],
+    SLID: painting.CRACKS["slid"],
+    CRUSHED_TOO: painting.CRUSHED,
+}
 
 
 def write(directory, path, number=None, magnification=1.0, rate=10):
@@ -40,14 +44,20 @@ def write(directory, path, number=None, magnification=1.0, rate=10):
     blocks = f"{len(model.bodies):,} blocks"
     if len(model.times) == 1:
         faces = file.still(model, magnification)
-        says = f"{blocks} in frame {model.numbers[0]}, {faces:,} points of joints that are cracked or crushed"
+        says = (
+            f"{blocks} in frame {model.numbers[0]}, {faces:,} points of joints that are cracked or"
+            " crushed"
+        )
     else:
         file.animation(model, magnification, rate)
-        says = f"{blocks}, an animation of {len(model.times)} frames at {rate} a second, without cracks"
+        says = (
+            f"{blocks}, an animation of {len(model.times)} frames at {rate} a second, without"
+            " cracks"
+        )
     data = file.bytes()
     with replaced(path, "wb") as target:
         target.write(data)
-    return f"{path}: {says}, displacements × {magnification:g}, {len(data) / 1e6:.2f} MB"  # fmt: skip
+    return f"{path}: {says}, displacements × {magnification:g}, {len(data) / 1e6:.2f} MB"
 
 
 class _File:
@@ -59,7 +69,7 @@ class _File:
             "scene": 0,
             "scenes": [{"nodes": [0], "name": plain(title)}],
             "nodes": [self._root],
-            **{name: [] for name in ("meshes", "materials", "accessors", "bufferViews")},  # fmt: skip
+            **{name: [] for name in ("meshes", "materials", "accessors", "bufferViews")},
         }
 
     def _add(self, name, value):
@@ -72,9 +82,14 @@ class _File:
         data = np.ascontiguousarray(values, "<f4" if kind == FLOAT else "u1")
         view = {"buffer": 0, "byteOffset": self._size, "byteLength": data.nbytes}
         rows = data.reshape(len(data), -1)
-        accessor = {"bufferView": self._add("bufferViews", view), "componentType": kind, "count": len(data), "type": of}  # fmt: skip
+        accessor = {
+            "bufferView": self._add("bufferViews", view),
+            "componentType": kind,
+            "count": len(data),
+            "type": of,
+        }
         if kind == FLOAT:
-            accessor.update(min=rows.min(axis=0).tolist(), max=rows.max(axis=0).tolist())  # fmt: skip
+            accessor.update(min=rows.min(axis=0).tolist(), max=rows.max(axis=0).tolist())
         else:
             accessor["normalized"] = True
         self._parts.append(data.tobytes() + b"\0" * (-data.nbytes % 4))
@@ -82,8 +97,15 @@ class _File:
         return self._add("accessors", accessor)
 
     def _material(self, name, colour):
-        look = {"baseColorFactor": [*linear(colour), 1.0], "metallicFactor": 0.0, "roughnessFactor": 1.0}  # fmt: skip
-        return self._add("materials", {"name": name, "pbrMetallicRoughness": look, "doubleSided": name == "joints"})  # fmt: skip
+        look = {
+            "baseColorFactor": [*linear(colour), 1.0],
+            "metallicFactor": 0.0,
+            "roughnessFactor": 1.0,
+        }
+        return self._add(
+            "materials",
+            {"name": name, "pbrMetallicRoughness": look, "doubleSided": name == "joints"},
+        )
 
     def _mesh(self, corners, material, colours=None):
         """Triangles with flat sides, of an array (n, 3, 3) of their corners; the number of the mesh."""
@@ -96,8 +118,10 @@ class _File:
             "NORMAL": self._array(np.repeat(normals, 3, axis=0), "VEC3"),
         }
         if colours is not None:
-            attributes["COLOR_0"] = self._array(np.repeat(colours[fine], 3, axis=0), "VEC4", BYTE)  # fmt: skip
-        return self._add("meshes", {"primitives": [{"attributes": attributes, "material": material}]})  # fmt: skip
+            attributes["COLOR_0"] = self._array(np.repeat(colours[fine], 3, axis=0), "VEC4", BYTE)
+        return self._add(
+            "meshes", {"primitives": [{"attributes": attributes, "material": material}]}
+        )
 
     def _node(self, **node):
         self._root["children"].append(self._add("nodes", node))
@@ -109,7 +133,10 @@ class _File:
         for look, name in enumerate(LOOKS):
             chosen = model.triangles[looks == look]
             if len(chosen):
-                self._node(name=name, mesh=self._mesh(points[chosen], self._material(name, painting.SHADES[name])))  # fmt: skip
+                self._node(
+                    name=name,
+                    mesh=self._mesh(points[chosen], self._material(name, painting.SHADES[name])),
+                )
         joints = model.joints
         fans, colours = [], []
         for n in np.flatnonzero(joints.kind[0]):
@@ -122,7 +149,7 @@ class _File:
             # on the faces of both blocks
             corners = joints.corners + magnification * joints.displacements(0)
             both = np.concatenate([side[np.array(fans)] for side in corners])
-            mesh = self._mesh(both, self._material("joints", "#ffffff"), np.tile(colours, (2, 1)))  # fmt: skip
+            mesh = self._mesh(both, self._material("joints", "#ffffff"), np.tile(colours, (2, 1)))
             self._node(name="joints", mesh=mesh)
         return int((joints.kind[0] > 0).sum())
 
@@ -133,23 +160,33 @@ class _File:
         channels, samplers, meshes = [], [], {}
         order = np.argsort(model.owner[model.triangles[:, 0]], kind="stable")
         triangles = model.triangles[order]
-        starts = np.searchsorted(model.owner[triangles[:, 0]], np.arange(len(model.bodies) + 1))  # fmt: skip
+        starts = np.searchsorted(model.owner[triangles[:, 0]], np.arange(len(model.bodies) + 1))
         for block, body in enumerate(model.bodies.tolist()):
             centre, look = model.centres[block], int(model.looks[block])
-            corners = model.points[triangles[starts[block] : starts[block + 1]]] - centre  # fmt: skip
+            corners = model.points[triangles[starts[block] : starts[block + 1]]] - centre
             key = look, np.rint(corners / 1e-7).astype(int).tobytes()
             if key not in meshes:
                 meshes[key] = self._mesh(corners, materials[look])
-            self._node(name=f"{LOOKS[look]} {body}", mesh=meshes[key], translation=centre.tolist(), extras={"body": body})  # fmt: skip
+            self._node(
+                name=f"{LOOKS[look]} {body}",
+                mesh=meshes[key],
+                translation=centre.tolist(),
+                extras={"body": body},
+            )
             shift = magnification * model.shift[:, block]
             turn = magnification * model.turn[:, block]
-            for moves, values, path, of in ((shift, centre + shift, "translation", "VEC3"), (turn, quaternions(turn), "rotation", "VEC4")):  # fmt: skip
+            for moves, values, path, of in (
+                (shift, centre + shift, "translation", "VEC3"),
+                (turn, quaternions(turn), "rotation", "VEC4"),
+            ):
                 if moves.any():
                     samplers.append({"input": times, "output": self._array(values, of)})
                     target = {"node": len(self._json["nodes"]) - 1, "path": path}
                     channels.append({"sampler": len(samplers) - 1, "target": target})
         if channels:
-            self._json["animations"] = [{"name": "frames", "channels": channels, "samplers": samplers}]  # fmt: skip
+            self._json["animations"] = [
+                {"name": "frames", "channels": channels, "samplers": samplers}
+            ]
 
     def bytes(self):
         """The file: a head, the JSON and the arrays."""

@@ -57,9 +57,7 @@ def _curve(displacement, force):
     """Both sequences as arrays of finite numbers, or ValueError."""
     moved, force = _row(displacement), _row(force, "force")
     if len(moved) != len(force):
-        raise ValueError(
-            f"there are {len(moved)} displacements and {len(force)} forces"
-        )
+        raise ValueError(f"there are {len(moved)} displacements and {len(force)} forces")
     return moved, force
 
 
@@ -96,9 +94,7 @@ def turningPoints(displacement: Numbers, threshold: float = 0.0) -> np.ndarray:
     return np.array(rows or [0])
 
 
-def halfCycles(
-    displacement: Numbers, threshold: float, zero: float = 0.0
-) -> list[HalfCycle]:
+def halfCycles(displacement: Numbers, threshold: float, zero: float = 0.0) -> list[HalfCycle]:
     """Excursions to either side that go beyond the threshold: a list of :class:`HalfCycle` that alternate in side.
 
     A half cycle ends at the last passage through zero before the displacement goes beyond the threshold on the other
@@ -167,9 +163,7 @@ def work(
     return area(stretch(force, start, end), stretch(moved, start, end))
 
 
-def secantStiffness(
-    displacement: Numbers, force: Numbers, high: int, low: int
-) -> float:
+def secantStiffness(displacement: Numbers, force: Numbers, high: int, low: int) -> float:
     """Slope of the line between two rows of a curve, the peak-to-peak stiffness if they are its extremes [kN/mm].
 
     It is NaN if both have the same displacement.
@@ -238,7 +232,10 @@ def cycles(
         lost = work(moved, force, start, end)
         stiffness = secantStiffness(moved, force, high, low)
         forces = stretch(force, start, end)
-        residuals = [residualDisplacement(moved, force, half.extreme, last) for half, last in zip(pair, until)]  # fmt: skip
+        residuals = [
+            residualDisplacement(moved, force, half.extreme, last)
+            for half, last in zip(pair, until)
+        ]
         found.append(
             Cycle(
                 start=start,

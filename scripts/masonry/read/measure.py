@@ -78,8 +78,8 @@ def measure(directory: FilePath) -> dict[str, Any]:
 def cycleTable(cycles: list[dict[str, Any]]) -> Iterator[str]:
     """The cycles of run.json as lines of a table, with the numbers of :data:`masonry.read.quantities.OF_CYCLES`."""
     columns = quantities.OF_CYCLES
-    heads = [name if unit == "-" else f"{name} [{unit}]" for _, name, unit, *_ in columns]  # fmt: skip
-    line = lambda texts: "".join(f"{t:>{max(len(h), 9) + 2}}" for t, h in zip(texts, heads))  # fmt: skip
+    heads = [name if unit == "-" else f"{name} [{unit}]" for _, name, unit, *_ in columns]
+    line = lambda texts: "".join(f"{t:>{max(len(h), 9) + 2}}" for t, h in zip(texts, heads))
     yield " cycle" + line(heads)
     for n, cycle in enumerate(cycles, 1):
         values = [(cycle[key], digits) for key, _, _, digits, _ in columns]

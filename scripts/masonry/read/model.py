@@ -71,9 +71,13 @@ class Model:
             times = self._times()
             self.count = count = len(times)
             if number is not None and not 0 <= number < count:
-                raise Refused(f"{directory}: there is no frame {number}; its frames are 0 to {count - 1}")  # fmt: skip
+                raise Refused(
+                    f"{directory}: there is no frame {number}; its frames are 0 to {count - 1}"
+                )
             self.numbers = list(range(count)) if number is None else [number]
-            self._build(readFrame(directory, "blocks", self.numbers[0], ["body", "cells", "points"]))  # fmt: skip
+            self._build(
+                readFrame(directory, "blocks", self.numbers[0], ["body", "cells", "points"])
+            )
             if chosen:
                 self.numbers = list(chosen(count, len(self.bodies)))
             self.times = [times[n] for n in self.numbers]
@@ -92,11 +96,11 @@ class Model:
             for name in ("lean", "no_vtk"):
                 if options.get(name):
                     problem = f"its run was started with --{name.replace('_', '-')}"
-            raise Refused(f"{self.directory} has no frames to show: {problem}") from None  # fmt: skip
+            raise Refused(f"{self.directory} has no frames to show: {problem}") from None
         if not times or min(counts) < len(times):
             raise Refused(
-                f"{self.directory}: joints.pvd lists {len(times)} frames, and there are {counts[0]} files blocks_*.vtu "
-                f"and {counts[1]} files joints_*.vtp"
+                f"{self.directory}: joints.pvd lists {len(times)} frames, and there are"
+                f" {counts[0]} files blocks_*.vtu and {counts[1]} files joints_*.vtp"
             )
         return times
 
@@ -115,7 +119,9 @@ class Model:
         self.looks[self.bodies == self.run.get("ground_body")] = GROUND
         self.framed = self.looks[self.owner] != GROUND
         # the side of a zone that another zone has, too, is inside the unit
-        _, where, often = np.unique(np.sort(triangles, axis=1), axis=0, return_inverse=True, return_counts=True)  # fmt: skip
+        _, where, often = np.unique(
+            np.sort(triangles, axis=1), axis=0, return_inverse=True, return_counts=True
+        )
         outside = (often[where.ravel()] == 1) | rigid[cells]
         triangles, cells = triangles[outside], cells[outside]
         inside = centresOf(self.points, corners)[cells]
@@ -131,30 +137,40 @@ class Model:
         reference = self.run.get("reference_body")
         held = self.bodies[self.owner] == reference
         if reference is not None and not held.any():
-            raise Refused(f"{self.directory}: run.json names body {reference}, which is not in the frames")  # fmt: skip
+            raise Refused(
+                f"{self.directory}: run.json names body {reference}, which is not in the frames"
+            )
         shape = len(self.numbers), len(self.bodies), 3
         self.shift, self.turn = np.zeros(shape), np.zeros(shape)
         self.moved = np.zeros((len(self.numbers), len(self.free), 3))
         self.farthest = np.zeros(len(self.numbers))
         self.joints = Joints(self)
-        needed = ("blocks", ["body", "displacement", "rotation"]), ("joints", self.joints.needed)  # fmt: skip
+        needed = ("blocks", ["body", "displacement", "rotation"]), ("joints", self.joints.needed)
         for k, number in enumerate(self.numbers):
-            blocks, joints = (readFrame(self.directory, kind, number, names) for kind, names in needed)  # fmt: skip
+            blocks, joints = (
+                readFrame(self.directory, kind, number, names) for kind, names in needed
+            )
             if "rotation" not in blocks:
-                raise Refused(f"{self.directory}: its frames were written by an older version of the plugin, which did not say how blocks turn; run the scene again")  # fmt: skip
+                raise Refused(
+                    f"{self.directory}: its frames were written by an older version of the plugin,"
+                    " which did not say how blocks turn; run the scene again"
+                )
             if len(blocks["displacement"]) != len(self.points):
-                raise Refused(f"{self.directory}: frame {number} has other blocks than frame {self.numbers[0]}")  # fmt: skip
+                raise Refused(
+                    f"{self.directory}: frame {number} has other blocks than frame"
+                    f" {self.numbers[0]}"
+                )
             for frame in (blocks, joints):
                 for name, values in frame.items():
                     if name != "cells" and not np.isfinite(values).all():
-                        raise Refused(f"{self.directory}: {name} in frame {number} is not finite")  # fmt: skip
+                        raise Refused(f"{self.directory}: {name} in frame {number} is not finite")
             still = blocks["displacement"][held].mean(axis=0) if held.any() else 0.0
             moved = blocks["displacement"] - still
             self.farthest[k] = np.linalg.norm(moved, axis=1).max()
             self.moved[k] = moved[self.free]
             self.shift[k] = self._means(moved) * self.rigid[:, None]
             # every zone of a deformable unit has a row
-            self.turn[k, np.searchsorted(self.bodies, blocks["body"])] = blocks["rotation"]  # fmt: skip
+            self.turn[k, np.searchsorted(self.bodies, blocks["body"])] = blocks["rotation"]
             self.joints.add(joints, still)
         self.joints.end()
 
@@ -195,12 +211,14 @@ class Model:
         moved = self.displacements(-1)[self.framed]
         if magnification is None:
             magnification = magnificationOf(joints, moved, self.corners())
-        seen = np.clip(points + magnification * moved, low - REACH * size, high + REACH * size)  # fmt: skip
-        low, high = np.minimum(low, seen.min(axis=0)), np.maximum(high, seen.max(axis=0))  # fmt: skip
+        seen = np.clip(points + magnification * moved, low - REACH * size, high + REACH * size)
+        low, high = np.minimum(low, seen.min(axis=0)), np.maximum(high, seen.max(axis=0))
         if moved.mean(axis=0) @ towards < -0.1 * size:  # it fell to the other side
             towards = -towards
         flat = bool(abs(towards[2]) < 0.9)
-        return Sight(magnification, low, high, towards if flat else np.array([0.0, -1.0, 0.0]), flat)  # fmt: skip
+        return Sight(
+            magnification, low, high, towards if flat else np.array([0.0, -1.0, 0.0]), flat
+        )
 
     def captions(self, curve=None):
         """What is shown beside every frame: a list of dicts with ``time``, ``stage``, or None, and ``values``, a list of texts as
@@ -220,11 +238,11 @@ class Model:
                 for axis in (spec["x"], *spec["y"]):
                     if axis["column"] == "time_s":
                         continue
-                    unit = unitOf(axis if axis is spec["x"] else {**axis, "label": spec["y_label"]})  # fmt: skip
+                    unit = unitOf(axis if axis is spec["x"] else {**axis, "label": spec["y_label"]})
                     name = axis["label"].rsplit(" [", 1)[0]
                     value = np.interp(time, data["time_s"], data[axis["column"]])
                     values.append(f"{name}: {value:.4g} {unit}")
-            found.append({"time": time, "stage": self._stage(time, data), "values": values})  # fmt: skip
+            found.append({"time": time, "stage": self._stage(time, data), "values": values})
         return found
 
     def _stage(self, time, data):
@@ -235,7 +253,7 @@ class Model:
         ends = step * np.cumsum([stage["steps"] for stage in stages])
         if abs(ends[-1] - data["time_s"][-1]) > 0.01 * ends[-1]:
             return None
-        return stages[min(int(np.searchsorted(ends, time - 0.5 * step)), len(stages) - 1)]["stage"]  # fmt: skip
+        return stages[min(int(np.searchsorted(ends, time - 0.5 * step)), len(stages) - 1)]["stage"]
 
 
 #: Displacements of the corners of a joint with its first and with its second block.
@@ -264,7 +282,9 @@ class Joints:
         self._frames = []  # numbers, values and displacements of every frame
         self._last = None
         #: names of the arrays of a frame that :meth:`add` needs
-        self.needed = "bodies cells crushing damage_shear damage_tension opening points slide".split()  # fmt: skip
+        self.needed = (
+            "bodies cells crushing damage_shear damage_tension opening points slide".split()
+        )
         self.needed += [] if model.rigid.all() else SIDES
 
     def add(self, frame, still):
@@ -276,16 +296,25 @@ class Joints:
         if self._last is None or not np.array_equal(self._last[0], points):
             corners = points[np.concatenate(cells)].tobytes()
             ends = (POINT * np.cumsum([0, *map(len, cells)])).tolist()
-            keys = [pair.tobytes() + corners[a:b] for pair, a, b in zip(frame["bodies"].astype(int), ends, ends[1:])]  # fmt: skip
+            keys = [
+                pair.tobytes() + corners[a:b]
+                for pair, a, b in zip(frame["bodies"].astype(int), ends, ends[1:])
+            ]
             numbers = [known.setdefault(key, len(known)) for key in keys]
             self._last = points, np.array(numbers)
         _, opened, cracked = widths(frame)
-        values = np.array([
-            frame["opening"], np.linalg.norm(frame["slide"], axis=1), frame["crushing"],
-            np.maximum(frame["damage_tension"], frame["damage_shear"]),
-            np.where(cracked, np.where(opened, OPEN, SLID), 0) + CRUSHED_TOO * crushed(frame),
-        ])  # fmt: skip
-        shown = (values[0] > CRACK) | (values[1] > CRACK) | (values[2] > CRACK) | (values[3] > DAMAGED)  # fmt: skip
+        values = np.array(
+            [
+                frame["opening"],
+                np.linalg.norm(frame["slide"], axis=1),
+                frame["crushing"],
+                np.maximum(frame["damage_tension"], frame["damage_shear"]),
+                np.where(cracked, np.where(opened, OPEN, SLID), 0) + CRUSHED_TOO * crushed(frame),
+            ]
+        )
+        shown = (
+            (values[0] > CRACK) | (values[1] > CRACK) | (values[2] > CRACK) | (values[3] > DAMAGED)
+        )
         rigid = self._model.rigid.all()
         moved = [] if rigid else [np.array([frame[s] for s in SIDES]) - still, cells]
         self._frames.append((self._last[1], values, shown, *moved))
@@ -307,7 +336,9 @@ class Joints:
         self.kind = kind.astype(int)
         known = [key for key, isKept in zip(self._numbers, total) if isKept]
         sizes = [(len(key) - PAIR) // POINT for key in known]
-        corners, bodies = (b"".join(key[part] for key in known) for part in (slice(PAIR, None), slice(PAIR)))  # fmt: skip
+        corners, bodies = (
+            b"".join(key[part] for key in known) for part in (slice(PAIR, None), slice(PAIR))
+        )
         self.corners = np.frombuffer(corners).reshape(-1, 3)
         self.owner = np.repeat(np.arange(len(kept)), sizes)
         bodies = np.frombuffer(bodies, int).reshape(-1, 2)
@@ -327,7 +358,7 @@ class Joints:
         if self.moved is not None:
             return self.moved[:, k]
         of = self._model.displacementsOf
-        return np.array([of(k, self.between[self.owner, n], self.corners) for n in (0, 1)])  # fmt: skip
+        return np.array([of(k, self.between[self.owner, n], self.corners) for n in (0, 1)])
 
 
 #: From where on a value of a joint is drawn; the same for all frames.

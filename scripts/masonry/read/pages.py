@@ -20,9 +20,13 @@ def rendered(path, **values):
     jinja2 = needed("jinja2")
     here = os.path.dirname(__file__)
     environment = jinja2.Environment(
-        loader=jinja2.FileSystemLoader(here), autoescape=True, undefined=jinja2.StrictUndefined,
-        finalize=lambda value: plain(value) if type(value) is str else value, trim_blocks=True, lstrip_blocks=True,
-    )  # fmt: skip
+        loader=jinja2.FileSystemLoader(here),
+        autoescape=True,
+        undefined=jinja2.StrictUndefined,
+        finalize=lambda value: plain(value) if type(value) is str else value,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
 
     def own(name):
         return environment.loader.get_source(environment, name)[0]

@@ -23,7 +23,7 @@ SHADES = {
 CRACKS, CRUSHED = {"open": "#d62728", "slid": "#1f77b4"}, "#101010"
 MOST = 5e-3  # [m] closure from which the sign of a crushed point is no larger
 #: Lines of ties by their state.
-TIES = {"elastic": ("#333333", "-"), "yielded": ("#ff7f0e", "-"), "broken": ("#9467bd", ":")}  # fmt: skip
+TIES = {"elastic": ("#333333", "-"), "yielded": ("#ff7f0e", "-"), "broken": ("#9467bd", ":")}
 
 
 def rgb(colour):
@@ -49,13 +49,13 @@ def fromBackToFront(solids, sight):
     """
     seen, boxes = solids.padded("corners") @ sight.T, copy.copy(solids)
     boxes.low, boxes.high = seen.min(axis=1), seen.max(axis=1)
-    depth, slack = (boxes.low + boxes.high)[:, 2].tolist(), 1e-3 * np.median(boxes.high - boxes.low)  # fmt: skip
+    depth, slack = (boxes.low + boxes.high)[:, 2].tolist(), 1e-3 * np.median(boxes.high - boxes.low)
     boxes.low[:, 2], boxes.high[:, 2] = -FAR, FAR  # pictures overlap at any depth
     pairs = boxes.nearPairs(np.full(solids.count, -slack / 2))
     after = [[] for _ in range(solids.count)]
     facing = solids.padded("normals")[pairs] @ sight[2] * [[[1]], [[-1]]]
-    sides, gaps = (facing > LEVEL, facing < -LEVEL, np.abs(facing) <= LEVEL), solids.beyond(pairs)  # fmt: skip
-    front, back, beside = (np.where(side, gaps, -np.inf).max(axis=(0, 2)) for side in sides)  # fmt: skip
+    sides, gaps = (facing > LEVEL, facing < -LEVEL, np.abs(facing) <= LEVEL), solids.beyond(pairs)
+    front, back, beside = (np.where(side, gaps, -np.inf).max(axis=(0, 2)) for side in sides)
     # no planes part them on both sides, or along the line of sight
     hides = (beside <= -slack) & (np.minimum(front, back) <= -slack)
     inOrder = np.where(front > back, pairs, pairs[::-1])
@@ -107,12 +107,12 @@ class Painting:
         for n, face in enumerate(alike.faces):
             normals = alike.normals[:, n]
             seen = normals @ self.towards > LEVEL
-            fill = rgb(GHOST) if colours is None else self.lit(colours[seen], normals[seen])  # fmt: skip
+            fill = rgb(GHOST) if colours is None else self.lit(colours[seen], normals[seen])
             edge = rgb(GHOST if colours is None else MORTAR)
             self.add(places[seen], alike.corners[seen][:, face], fill, edge, self.thin)
 
     def lit(self, colours, normals):
-        light = 0.55 + 0.45 * normals @ self.towards + 0.3 * np.maximum(normals[:, 2], 0)  # fmt: skip
+        light = 0.55 + 0.45 * normals @ self.towards + 0.3 * np.maximum(normals[:, 2], 0)
         return np.rint(np.minimum(1, light)[:, None] * colours)
 
     def cracks(self, places, crack, built, now, colours):
@@ -126,13 +126,22 @@ class Painting:
         """
         block, joint, kinds, closures, corners, drawn = crack
         places, normals = places[block] + 1 + joint, now.padded("normals")[block]
-        heights = np.einsum("nck,nfk->ncf", corners, built.padded("normals")[block]) - built.padded("offsets")[block][:, None]  # fmt: skip
+        heights = (
+            np.einsum("nck,nfk->ncf", corners, built.padded("normals")[block])
+            - built.padded("offsets")[block][:, None]
+        )
         seen = normals @ self.towards > LEVEL
         # a corner lies on a face if it is nearer than this
-        on = (np.abs(heights) < 1e-4 * built.diagonal[block, None, None]) & seen[:, None]  # fmt: skip
+        on = (np.abs(heights) < 1e-4 * built.diagonal[block, None, None]) & seen[:, None]
         whole = on.all(axis=1)
         n = np.flatnonzero(whole.any(axis=1) & (kinds < SEAM))
-        self.add(places[n], drawn[n], self.lit(FACES[kinds[n]], normals[n, whole[n].argmax(axis=1)]), None, 0)  # fmt: skip
+        self.add(
+            places[n],
+            drawn[n],
+            self.lit(FACES[kinds[n]], normals[n, whole[n].argmax(axis=1)]),
+            None,
+            0,
+        )
         self.kinds.update(kinds[n])
         both = on & np.roll(on, 1, axis=1) & ~whole[:, None]
         n, c = np.nonzero(both.any(axis=2))
@@ -144,7 +153,9 @@ class Painting:
         line, spot = kinds < NONE, closures > 0
         wide = np.where(kinds < SEAM, self.bold, 2 * self.thin)
         self.add(places[line], ends[line], None, edge[line], wide[line])
-        self.spots += zip(places[spot], ends[spot].mean(axis=1), 12 + 8e3 * np.minimum(closures[spot], MOST))  # fmt: skip
+        self.spots += zip(
+            places[spot], ends[spot].mean(axis=1), 12 + 8e3 * np.minimum(closures[spot], MOST)
+        )
 
     def finish(self, axes, flat, legend):
         """Put it into axes, with names for the legend.
@@ -159,11 +170,29 @@ class Painting:
         polygons = [polygon for alike in points for polygon in flat(alike)]
         fills, edges, wides = np.split(np.concatenate(looks)[order], (4, 8), axis=1)
         many = len(polygons) > 3000  # an SVG file has a picture of so many
-        axes.add_collection(PolyCollection([polygons[n] for n in order], facecolors=fills, edgecolors=edges, linewidths=wides.ravel(), rasterized=many))  # fmt: skip
+        axes.add_collection(
+            PolyCollection(
+                [polygons[n] for n in order],
+                facecolors=fills,
+                edgecolors=edges,
+                linewidths=wides.ravel(),
+                rasterized=many,
+            )
+        )
         for n, (kind, colour) in enumerate(CRACKS.items() if legend else ()):
-            axes.add_collection(LineCollection([], color=colour, lw=self.bold, label=kind))  # fmt: skip
+            axes.add_collection(LineCollection([], color=colour, lw=self.bold, label=kind))
             if n in self.kinds:
-                axes.add_collection(PolyCollection([], facecolor=FACES[n] / 255, lw=0, label=kind + ", its face"))  # fmt: skip
+                axes.add_collection(
+                    PolyCollection([], facecolor=FACES[n] / 255, lw=0, label=kind + ", its face")
+                )
         if self.spots:
-            _, points, wide = map(np.array, zip(*sorted(self.spots, key=lambda spot: spot[0])))  # fmt: skip
-            axes.scatter(*flat(points).T, s=wide * min(1, self.bold / 1.8) ** 2, color=CRUSHED, marker="X", lw=0, label="crushed", zorder=5)  # fmt: skip
+            _, points, wide = map(np.array, zip(*sorted(self.spots, key=lambda spot: spot[0])))
+            axes.scatter(
+                *flat(points).T,
+                s=wide * min(1, self.bold / 1.8) ** 2,
+                color=CRUSHED,
+                marker="X",
+                lw=0,
+                label="crushed",
+                zorder=5,
+            )

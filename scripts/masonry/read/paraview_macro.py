@@ -14,7 +14,7 @@ import os
 
 import paraview.simple as pv
 
-OPENINGS = (0, 1, 0.78, 0.2), (0.35, 0.95, 0.35, 0.1), (0.7, 0.78, 0.05, 0.1), (1, 0.35, 0, 0.2)  # fmt: skip
+OPENINGS = (0, 1, 0.78, 0.2), (0.35, 0.95, 0.35, 0.1), (0.7, 0.78, 0.05, 0.1), (1, 0.35, 0, 0.2)
 
 
 def moved(run, kind, vector="displacement"):
@@ -40,7 +40,7 @@ def drawn(source, view, colour, width=None):
     shown = pv.Show(source, view)
     shown.ColorArrayName = ["POINTS", ""]
     shown.AmbientColor = shown.DiffuseColor = colour
-    shown.Ambient, shown.Diffuse, shown.Specular = (1, 0, 0) if width else (0.42, 0.62, 0)  # fmt: skip
+    shown.Ambient, shown.Diffuse, shown.Specular = (1, 0, 0) if width else (0.42, 0.62, 0)
     if width:
         shown.LineWidth = width
     return shown
@@ -68,12 +68,15 @@ def build(view, run):
     ramp = pv.GetColorTransferFunction("opening [mm]")
     ramp.AutomaticRescaleRangeMode = "Never"
     for vector in ("displacement", "second_displacement"):
-        joints = pv.Calculator(Input=moved(run, "joints", vector), AttributeType="Cell Data")  # fmt: skip
+        joints = pv.Calculator(Input=moved(run, "joints", vector), AttributeType="Cell Data")
         joints.ResultArrayName, joints.Function = "opening [mm]", "1000 * opening"
-        for name, formula in (("slid joints", slid), ("open joints", f"{isOpen} * {hurt}")):  # fmt: skip
+        for name, formula in (("slid joints", slid), ("open joints", f"{isOpen} * {hurt}")):
             cells = chosen(joints, name, formula)
             rims = pv.ExtractEdges(Input=cells)
-            for thing in (drawn(cells, view, colours["slid"]), drawn(rims, view, colours["slid"], 3)):  # fmt: skip
+            for thing in (
+                drawn(cells, view, colours["slid"]),
+                drawn(rims, view, colours["slid"], 3),
+            ):
                 thing.Position = nearer
                 if name == "open joints":
                     pv.ColorBy(thing, ("CELLS", "opening [mm]"))
@@ -81,7 +84,7 @@ def build(view, run):
     if os.path.exists(os.path.join(run["folder"], "connectors.pvd")):
         drawn(moved(run, "connectors"), view, colours["mortar"], 4).Position = nearer
     # drawing has set the range of colours to that of the frame
-    ramp.RGBPoints = [v for share, *rgb in OPENINGS for v in (share * run["widest_mm"], *rgb)]  # fmt: skip
+    ramp.RGBPoints = [v for share, *rgb in OPENINGS for v in (share * run["widest_mm"], *rgb)]
     bar = pv.GetScalarBar(ramp, view)
     bar.Title, bar.ComponentTitle, bar.Visibility = "opening [mm]", "", 1
     bar.TitleColor = bar.LabelColor = (0, 0, 0)
@@ -105,7 +108,7 @@ def build(view, run):
         setattr(grid, axis + "LabelColor", (0, 0, 0))
     view.CameraParallelProjection, view.CameraViewUp = 1, (0, 0, 1)
     view.CameraFocalPoint = view.CenterOfRotation = run["middle"]
-    view.CameraPosition = [m + 8 * run["half_height"] * t for m, t in zip(run["middle"], towards)]  # fmt: skip
+    view.CameraPosition = [m + 8 * run["half_height"] * t for m, t in zip(run["middle"], towards)]
     view.CameraParallelScale = run["half_height"]
 
 
@@ -123,7 +126,7 @@ def main():
         pv.SetActiveView(view)
         build(view, run)
         if n + 1 < len(runs):
-            place = layout.SplitHorizontal(layout.GetViewLocation(view), 1 / (len(runs) - n)) + 1  # fmt: skip
+            place = layout.SplitHorizontal(layout.GetViewLocation(view), 1 / (len(runs) - n)) + 1
     animation = pv.GetAnimationScene()
     animation.UpdateAnimationUsingDataTimeSteps()
     animation.AnimationTime = job["time"]
@@ -131,7 +134,7 @@ def main():
     if job["picture"]:
         pv.SaveScreenshot(job["picture"], layout, ImageResolution=(wide, high))
     if job["film"]:
-        pv.SaveAnimation(job["film"], layout, ImageResolution=(wide, high), FrameRate=job["rate"])  # fmt: skip
+        pv.SaveAnimation(job["film"], layout, ImageResolution=(wide, high), FrameRate=job["rate"])
 
 
 main()

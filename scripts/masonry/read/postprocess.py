@@ -92,7 +92,7 @@ def main():
     try:
         written = onFolder(write, [folder]) and NO_REPORT
     except Exception as problem:  # the figures shall be there all the same
-        say(f"the report cannot be made: {type(problem).__name__}: {problem}", sys.stderr)  # fmt: skip
+        say(f"the report cannot be made: {type(problem).__name__}: {problem}", sys.stderr)
     try:
         return drawing.result() or written
     except Failed:

@@ -18,7 +18,9 @@ from ..common.arguments import isNumber
 from . import cracks, curves, loops
 from .run_data import BASE, FALL, MASONRY, MOVED, TOP, RunData
 
-IMBALANCE = 0.1  # a push with a larger dynamic imbalance is too fast: its peak is off by 1 to 5 % and more
+IMBALANCE = (
+    0.1  # a push with a larger dynamic imbalance is too fast: its peak is off by 1 to 5 % and more
+)
 
 #: Energies of the balance by their names in curve.csv, without the unit: what each is, and whether it is put in, stored or spent.
 ENERGIES = {
@@ -35,7 +37,7 @@ ENERGIES = {
     "dissipated_tension": ("energy that joints dissipated in tension", "spent"),
     "dissipated_shear": ("energy that joints dissipated in shear", "spent"),
     "dissipated_compression": ("energy that joints dissipated in compression", "spent"),
-}  # fmt: skip
+}
 #: Likewise of ties and springs, and of contacts, in scenes that have some.
 OF_CONNECTORS = {
     "elastic_connectors": ("elastic energy in ties and springs", "stored"),
@@ -101,25 +103,74 @@ class State(NamedTuple):
 
 #: States of a push; for each there is a displacement and a drift.
 STATES = (
-    State("first crack", "displacement_at_first_crack_mm", "drift_at_first_crack_mrad", lambda d: d.firstCrack,
-          "The first row at which the joints have dissipated, in tension and shear since the push began, more than 1e-5 of the elastic energy; of dry joints it is where slip begins to count.",
-          "no crack was seen in the push"),
-    State("peak", "displacement_at_peak_mm", "drift_at_peak_mrad", lambda d: d.peak(), "The largest force that both ends carry at once."),
-    State("0.8 of the peak", "displacement_at_fall_mm", "drift_at_fall_mrad", lambda d: d.fallenTo(FALL),
-          "Where the force that both ends carry at once has fallen to 0.8 of its peak, after it, for longer than a first period; of cycles on the envelope.",
-          "the force never falls to 0.8 of its peak", True),
-    State("collapse", "collapse_displacement_mm", "drift_at_collapse_mrad", lambda d: d.collapse, "The last row of a push that ended in a collapse.",
-          "the push did not end in a collapse"),
-)  # fmt: skip
+    State(
+        "first crack",
+        "displacement_at_first_crack_mm",
+        "drift_at_first_crack_mrad",
+        lambda d: d.firstCrack,
+        (
+            "The first row at which the joints have dissipated, in tension and shear since the push"
+            " began, more than 1e-5 of the elastic energy; of dry joints it is where slip begins to"
+            " count."
+        ),
+        "no crack was seen in the push",
+    ),
+    State(
+        "peak",
+        "displacement_at_peak_mm",
+        "drift_at_peak_mrad",
+        lambda d: d.peak(),
+        "The largest force that both ends carry at once.",
+    ),
+    State(
+        "0.8 of the peak",
+        "displacement_at_fall_mm",
+        "drift_at_fall_mrad",
+        lambda d: d.fallenTo(FALL),
+        (
+            "Where the force that both ends carry at once has fallen to 0.8 of its peak, after it,"
+            " for longer than a first period; of cycles on the envelope."
+        ),
+        "the force never falls to 0.8 of its peak",
+        True,
+    ),
+    State(
+        "collapse",
+        "collapse_displacement_mm",
+        "drift_at_collapse_mrad",
+        lambda d: d.collapse,
+        "The last row of a push that ended in a collapse.",
+        "the push did not end in a collapse",
+    ),
+)
 
 
 def _ofStates():
     for state in STATES:
         moved = lambda d, state=state: d.at(d[MOVED], d.place(state.find))
         drift = lambda d, state=state: d.drift(d.place(state.find))
-        where = f"at the state: {state.name}" if state.name == "collapse" else f"at the {state.name}"  # fmt: skip
-        yield Quantity(state.displacement, f"displacement {where}", "mm", f"Displacement of the pushed point. {state.meaning}", f"curve.csv: {MOVED}", moved, "state", state.name == "first crack" or state.name == "peak")  # fmt: skip
-        yield Quantity(state.drift, f"drift {where}", "mrad", f"Drift of the masonry. {state.meaning}", f"curve.csv: {MASONRY}, or {MOVED}, over drift_height_m", drift, "state")  # fmt: skip
+        where = (
+            f"at the state: {state.name}" if state.name == "collapse" else f"at the {state.name}"
+        )
+        yield Quantity(
+            state.displacement,
+            f"displacement {where}",
+            "mm",
+            f"Displacement of the pushed point. {state.meaning}",
+            f"curve.csv: {MOVED}",
+            moved,
+            "state",
+            state.name == "first crack" or state.name == "peak",
+        )
+        yield Quantity(
+            state.drift,
+            f"drift {where}",
+            "mrad",
+            f"Drift of the masonry. {state.meaning}",
+            f"curve.csv: {MASONRY}, or {MOVED}, over drift_height_m",
+            drift,
+            "state",
+        )
 
 
 _BOTH = f"curve.csv: {BASE}, {TOP}"
@@ -128,14 +179,31 @@ GROUPS: dict[str, tuple[str, Callable[[RunData], bool]]] = {
     "every": ("Every run has these", lambda d: True),
     "cost": ("and these, which are no measures of the structure", lambda d: True),
     "push": ("A run with a push has these, too", lambda d: d.isPush),
-    "state": ("and these, which are None where the state is not reached or the push is not horizontal", lambda d: d.isPush),
+    "state": (
+        "and these, which are None where the state is not reached or the push is not horizontal",
+        lambda d: d.isPush,
+    ),
     "one way": ("A push in one direction has these, too", lambda d: d.isPush and not d.isLooped),
     "loops": ("A push that follows a history has these, too", lambda d: d.isPush and d.isLooped),
-    "wall": ("A whole wall in running bond that a platen pushes has these with --lean, which leaves no frames; masonry.read.measure finds them from frames",
-             lambda d: d.isPush and d.joints is not None and "wall" in d.run),
-    "joint": ("A run that records the means of a joint has these, with its name before them if it has one", lambda d: False),
-    "bound": ("A run that pushes, leans or tilts has these, if limit analysis (masonry.limit) applies", lambda d: False),
-}  # fmt: skip
+    "wall": (
+        (
+            "A whole wall in running bond that a platen pushes has these with --lean, which leaves"
+            " no frames; masonry.read.measure finds them from frames"
+        ),
+        lambda d: d.isPush and d.joints is not None and "wall" in d.run,
+    ),
+    "joint": (
+        (
+            "A run that records the means of a joint has these, with its name before them if it"
+            " has one"
+        ),
+        lambda d: False,
+    ),
+    "bound": (
+        "A run that pushes, leans or tilts has these, if limit analysis (masonry.limit) applies",
+        lambda d: False,
+    ),
+}
 
 
 def _ofPattern(key):
@@ -144,59 +212,501 @@ def _ofPattern(key):
 
 Q = Quantity
 QUANTITIES: tuple[Quantity, ...] = (
-    Q("peak_at_both_ends_kN", "peak", "kN", "Largest force along the push that the loaded point and the supports carry at once, so without waves that pass through; of loops where the displacement is positive.", _BOTH, lambda d: d.peakForce(), brief=True),
-    Q("peak_base_shear_kN", "force at the supports at the peak", "kN", "Force along the push at all that is held, at the peak.", f"curve.csv: {BASE}", lambda d: d[BASE][d.peak()], brief=True),
+    Q(
+        "peak_at_both_ends_kN",
+        "peak",
+        "kN",
+        (
+            "Largest force along the push that the loaded point and the supports carry at once, so"
+            " without waves that pass through; of loops where the displacement is positive."
+        ),
+        _BOTH,
+        lambda d: d.peakForce(),
+        brief=True,
+    ),
+    Q(
+        "peak_base_shear_kN",
+        "force at the supports at the peak",
+        "kN",
+        "Force along the push at all that is held, at the peak.",
+        f"curve.csv: {BASE}",
+        lambda d: d[BASE][d.peak()],
+        brief=True,
+    ),
     *_ofStates(),
-    Q("drift_height_m", "height of drifts", "m", "Height above the lowest brick of the points whose displacement is the drift of the masonry; None if the push is not horizontal.", "the bricks at the pushed platen, or the pushed point", group="state"),
-    Q("recorded_height_m", "height of the pushed point", "m", "Height above the lowest brick of the point whose displacement is recorded; None if the push is not horizontal.", "the platen or brick", group="state"),
-    Q("negative_peak_at_both_ends_kN", "peak of the other side", "kN", "As the peak, of the way back, where the displacement is negative.", _BOTH, lambda d: d.peakForce(-1), "loops"),
-    Q("negative_peak_base_shear_kN", "force at the supports at the peak of the other side", "kN", "Force along the push at all that is held, at that peak.", f"curve.csv: {BASE}", lambda d: d[BASE][d.peak(-1)], "loops"),
-    Q("displacement_at_negative_peak_mm", "displacement at the peak of the other side", "mm", "Displacement of the pushed point there.", f"curve.csv: {MOVED}", lambda d: d[MOVED][d.peak(-1)], "loops"),
-    Q("drift_at_negative_peak_mrad", "drift at the peak of the other side", "mrad", "Drift of the masonry there.", f"curve.csv: {MASONRY}, or {MOVED}, over drift_height_m", lambda d: d.drift(d.peak(-1)), "loops"),
-    Q("base_shear_end_kN", "force at the end", "kN", "Force at the supports in the last row.", f"curve.csv: {BASE}", lambda d: d[BASE][-1], brief=True),
-    Q("displacement_end_mm", "displacement at the end", "mm", "Displacement of the pushed point in the last row.", f"curve.csv: {MOVED}", lambda d: d[MOVED][-1], brief=True),
-    Q("initial_stiffness_kN_per_mm", "initial stiffness", "kN/mm", "Slope of the line through the beginning of the push that fits its first part best, without the inertia of the structure.", "masonry.read.curves.stiffness", lambda d: d.stiffness, brief=True),
-    Q("push_work_J", "work of the push", "J", "Area under the curve of the push; none of a push in a pattern, whose force works on the mean of its points.", f"curve.csv: {BASE}, {MOVED}", lambda d: d.work(lambda moved, base: loops.area(base, moved)), "one way", True),
-    Q("first_period_s", "first period along the push", "s", "First period of the structure along the push, measured as it began; None if none was found.", "masonry.assembly.period"),
-    Q("base_weight", "", "-", "w of the shear force V_s = (1 - w) top + w base, which leaves out the inertia of the structure's own mass; from the shape in which the structure moved as the push began, else 2/3.", "masonry.read.curves.quasiStatic"),
-    Q("velocity_grown_at_s", "", "s", "Time at which the velocity of the drive had grown in the first of these pushes; 0 if no first period was found.", "the drive"),
-    Q("dynamic_imbalance", "dynamic imbalance", "-", "Root mean square of the force that did not arrive at the supports, over the largest force: from half of the peak to the peak or from there to the end, whichever is more. A slow test has nearly none.", "masonry.read.curves.dynamicImbalance", lambda d: curves.dynamicImbalance(d[TOP], d[BASE]), brief=True, share=True),
-    Q("too_fast", "", "-", "Whether the dynamic imbalance is more than a push may have, 0.1.", "dynamic_imbalance", lambda d: curves.dynamicImbalance(d[TOP], d[BASE]) > IMBALANCE),
-    Q("largest_crack_mm", "widest crack at the end", "mm", "Largest opening of a point of any joint at the end of the run, also of those to platens; slide does not count; 0 if none is open.", "the joints at the end", group="every", brief=True),
-    Q("damage_class", "damage class of the widest crack", "-", "Of the widest crack at the end, by the table of Burland, Broms and De Mello (1977) and BRE Digest 251: 0 negligible, up to 0.1 mm; 1 very slight, 1 mm; 2 slight, 5 mm; 3 moderate, 15 mm; 4 severe, 25 mm; 5 very severe.", "largest_crack_mm", lambda d: cracks.damageClass(d.run["largest_crack_mm"]), "every"),
-    Q("sudden_loss", "sudden loss of force", "-", "Largest fall of the force within a tenth of a millimetre, over its peak; above 0.1 the answer can depend on chance.", "masonry.read.curves.suddenLoss", lambda d: d.sudden[0], "one way", share=True),
-    Q("sudden_loss_at_mm", "displacement at the sudden loss", "mm", "Displacement at which that begins.", "masonry.read.curves.suddenLoss", lambda d: d.sudden[1], "one way"),
-    Q("force_drop", "force lost at the end", "-", "Share of the peak that is lost at the end; of loops along the envelope of the positive side.", _BOTH, lambda d: d.dropped()[0], share=True),
-    Q("drop_at_mm", "displacement at the drop of force", "mm", "First displacement after the peak with less than 0.95 of it; None if there is none.", _BOTH, lambda d: d.dropped()[1]),
-    Q("force_drop_negative", "force lost at the end of the other side", "-", "Likewise along the envelope of the negative side.", _BOTH, lambda d: d.dropped(-1)[0], "loops", share=True),
-    Q("drop_at_negative_mm", "displacement at the drop of force of the other side", "mm", "Likewise, as a positive number.", _BOTH, lambda d: d.dropped(-1)[1], "loops"),
-    Q("damped_share", "share of damping", "-", "Of what the joints and the damping of the run took in all, the share of the damping, which a real wall does not have.", "masonry.read.curves.dampedShare", lambda d: curves.dampedShare(d.__getitem__), "loops", share=True),
-    Q("cycle_count", "whole cycles", "-", "How many cycles are whole.", "cycles", lambda d: len(d.cycles), "loops"),
-    Q("cycle_work_J", "work of all cycles", "J", "Sum of their works at the base.", "cycles", lambda d: d.work(lambda *_: sum(one["work_J"] for one in d.cycles)), "loops"),
-    Q("loop_work_J", "work of the whole curve", "J", "Integral of the base shear over the displacement.", f"curve.csv: {BASE}, {MOVED}", lambda d: d.work(loops.work), "loops"),
-    Q("largest_amplitude_mm", "largest amplitude", "mm", "Of a cycle.", "cycles", lambda d: max(one["amplitude_mm"] for one in d.cycles), "loops"),
-    Q("largest_damping", "largest equivalent damping", "-", "Ratio of equivalent viscous damping of a cycle.", "masonry.read.loops.equivalentDamping", lambda d: max(_damping(d)), "loops", share=True),
-    Q("smallest_damping", "smallest equivalent damping", "-", "Likewise.", "masonry.read.loops.equivalentDamping", lambda d: min(_damping(d)), "loops", share=True),
-    Q("bound_base_shear_kN", "limit analysis of the push", "kN", "Bound of the force of the first push.", "masonry.limit", group="bound", brief=True),
-    Q("negative_bound_base_shear_kN", "limit analysis of the way back", "kN", "Likewise of the way back.", "masonry.limit", group="bound"),
-    Q("bound_acceleration", "limit analysis of the acceleration", "g", "Bound of the first lean or tilt, horizontal over vertical.", "masonry.limit", group="bound", brief=True),
-    *(Q(key, "", "-", f"As of {where}.", where, _ofPattern(key), "wall") for key, where in cracks.MEASURED.items()),
-    Q("peak_normal_stress_MPa", "largest normal stress", "MPa", "Largest mean normal stress of the joint, positive in tension.", "curve.csv: normal_stress_MPa", lambda c: max(c("normal_stress_MPa")), "joint", True),
-    Q("peak_compressive_stress_MPa", "largest compression", "MPa", "Largest mean compression of the joint, as a positive number.", "curve.csv: normal_stress_MPa", lambda c: -min(c("normal_stress_MPa")), "joint", True),
-    Q("peak_shear_stress_MPa", "largest shear stress", "MPa", "Largest mean shear stress of the joint.", "curve.csv: shear_stress_MPa", lambda c: max(c("shear_stress_MPa")), "joint", True),
-    Q("end_normal_stress_MPa", "normal stress at the end", "MPa", "Mean normal stress of the joint in the last row.", "curve.csv: normal_stress_MPa", lambda c: c("normal_stress_MPa")[-1], "joint"),
-    Q("end_shear_stress_MPa", "shear stress at the end", "MPa", "Mean shear stress of the joint in the last row.", "curve.csv: shear_stress_MPa", lambda c: c("shear_stress_MPa")[-1], "joint", True),
-    *(Q(f"dissipated_{mode}_J_per_m2", "", "J/m²", f"Energy that the joint dissipated in {mode}, over its area.", "the joint", group="joint") for mode in ("tension", "shear", "compression")),
-    Q("factor", "", "-", "Largest load factor under which the structure came to rest, in the last stage that found one.", "answers", group="every"),
-    Q("energy_balance_error", "largest error of the energy balance", "-", "Largest error of the balance in all rows, relative to the largest work done until then. It shows errors of the scheme, as a time step that is too long, and not those of mesh or law.", "curve.csv: balance_error", group="every", brief=True, share=True),
-    Q("energy_made", "energy that joints made", "-", "Most energy that joints made by opening or closing within a step, relative to the largest work done until then.", "the energy balance", group="every", share=True),
+    Q(
+        "drift_height_m",
+        "height of drifts",
+        "m",
+        (
+            "Height above the lowest brick of the points whose displacement is the drift of the"
+            " masonry; None if the push is not horizontal."
+        ),
+        "the bricks at the pushed platen, or the pushed point",
+        group="state",
+    ),
+    Q(
+        "recorded_height_m",
+        "height of the pushed point",
+        "m",
+        (
+            "Height above the lowest brick of the point whose displacement is recorded; None if the"
+            " push is not horizontal."
+        ),
+        "the platen or brick",
+        group="state",
+    ),
+    Q(
+        "negative_peak_at_both_ends_kN",
+        "peak of the other side",
+        "kN",
+        "As the peak, of the way back, where the displacement is negative.",
+        _BOTH,
+        lambda d: d.peakForce(-1),
+        "loops",
+    ),
+    Q(
+        "negative_peak_base_shear_kN",
+        "force at the supports at the peak of the other side",
+        "kN",
+        "Force along the push at all that is held, at that peak.",
+        f"curve.csv: {BASE}",
+        lambda d: d[BASE][d.peak(-1)],
+        "loops",
+    ),
+    Q(
+        "displacement_at_negative_peak_mm",
+        "displacement at the peak of the other side",
+        "mm",
+        "Displacement of the pushed point there.",
+        f"curve.csv: {MOVED}",
+        lambda d: d[MOVED][d.peak(-1)],
+        "loops",
+    ),
+    Q(
+        "drift_at_negative_peak_mrad",
+        "drift at the peak of the other side",
+        "mrad",
+        "Drift of the masonry there.",
+        f"curve.csv: {MASONRY}, or {MOVED}, over drift_height_m",
+        lambda d: d.drift(d.peak(-1)),
+        "loops",
+    ),
+    Q(
+        "base_shear_end_kN",
+        "force at the end",
+        "kN",
+        "Force at the supports in the last row.",
+        f"curve.csv: {BASE}",
+        lambda d: d[BASE][-1],
+        brief=True,
+    ),
+    Q(
+        "displacement_end_mm",
+        "displacement at the end",
+        "mm",
+        "Displacement of the pushed point in the last row.",
+        f"curve.csv: {MOVED}",
+        lambda d: d[MOVED][-1],
+        brief=True,
+    ),
+    Q(
+        "initial_stiffness_kN_per_mm",
+        "initial stiffness",
+        "kN/mm",
+        (
+            "Slope of the line through the beginning of the push that fits its first part best,"
+            " without the inertia of the structure."
+        ),
+        "masonry.read.curves.stiffness",
+        lambda d: d.stiffness,
+        brief=True,
+    ),
+    Q(
+        "push_work_J",
+        "work of the push",
+        "J",
+        (
+            "Area under the curve of the push; none of a push in a pattern, whose force works on"
+            " the mean of its points."
+        ),
+        f"curve.csv: {BASE}, {MOVED}",
+        lambda d: d.work(lambda moved, base: loops.area(base, moved)),
+        "one way",
+        True,
+    ),
+    Q(
+        "first_period_s",
+        "first period along the push",
+        "s",
+        (
+            "First period of the structure along the push, measured as it began; None if none was"
+            " found."
+        ),
+        "masonry.assembly.period",
+    ),
+    Q(
+        "base_weight",
+        "",
+        "-",
+        (
+            "w of the shear force V_s = (1 - w) top + w base, which leaves out the inertia of the"
+            " structure's own mass; from the shape in which the structure moved as the push began,"
+            " else 2/3."
+        ),
+        "masonry.read.curves.quasiStatic",
+    ),
+    Q(
+        "velocity_grown_at_s",
+        "",
+        "s",
+        (
+            "Time at which the velocity of the drive had grown in the first of these pushes; 0 if"
+            " no first period was found."
+        ),
+        "the drive",
+    ),
+    Q(
+        "dynamic_imbalance",
+        "dynamic imbalance",
+        "-",
+        (
+            "Root mean square of the force that did not arrive at the supports, over the largest"
+            " force: from half of the peak to the peak or from there to the end, whichever is more."
+            " A slow test has nearly none."
+        ),
+        "masonry.read.curves.dynamicImbalance",
+        lambda d: curves.dynamicImbalance(d[TOP], d[BASE]),
+        brief=True,
+        share=True,
+    ),
+    Q(
+        "too_fast",
+        "",
+        "-",
+        "Whether the dynamic imbalance is more than a push may have, 0.1.",
+        "dynamic_imbalance",
+        lambda d: curves.dynamicImbalance(d[TOP], d[BASE]) > IMBALANCE,
+    ),
+    Q(
+        "largest_crack_mm",
+        "widest crack at the end",
+        "mm",
+        (
+            "Largest opening of a point of any joint at the end of the run, also of those to"
+            " platens; slide does not count; 0 if none is open."
+        ),
+        "the joints at the end",
+        group="every",
+        brief=True,
+    ),
+    Q(
+        "damage_class",
+        "damage class of the widest crack",
+        "-",
+        (
+            "Of the widest crack at the end, by the table of Burland, Broms and De Mello (1977) and"
+            " BRE Digest 251: 0 negligible, up to 0.1 mm; 1 very slight, 1 mm; 2 slight, 5 mm; 3"
+            " moderate, 15 mm; 4 severe, 25 mm; 5 very severe."
+        ),
+        "largest_crack_mm",
+        lambda d: cracks.damageClass(d.run["largest_crack_mm"]),
+        "every",
+    ),
+    Q(
+        "sudden_loss",
+        "sudden loss of force",
+        "-",
+        (
+            "Largest fall of the force within a tenth of a millimetre, over its peak; above 0.1 the"
+            " answer can depend on chance."
+        ),
+        "masonry.read.curves.suddenLoss",
+        lambda d: d.sudden[0],
+        "one way",
+        share=True,
+    ),
+    Q(
+        "sudden_loss_at_mm",
+        "displacement at the sudden loss",
+        "mm",
+        "Displacement at which that begins.",
+        "masonry.read.curves.suddenLoss",
+        lambda d: d.sudden[1],
+        "one way",
+    ),
+    Q(
+        "force_drop",
+        "force lost at the end",
+        "-",
+        (
+            "Share of the peak that is lost at the end; of loops along the envelope of the positive"
+            " side."
+        ),
+        _BOTH,
+        lambda d: d.dropped()[0],
+        share=True,
+    ),
+    Q(
+        "drop_at_mm",
+        "displacement at the drop of force",
+        "mm",
+        "First displacement after the peak with less than 0.95 of it; None if there is none.",
+        _BOTH,
+        lambda d: d.dropped()[1],
+    ),
+    Q(
+        "force_drop_negative",
+        "force lost at the end of the other side",
+        "-",
+        "Likewise along the envelope of the negative side.",
+        _BOTH,
+        lambda d: d.dropped(-1)[0],
+        "loops",
+        share=True,
+    ),
+    Q(
+        "drop_at_negative_mm",
+        "displacement at the drop of force of the other side",
+        "mm",
+        "Likewise, as a positive number.",
+        _BOTH,
+        lambda d: d.dropped(-1)[1],
+        "loops",
+    ),
+    Q(
+        "damped_share",
+        "share of damping",
+        "-",
+        (
+            "Of what the joints and the damping of the run took in all, the share of the damping,"
+            " which a real wall does not have."
+        ),
+        "masonry.read.curves.dampedShare",
+        lambda d: curves.dampedShare(d.__getitem__),
+        "loops",
+        share=True,
+    ),
+    Q(
+        "cycle_count",
+        "whole cycles",
+        "-",
+        "How many cycles are whole.",
+        "cycles",
+        lambda d: len(d.cycles),
+        "loops",
+    ),
+    Q(
+        "cycle_work_J",
+        "work of all cycles",
+        "J",
+        "Sum of their works at the base.",
+        "cycles",
+        lambda d: d.work(lambda *_: sum(one["work_J"] for one in d.cycles)),
+        "loops",
+    ),
+    Q(
+        "loop_work_J",
+        "work of the whole curve",
+        "J",
+        "Integral of the base shear over the displacement.",
+        f"curve.csv: {BASE}, {MOVED}",
+        lambda d: d.work(loops.work),
+        "loops",
+    ),
+    Q(
+        "largest_amplitude_mm",
+        "largest amplitude",
+        "mm",
+        "Of a cycle.",
+        "cycles",
+        lambda d: max(one["amplitude_mm"] for one in d.cycles),
+        "loops",
+    ),
+    Q(
+        "largest_damping",
+        "largest equivalent damping",
+        "-",
+        "Ratio of equivalent viscous damping of a cycle.",
+        "masonry.read.loops.equivalentDamping",
+        lambda d: max(_damping(d)),
+        "loops",
+        share=True,
+    ),
+    Q(
+        "smallest_damping",
+        "smallest equivalent damping",
+        "-",
+        "Likewise.",
+        "masonry.read.loops.equivalentDamping",
+        lambda d: min(_damping(d)),
+        "loops",
+        share=True,
+    ),
+    Q(
+        "bound_base_shear_kN",
+        "limit analysis of the push",
+        "kN",
+        "Bound of the force of the first push.",
+        "masonry.limit",
+        group="bound",
+        brief=True,
+    ),
+    Q(
+        "negative_bound_base_shear_kN",
+        "limit analysis of the way back",
+        "kN",
+        "Likewise of the way back.",
+        "masonry.limit",
+        group="bound",
+    ),
+    Q(
+        "bound_acceleration",
+        "limit analysis of the acceleration",
+        "g",
+        "Bound of the first lean or tilt, horizontal over vertical.",
+        "masonry.limit",
+        group="bound",
+        brief=True,
+    ),
+    *(
+        Q(key, "", "-", f"As of {where}.", where, _ofPattern(key), "wall")
+        for key, where in cracks.MEASURED.items()
+    ),
+    Q(
+        "peak_normal_stress_MPa",
+        "largest normal stress",
+        "MPa",
+        "Largest mean normal stress of the joint, positive in tension.",
+        "curve.csv: normal_stress_MPa",
+        lambda c: max(c("normal_stress_MPa")),
+        "joint",
+        True,
+    ),
+    Q(
+        "peak_compressive_stress_MPa",
+        "largest compression",
+        "MPa",
+        "Largest mean compression of the joint, as a positive number.",
+        "curve.csv: normal_stress_MPa",
+        lambda c: -min(c("normal_stress_MPa")),
+        "joint",
+        True,
+    ),
+    Q(
+        "peak_shear_stress_MPa",
+        "largest shear stress",
+        "MPa",
+        "Largest mean shear stress of the joint.",
+        "curve.csv: shear_stress_MPa",
+        lambda c: max(c("shear_stress_MPa")),
+        "joint",
+        True,
+    ),
+    Q(
+        "end_normal_stress_MPa",
+        "normal stress at the end",
+        "MPa",
+        "Mean normal stress of the joint in the last row.",
+        "curve.csv: normal_stress_MPa",
+        lambda c: c("normal_stress_MPa")[-1],
+        "joint",
+    ),
+    Q(
+        "end_shear_stress_MPa",
+        "shear stress at the end",
+        "MPa",
+        "Mean shear stress of the joint in the last row.",
+        "curve.csv: shear_stress_MPa",
+        lambda c: c("shear_stress_MPa")[-1],
+        "joint",
+        True,
+    ),
+    *(
+        Q(
+            f"dissipated_{mode}_J_per_m2",
+            "",
+            "J/m²",
+            f"Energy that the joint dissipated in {mode}, over its area.",
+            "the joint",
+            group="joint",
+        )
+        for mode in ("tension", "shear", "compression")
+    ),
+    Q(
+        "factor",
+        "",
+        "-",
+        (
+            "Largest load factor under which the structure came to rest, in the last stage that"
+            " found one."
+        ),
+        "answers",
+        group="every",
+    ),
+    Q(
+        "energy_balance_error",
+        "largest error of the energy balance",
+        "-",
+        (
+            "Largest error of the balance in all rows, relative to the largest work done until"
+            " then. It shows errors of the scheme, as a time step that is too long, and not those"
+            " of mesh or law."
+        ),
+        "curve.csv: balance_error",
+        group="every",
+        brief=True,
+        share=True,
+    ),
+    Q(
+        "energy_made",
+        "energy that joints made",
+        "-",
+        (
+            "Most energy that joints made by opening or closing within a step, relative to the"
+            " largest work done until then."
+        ),
+        "the energy balance",
+        group="every",
+        share=True,
+    ),
     Q("time_step_s", "", "s", "The time step.", "the run", group="cost"),
-    Q("time_step_limit_s", "", "s", "The limit of the time step with the present damping.", "the run", group="cost"),
+    Q(
+        "time_step_limit_s",
+        "",
+        "s",
+        "The limit of the time step with the present damping.",
+        "the run",
+        group="cost",
+    ),
     Q("steps", "time steps", "-", "How many were taken.", "the run", group="cost", brief=True),
-    Q("microseconds_per_step", "time of a step", "µs", "Mean on the clock of the machine.", "the run", group="cost", brief=True),
-    Q("nanoseconds_per_subcontact_step", "time of a step and a point of a joint", "ns", "Mean on the clock of the machine.", "the run", group="cost"),
-    Q("wall_clock_s", "time of the run", "s", "On the clock of the machine, with set-up and files.", "the run", group="cost", brief=True),
-)  # fmt: skip
+    Q(
+        "microseconds_per_step",
+        "time of a step",
+        "µs",
+        "Mean on the clock of the machine.",
+        "the run",
+        group="cost",
+        brief=True,
+    ),
+    Q(
+        "nanoseconds_per_subcontact_step",
+        "time of a step and a point of a joint",
+        "ns",
+        "Mean on the clock of the machine.",
+        "the run",
+        group="cost",
+    ),
+    Q(
+        "wall_clock_s",
+        "time of the run",
+        "s",
+        "On the clock of the machine, with set-up and files.",
+        "the run",
+        group="cost",
+        brief=True,
+    ),
+)
 #: Numbers of a cycle: key in ``cycles`` of run.json, name, unit, digits behind the point on the terminal, and whether the report has it.
 OF_CYCLES = (
     ("smallest_mm", "smallest displacement", "mm", 3, True),
@@ -300,7 +810,11 @@ def described():
     """What run.json has of these, for its documentation: a list of reStructuredText for every group."""
     text = ""
     for group, (title, _) in GROUPS.items():
-        lines = (f"- ``{q.key}``: {q.meaning} Source: {q.source} [{q.unit}]" for q in QUANTITIES if q.group == group)  # fmt: skip
+        lines = (
+            f"- ``{q.key}``: {q.meaning} Source: {q.source} [{q.unit}]"
+            for q in QUANTITIES
+            if q.group == group
+        )
         text += "\n".join(["", f"{title}:", "", *lines, ""])
     return text
 

@@ -41,13 +41,18 @@ class RunData:
         data = cls(readRun(directory), curve.get)
         if moved is None or not data.isPush:
             return data
-        pushed = next(load[1] for load, *_ in reversed(data._stages) if load and load[0] == "push")  # fmt: skip
+        pushed = next(load[1] for load, *_ in reversed(data._stages) if load and load[0] == "push")
         upright = "vertical_mm", *(("_z_mm",) if not pushed.endswith("z") else ())
         fits = lambda name: name.endswith("_mm") and not name.endswith(upright)
         if moved not in curve or not fits(moved):
             names = ", ".join(filter(fits, curve))
-            raise Refused(f"{directory}: column {moved!r} must be a displacement of curve.csv along the push: {names}")  # fmt: skip
-        values, usual = (np.array(curve[name]) - curve[name][data.rows[0]] for name in (moved, MOVED))  # fmt: skip
+            raise Refused(
+                f"{directory}: column {moved!r} must be a displacement of curve.csv along the push:"
+                f" {names}"
+            )
+        values, usual = (
+            np.array(curve[name]) - curve[name][data.rows[0]] for name in (moved, MOVED)
+        )
         along = math.copysign(1, values[data.rows] @ usual[data.rows])
         unknown = {"drift_height_m": None, "recorded_height_m": None}  # of that point
         columns: dict[str, Any] = {**curve, MOVED: along * values, MASONRY: None}
@@ -60,7 +65,7 @@ class RunData:
         columns = (self.column(name) for name in (MOVED, "time_s"))
         count = len(next((values for values in columns if values is not None), ()))
         ends = [*(one["first_row"] for one in found[1:]), count]
-        return [(one.get("load"), one["first_row"], end) for one, end in zip(found, ends)]  # fmt: skip
+        return [(one.get("load"), one["first_row"], end) for one, end in zip(found, ends)]
 
     @functools.cached_property
     def pushes(self) -> list[tuple[int, int]]:
@@ -69,7 +74,9 @@ class RunData:
         pushed = [one for one in self._stages if one[0] and one[0][0] == "push"]
         others = [first for load, first, _ in pushed if load != pushed[-1][0]]
         since = max(others, default=-1)
-        return [(first, end) for load, first, end in pushed if load == pushed[-1][0] and first > since]  # fmt: skip
+        return [
+            (first, end) for load, first, end in pushed if load == pushed[-1][0] and first > since
+        ]
 
     @functools.cached_property
     def rows(self) -> list[int]:
@@ -108,7 +115,7 @@ class RunData:
 
         :param side: 1, or -1 for the way back
         """
-        return side * np.minimum(side * np.array(self[BASE]), side * np.array(self[TOP]))  # fmt: skip
+        return side * np.minimum(side * np.array(self[BASE]), side * np.array(self[TOP]))
 
     def peak(self, side: int = 1) -> int:
         """Where this force is largest, a number of a row among those of the push; in loops on its side of the displacement."""
@@ -133,8 +140,8 @@ class RunData:
     @property
     def height(self) -> float | None:
         """Height over which displacements of the push are drifts [m]; None if it is not known, or if the push is not horizontal."""
-        known = [self._height, self.run.get("drift_height_m"), self.run.get("recorded_height_m")]  # fmt: skip
-        return next((h for h in known if isinstance(h, (int, float)) and 0 < h < math.inf), None)  # fmt: skip
+        known = [self._height, self.run.get("drift_height_m"), self.run.get("recorded_height_m")]
+        return next((h for h in known if isinstance(h, (int, float)) and 0 < h < math.inf), None)
 
     @functools.cached_property
     def ofDrift(self) -> list[float]:
@@ -178,8 +185,10 @@ class RunData:
             return None
         force, at = force[rows], int(force[rows].argmax())
         pulse = 0.0 if self.isLooped else self.pulse
-        place = curves.fallen(np.maximum.accumulate(moved[rows]), force, at, share * force[at], pulse)  # fmt: skip
-        return None if place is None else float(np.interp(place, np.arange(len(rows)), rows))  # fmt: skip
+        place = curves.fallen(
+            np.maximum.accumulate(moved[rows]), force, at, share * force[at], pulse
+        )
+        return None if place is None else float(np.interp(place, np.arange(len(rows)), rows))
 
     @functools.cached_property
     def collapse(self) -> int | None:
@@ -192,12 +201,16 @@ class RunData:
     def sudden(self) -> tuple[float, float]:
         """As of :func:`masonry.read.curves.suddenLoss`: that of the push with the largest."""
         columns = [self.whole(name) for name in (MOVED, TOP, BASE)]
-        return max(curves.suddenLoss(*(values[slice(*push)] for values in columns)) for push in self.pushes)  # fmt: skip
+        return max(
+            curves.suddenLoss(*(values[slice(*push)] for values in columns)) for push in self.pushes
+        )
 
     @property
     def isOfControl(self) -> bool:
         """Whether the displacements of the push are those of a control, on which its force does no work."""
-        return bool(self.pushes) and any(len(load) > 3 for load, *_ in self._stages if load and load[0] == "push")  # fmt: skip
+        return bool(self.pushes) and any(
+            len(load) > 3 for load, *_ in self._stages if load and load[0] == "push"
+        )
 
     def work(self, workOf: Callable[[Any, Any], float]) -> float:
         """A work of the base shear over the displacements of the push [J]. Raises LookupError if it does none on these.
@@ -219,7 +232,9 @@ class RunData:
         grown = self.run.get("velocity_grown_at_s") or 0.0
         ramp = next((n for n, time in enumerate(self["time_s"]) if time >= grown), 0)
         weight = self.run.get("base_weight") or curves.SHEAR
-        return curves.stiffness(self[MOVED], curves.quasiStatic(self[TOP], self[BASE], weight), ramp)  # fmt: skip
+        return curves.stiffness(
+            self[MOVED], curves.quasiStatic(self[TOP], self[BASE], weight), ramp
+        )
 
     def dropped(self, side: int = 1) -> tuple[float, float | None]:
         """Share of the peak that is lost at the end, and the first displacement after the peak with less than 0.95 of it [mm], None
@@ -232,7 +247,7 @@ class RunData:
             raise LookupError("the force is never to this side")
         at = int(force.argmax())
         after = np.flatnonzero(force[at:] < (1 - LOST) * force[at])
-        return 1 - float(force[-1] / force[at]), float(moved[at + after[0]]) if len(after) else None  # fmt: skip
+        return 1 - float(force[-1] / force[at]), float(moved[at + after[0]]) if len(after) else None
 
     @functools.cached_property
     def cycles(self) -> list[dict[str, Any]]:

@@ -87,8 +87,11 @@ class Curve:
             import pandas
         except ModuleNotFoundError as error:
             raise ImportError(
-                "to_pandas needs pandas, which is not installed (on Debian, apt-get install python3-pandas): the columns "
-                "are arrays of numpy without it, as curve['time_s']",
+                (
+                    "to_pandas needs pandas, which is not installed (on Debian, apt-get install"
+                    " python3-pandas): the columns are arrays of numpy without it, as"
+                    " curve['time_s']"
+                ),
                 name=error.name,
             ) from None
         frame = pandas.DataFrame(self._columns)
@@ -100,11 +103,15 @@ class Curve:
 
     def _repr_html_(self):
         title = f"{len(self)} rows, {len(self._columns)} columns"
-        ends = lambda v: [f"{x:.4g}" for x in (v[0], v[-1], v.min(), v.max())] if len(v) else [""] * 4  # fmt: skip
-        rows = [(n, self.units[n], *ends(v), bare(self.meanings[n])) for n, v in self._columns.items()]  # fmt: skip
+        ends = lambda v: (
+            [f"{x:.4g}" for x in (v[0], v[-1], v.min(), v.max())] if len(v) else [""] * 4
+        )
+        rows = [
+            (n, self.units[n], *ends(v), bare(self.meanings[n])) for n, v in self._columns.items()
+        ]
         heads = "column", "unit", "first", "last", "smallest", "largest", "meaning"
         table = notebook.table(rows, heads)
-        return notebook.titled(title, self.picture(), notebook.folded("columns", table))  # fmt: skip
+        return notebook.titled(title, self.picture(), notebook.folded("columns", table))
 
     def picture(self):
         """What curve.png shows as HTML; nothing where there are less than two rows, or no figure."""

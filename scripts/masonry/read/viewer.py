@@ -62,17 +62,21 @@ def frameNear(directory: FilePath, at: Any) -> int:
         reached = np.flatnonzero(x >= value if value >= x[0] else x <= value)
         if not len(reached):
             raise Refused(
-                f"--at: {directory} never comes to {value:g} {own}; it goes from {x.min():g} to {x.max():g} {own}"
+                f"--at: {directory} never comes to {value:g} {own}; it goes from {x.min():g} to"
+                f" {x.max():g} {own}"
             )
         value = data["time_s"][reached[0]]
     elif not min(times) * (1 - 1e-9) <= value <= max(times) * (1 + 1e-9):
         raise Refused(
-            f"--at: {directory} has frames from {min(times):g} to {max(times):g} s, not at {value:g} s"
+            f"--at: {directory} has frames from {min(times):g} to {max(times):g} s, not at"
+            f" {value:g} s"
         )
     return frameAt(directory, value)
 
 
-def sceneOf(directory: FilePath, number: int, magnification: float | None, shape: float, still: bool) -> dict[str, Any]:  # fmt: skip
+def sceneOf(
+    directory: FilePath, number: int, magnification: float | None, shape: float, still: bool
+) -> dict[str, Any]:
     """What ParaView shall show of a run: an entry ``runs`` for :mod:`masonry.read.paraview_macro`.
 
     :param number: of the frame after which camera, magnification and the range of colours are chosen
@@ -95,12 +99,18 @@ def sceneOf(directory: FilePath, number: int, magnification: float | None, shape
     bodies = lambda look: model.bodies[model.looks == look].tolist()
     return {
         "folder": os.path.abspath(directory),
-        "title": f"{model.title}\n{when}displacements × {sight.magnification:g}, slid joints in blue, scale in m",
+        "title": (
+            f"{model.title}\n{when}displacements × {sight.magnification:g}, slid joints in blue,"
+            " scale in m"
+        ),
         "magnification": sight.magnification,
         "ground": bodies(GROUND),
         "platens": bodies(PLATEN),
         "widest_mm": page.data.nice(1e3 * max(widest, 4 * CRACK)),
-        "colours": {n: (painting.rgb(c) / 255).tolist() for n, c in {**painting.SHADES, **painting.CRACKS, "mortar": painting.MORTAR}.items()},  # fmt: skip
+        "colours": {
+            n: (painting.rgb(c) / 255).tolist()
+            for n, c in {**painting.SHADES, **painting.CRACKS, "mortar": painting.MORTAR}.items()
+        },
         "crack": CRACK,
         "damaged": DAMAGED,
         "bounds": np.column_stack([sight.low, sight.high]).ravel().tolist(),
@@ -110,7 +120,15 @@ def sceneOf(directory: FilePath, number: int, magnification: float | None, shape
     }
 
 
-def inParaView(directories: Sequence[FilePath], at: Any, magnification: float | None, target: str | None = None, film: bool = False, size: Sequence[int] = (1500, 1000), rate: int = 10) -> None:  # fmt: skip
+def inParaView(
+    directories: Sequence[FilePath],
+    at: Any,
+    magnification: float | None,
+    target: str | None = None,
+    film: bool = False,
+    size: Sequence[int] = (1500, 1000),
+    rate: int = 10,
+) -> None:
     """Show runs side by side in ParaView's window, or draw them to a picture or a film.
 
     :param at: the frame, as in :func:`frameNear`
@@ -131,7 +149,7 @@ def inParaView(directories: Sequence[FilePath], at: Any, magnification: float | 
         "rate": rate,
         "picture": target if still else None,
         "film": target if film else None,
-    }  # fmt: skip
+    }
     # one scale of colours for all
     widest = max(run["widest_mm"] for run in job["runs"])
     for run in job["runs"]:
@@ -142,18 +160,27 @@ def inParaView(directories: Sequence[FilePath], at: Any, magnification: float | 
     if not os.path.exists(path) or target and not shutil.which("xvfb-run"):
         raise Refused(MISSING)
     macro = os.path.join(os.path.dirname(__file__), "paraview_macro.py")
-    words = ["xvfb-run", "-a", "-s", DISPLAY, path, macro] if target else [path, "--script=" + macro]  # fmt: skip
+    words = (
+        ["xvfb-run", "-a", "-s", DISPLAY, path, macro] if target else [path, "--script=" + macro]
+    )
     modules = os.path.join(unpacked, "lib", "python3", "dist-packages")
     with tempfile.TemporaryDirectory() as folder:
         viewFile = os.path.join(folder, "view.json")
         with open(viewFile, "w") as file:
             json.dump(job, file)
         # PYTHONPATH and PYTHONHOME are of another Python
-        elsewhere = {k: v for k, v in os.environ.items() if k not in ("PYTHONPATH", "PYTHONHOME")}  # fmt: skip
+        elsewhere = {k: v for k, v in os.environ.items() if k not in ("PYTHONPATH", "PYTHONHOME")}
         if os.path.isdir(modules):
             elsewhere["PYTHONPATH"] = modules
-        done = subprocess.run(words, text=True, capture_output=bool(target), env={**elsewhere, "MASONRY_VIEW": viewFile})  # fmt: skip
-    if target and (done.returncode or not os.path.exists(os.path.dirname(target) if film else target)):  # fmt: skip
+        done = subprocess.run(
+            words,
+            text=True,
+            capture_output=bool(target),
+            env={**elsewhere, "MASONRY_VIEW": viewFile},
+        )
+    if target and (
+        done.returncode or not os.path.exists(os.path.dirname(target) if film else target)
+    ):
         lines = (done.stderr + done.stdout).strip().splitlines()
         raise Refused("ParaView ended with an error:\n" + "\n".join(lines[-15:]))
 
@@ -167,11 +194,11 @@ def _writable(path, directory, name, endings):
         folders.check(directory)
         path = os.path.join(directory, name)
     if os.path.isdir(path):
-        raise Refused(f"{path} is a folder; name a file that ends in {' or '.join(endings)}")  # fmt: skip
+        raise Refused(f"{path} is a folder; name a file that ends in {' or '.join(endings)}")
     if not path.lower().endswith(endings):
         raise Refused(f"{path} must end in {' or '.join(endings)}")
     if not os.path.isdir(os.path.dirname(path) or "."):
-        raise Refused(f"cannot write {path}: there is no folder {os.path.dirname(path)}")  # fmt: skip
+        raise Refused(f"cannot write {path}: there is no folder {os.path.dirname(path)}")
     return path
 
 
@@ -190,7 +217,10 @@ def _drawn(path, isFilm):
 def _handOn(args):
     """--html and --gltf: a file that needs no ParaView."""
     if args.picture or args.film or len(args.result) > 1:
-        raise Refused("--html and --gltf write one file of one run; start view.py again for other files or runs")  # fmt: skip
+        raise Refused(
+            "--html and --gltf write one file of one run; start view.py again for other files or"
+            " runs"
+        )
     if args.frame is not None and args.at is not None:
         raise Refused("--frame and --at both name a frame; give one of them")
     (directory,) = args.result
@@ -202,7 +232,15 @@ def _handOn(args):
             say(f"{path}: {os.path.getsize(path) / 1e6:.2f} MB; any browser opens it")
         if args.gltf is not None:
             path = _writable(args.gltf, directory, None, (".glb",))
-            say(gltf.write(directory, path, number, 1.0 if args.magnify is None else args.magnify, args.rate))  # fmt: skip
+            say(
+                gltf.write(
+                    directory,
+                    path,
+                    number,
+                    1.0 if args.magnify is None else args.magnify,
+                    args.rate,
+                )
+            )
     except OSError as problem:
         raise Refused(f"cannot write {path}: {problem.strerror}") from None
 
@@ -211,22 +249,62 @@ def _handOn(args):
 def main(words: Sequence[str] | None = None) -> None:
     """The program ``scripts/view.py``."""
     parser = argparse.ArgumentParser(
-        description="Open runs in ParaView, draw them to a picture or a film without a display, or write them for a browser or as a 3-D model."
+        description=(
+            "Open runs in ParaView, draw them to a picture or a film without a display, or write"
+            " them for a browser or as a 3-D model."
+        )
     )
     parser.add_argument("result", nargs="+", help="folder of results")
     parser.add_argument("--picture", metavar="FILE.png", help="draw a picture")
-    parser.add_argument("--film", metavar="FILE", help=f"a film ({', '.join(FILMS)}), or a folder for a picture of every frame")  # fmt: skip
-    parser.add_argument("--html", metavar="FILE", nargs="?", default=False, help="a page that any browser shows in 3-D, without ParaView and without a network (view.html in the folder of results)")  # fmt: skip
-    parser.add_argument("--gltf", metavar="FILE.glb", help="a 3-D model: of the frame that --frame or --at names, else all frames as an animation")  # fmt: skip
-    parser.add_argument("--frame", metavar="N", type=int, help="frame to show first in --html, or to write with --gltf, from 0")  # fmt: skip
-    parser.add_argument("--at", metavar="PLACE", help="frame to show: 12, 12mm or 0.5s; else the last one")  # fmt: skip
-    parser.add_argument("--magnify", type=float, help="magnification of displacements; else chosen for each run, with --gltf 1")  # fmt: skip
-    parser.add_argument("--size", default="1500x1000", help="of picture and film in pixels (default 1500x1000)")  # fmt: skip
-    parser.add_argument("--rate", type=int, default=10, help="frames of the film or of the animation of --gltf a second (default 10)")  # fmt: skip
+    parser.add_argument(
+        "--film",
+        metavar="FILE",
+        help=f"a film ({', '.join(FILMS)}), or a folder for a picture of every frame",
+    )
+    parser.add_argument(
+        "--html",
+        metavar="FILE",
+        nargs="?",
+        default=False,
+        help=(
+            "a page that any browser shows in 3-D, without ParaView and without a network"
+            " (view.html in the folder of results)"
+        ),
+    )
+    parser.add_argument(
+        "--gltf",
+        metavar="FILE.glb",
+        help=(
+            "a 3-D model: of the frame that --frame or --at names, else all frames as an animation"
+        ),
+    )
+    parser.add_argument(
+        "--frame",
+        metavar="N",
+        type=int,
+        help="frame to show first in --html, or to write with --gltf, from 0",
+    )
+    parser.add_argument(
+        "--at", metavar="PLACE", help="frame to show: 12, 12mm or 0.5s; else the last one"
+    )
+    parser.add_argument(
+        "--magnify",
+        type=float,
+        help="magnification of displacements; else chosen for each run, with --gltf 1",
+    )
+    parser.add_argument(
+        "--size", default="1500x1000", help="of picture and film in pixels (default 1500x1000)"
+    )
+    parser.add_argument(
+        "--rate",
+        type=int,
+        default=10,
+        help="frames of the film or of the animation of --gltf a second (default 10)",
+    )
     args = parser.parse_args(words)
     size = re.fullmatch(r"(\d+)x(\d+)", args.size)
     if not size or not all(200 <= int(n) <= 10000 for n in size.groups()):
-        raise Refused(f"--size: '{args.size}' must be WIDTHxHEIGHT, each from 200 to 10000 pixels")  # fmt: skip
+        raise Refused(f"--size: '{args.size}' must be WIDTHxHEIGHT, each from 200 to 10000 pixels")
     if args.magnify is not None and not 0 <= args.magnify < float("inf"):
         raise Refused(f"--magnify: {args.magnify:g} must be at least 0")
     if not 1 <= args.rate <= 100:
@@ -237,10 +315,18 @@ def main(words: Sequence[str] | None = None) -> None:
         if args.html is not False or args.gltf:
             return _handOn(args)
         if args.frame is not None:
-            raise Refused("--frame is for --html and --gltf; --at names a frame for ParaView")  # fmt: skip
+            raise Refused("--frame is for --html and --gltf; --at names a frame for ParaView")
         pixels = tuple(map(int, size.groups()))
         for path, isFilm in ((args.picture, False), (args.film, True)):
             if path:
-                inParaView(args.result, args.at, args.magnify, _drawn(path, isFilm), isFilm, pixels, args.rate)  # fmt: skip
+                inParaView(
+                    args.result,
+                    args.at,
+                    args.magnify,
+                    _drawn(path, isFilm),
+                    isFilm,
+                    pixels,
+                    args.rate,
+                )
         if not args.picture and not args.film:
             inParaView(args.result, args.at, args.magnify)

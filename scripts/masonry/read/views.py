@@ -104,7 +104,7 @@ def _viewFrom(away, points, either):
         start = start + (points @ direction).min() * direction
         angle = np.degrees(np.arctan2(direction[1], direction[0]))
         level = f"along the part, {angle:.0f}° from x [m]"
-        labels.append(level if abs(direction[2]) < 1e-6 else "upwards in the picture [m]")  # fmt: skip
+        labels.append(level if abs(direction[2]) < 1e-6 else "upwards in the picture [m]")
     return View(right, up, towards, start, labels, name)
 
 
@@ -135,4 +135,6 @@ def courseOf(blocks):
 def scaleText(joints, magnification):
     """What a picture says of its magnification and, where no joint of a frame is cracked, of that."""
     parted = "" if widths(joints)[2].any() else "no joint is cracked, "
-    return parted + ("true to scale" if magnification == 1 else f"displacements × {magnification:g}")  # fmt: skip
+    return parted + (
+        "true to scale" if magnification == 1 else f"displacements × {magnification:g}"
+    )

@@ -45,8 +45,8 @@ BEHAVES = 1.5, 6.0
 QUANTITIES = (("peak", "peak_at_both_ends_kN", "kN"), ("work", "push_work_J", "J"))
 #: What an interval does not say, in every report.
 NOT_COVERED = (
-    "the crack pattern, the force at the end of the curve, the material's own uncertainty, and how far this model of a wall is "
-    "from real walls"
+    "the crack pattern, the force at the end of the curve, the material's own uncertainty, and how"
+    " far this model of a wall is from real walls"
 )
 #: Stages that a scene with --accuracy may have.
 STAGES = ("settle", "push", "hold", "release", "move")
@@ -84,7 +84,7 @@ def halfWidth(number, quantity, values, scale):
     for source in fidelity.sources:
         part = shown(source, values, scale)
         if part is None and number:
-            earlier = [s for s in FIDELITIES[number - 1].sources if s.name == source.name]  # fmt: skip
+            earlier = [s for s in FIDELITIES[number - 1].sources if s.name == source.name]
             part = shown(earlier[0], values, scale) if earlier else None
         if part is not None:
             parts[source.name] = part
@@ -123,14 +123,17 @@ class AuxiliaryRuns:
         try:
             check(os.path.dirname(self.folder), self.folder)
         except OSError as error:
-            raise Refused(f"--out: cannot read {error.filename}: {error.strerror}") from None  # fmt: skip
+            raise Refused(f"--out: cannot read {error.filename}: {error.strerror}") from None
         path = os.path.join(self.folder, PLAN)
         with contextlib.suppress(OSError, ValueError):
             with open(path) as file:
                 if json.load(file).get("key") == key:
                     self.read()
         if self.numbers:
-            say(f"note: --accuracy: {len(self.numbers)} runs of an interrupted start are taken from {self.folder}")  # fmt: skip
+            say(
+                f"note: --accuracy: {len(self.numbers)} runs of an interrupted start are taken from"
+                f" {self.folder}"
+            )
             return
         if os.path.exists(path) or not os.path.exists(self.folder):
             shutil.rmtree(self.folder, ignore_errors=True)
@@ -141,7 +144,7 @@ class AuxiliaryRuns:
             with replaced(path) as file:
                 json.dump({"key": key}, file)
         except OSError as error:
-            raise Refused(f"--out: cannot write to {self.folder}: {error.strerror}") from None  # fmt: skip
+            raise Refused(f"--out: cannot write to {self.folder}: {error.strerror}") from None
 
     def clear(self):
         """Remove the folder of a scene of which nothing can be said, but not the log of a run that failed."""
@@ -168,7 +171,8 @@ class AuxiliaryRuns:
             return False
         if not all(run.get(key) for _, key, _ in QUANTITIES):
             raise Refused(
-                "--accuracy: it is about the peak and the work of a push, and this scene has no push of one target that takes force"
+                "--accuracy: it is about the peak and the work of a push, and this scene has no"
+                " push of one target that takes force"
             )
         found = {what: run[key] for what, key, _ in QUANTITIES}
         costs = dict(seconds=run["wall_clock_s"], collapsed=run["collapsed"])
@@ -189,20 +193,18 @@ class AuxiliaryRuns:
 
     def _start(self, name):
         options = {**CHOSEN, **COMPANIONS[name]}
-        words = [f"{asOption(option)}={value}" for option, value in options.items() if value is not None]  # fmt: skip
+        words = [
+            f"{asOption(option)}={value}" for option, value in options.items() if value is not None
+        ]
         folder = self.folderOf(name)
-        command = [*self.command, *words, "--lean", "--checkpoint-every=0", f"--out={folder}"]  # fmt: skip
-        env = {
-            n: v
-            for n, v in os.environ.items()
-            if n not in (batch.VARIABLE, batch.PROBE)
-        }
+        command = [*self.command, *words, "--lean", "--checkpoint-every=0", f"--out={folder}"]
+        env = {n: v for n, v in os.environ.items() if n not in (batch.VARIABLE, batch.PROBE)}
         env.update({"OMP_NUM_THREADS": "1", COMPANION: "1"})
         try:
             with open(folder + ".log", "wb", opener=inside) as log:
                 return background.Program(command, log, env)
         except OSError as error:
-            raise Refused(f"--accuracy: cannot run {command[0]}: {error.strerror}") from None  # fmt: skip
+            raise Refused(f"--accuracy: cannot run {command[0]}: {error.strerror}") from None
 
     def _ended(self, name, program):
         if program.returncode not in (0, 1) or not self._take(name):
@@ -216,10 +218,13 @@ class AuxiliaryRuns:
             )
             with contextlib.suppress(OSError), open(log, errors="replace") as file:
                 last = [line.strip() for line in [last, *file] if line.strip()][-1]
-            raise Refused(f"--accuracy: the run {name} did not come to its end: {last}; see {log}")  # fmt: skip
+            raise Refused(f"--accuracy: the run {name} did not come to its end: {last}; see {log}")
         found = self.numbers[name]
         fell = ", collapsed" if found["collapsed"] else ""
-        say(f"accuracy: {name}: peak {found['peak']:.4g} kN, work {found['work']:.4g} J, {found['seconds']:.0f} s{fell}")  # fmt: skip
+        say(
+            f"accuracy: {name}: peak {found['peak']:.4g} kN, work {found['work']:.4g} J,"
+            f" {found['seconds']:.0f} s{fell}"
+        )
 
     def choose(self, percent):
         """Run companions until a fidelity is good enough, or until there is no better one.
@@ -234,10 +239,8 @@ class AuxiliaryRuns:
                 scale = max(map(abs, values.values()))
                 widths[quantity] = 100 * halfWidth(number, quantity, values, scale)[0]
             enough, last = max(widths.values()) <= percent, fidelity is FIDELITIES[-1]
-            about = ", ".join(
-                f"{name} ± {width:.2g} %" for name, width in widths.items()
-            )
-            verdict = "chosen" if enough else "the finest there is" if last else "not enough"  # fmt: skip
+            about = ", ".join(f"{name} ± {width:.2g} %" for name, width in widths.items())
+            verdict = "chosen" if enough else "the finest there is" if last else "not enough"
             say(f"accuracy: {fidelity.name}: {about} expected: {verdict}")
             if enough:
                 break
@@ -253,11 +256,12 @@ class AuxiliaryRuns:
             share, parts = halfWidth(number, quantity, values, abs(value) or 1.0)
             parts = {name: 100 * part for name, part in parts.items()}
             how = ", ".join(f"{name} {part:.2g} %" for name, part in parts.items())
-            how = f"the sum of what companions of this run differ by and of what they do not show: {how}"
-            entries[f"{quantity}_half_width_{unit}"] = share * abs(value)
-            one = dict(
-                name=quantity, unit=unit, value=value, parts_percent=parts, how=how
+            how = (
+                "the sum of what companions of this run differ by and of what they do not show:"
+                f" {how}"
             )
+            entries[f"{quantity}_half_width_{unit}"] = share * abs(value)
+            one = dict(name=quantity, unit=unit, value=value, parts_percent=parts, how=how)
             one.update(half_width=share * abs(value), half_width_percent=100 * share)
             found.append(one)
         entries["accuracy"] = {
@@ -270,7 +274,7 @@ class AuxiliaryRuns:
                 {"name": n, "options": COMPANIONS[n], **numbers, "folder": self.folderOf(n)}
                 for n, numbers in self.numbers.items()
             ],
-        }  # fmt: skip
+        }
         return entries
 
 
@@ -290,17 +294,23 @@ def answers(entry):
 def lines(entry):
     """The entry ``accuracy`` of run.json as lines to read."""
     values = ", ".join(
-        f"{q['name']} {q['value']:.4g} ± {q['half_width']:.2g} {q['unit']} ({q['half_width_percent']:.2g} %)"
+        f"{q['name']} {q['value']:.4g} ±"
+        f" {q['half_width']:.2g} {q['unit']} ({q['half_width_percent']:.2g} %)"
         for q in entry["quantities"]
     )
-    yield f"accuracy: {values}, by {entry['fidelity']} and {len(entry['companions'])} runs beside it"
+    yield (
+        f"accuracy: {values}, by {entry['fidelity']} and {len(entry['companions'])} runs beside it"
+    )
     fell = [one["name"] for one in entry["companions"] if one["collapsed"]]
     if fell:
         yield f"accuracy: collapsed: {'; '.join(fell)}; the work of a run that collapses ends there"
     if not entry["reached"]:
         finest = entry["fidelity"] == FIDELITIES[-1].name
         which = "finest fidelity there is" if finest else "fidelity that was chosen"
-        yield f"accuracy: {entry['asked_percent']:g} % is not reached by the {which}: the ± is what was found"
+        yield (
+            f"accuracy: {entry['asked_percent']:g} % is not reached by the {which}: the ± is what"
+            " was found"
+        )
     yield f"accuracy: the ± does not cover {entry['not_covered']}"
 
 
@@ -318,14 +328,20 @@ def ask(name, args, script, words):
     chosen = [n for n in CHOSEN if n in given]
     if args.preset or chosen:
         unwanted = ["--preset"] * bool(args.preset) + [*map(asOption, chosen)]
-        raise Refused(f"--accuracy: it chooses block model, mesh, rate, points, damping and time step itself: leave {' and '.join(unwanted)} away")  # fmt: skip
+        raise Refused(
+            "--accuracy: it chooses block model, mesh, rate, points, damping and time step itself:"
+            f" leave {' and '.join(unwanted)} away"
+        )
     if args.history:
-        raise Refused("--accuracy: it is about a push in one direction, not about the loops of --history")  # fmt: skip
+        raise Refused(
+            "--accuracy: it is about a push in one direction, not about the loops of --history"
+        )
     if args.resume:
         return _resumed(args)
     if script is None:
         raise Refused(
-            f"--accuracy: scene {name} must be a script that takes its options from the command line, since it is run several times"
+            f"--accuracy: scene {name} must be a script that takes its options from the command"
+            " line, since it is run several times"
         )
     program = ["yade", "-n", "-x"] if hasattr(sys, "yade_argv") else [sys.executable]
     folder = args.out or os.path.join("results", name)
@@ -350,9 +366,15 @@ def _resumed(args):
     number = FIDELITIES.index(fidelity) if fidelity else 0
     due = [name for k in range(number + 1) for name in needed(k)]
     if not fidelity or set(due) - set(companions.numbers):
-        say(f"note: --accuracy: {companions.folder} does not have the runs beside this one any more: there will be no ±")  # fmt: skip
+        say(
+            f"note: --accuracy: {companions.folder} does not have the runs beside this one any"
+            " more: there will be no ±"
+        )
         return None
-    if any(readRun(companions.folderOf(n))["options"]["until"] != args.until for n in due):  # fmt: skip
-        say("note: --accuracy: the run goes on to a longer push than its companions: there will be no ±")  # fmt: skip
+    if any(readRun(companions.folderOf(n))["options"]["until"] != args.until for n in due):
+        say(
+            "note: --accuracy: the run goes on to a longer push than its companions: there will be"
+            " no ±"
+        )
         return None
     return companions

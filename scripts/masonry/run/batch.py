@@ -47,9 +47,7 @@ def readTable(path):
     rows, before = {}, {}
     for number, words in used[1:]:
         if len(words) != len(heads):
-            raise Refused(
-                f"{path}, line {number}: {len(words)} values in {len(heads)} columns"
-            )
+            raise Refused(f"{path}, line {number}: {len(words)} values in {len(heads)} columns")
         row = {h: before.get(h, w) if w == "=" else w for h, w in zip(heads, words)}
         rows[number] = before = row
     odd = [name for row in rows.values() if not (name := nameOf(row, "row")).strip(".")]

@@ -35,7 +35,9 @@ def saveCheckpoint(path: FilePath, extra: Any = None) -> None:
     try:
         kept = json.dumps(extra, allow_nan=False)
     except (TypeError, ValueError, RecursionError) as error:
-        raise ValueError(f"saveCheckpoint: extra {shown(extra)} must be what JSON can hold: {error}") from None  # fmt: skip
+        raise ValueError(
+            f"saveCheckpoint: extra {shown(extra)} must be what JSON can hold: {error}"
+        ) from None
     data = saveScene(kept)
     with replaced(path, "wb") as f:
         f.write(data)

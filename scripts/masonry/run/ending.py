@@ -128,8 +128,8 @@ def _keepEarlier(run, error):
     """End without results, so that those of an earlier run stay. Returns whether the error is dealt with."""
     run.status = 130 if isinstance(error, Interrupted) else 1
     say(
-        f"note: {'interrupted' if run.status == 130 else 'ended'} before there was a row: nothing of this run is kept, "
-        f"and {run.results.directory} still has the results of an earlier one"
+        f"note: {'interrupted' if run.status == 130 else 'ended'} before there was a row: nothing"
+        f" of this run is kept, and {run.results.directory} still has the results of an earlier one"
     )
     if isinstance(error, Unwritable):
         say(str(error), sys.stderr)
@@ -236,8 +236,8 @@ def _report(run, scene):
     entries, directory = run.results.run, run.results.directory
     if not run.args.lean and (run.results.rows or not run.interrupted):
         lacking = (
-            f"the figures are not drawn; /usr/bin/python3 -m masonry.read.figures {directory} draws them, and "
-            f"/usr/bin/python3 -m masonry.read.report {directory} writes the report"
+            f"the figures are not drawn; /usr/bin/python3 -m masonry.read.figures {directory} draws"
+            f" them, and /usr/bin/python3 -m masonry.read.report {directory} writes the report"
         )
         _unlessInterrupted(run, scene.outcome.drawing.draw, lacking)
     for sentence in entries["warnings"]:
@@ -246,8 +246,8 @@ def _report(run, scene):
         for line in scene.outcome.report(entries):
             say(line)
         say(
-            f"{entries['steps']} steps of {entries.get('microseconds_per_step', 0):.0f} µs, {entries['wall_clock_s']:.1f} s in all; "
-            f"see {directory}"
+            f"{entries['steps']} steps of {entries.get('microseconds_per_step', 0):.0f} µs,"
+            f" {entries['wall_clock_s']:.1f} s in all; see {directory}"
         )
     if remark := threads.remark():
         say(remark)

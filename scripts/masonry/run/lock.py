@@ -22,9 +22,7 @@ FILES = (
 ).split()
 #: Those of them that show how far a run has come: they go when it goes on.
 DRAWN = {"curve.png", "cracks.png", "report.html"}
-OURS = re.compile(
-    "(%s)(\\.new)?" % "|".join(re.escape(f).replace(r"\*", r"\d+") for f in FILES)
-)
+OURS = re.compile("(%s)(\\.new)?" % "|".join(re.escape(f).replace(r"\*", r"\d+") for f in FILES))
 LOCK = "run.lock"  # in the folder of a run while it goes on, and after it was killed
 NO_LOCKS = {errno.ENOLCK, errno.EOPNOTSUPP, errno.ENOSYS}  # of the file system
 
@@ -92,8 +90,8 @@ class Lock:
             known = {"scene": "?", "host": "?", "process": "?", **record}
             who = "a run of {scene} on host {host}, process {process},".format(**known)
         raise Held(
-            f"{who} is writing to {os.path.dirname(self.path)}: wait for its end, or name another folder with --out; "
-            f"if it is gone, remove {LOCK} there"
+            f"{who} is writing to {os.path.dirname(self.path)}: wait for its end, or name another"
+            f" folder with --out; if it is gone, remove {LOCK} there"
         )
 
     @classmethod
@@ -129,7 +127,9 @@ def held(directory):
     with file:
         record = _object(file.read())
         if _isGone(record):
-            return False  # a lock that is tried for a moment would be in the way of a run that begins
+            return (
+                False  # a lock that is tried for a moment would be in the way of a run that begins
+            )
         try:
             fcntl.flock(file, fcntl.LOCK_SH | fcntl.LOCK_NB)
         except BlockingIOError:

@@ -25,9 +25,7 @@ def live(columns):
 
     def add(row):
         if len(row) != len(columns):
-            raise ValueError(
-                f"yade.plot: a row of {len(row)} numbers for {len(columns)} columns"
-            )
+            raise ValueError(f"yade.plot: a row of {len(row)} numbers for {len(columns)} columns")
         plot.addData(dict(zip(columns, row)))
 
     return add

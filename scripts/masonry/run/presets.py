@@ -61,7 +61,9 @@ class Source:
     name: str
     runs: tuple  # names in COMPANIONS, from the coarsest to the finest, or MAIN, the run itself
     share: float = 1.0  # what counts of the difference of two [-]
-    chance: bool = False  # whether they differ in nothing that matters, so that their spread is chance
+    chance: bool = (
+        False  # whether they differ in nothing that matters, so that their spread is chance
+    )
 
 
 @dataclass(frozen=True)
@@ -104,7 +106,7 @@ COMPANIONS: dict[str, dict[str, Any]] = {
 _CHANCE = [
     Source("chance", (one, one + ", time step 0.78", one + ", time step 0.76"), chance=True)
     for one in ("rigid, 100 mm/s", "one cell, 100 mm/s")
-]  # fmt: skip
+]
 _RATE = Source("rate", ("one cell, 100 mm/s", "one cell, 50 mm/s"))
 
 #: What ``--accuracy`` chooses from, the cheapest first.
@@ -175,7 +177,7 @@ def outsideOf(properties):
         if not least - 0.005 * most <= value <= 1.005 * most:
             what, _, unit = name.partition(" [")
             unit = unit and " " + unit.rstrip("]")
-            sentences.append(f"{what} {value:.3g}{unit}, theirs {least:g} to {most:g}{unit}")  # fmt: skip
+            sentences.append(f"{what} {value:.3g}{unit}, theirs {least:g} to {most:g}{unit}")
     return sentences
 
 
@@ -212,15 +214,16 @@ def presetNote(preset):
     percent = {what: f"{100 * v:g} %" for what, v in promise.items() if "error" in what}
     if "walls" in promise:
         return (
-            f"preset {name}: of {promise['walls']} walls whose properties are like these, pushed once, all but "
-            f"{promise['missed']} had their peak within {percent['peak_error']} and their work within "
-            f"{percent['work_error']} of a fine and slow run"
+            f"preset {name}: of {promise['walls']} walls whose properties are like these, pushed"
+            f" once, all but {promise['missed']} had their peak within {percent['peak_error']} and"
+            f" their work within {percent['work_error']} of a fine and slow run"
         )
     if promise:
         return (
-            f"preset {name}: promises the peak within {percent['peak_error']}, the work over {promise['until_mm']:g} mm within "
-            f"{percent['work_error']} and the initial stiffness within {percent['stiffness_error']} of a fine and slow run, in "
-            f"about {promise['seconds']:g} s"
+            f"preset {name}: promises the peak within {percent['peak_error']}, the work over"
+            f" {promise['until_mm']:g} mm within {percent['work_error']} and the initial stiffness"
+            f" within {percent['stiffness_error']} of a fine and slow run, in about"
+            f" {promise['seconds']:g} s"
         )
     if name == BOUND:
         return "preset bound: limit analysis of rigid blocks alone; there is no run"
@@ -228,7 +231,5 @@ def presetNote(preset):
     if preset["overrides"]:
         reason = ", ".join(map(asOption, preset["overrides"])) + " beside it"
     elif others := PROMISES[name].get("elsewhere"):
-        reason = (
-            f"unlike the {others['walls']} walls on which it was measured: {reason}"
-        )
+        reason = f"unlike the {others['walls']} walls on which it was measured: {reason}"
     return f"preset {name} without its promise: {reason}"

@@ -183,8 +183,9 @@ class Results:
             strange = [n for n in names if n == "curve.csv" and not self._begins(head)]
         if strange:
             raise Refused(
-                f"--out: {self.directory} holds {', '.join(strange[:5])}{' and more' * (len(strange) > 5)}, which no run "
-                "has left there: move that away, or name another folder"
+                f"--out: {self.directory} holds"
+                f" {', '.join(strange[:5])}{' and more' * (len(strange) > 5)}, which no run has"
+                " left there: move that away, or name another folder"
             )
         return names
 

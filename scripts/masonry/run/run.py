@@ -31,7 +31,9 @@ from .results import Results
 from .signals import Signals
 
 SHOW_EVERY = 0.05  # [s] of wall-clock time: what is shown on the terminal is not older
-LOOK_EVERY = 0.5  # [s] of wall-clock time: within slow steps a checkpoint that is due is made no later
+LOOK_EVERY = (
+    0.5  # [s] of wall-clock time: within slow steps a checkpoint that is due is made no later
+)
 LOOKED = 300  # steps after which the widest crack is looked for again: a hundredth of the time of steps in which joints yield
 
 
@@ -60,7 +62,9 @@ class Run:
         # of the stage that was entered last: its number, and what it remembers
         self.entered, self.memory = 0, SimpleNamespace()
         self.redoes = False  # whether the checkpoint of a resumed run was made in it
-        self.endsAtFall = False  # whether it ends when a block has fallen, where a collapse is followed
+        self.endsAtFall = (
+            False  # whether it ends when a block has fallen, where a collapse is followed
+        )
         self.loading = False  # whether it lets the dead loads grow, and is no test yet
         #: function that takes what is found beside the run: with True it waits for that
         self.takeFound = lambda wait: None
@@ -89,7 +93,8 @@ class Run:
             self.saved = getattr(args, "saved", None) or Saved(args.resume)
             if self.saved.scene != self.name:
                 raise NotResumed(
-                    f"--resume: {args.resume} holds a run of {self.saved.scene}, this is {self.name}"
+                    f"--resume: {args.resume} holds a run of {self.saved.scene}, this is"
+                    f" {self.name}"
                 )
             self.at = self.saved.place()
         self.signals.begin()

@@ -76,12 +76,8 @@ class RunState:
             *self.stages[1:],
             ["", self.steps, self.seconds["steps"], 0],
         ]
-        for (name, steps, seconds, row), (_, after, secondsAfter, _) in zip(
-            self.stages, ends
-        ):
-            entry = dict(
-                stage=name, steps=after - steps, seconds=secondsAfter - seconds
-            )
+        for (name, steps, seconds, row), (_, after, secondsAfter, _) in zip(self.stages, ends):
+            entry = dict(stage=name, steps=after - steps, seconds=secondsAfter - seconds)
             load = self.loads.get(str(len(listed) + 1))
             listed.append({**entry, "first_row": row, "load": load})
         return listed
@@ -122,7 +118,8 @@ class Saved:
             self._data, saved = readState(os.path.join(directory, NAME))
         except FileNotFoundError:
             raise NotResumed(
-                f"--resume: {directory} has no {NAME}, which a run leaves unless it is --lean and has come to its end"
+                f"--resume: {directory} has no {NAME}, which a run leaves unless it is --lean and"
+                " has come to its end"
             ) from None
         except (OSError, ValueError) as error:
             raise NotResumed(f"--resume: {error}") from None
@@ -134,9 +131,7 @@ class Saved:
             or not all(alike(row, [0.0] * len(row)) for row in saved["rows"])
             or not all(alike(word, ["", {}]) for word in saved["script"])
         ):
-            raise NotResumed(
-                f"--resume: {directory}/{NAME} was not left by a run in stages"
-            )
+            raise NotResumed(f"--resume: {directory}/{NAME} was not left by a run in stages")
         vars(self).update({key: saved[key] for key in like})
 
     def place(self):
@@ -163,6 +158,6 @@ class Saved:
         for what, value in now.items():
             if self.host.get(what) != value:
                 say(
-                    f"note: the checkpoint was made with {what} {self.host.get(what)}, this run has {value}: "
-                    "it may differ in last digits from one without a break"
+                    f"note: the checkpoint was made with {what} {self.host.get(what)}, this run has"
+                    f" {value}: it may differ in last digits from one without a break"
                 )

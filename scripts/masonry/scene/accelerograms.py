@@ -33,7 +33,7 @@ from ..read.files import readWhole
 WRITTEN = {
     **{f"{unit}{two}": f"{unit}²" for unit in ("m/s", "cm/s") for two in ("²", "2", "^2", "**2")},
     **{"g": "g", "gal": "cm/s²", "cm/s/s": "cm/s²", "cm/sec2": "cm/s²", "cm/sec/sec": "cm/s²"},
-}  # fmt: skip
+}
 
 UNEVEN = 1e-3  # of the time between samples: how far a time of a file may be off
 HEADER = 12  # lines at the beginning of a PEER file among which NPTS must be
@@ -106,16 +106,17 @@ class _File:
         """The time between two samples that a word of a line stands for [s]."""
         [every] = self.numbers([word], line)
         if not every > 0:
-            raise self.refused(
-                f"the time between samples, {word} s, must be above 0", line
-            )
+            raise self.refused(f"the time between samples, {word} s, must be above 0", line)
         return every
 
     def counted(self, values, expected, key, line):
         """Values of which there are as many as the file says, and enough."""
         if len(values) != expected:
             raise self.refused(
-                f"{key} is {expected}, and the file has {len(values)} values: is it cut off, or were lines added?",
+                (
+                    f"{key} is {expected}, and the file has {len(values)} values: is it cut off, or"
+                    " were lines added?"
+                ),
                 line,
             )
         return self.enough(values)
@@ -123,7 +124,8 @@ class _File:
     def enough(self, values):
         if len(values) < 2:
             raise self.refused(
-                f"it must have two lines of samples at least, of one or two numbers each, and has {len(values)}"
+                "it must have two lines of samples at least, of one or two numbers each, and has"
+                f" {len(values)}"
             )
         return values
 
@@ -134,7 +136,7 @@ class _File:
             if found := re.search(r"\bUNITS\s+OF\s+(\S+)", text, re.I):
                 if not re.search(r"\bACC", text, re.I):
                     said = shown(text.strip())
-                    raise self.refused(f"it must hold accelerations, and says {said}", line)  # fmt: skip
+                    raise self.refused(f"it must hold accelerations, and says {said}", line)
                 unit = self.unit(found[1].rstrip(",;"), line)
         number = r"((?:\d+\.?\d*|\.\d+)(?:[ED][+-]?\d+)?)"
         count = re.search(r"\bNPTS\s*=\s*(\d+)", head, re.I)
@@ -144,7 +146,10 @@ class _File:
             both = ..., count[1], every[1]
         elif not both:
             raise self.refused(
-                f"the line must have NPTS and DT, as in NPTS= 4000, DT= .0050 SEC, and is {shown(head.strip())}",
+                (
+                    "the line must have NPTS and DT, as in NPTS= 4000, DT= .0050 SEC, and is"
+                    f" {shown(head.strip())}"
+                ),
                 at,
             )
         every = self.interval(both[2].upper().replace("D", "E"), at)
@@ -164,16 +169,17 @@ class _File:
                 begins = begins or line
                 values += self.numbers(words, line)
                 if len(words) != 1:
-                    raise self.refused(f"{len(words)} numbers, there must be one a line", line)  # fmt: skip
+                    raise self.refused(f"{len(words)} numbers, there must be one a line", line)
         needed = ("SAMPLING_INTERVAL_S", "NDATA", "UNITS", "DATA_TYPE")
         missing = [key for key in needed if not known.get(key, ("", 0))[0]]
         if missing:
             raise self.refused(
-                f"its header must have {', '.join(missing)}, and ends with line {(begins or len(self.lines) + 1) - 1}"
+                f"its header must have {', '.join(missing)}, and ends with line"
+                f" {(begins or len(self.lines) + 1) - 1}"
             )
         kind, line = known["DATA_TYPE"]
         if kind.upper() != "ACCELERATION":
-            raise self.refused(f"DATA_TYPE must be ACCELERATION, got {shown(kind)}", line)  # fmt: skip
+            raise self.refused(f"DATA_TYPE must be ACCELERATION, got {shown(kind)}", line)
         unit = self.unit(*known["UNITS"])
         every = self.interval(*known["SAMPLING_INTERVAL_S"])
         count, line = known["NDATA"]
@@ -194,7 +200,10 @@ class _File:
                 wrong = len(words) != 3 if "components" in known else len(words) > 2
                 if wrong or len(words) != len(rows[0]):
                     raise self.refused(
-                        f"{len(words)} numbers, and the lines must have one or two numbers each, all alike, or three below # components: x y z",
+                        (
+                            f"{len(words)} numbers, and the lines must have one or two numbers"
+                            " each, all alike, or three below # components: x y z"
+                        ),
                         line,
                     )
         values = self.enough([row if len(row) == 3 else row[-1] for row in rows])
@@ -277,13 +286,16 @@ class Drift:
         end, rise = abs(self.endVelocity), abs(self.rise)
         if end > ENDS * self.peakVelocity:
             found.append(
-                f"its velocity at the end is {self.endVelocity:.3g} m/s, {100 * end / self.peakVelocity:.0f} % of its largest "
-                f"(a record that ends at rest: below {100 * ENDS:g} %), as under a constant acceleration of {self.lean:.2g} m/s²"
+                f"its velocity at the end is {self.endVelocity:.3g} m/s,"
+                f" {100 * end / self.peakVelocity:.0f} % of its largest (a record that ends at"
+                f" rest: below {100 * ENDS:g} %), as under a constant acceleration of"
+                f" {self.lean:.2g} m/s²"
             )
         if rise > RISES * self.peakDisplacement:
             found.append(
-                f"a straight line through its displacements rises by {self.rise:.3g} m, "
-                f"{100 * rise / self.peakDisplacement:.0f} % of the largest (a motion about one place: below {100 * RISES:g} %)"
+                f"a straight line through its displacements rises by {self.rise:.3g} m,"
+                f" {100 * rise / self.peakDisplacement:.0f} % of the largest (a motion about one"
+                f" place: below {100 * RISES:g} %)"
             )
         return " and ".join(found) or None
 

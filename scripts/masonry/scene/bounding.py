@@ -70,15 +70,16 @@ def domain(
     """
     if target.pressed is None:
         raise ValueError(
-            f"domain: {target.name} is not pressed: press({target.name}, ...) before the first stage says where the "
-            "normal force acts"
+            f"domain: {target.name} is not pressed: press({target.name}, ...) before the first"
+            " stage says where the normal force acts"
         )
 
     def find():
         isDriven = scene.model.loading.isDriven(target, "z")
         if "z" in (target.freedom or "") or isDriven:
             raise ValueError(
-                f"domain: {target.name} is held along z, so its normal force is no load that could be replaced"
+                f"domain: {target.name} is held along z, so its normal force is no load that could"
+                " be replaced"
             )
         before = saidBefore(scene, "domain", target=target.name, normal=list(normal))
         along = vector(direction, "domain: direction").normalized()
@@ -99,7 +100,8 @@ def _inOrder(scene, find, command, *arguments):
             scene.bounds.take(True)
             if scene.collapsed:
                 raise ValueError(
-                    f"{command.__name__}: the structure has fallen; stepBack() goes back to its last state at rest"
+                    f"{command.__name__}: the structure has fallen; stepBack() goes back to its"
+                    " last state at rest"
                 )
             return find()
     except Interrupted as error:

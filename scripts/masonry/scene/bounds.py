@@ -39,9 +39,7 @@ UNASKED, ASKED, IN_BACKGROUND = 10.0, 600.0, 120.0
 TILTS, SAME_TILT, STEEPEST = 20, 1e-6, math.radians(89.9)
 FIGURE = "mechanism.png"
 #: The note of a bound that was not found when the run was interrupted. One that goes on in the same stage looks for it again.
-GIVEN_UP = (
-    "limit analysis: the run was interrupted before its end; scene.bound() finds it"
-)
+GIVEN_UP = "limit analysis: the run was interrupted before its end; scene.bound() finds it"
 #: The note of one that was not found when the run came to its end, or to a checkpoint.
 LATE = "limit analysis: it was not solved in time; scene.bound() takes its time"
 #: By how much a run may be above its bound [-]: joints of finite stiffness, and displacements that are not small.
@@ -103,7 +101,9 @@ class Bounds:
         :param how: as in :meth:`find`
         """
         for along in (direction, -1 * direction) if both else (direction,):
-            load = Load(nameOfPush(target, along), "kN", _pushOf(target, along), pushed=(target, direction))  # fmt: skip
+            load = Load(
+                nameOfPush(target, along), "kN", _pushOf(target, along), pushed=(target, direction)
+            )
             entry = self.find(load, **how)
         return entry
 
@@ -169,14 +169,15 @@ class Bounds:
             entry["pressed_kN"] = load.pressed[1]
         self.endless.discard(what)
         if place.supportsMoved:
-            entry["note"] = "no limit analysis: supports have moved, and joints that are open would be taken as closed"  # fmt: skip
+            entry["note"] = (
+                "no limit analysis: supports have moved, and joints that are open would be taken as"
+                " closed"
+            )
             return entry
         count = len(model.interactions)
         if count > JOINTS and not lowerUpTo:
             entry["note"] = f"no limit analysis: {count} joints are more than {JOINTS}"
-            say(
-                f"note: {entry['note']}; scene.bound() and --preset bound take their time"
-            )
+            say(f"note: {entry['note']}; scene.bound() and --preset bound take their time")
             return entry
         seconds = ASKED if lowerUpTo else IN_BACKGROUND if background else UNASKED
         work = lambda: self._found(load, lowerUpTo, seconds)
@@ -463,6 +464,7 @@ def over(entries, held, run):
     for reached, bound, unit, what in found:
         if reached > (1 + TOLERANCE) * bound:
             yield (
-                f"{what}, {reached:.4g} {unit}, is {100 * (reached / bound - 1):.1f} % above the upper bound of "
-                f"limit analysis, {bound:.4g} {unit}: is the run too fast, or does the structure move far?"
+                f"{what}, {reached:.4g} {unit}, is {100 * (reached / bound - 1):.1f} % above the"
+                f" upper bound of limit analysis, {bound:.4g} {unit}: is the run too fast, or does"
+                " the structure move far?"
             )

@@ -21,7 +21,7 @@ def _end(value, first):
     if not isinstance(value, Target):
         return brick(value, first)
     if not isOwn(value, first):
-        raise ValueError(f"{value.name!r}, which is of another scene, must be of this one")  # fmt: skip
+        raise ValueError(f"{value.name!r}, which is of another scene, must be of this one")
     return value
 
 
@@ -134,7 +134,10 @@ def spring(
     if not any((*stiffness, *rotation)):
         problems.append("a stiffness must be above 0")
     if description.plane and (stiffness[1] or rotation[0] or rotation[2]):
-        problems.append("the scene is in the x-z plane: stiffness along x and z, and rotation about y, are what it can have; Scene(..., plane=False) is in space")  # fmt: skip
+        problems.append(
+            "the scene is in the x-z plane: stiffness along x and z, and rotation about y, are what"
+            " it can have; Scene(..., plane=False) is in space"
+        )
     made = Spring(name, (first, second), tuple(stiffness), tuple(rotation))
     return _take(description, "spring", made, problems)
 
@@ -177,7 +180,10 @@ def overlay(
     :returns: an :class:`Overlay`, whose ``ties`` are the bundles
     """
     if description.plane:
-        raise Refused("overlay: the scene is in the x-z plane, in which a layer on one face would bend it; Scene(..., plane=False) is in space")  # fmt: skip
+        raise Refused(
+            "overlay: the scene is in the x-z plane, in which a layer on one face would bend it;"
+            " Scene(..., plane=False) is in space"
+        )
     name = name or f"overlay{len(description.overlays)}"
     outward = np.asarray(vector(side, "overlay: side").normalized(), float)
     size = max(b - a for a, b in zip(description.low, description.high))
@@ -186,7 +192,7 @@ def overlay(
     for joint in Bricks(description.bricks).joints():
         pair, normal = (joint.first, joint.second), np.array(joint.normal)
         level = abs(normal[2]) > 0.5**0.5
-        if abs(normal @ outward) > 0.5 or fibres == ("horizontal" if level else "vertical"):  # fmt: skip
+        if abs(normal @ outward) > 0.5 or fibres == ("horizontal" if level else "vertical"):
             continue
         if part is not None and {description.bricks[n].part for n in pair} != {part}:
             continue
@@ -206,9 +212,21 @@ def overlay(
             point = first + share * (last - first)
             at = lambda sign, n: End(tuple(map(float, point + sign * across)), None, n)
             ends = at(-1, pair[0]), at(1, pair[1])
-            made.append(Tie(f"{name}_{len(made)}", ends, 0.5 * width * stiffness / gauge, 0.5 * width * strength, 0.0, 0.0, strain, False, overlay=name))  # fmt: skip
+            made.append(
+                Tie(
+                    f"{name}_{len(made)}",
+                    ends,
+                    0.5 * width * stiffness / gauge,
+                    0.5 * width * strength,
+                    0.0,
+                    0.0,
+                    strain,
+                    False,
+                    overlay=name,
+                )
+            )
     if not made:
-        raise Refused(f"overlay: no joint ends at a face that looks along {tuple(side)}")  # fmt: skip
+        raise Refused(f"overlay: no joint ends at a face that looks along {tuple(side)}")
     layer = Overlay(name, made, stiffness, strength, gauge, strain)
     _take(description, "overlay", layer, [])
     description.connectors += made
@@ -228,6 +246,6 @@ def _take(description, word, made, problems):
     connectors, overlays = description.connectors, description.overlays
     taken = {one.name for one in (*connectors, *overlays)}
     if made.name in {*taken, *description.targets, *description.materials.joints}:
-        raise Refused(f"{word}: there is a {made.name!r} already; give one of them another name")  # fmt: skip
+        raise Refused(f"{word}: there is a {made.name!r} already; give one of them another name")
     (overlays if isinstance(made, Overlay) else connectors).append(made)
     return made

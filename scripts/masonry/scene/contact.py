@@ -40,7 +40,9 @@ class Contact(Settable):
     }
 
     def scatter(self, name, factor):
-        raise ValueError(f"contact: {name} is the same all over; --set contact.{name}=... changes it")  # fmt: skip
+        raise ValueError(
+            f"contact: {name} is the same all over; --set contact.{name}=... changes it"
+        )
 
     def of(self, bed):
         """The attributes of MasonryContacts, where ``bed`` is the bed joint, a MasonryJoint."""
@@ -49,21 +51,32 @@ class Contact(Settable):
             "tangentialRatio": min(1.0, bed.shearStiffness / bed.normalStiffness),
             "friction": FRICTION if bed.elastic else bed.residualFriction,
         }
-        return {n: defaults.get(n) if v is None else v for n, v in self.values().items()}  # fmt: skip
+        return {n: defaults.get(n) if v is None else v for n, v in self.values().items()}
 
 
 def problems(description, args):
     """What does not go together with ``collapse="follow"``, or with functors: sentences."""
     if args.points and description.functors:
-        yield f"--points {args.points}: with functors joints keep three points; leave functors=False"
+        yield (
+            f"--points {args.points}: with functors joints keep three points; leave functors=False"
+        )
     if not description.contact:
         return
     if description.functors:
-        yield "collapse='follow': the functors go on with joints whose blocks have come apart; leave functors=False"
+        yield (
+            "collapse='follow': the functors go on with joints whose blocks have come apart; leave"
+            " functors=False"
+        )
     if args.blocks == "deformable":
-        yield "collapse='follow': deformable bricks have no contacts; choose --blocks rigid, or a preset with it, or collapse='end'"
+        yield (
+            "collapse='follow': deformable bricks have no contacts; choose --blocks rigid, or a"
+            " preset with it, or collapse='end'"
+        )
     if args.density_scaling != 1:
-        yield f"--density-scaling {args.density_scaling:g}: with collapse='follow' blocks fall in real time, with true masses"
+        yield (
+            f"--density-scaling {args.density_scaling:g}: with collapse='follow' blocks fall in"
+            " real time, with true masses"
+        )
 
 
 @describes
@@ -96,7 +109,8 @@ def addGround(description, level=None, name=None):
     top = lowest - BELOW * height if level is None else level
     if not top <= lowest:
         raise Refused(
-            f"ground: level {top:g} m must be at most {lowest:g} m, where the lowest of what is built ends"
+            f"ground: level {top:g} m must be at most {lowest:g} m, where the lowest of what is"
+            " built ends"
         )
     reach = BEYOND * (description.high[2] - top)
     low = [v - reach for v in description.low[:2]]

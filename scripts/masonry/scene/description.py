@@ -72,16 +72,18 @@ class Description:
         found = []
         if self.halves and "crack" not in materials.joints:
             found.append(
-                "--crack-surfaces on: the bricks are in pieces, and these materials have no joint 'crack' between them; "
-                "make whole bricks with halves=False, or choose --crack-surfaces off"
+                "--crack-surfaces on: the bricks are in pieces, and these materials have no joint"
+                " 'crack' between them; make whole bricks with halves=False, or choose"
+                " --crack-surfaces off"
             )
         known = {*KINDS, *materials.units, *materials.stiff}
         strange = {block.kind for block in self.bricks} - known
         if strange and not materials.choose:
             named = ", ".join(map(repr, sorted(strange)))
             found.append(
-                f"the materials have nothing for blocks of the kind {named}: materials.withBeam(...) or withFloor(...) says what a beam "
-                "or a floor is made of, and units={kind: ...} what other blocks are made of"
+                f"the materials have nothing for blocks of the kind {named}:"
+                " materials.withBeam(...) or withFloor(...) says what a beam or a floor is made"
+                " of, and units={kind: ...} what other blocks are made of"
             )
         return found
 
@@ -165,8 +167,8 @@ class Description:
             return found
         unknown = [n for n in self.choice if n not in heads]
         if unknown:
-            raise Refused(f"no column {', '.join(unknown)}; there are {', '.join(heads)}")  # fmt: skip
-        ofBase = [c for one in self.sections if one.isBase for c in one.columns(self.plane)]  # fmt: skip
+            raise Refused(f"no column {', '.join(unknown)}; there are {', '.join(heads)}")
+        ofBase = [c for one in self.sections if one.isBase for c in one.columns(self.plane)]
         always = columns.heads(ofBase + balance + columns.HISTORY)
         chosen = [found[heads.index(n)] for n in self.choice if n not in always]
         return chosen + [c for c in found if c.head in always]
@@ -185,13 +187,12 @@ class Description:
             point = tuple(float(v) for v in vector()(where))
         except ValueError:
             raise ValueError(
-                f"{shown(where)} must be a brick: its index, a point (x, y, z) [m], or the block itself"
+                f"{shown(where)} must be a brick: its index, a point (x, y, z) [m], or the block"
+                " itself"
             ) from None
         index, away = self._nearest(point)
         if away > self.size(index):
-            raise ValueError(
-                f"{point} m: no brick is near it, the nearest is {away:g} m away"
-            )
+            raise ValueError(f"{point} m: no brick is near it, the nearest is {away:g} m away")
         return index, point
 
     def middle(self, index):
@@ -208,7 +209,7 @@ class Description:
         """The brick whose box is nearest to a point, and how far that is, with a little of the way to its middle to break ties [m]."""
         if self._boxes[0] is not self.bricks:
             corners = [np.asarray(block.corners, float) for block in self.bricks]
-            boxes = [np.array([f(c, axis=0) for c in corners]) for f in (np.min, np.max, np.mean)]  # fmt: skip
+            boxes = [np.array([f(c, axis=0) for c in corners]) for f in (np.min, np.max, np.mean)]
             self._boxes = self.bricks, boxes
         low, high, middle = self._boxes[1]
         away = np.maximum(0, np.maximum(low - point, point - high).max(axis=1))
@@ -224,4 +225,4 @@ def accelerations(structure, plane):
         meaning = f"horizontal acceleration along {axis} that acts on the blocks"
         yield columns.Column(f"acceleration_{axis}", "g", meaning, value)
     meaning = "factor of the load that a stage put on or let grow last"
-    yield columns.Column("load_factor", "-", meaning, lambda r: structure.loading.loadFactor)  # fmt: skip
+    yield columns.Column("load_factor", "-", meaning, lambda r: structure.loading.loadFactor)

@@ -46,9 +46,7 @@ class DrawingProgram:
         if not self._program:
             # -P: nothing of the present folder is run; in a session of its own, since Ctrl-C is for the run
             command = [sys.executable, "-P", "-m", "masonry.read.postprocess"]
-            self._program = subprocess.Popen(
-                command, stdin=subprocess.PIPE, start_new_session=True
-            )
+            self._program = subprocess.Popen(command, stdin=subprocess.PIPE, start_new_session=True)
 
     def end(self):
         """End the program. Returns its exit status, or None if it was not started."""

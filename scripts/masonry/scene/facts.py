@@ -23,7 +23,14 @@ from ..read.shown import DPI, RunFolder, Curve, cracksOf, curveOf, resultsOf
 MOST_SIZES = 4  # of blocks that are listed
 MOST_COUNTED = 20_000  # blocks whose joints are counted before the scene is built
 #: Properties of joints and units that the table shows.
-OF_JOINTS = "normalStiffness", "shearStiffness", "tensileStrength", "cohesion", "friction", "compressiveStrength"  # fmt: skip
+OF_JOINTS = (
+    "normalStiffness",
+    "shearStiffness",
+    "tensileStrength",
+    "cohesion",
+    "friction",
+    "compressiveStrength",
+)
 OF_UNITS = "density", "young", "poisson"
 
 
@@ -31,7 +38,7 @@ def sizes(description):
     """What is built: pairs of texts, what and how much."""
     found = summary(Bricks(description.bricks))
     kinds = ", ".join(f"{count} {kind}" for kind, count in found["kinds"].items())
-    by = lambda low, high, unit: " × ".join(f"{unit * (b - a):.4g}" for a, b in zip(low, high))  # fmt: skip
+    by = lambda low, high, unit: " × ".join(f"{unit * (b - a):.4g}" for a, b in zip(low, high))
     blocks = collections.Counter(by(b.low, b.high, 1e3) for b in description.bricks)
     most = blocks.most_common(MOST_SIZES)
     sizes = "; ".join(f"{count} of {text} mm" for text, count in most)
@@ -57,8 +64,10 @@ def properties(description, masonry):
     boxes = {}  # of whole bricks, of which there may be two halves
     for block in description.bricks:
         low, high = boxes.get(block.brick, (block.low, block.high))
-        boxes[block.brick] = tuple(map(min, low, block.low)), tuple(map(max, high, block.high))  # fmt: skip
-    medianSize = lambda axis: statistics.median(high[axis] - low[axis] for low, high in boxes.values())  # fmt: skip
+        boxes[block.brick] = tuple(map(min, low, block.low)), tuple(map(max, high, block.high))
+    medianSize = lambda axis: statistics.median(
+        high[axis] - low[axis] for low, high in boxes.values()
+    )
     pressed = [t.pressed for t in description.targets.values() if t.pressed]
     bed = masonry.joints["bed"]
     of = lambda name: getattr(bed, name, 0.0)
@@ -111,8 +120,8 @@ def noteCourse(description):
     if course and not any(abs(h - course) < 0.01 * course for h in heights):
         sizes = ", ".join(f"{1e3 * h:.4g}" for h in sorted(heights)[:5])
         say(
-            f"note: the joints are for courses of {1e3 * course:.4g} mm, mortar included, and the bricks have {sizes} mm: "
-            "give bricks the same unit= and joint= as the materials"
+            f"note: the joints are for courses of {1e3 * course:.4g} mm, mortar included, and the"
+            f" bricks have {sizes} mm: give bricks the same unit= and joint= as the materials"
         )
 
 
@@ -167,9 +176,7 @@ def curve(scene):
     :raises ValueError: before the first stage, since there is no row yet
     """
     if not scene.model:
-        raise ValueError(
-            f"curve: scene {scene.name} has no rows before its first stage"
-        )
+        raise ValueError(f"curve: scene {scene.name} has no rows before its first stage")
     results = scene.results
     run = results.run
     if not scene.finished:
@@ -203,8 +210,8 @@ def _state(scene):
 
 
 def _standing(scene):
-    title, views, at = scene.description.title, scene.description.views, scene.running.at  # fmt: skip
-    run = {"parts": scene.model.parts, "views": views, "title": title, "answers": scene.answers}  # fmt: skip
+    title, views, at = scene.description.title, scene.description.views, scene.running.at
+    run = {"parts": scene.model.parts, "views": views, "title": title, "answers": scene.answers}
     with tempfile.TemporaryDirectory() as folder:
         MasonryVtkRecorder(directory=folder)()
         blocks, joints = (readFrame(folder, kind) for kind in ("blocks", "joints"))
@@ -251,7 +258,12 @@ def _structure(description):
             add(boxCorners(*target.box), _shade(target))
     points = np.concatenate(corners)
     cells = np.split(np.arange(len(points)), np.cumsum(list(map(len, corners)))[:-1])
-    blocks = {"points": points, "displacement": 0 * points, "body": range(len(corners)), "cells": cells}  # fmt: skip
+    blocks = {
+        "points": points,
+        "displacement": 0 * points,
+        "body": range(len(corners)),
+        "cells": cells,
+    }
     return Structure(blocks, None, parts, shades, sights=description.views)
 
 
@@ -265,7 +277,7 @@ def _counted(description):
     bricks = Bricks(description.bricks)
     if len(bricks) <= MOST_COUNTED:
         platens = any(target.box for target in description.targets.values())
-        yield "joints", f"{len(bricks.joints()):,} between blocks" + "; platens are not counted" * platens  # fmt: skip
+        yield "joints", f"{len(bricks.joints()):,} between blocks" + "; platens are not counted" * platens
 
 
 def _materials(scene):
@@ -276,7 +288,7 @@ def _materials(scene):
     except Refused as refused:
         return notebook.table([("refused", str(refused))])
     joints, blocks = masonry.joints, {"brick": masonry.unit, **masonry.units}
-    return _properties("joint", joints, OF_JOINTS) + _properties("unit", blocks, OF_UNITS)  # fmt: skip
+    return _properties("joint", joints, OF_JOINTS) + _properties("unit", blocks, OF_UNITS)
 
 
 def _properties(what, things, names):
@@ -285,5 +297,5 @@ def _properties(what, things, names):
     rows = [
         (name, known.get(name, "-"), *(f"{getattr(t, name):.4g}" for t in things.values()))
         for name in names
-    ]  # fmt: skip
+    ]
     return notebook.table(rows, (what, "unit", *things))

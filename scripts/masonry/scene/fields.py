@@ -84,7 +84,8 @@ def parts(text: str) -> tuple[Any, ...]:
     names = found["names"].split("+") if found else []
     if not found or not all(re.fullmatch(r"[^.\s]+\.\w+", name) for name in names):
         raise ValueError(
-            f"{shown(text)} must read JOINT.PROPERTY=KIND(cov=C,length=L,seed=N), KIND lognormal or normal, L in m"
+            f"{shown(text)} must read JOINT.PROPERTY=KIND(cov=C,length=L,seed=N), KIND lognormal or"
+            " normal, L in m"
         )
     try:
         numbers = float(found["cov"]), float(found["length"])

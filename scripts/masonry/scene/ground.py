@@ -75,8 +75,11 @@ def readRecord(
     if isThree(accelerations):
         parts = [readRecord(one, every, scale, unit) for one in accelerations]
         if len({(len(values), step) for values, step in parts}) > 1:
-            sizes = ", ".join(f"{len(values)} samples every {step:g} s" for values, step in parts)  # fmt: skip
-            raise Refused(f"{', '.join(map(str, accelerations))}: components of a record must be alike, not {sizes}")  # fmt: skip
+            sizes = ", ".join(f"{len(values)} samples every {step:g} s" for values, step in parts)
+            raise Refused(
+                f"{', '.join(map(str, accelerations))}: components of a record must be alike, not"
+                f" {sizes}"
+            )
         return np.transpose([values for values, _ in parts]).tolist(), parts[0][1]
     if isinstance(accelerations, (str, os.PathLike)):
         named, found = accelerations, accelerograms.read(accelerations)
@@ -94,26 +97,28 @@ def readRecord(
         raise Refused(f"every {every!r} s, the time between samples, must be above 0")
     if every > COARSEST:
         raise Refused(
-            f"every {every:g} s, the time between samples, must be at most {COARSEST:g} s: is it in s, not ms?"
+            f"every {every:g} s, the time between samples, must be at most {COARSEST:g} s: is it in"
+            " s, not ms?"
         )
     missing = np.argwhere(np.isin(values, MISSING))
     if len(missing):
         first = tuple(missing[0])
         raise Refused(
-            f"{len(missing)} samples stand for missing values, the first is number {first[0]}, {values[first]:g}"
+            f"{len(missing)} samples stand for missing values, the first is number {first[0]},"
+            f" {values[first]:g}"
         )
     peak = abs(scale) * float(abs(values).max())
     if unit is None and peak > 0 and not LOWEST_PEAK <= peak <= HIGHEST_PEAK:
         other = "g" if peak < LOWEST_PEAK else "cm/s²"
         raise Refused(
-            f"the peak of the record is {peak:g}, which is {peak / 9.81:.2g} g if it is in m/s²: is it in {other}? "
-            f"Say unit='{other}', or unit='m/s²' if it is"
+            f"the peak of the record is {peak:g}, which is {peak / 9.81:.2g} g if it is in m/s²: is"
+            f" it in {other}? Say unit='{other}', or unit='m/s²' if it is"
         )
     unit = unit or "m/s²"
     strongest = UNITS[unit] * peak
     if strongest > LARGEST_PEAK:
         raise Refused(
-            f"the peak of the record, {strongest / 9.81:.3g} g in {unit}, must be at most {LARGEST_PEAK / 9.81:.2g} g: "
-            "is it in another unit?"
+            f"the peak of the record, {strongest / 9.81:.3g} g in {unit}, must be at most"
+            f" {LARGEST_PEAK / 9.81:.2g} g: is it in another unit?"
         )
     return (UNITS[unit] * values).tolist(), every

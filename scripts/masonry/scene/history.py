@@ -35,9 +35,7 @@ def parse(text):
     :raises ValueError: with all problems
     """
     if not text.strip():
-        raise ValueError(
-            "must be amplitudes in mm such as 1,2x3,4, or the path of a CSV file"
-        )
+        raise ValueError("must be amplitudes in mm such as 1,2x3,4, or the path of a CSV file")
     named = os.sep in text or text.lower().endswith(".csv")
     return _readFile(text) if named or os.path.isfile(text) else _readList(text)
 
@@ -65,13 +63,9 @@ def _readList(text):
             problems.append(f"'{piece}' is no amplitude in mm such as 2 or 2x3{other}")
             continue
         if not LEAST <= amplitude <= MOST:
-            problems.append(
-                f"'{piece}': the amplitude must be from {LEAST:g} to {MOST:g} mm"
-            )
+            problems.append(f"'{piece}': the amplitude must be from {LEAST:g} to {MOST:g} mm")
         if times and not (count.isdecimal() and count.isascii() and int(count) >= 1):
-            problems.append(
-                f"'{piece}': the number of cycles must be a whole number, at least 1"
-            )
+            problems.append(f"'{piece}': the number of cycles must be a whole number, at least 1")
         elif not problems:
             amplitudes.append([amplitude, int(count) if times else 1])
     whole = sum(repeats for _, repeats in amplitudes)
@@ -105,12 +99,10 @@ def _column(lines, path):
     heads = [head.strip() for head in next(lines, [])]
     if heads.count(COLUMN) != 1:
         found = ", ".join(heads) or "nothing"
-        raise ValueError(
-            f"{path}: its first line must name one column {COLUMN}, it has {found}"
-        )
+        raise ValueError(f"{path}: its first line must name one column {COLUMN}, it has {found}")
     at, problems, points = heads.index(COLUMN), [], []
     for line in filter(None, lines):
-        text, where = "".join(line[at : at + 1]).strip(), f"{path}, line {lines.line_num}"  # fmt: skip
+        text, where = "".join(line[at : at + 1]).strip(), f"{path}, line {lines.line_num}"
         try:
             points.append(_number(text))
         except ValueError:

@@ -14,7 +14,7 @@ from ..basics import Refused
 
 def beside(model, gravity):
     """What acts beside a load and what holds the structure now: data that can be compared."""
-    loads = [[load.body, *force, load.driven] for load, force in model.loading.deadLoads()]  # fmt: skip
+    loads = [[load.body, *force, load.driven] for load, force in model.loading.deadLoads()]
     held = [O.bodies[target.body].state.blockedDOFs for target in model.supports.held]
     return [list(gravity), loads, held]
 
@@ -41,7 +41,10 @@ def forces(model, assembly, pushed=None, pressed=None):
         if own and abs(along @ pushed[1]) > 1 - 1e-9:
             continue
         if load.others:
-            raise Refused("limit analysis: the drive of a push in a pattern holds the structure; release() lets it go")  # fmt: skip
+            raise Refused(
+                "limit analysis: the drive of a push in a pattern holds the structure; release()"
+                " lets it go"
+            )
         assembly.props.append((block, along, point))
     return loads
 

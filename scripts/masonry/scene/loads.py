@@ -16,7 +16,9 @@ from .words import describes
 Stress = Annotated[float, number("Pa", 0, 1e12)]
 Force = Annotated[Numbers, numbers("N", 1e15)]
 Pressure = Annotated[float, number("Pa", -1e9, 1e9)]
-Field = Annotated[Union[float, Callable[[float, float, float], float]], orFunction(number("Pa", -1e9, 1e9))]  # fmt: skip
+Field = Annotated[
+    Union[float, Callable[[float, float, float], float]], orFunction(number("Pa", -1e9, 1e9))
+]
 
 
 def doubtPress(stress: float, name: str) -> None:
@@ -51,9 +53,7 @@ def windForces(
 
 @describes
 @validated
-def press(
-    description: Any, platen: MovingPlaten, stress: Stress, riding: bool = True
-) -> None:
+def press(description: Any, platen: MovingPlaten, stress: Stress, riding: bool = True) -> None:
     """Press a platen on the bricks below it. The load grows in :meth:`settle`, and stays. A platen has one press; dead loads and
     winds add up.
 
@@ -63,8 +63,8 @@ def press(
     doubtPress(stress, "press")
     if platen.pressed is not None:
         raise ValueError(
-            f"press: {platen.name} is pressed already, with {platen.pressed:g} Pa: say the whole stress once, or press it again "
-            "after the first stage"
+            f"press: {platen.name} is pressed already, with {platen.pressed:g} Pa: say the whole"
+            " stress once, or press it again after the first stage"
         )
     platen.pressed, platen.riding = float(stress), riding
 
@@ -112,9 +112,7 @@ def pressure(
     sizes = [math.hypot(*one.force) for one in forces]
     largest = max(sizes)
     if not largest > 0:
-        raise ValueError(
-            "pressure: it is 0 on all faces that look against it; places are in m"
-        )
+        raise ValueError("pressure: it is 0 on all faces that look against it; places are in m")
     loaded = (f for f, size in zip(forces, sizes) if size > LEAST * largest)
     description.winds.extend(loaded)
     x, y, z = map(math.fsum, zip(*(one.force for one in forces)))
@@ -123,9 +121,7 @@ def pressure(
 
 @describes
 @validated
-def wind(
-    description: Any, pressure: Pressure, towards: Level, part: Part | None = None
-) -> float:
+def wind(description: Any, pressure: Pressure, towards: Level, part: Part | None = None) -> float:
     """A pressure on the faces that look against a horizontal direction. It grows in :meth:`settle`, and stays.
 
     Loaded are the faces of rigid bricks within 45 degrees of the direction, each along its normal, on the part that no

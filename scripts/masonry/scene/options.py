@@ -28,7 +28,7 @@ OPTIONS = {
         options.OPTIONS["joints"],
         kind=oneOf(*LAWS, "brittle"),
         default=next(iter(LAWS)),
-        meaning="; ".join([*(law["meaning"] for law in LAWS.values()), "brittle Coulomb slip"]),  # fmt: skip
+        meaning="; ".join([*(law["meaning"] for law in LAWS.values()), "brittle Coulomb slip"]),
     ),
 }
 
@@ -52,9 +52,13 @@ def parser(description, until, rate=USUAL["rate"], loops=True):
     p = Parser(
         prog=f"{program} {os.path.basename((sys.argv or ['SCENE'])[0])}",
         description=description,
-        epilog='The paper is Y. P. Oktiovan et al., "Prediction of the In-Plane Response of Masonry Walls Using a Piecewise '
-        'Softening Contact Model Within the Distinct Element Method" (TU Delft repository). Its law was first published in '
-        f"Computers & Structures 303 (2024) 107499, doi 10.1016/j.compstruc.2024.107499. masonry {version}, commit {commit}",
+        epilog=(
+            'The paper is Y. P. Oktiovan et al., "Prediction of the In-Plane Response of Masonry'
+            ' Walls Using a Piecewise Softening Contact Model Within the Distinct Element Method"'
+            " (TU Delft repository). Its law was first published in Computers & Structures 303"
+            f" (2024) 107499, doi 10.1016/j.compstruc.2024.107499. masonry {version}, commit"
+            f" {commit}"
+        ),
         formatter_class=argparse.ArgumentDefaultsHelpFormatter,
     )
     for name, option in OPTIONS.items():
@@ -80,7 +84,7 @@ def ofScene(name, arguments, sceneOptions):
     if arguments is None and (not sys.argv or notebook.isHere()):
         arguments = []  # words of a kernel, or of YADE's importer, are not the scene's
     if not isinstance(arguments, argparse.Namespace):
-        words = arguments if isinstance(arguments, (list, tuple, type(None))) else [arguments]  # fmt: skip
+        words = arguments if isinstance(arguments, (list, tuple, type(None))) else [arguments]
         must = f"scene {name}: arguments must be a list of words"
         if isinstance(arguments, str):
             raise Refused(f"{must}, such as {arguments.split()!r}, got {arguments!r}")
@@ -109,7 +113,8 @@ def check(args, masonry, connectors, more=()):
         problems.append("--mass-scaling: rigid units have no deformation to slow")
     if args.points and args.blocks == "deformable":
         problems.append(
-            f"--points {args.points}: joints of deformable units have the points of their cells; --divisions makes more of them"
+            f"--points {args.points}: joints of deformable units have the points of their cells;"
+            " --divisions makes more of them"
         )
 
     def attempt(before, act, *arguments):
@@ -140,5 +145,5 @@ def askAccuracy(name, args):
         say(refused, sys.stderr)
         raise SystemExit(2) from None
     except Interrupted:
-        say("interrupted: the runs that are over are kept, and the same command goes on")  # fmt: skip
+        say("interrupted: the runs that are over are kept, and the same command goes on")
         raise SystemExit(130) from None

@@ -43,7 +43,7 @@ class Outcome:
         self._facts = {}
         if not self.args.lean:
             of = {"built": facts.sizes, "held_and_loaded": facts.held}
-            self._facts = {n: [*map(list, f(self.description))] for n, f in of.items()}  # fmt: skip
+            self._facts = {n: [*map(list, f(self.description))] for n, f in of.items()}
 
     @property
     def pushed(self):
@@ -105,9 +105,7 @@ class Outcome:
             joints=joints,
             joint_units={p["name"]: p["unit"] for p in known if p["unit"]},
             joint_meanings={p["name"]: p["meaning"] for p in known},
-            properties_of_laws={
-                n: sorted(law["properties"]) for n, law in LAWS.items()
-            },
+            properties_of_laws={n: sorted(law["properties"]) for n, law in LAWS.items()},
             unit_material={
                 "young_Pa": model.unit.young,
                 "poisson": model.unit.poisson,
@@ -124,9 +122,7 @@ class Outcome:
             parts=model.parts,
             figure=figureOf(self),
             held=sorted(t.name for t in targets if t.fixed),
-            targets=[
-                {"name": t.name, "body": t.body, "held": t.fixed} for t in targets
-            ],
+            targets=[{"name": t.name, "body": t.body, "held": t.fixed} for t in targets],
             **self._ground(),
             recorded_joints=[joint.name for joint in description.joints],
             recorded_drifts=self._columnsOf(description.drifts, "mrad"),
@@ -146,7 +142,12 @@ class Outcome:
 
     def _columnsOf(self, records, *units):
         """The columns of curve.csv that some records have, of these units."""
-        heads = (c.head for one in records for c in one.columns(self.description.plane) if c.unit in units)  # fmt: skip
+        heads = (
+            c.head
+            for one in records
+            for c in one.columns(self.description.plane)
+            if c.unit in units
+        )
         return [head for head in heads if head in self.results.columns]
 
     def _ground(self):
@@ -155,13 +156,15 @@ class Outcome:
         if not (ground and engine):
             return {}
         names = self.description.contact.known
-        return {"ground_body": ground.body, "contact": {n: getattr(engine, n) for n in names}}  # fmt: skip
+        return {"ground_body": ground.body, "contact": {n: getattr(engine, n) for n in names}}
 
     @property
     def data(self):
         """What the numbers of the run are found from, as it stands now."""
         at, results = self.scene.running.at, self.results
-        column = functools.cache(lambda name: results.column(name) if name in results.columns else None)  # fmt: skip
+        column = functools.cache(
+            lambda name: results.column(name) if name in results.columns else None
+        )
         return RunData({"stages": at.listed(), **results.run}, column)
 
     def summarise(self):
@@ -210,8 +213,8 @@ class Outcome:
 
     def _cracks(self):
         """Entries for the widest cracks, of all joints and by kind of joint and part."""
-        parts = {body: f"part {b.part}" for body, b in zip(self.model.ids, self.description.bricks)}  # fmt: skip
-        groups = lambda i: {i.phys.joint.name, *(parts[b] for b in (i.id1, i.id2) if b in parts)}  # fmt: skip
+        parts = {body: f"part {b.part}" for body, b in zip(self.model.ids, self.description.bricks)}
+        groups = lambda i: {i.phys.joint.name, *(parts[b] for b in (i.id1, i.id2) if b in parts)}
         width, point, bodies, found = cracks.widest(
             ((i.id1, i.id2), groups(i), i.phys.opening, i.geom.centres)
             for i in self.model.interactions
@@ -229,7 +232,9 @@ class Outcome:
         for one in description.connectors:
             if one.isListed:
                 kinds[one.PLURAL].append(one)
-        return {name: [one.entry() for one in records] for name, records in kinds.items() if records}  # fmt: skip
+        return {
+            name: [one.entry() for one in records] for name, records in kinds.items() if records
+        }
 
     def _addAccuracy(self, run):
         """Add the entries for --accuracy, whose half-widths the answers of the last push get, too."""
@@ -240,7 +245,7 @@ class Outcome:
         names = {one["name"] for one in own}
         stage = {"stage": "push", "number": int(number)}
         others = [a for a in at.answers.get(number, []) if a["name"] not in names]
-        at.answers = {**at.answers, number: [*({**stage, **one} for one in own), *others]}  # fmt: skip
+        at.answers = {**at.answers, number: [*({**stage, **one} for one in own), *others]}
         asked.over()
 
     # -- files and terminal ---------------------------------------------------------------------------------------
@@ -389,7 +394,7 @@ def restsUnder(outcome, name):
     ends = [stage[3] - 1 for stage in at.stages[1:]] + [len(results.rows) - 1]
     numbers = [n for n, load in outcome.loads if load[:2] == ["lean", name]]
     answers = {n: at.answers.get(str(n), []) for n in numbers}
-    held = {ends[n - 1] for n in numbers if any(a["value"] is not None for a in answers[n])}  # fmt: skip
+    held = {ends[n - 1] for n in numbers if any(a["value"] is not None for a in answers[n])}
     before = at.stages[numbers[0] - 1][3] - 1
     factors = results.column("load_factor")
     return [before] * (before >= 0) + sorted(held, key=lambda row: factors[row])

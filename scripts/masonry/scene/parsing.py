@@ -292,6 +292,4 @@ def keep(args, name, options):
         say(f"note: the command line wins: {ofLine}; the scene has {ofScene}")
     for option, value in preset.items():
         if option not in given and options.get(option, value) != value:
-            say(
-                f"note: --preset {chosen}: {option} is {value}, the scene has {options[option]}"
-            )
+            say(f"note: --preset {chosen}: {option} is {value}, the scene has {options[option]}")

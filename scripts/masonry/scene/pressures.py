@@ -124,7 +124,7 @@ def placesBelow(description, points):
             if high <= z + near and min(inward) >= -near * np.abs(sides).max():
                 below.append((float(high), face.block))
         if not below:
-            raise ValueError(f"travel: no face that looks up is below ({x:g}, {y:g}, {z:g}) m")  # fmt: skip
+            raise ValueError(f"travel: no face that looks up is below ({x:g}, {y:g}, {z:g}) m")
         high, brick = max(below)
         found.append((brick, (float(x), float(y), high)))
     return found

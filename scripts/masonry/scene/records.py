@@ -21,9 +21,7 @@ def _nameOrNothing(value, first=None):
 
 @describes
 @validated
-def drift(
-    description: Any, lower: AnyTarget, upper: AnyTarget, name: Name | None = None
-) -> None:
+def drift(description: Any, lower: AnyTarget, upper: AnyTarget, name: Name | None = None) -> None:
     """Record how far a target moves horizontally against a lower one, for example two floors.
 
     The columns of curve.csv are the difference [mm] and that over the height between both points [mrad].
@@ -33,16 +31,15 @@ def drift(
     """
     if not upper.recorded[2] - lower.recorded[2] > 0:
         raise ValueError(
-            f"drift: {upper.name} at z = {upper.recorded[2]:g} m must be above {lower.name} at {lower.recorded[2]:g} m"
+            f"drift: {upper.name} at z = {upper.recorded[2]:g} m must be above {lower.name} at"
+            f" {lower.recorded[2]:g} m"
         )
     description.drifts.append(Drift(name or f"{upper.name}_drift", lower, upper))
 
 
 @describes
 @validated
-def column(
-    description: Any, name: Name, meaning: str, value: Callable[[], float]
-) -> None:
+def column(description: Any, name: Name, meaning: str, value: Callable[[], float]) -> None:
     """Record something of one's own: a column of curve.csv.
 
     :param name: with its unit at the end, for example ``drift_mm``
@@ -55,7 +52,9 @@ def column(
         try:
             return float(found)
         except (TypeError, ValueError, OverflowError):
-            raise ValueError(f"column {name}: its function must give a number, got {shown(found)}") from None  # fmt: skip
+            raise ValueError(
+                f"column {name}: its function must give a number, got {shown(found)}"
+            ) from None
 
     description.extra.append(Column(name, None, meaning, read))
 
@@ -127,8 +126,8 @@ def _middleAt(description, z, part, name):
     if not cut:
         least, most = ends(boxes, 2)
         raise ValueError(
-            f"section {name}: no brick{f' of part {part!r}' if part else ''} reaches z = {z:g} m; they are from "
-            f"{least:g} to {most:g} m"
+            f"section {name}: no brick{f' of part {part!r}' if part else ''} reaches z = {z:g} m;"
+            f" they are from {least:g} to {most:g} m"
         )
     return (*(sum(ends(cut, i)) / 2 for i in range(2)), float(z))
 
@@ -154,7 +153,7 @@ def viewAlongY(description: Any) -> None:
         return
     for name in {block.part for block in description.bricks} - set(description.views):
         corners = [p for b in description.bricks if b.part == name for p in b.corners]
-        long, deep = (max(p[i] for p in corners) - min(p[i] for p in corners) for i in (0, 1))  # fmt: skip
+        long, deep = (max(p[i] for p in corners) - min(p[i] for p in corners) for i in (0, 1))
         if deep > long:
             description.views[name] = [0.0, 1.0, 0.0]
 

@@ -66,7 +66,9 @@ def _blocksOf(value, first=None):
         found = list(value)
         found[0].corners[0][2]
     except Exception:  # of a class of the user's own
-        raise ValueError(f"{shown(value)} must be a list of blocks, as masonry.bricks makes them") from None  # fmt: skip
+        raise ValueError(
+            f"{shown(value)} must be a list of blocks, as masonry.bricks makes them"
+        ) from None
     return found
 
 
@@ -225,7 +227,8 @@ class Scene:
             raise ValueError(f"{name}: the scene is finished")
         if self.model and self.isGone:
             raise ValueError(
-                f"{name}: scene {self.name} is gone, because another one was built since; finish one scene before the next begins"
+                f"{name}: scene {self.name} is gone, because another one was built since; finish"
+                " one scene before the next begins"
             )
 
     @functools.cached_property
@@ -288,7 +291,7 @@ class Scene:
         self.finished = True
         if not error and not self.model:
             return False
-        if not (error or self.only or any(word in SHAKES for word, _ in self.script.words)):  # fmt: skip
+        if not (error or self.only or any(word in SHAKES for word, _ in self.script.words)):
             for option, default in (("record", None), ("scale", 1)):
                 if getattr(self.args, option, default) != default:
                     say(f"warning: --{option} was not used: the scene was not shaken")
@@ -302,9 +305,7 @@ class Scene:
         return done
 
     @contextlib.contextmanager
-    def noted(
-        self, word: Callable[..., Any], *args: Any, **settings: Any
-    ) -> Iterator[None]:
+    def noted(self, word: Callable[..., Any], *args: Any, **settings: Any) -> Iterator[None]:
         """Note a word that is carried out in a block, for :meth:`resume`: also one that is refused, but ends no run."""
         call = Call(word, args, settings)
         self.calls.append(call)
@@ -326,5 +327,6 @@ class Scene:
     def _remind(self):
         if not self.finished:
             say(
-                f"note: {self.name}: the script ended without scene.finish(); there is no run.json, and no figure"
+                f"note: {self.name}: the script ended without scene.finish(); there is no run.json,"
+                " and no figure"
             )

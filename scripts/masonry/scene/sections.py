@@ -46,7 +46,7 @@ class Section:
         size = description.high[2] - description.low[2]
         level = self.z + LEVEL * (size + abs(self.z))
         #: whether every body is above it, by its id; the ground is not
-        self.above = {b.id: b.state.refPos[2] > level for b in O.bodies} | {GROUND: False}  # fmt: skip
+        self.above = {b.id: b.state.refPos[2] > level for b in O.bodies} | {GROUND: False}
         self._structure = structure
         self._parts = dict(zip(structure.ids, (b.part for b in description.bricks)))
         pairs = [(one, (one.id1, one.id2)) for one in structure.interactions]
@@ -64,8 +64,8 @@ class Section:
         if not self.interactions:
             what = f" of part {self.part!r}" if self.part else ""
             raise Refused(
-                f"section {self.name}: no joint{what} crosses z = {self.z:g} m: there must be one between a block whose "
-                "centroid is above and one whose centroid is below"
+                f"section {self.name}: no joint{what} crosses z = {self.z:g} m: there must be one"
+                " between a block whose centroid is above and one whose centroid is below"
             )
 
     def _cross(self, one, other):
@@ -87,12 +87,12 @@ class Section:
             arm = structure.connectors.placeOf(upper) - middle
             force, moment = force - on, moment - arm.cross(on) - turning
         # contacts of blocks above with blocks below, wherever these lie now
-        for one, other, on, turning in structure.contacts.pairs() if structure.contacts else ():  # fmt: skip
+        for one, other, on, turning in structure.contacts.pairs() if structure.contacts else ():
             if self._cross(one, other):
                 # `on` and `turning` act on the second body of the pair, about its centre
                 sign = 1 if self.above[one] else -1
                 arm = O.bodies[other].state.pos - middle
-                force, moment = force + sign * on, moment + sign * (arm.cross(on) + turning)  # fmt: skip
+                force, moment = force + sign * on, moment + sign * (arm.cross(on) + turning)
         return force, moment
 
     def columns(self, plane):
@@ -102,16 +102,15 @@ class Section:
         """
         at = f"the section at z = {self.z:g} m{f' of part {self.part}' if self.part else ''}"
         about = "({})".format(", ".join(f"{v:g}" for v in self.middle))
-        yield self._column(0, 2, "N", "kN", f"normal force on {at}, positive in tension")  # fmt: skip
+        yield self._column(0, 2, "N", "kN", f"normal force on {at}, positive in tension")
         for i, axis in enumerate("x" if plane else "xy"):
-            meaning = (
-                f"shear force on {at}: of what is above on what is below, along {axis}"
-            )
+            meaning = f"shear force on {at}: of what is above on what is below, along {axis}"
             yield self._column(0, i, f"V_{axis}", "kN", meaning)
         for axis, side in (("y", "large x"), ("x", "small y"))[: 1 if plane else 2]:
             meaning = (
-                f"moment on {at}: of what is above on what is below, about {axis} through {about} m by the right-hand "
-                f"rule, so that it presses the side of {side} where it is positive"
+                f"moment on {at}: of what is above on what is below, about {axis} through {about} m"
+                f" by the right-hand rule, so that it presses the side of {side} where it is"
+                " positive"
             )
             yield self._column(1, "xy".index(axis), f"M_{axis}", "kNm", meaning)
 

@@ -70,7 +70,7 @@ class Settable:
     def scatter(self, name, factor):
         """Multiply a property by the value of a field. Raises ValueError."""
         if self.values()[name] is None:
-            raise ValueError(f"{self.name}: {name} was not given, so nothing can vary about it")  # fmt: skip
+            raise ValueError(f"{self.name}: {name} was not given, so nothing can vary about it")
         self.vary(name, factor)
 
     def vary(self, name, factor):
@@ -118,7 +118,10 @@ def scatterAll(connectors, names, factor):
 
 
 def _noSuch(what, thing, attribute):
-    return f"{what}: a {thing.WORD} has no such property, there are {', '.join(thing.known)}{nearest(attribute, thing.known)}"  # fmt: skip
+    return (
+        f"{what}: a {thing.WORD} has no such property, there are"
+        f" {', '.join(thing.known)}{nearest(attribute, thing.known)}"
+    )
 
 
 def setting(text):
@@ -144,7 +147,7 @@ def applySettings(joints, settings):
         if thing is None:
             more = any(isinstance(one, Settable) for one in joints.values())
             kinds = "joint, beam, tie, spring or fibre layer" if more else "joint"
-            problems.append(f"{what}: no {kinds} '{name}', there are {', '.join(joints)}")  # fmt: skip
+            problems.append(f"{what}: no {kinds} '{name}', there are {', '.join(joints)}")
             continue
         values = valuesOf(thing)
         if isinstance(thing, Settable) and attribute not in values:

@@ -4,7 +4,18 @@
 import itertools
 from typing import Annotated, Any
 
-from ..common.arguments import Axes, Freedoms, Name, Numbers, axes, byName, number, oneOf, shown, validated  # fmt: skip
+from ..common.arguments import (
+    Axes,
+    Freedoms,
+    Name,
+    Numbers,
+    axes,
+    byName,
+    number,
+    oneOf,
+    shown,
+    validated,
+)
 from ..common.arguments import vector as numbers
 from ..assembly.blocks import vector
 from ..basics import IN_PLANE, refuse
@@ -27,7 +38,7 @@ def stiffnesses(value: Any, first: Any = None) -> Any:
     found = byName(number("N/m or N m", 0, MOST, above=True))(value)
     unknown = [axis for axis in found if axis not in ("x", "y", "z", "X", "Y", "Z")]
     if unknown or not found:
-        raise ValueError(f"{shown(value)} must be a dict from some of the axes xyzXYZ to stiffness")  # fmt: skip
+        raise ValueError(f"{shown(value)} must be a dict from some of the axes xyzXYZ to stiffness")
     return found
 
 
@@ -78,10 +89,12 @@ def platen(
     springs = {**(springs or {})}
     problems = [*_problems(plane, bottom, rotation, guided, drive, springs)]
     if uplift and ("z" not in springs or {"X", "Y"} & {*springs}):
-        problems.append("uplift needs springs with z, from which X and Y follow, and which have neither")  # fmt: skip
+        problems.append(
+            "uplift needs springs with z, from which X and Y follow, and which have neither"
+        )
     if upTo is not None and not 0 < (level - upTo if bottom else upTo - level):
         side = "below" if bottom else "above"
-        problems.append(f"upTo {upTo} m must be {side} the bricks, which end at {level:g} m")  # fmt: skip
+        problems.append(f"upTo {upTo} m must be {side} the bricks, which end at {level:g} m")
     refuse([f"platen: {one}" for one in problems])
     low, high = _sideAt(description, level, where, part)
     outer = level + (-height if bottom else height) if upTo is None else upTo
@@ -141,9 +154,7 @@ def _sideAt(description, level, where, part):
     ]
     touching = [p[:2] for corners in blocks for p in corners]
     if not touching:
-        raise ValueError(
-            f"platen: part {part!r} does not reach the {where}, z = {level:g} m"
-        )
+        raise ValueError(f"platen: part {part!r} does not reach the {where}, z = {level:g} m")
     low, high = ([*map(f, zip(*touching))] for f in (min, max))
     # bricks that stand on an edge share no face with a platen
     if any(a == b for a, b in zip(low, high)) or max(map(len, blocks)) < 3:
@@ -165,7 +176,7 @@ def _standLoose(description, target, stiffness, low, high):
     name = f"{target.name}_soil"
     for (x, one), (y, other) in itertools.product(*rows):
         ends = End((x, y, low[2]), target), End((x, y, low[2] + HIGH))
-        bar = Tie(name, ends, one * other * stiffness, None, 0.0, 0.0, None, False, overlay=name)  # fmt: skip
+        bar = Tie(name, ends, one * other * stiffness, None, 0.0, 0.0, None, False, overlay=name)
         bar.isSupport = True
         description.connectors.append(bar)
     wide, deep = (b - a for a, b in zip(low[:2], high))
@@ -201,7 +212,8 @@ def hold(
     """
     if description.plane and not set(axes) - set("yXZ"):
         raise ValueError(
-            f"hold: in the x-z plane no block moves along {axes} anyway; Scene(..., plane=False) is in space"
+            f"hold: in the x-z plane no block moves along {axes} anyway; Scene(..., plane=False) is"
+            " in space"
         )
     target = _brick(description, where, name, fixed=True, loaded=False)
     target.freedom = "".join({*axes, *"yXZ"} if description.plane else axes)

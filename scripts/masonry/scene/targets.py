@@ -60,7 +60,7 @@ class Target:
             for axis in axes:
                 on = f"what loads, drives or holds {name}"
                 yield force(axis, on, lambda r: -1e-3 * supports(r).forceFrom(self))
-        elif self.box and not self.fixed and "z" not in self.drives + (self.freedom or ""):  # fmt: skip
+        elif self.box and not self.fixed and "z" not in self.drives + (self.freedom or ""):
             yield force("z", name, lambda r: 1e-3 * supports(r).jointsOn(self))
         for axis in self.drives:
             own = lambda r, a=axis: -1e-3 * r.structure.loading.driveForce(self, a)
@@ -85,7 +85,7 @@ class Drift:
         for i, axis in enumerate("x" if plane else "xy"):
             name = f"{self.name}_{axis}"
             what = f"displacement of {self.upper.name} along {axis} less that of {self.lower.name}"
-            away = lambda r, i=i: 1e3 * (r.moved(self.upper)[0][i] - r.moved(self.lower)[0][i])  # fmt: skip
+            away = lambda r, i=i: 1e3 * (r.moved(self.upper)[0][i] - r.moved(self.lower)[0][i])
             turned = lambda r, away=away: away(r) / height
             yield Column(name, "mm", what, away)
             yield Column(name, "mrad", f"{what}, over the height between them", turned)
@@ -135,8 +135,8 @@ class JointRecord:
 
     def dissipated(self) -> dict[str, float]:
         """Entries of run.json: what the joint dissipated, over its area [J/m²]."""
-        lost = zip(("tension", "shear", "compression"), self.interaction.phys.dissipated)  # fmt: skip
-        return {self.prefixed(f"dissipated_{mode}_J_per_m2"): j / self.area for mode, j in lost}  # fmt: skip
+        lost = zip(("tension", "shear", "compression"), self.interaction.phys.dissipated)
+        return {self.prefixed(f"dissipated_{mode}_J_per_m2"): j / self.area for mode, j in lost}
 
     def columns(self) -> Iterator[Column]:
         """What is recorded of it."""
@@ -150,9 +150,21 @@ class JointRecord:
 OF_JOINTS = (
     ("opening", "mm", "mean opening of {}, negative if it closes", 1e3, JointRecord.opening),
     ("slide", "mm", "mean slide of {}, along its first direction", 1e3, JointRecord.slide),
-    ("normal_stress", "MPa", "mean normal stress of {}, positive in tension", 1e-6, JointRecord.normalStress),
-    ("shear_stress", "MPa", "mean shear stress of {}, along the slide", 1e-6, JointRecord.shearStress),
-)  # fmt: skip
+    (
+        "normal_stress",
+        "MPa",
+        "mean normal stress of {}, positive in tension",
+        1e-6,
+        JointRecord.normalStress,
+    ),
+    (
+        "shear_stress",
+        "MPa",
+        "mean shear stress of {}, along the slide",
+        1e-6,
+        JointRecord.shearStress,
+    ),
+)
 
 
 def _descriptionOf(first):
@@ -183,7 +195,7 @@ def _target(what, fits):
 def _recordedJoint(value, first):
     """The kind of a joint of the scene, as :meth:`masonry.scene.scene.Scene.joint` gave it."""
     if not any(value is one for one in _descriptionOf(first).joints):
-        raise ValueError(f"{shown(value)} must be a joint of this scene, as joint() gave it")  # fmt: skip
+        raise ValueError(f"{shown(value)} must be a joint of this scene, as joint() gave it")
     return value
 
 
@@ -199,8 +211,10 @@ def brick(value: Any, first: Any) -> Any:
 
 
 #: What the user says to a command of a scene, as type hints name it.
-_any = _target("a target of this scene, as platen(), hold(), watch() or handle() give it", lambda t: True)  # fmt: skip
-kindOfLoaded = _target("a platen that moves, or a handle(), of this scene", lambda t: t.loaded)  # fmt: skip
+_any = _target(
+    "a target of this scene, as platen(), hold(), watch() or handle() give it", lambda t: True
+)
+kindOfLoaded = _target("a platen that moves, or a handle(), of this scene", lambda t: t.loaded)
 _moving = _target("a platen of this scene that moves", lambda t: t.box and not t.fixed)
 _held = _target("a platen or brick of this scene that is held", lambda t: t.fixed)
 _allHeld = lambda v, first: listOf(_held)(v if isListed(v) else [v], first)

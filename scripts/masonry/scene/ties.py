@@ -59,7 +59,7 @@ class End:
         if self.target:
             return self.target.name
         at = ", ".join(f"{v:.4g}" for v in self.point)
-        return f"the ground at ({at}) m" if self.isGround else f"brick {self.brick} at ({at}) m"  # fmt: skip
+        return f"the ground at ({at}) m" if self.isGround else f"brick {self.brick} at ({at}) m"
 
 
 class Connector(Settable):
@@ -85,7 +85,9 @@ class Tie(Connector):
     compression: bool
     engine: Any = None  # YADE's, when the scene is built
     number: int = 0  # among the ties of the engine
-    overlay: str = ""  # name of the overlay of which it is a fibre; then it has no columns of its own
+    overlay: str = (  # name of the overlay of which it is a fibre; then it has no columns of its own
+        ""
+    )
 
     WORD, PLURAL = "tie", "ties"  # in messages, and in run.json
     isSupport = False  # whether its force on a platen is one of a support
@@ -128,12 +130,19 @@ class Tie(Connector):
     def problems(self):
         prestress, found = self.prestress, []
         if prestress and self.slack:
-            found.append(f"a prestress of {prestress:g} N and a slack of {self.slack:g} m exclude each other")  # fmt: skip
+            found.append(
+                f"a prestress of {prestress:g} N and a slack of {self.slack:g} m exclude each other"
+            )
         if self.strength is not None and prestress >= self.strength:
-            found.append(f"prestress {prestress:g} N must be below its strength, {self.strength:g} N")  # fmt: skip
+            found.append(
+                f"prestress {prestress:g} N must be below its strength, {self.strength:g} N"
+            )
         breaks = (self.breaking or 0) * self.length * self.stiffness
         if prestress >= breaks > 0:
-            found.append(f"prestress {prestress:g} N must be below the force at which it breaks, {breaks:g} N")  # fmt: skip
+            found.append(
+                f"prestress {prestress:g} N must be below the force at which it breaks,"
+                f" {breaks:g} N"
+            )
         return found
 
     @property
@@ -175,8 +184,18 @@ class Tie(Connector):
         if self.overlay:
             return
         where = f"{self.ends[0].words} and {self.ends[1].words}"
-        yield Column(f"{self.name}_force", "kN", f"force of the tie between {where}, positive in tension", lambda r: 1e-3 * self.force)  # fmt: skip
-        yield Column(f"{self.name}_elongation", "mm", f"elongation of the distance between {where}", lambda r: 1e3 * self.elongation)  # fmt: skip
+        yield Column(
+            f"{self.name}_force",
+            "kN",
+            f"force of the tie between {where}, positive in tension",
+            lambda r: 1e-3 * self.force,
+        )
+        yield Column(
+            f"{self.name}_elongation",
+            "mm",
+            f"elongation of the distance between {where}",
+            lambda r: 1e3 * self.elongation,
+        )
 
     @property
     def isListed(self):
@@ -338,8 +357,12 @@ class Overlay(Settable):
     def columns(self, plane):
         """What is recorded of it."""
         for what in ("yielded", "broken"):
-            meaning = f"how many of the {len(self.ties)} bundles of fibres of {self.name} have {what}"
-            yield Column(f"{self.name}_{what}", "-", meaning, lambda r, what=what: self._count(what))  # fmt: skip
+            meaning = (
+                f"how many of the {len(self.ties)} bundles of fibres of {self.name} have {what}"
+            )
+            yield Column(
+                f"{self.name}_{what}", "-", meaning, lambda r, what=what: self._count(what)
+            )
 
     def _count(self, what):
         steps = list(getattr(self.ties[0].engine, f"{what}At"))

@@ -36,9 +36,7 @@ class Call:
     refused: bool = False
 
 
-def describes(
-    act: Callable[Concatenate[Any, P], R]
-) -> Callable[Concatenate[Any, P], R]:
+def describes(act: Callable[Concatenate[Any, P], R]) -> Callable[Concatenate[Any, P], R]:
     """A word that describes a scene: it comes before the first stage, and is noted.
 
     :param act: function of a :class:`masonry.scene.description.Description` and what the user says
@@ -153,7 +151,7 @@ class Script:
         :param before: ``words`` of that run, up to its checkpoint. The last of them, but for results, is the stage in which that was
             made, which may go farther now
         """
-        last = max((n for n, (word, _) in enumerate(before) if word != RESULT), default=-1)  # fmt: skip
+        last = max((n for n, (word, _) in enumerate(before) if word != RESULT), default=-1)
         farther = False
         for at, (was, now) in enumerate(zip(before, self.words)):
             if was == now:
@@ -163,7 +161,8 @@ class Script:
             changed = {n for n in {**old, **new} if old.get(n) != new.get(n)}
             if name != other or not changed <= may:
                 raise NotResumed(
-                    f"--resume: a run goes on as it began: the script said {_spoken(*was)}, now it says {_spoken(*now)}"
+                    f"--resume: a run goes on as it began: the script said {_spoken(*was)}, now it"
+                    f" says {_spoken(*now)}"
                 )
             farther = True
         return farther

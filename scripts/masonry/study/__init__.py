@@ -23,9 +23,15 @@ python3-openturns); a grid of numbers and choices needs no more than Python.
 import importlib
 from typing import TYPE_CHECKING
 
-_VARIABLES = "Distribution", "Field", "choice", "field", "lognormal", "normal", "uniform"  # fmt: skip
+_VARIABLES = "Distribution", "Field", "choice", "field", "lognormal", "normal", "uniform"
 #: Public names with the module that has them. They are loaded when they are used first, because a row needs none of them.
-_NAMES = {"Study": "plan", "Sa": "incremental", "Calibration": "calibrate", "Specimen": "calibrate", **dict.fromkeys(_VARIABLES, "variables")}  # fmt: skip
+_NAMES = {
+    "Study": "plan",
+    "Sa": "incremental",
+    "Calibration": "calibrate",
+    "Specimen": "calibrate",
+    **dict.fromkeys(_VARIABLES, "variables"),
+}
 __all__ = [*_NAMES]
 
 

@@ -31,8 +31,14 @@ SWITCHES = {
 def parser():
     p = argparse.ArgumentParser(
         prog="python3 -m masonry.study",
-        description="Run a scene many times with values that vary; go on with a study that was stopped; gather what came out.",
-        epilog="With --slurm all other options, for example --partition=long --time=2:00:00, are those of sbatch.",
+        description=(
+            "Run a scene many times with values that vary; go on with a study that was stopped;"
+            " gather what came out."
+        ),
+        epilog=(
+            "With --slurm all other options, for example --partition=long --time=2:00:00, are those"
+            " of sbatch."
+        ),
     )
     file = "Python file that makes one masonry.study.Study or Calibration; not needed to --gather"
     jobs = "runs at a time (default: %(default)s, all cores)"
@@ -86,9 +92,7 @@ def main(words):
         near = os.path.dirname(os.path.abspath(args.file))
         if isinstance(study, Calibration):
             if args.slurm or args.prepare:
-                raise Refused(
-                    "a calibration runs here: --slurm and --prepare are of studies"
-                )
+                raise Refused("a calibration runs here: --slurm and --prepare are of studies")
             for line in study.find(args.out, near, args.jobs).lines():
                 say(line)
             return 0

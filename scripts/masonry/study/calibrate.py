@@ -99,7 +99,7 @@ class Specimen:
             return
         x, y, _ = readMeasured(os.path.join(near, self.measured))
         if (np.diff(x) < 0).any():
-            raise Refused(f"{self.measured}: the first column must grow; cycles cannot be compared")  # fmt: skip
+            raise Refused(f"{self.measured}: the first column must grow; cycles cannot be compared")
         self.curve, self.grid = (x, y), np.linspace(x[0], x[-1], self.count + 1)[1:]
         self.names = [f"{self.columns[1]} at {at:.3g}" for at in self.grid]
         self.values = np.interp(self.grid, *pictures.increasing(x, y))
@@ -118,7 +118,9 @@ class Specimen:
         except Refused:
             return np.full(self.count, np.nan)
         if missing := ", ".join(name for name in self.columns if name not in curve):
-            raise Refused(f"{path}: curve.csv has no column {missing}; there are {', '.join(curve)}")  # fmt: skip
+            raise Refused(
+                f"{path}: curve.csv has no column {missing}; there are {', '.join(curve)}"
+            )
         x, y = pictures.increasing(*(curve[name] for name in self.columns))
         reached = self.grid <= x[-1] + 0.01 * (x[-1] - x[0])
         return np.where(reached, np.interp(self.grid, x, y), np.nan)
@@ -149,15 +151,18 @@ class Calibration:
         accurate: Annotated[dict[str, Any], isA(dict)] | None = None,
         few: Annotated[int, whole(3, 100)] = 4,
     ) -> None:
-        self.specimens = [specimens] if isinstance(specimens, Specimen) else [*specimens]  # fmt: skip
+        self.specimens = [specimens] if isinstance(specimens, Specimen) else [*specimens]
         self.runs, self.rounds, self.seed = runs, rounds, seed
         self.accurate, self.few, self.keys = accurate, few, [*unknown]
         if not (self.keys and self.specimens):
             raise Refused("calibration: there must be a specimen and something unknown")
         if runs < 3 * len(self.keys):
-            raise Refused(f"calibration: {len(self.keys)} unknown properties need {3 * len(self.keys)} runs or more")  # fmt: skip
+            raise Refused(
+                f"calibration: {len(self.keys)} unknown properties need {3 * len(self.keys)} runs"
+                " or more"
+            )
         ranges = [dict(uniform(*ends).parameters) for ends in unknown.values()]
-        self.low, self.high = (np.array([r[e] for r in ranges]) for e in ("low", "high"))  # fmt: skip
+        self.low, self.high = (np.array([r[e] for r in ranges]) for e in ("low", "high"))
         for one in self.specimens:  # a study names all that is wrong
             self.names = [*self._study(one, self.low, self.high, runs, seed).vary]
 
@@ -183,7 +188,7 @@ class Calibration:
         model, sample, run = self._checked(*self._fitted())
         if self.accurate is not None:
             low, high = np.quantile(sample, ENDS, axis=0)
-            few = lambda s: self._study(s, low, high, self.few, self.seed, self.accurate)  # fmt: skip
+            few = lambda s: self._study(s, low, high, self.few, self.seed, self.accurate)
             x, y = self._rows("accurate", few, 3)
             off = y - model(x)
             model.offset = model.offset + off.mean(axis=0)
@@ -191,7 +196,7 @@ class Calibration:
             sample = self._drawn(model)
             _, run = self._best("best", sample, self.accurate)
         found = Found(self, sample, model, run)
-        written(os.path.join(place, RESULT), json.dumps(found.describe(), indent=1) + "\n")  # fmt: skip
+        written(os.path.join(place, RESULT), json.dumps(found.describe(), indent=1) + "\n")
         if any(one.grid is not None for one in self.specimens):
             pictures.calibration(os.path.join(place, PICTURE), found)
         return found
@@ -211,12 +216,13 @@ class Calibration:
             model = Surrogate(x[inside], y[inside], low, high)
             sample = self._drawn(model)
             off = (model.errors / self.errors).max()
-            say(f"round {turn + 1}: the error of the surrogate is at most {off:.2g} of that of the test")  # fmt: skip
+            say(
+                f"round {turn + 1}: the error of the surrogate is at most {off:.2g} of that of the"
+                " test"
+            )
             least, most = np.quantile(sample, (TAIL, 1 - TAIL), axis=0)
             margin = MARGIN * (most - least)
-            least, most = np.maximum(least - margin, low), np.minimum(
-                most + margin, high
-            )
+            least, most = np.maximum(least - margin, low), np.minimum(most + margin, high)
             if off <= FINE or np.prod((most - least) / (high - low)) > SMALLER:
                 break
             low, high = least, most
@@ -229,7 +235,10 @@ class Calibration:
             off = np.max(np.abs(run - model(x)) / self.errors, initial=0)
             if off <= FINE or turn > CHECKS:
                 break
-            say(f"check {turn}: at the means of the draws the surrogate is off by {off:.2g} of the error of the test")  # fmt: skip
+            say(
+                f"check {turn}: at the means of the draws the surrogate is off by {off:.2g} of the"
+                " error of the test"
+            )
             rows = np.vstack([model.x, x]), np.vstack([model.y, run])
             model = Surrogate(*rows, model.low, model.high, turn)
             sample = self._drawn(model)
@@ -238,7 +247,7 @@ class Calibration:
     def _best(self, name, sample, options=()):
         """What a run with the means of the draws says, as in :meth:`_rows`."""
         means = dict(zip(self.keys, sample.mean(axis=0).tolist()))
-        study = lambda s: Study(s.scene, {**s.options, **dict(options)}, vary=means, design="grid")  # fmt: skip
+        study = lambda s: Study(s.scene, {**s.options, **dict(options)}, vary=means, design="grid")
         return self._rows(name, study, 0)
 
     def _rows(self, name, studyOf, least):
@@ -258,9 +267,14 @@ class Calibration:
         y = np.hstack(found)
         have = np.isfinite(y).all(axis=1)
         if not have.all():
-            say(f"{name}: {(~have).sum()} of {len(y)} rows failed or ended before the end of the curve, and are left out")  # fmt: skip
+            say(
+                f"{name}: {(~have).sum()} of {len(y)} rows failed or ended before the end of the"
+                " curve, and are left out"
+            )
         if have.sum() < least:
-            raise Refused(f"{name}: {have.sum()} rows have all that is compared, and {least} are needed")  # fmt: skip
+            raise Refused(
+                f"{name}: {have.sum()} rows have all that is compared, and {least} are needed"
+            )
         return x[have], y[have]
 
 
@@ -273,7 +287,9 @@ class Surrogate:
     :param checks: how many rows at the end are where the properties are likely: the error is not below that of these
     """
 
-    def __init__(self, x: np.ndarray, y: np.ndarray, low: np.ndarray, high: np.ndarray, checks: int = 0) -> None:  # fmt: skip
+    def __init__(
+        self, x: np.ndarray, y: np.ndarray, low: np.ndarray, high: np.ndarray, checks: int = 0
+    ) -> None:
         self.x, self.y = x, y
         self.low, self.high, self.offset = low, high, y.mean(axis=0)
         u = (x - low) / (high - low)
@@ -284,7 +300,7 @@ class Surrogate:
         squares = np.square(missed.T)
         near = squares[-checks:]  # none: all
         self.slopes = scale * slopes.T
-        self.errors = scale * np.sqrt(np.maximum(squares.mean(axis=0), near.mean(axis=0)))  # fmt: skip
+        self.errors = scale * np.sqrt(np.maximum(squares.mean(axis=0), near.mean(axis=0)))
         self.cross = 2 * np.einsum("jd,nd->djn", self.weights, u).reshape(len(low), -1)
         self.own = np.einsum("jd,nd->jn", self.weights, u**2)
 
@@ -307,7 +323,7 @@ def _kriging(u, column):
     rows, values = ot.Sample(u), ot.Sample(column[:, None])
     smooth, flags = ot.SquaredExponential([1.0] * size, [1.0]), ot.Log.Flags()
     ot.Log.Show(flags & ~ot.Log.WARN)  # of the bounds of its search
-    algorithm = ot.KrigingAlgorithm(rows, values, smooth, ot.LinearBasisFactory(size).build())  # fmt: skip
+    algorithm = ot.KrigingAlgorithm(rows, values, smooth, ot.LinearBasisFactory(size).build())
     algorithm.run()
     ot.Log.Show(flags)
     result = algorithm.getResult()
@@ -320,14 +336,14 @@ def _kriging(u, column):
     return slopes, np.array(covariance.getScale()), power * factors, missed
 
 
-def posterior(model: Surrogate, values: np.ndarray, errors: np.ndarray, seed: int) -> np.ndarray:  # fmt: skip
+def posterior(model: Surrogate, values: np.ndarray, errors: np.ndarray, seed: int) -> np.ndarray:
     """Draws of the unknown properties, with the probability that the measured values give them: a line each.
 
     :param values: what was measured
     :param errors: standard deviations of it
     :param seed: of the draws
     """
-    ot, size, spread = needed("openturns"), len(model.low), np.hypot(errors, model.errors)  # fmt: skip
+    ot, size, spread = needed("openturns"), len(model.low), np.hypot(errors, model.errors)
     misfit = lambda u: -0.5 * (((model.unit(u) - values) / spread) ** 2).sum(axis=1)
     density = ot.PythonFunction(size, 1, lambda u: [misfit(np.array([u]))[0]])
     cube = ot.Interval([0.0] * size, [1.0] * size)
@@ -342,7 +358,7 @@ def posterior(model: Surrogate, values: np.ndarray, errors: np.ndarray, seed: in
             chain.setThinning(thinning)
             drawn = np.array(chain.getSample(DRAWS))
             start = drawn[-1].tolist()
-            steps = STEP**2 / size * np.atleast_2d(np.cov(drawn.T)) + 1e-10 * np.eye(size)  # fmt: skip
+            steps = STEP**2 / size * np.atleast_2d(np.cov(drawn.T)) + 1e-10 * np.eye(size)
     return model.low + (model.high - model.low) * drawn
 
 
@@ -385,21 +401,27 @@ class Found:
         of, found, matrix = self.calibration, [], self.correlation
         off = (self.run - of.values) / np.hypot(of.errors, self.model.errors)
         if not len(off) or stats.chi2.sf((off**2).sum(), off.size) < DOUBT:
-            found.append("a run with these values does not follow the test within its errors: do not use them")  # fmt: skip
+            found.append(
+                "a run with these values does not follow the test within its errors: do not use"
+                " them"
+            )
         missed = np.abs(self.run - self.model(self.sample.mean(axis=0)[None]))
         if (missed > FINE * of.errors).any():
-            found.append("the surrogate differs from a run with these values: give more runs")  # fmt: skip
+            found.append("the surrogate differs from a run with these values: give more runs")
         for n, (name, low, high) in enumerate(zip(of.names, *self.intervals)):
             near = NEAR * (of.high[n] - of.low[n])
             if self.spread[n] >= UNKNOWN:
                 found.append(f"{name}: the test does not tell it")
             elif low < of.low[n] + near or high > of.high[n] - near:
-                found.append(f"{name}: its interval reaches an end of its range, which may be too narrow")  # fmt: skip
+                found.append(
+                    f"{name}: its interval reaches an end of its range, which may be too narrow"
+                )
             found += [
-                f"{of.names[m]} and {name}: the test tells them only together, with a correlation of {matrix[n, m]:.2f}"
+                f"{of.names[m]} and {name}: the test tells them only together, with a correlation"
+                f" of {matrix[n, m]:.2f}"
                 for m in range(n)
                 if abs(matrix[n, m]) > TOGETHER
-            ]  # fmt: skip
+            ]
         return found
 
     @property
@@ -421,7 +443,10 @@ class Found:
         """What is printed: properties, what was measured, doubts, and the properties as a study takes them."""
         of = self.calibration
         wide = max(map(len, of.names))
-        yield f"{'property':{wide}}  {'value':>10}  {'95 % interval':^23}  deviation over that of the range"
+        yield (
+            f"{'property':{wide}}  {'value':>10}  {'95 % interval':^23}  deviation over that of the"
+            " range"
+        )
         line = "{name:{wide}}  {value:10.4g}  {low:10.4g} … {high:10.4g}  {spread:.2f}"
         for one in self.properties:
             yield line.format(wide=wide, **one)
@@ -431,7 +456,10 @@ class Found:
         names = [name for one in of.specimens for name in one.names]
         run = self.run[0] if len(self.run) else np.full(len(names), np.nan)
         for name, value, low, high, one in zip(names, of.values, *self.bands(), run):
-            yield f"  {name}: measured {value:.4g}, draws {low:.4g} … {high:.4g}, run with their means {one:.4g}"
+            yield (
+                f"  {name}: measured {value:.4g}, draws {low:.4g} … {high:.4g}, run with their"
+                f" means {one:.4g}"
+            )
         yield from self.doubts()
         yield "for a study with these properties, whose report draws the band of all curves:"
         yield from self.forStudies()
@@ -442,7 +470,12 @@ class Found:
         yield "vary = {"
         for key, one, low, high in zip(of.keys, draws.T, of.low, of.high):
             cov = one.std() / abs(one.mean())
-            yield f"    {key!r}: normal(mean={one.mean():.4g}, cov={cov:.3g}, low={low:.4g}, high={high:.4g}),"  # fmt: skip
-        rank = lambda m, n: round(float(stats.spearmanr(draws[:, m], draws[:, n]).statistic), 2)  # fmt: skip
-        ranks = {(of.keys[m], of.keys[n]): rank(m, n) for n in range(len(of.keys)) for m in range(n)}  # fmt: skip
+            yield (
+                f"    {key!r}: normal(mean={one.mean():.4g}, cov={cov:.3g}, low={low:.4g},"
+                f" high={high:.4g}),"
+            )
+        rank = lambda m, n: round(float(stats.spearmanr(draws[:, m], draws[:, n]).statistic), 2)
+        ranks = {
+            (of.keys[m], of.keys[n]): rank(m, n) for n in range(len(of.keys)) for m in range(n)
+        }
         yield f"}}\ncorrelation = {ranks}"

@@ -32,7 +32,10 @@ class Demands:
     def __init__(self, record, measure=None):
         chains = Folder(record.directory).chains
         if len(record) != chains.runs:
-            raise Refused(f"{record.directory}: study.csv has {len(record)} rows, and the study {chains.runs}: --gather writes it anew")  # fmt: skip
+            raise Refused(
+                f"{record.directory}: study.csv has {len(record)} rows, and the study"
+                f" {chains.runs}: --gather writes it anew"
+            )
         self.intensityName = chains.plan["measure"]
         self.directory = record.directory
         self.names = [one["name"] for one in chains.plan["records"]]
@@ -45,9 +48,7 @@ class Demands:
         found = np.full(len(record), np.nan)
         if self.measure:
             found = abs(record.numbers(self.measure))
-        found = np.where(
-            stood, byRecord(found), np.where(fell | above, math.inf, np.nan)
-        )
+        found = np.where(stood, byRecord(found), np.where(fell | above, math.inf, np.nan))
         levels = byRecord([chains.intensity(n + 1) for n in range(len(record))])
         #: of every record its rows, the lowest level first: intensity and demand, NaN where it is not known
         self.rows = [*zip(levels.tolist(), found.tolist())]
@@ -94,12 +95,12 @@ class Demands:
         return [
             (level, int((high <= level).sum()), int(((high <= level) | (low >= level)).sum()))
             for level in self.levels
-        ]  # fmt: skip
+        ]
 
     def fragility(self, limit=None):
         """:class:`masonry.study.fragility.Fit` of reaching a limit of the demand; None: of collapse. Raises Refused."""
         if limit is not None and not self.measure:
-            raise Refused("no fragility of a limit: no row has a demand; scene.watch() records one")  # fmt: skip
+            raise Refused("no fragility of a limit: no row has a demand; scene.watch() records one")
         return fragility.fit(*self.intervals(limit))
 
 

@@ -45,9 +45,7 @@ ROUNDING = 1e-9  # a correlation that is as near to 1 leaves nothing to doubt [-
 #: An estimate. ``name`` says of what, ``value``, ``low`` and ``high`` are in the unit of the numbers. ``expensive`` and
 #: ``cheap`` are A and B, and ``alone`` is the variance of one expensive row without any cheap ones; the three have one
 #: scale, which is that of probability for a quantile. ``shared`` and ``rows`` are N and M.
-Estimate = namedtuple(
-    "Estimate", "name value low high expensive cheap alone shared rows"
-)
+Estimate = namedtuple("Estimate", "name value low high expensive cheap alone shared rows")
 
 #: How many runs to make: ``shared`` rows with both, ``rows`` with the cheap one in all, and what they cost; ``alone``,
 #: how many expensive runs alone reach the same interval, and ``share``, the cost over the cost of those.
@@ -120,8 +118,8 @@ def _quantile(bridge, share, method):
     n, side = len(bridge.y), min(share, 1 - share)
     if method == "indicator" and n * side < SIDE:
         raise Refused(
-            f"the {100 * share:g} % quantile by an indicator needs {math.ceil(SIDE / side)} shared rows or more, there are {n}: "
-            "run more of them, or take the bridge"
+            f"the {100 * share:g} % quantile by an indicator needs {math.ceil(SIDE / side)} shared"
+            f" rows or more, there are {n}: run more of them, or take the bridge"
         )
     value = _quantileAt(bridge, method, share)
     found = (bridge.probability if method == "bridge" else bridge.controlled)(value)
@@ -198,9 +196,7 @@ def allocate(pilot, prices, variance=None, budget=None):
     c, d = prices
     least = SHARED * (c + d)
     if budget is not None and budget < least:
-        raise Refused(
-            f"a budget of {budget:g} is too small: {SHARED} shared rows cost {least:g}"
-        )
+        raise Refused(f"a budget of {budget:g} is too small: {SHARED} shared rows cost {least:g}")
     a, b = pilot.expensive, pilot.cheap
     ratio = math.sqrt(b * c / (a * d)) if a > 0 else math.inf
     ratio = max(1.0, min(ratio, 1e6))
@@ -234,15 +230,20 @@ def sentence(found, prices, unit="", names=("expensive", "cheap")):
     paid, unit = saved(found, prices), unit and f" {unit}"
     end = lambda v: f"{v:.4g}{unit}" if math.isfinite(v) else "an unknown end"
     message = (
-        f"{found.name} {found.value:.4g}{unit}, with {100 * CONFIDENCE:g} % confidence between {end(found.low)} and {end(found.high)}, "
-        f"from {found.shared} runs of {names[0]} and {found.rows} of {names[1]} in {_time(paid.cost)}"
+        f"{found.name} {found.value:.4g}{unit}, with {100 * CONFIDENCE:g} % confidence between"
+        f" {end(found.low)} and {end(found.high)}, from {found.shared} runs of {names[0]} and"
+        f" {found.rows} of {names[1]} in {_time(paid.cost)}"
     )
-    same = f"{names[0]} alone needs {paid.alone:.0f} runs and {_time(paid.cost / paid.share)} for this interval"
+    same = (
+        f"{names[0]} alone needs {paid.alone:.0f} runs and {_time(paid.cost / paid.share)} for this"
+        " interval"
+    )
     if paid.share < 1:
-        return (
-            f"{message}; {same}, so {100 * (1 - paid.share):.0f} % of the time is saved"
-        )
-    return f"{message}; {same}, so nothing is saved: {names[1]} follows {names[0]} too little for its price"
+        return f"{message}; {same}, so {100 * (1 - paid.share):.0f} % of the time is saved"
+    return (
+        f"{message}; {same}, so nothing is saved: {names[1]} follows {names[0]} too little for its"
+        " price"
+    )
 
 
 def _time(seconds):
@@ -269,12 +270,18 @@ def _unfit(y, x):
     if len(y) < SHARED:
         yield f"{len(y)} shared rows are too few: run {SHARED} or more with both fidelities"
     if len(x) < len(y):
-        yield f"{len(x)} cheap rows for {len(y)} expensive ones: every expensive row needs its cheap one"
+        yield (
+            f"{len(x)} cheap rows for {len(y)} expensive ones: every expensive row needs its"
+            " cheap one"
+        )
     for what, values in (("expensive", y), ("cheap", x)):
         yield from (f"{what} {why}" for why in notFinite(values))
         shared = values[: len(y)]
         if len(set(shared)) == 1 < len(shared):
-            yield f"the {what} numbers of all shared rows are {values[0]:g}: there is nothing to learn from them"
+            yield (
+                f"the {what} numbers of all shared rows are {values[0]:g}: there is nothing to"
+                " learn from them"
+            )
 
 
 def _controlled(g, z):

@@ -98,8 +98,8 @@ def fit(low: Numbers, high: Numbers) -> Fit:
     mean, spread = float(found.x[0]), math.exp(found.x[1])
     if spread > WIDEST:
         raise Refused(
-            "no fragility: the records reach the limit at their lowest level or not at all, so the dispersion has no bound; "
-            "add lower and higher levels"
+            "no fragility: the records reach the limit at their lowest level or not at all, so the"
+            " dispersion has no bound; add lower and higher levels"
         )
     t = stats.t.ppf((1 + CONFIDENCE) / 2, n - 1)
     drop = n * math.log1p(t * t / (n - 1))  # the module says why
@@ -113,9 +113,7 @@ def fit(low: Numbers, high: Numbers) -> Fit:
     return Fit(median, dispersion, int(np.isfinite(high).sum()), n, edge)
 
 
-def nrml(
-    fits: dict[str, Fit], measure: str, state: str, what: str, highest: float
-) -> str:
+def nrml(fits: dict[str, Fit], measure: str, state: str, what: str, highest: float) -> str:
     """Fragilities as a model that OpenQuake reads, of NRML 0.5: GEM Foundation, OpenQuake engine manual, "Fragility Models".
 
     Its mean and standard deviation are those of the intensity, not of its logarithm.
@@ -157,14 +155,20 @@ def _check(low, high):
     if not (np.all(low >= 0) and np.all(high > low)):
         raise Refused("a fragility needs levels that grow from 0 on")
     if not np.isfinite(high).any():
-        raise Refused(f"no fragility: at none of the {n} records is the limit reached; add higher levels")  # fmt: skip
+        raise Refused(
+            f"no fragility: at none of the {n} records is the limit reached; add higher levels"
+        )
     if not low.any():
-        raise Refused(f"no fragility: at all {n} records the limit is reached at the lowest level that was run; add lower levels")  # fmt: skip
+        raise Refused(
+            f"no fragility: at all {n} records the limit is reached at the lowest level that was"
+            " run; add lower levels"
+        )
     if low.max() <= high.min():
         places = dict.fromkeys(f"{end:.3g}" for end in (low.max(), high.min()))
         raise Refused(
-            f"no fragility: all records may reach the limit at one intensity, {' to '.join(places)}, so the dispersion cannot be "
-            "found; add levels about it, or records"
+            "no fragility: all records may reach the limit at one intensity,"
+            f" {' to '.join(places)}, so the dispersion cannot be found; add levels about it, or"
+            " records"
         )
 
 

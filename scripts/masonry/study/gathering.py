@@ -72,7 +72,7 @@ class Folder:
         try:
             record = folders.fromJson(readWhole(self.of(STUDY)))
         except (OSError, ValueError):
-            raise Refused(f"{self.path} is no folder of a study: it has no {STUDY}") from None  # fmt: skip
+            raise Refused(f"{self.path} is no folder of a study: it has no {STUDY}") from None
         if not _isStudy(record):
             raise Refused(f"{self.of(STUDY)} is damaged: it describes no study")
         return record
@@ -151,7 +151,15 @@ def written(path, text):
 
 
 #: How lines begin that are no reason of a failure.
-_CHATTER = ("Yade: ", "Running script", "XMLRPC", "TCP python", "Welcome to", "Using python", "note: ")  # fmt: skip
+_CHATTER = (
+    "Yade: ",
+    "Running script",
+    "XMLRPC",
+    "TCP python",
+    "Welcome to",
+    "Using python",
+    "note: ",
+)
 _USAGE = re.compile(r"^usage: .*?: error: ", re.DOTALL | re.MULTILINE)  # of argparse
 _ERROR = re.compile(r"[\w.]*(Error|Exception|Exit|Interrupt)\b")
 
@@ -172,8 +180,8 @@ def compareTable(folder, drawn):
     for number, (was, now) in enumerate(zip_longest(*texts, fillvalue="nothing"), 1):
         if was != now:
             raise Refused(
-                f"--out: {path} is not what the study draws; remove it, and it is drawn again. Line {number} is\n  {was}\n"
-                f"and the study draws\n  {now}"
+                f"--out: {path} is not what the study draws; remove it, and it is drawn again. Line"
+                f" {number} is\n  {was}\nand the study draws\n  {now}"
             )
 
 
@@ -216,8 +224,8 @@ def checkedRows(folder):
             ]
     if problems:
         raise Refused(
-            f"{folder.of(batch.ROWS)}: remove the folders of these rows, and they are run again:\n  "
-            + "\n  ".join(firstOf(problems, SHOWN))
+            f"{folder.of(batch.ROWS)}: remove the folders of these rows, and they are run"
+            " again:\n  " + "\n  ".join(firstOf(problems, SHOWN))
         )
     return rows
 
@@ -267,12 +275,14 @@ def gather(folder):
         with filesOf(folder.row(number)):
             numbers = measures(run)
             answers = {_answerName(a): a["value"] for a in run.get("answers", [])}
-        begin = [batch.named(number), *(_varied(n, row[n]) for n in names), *strength, status]  # fmt: skip
+        begin = [batch.named(number), *(_varied(n, row[n]) for n in names), *strength, status]
         found.append((begin, {**numbers, **answers}))
         job = folder.lastJob(number)
         why = (UNSHAKEN if run else job.get("told", "")) if status == "failed" else ""
         host, cost = job.get("host", run.get("host", "")), run.get("wall_clock_s")
-        times.append([batch.named(number), status, host, cost, job.get("seconds"), run.get("commit"), why])  # fmt: skip
+        times.append(
+            [batch.named(number), status, host, cost, job.get("seconds"), run.get("commit"), why]
+        )
     heads = list(dict.fromkeys(name for _, numbers in found for name in numbers))
     lines = [[*begin, *map(numbers.get, heads)] for begin, numbers in found]
     heads = ["run", *names, *strengths, "status", *heads]
@@ -287,7 +297,7 @@ def gather(folder):
 def _answerName(answer):
     """The column of an answer: the stage and its number in the run, if a stage found it, what it is, and its unit."""
     own = not answer["number"]
-    name = answer["name"] if own else f"{answer['stage']}_{answer['number']}_{answer['name']}"  # fmt: skip
+    name = answer["name"] if own else f"{answer['stage']}_{answer['number']}_{answer['name']}"
     return name if answer["unit"] == "-" else f"{name}_{answer['unit']}"
 
 

@@ -130,13 +130,13 @@ class Incremental:
             yield "records: must be a list of files"
             records = []
         try:
-            self.files = [record(one) if isThree(one) else arguments.path(one) for one in records]  # fmt: skip
+            self.files = [record(one) if isThree(one) else arguments.path(one) for one in records]
         except ValueError as error:
             yield f"records: {error}"
         if not isinstance(self.measure, Measure):
             yield (
-                f'measure {shown(self.measure)} must be "PGA" or Sa(period), a spectral acceleration, with a period from '
-                f"{SHORTEST:g} to {LONGEST:g} s"
+                f'measure {shown(self.measure)} must be "PGA" or Sa(period), a spectral'
+                f" acceleration, with a period from {SHORTEST:g} to {LONGEST:g} s"
             )
         if self.unit not in (None, *UNITS):
             yield f"unit {shown(self.unit)} must be one of {', '.join(UNITS)}"
@@ -172,7 +172,7 @@ class Incremental:
                 except Refused as refused:
                     problems.append(str(refused))
             if len(motions) > MOST_RECORDS:
-                problems.append(f"records: {len(motions)}, there must be at most {MOST_RECORDS}")  # fmt: skip
+                problems.append(f"records: {len(motions)}, there must be at most {MOST_RECORDS}")
             refuse(problems, "study: ", "\n  ")
             self._motions = motions
         return self._motions
@@ -198,7 +198,7 @@ class Incremental:
         # what a file says itself counts
         files = [path] if isinstance(path, str) else path
         said = accelerograms.read(files[0])
-        unit, every = None if said.unit else self.unit, None if said.every else self.every  # fmt: skip
+        unit, every = None if said.unit else self.unit, None if said.every else self.every
         values, every = readRecord(path, every, 1.0, unit)
         stems = [os.path.splitext(os.path.basename(one))[0] for one in files]
         stem = os.path.commonprefix(stems).rstrip("_-. ") or stems[0]
@@ -208,7 +208,7 @@ class Incremental:
         name = next(name for name in names if name.lower() not in known)
         intensity = self.measure.of(values, every)
         if not (intensity > 0 and math.isfinite(intensity)):
-            raise Refused(f"{path}: its {self.measure.name} is {intensity:g}, it must be above 0")  # fmt: skip
+            raise Refused(f"{path}: its {self.measure.name} is {intensity:g}, it must be above 0")
         return Motion(name, values, every, intensity)
 
     def rows(self) -> list[tuple[Motion, float]]:
@@ -273,7 +273,7 @@ class Chains:
         record, level = divmod(number - 1, self.each)
         if self.plan["levels"]:
             return float(self.plan["levels"][level])
-        return float(self.plan["scales"][level] * self.plan["records"][record]["intensity"])  # fmt: skip
+        return float(self.plan["scales"][level] * self.plan["records"][record]["intensity"])
 
 
 def isPlan(plan: Any, runs: int) -> bool:
@@ -281,7 +281,7 @@ def isPlan(plan: Any, runs: int) -> bool:
     try:
         strengths, records = plan["levels"] or plan["scales"], plan["records"]
         numbers = [*strengths, *(one["intensity"] for one in records)]
-        texts = [plan["measure"], *(one[n] for one in records for n in ("name", "sha256"))]  # fmt: skip
+        texts = [plan["measure"], *(one[n] for one in records for n in ("name", "sha256"))]
     except (KeyError, TypeError):
         return False
     return (

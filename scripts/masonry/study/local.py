@@ -15,7 +15,9 @@ from ..run.progress import Progress
 
 LOOK_EVERY = 0.5  # [s] between looks at rows that somebody else runs
 LOG = "study.log"  # in the study's folder: what the programs say that run its rows
-FREE_SPACE = 5e6  # bytes that must be free on the disk for every run at a time: its results and a checkpoint
+FREE_SPACE = (
+    5e6  # bytes that must be free on the disk for every run at a time: its results and a checkpoint
+)
 TRIES = 3  # starts of a row that was killed
 
 
@@ -40,7 +42,7 @@ class Local:
                 if not mine:  # somebody else runs all that is left
                     time.sleep(LOOK_EVERY)
                     self._look(self.open)
-                background.carryOut(mine, self._begin, self._ended, self.jobs, self._show)  # fmt: skip
+                background.carryOut(mine, self._begin, self._ended, self.jobs, self._show)
         except KeyboardInterrupt:
             raise Interrupted() from None
 
@@ -49,7 +51,8 @@ class Local:
         free = shutil.disk_usage(self.folder.path).free
         if free < FREE_SPACE * self.jobs:
             raise Unwritable(
-                f"{self.folder.path} has {1e-6 * free:.1f} MB free, too little for {self.jobs} runs at a time: stopped"
+                f"{self.folder.path} has {1e-6 * free:.1f} MB free, too little for {self.jobs} runs"
+                " at a time: stopped"
             )
         words = ["--scene", self.scene, self.folder.path, str(number)]
         command = [sys.executable, "-P", "-m", "masonry.study.row", *words]

@@ -96,9 +96,7 @@ def tornado(path, effects, label):
             colours = [LINE if one.value < 0 else POINT for one in found]
             _bars(axis, effects, found, color=colours, height=0.65)
             axis.axvline(0, color="black", lw=0.8)
-        left.set_xlabel(
-            f"change of {label}\nfrom the 5 % to the 95 % quantile of a property"
-        )
+        left.set_xlabel(f"change of {label}\nfrom the 5 % to the 95 % quantile of a property")
         right.set_xlim(-1.05, 1.05)
         right.set_xlabel("correlation of ranks [-]")
 
@@ -118,7 +116,10 @@ def sobol(path, found, label):
         axis.set_xlim(0, 1.05)
         axis.set_xlabel("share of the variance [-]")
         figure.suptitle(
-            f"{label}: Sobol indices,\nof a polynomial chaos that explains {100 * found.explained:.0f} % of the variance",
+            (
+                f"{label}: Sobol indices,\nof a polynomial chaos that explains"
+                f" {100 * found.explained:.0f} % of the variance"
+            ),
             fontsize=9,
         )
         axis.legend(loc="lower right")
@@ -232,12 +233,14 @@ def ida(path, rows, fell, quantiles, xLabel, yLabel):
             axis.plot(demands, intensities, **stands)
             if np.isfinite(level):
                 axis.plot([demands[-1], right], [level, level], **falls)
-        for (share, points), dashes in zip(quantiles.items(), (DASHES[1], "-", DASHES[2])):  # fmt: skip
+        for (share, points), dashes in zip(quantiles.items(), (DASHES[1], "-", DASHES[2])):
             demands, intensities = _standing(*zip(*points)) if points else ([0], [0])
-            axis.plot(demands, intensities, color=LINE, lw=1.8, ls=dashes, label=f"{100 * share:g} %")  # fmt: skip
+            axis.plot(
+                demands, intensities, color=LINE, lw=1.8, ls=dashes, label=f"{100 * share:g} %"
+            )
             beyond = [x for x, demand in points if np.isinf(demand)]
             if beyond:
-                axis.plot([demands[-1], right], [beyond[0]] * 2, color=LINE, lw=1, ls=dashes)  # fmt: skip
+                axis.plot([demands[-1], right], [beyond[0]] * 2, color=LINE, lw=1, ls=dashes)
         axis.plot([], [], **stands, label=f"{len(rows)} records")
         axis.plot([], [], **falls, label="falls at this level")
         axis.set_xlim(0, right)
@@ -247,9 +250,7 @@ def ida(path, rows, fell, quantiles, xLabel, yLabel):
 
 def _standing(intensities, demands):
     """Demands and intensities from zero to the last level at which the structure stood; unknown ones are left out."""
-    stood = itertools.takewhile(
-        lambda one: not np.isinf(one[0]), zip(demands, intensities)
-    )
+    stood = itertools.takewhile(lambda one: not np.isinf(one[0]), zip(demands, intensities))
     found = [(0.0, 0.0), *(one for one in stood if not np.isnan(one[0]))]
     return tuple(map(list, zip(*found)))
 
@@ -266,8 +267,23 @@ def fitted(path, fit, counts, xLabel, yLabel):
     with _picture(path, 6.0, 3.8) as figure:
         axis = figure.subplots()
         axis.fill_between(x, low, high, **BAND_STYLE, label=BAND_LABEL)
-        axis.plot(x, values, color="black", lw=1.2, label=f"lognormal: median {fit.median.value:.3g}, dispersion {fit.dispersion.value:.3g}")  # fmt: skip
-        axis.plot(*np.transpose(known or [(np.nan,) * 2]), ls="", marker="o", ms=4, color=LINE, label=f"share of {fit.records} records")  # fmt: skip
+        axis.plot(
+            x,
+            values,
+            color="black",
+            lw=1.2,
+            label=(
+                f"lognormal: median {fit.median.value:.3g}, dispersion {fit.dispersion.value:.3g}"
+            ),
+        )
+        axis.plot(
+            *np.transpose(known or [(np.nan,) * 2]),
+            ls="",
+            marker="o",
+            ms=4,
+            color=LINE,
+            label=f"share of {fit.records} records",
+        )
         axis.set_ylim(-0.02, 1.02)
         axis.set_xlim(0, x[-1])
         drawing.finish(axis, xLabel, yLabel, loc="lower right")
@@ -315,12 +331,24 @@ def calibration(path, found):
             if one.grid is None:
                 continue
             axis = next(axes)
-            axis.fill_between(one.grid, low[here], high[here], **BAND_STYLE, label="95 % of the draws")  # fmt: skip
+            axis.fill_between(
+                one.grid, low[here], high[here], **BAND_STYLE, label="95 % of the draws"
+            )
             if len(found.run):
-                axis.plot(one.grid, found.run[0, here], color=LINE, lw=1.4, label="run with their means")  # fmt: skip
+                axis.plot(
+                    one.grid, found.run[0, here], color=LINE, lw=1.4, label="run with their means"
+                )
             axis.plot(*one.curve, color="black", lw=0.8, alpha=0.5, label="measured")
-            axis.errorbar(one.grid, one.values, 2 * one.errors, color="black", fmt=".", lw=0.8, label="compared, ± 2 standard deviations")  # fmt: skip
-            drawing.finish(axis, *(name.replace("_", " ") for name in one.columns), loc="best")  # fmt: skip
+            axis.errorbar(
+                one.grid,
+                one.values,
+                2 * one.errors,
+                color="black",
+                fmt=".",
+                lw=0.8,
+                label="compared, ± 2 standard deviations",
+            )
+            drawing.finish(axis, *(name.replace("_", " ") for name in one.columns), loc="best")
 
 
 def increasing(x, y):

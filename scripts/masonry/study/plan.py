@@ -74,14 +74,16 @@ class Study:
             self._take(key, what, problems)
         #: the records and their strengths of an incremental dynamic analysis, else None
         self.ida = None
-        own = dict(records=records, levels=levels, scales=scales, measure=measure, unit=unit, every=every)  # fmt: skip
+        own = dict(
+            records=records, levels=levels, scales=scales, measure=measure, unit=unit, every=every
+        )
         if design == "ida":
             self.ida = incremental.Incremental(**own, problems=problems)
             for name in {"record", "scale"} & {*self.options, *self.vary}:
                 problems.append(f"{name}: it is what an incremental analysis varies")
         else:
             given = [name for name, value in own.items() if value is not None]
-            problems += [f'{name}: only a study with design="ida" has it' for name in given]  # fmt: skip
+            problems += [f'{name}: only a study with design="ida" has it' for name in given]
             if not self.vary:
                 problems.append("vary: nothing varies")
         problems += self._count()
@@ -90,7 +92,7 @@ class Study:
 
     def _take(self, key, what, problems):
         names = (key,) if isinstance(key, str) else key
-        if not isinstance(names, tuple) or not names or not all(isinstance(n, str) for n in names):  # fmt: skip
+        if not isinstance(names, tuple) or not names or not all(isinstance(n, str) for n in names):
             problems.append(f"vary: {key!r} must be a name or a tuple of names")
             return
         what = [what] if isinstance(what, (bool, int, float, str)) else what
@@ -202,9 +204,7 @@ class Study:
         drawn = self._drawn("random", len(shaken) // self.ida.steps)
         for n, (motion, scale) in enumerate(shaken):
             record = f"{incremental.FOLDER}/{motion.name}.txt"
-            rows.append(
-                {**drawn[n // self.ida.steps], "record": record, "scale": scale}
-            )
+            rows.append({**drawn[n // self.ida.steps], "record": record, "scale": scale})
         return rows
 
     def _drawn(self, design, count):
@@ -212,7 +212,7 @@ class Study:
         fields = {n: w for n, w in self.vary.items() if isinstance(w, Field)}
         drawn = {n: w for n, w in self.vary.items() if n not in fields}
         rows = designs.values(design, count, self.seed, drawn, self.correlation)
-        means = {n[len(batch.FIELD) :]: w.mean for n, w in fields.items() if w.mean is not None}  # fmt: skip
+        means = {n[len(batch.FIELD) :]: w.mean for n, w in fields.items() if w.mean is not None}
         rows = [{"lean": True, **self.options, **means, **values} for values in rows]
         for number, row in enumerate(rows, 1):
             for k, (name, what) in enumerate(fields.items()):
@@ -243,9 +243,7 @@ class Study:
         path = next((os.path.abspath(p) for p in places if p.is_file()), None)
         if path is None:
             looked = dict.fromkeys(os.path.dirname(os.path.abspath(p)) for p in places)
-            raise Refused(
-                f"study: no scene {self.scene}; looked in {', '.join(looked)}"
-            )
+            raise Refused(f"study: no scene {self.scene}; looked in {', '.join(looked)}")
         return path, hashlib.sha256(pathlib.Path(path).read_bytes()).hexdigest()
 
 

@@ -17,9 +17,7 @@ def _table(path):
     """A CSV file as a dict of column -> texts. Raises Refused."""
     head, *lines = [*csv.reader(readText(path).splitlines())] or [[]]
     if head[:1] != ["run"] or "status" not in head:
-        raise Refused(
-            f"{path}: this is no table of a study: it needs the columns run and status"
-        )
+        raise Refused(f"{path}: this is no table of a study: it needs the columns run and status")
     wrong = [str(i) for i, line in enumerate(lines, 2) if len(line) != len(head)]
     if wrong:
         raise Refused(
@@ -66,9 +64,7 @@ class Record:
     def numbers(self, name):
         """A column as numbers, NaN where a cell has none. Raises Refused if there is no such column."""
         if name not in self.cells:
-            raise Refused(
-                f"{self.directory}: no column {name}; there are {', '.join(self.cells)}"
-            )
+            raise Refused(f"{self.directory}: no column {name}; there are {', '.join(self.cells)}")
         return np.array([_number(text) for text in self.cells[name]])
 
     def complete(self, measure):
@@ -119,7 +115,7 @@ def paired(expensive, cheap, measure, other=None):
     refuse([*_unlike(expensive, cheap, keys)])
     y, x = expensive.numbers(measure), cheap.numbers(other or measure)
     place = {key: row for row, key in enumerate(keys[cheap]) if np.isfinite(x[row])}
-    shared = [n for n, key in enumerate(keys[expensive]) if key in place and np.isfinite(y[n])]  # fmt: skip
+    shared = [n for n, key in enumerate(keys[expensive]) if key in place and np.isfinite(y[n])]
     first = [place[keys[expensive][row]] for row in shared]
     others = sorted(set(place.values()) - set(first))
     return y[shared], x[first + others], shared, first + others
@@ -136,13 +132,22 @@ def _unlike(one, two, keys):
         first, second = ({"scene": s["scene"], **s["options"]} for s in studies)
         for name in sorted({*first, *second} - FIDELITY):
             if first.get(name) != second.get(name):
-                yield f"{one.directory} has {name} {first.get(name)!r}, and {two.directory} {second.get(name)!r}"
+                yield (
+                    f"{one.directory} has {name} {first.get(name)!r}, and"
+                    f" {two.directory} {second.get(name)!r}"
+                )
     if sorted(one.varied) != sorted(two.varied):
-        yield f"{one.directory} varies {', '.join(one.varied)}, and {two.directory} {', '.join(two.varied)}"
+        yield (
+            f"{one.directory} varies {', '.join(one.varied)}, and"
+            f" {two.directory} {', '.join(two.varied)}"
+        )
         return
     for study, own in keys.items():
         if len(set(own)) < len(own):
-            yield f"{study.directory}: rows have the same properties, so that it cannot be told which are shared"
+            yield (
+                f"{study.directory}: rows have the same properties, so that it cannot be told which"
+                " are shared"
+            )
 
 
 def _number(text):

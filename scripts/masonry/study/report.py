@@ -45,13 +45,11 @@ def table(record, measure):
     ended = record.cells["status"].count("ended")
     if ended > len(rows) or "failed" in record.cells["status"]:
         yield (
-            f"  note: rows that have no {label(measure)} are left out. If they collapsed, or were refused for their values, "
-            "the numbers below are on the unsafe side"
+            f"  note: rows that have no {label(measure)} are left out. If they collapsed, or were"
+            " refused for their values, the numbers below are on the unsafe side"
         )
     finds = [("mean", statistics.mean), ("standard deviation", statistics.deviation)]
-    finds += [
-        (f"{100 * q:g} % quantile", statistics.quantile, q) for q in estimate.QUANTILES
-    ]
+    finds += [(f"{100 * q:g} % quantile", statistics.quantile, q) for q in estimate.QUANTILES]
     for name, find, *share in finds:
         try:
             yield line(name, find(values, *share))
@@ -60,7 +58,10 @@ def table(record, measure):
     if statistics.isLognormal(values):
         fit = statistics.lognormal(values)
         doubt = "" if not fit.fits < 0.05 else ", which does not fit"
-        yield f"  lognormal            median {fit.median:.5g}, dispersion {fit.dispersion:.3g} (p = {fit.fits:.2g}{doubt})"
+        yield (
+            f"  lognormal            median {fit.median:.5g}, dispersion {fit.dispersion:.3g} (p ="
+            f" {fit.fits:.2g}{doubt})"
+        )
 
 
 def line(name, interval, form="{:.5g}"):
@@ -138,22 +139,20 @@ def compare(expensive, cheap, measure, other, method, prices=None):
     prices = prices or (expensive.price(shared), cheap.price(rows))
     names = [os.path.basename(os.path.abspath(s.directory)) for s in (expensive, cheap)]
     if not all(math.isfinite(price) and price > 0 for price in prices):
-        raise Refused(
-            "the prices of the runs are unknown, since times.csv has none: give --prices"
-        )
+        raise Refused("the prices of the runs are unknown, since times.csv has none: give --prices")
     unit = label(measure).partition("[")[2].rstrip("]")
     correlation = np.corrcoef(y, x[: len(y)])[0, 1]
     yield (
-        f"{label(measure)} from {len(shared)} rows of both and {len(rows)} of {names[1]}; correlation {correlation:.4f}, a run "
-        f"costs {prices[0]:.3g} and {prices[1]:.3g} s"
+        f"{label(measure)} from {len(shared)} rows of both and {len(rows)} of {names[1]};"
+        f" correlation {correlation:.4f}, a run costs {prices[0]:.3g} and {prices[1]:.3g} s"
     )
     for one in found:
         yield "  " + estimate.sentence(one, prices, unit, names)
         same = (one.expensive / one.shared) + one.cheap / one.rows
         best = estimate.allocate(one, prices, variance=same)
         yield (
-            f"    cheapest for it: {best.shared} shared rows and {best.rows} cheap ones, {100 * best.share:.0f} % of the cost of "
-            f"{names[0]} alone"
+            f"    cheapest for it: {best.shared} shared rows and {best.rows} cheap ones,"
+            f" {100 * best.share:.0f} % of the cost of {names[0]} alone"
         )
     yield from ("  note: " + doubt for doubt in estimate.doubts(y, x))
 
@@ -162,9 +161,14 @@ def incremental(demands, limit, intensities):
     """Lines of what an incremental dynamic analysis says: demands at every level, and the fragility of a limit of the demand
     (None: collapse), with its probability at some intensities."""
     measure, reaches = label(demands.intensityName), reached(demands, limit)
-    yield f"incremental dynamic analysis of {len(demands.names)} records; the intensity is {measure}"
+    yield (
+        f"incremental dynamic analysis of {len(demands.names)} records; the intensity is {measure}"
+    )
     if demands.measure:
-        yield f"the demand is the amount of {label(demands.measure)}; where the structure falls, and above, it is infinite"
+        yield (
+            f"the demand is the amount of {label(demands.measure)}; where the structure falls, and"
+            " above, it is infinite"
+        )
     else:
         yield "no row has a demand: scene.watch() records one"
     row = lambda cells: "".join(f"{cell:>11}" for cell in cells)
@@ -182,8 +186,9 @@ def incremental(demands, limit, intensities):
     yield line(f"median {measure.partition('[')[2] and '[g]'}", fit.median)
     yield line("dispersion [-]", fit.dispersion)
     yield (
-        f"  maximum likelihood of the levels between which each record reaches the limit; {100 * statistics.CONFIDENCE:g} % intervals "
-        "of the profile likelihood, records being independent"
+        "  maximum likelihood of the levels between which each record reaches the limit;"
+        f" {100 * statistics.CONFIDENCE:g} % intervals of the profile likelihood, records being"
+        " independent"
     )
     if intensities:
         yield f"probability that {reaches}, at {measure}"
@@ -199,7 +204,7 @@ def reached(demands, limit):
 
 
 def _cell(value):
-    return "-" if math.isnan(value) else "infinite" if math.isinf(value) else f"{value:.4g}"  # fmt: skip
+    return "-" if math.isnan(value) else "infinite" if math.isinf(value) else f"{value:.4g}"
 
 
 def drawIncremental(demands, limit):
@@ -215,7 +220,7 @@ def drawIncremental(demands, limit):
             share: [(level, q[n]) for level, q in points if not math.isnan(q[n])]
             for n, share in enumerate(QUANTILES)
         }
-        pictures.ida(path, demands.rows, demands.fell, quantiles, label(demands.measure), measure)  # fmt: skip
+        pictures.ida(path, demands.rows, demands.fell, quantiles, label(demands.measure), measure)
 
     def fragility(path):
         fit, text = demands.fragility(limit), f"probability: {reached(demands, limit)}"
@@ -238,13 +243,30 @@ def drawIncremental(demands, limit):
 
 #: Options beside the folder, and what ``--help`` says of them.
 OPTIONS = {
-    "--measure": f"column of study.csv; by default {MEASURE}, or the first answer of a stage if there is no push",
-    "--demand": "demands, with commas between them, for which the probability that the measure is not above them is told",
-    "--cheap": "folder of a study of the same rows and more whose runs are cheaper: another preset, rate, time step or mesh",
-    "--cheap-measure": "column of that study, if it is another one: bound_base_shear_kN of the preset bound",
-    "--prices": "seconds of a run of the study and of one of --cheap, with a comma; the mean times of the runs by default",
-    "--limit": "of an incremental dynamic analysis: the demand whose fragility is found; without it that of collapse. --measure is "
-    "the demand, and --demand has intensities at which the probability is printed",
+    "--measure": (
+        f"column of study.csv; by default {MEASURE}, or the first answer of a stage if there is no"
+        " push"
+    ),
+    "--demand": (
+        "demands, with commas between them, for which the probability that the measure is not above"
+        " them is told"
+    ),
+    "--cheap": (
+        "folder of a study of the same rows and more whose runs are cheaper: another preset, rate,"
+        " time step or mesh"
+    ),
+    "--cheap-measure": (
+        "column of that study, if it is another one: bound_base_shear_kN of the preset bound"
+    ),
+    "--prices": (
+        "seconds of a run of the study and of one of --cheap, with a comma; the mean times of the"
+        " runs by default"
+    ),
+    "--limit": (
+        "of an incremental dynamic analysis: the demand whose fragility is found; without it that"
+        " of collapse. --measure is the demand, and --demand has intensities at which the"
+        " probability is printed"
+    ),
 }
 
 
@@ -271,9 +293,7 @@ def main(words=None):
         demands = sorted(_listed("--demand", args.demand))
         prices = _listed("--prices", args.prices)
         if prices and len(prices) != 2:
-            raise Refused(
-                f"--prices {args.prices} must be two numbers, for example 60,4"
-            )
+            raise Refused(f"--prices {args.prices} must be two numbers, for example 60,4")
         check(args.study)
         record = Record(args.study)
         limit = _listed("--limit", args.limit)
@@ -318,7 +338,7 @@ def _ofRows(record, args, limit, demands, prices):
 def _ofIncremental(record, args, limit, intensities, prices):
     """Lines of what an incremental dynamic analysis says, which are also drawn."""
     if args.cheap:
-        raise Refused("--cheap: rows of an incremental dynamic analysis are not independent")  # fmt: skip
+        raise Refused("--cheap: rows of an incremental dynamic analysis are not independent")
     if len(limit) > 1 or limit and not limit[0] > 0:
         raise Refused(f"--limit {args.limit} must be one number above 0")
     if intensities and not intensities[0] > 0:
@@ -335,7 +355,7 @@ def _listed(option, text):
     try:
         numbers = list(map(float, text.split(","))) if text else []
     except ValueError:
-        raise Refused(f"{option} {text} must be numbers with commas between them") from None  # fmt: skip
+        raise Refused(f"{option} {text} must be numbers with commas between them") from None
     if not all(map(math.isfinite, numbers)):
         raise Refused(f"{option} {text} must be finite numbers")
     return numbers

@@ -88,7 +88,10 @@ class RowRunner:
         one = chains.plan["records"][chains.record(number)]
         path = self.folder.of(FOLDER, one["name"] + ".txt")
         if _fingerprint(path) != one["sha256"]:
-            raise Refused(f"{path} is not the record with which the study began; remove it, and begin the study again")  # fmt: skip
+            raise Refused(
+                f"{path} is not the record with which the study began; remove it, and begin the"
+                " study again"
+            )
 
     def _attempts(self, number, log):
         """Run it; once more from the beginning if its checkpoint is refused. Returns the exit status."""
@@ -115,9 +118,7 @@ class RowRunner:
         place = f"{self.folder.of(TABLE)}:{number + 1}"
         env = {**os.environ, batch.VARIABLE: place, "OMP_NUM_THREADS": "1"}
         command = ["yade", "-n", "--threads=1", "-x", self.script]
-        self._child = background.Program(
-            command, log, env, os.path.dirname(self.script)
-        )
+        self._child = background.Program(command, log, env, os.path.dirname(self.script))
         if self.stopped:
             self._child.send_signal(signal.SIGTERM)
         return self._child.wait()
@@ -142,12 +143,13 @@ def _sceneOf(folder, named):
     within = os.path.join(os.path.realpath(folder.path), "")
     if not named and not os.path.realpath(path).startswith(within):
         raise Refused(
-            f"{folder.of(STUDY)} names the scene {path}, which is outside the folder of the study: a scene is a program, so "
-            "name it yourself, with --scene FILE before the folder"
+            f"{folder.of(STUDY)} names the scene {path}, which is outside the folder of the study:"
+            " a scene is a program, so name it yourself, with --scene FILE before the folder"
         )
     if _fingerprint(path, "the scene ") != record.get("scene_sha256"):
         raise Refused(
-            f"the scene {path} is another file than the one with which the study in {folder.path} began"
+            f"the scene {path} is another file than the one with which the study in"
+            f" {folder.path} began"
         )
     return path
 
@@ -178,7 +180,8 @@ def _rows(words):
         scene, words = "".join(words[1:2]), words[2:]
     if len(words) < 2 or not all(w.isdecimal() for w in words[1:]):
         raise Refused(
-            "name the scene, the folder of a study and the numbers of its rows: --scene FILE DIR NUMBER..."
+            "name the scene, the folder of a study and the numbers of its rows: --scene FILE DIR"
+            " NUMBER..."
         )
     runner = RowRunner(words[0], scene)
     runs = runner.folder.description()["study"]["runs"]

@@ -32,7 +32,9 @@ SPAN = 0.05, 0.95  # quantiles of a property between which its change is given
 DEGREE = 9  # highest degree of a polynomial in one property
 HYPERBOLIC = 0.6  # norm that keeps products of high powers out
 RESAMPLES = 300  # of the rows, for the intervals of Sobol indices
-DEPENDENT = 1e-4  # probability that independent properties are taken as dependent ones, over all pairs
+DEPENDENT = (
+    1e-4  # probability that independent properties are taken as dependent ones, over all pairs
+)
 
 
 def effects(inputs, output):
@@ -122,7 +124,10 @@ def _unfit(names, x, y):
     for (one, first), (two, second) in itertools.combinations(zip(names, x.T), 2):
         found = stats.spearmanr(first, second)
         if found.pvalue < 2 * DEPENDENT / (k * (k - 1)):
-            yield f"Sobol indices need independent properties, {one} and {two} have a rank correlation of {found.statistic:.2f}"
+            yield (
+                f"Sobol indices need independent properties, {one} and {two} have a rank"
+                f" correlation of {found.statistic:.2f}"
+            )
     if np.ptp(y) == 0:
         yield "Sobol indices: all results are the same"
 
@@ -136,7 +141,7 @@ def _polynomials(u, y):
     size = k + 1
     while 2 * (size + 1) <= len(u) and max(count(size)) <= DEGREE:
         size += 1
-    chosen = ot.LeastSquaresMetaModelSelectionFactory(ot.LARS(), ot.CorrectedLeaveOneOut())  # fmt: skip
+    chosen = ot.LeastSquaresMetaModelSelectionFactory(ot.LARS(), ot.CorrectedLeaveOneOut())
     how = ot.FixedStrategy(basis, size), ot.LeastSquaresStrategy(chosen)
     rows = ot.Sample(u), ot.Sample(y[:, None])
     algorithm = ot.FunctionalChaosAlgorithm(*rows, ot.IndependentCopula(k), *how)
@@ -167,9 +172,7 @@ def _numbers(inputs, output):
         try:
             values = np.asarray(values, float)
         except ValueError:
-            problems.append(
-                f"{name}: choices that are no numbers have no sensitivity of this kind"
-            )
+            problems.append(f"{name}: choices that are no numbers have no sensitivity of this kind")
             continue
         if len(values) != len(y):
             problems.append(f"{name}: {len(values)} values for {len(y)} rows")

@@ -23,7 +23,8 @@ def check():
     missing = [n for n in ("sbatch", "squeue", "scontrol") if not shutil.which(n)]
     if missing:
         raise Refused(
-            f"--slurm: no {', '.join(missing)} here: run this where jobs are submitted, or apt-get install slurm-client"
+            f"--slurm: no {', '.join(missing)} here: run this where jobs are submitted, or apt-get"
+            " install slurm-client"
         )
 
 
@@ -74,7 +75,8 @@ def submit(folder, runs, words):
     before = waiting(folder)
     if before:
         raise Refused(
-            f"--slurm: job array {before} still has tasks of this study: wait for them, or scancel {before}"
+            f"--slurm: job array {before} still has tasks of this study: wait for them, or scancel"
+            f" {before}"
         )
     rows = [n for n in range(1, runs + 1) if not folder.isDone(n)]
     rows = sorted(folder.chains.lowest(rows))  # a task goes on with higher levels
@@ -90,6 +92,7 @@ def submit(folder, runs, words):
     job = _asked(["sbatch", "--parsable", log, *where]).strip().split(";")[0]
     written(folder.of(JOB), job + "\n")
     say(
-        f"{len(rows)} rows in job array {job}: squeue --jobs {job} shows it, --gather writes study.csv"
+        f"{len(rows)} rows in job array {job}: squeue --jobs {job} shows it, --gather writes"
+        " study.csv"
     )
     return 0

@@ -77,7 +77,8 @@ def _putRecords(folder, study):
             written(path, text)
         elif readWhole(path) != text.encode():
             raise Refused(
-                f"--out: {path} is not the record that the study reads; remove it, and it is written again"
+                f"--out: {path} is not the record that the study reads; remove it, and it is"
+                " written again"
             )
 
 
@@ -126,13 +127,16 @@ def _checkSpace(folder, needed):
     if not os.access(at, os.W_OK):
         yield f"--out: {at} cannot be written"
     elif free < needed + SPARE:
-        yield f"--out: {at} has {1e-6 * free:.0f} MB free, the study writes some {1e-6 * needed:.0f} MB and keeps {1e-6 * SPARE:.0f} MB free"
+        yield (
+            f"--out: {at} has {1e-6 * free:.0f} MB free, the study writes some"
+            f" {1e-6 * needed:.0f} MB and keeps {1e-6 * SPARE:.0f} MB free"
+        )
 
 
 def _look(study, script, table):
     """Problems of the study that its scene tells when it is built, and the bytes that a row writes."""
     if not shutil.which("yade"):
-        raise Refused("a study needs yade: apt-get install --no-install-recommends yade")  # fmt: skip
+        raise Refused("a study needs yade: apt-get install --no-install-recommends yade")
     with tempfile.TemporaryDirectory() as place:
         place = Folder(place)
         _putRecords(place, study)
@@ -181,7 +185,10 @@ def _probed(script, place, line=2):
 def _names(study, found):
     """Names that the scene ignores."""
     if not found["heard"]:
-        yield "its scene takes no options from the command line (arguments=...), and would ignore all that varies"
+        yield (
+            "its scene takes no options from the command line (arguments=...), and would ignore all"
+            " that varies"
+        )
         return
     columns = [*study.options, *study.vary] + ["record", "scale"] * bool(study.ida)
     for name in (name for column in columns for name in namesOf(column)):
@@ -228,6 +235,6 @@ def _ranges(study, found):
             if share > NEVER:
                 unit = f" {bounds['unit']}" if bounds["unit"] not in ("", "-") else ""
                 yield (
-                    f"{name}: {what} gives impossible values in {100 * share:.2g} % of all rows: it must be "
-                    f"{' and '.join(ends)}{unit}; low=... or high=... cuts it off"
+                    f"{name}: {what} gives impossible values in {100 * share:.2g} % of all rows: it"
+                    f" must be {' and '.join(ends)}{unit}; low=... or high=... cuts it off"
                 )

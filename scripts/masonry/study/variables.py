@@ -73,16 +73,19 @@ def _aboutMean(kind, mean, cov, low, high):
     ends = {n: v for n, v in (("low", low), ("high", high)) if v is not None}
     whole = Distribution(kind, (("mean", mean), ("cov", cov)))
     if not cov >= LEAST_COV:
-        raise Refused(f"{kind}: coefficient of variation {cov} must be above 0, and at least {LEAST_COV:g}")  # fmt: skip
+        raise Refused(
+            f"{kind}: coefficient of variation {cov} must be above 0, and at least {LEAST_COV:g}"
+        )
     if not SHORTEST <= (mean if kind == "lognormal" else abs(mean)) <= FARTHEST:
-        raise Refused(f"{kind}: mean {mean:g} must be above 0, from {SHORTEST:g} to {FARTHEST:g}")  # fmt: skip
+        raise Refused(f"{kind}: mean {mean:g} must be above 0, from {SHORTEST:g} to {FARTHEST:g}")
     if low is not None and high is not None and not low < high:
         raise Refused(f"{kind}: low {low:g} must be below high {high:g}")
     made = Distribution(kind, (*whole.parameters, *ends.items()))
     kept = whole.law().computeProbability(_interval(low, high)) if ends else 1
     if not kept > NEVER:
         raise Refused(
-            f"{made}: its ends leave {kept:.3g} of the distribution, they must leave more than {NEVER:g}"
+            f"{made}: its ends leave {kept:.3g} of the distribution, they must leave more than"
+            f" {NEVER:g}"
         )
     return made
 
@@ -147,8 +150,7 @@ def _chosen(value, first=None):
 @validated
 def choice(
     *values: Annotated[Any, _chosen],
-    weights: Annotated[Sequence[float], listOf(number("", 0, 1e9, above=True))]
-    | None = None,
+    weights: Annotated[Sequence[float], listOf(number("", 0, 1e9, above=True))] | None = None,
 ) -> Choice:
     """One of some values, for example ``choice("softening", "brittle")``. A list in ``vary`` means the same.
 

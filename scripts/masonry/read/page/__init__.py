@@ -41,7 +41,9 @@ def assets() -> str:
 
 
 @validated
-def fragment(directory: FilePath, number: FrameNumber | None = None, magnification: Factor | None = None) -> str:  # fmt: skip
+def fragment(
+    directory: FilePath, number: FrameNumber | None = None, magnification: Factor | None = None
+) -> str:
     """The picture of a run as an element ``<div class="masonry-view">`` with its data, for a page that has :func:`assets`.
 
     It is as wide as what it stands in, and 70 % of that high. All frames of the run are in it.
@@ -57,15 +59,22 @@ def fragment(directory: FilePath, number: FrameNumber | None = None, magnificati
 
 
 @validated
-def page(directory: FilePath, number: FrameNumber | None = None, magnification: Factor | None = None) -> str:  # fmt: skip
+def page(
+    directory: FilePath, number: FrameNumber | None = None, magnification: Factor | None = None
+) -> str:
     """A whole page with the picture of a run; parameters and errors as in :func:`fragment` and :func:`assets`."""
     library, licence = three()
     head, numbers = dataOf(directory, number, magnification)
-    return rendered("page/page.html", head=head, numbers=numbers, library=library, licence=licence)  # fmt: skip
+    return rendered("page/page.html", head=head, numbers=numbers, library=library, licence=licence)
 
 
 @validated
-def write(directory: FilePath, path: FilePath, number: FrameNumber | None = None, magnification: Factor | None = None) -> None:  # fmt: skip
+def write(
+    directory: FilePath,
+    path: FilePath,
+    number: FrameNumber | None = None,
+    magnification: Factor | None = None,
+) -> None:
     """Write :func:`page` to a file, whole or not at all; the other parameters and errors are those of :func:`page`.
 
     :raises OSError: if the file cannot be written, or if its name is that of a symbolic link
@@ -91,7 +100,11 @@ class Picture:
 
 
 @validated
-def show(directory: FilePath, number: FrameNumber | None = None, height: Annotated[int, whole(200, 5000)] = HEIGHT) -> Picture:  # fmt: skip
+def show(
+    directory: FilePath,
+    number: FrameNumber | None = None,
+    height: Annotated[int, whole(200, 5000)] = HEIGHT,
+) -> Picture:
     """The picture of a run for a notebook, which shows what the last line of a cell returns.
 
     :param height: of the picture [pixels], 200 to 5000; the others, and the errors, are those of :func:`fragment`

@@ -34,7 +34,13 @@ class _Arrays:
         """
         values = np.ascontiguousarray(values, "<" + kind)
         row = values[0].size if frames else 1
-        self.known[name] = {"kind": kind, "at": len(self.bytes), "count": values.size, "row": row, "step": float(step)}  # fmt: skip
+        self.known[name] = {
+            "kind": kind,
+            "at": len(self.bytes),
+            "count": values.size,
+            "row": row,
+            "step": float(step),
+        }
         self.bytes += values.tobytes() + bytes(-values.nbytes % 4)
 
     def addRounded(self, name, values, kind="i2", levels=32767):
@@ -66,7 +72,16 @@ def dataOfModel(model, number=None, magnification=None, curve=None):
     with filesOf(model.directory):
         head = _head(model, magnification, curve)
         _addTies(arrays, model)
-    for name, kind in (("points", "f4"), ("owner", "u4"), ("triangles", "u4"), ("edges", "u4"), ("bodies", "u4"), ("looks", "u1"), ("centres", "f4"), ("free", "u4")):  # fmt: skip
+    for name, kind in (
+        ("points", "f4"),
+        ("owner", "u4"),
+        ("triangles", "u4"),
+        ("edges", "u4"),
+        ("bodies", "u4"),
+        ("looks", "u1"),
+        ("centres", "f4"),
+        ("free", "u4"),
+    ):
         arrays.add(name, getattr(model, name), kind)
     for name in ("shift", "turn", "moved"):
         arrays.addRounded(name, getattr(model, name))
@@ -79,7 +94,7 @@ def dataOfModel(model, number=None, magnification=None, curve=None):
     head["values"] = {}
     for name, least in LEAST.items():
         values = np.clip(getattr(joints, name), 0, None)
-        arrays.addRounded(name, values, *(("u1", 255) if name == "damage" else ("u2", 4000)))  # fmt: skip
+        arrays.addRounded(name, values, *(("u1", 255) if name == "damage" else ("u2", 4000)))
         most = float(values.max(initial=0.0))
         shown = values[values > least]
         top = float(np.quantile(shown, 0.995)) if len(shown) else 0.0
@@ -100,7 +115,11 @@ def _head(model, magnification, curve):
     return {
         "title": plain(model.title),
         "frames": [
-            {"time": one["time"], "stage": one["stage"] and plain(one["stage"]), "values": list(map(plain, one["values"]))}
+            {
+                "time": one["time"],
+                "stage": one["stage"] and plain(one["stage"]),
+                "values": list(map(plain, one["values"])),
+            }
             for one in model.captions(curve)
         ],
         "magnification": sight.magnification,
@@ -112,9 +131,14 @@ def _head(model, magnification, curve):
         "farthest": float(model.farthest.max()),
         "ramp": nice(float(model.farthest.max()) or 1.0),
         "kinds": {"open": OPEN, "slid": SLID, "crushed": CRUSHED_TOO},
-        "colours": {**painting.CRACKS, "crushed": painting.CRUSHED, "looks": [painting.SHADES[look] for look in LOOKS], "ties": [c for c, _ in painting.TIES.values()]},
+        "colours": {
+            **painting.CRACKS,
+            "crushed": painting.CRUSHED,
+            "looks": [painting.SHADES[look] for look in LOOKS],
+            "ties": [c for c, _ in painting.TIES.values()],
+        },
         "limits": {"crack": CRACK, "damaged": DAMAGED, "crushed": CRUSHED},
-    }  # fmt: skip
+    }
 
 
 def _addTies(arrays, model):
@@ -125,8 +149,10 @@ def _addTies(arrays, model):
     bars = [n for n, cell in enumerate(frames[0]["cells"]) if len(cell) == 2]
     ends = np.concatenate([frames[0]["cells"][n] for n in bars])
     arrays.add("tiePoints", frames[0]["points"][ends], "f4")
-    arrays.addRounded("tieMoved", np.array([one["displacement"][ends] for one in frames]))  # fmt: skip
-    arrays.add("tieCondition", np.array([one["condition"][bars] for one in frames]), "u1", frames=True)  # fmt: skip
+    arrays.addRounded("tieMoved", np.array([one["displacement"][ends] for one in frames]))
+    arrays.add(
+        "tieCondition", np.array([one["condition"][bars] for one in frames]), "u1", frames=True
+    )
 
 
 def nice(value):

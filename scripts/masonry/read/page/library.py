@@ -10,7 +10,14 @@ from ...basics import Refused
 PLACES = ("/", os.path.expanduser("~/.local/share/masonry/three"))
 HERE = "usr/share/javascript/three/"
 #: The library, and of its examples: turning and zooming, and lines of any width.
-CODE = "three.min.js", "examples/js/controls/OrbitControls.js", *(f"examples/js/lines/{n}.js" for n in ("LineSegmentsGeometry", "LineMaterial", "LineSegments2"))  # fmt: skip
+CODE = (
+    "three.min.js",
+    "examples/js/controls/OrbitControls.js",
+    *(
+        f"examples/js/lines/{n}.js"
+        for n in ("LineSegmentsGeometry", "LineMaterial", "LineSegments2")
+    ),
+)
 COPYRIGHT = "usr/share/doc/libjs-three/copyright"
 
 MISSING = f"""pictures in a browser need three.js, once. As root:

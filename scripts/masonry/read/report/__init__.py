@@ -59,9 +59,15 @@ def page(record: Record) -> str:
     library, licence = _library(record)
     parts = [(place, heading, _made(part, record)) for place, heading, part in PARTS]
     return rendered(
-        "report/report.html", title=record.title, facts=structure.facts(record), head=_made(structure.head, record),
-        parts=parts, image=record.image, library=library, licence=licence,
-    )  # fmt: skip
+        "report/report.html",
+        title=record.title,
+        facts=structure.facts(record),
+        head=_made(structure.head, record),
+        parts=parts,
+        image=record.image,
+        library=library,
+        licence=licence,
+    )
 
 
 def _library(record):
@@ -70,9 +76,12 @@ def _library(record):
         try:
             return three()
         except Refused as missing:
-            record.picture, record.missing = None, (
-                "three.js is not installed, which draws it. The Debian package is libjs-three; then python3 -m masonry.read.report "
-                f"writes the report again. {missing}"
+            record.picture, record.missing = (
+                None,
+                (
+                    "three.js is not installed, which draws it. The Debian package is libjs-three;"
+                    f" then python3 -m masonry.read.report writes the report again. {missing}"
+                ),
             )
     return [], ""
 
@@ -85,8 +94,13 @@ def _made(part, record):
             found.append(piece)
     except Refused as refused:
         found.append(absent(str(refused)))
-    except (LookupError, AttributeError, TypeError, ValueError, ArithmeticError) as problem:  # fmt: skip
-        found.append(absent(f"This part is not whole, because run.json is damaged or of another version ({type(problem).__name__}: {problem})."))  # fmt: skip
+    except (LookupError, AttributeError, TypeError, ValueError, ArithmeticError) as problem:
+        found.append(
+            absent(
+                "This part is not whole, because run.json is damaged or of another version"
+                f" ({type(problem).__name__}: {problem})."
+            )
+        )
     return found
 
 

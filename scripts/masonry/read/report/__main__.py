@@ -16,10 +16,18 @@ def main(words=None):
     """Write the report of a run."""
     parser = argparse.ArgumentParser(
         prog="masonry.read.report",
-        description="Write the report of a run, one file that any browser opens, from the files in its folder.",
+        description=(
+            "Write the report of a run, one file that any browser opens, from the files in its"
+            " folder."
+        ),
     )
     parser.add_argument("result", help="folder of results")
-    parser.add_argument("-o", "--out", metavar="FILE.html", help=f"where to write it (default: {NAME} in the folder of results)")  # fmt: skip
+    parser.add_argument(
+        "-o",
+        "--out",
+        metavar="FILE.html",
+        help=f"where to write it (default: {NAME} in the folder of results)",
+    )
     args = parser.parse_args(words)
     path = args.out or os.path.join(args.result, NAME)
     if os.path.isdir(path) or not path.endswith((".html", ".htm")):

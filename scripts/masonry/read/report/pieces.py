@@ -72,7 +72,10 @@ def numbers(rows, caption):
 def table(heads, lines, caption, kind=""):
     """A table with a caption; lines are sequences of cells, texts or :class:`Badged`, the first of which is the head of its
     line."""
-    return Piece("table", {"heads": heads, "lines": list(map(tuple, lines)), "caption": caption, "kind": kind})  # fmt: skip
+    return Piece(
+        "table",
+        {"heads": heads, "lines": list(map(tuple, lines)), "caption": caption, "kind": kind},
+    )
 
 
 def note(text, kind="note", strong=""):
@@ -94,13 +97,15 @@ def figure(picture, caption, alt="", frames=""):
     :param alt: what it shows, for those who do not see it
     :param frames: places of the frames of the 3-D picture on it, "x,y x,y"
     """
-    return Piece("figure", {"picture": picture, "caption": caption, "alt": alt or caption, "frames": frames})  # fmt: skip
+    return Piece(
+        "figure", {"picture": picture, "caption": caption, "alt": alt or caption, "frames": frames}
+    )
 
 
 def folded(title, *inside, kind="", opened=False):
     """What is seen after a click on its title, and on paper; of the kind ``screen`` not on paper. ``opened``: it is seen at once,
     and a click hides it."""
-    return Piece("folded", {"title": title, "inside": inside, "kind": kind, "opened": opened})  # fmt: skip
+    return Piece("folded", {"title": title, "inside": inside, "kind": kind, "opened": opened})
 
 
 def listed(texts, title="", kind=""):

@@ -62,14 +62,20 @@ class Record:
         rows = [[*map(_finite, line)] for line in lines if len(line) == len(heads)]
         torn = len(lines) - len(rows)
         if torn:
-            self.problems.append(f"curve.csv: {torn:,} lines do not have a number for every column, and are left out of this report")  # fmt: skip
+            self.problems.append(
+                f"curve.csv: {torn:,} lines do not have a number for every column, and are left out"
+                " of this report"
+            )
         if not rows:
             return {}
         found = dict(zip(heads, np.array(rows, float).T))
         for name, values in found.items():
             bad = np.isnan(values).sum()
             if bad:
-                self.problems.append(f"curve.csv: {bad:,} of {len(values):,} values of {name} are no finite numbers, and are left out of this report")  # fmt: skip
+                self.problems.append(
+                    f"curve.csv: {bad:,} of {len(values):,} values of {name} are no finite numbers,"
+                    " and are left out of this report"
+                )
         return found
 
     def _plan(self):
@@ -83,7 +89,9 @@ class Record:
                 rows = np.array(spec.get("rows", self.rows), int)
                 shown = [axis["column"] for axis in (spec["x"], *spec["y"])]
                 if rows.size and (rows.min() < 0 or rows.max() >= count):
-                    raise Refused(f"run.json: figure shows rows up to {rows.max()}, and curve.csv has {count}")  # fmt: skip
+                    raise Refused(
+                        f"run.json: figure shows rows up to {rows.max()}, and curve.csv has {count}"
+                    )
         except (Refused, ValueError) as refused:
             self.problems.append(f"the curve is not drawn: {self._bare(refused)}")
             return
@@ -106,7 +114,9 @@ class Record:
         except Refused as refused:
             self.missing = str(refused)
         except (ValueError, ArithmeticError, np.linalg.LinAlgError, OSError) as error:
-            self.missing = f"{self.directory}: its frames cannot be read ({type(error).__name__}: {error})"  # fmt: skip
+            self.missing = (
+                f"{self.directory}: its frames cannot be read ({type(error).__name__}: {error})"
+            )
         else:
             self.frameTimes, self.frameCount = model.times, model.count
 
@@ -118,10 +128,12 @@ class Record:
         structure = elevation.structureOf(run, blocks, None, self.directory)
         structure = self._whole(structure)
         bricks = [b for b in structure.corners if b not in structure.shades]
-        low, high = (f(blocks["points"][structure.points(bricks)], axis=0) for f in (np.min, np.max))  # fmt: skip
+        low, high = (
+            f(blocks["points"][structure.points(bricks)], axis=0) for f in (np.min, np.max)
+        )
         targets = self.run.get("targets") or []
         for one in targets:
-            structure.shades[one["body"]] = "held" if one.get("held") else "loaded or watched"  # fmt: skip
+            structure.shades[one["body"]] = "held" if one.get("held") else "loaded or watched"
             if len(targets) <= MOST_NAMES:
                 structure.names[one["body"]] = str(one["name"])
         size = " × ".join(written(float(v), 3) for v in high - low)
@@ -140,7 +152,9 @@ class Record:
                 if a in structure.corners and b in structure.corners:
                     both = structure.corners[int(a)], structure.corners.pop(int(b))
                     structure.corners[int(a)] = np.concatenate(both)
-        structure.parts = {n: [b for b in part if b in structure.corners] for n, part in structure.parts.items()}  # fmt: skip
+        structure.parts = {
+            n: [b for b in part if b in structure.corners] for n, part in structure.parts.items()
+        }
         return structure
 
     def image(self, name):
@@ -212,7 +226,7 @@ class Record:
 def entriesOf(run, key):
     """Those entries of a list of run.json that can be used."""
     found = run.get(key)
-    return [one for one in found if isinstance(one, dict)] if isinstance(found, list) else []  # fmt: skip
+    return [one for one in found if isinstance(one, dict)] if isinstance(found, list) else []
 
 
 def _finite(text):

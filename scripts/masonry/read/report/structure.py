@@ -4,15 +4,42 @@
 from ...basics import Refused
 from .. import quantities
 
-from .pieces import Badged, figure, folded, isNumber, listed, missing, note, numbers, table, withUnit, written  # fmt: skip
+from .pieces import (
+    Badged,
+    figure,
+    folded,
+    isNumber,
+    listed,
+    missing,
+    note,
+    numbers,
+    table,
+    withUnit,
+    written,
+)
 from .record import entriesOf
 
 #: Units in which properties are shown, and the factor from SI units.
-SHOWN = {"Pa": ("MPa", 1e-6), "Pa/m": ("N/mm³", 1e-9), "J/m²": ("N/mm", 1e-3), "m": ("mm", 1e3), "1/m": ("1/mm", 1e-3)}  # fmt: skip
+SHOWN = {
+    "Pa": ("MPa", 1e-6),
+    "Pa/m": ("N/mm³", 1e-9),
+    "J/m²": ("N/mm", 1e-3),
+    "m": ("mm", 1e3),
+    "1/m": ("1/mm", 1e-3),
+}
 #: Properties that count where a joint can crush, and for no other joint.
-OF_CAP = {"compressiveStrength", "elasticLimitRatio", "residualStrengthRatio", "peakRatio", "compressiveFractureEnergy", "capNormal", "capShear", "capLinear"}  # fmt: skip
+OF_CAP = {
+    "compressiveStrength",
+    "elasticLimitRatio",
+    "residualStrengthRatio",
+    "peakRatio",
+    "compressiveFractureEnergy",
+    "capNormal",
+    "capShear",
+    "capLinear",
+}
 #: Energies that count where there is the strength that they soften.
-SOFTENING = {"modeIFractureEnergy": "tensileStrength", "modeIIFractureEnergy": "cohesion"}  # fmt: skip
+SOFTENING = {"modeIFractureEnergy": "tensileStrength", "modeIIFractureEnergy": "cohesion"}
 #: Counts of a run, by their entries in run.json.
 COUNTS = {
     "units": "blocks of the model, bricks or their halves",
@@ -33,7 +60,11 @@ def facts(record):
     when, whence = record.date()
     known = run.get("versions")
     names = {"masonry": "masonry", "yade": "YADE", "python": "Python"}
-    made = [f"{name} {known[key]}" for key, name in names.items() if isinstance(known, dict) and key in known]  # fmt: skip
+    made = [
+        f"{name} {known[key]}"
+        for key, name in names.items()
+        if isinstance(known, dict) and key in known
+    ]
     return [
         ("scene", str(run.get("scene", "not known")), "run.json: scene"),
         ("run ended", when, whence),
@@ -48,13 +79,17 @@ def head(record):
     if run.get("error"):
         yield note(run["error"], "warning", "The run ended by an error:")
     elif run.get("interrupted"):
-        yield note("All numbers are those up to there; --resume goes on.", "warning", "The run was interrupted.")  # fmt: skip
+        yield note(
+            "All numbers are those up to there; --resume goes on.",
+            "warning",
+            "The run was interrupted.",
+        )
     elif run.get("collapsed"):
-        yield note(f"{run.get('collapse') or 'the structure has fallen'}.", "warning", "Collapsed:")  # fmt: skip
+        yield note(f"{run.get('collapse') or 'the structure has fallen'}.", "warning", "Collapsed:")
     elif run.get("ended"):
         yield note(f"The last stage ended: {run['ended']}.")
     else:
-        yield note("The run has no rows: it took no time steps, or ended before there was one.")  # fmt: skip
+        yield note("The run has no rows: it took no time steps, or ended before there was one.")
     lead = quantities.headline({**run, **record.numbers})
     lead = lead or "; ".join(f"{what} {valueOf(one)}" for one, what in sought(run))
     if not lead:
@@ -65,7 +100,9 @@ def head(record):
     warnings = [str(w) for w in run.get("warnings") or []] + record.problems
     if warnings:
         more = f", and {len(warnings) - 1} more" if len(warnings) > 1 else ""
-        yield note(f"{warnings[0]}{more}. The part “How far to trust it” has all.", "warning", "Warning:")  # fmt: skip
+        yield note(
+            f"{warnings[0]}{more}. The part “How far to trust it” has all.", "warning", "Warning:"
+        )
 
 
 def firstUpper(text):
@@ -90,10 +127,17 @@ def valueOf(answer):
 def sought(run):
     """The largest load that was held and the smallest that was not, as answers, of a run that looked for one load."""
     loads, found = quantities.loadsOf(run.get("stages") or []), []
-    ones = [a for a in entriesOf(run, "answers") if a.get("name") in ("factor_held", "factor_not_held") and isNumber(a.get("value"))]  # fmt: skip
-    if len({(a.get("stage"), a.get("unit"), loads.get(a.get("number"))) for a in ones}) != 1:  # fmt: skip
+    ones = [
+        a
+        for a in entriesOf(run, "answers")
+        if a.get("name") in ("factor_held", "factor_not_held") and isNumber(a.get("value"))
+    ]
+    if len({(a.get("stage"), a.get("unit"), loads.get(a.get("number"))) for a in ones}) != 1:
         return []
-    for name, choose, what in (("factor_held", max, "largest load that was held"), ("factor_not_held", min, "smallest load that was not held")):  # fmt: skip
+    for name, choose, what in (
+        ("factor_held", max, "largest load that was held"),
+        ("factor_not_held", min, "smallest load that was not held"),
+    ):
         alike = [a for a in ones if a["name"] == name]
         if alike:
             found.append((choose(alike, key=lambda a: a["value"]), what))
@@ -106,7 +150,7 @@ def built(record):
     if record.elevation:
         yield figure(*record.elevation)
     else:
-        yield missing(f"There is no drawing of what was built: {record.missing}")  # fmt: skip
+        yield missing(f"There is no drawing of what was built: {record.missing}")
     built = run.get("built") or []
     rows = [(name, text, "run.json: built") for name, text in built]
     for key, what in COUNTS.items():
@@ -128,15 +172,38 @@ def _units(run):
         return
     assumed = _namesOf(run)
     rows = (
-        ("Young's modulus of the units", "young_Pa", 1e-6, "MPa", "Elastic modulus of the material of the bricks; rigid units have theirs in the stiffness of their joints."),
-        ("Poisson's ratio of the units", "poisson", 1, "-", "Lateral over longitudinal strain of the material of the bricks."),
-        ("density of the units", "density_kg_per_m3", 1, "kg/m³", "Mass of a brick over its volume."),
-    )  # fmt: skip
+        (
+            "Young's modulus of the units",
+            "young_Pa",
+            1e-6,
+            "MPa",
+            (
+                "Elastic modulus of the material of the bricks; rigid units have theirs in the"
+                " stiffness of their joints."
+            ),
+        ),
+        (
+            "Poisson's ratio of the units",
+            "poisson",
+            1,
+            "-",
+            "Lateral over longitudinal strain of the material of the bricks.",
+        ),
+        (
+            "density of the units",
+            "density_kg_per_m3",
+            1,
+            "kg/m³",
+            "Mass of a brick over its volume.",
+        ),
+    )
     found = []
     for what, key, factor, shown, meaning in rows:
         value = factor * unit[key] if isNumber(unit.get(key)) else None
         named = _marked(what, f"unit.{key.partition('_')[0]}" in assumed)
-        found.append(quantities.Number(named, value, shown, meaning, f"run.json: unit_material.{key}"))  # fmt: skip
+        found.append(
+            quantities.Number(named, value, shown, meaning, f"run.json: unit_material.{key}")
+        )
     yield numbers(found, "Units")
 
 
@@ -148,7 +215,7 @@ def _namesOf(run):
     """Names of the properties that were assumed; those of the support are those of the bed joint where it takes these."""
     names = {str(a.get("name")) for a in run.get("assumed") or []}
     if "support" in names:
-        names |= {n.replace("bed.", "support.", 1) for n in names if n.startswith("bed.")}  # fmt: skip
+        names |= {n.replace("bed.", "support.", 1) for n in names if n.startswith("bed.")}
     return names
 
 
@@ -164,23 +231,28 @@ def _joints(run):
     names = dict.fromkeys(n for p in joints.values() for n in p if n in units)
     ofLaws = run.get("properties_of_laws") or {}
     particular = {name for read in ofLaws.values() for name in read}
-    counts = lambda name, joint: name not in particular or name in ofLaws.get(joint.get("law"), ())  # fmt: skip
+    counts = lambda name, joint: name not in particular or name in ofLaws.get(joint.get("law"), ())
     shown, others = [], []
     for name in names:
         meaning = str(meanings.get(name, "")).partition(". ")[0].rstrip(".")
         unit, factor = SHOWN.get(units[name], (units[name], 1))
-        cells = [_cell(joints[kind], name, factor, f"{kind}.{name}" in assumed) for kind in kinds]  # fmt: skip
+        cells = [_cell(joints[kind], name, factor, f"{kind}.{name}" in assumed) for kind in kinds]
         line = meaning or name, unit, *cells
-        used = any(joints[kind].get(name) and counts(name, joints[kind]) for kind in kinds)  # fmt: skip
+        used = any(joints[kind].get(name) and counts(name, joints[kind]) for kind in kinds)
         used = used and set(cells) != {"–"}
         (shown if used else others).append(line)
     laws = [_lawOf(joints[kind]) for kind in kinds]
     heads = ("property", "unit", *kinds)
-    caption = "Joints, by kind. A dash: the property does not count for this kind. Source: run.json: joints"
+    caption = (
+        "Joints, by kind. A dash: the property does not count for this kind. Source: run.json:"
+        " joints"
+    )
     yield table(heads, [("law", "", *laws), *shown], caption, "joints")
     if others:
         inside = table(heads, others, "Other properties of the joints", "joints")
-        yield folded("Properties that are zero, or of no meaning for these joints", inside, kind="screen")  # fmt: skip
+        yield folded(
+            "Properties that are zero, or of no meaning for these joints", inside, kind="screen"
+        )
 
 
 def _lawOf(joint):
@@ -191,10 +263,13 @@ def _lawOf(joint):
 
 def _cell(joint, name, factor, isAssumed):
     isIgnored = (
-        joint.get("elastic") and name not in STIFFNESSES
-        or name in OF_CAP and not joint.get("cap", True)
-        or name in SOFTENING and not joint.get(SOFTENING[name])
-    )  # fmt: skip
+        joint.get("elastic")
+        and name not in STIFFNESSES
+        or name in OF_CAP
+        and not joint.get("cap", True)
+        or name in SOFTENING
+        and not joint.get(SOFTENING[name])
+    )
     if isIgnored:
         return "–"
     value = joint.get(name)
@@ -207,7 +282,10 @@ def _assumed(run):
     if entries is None:
         raise Refused(OLDER)
     if not entries:
-        yield note("Nothing was assumed: every property of the materials was given. Source: run.json: assumed.")  # fmt: skip
+        yield note(
+            "Nothing was assumed: every property of the materials was given. Source: run.json:"
+            " assumed."
+        )
         return
     groups = {}
     for one in entries:
@@ -219,8 +297,12 @@ def _assumed(run):
             found.append(f"{name}\u00a0{withUnit(factor * value, unit)}")
         else:
             found.append(" ".join(filter(None, (name, str(value or "")))))
-    lines = [(kind, ", ".join(found), source) for (kind, source), found in groups.items()]  # fmt: skip
-    yield table(("of", "property and value", "where it is from"), lines, "What was not given, and is ASSUMED. Source: run.json: assumed")  # fmt: skip
+    lines = [(kind, ", ".join(found), source) for (kind, source), found in groups.items()]
+    yield table(
+        ("of", "property and value", "where it is from"),
+        lines,
+        "What was not given, and is ASSUMED. Source: run.json: assumed",
+    )
 
 
 def loaded(record):
@@ -228,7 +310,11 @@ def loaded(record):
     run = record.run
     pairs = run.get("held_and_loaded")
     if pairs:
-        yield table(("what", "how it is held and loaded before the first stage"), pairs, "Supports and dead loads. Source: run.json: held_and_loaded")  # fmt: skip
+        yield table(
+            ("what", "how it is held and loaded before the first stage"),
+            pairs,
+            "Supports and dead loads. Source: run.json: held_and_loaded",
+        )
     else:
         held = ", ".join(map(str, run.get("held") or [])) or "nothing"
         yield note(f"Held: {held}. Source: run.json: held.")
@@ -237,21 +323,40 @@ def loaded(record):
     answers = [a for a in entriesOf(run, "answers") if isNumber(a.get("value"))]
     for number, stage in enumerate(entriesOf(run, "stages"), start=1):
         load = [str(one) for one in (stage.get("load") or [])[1:2] if one]
-        found = [f"{nameOf(a)} {valueOf(a)}" for a in answers if a.get("number") == number]  # fmt: skip
-        lines.append((number, stage.get("stage", "?"), ", ".join(load) or "–", written(stage.get("steps")), "; ".join(found) or "–"))  # fmt: skip
+        found = [f"{nameOf(a)} {valueOf(a)}" for a in answers if a.get("number") == number]
+        lines.append(
+            (
+                number,
+                stage.get("stage", "?"),
+                ", ".join(load) or "–",
+                written(stage.get("steps")),
+                "; ".join(found) or "–",
+            )
+        )
     if lines:
-        yield table(("number", "stage", "load", "time steps", "what it found"), lines, "Stages in their order. Source: run.json: stages, answers", "stages")  # fmt: skip
+        yield table(
+            ("number", "stage", "load", "time steps", "what it found"),
+            lines,
+            "Stages in their order. Source: run.json: stages, answers",
+            "stages",
+        )
     words = [w for w in run.get("script") or [] if isinstance(w, list) and len(w) == 2]
     if words:
         script = listed((spoken(*word) for word in words), kind="script")
-        about = note("Stresses are in Pa, forces in N, lengths in m, and displacements of pushes and supports in mm; help(masonry.Scene) describes the words. Source: run.json: script.")  # fmt: skip
+        about = note(
+            "Stresses are in Pa, forces in N, lengths in m, and displacements of pushes and"
+            " supports in mm; help(masonry.Scene) describes the words. Source: run.json: script."
+        )
         title, few = "The words of the script, in their order", len(words) <= MOST_WORDS
         yield folded(title, script, about, opened=few)
     options = run.get("options")
     if isinstance(options, dict):
         units = run.get("option_units") or {}
-        text = "; ".join(f"{name} {_said(value)} {units.get(name, '')}".strip() for name, value in options.items())  # fmt: skip
-        yield folded("All options of the run", note(f"{text}. Source: run.json: options."))  # fmt: skip
+        text = "; ".join(
+            f"{name} {_said(value)} {units.get(name, '')}".strip()
+            for name, value in options.items()
+        )
+        yield folded("All options of the run", note(f"{text}. Source: run.json: options."))
 
 
 #: Units at the end of names in entries of ties and springs, the longest first.
@@ -264,9 +369,13 @@ def _connections(run):
         lines = [
             (one.get("name", "?"), "; ".join(_named(n, v) for n, v in one.items() if n != "name"))
             for one in entriesOf(run, key)
-        ]  # fmt: skip
+        ]
         if lines:
-            yield table(("name", "what it is, and its state at the end"), lines, f"{key.capitalize()}. Source: run.json: {key}")  # fmt: skip
+            yield table(
+                ("name", "what it is, and its state at the end"),
+                lines,
+                f"{key.capitalize()}. Source: run.json: {key}",
+            )
 
 
 def _named(name, value):

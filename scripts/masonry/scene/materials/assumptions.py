@@ -15,7 +15,7 @@ from ...assembly.blocks import properties
 from ...assembly.engines import LAWS
 
 #: Descriptions of the properties by class and name.
-DESCRIBED = {cls: {p["name"]: p for p in properties(cls)} for cls in (MasonryJoint, MasonryMat)}  # fmt: skip
+DESCRIBED = {cls: {p["name"]: p for p in properties(cls)} for cls in (MasonryJoint, MasonryMat)}
 
 #: Where the default of a property is from, by class and name; the paper is that of yade_plugin/law/README.md.
 DEFAULTS = {cls: cls().assumed() for cls in DESCRIBED}
@@ -30,7 +30,10 @@ NEEDED = {
 AS_BED = "as of the bed joint"
 
 #: What an entry of ``assumed`` says of such a joint.
-SUPPORT = "no joint 'support' was given: joints to platens take the bed joint, with its strength and friction"
+SUPPORT = (
+    "no joint 'support' was given: joints to platens take the bed joint, with its strength and"
+    " friction"
+)
 
 #: Properties that have no effect without the cap.
 OF_CAP = """
@@ -113,13 +116,18 @@ def missing(masonry: Any) -> list[str]:
     problems = []
     for name, thing in _things(masonry):
         kind, joint = type(thing), isinstance(thing, MasonryJoint)
-        lacks = [n for n in NEEDED[kind] if isDefault(thing, n) and (not joint or acts(thing, n))]  # fmt: skip
+        lacks = [n for n in NEEDED[kind] if isDefault(thing, n) and (not joint or acts(thing, n))]
         if not lacks:
             continue
         what = f"{'joint' if joint else 'unit'} {name!r}"
         names = ", ".join(f"{n} [{DESCRIBED[kind][n]['unit']}]" for n in lacks)
-        hint = "; elastic=True makes a joint that never gives way, cap=False one that does not crush"
-        problems.append(f"masonry: {what}: {names} must be given, since no value fits any masonry" + hint * joint)  # fmt: skip
+        hint = (
+            "; elastic=True makes a joint that never gives way, cap=False one that does not crush"
+        )
+        problems.append(
+            f"masonry: {what}: {names} must be given, since no value fits any masonry"
+            + hint * joint
+        )
     return problems
 
 
@@ -135,7 +143,8 @@ def linesOf(
         return []
     if brief:
         return [
-            f"note: {len(entries)} properties of the materials are assumed; run.json lists them (assumed)"
+            f"note: {len(entries)} properties of the materials are assumed; run.json lists them"
+            " (assumed)"
         ]
     kinds = {}
     for entry in entries:

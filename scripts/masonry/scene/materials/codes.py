@@ -120,11 +120,16 @@ def en1996(
     fm, code = float(mortar), "EN 1996-1-1:2005"
     factors, problems = K[unit].get(joints, ()), []
     if group > len(factors):
-        problems.append(f"table 3.3 has no K for {unit} of group {group} in {joints} mortar")  # fmt: skip
+        problems.append(f"table 3.3 has no K for {unit} of group {group} in {joints} mortar")
     if fb > STRONGEST[joints]:
-        problems.append(f"fb {fb:g} Pa must be at most {STRONGEST[joints]:g} Pa in {joints} mortar: 3.6.1.2")  # fmt: skip
+        problems.append(
+            f"fb {fb:g} Pa must be at most {STRONGEST[joints]:g} Pa in {joints} mortar: 3.6.1.2"
+        )
     if joints == GENERAL and fm > 2e-6 * fb:
-        problems.append(f"mortar M{fm:g} must be at most twice as strong as the units, fb {fb:g} Pa: equation (3.2)")  # fmt: skip
+        problems.append(
+            f"mortar M{fm:g} must be at most twice as strong as the units, fb {fb:g} Pa: equation"
+            " (3.2)"
+        )
     refuse(problems, "en1996: ")
     factor = factors[group - 1]
     if joints == GENERAL:
@@ -143,11 +148,26 @@ def en1996(
         {
             "E": (E, f"{STIFFNESS} fk, {code}, 3.7.2"),
             "G": (SHEARING * E, f"{SHEARING} E, {code}, 3.7.3"),
-            "fc": (1e6 * fk * strength, f"fk {fk:.3g} MPa{mean('times 1.2 of EN 1052-1')}, {code}, equation {by} with K = {factor} of table 3.3"),
-            "fv0": (fvk0 / shear, f"fvk0 {1e-6 * fvk0:g} MPa{mean('over 0.8 of EN 1052-3')}, {code}, table 3.4, at most 0.065 fb"),
-            "friction": (FRICTION / shear, f"{FRICTION}{mean('over 0.8 of EN 1052-3')}, {code}, 3.6.2"),
+            "fc": (
+                1e6 * fk * strength,
+                (
+                    f"fk {fk:.3g} MPa{mean('times 1.2 of EN 1052-1')}, {code}, equation {by} with K"
+                    f" = {factor} of table 3.3"
+                ),
+            ),
+            "fv0": (
+                fvk0 / shear,
+                (
+                    f"fvk0 {1e-6 * fvk0:g} MPa{mean('over 0.8 of EN 1052-3')}, {code}, table 3.4,"
+                    " at most 0.065 fb"
+                ),
+            ),
+            "friction": (
+                FRICTION / shear,
+                f"{FRICTION}{mean('over 0.8 of EN 1052-3')}, {code}, 3.6.2",
+            ),
         }
-    )  # fmt: skip
+    )
 
 
 @validated

@@ -33,7 +33,14 @@ MODEL_CODE = 12e6, 80e6
 BELOW_RANGE, ABOVE_RANGE = 1.6e-3, 0.33e-3
 
 #: What a clause of a code says of the bed joint, by the argument of :func:`masonry`.
-OF_CLAUSES = dict(E="normalStiffness", G="shearStiffness", fc="compressiveStrength", fv0="cohesion", friction="friction", ft="tensileStrength")  # fmt: skip
+OF_CLAUSES = dict(
+    E="normalStiffness",
+    G="shearStiffness",
+    fc="compressiveStrength",
+    fv0="cohesion",
+    friction="friction",
+    ft="tensileStrength",
+)
 
 #: By how much an assumed fracture energy is above the least that the law can follow [-].
 MARGIN = 1.1
@@ -52,8 +59,8 @@ Mortar = Annotated[float, number("m", 0, 0.1)]
 def _ofMortar(value, first=None):
     """The kind of an argument that is never right."""
     raise ValueError(
-        "is the strength of the mortar in EN 1996 and on data sheets: give fc, the mean strength of the masonry, or fk; "
-        "materials.en1996 finds it from unit and mortar"
+        "is the strength of the mortar in EN 1996 and on data sheets: give fc, the mean strength of"
+        " the masonry, or fk; materials.en1996 finds it from unit and mortar"
     )
 
 
@@ -113,19 +120,20 @@ class _Joint:
         name, _, index = mode
         least = leastEnergy(strength, stiffness, lumped)
         if given is not None and given <= least:
-            what = "unit_" * (self.name == "crack") + ("GfI" if mode is MODES[0] else "GfII")  # fmt: skip
+            what = "unit_" * (self.name == "crack") + ("GfI" if mode is MODES[0] else "GfII")
             elastic = strength**2 / (2 * stiffness)
             say(
-                f"warning: materials.masonry: {what} {given:.4g} J/m² of the {self.name} joint softens more steeply than "
-                f"joint and rigid units are stiff and can snap back: it must be above {least:.4g} J/m² (the "
-                f"elastic energy of the joint at its peak is {elastic:.4g} J/m²)"
+                f"warning: materials.masonry: {what} {given:.4g} J/m² of the {self.name} joint"
+                " softens more steeply than joint and rigid units are stiff and can snap back: it"
+                f" must be above {least:.4g} J/m² (the elastic energy of the joint at its peak is"
+                f" {elastic:.4g} J/m²)"
             )
         typical = index * strength
         source = f"{1e3 * index:g} mm times the strength, {INDEX_SOURCE}"
         if typical < MARGIN * least:
             source = (
-                f"{MARGIN:g} times the least that does not snap back between rigid units; {source} would be "
-                f"{typical:.3g} J/m²"
+                f"{MARGIN:g} times the least that does not snap back between rigid units;"
+                f" {source} would be {typical:.3g} J/m²"
             )
         self.take(name, given, max(typical, MARGIN * least, 1e-3), source)
 
@@ -238,7 +246,9 @@ def masonry(
     values.height, values.length = unit[2] + joint, unit[0] + joint
     problems = []
     if ("fc" in given) == ("fk" in given):
-        problems.append("give fc, the mean compressive strength of the masonry, or fk, the characteristic one")  # fmt: skip
+        problems.append(
+            "give fc, the mean compressive strength of the masonry, or fk, the characteristic one"
+        )
     elif fk is not None:
         values.fc = given["fc"] = MEAN * fk
     problems += _problems(values, given)
@@ -250,7 +260,9 @@ def masonry(
         except ValueError as error:
             for line in str(error).splitlines():
                 small = "too small for peak ratio" in line
-                problems.append(f"{line}; Gc and peak_strain, and fc and E, decide" if small else line)  # fmt: skip
+                problems.append(
+                    f"{line}; Gc and peak_strain, and fc and E, decide" if small else line
+                )
     refuse([f"materials.masonry: {one}" for one in problems])
     if unit_ft is None:
         why = "unit_ft was not given: bricks do not crack"
@@ -305,7 +317,10 @@ def _bond(v, bed, head):
     if ft is None:
         factor = WRENCH if v.bond_ratio is None else v.bond_ratio
         ft = v.bond_wrench / factor
-        reason = f"bond_wrench {v.bond_wrench:g} Pa over {factor:g}: linear stresses of the test overestimate"
+        reason = (
+            f"bond_wrench {v.bond_wrench:g} Pa over {factor:g}: linear stresses of the test"
+            " overestimate"
+        )
         reason += "; van der Pluijm (1999)" * (v.bond_ratio is None)
         bed.sources["tensileStrength"] = reason
     kn, ks = (bed.values[name] for name in ("normalStiffness", "shearStiffness"))
@@ -330,8 +345,9 @@ def _crushing(v, bed, head):
     energy, source = (v.Gc, "") if v.Gc is not None else compressiveFractureEnergy(v.fc)
     if v.Gc is None and not MODEL_CODE[0] <= v.fc <= MODEL_CODE[1]:
         say(
-            f"warning: materials.masonry: fc {v.fc / 1e6:g} MPa is outside of 12 to 80 MPa, the range of Model Code 90 for the "
-            f"compressive fracture energy: Gc is {energy:.4g} J/m², {source}"
+            f"warning: materials.masonry: fc {v.fc / 1e6:g} MPa is outside of 12 to 80 MPa, the"
+            f" range of Model Code 90 for the compressive fracture energy: Gc is {energy:.4g} J/m²,"
+            f" {source}"
         )
     given = None if v.fk else v.fc
     bed.take("compressiveStrength", given, v.fc, f"{MEAN:g} fk, EN 1052-1")
@@ -353,7 +369,7 @@ def _crackJoint(v):
     kn = 100 / halves
     crack = _Joint("crack", elastic=v.unit_ft is None)
     for name, stiffness in (("normal", kn), ("shear", kn / shearing)):
-        crack.take(f"{name}Stiffness", None, stiffness, "100 times that of half a brick")  # fmt: skip
+        crack.take(f"{name}Stiffness", None, stiffness, "100 times that of half a brick")
     if v.unit_ft is None:
         return crack
     like = "as of the crack joints of calciumSilicate()"
@@ -370,14 +386,20 @@ def _crackJoint(v):
 
 def _problems(v, given):
     if (v.ft is None) == (v.bond_wrench is None):
-        yield "give either ft, the direct tensile strength of bed joints, or bond_wrench, that of a bond wrench test"
+        yield (
+            "give either ft, the direct tensile strength of bed joints, or bond_wrench, that of a"
+            " bond wrench test"
+        )
     if max(v.unit) > 5:
         yield f"unit {v.unit} m must be at most 5 m: is it in m?"
     elif v.joint >= min(v.unit[0], v.unit[2]):
         yield f"joint {v.joint:g} m must be below length and height of the unit {v.unit} m"
     for one in ("E", "head_E"):
         if given.get(one, 0) >= v.unit_E:
-            yield f"{one} {given[one]:g} Pa must be below unit_E {v.unit_E:g} Pa: bricks and joints are in series"
+            yield (
+                f"{one} {given[one]:g} Pa must be below unit_E {v.unit_E:g} Pa: bricks and joints"
+                " are in series"
+            )
     most = v.unit_E / (2 * (1 + v.nu))
     if v.G and v.G >= most:
         yield f"G {v.G:g} Pa must be below that of the bricks, unit_E/(2 (1 + nu)) = {most:g} Pa"
@@ -388,10 +410,13 @@ def _problems(v, given):
             yield f"{one} {given[one]:g} must be at most {other} {most:g}"
     yield from _aboveCone(v, given)
     if v.peak_strain and v.fc and v.peak_strain < v.fc / v.E:
-        yield f"peak_strain {v.peak_strain:g} must be at least fc/E = {v.fc / v.E:g}, that of elastic masonry"
+        yield (
+            f"peak_strain {v.peak_strain:g} must be at least fc/E = {v.fc / v.E:g}, that of elastic"
+            " masonry"
+        )
     if v.bond_ratio and v.bond_wrench is None:
         yield "bond_ratio goes with bond_wrench"
-    alone = [one for one in ("unit_GfI", "unit_fv0", "unit_friction", "unit_GfII") if one in given]  # fmt: skip
+    alone = [one for one in ("unit_GfI", "unit_fv0", "unit_friction", "unit_GfII") if one in given]
     if alone and v.unit_ft is None:
         yield f"{', '.join(alone)} without unit_ft: bricks do not crack then"
 
@@ -409,4 +434,7 @@ def _aboveCone(v, given):
     ):
         known = strength is not None and cohesion is not None
         if known and strength * friction > cohesion * (1 + 1e-12):
-            yield f"{what} {strength:g} Pa must be at most {names} = {cohesion / friction:g} Pa, the apex of the Coulomb cone"
+            yield (
+                f"{what} {strength:g} Pa must be at most {names} = {cohesion / friction:g} Pa, the"
+                " apex of the Coulomb cone"
+            )

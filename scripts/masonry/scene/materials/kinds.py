@@ -28,7 +28,9 @@ STEEP = math.cos(math.radians(45))
 _slides = such(lambda v: hasattr(v, "residualFriction"), "a MasonryJoint")
 _options = such(lambda v: hasattr(v, "joints"), "the options of a scene")
 _isVaried = lambda v: isinstance(v, tuple) and len(v) == 4
-_varied = such(lambda v: isinstance(v, list) and all(map(_isVaried, v)), "a list that vary() has made")  # fmt: skip
+_varied = such(
+    lambda v: isinstance(v, list) and all(map(_isVaried, v)), "a list that vary() has made"
+)
 
 
 @validated
@@ -63,7 +65,9 @@ Modulus = Annotated[float, number("Pa", 0, 1e15, above=True)]
 Density = Annotated[float, number("kg/m³", 0, 1e6, above=True)]
 Poisson = Annotated[float, number("", -1, 0.5, above=True, below=True)]
 InPlane = Annotated[float, number("N/m", 0, 1e15, above=True)]  # a stiffness of a floor
-STIFFER = 1e4  # how much stiffer than the pieces of a beam the joints are that stand for nothing else [-]
+STIFFER = (
+    1e4  # how much stiffer than the pieces of a beam the joints are that stand for nothing else [-]
+)
 RIGID = 1e14  # Young's modulus of a piece that does not deform [Pa]
 
 
@@ -90,7 +94,12 @@ def withBeam(
     name, pitch = _newKind(masonry, "withBeam", beam)
     shear = young / (2 * (1 + poisson))
     # in series with the pieces, whose elasticity is lumped into their joints: E / l, and 5/6 G / l
-    glue = MasonryJoint(name=name, elastic=True, normalStiffness=STIFFER * young / pitch, shearStiffness=5 * shear / pitch)  # fmt: skip
+    glue = MasonryJoint(
+        name=name,
+        elastic=True,
+        normalStiffness=STIFFER * young / pitch,
+        shearStiffness=5 * shear / pitch,
+    )
     unit = MasonryMat(label=name, young=young, poisson=poisson, density=density)
     return _take(masonry, name, unit, glue, bearing)
 
@@ -118,10 +127,16 @@ def withFloor(
     height = high[2] - low[2]
     # strips are nearly rigid, so their joints have all of the stiffness: forces are G t / pitch times the slip
     area = pitch * height
-    stiff = dict(normalStiffness=(across or 10 * shear) / area, shearStiffness=shear / area)  # fmt: skip
+    stiff = dict(normalStiffness=(across or 10 * shear) / area, shearStiffness=shear / area)
     glue = MasonryJoint(name=name, elastic=True, **stiff)
     if across is None:
-        state(glue, normalStiffness="assumed by withFloor(): across its strips a floor is ten times as stiff as in shear")  # fmt: skip
+        state(
+            glue,
+            normalStiffness=(
+                "assumed by withFloor(): across its strips a floor is ten times as stiff as in"
+                " shear"
+            ),
+        )
     unit = MasonryMat(label=name, young=RIGID, poisson=0.0, density=mass / height)
     return _take(masonry, name, unit, glue, bearing)
 
@@ -131,11 +146,13 @@ def _newKind(masonry, word, pieces):
     kinds, problems = sorted({block.kind for block in pieces}), []
     name = kinds[0]
     if len(kinds) > 1:
-        problems.append(f"the pieces are of the kinds {', '.join(kinds)}: give those of one beam or floor")  # fmt: skip
+        problems.append(
+            f"the pieces are of the kinds {', '.join(kinds)}: give those of one beam or floor"
+        )
     if name in masonry.units or name in masonry.joints:
-        problems.append(f"this masonry has {name!r} already; give the beam or floor another name")  # fmt: skip
+        problems.append(f"this masonry has {name!r} already; give the beam or floor another name")
     if len(pieces) < 2:
-        problems.append(f"{name} is one piece, which is rigid: bricks.Beam(..., pieces=8) bends")  # fmt: skip
+        problems.append(f"{name} is one piece, which is rigid: bricks.Beam(..., pieces=8) bends")
     refuse([f"{word}: {one}" for one in problems])
     return name, math.dist(pieces[0].middle, pieces[1].middle)
 
@@ -147,13 +164,15 @@ def _take(masonry, name, unit, glue, bearing):
         bed, name = masonry.joints["bed"], f"{name}_bearing"
         own = {"elastic": True} if bearing == "fixed" else slipping(bearing)
         joint = masonry.joints[name] = MasonryJoint(name=name, **own)
-        joint.set(normalStiffness=bed.normalStiffness, shearStiffness=bed.shearStiffness)  # fmt: skip
+        joint.set(normalStiffness=bed.normalStiffness, shearStiffness=bed.shearStiffness)
     return masonry
 
 
 def slipping(friction: float) -> dict[str, Any]:
     """Properties of a joint that has friction alone."""
-    return dict(tensileStrength=0, cohesion=0, friction=friction, residualFriction=friction, cap=False)  # fmt: skip
+    return dict(
+        tensileStrength=0, cohesion=0, friction=friction, residualFriction=friction, cap=False
+    )
 
 
 def _isBeam(masonry, name):
@@ -236,12 +255,10 @@ class Masonry:
         """Give a support joint that takes the bed joint what the bed joint has now."""
         support, bed = self.joints["support"], self.joints["bed"]
         sources = support.assumed()
-        support.updateAttrs({n: getattr(bed, n) for n, s in sources.items() if s == AS_BED})  # fmt: skip
+        support.updateAttrs({n: getattr(bed, n) for n, s in sources.items() if s == AS_BED})
         state(support, **sources)
 
-    def apply(
-        self, settings: Iterable[tuple[str, str, str]], connectors: Any = None
-    ) -> None:
+    def apply(self, settings: Iterable[tuple[str, str, str]], connectors: Any = None) -> None:
         """Give joints, beams and connectors the values of ``--set``. Raises Refused with all problems at once.
 
         :param settings: list of (name, property, text of the value)
@@ -275,7 +292,10 @@ class Masonry:
         for one in [name] if isinstance(name, str) else name:
             joint, _, attribute = one.partition(".")
             if _isBeam(self, joint):  # its stiffness is that of its pieces
-                problems.append(f"vary: {one!r}: a beam has its young and its density all over, which --set {joint}.young=... changes")  # fmt: skip
+                problems.append(
+                    f"vary: {one!r}: a beam has its young and its density all over, which --set"
+                    f" {joint}.young=... changes"
+                )
                 continue
             values = self.joints[joint].dict() if joint in self.joints else {}
             numbers = [n for n, v in values.items() if isNumber(v)]
@@ -284,8 +304,8 @@ class Masonry:
                 continue
             close = nearest(one, [f"{joint}.{n}" for n in numbers])
             problems.append(
-                f"vary: no property {one!r}; joints are {', '.join(self.joints)}, help(masonry.MasonryJoint) lists "
-                f"properties{close}"
+                f"vary: no property {one!r}; joints are {', '.join(self.joints)},"
+                f" help(masonry.MasonryJoint) lists properties{close}"
             )
         if problems:
             raise ValueError("\n".join(problems))
@@ -296,9 +316,7 @@ class Masonry:
     assumed, missing = entriesOf, missing
 
     @validated
-    def variant(
-        self, args: Annotated[Any, _options], connectors: Any = None
-    ) -> Masonry:
+    def variant(self, args: Annotated[Any, _options], connectors: Any = None) -> Masonry:
         """A copy for the options ``--joints`` and ``--field``; this one stays as it is.
 
         :param connectors: names of ties, springs and fibre layers of the scene, whose fields are none of the joints, or None
@@ -310,7 +328,9 @@ class Masonry:
             for joint in joints.values():
                 joint.law = args.joints
         units = {kind: copied(mat) for kind, mat in self.units.items()}
-        own = replace(self, unit=copied(self.unit), joints=joints, units=units, varied=[*self.varied])  # fmt: skip
+        own = replace(
+            self, unit=copied(self.unit), joints=joints, units=units, varied=[*self.varied]
+        )
         own._follow()
         known = list(connectors or ())
         for text in args.field:
@@ -320,7 +340,7 @@ class Masonry:
                 if names:
                     own.vary(withResidual(names, joints), function)
             except ValueError as error:
-                also = f"; ties, springs and fibre layers are {', '.join(known)}" if known else ""  # fmt: skip
+                also = f"; ties, springs and fibre layers are {', '.join(known)}" if known else ""
                 raise Refused(f"--field {text}: {error}{also}") from None
         return own
 
@@ -338,13 +358,14 @@ class Masonry:
             name = self.choose and self.choose(first, second, geom)
             if name and name not in self.joints:
                 raise ValueError(
-                    f"choose gave {name!r} for bodies {one.id} and {two.id}; there are {', '.join(self.joints)}"
+                    f"choose gave {name!r} for bodies {one.id} and {two.id}; there are"
+                    f" {', '.join(self.joints)}"
                 )
             name = name or self._kind(first, second, geom.normal)
             joint = self.joints[name]
             if self.varied:
                 joint = self._at(name, joint, geom)
-            halves = first and second and first.brick == second.brick and pieces[first.brick] == 2  # fmt: skip
+            halves = first and second and first.brick == second.brick and pieces[first.brick] == 2
             if joint.monolithic and not halves:
                 joint = self._changed(id(joint), joint, {"monolithic": False})
             return joint
@@ -384,7 +405,9 @@ class Masonry:
             try:
                 factor = FACTOR(value(*centre))
             except ValueError as error:
-                raise ValueError(f"vary {kind}.{attribute}: the factor at {centre} m: {error}") from None  # fmt: skip
+                raise ValueError(
+                    f"vary {kind}.{attribute}: the factor at {centre} m: {error}"
+                ) from None
             n = steps[attribute] = round(math.log(factor) / math.log1p(step))
             values[attribute] = getattr(joint, attribute) * (1 + step) ** n
         if not any(steps.values()):

@@ -67,9 +67,9 @@ def dry(
     """
     ofStone = dict(density=density, young=young, poisson=poisson)
     given = dict(ofStone, friction=friction, normalStiffness=normalStiffness)
-    sources = {n: f"default of dry(): {DRY[n]:g}" for n, v in given.items() if v is None}  # fmt: skip
+    sources = {n: f"default of dry(): {DRY[n]:g}" for n, v in given.items() if v is None}
     found = {n: DRY[n] if v is None else v for n, v in given.items()}
-    stiffness = dict(normalStiffness=found["normalStiffness"], shearStiffness=shearStiffness)  # fmt: skip
+    stiffness = dict(normalStiffness=found["normalStiffness"], shearStiffness=shearStiffness)
     if shearStiffness is None:
         sources["shearStiffness"] = "default of dry(): 0.4 of the normal stiffness"
         stiffness["shearStiffness"] = 0.4 * found["normalStiffness"]
@@ -88,7 +88,11 @@ BED_DIRECTION, HEAD_DIRECTION = Vector3(0, 0, 1), Vector3(1, 0, 0)
 
 def calciumSilicateUnit() -> MasonryMat:
     """Calcium-silicate brick of the TUD-COMP walls: the paper's table 2."""
-    return state(MasonryMat(label="calcium silicate", young=4.8e9, poisson=0.16, density=1800, jointSet="brick"))  # fmt: skip
+    return state(
+        MasonryMat(
+            label="calcium silicate", young=4.8e9, poisson=0.16, density=1800, jointSet="brick"
+        )
+    )
 
 
 DECIDED = "assumed by calciumSilicateJoints(); the paper gives no value"
@@ -195,4 +199,6 @@ def dryGraniteJoints(
 
 def loadingBlock() -> MasonryMat:
     """A block that supports or loads a wall, section 4.1 of the paper: so stiff that only its joint gives way."""
-    return state(MasonryMat(label="loading block", young=1e16, poisson=0.0, density=1800, jointSet="support"))  # fmt: skip
+    return state(
+        MasonryMat(label="loading block", young=1e16, poisson=0.0, density=1800, jointSet="support")
+    )

@@ -17,7 +17,7 @@ A new stage is such a function (:func:`masonry.scene.stages.stage.stage`) and it
 
 from .gravity import accelerate, lean, tilt
 
-from .loading import grow, growLoad, growPress, growWind, hold, load, prepare, press, pressure, wind  # fmt: skip
+from .loading import grow, growLoad, growPress, growWind, hold, load, prepare, press, pressure, wind
 from .push import cycle, follow, push
 from .rest import settle
 from .shake import period, run, shake, shakeAgain

@@ -14,7 +14,7 @@ from ..words import RESULT, Call
 #: How a stage ends.
 AT_REST, MOVING, DONE, COLLAPSED = "at rest", "moving", "done", "collapsed"
 #: How a collapse ends that is followed.
-FALLEN_AT_REST, FALLEN_MOVING = f"{COLLAPSED} and at rest", f"{COLLAPSED} and moving"  # fmt: skip
+FALLEN_AT_REST, FALLEN_MOVING = f"{COLLAPSED} and at rest", f"{COLLAPSED} and moving"
 FALLEN = {COLLAPSED, FALLEN_AT_REST, FALLEN_MOVING}  # ends of what has fallen
 OWN = "0"  # the stage of the results of the script, which all stages follow
 FALL = "fall"  # the stage in which a collapse is followed: masonry.scene.stages.falling

@@ -75,13 +75,14 @@ def followFall(scene: Any, tilted: bool) -> str:
     past = sum(O.bodies[body].state.pos[2] < ground for body in model.ids)
     if past:
         say(
-            f"warning: {past} blocks have gone past the edge of the ground and fall on, so the impact energy and the extent of the "
-            "rubble mean nothing"
+            f"warning: {past} blocks have gone past the edge of the ground and fall on, so the"
+            " impact energy and the extent of the rubble mean nothing"
         )
     if at.quiet < LOOKS:
         say(
-            f"note: the rubble is not at rest after {O.time - at.begun:.2f} s: {100 * missing:.2f} % of its weight is missing at the "
-            f"supports, and the fastest block moves at {100 * model.motion.fastest():.2g} % of the speed of one that falls"
+            f"note: the rubble is not at rest after {O.time - at.begun:.2f} s:"
+            f" {100 * missing:.2f} % of its weight is missing at the supports, and the fastest"
+            f" block moves at {100 * model.motion.fastest():.2g} % of the speed of one that falls"
         )
     return FALLEN_AT_REST if at.quiet == LOOKS else FALLEN_MOVING
 
@@ -108,10 +109,22 @@ def answers(scene: Any, ended: str, begun: float) -> list[Answer]:
     what = "blocks that have turned by 60° or moved by their diameter since the scene was built"
     found = [
         Answer("fallen_blocks", "-", len(fallen), f"{when}{what}, of {len(masses)}"),
-        Answer("fallen_share", "-", mass / (sum(masses) or 1.0), f"{when}mass of these over that of all blocks"),
-        Answer("noticed_at", "s", begun, "when the collapse was noticed, since the scene was built"),
-        Answer("time_to_rest", "s", O.time - begun if atRest else None, "from then on until all was at rest"),
-    ]  # fmt: skip
+        Answer(
+            "fallen_share",
+            "-",
+            mass / (sum(masses) or 1.0),
+            f"{when}mass of these over that of all blocks",
+        ),
+        Answer(
+            "noticed_at", "s", begun, "when the collapse was noticed, since the scene was built"
+        ),
+        Answer(
+            "time_to_rest",
+            "s",
+            O.time - begun if atRest else None,
+            "from then on until all was at rest",
+        ),
+    ]
     if not fallen:
         return found
     first = min(one["fell"] for one in fallen.values())
@@ -124,21 +137,57 @@ def answers(scene: Any, ended: str, begun: float) -> list[Answer]:
     return [
         *found,
         Answer("fallen_mass", "kg", mass, f"{when}of the fallen blocks"),
-        Answer("rubble_volume", "m³", sum(volume(model, index) for index in fallen), f"{when}of the fallen blocks, without what lies between them"),
+        Answer(
+            "rubble_volume",
+            "m³",
+            sum(volume(model, index) for index in fallen),
+            f"{when}of the fallen blocks, without what lies between them",
+        ),
         Answer("rubble_length_x", "m", high[0] - low[0], f"{lies}, from the first to the last"),
         Answer("rubble_length_y", "m", high[1] - low[1], f"{lies}, from the first to the last"),
         Answer("rubble_height", "m", high[2] - ground, f"{lies}, above the ground"),
-        Answer("rubble_reach", "m", max(beyond), f"{lies}: how far they lie beside the box around what was built"),
-        Answer("impact_energy", "J", energy, f"{when}sum of the largest kinetic energy that every fallen block had since it came loose"),
-        Answer("first_fall", "s", first, "when the first block had fallen, since the scene was built"),
-    ]  # fmt: skip
+        Answer(
+            "rubble_reach",
+            "m",
+            max(beyond),
+            f"{lies}: how far they lie beside the box around what was built",
+        ),
+        Answer(
+            "impact_energy",
+            "J",
+            energy,
+            (
+                f"{when}sum of the largest kinetic energy that every fallen block had since it came"
+                " loose"
+            ),
+        ),
+        Answer(
+            "first_fall", "s", first, "when the first block had fallen, since the scene was built"
+        ),
+    ]
 
 
 #: Columns of fallen.csv: name, and the value of a block from its index and its fall.
 HEADS = (
-    "block", "brick", "part", "x_m", "y_m", "z_m", "mass_kg", "volume_m3", "loose_at_s", "fallen_at_s",
-    "largest_kinetic_energy_J", "at_s", "now_x_m", "now_y_m", "now_z_m", "moved_m", "turned_deg", "speed_m_per_s",
-)  # fmt: skip
+    "block",
+    "brick",
+    "part",
+    "x_m",
+    "y_m",
+    "z_m",
+    "mass_kg",
+    "volume_m3",
+    "loose_at_s",
+    "fallen_at_s",
+    "largest_kinetic_energy_J",
+    "at_s",
+    "now_x_m",
+    "now_y_m",
+    "now_z_m",
+    "moved_m",
+    "turned_deg",
+    "speed_m_per_s",
+)
 
 
 def writeTable(scene: Any) -> None:
@@ -148,15 +197,31 @@ def writeTable(scene: Any) -> None:
     for index, fall in model.fallen().items():
         state, block = O.bodies[model.ids[index]].state, box.bricks[index]
         turn = (state.ori * state.refOri.conjugate()).toAxisAngle()[1]
-        rows.append([
-            index, block.brick, block.part, *box.middle(index), state.mass, volume(model, index), fall["since"], fall["fell"],
-            fall["most"], fall["at"], *state.pos, (state.pos - state.refPos).norm(), math.degrees(turn), state.vel.norm(),
-        ])  # fmt: skip
+        rows.append(
+            [
+                index,
+                block.brick,
+                block.part,
+                *box.middle(index),
+                state.mass,
+                volume(model, index),
+                fall["since"],
+                fall["fell"],
+                fall["most"],
+                fall["at"],
+                *state.pos,
+                (state.pos - state.refPos).norm(),
+                math.degrees(turn),
+                state.vel.norm(),
+            ]
+        )
     path = scene.results.path(TABLE)
     try:
         with open(path, "w", newline="") as file:
             writer = csv.writer(file)
             writer.writerow(HEADS)
-            writer.writerows([[f"{v:.9g}" if isinstance(v, float) else v for v in row] for row in rows])  # fmt: skip
+            writer.writerows(
+                [[f"{v:.9g}" if isinstance(v, float) else v for v in row] for row in rows]
+            )
     except OSError as error:
         raise Unwritable(f"{path} cannot be written: {error.strerror}") from None

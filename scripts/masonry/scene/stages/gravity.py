@@ -88,7 +88,7 @@ def putOnAnswers(scene, rows):
     asked, unit = scene.running.memory.goal, scene.loadUnit
     end, load = [asked, 1e3 * scene.model.loading.alongNow()], f"{asked:.4g} {unit}"
     if scene.ended == AT_REST:
-        return ends(scene, end, "the structure came to rest under it", None, f"it held {load}")  # fmt: skip
+        return ends(scene, end, "the structure came to rest under it", None, f"it held {load}")
     why = f"the structure did not come to rest under {load}"
     return ends(scene, None, why, end, why)
 
@@ -228,9 +228,7 @@ def bracket(
     try:
         if not carries(low):
             scene.stepBack()
-            raise ValueError(
-                f"bracket: the structure does not carry {low:g}, the lower end"
-            )
+            raise ValueError(f"bracket: the structure does not carry {low:g}, the lower end")
         if carries(high):
             raise ValueError(f"bracket: the structure carries {high:g}, the upper end")
         scene.stepBack()

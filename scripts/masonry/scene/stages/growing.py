@@ -33,7 +33,9 @@ LEAST = 0.05  # of the whole growth: the width of a bracket below this load is t
 #: [s] in the scene after which a trial is given up, or later on soft springs
 TRIAL = 4.0
 MOST_KEPT, LEAST_KEPT = 128, 8  # states that are kept during a growth
-KEPT_BYTES = 100e6  # that they may have in all; a checkpoint during the growth or the search has them
+KEPT_BYTES = (
+    100e6  # that they may have in all; a checkpoint during the growth or the search has them
+)
 #: A trial is not held as soon as a block has moved as far as one that has fallen, has at least this share of its speed [-], and is
 #: twice as fast as the fastest one in the first half of the trial (:meth:`masonry.assembly.motion.Motion.fastest`). Blocks at a crack that
 #: opens suddenly can be as fast, but have not moved so far.
@@ -110,7 +112,8 @@ def grow(scene, name, load, duration, within=WITHIN):
     if at.lost and at.held:
         unit = "" if load.unit == "-" else f" {load.unit}"
         say(
-            f"{name}: held at {at.held[0]:.5g}{unit}, not held at {at.lost[0]:.5g}{unit} ({WHY[at.lost[3]]})"
+            f"{name}: held at {at.held[0]:.5g}{unit}, not held at"
+            f" {at.lost[0]:.5g}{unit} ({WHY[at.lost[3]]})"
         )
     return search.end()
 
@@ -121,8 +124,9 @@ def _noteDrives(scene, name):
         along = [a for a in "xyz" if scene.model.loading.pushOf(target, a)]
         if along and target.brick is not None:
             say(
-                f"note: {name}: the drive of a push holds {target.name} along {', '.join(along)}, without numerical damping, so "
-                f"trials may come to rest late or not at all; release({target.name}, {''.join(along)!r}) lets it go"
+                f"note: {name}: the drive of a push holds {target.name} along {', '.join(along)},"
+                " without numerical damping, so trials may come to rest late or not at all;"
+                f" release({target.name}, {''.join(along)!r}) lets it go"
             )
 
 
@@ -132,9 +136,9 @@ def _compare(scene, name, load, at):
     if at.lost and entry.get("exact") and at.held[0] < FAR * entry["factor"]:
         less = 100 * (1 - at.held[0] / entry["factor"])
         say(
-            f"note: {name}: rigid blocks would carry {entry['factor']:.4g}, and the run held {less:.0f} % "
-            "less: joints that are soft let the structure lean before it falls. Try stiffer joints (normalStiffness), and more "
-            "points (--points)"
+            f"note: {name}: rigid blocks would carry {entry['factor']:.4g}, and the run held"
+            f" {less:.0f} % less: joints that are soft let the structure lean before it falls. Try"
+            " stiffer joints (normalStiffness), and more points (--points)"
         )
 
 
@@ -152,7 +156,9 @@ def found(scene, rows):
     at = scene.running.memory
     if not isinstance(at, Growing):
         return []
-    what = "trials of the run itself, each under a constant load from a state at rest or of the growth"
+    what = (
+        "trials of the run itself, each under a constant load from a state at rest or of the growth"
+    )
     held = f"the largest load factor under which the structure came to rest; {what}"
     lost = f"the load ended at {at.last:.4g} while the structure stood"
     if at.held is None:
@@ -160,7 +166,10 @@ def found(scene, rows):
         if at.trials:
             held += f", of {len(at.trials)} from {min(at.trials)[0]:.4g} on"
     if at.lost:
-        lost = f"the smallest load factor under which it did not come to rest: {WHY[at.lost[3]]}; {what}"
+        lost = (
+            f"the smallest load factor under which it did not come to rest: {WHY[at.lost[3]]};"
+            f" {what}"
+        )
     return ends(scene, at.held, held, at.lost, lost)
 
 
@@ -325,7 +334,7 @@ class _Search:
     def _ofGrowth(self):
         """The next trial from a state of the growth, or None if there is none between the ends of the bracket."""
         at = self.at
-        factors, step = [factor for factor, _ in at.kept], 2 ** max(0, len(at.trials) - 1)  # fmt: skip
+        factors, step = [factor for factor, _ in at.kept], 2 ** max(0, len(at.trials) - 1)
         # numbers of the last state up to what was held, and of the first from what was not
         low = at.held and bisect.bisect_right(factors, at.held[0]) - 1
         high = at.lost and sum(factor < at.lost[0] for factor in factors)
@@ -334,7 +343,7 @@ class _Search:
         elif low is None:
             index = max(0, high - step) if high else None
         elif high is None:
-            index = min(len(factors) - 1, low + step) if low + 1 < len(factors) else None  # fmt: skip
+            index = min(len(factors) - 1, low + step) if low + 1 < len(factors) else None
         else:
             wide = at.lost[0] - at.held[0] > self.within * at.lost[0]
             index = (low + high) // 2 if wide and low + 1 < high else None

@@ -13,11 +13,11 @@ from typing import Annotated, Any
 
 from yade import O, Vector3
 
-from ...common.arguments import Direction, Freedoms, Level, isNumber, kindOf, number, shown  # fmt: skip
+from ...common.arguments import Direction, Freedoms, Level, isNumber, kindOf, number, shown
 from ...basics import Refused
 from ..bounds import findBound, nameOf
 
-from ..loads import Field, Force, Pressure, Stress, checkedForce, doubtPress, doubtWind, windForces  # fmt: skip
+from ..loads import Field, Force, Pressure, Stress, checkedForce, doubtPress, doubtWind, windForces
 from ..pressures import pressures
 from ..targets import AnyTarget, Loaded, MovingPlaten, Part
 from .gravity import Acting, Width, putOn, putOnAnswers
@@ -78,9 +78,7 @@ def _forceOn(scene, target, force, name):
 
 
 @stage(bounded=True, answers=putOnAnswers)
-def load(
-    scene: Any, target: Loaded, force: Force, longest: Duration | None = None
-) -> str:
+def load(scene: Any, target: Loaded, force: Force, longest: Duration | None = None) -> str:
     """Give a target another dead load, and wait until the structure is at rest or falls.
 
     The force replaces the dead load that the target has, described or put on; it changes within 0.02 s, and longer for tall structures. So
@@ -155,9 +153,7 @@ def wind(
 
     :param pressure: [Pa]; 0 takes the wind away; ``towards`` and ``part``: as before the first stage
     """
-    return _putOn(
-        scene, "wind", _windOn(scene, pressure, towards, part, "wind"), longest
-    )
+    return _putOn(scene, "wind", _windOn(scene, pressure, towards, part, "wind"), longest)
 
 
 @stage(bounded=True, answers=found)
@@ -208,9 +204,7 @@ def _pressOn(scene, platen, stress, name):
 
 
 @stage(bounded=True, answers=putOnAnswers)
-def press(
-    scene: Any, platen: MovingPlaten, stress: Stress, longest: Duration | None = None
-) -> str:
+def press(scene: Any, platen: MovingPlaten, stress: Stress, longest: Duration | None = None) -> str:
     """Press a platen with another mean stress on the bricks below it, which replaces that before, and wait as :meth:`load` does.
 
     :param stress: mean vertical stress that the bricks feel [Pa]; the weight of the platen is part of it
@@ -239,7 +233,9 @@ def growPress(
 def together(value, first):
     """The kind of loads that grow together: a dict from targets to forces [N] or, of platens, stresses [Pa]."""
     if not isinstance(value, dict):
-        raise ValueError(f"{shown(value)} must be a dict from targets to forces [N] or stresses [Pa]")  # fmt: skip
+        raise ValueError(
+            f"{shown(value)} must be a dict from targets to forces [N] or stresses [Pa]"
+        )
     kinds = {True: (MovingPlaten, Stress), False: (Loaded, Force)}
     return {
         kindOf(target)(one, first): kindOf(load)(amount, first)  # type: ignore[misc]
@@ -333,25 +329,25 @@ def hold(scene: Any, target: AnyTarget, axes: Freedoms = "xyzXYZ") -> str:
     """
     if not (target.fixed or target.loaded):
         raise ValueError(
-            f"hold: only a platen, a handle(), or what was held and released, can be held after the first stage: curve.csv has no "
-            f"columns for the reaction of {target.name}"
+            "hold: only a platen, a handle(), or what was held and released, can be held after the"
+            f" first stage: curve.csv has no columns for the reaction of {target.name}"
         )
     across = [a for a in axes if a in "xy" and target.box and not target.fixed]
     if across:
         raise ValueError(
-            f"hold: {target.name} is a platen, which can be held along z and about X, Y and Z after the first stage: curve.csv has no column for its "
-            f"reaction along {', '.join(across)}; push() it and let the drive hold it there"
+            f"hold: {target.name} is a platen, which can be held along z and about X, Y and Z after"
+            f" the first stage: curve.csv has no column for its reaction along {', '.join(across)};"
+            " push() it and let the drive hold it there"
         )
     zones = scene.model.zones
     if zones and target.body in zones.bodies:
         raise Refused(
-            f"hold: {target.name} is a deformable brick, which can be held before the first stage alone"
+            f"hold: {target.name} is a deformable brick, which can be held before the first stage"
+            " alone"
         )
     driven = [a for a in "xyz" if scene.model.loading.isDriven(target, a) and a in axes]
     if driven:
-        raise ValueError(
-            f"hold: a drive holds {target.name} along {', '.join(driven)} already"
-        )
+        raise ValueError(f"hold: a drive holds {target.name} along {', '.join(driven)} already")
     scene.model.supports.holdAlso(target, axes)
     state = O.bodies[target.body].state
     blocked = {*state.blockedDOFs, *axes}

@@ -13,7 +13,18 @@ from typing import Annotated, Any, Callable, Union
 
 from yade import O, Vector3
 
-from ...common.arguments import Direction, FilePath, Numbers, isNumber, listOf, number, oneOf, plain, shown, whole  # fmt: skip
+from ...common.arguments import (
+    Direction,
+    FilePath,
+    Numbers,
+    isNumber,
+    listOf,
+    number,
+    oneOf,
+    plain,
+    shown,
+    whole,
+)
 from ...assembly.loading import Pattern, patternOfDrive, pushTo
 from ...assembly.period import firstMode
 from ...basics import NotAccurate, Refused, say
@@ -32,9 +43,7 @@ from .stage import stage
 #: What the stages of this file take from the command line.
 OPTIONS = "until", "history", "rate"
 PATTERNS = "masses", "triangle", "mode"  # over all blocks
-LONGEST = (
-    20  # the longest first period of which the shape is looked for, over rampTime() [-]
-)
+LONGEST = 20  # the longest first period of which the shape is looked for, over rampTime() [-]
 FREE = 1e-12  # of the sum of all forces: what a block takes at least that is part of a pattern [-]
 
 
@@ -44,7 +53,9 @@ def pushed(value: Any, first: Any = None) -> Any:
         for target, share in value.items():
             kindOfLoaded(target, first)
             if not isNumber(share) or not 0 < plain(share) < 1e9:
-                raise ValueError(f"{shown(share)}, the share of {target.name}, must be a number above 0")  # fmt: skip
+                raise ValueError(
+                    f"{shown(share)}, the share of {target.name}, must be a number above 0"
+                )
         return value
     if isinstance(value, Target):
         return kindOfLoaded(value, first)
@@ -52,13 +63,15 @@ def pushed(value: Any, first: Any = None) -> Any:
         return value
     names = ", ".join(map(repr, PATTERNS))
     raise ValueError(
-        f"{shown(value)} must be a platen that moves or a handle() of this scene, a dict from these to their shares of the force, one of {names}, "
-        "or a function of x, y and z"
+        f"{shown(value)} must be a platen that moves or a handle() of this scene, a dict from these"
+        f" to their shares of the force, one of {names}, or a function of x, y and z"
     )
 
 
 #: What a push moves.
-Pushed = Annotated[Union[Target, dict[Target, float], str, Callable[[float, float, float], float]], pushed]  # fmt: skip
+Pushed = Annotated[
+    Union[Target, dict[Target, float], str, Callable[[float, float, float], float]], pushed
+]
 
 
 def patternOf(scene: Any, value: Any, direction: Any, args: Any) -> Any:
@@ -68,20 +81,23 @@ def patternOf(scene: Any, value: Any, direction: Any, args: Any) -> Any:
     if isinstance(value, dict):
         whole = sum(map(plain, value.values()))
         shares = {target: plain(share) / whole for target, share in value.items()}
-        name = " and ".join(f"{share:.4g} {target.name}" for target, share in shares.items())  # fmt: skip
+        name = " and ".join(f"{share:.4g} {target.name}" for target, share in shares.items())
         return Pattern(name, tuple((t.body, t.point, s) for t, s in shares.items()))
     name = value if isinstance(value, str) else "a pattern"
     if scene.running.redoes and scene.running.takesUp:
         # its drive has the pattern, which was found when the push began
         return _named(patternOfDrive(scene.model.loading, name))
     if scene.model.zones:
-        raise Refused("push: forces on all blocks act on rigid ones: name platens and handles with their shares, or choose --blocks rigid")  # fmt: skip
+        raise Refused(
+            "push: forces on all blocks act on rigid ones: name platens and handles with their"
+            " shares, or choose --blocks rigid"
+        )
     of = _shapeOf(scene.model, value, direction, args)
-    isHeld = lambda body: any(v and a in body.state.blockedDOFs for a, v in zip("xyz", direction))  # fmt: skip
+    isHeld = lambda body: any(v and a in body.state.blockedDOFs for a, v in zip("xyz", direction))
     forces = {b: b.state.mass * of(b) for b in O.bodies if not isHeld(b)}
     whole = sum(forces.values())
     if not whole > 0:
-        raise Refused(f"push: the forces of {name} have the sum {whole:g}, and it must be above 0")  # fmt: skip
+        raise Refused(f"push: the forces of {name} have the sum {whole:g}, and it must be above 0")
     parts = [
         (body.id, tuple(body.state.refPos), force / whole)
         for body, force in forces.items()
@@ -106,7 +122,10 @@ def _shapeOf(model, value, direction, args):
     if value == "mode":
         mode = firstMode(model, direction, LONGEST * rampTime(args))
         if mode is None:
-            raise Refused('push: "mode": no first mode along the push is found; name the targets and their shares')  # fmt: skip
+            raise Refused(
+                'push: "mode": no first mode along the push is found; name the targets and their'
+                " shares"
+            )
         return lambda body: mode[body.id]
     if value == "masses":
         return lambda body: 1.0
@@ -119,7 +138,10 @@ def _shapeOf(model, value, direction, args):
         except Exception as error:  # of the user's own
             found = f"{type(error).__name__}: {error}"
         if not isNumber(found) or not abs(plain(found)) < 1e9:
-            raise Refused(f"push: the pattern at {tuple(body.state.refPos)} m is {shown(found)}, and must be a number")  # fmt: skip
+            raise Refused(
+                f"push: the pattern at {tuple(body.state.refPos)} m is {shown(found)}, and must be"
+                " a number"
+            )
         return plain(found)
 
     return of
@@ -130,15 +152,21 @@ def controlOf(scene: Any, value: Any, control: Target | None) -> Target:
     is watched or moves. Raises Refused."""
     if control or isinstance(value, Target):
         return control or value
-    found = max(value, key=lambda t: t.recorded[2]) if isinstance(value, dict) else scene.description.followed()  # fmt: skip
+    found = (
+        max(value, key=lambda t: t.recorded[2])
+        if isinstance(value, dict)
+        else scene.description.followed()
+    )
     if found is None:
-        raise Refused("push: control is missing: watch() a brick whose displacement counts, and give it")  # fmt: skip
+        raise Refused(
+            "push: control is missing: watch() a brick whose displacement counts, and give it"
+        )
     return found
 
 
 def peaks(scene, rows):
     """The largest force that both ends carried, on either side if the push goes there and back, with the displacement there."""
-    looped, run = bool(scene.pushed.history), {"stages": [{"load": ["push"], "first_row": 0}]}  # fmt: skip
+    looped, run = bool(scene.pushed.history), {"stages": [{"load": ["push"], "first_row": 0}]}
     if looped:
         run["history"] = {}
     data = RunData(run, lambda name: rows(name) or None)
@@ -148,9 +176,10 @@ def peaks(scene, rows):
     for name, side in (("peak", 1), ("negative_peak", -1))[: 1 + looped]:
         at = data.peak(side)
         how = (
-            f"the largest force that supports and loaded point carried at once; the supports alone had {data[BASE][at]:.4g} kN then, and "
-            f"{100 * imbalance:.1f} % of the force did not reach them on the way there or behind it. How far rate, mesh and points change it is "
-            "not known from one run"
+            "the largest force that supports and loaded point carried at once; the supports alone"
+            f" had {data[BASE][at]:.4g} kN then, and {100 * imbalance:.1f} % of the force did not"
+            " reach them on the way there or behind it. How far rate, mesh and points change it is"
+            " not known from one run"
         )
         yield Answer(name, "kN", data.peakForce(side), how)
         how = "displacement of the pushed point at the peak"
@@ -251,10 +280,11 @@ def _drive(scene, name, target, direction, rate, continued, control, **aim):
     pushTo(loading, pushed, control, direction, name)
     scene.pushed = args
     counted = "" if pushed is control else control.name
-    began = f"{pushed.name} {[round(v, 9) for v in direction]}" + f" {counted}" * bool(counted)  # fmt: skip
+    began = f"{pushed.name} {[round(v, 9) for v in direction]}" + f" {counted}" * bool(counted)
     if continued and began not in running.at.origins:
         raise ValueError(
-            f"{name}: continued: {pushed.name} has not been pushed along {tuple(direction)} before, with this control"
+            f"{name}: continued: {pushed.name} has not been pushed along {tuple(direction)} before,"
+            " with this control"
         )
     findBound(scene, "push", pushed, direction, bool(args.history))
     names = [nameOfPush(pushed, sign * direction) for sign in (1, -1)]
@@ -279,7 +309,8 @@ def _argumentsOf(scene, name, until=None, history=None):
             raise Refused(f"{name}: {error}") from None
     elif until is None:
         raise Refused(
-            f"{name}: until None must be above 0 and at most {MOST:g} mm; the direction says where to"
+            f"{name}: until None must be above 0 and at most {MOST:g} mm; the direction says"
+            " where to"
         )
     elif until < SHORT * scene.share:
         say(f"warning: {name}: until {until:g} mm: is it in mm, not m?")

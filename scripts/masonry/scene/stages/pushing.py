@@ -20,9 +20,7 @@ SHORT = 0.05  # [mm]: a shorter push has rows that are closer together
 ARRIVED = 2e-3  # [mm] from a turning point of a history at which the drive turns: what remains of the path takes it there
 GROWING = 20  # rows at least while the velocity of the drive grows
 LONGEST = 20  # the longest first period that is looked for, over rampTime() [-]
-FRAMES = (
-    200  # for ParaView along a history, beside those at its turning points and zeros
-)
+FRAMES = 200  # for ParaView along a history, beside those at its turning points and zeros
 #: A push has collapsed by the mean of its force over so much of it [mm], and over its first period at least. If no period was
 #: found, it is over the longest that was looked for.
 AVERAGED = 1.0
@@ -49,9 +47,7 @@ class Pushing:
     places: list = field(default_factory=list)  # of the blocks then, while it grows [m]
     turned: bool = False  # whether the drive has turned since the push began
     since: float = 0.0  # time from which the velocity grows [s]
-    growth: float = (
-        0.0  # velocity then, in the present direction, over the full one [-]
-    )
+    growth: float = 0.0  # velocity then, in the present direction, over the full one [-]
     #: Of the last rows, as far as AVERAGED says: time [s] and base shear [kN]; their mean decides whether it has collapsed.
     recent: Sequence[Sequence[float]] = ()
     peaks: Sequence[float] = (0.0, 0.0)  # largest mean so far [kN]
@@ -200,7 +196,8 @@ def _entered(scene, name, args, at, began, continued):
         at.moved = at.last = at.start = 1e3 * (here[0] - origin[0])
     if not args.history and not args.until > at.moved:
         raise Refused(
-            f"{name}: until {args.until:g} mm (--until {args.until:g}): the run is at {at.moved:.2f} mm already"
+            f"{name}: until {args.until:g} mm (--until {args.until:g}): the run is at"
+            f" {at.moved:.2f} mm already"
         )
     goals = aim(args, at.start)
     if at.passed >= len(goals):
@@ -230,7 +227,10 @@ def _lost(model, at, reading, direction, mean, whole):
     if loading.hasSunk(reading.sunk + min(0.0, reading.along * loading.direction[2])):
         return "the pushed point has come down by half a course"
     if at.driven > UNFOLLOWED * whole:
-        return f"another part gives way: the drive has gone {at.driven:.0f} mm, and {loading.target.name} has not followed"
+        return (
+            f"another part gives way: the drive has gone {at.driven:.0f} mm, and"
+            f" {loading.target.name} has not followed"
+        )
     return "it moves against its push" if at.retreats(direction, whole) else None
 
 
@@ -248,8 +248,8 @@ def _measuredPeriod(scene, name, args, longest):
         say(f"{name}: first period along it {1e3 * period:.3g} ms")
         return period
     say(
-        f"note: {name}: no first period up to {1e3 * longest:.3g} ms was found; the drive gets to its rate within "
-        f"{1e3 * rampTime(args):.3g} ms"
+        f"note: {name}: no first period up to {1e3 * longest:.3g} ms was found; the drive gets to"
+        f" its rate within {1e3 * rampTime(args):.3g} ms"
     )
     return 0.0
 
@@ -353,7 +353,8 @@ def tooSudden(args, run):
     """The warning of a push whose force falls at once, from the entries of run.json."""
     check = "--preset accurate" if args.blocks == "rigid" else "--dt-fraction 0.78"
     return (
-        f"the force fell by {100 * run['sudden_loss']:.0f} % of its peak within {curves.SUDDEN:g} mm at "
-        f"{run['sudden_loss_at_mm']:.2f} mm: a few bricks gave way at once, and which ones can depend on the block model, the points of "
-        f"joints and the time step; {check} is the cheapest check"
+        f"the force fell by {100 * run['sudden_loss']:.0f} % of its peak within"
+        f" {curves.SUDDEN:g} mm at {run['sudden_loss_at_mm']:.2f} mm: a few bricks gave way at"
+        " once, and which ones can depend on the block model, the points of joints and the time"
+        f" step; {check} is the cheapest check"
     )

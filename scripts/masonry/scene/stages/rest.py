@@ -58,7 +58,7 @@ def buckles(scene: Any) -> bool:
     """Whether a small push sideways grows on a structure that is at rest."""
     axes = "x" if scene.description.plane else "xy"
     with scene.running.clock("setup"), scene.running.breakable():
-        return any(period.buckles(scene.model, Vector3(a == "x", a == "y", 0)) for a in axes)  # fmt: skip
+        return any(period.buckles(scene.model, Vector3(a == "x", a == "y", 0)) for a in axes)
 
 
 def isSlender(scene: Any) -> bool:
@@ -99,7 +99,7 @@ def settle(
     if damping:
         most = SETTLING if model.zones and damping == "local" else 1.0
         model.scheme.damp(min(most, scene.args.damping), damping)
-    return waitForRest(scene, at, longest, grow, record=record, buckling=isSlender(scene))  # fmt: skip
+    return waitForRest(scene, at, longest, grow, record=record, buckling=isSlender(scene))
 
 
 def waitForRest(scene, at, longest, grow, over=0.0, record=True, buckling=False):
@@ -123,7 +123,8 @@ def waitForRest(scene, at, longest, grow, over=0.0, record=True, buckling=False)
     most = int(longest / O.dt)
     if most < 1:
         raise Refused(
-            f"longest {longest:g} s, after which the wait for rest ends, must be above the time step, {O.dt:.3g} s"
+            f"longest {longest:g} s, after which the wait for rest ends, must be above the time"
+            f" step, {O.dt:.3g} s"
         )
     while (at.done < most or at.done % EVERY) and at.quiet < LOOKS:
         load = min(1.0, (at.done + every) / growing)
@@ -149,12 +150,16 @@ def waitForRest(scene, at, longest, grow, over=0.0, record=True, buckling=False)
     if at.quiet < LOOKS:
         missing, moving = model.supports.unrest()
         say(
-            f"note: the structure is not at rest after {at.done * O.dt:.2f} s: {100 * missing:.2f} % of the load is "
-            f"missing at the supports, kinetic over elastic energy is {moving:.1e}; longest=... [s] waits longer"
+            f"note: the structure is not at rest after {at.done * O.dt:.2f} s:"
+            f" {100 * missing:.2f} % of the load is missing at the supports, kinetic over elastic"
+            f" energy is {moving:.1e}; longest=... [s] waits longer"
         )
     ended = AT_REST if at.quiet == LOOKS else MOVING
     if buckling and ended == AT_REST and buckles(scene):
-        say("note: the structure buckles under this load: a small push sideways grows, so it counts as moving")  # fmt: skip
+        say(
+            "note: the structure buckles under this load: a small push sideways grows, so it counts"
+            " as moving"
+        )
         ended = MOVING
     if record:
         running.record()
@@ -178,9 +183,7 @@ def stepBack(scene: Any) -> None:
             known = before[at][1].get("known", known)
         isEarlier = saidBefore(scene, "stepBack", known=known)
         if not known:
-            raise ValueError(
-                "stepBack: the scene has not been at rest in this run of the script"
-            )
+            raise ValueError("stepBack: the scene has not been at rest in this run of the script")
         running.collapsed, scene.ended = False, AT_REST
         scene.results.run.pop("collapse", None)
         if not isEarlier:

@@ -137,8 +137,8 @@ def shake(
     at = inRealTime(scene, "shake", damping, massDamping, stiffnessDamping)
     if O.dt > every:
         say(
-            f"warning: shake: the time step, {O.dt:.3g} s, is longer than the time between samples, {every:.3g} s, so that some "
-            "samples are left out; a smaller --dt-fraction helps"
+            f"warning: shake: the time step, {O.dt:.3g} s, is longer than the time between samples,"
+            f" {every:.3g} s, so that some samples are left out; a smaller --dt-fraction helps"
         )
     down = -scene.description.gravity * Vector3.UnitZ
 
@@ -230,7 +230,10 @@ def shakeAgain(
     :raises ValueError: if there are not as many scales as records
     """
     if scene.args.record is not None or scene.args.scale != 1:
-        raise ValueError("shakeAgain: --record and --scale are for the one record of shake(); give records and scales here")  # fmt: skip
+        raise ValueError(
+            "shakeAgain: --record and --scale are for the one record of shake(); give records and"
+            " scales here"
+        )
     scales = [1.0] * len(records) if scales is None else scales
     if len(scales) != len(records):
         raise ValueError(f"shakeAgain: {len(scales)} scales for {len(records)} records")

@@ -90,8 +90,8 @@ def _check(scene, act, traits, args, settings):
     (_, *args), settings = act.checked((scene, *args), settings)
     if scene.args.accuracy and act.__name__ not in STAGES:
         raise NotAccurate(
-            f"--accuracy: it is about peak and work of a push, and this scene has the stage {act.__name__}; scenes with it "
-            f"have the stages {', '.join(STAGES)} alone"
+            "--accuracy: it is about peak and work of a push, and this scene has the stage"
+            f" {act.__name__}; scenes with it have the stages {', '.join(STAGES)} alone"
         )
     if traits.check:
         traits.check(scene, *args, **settings)
@@ -115,7 +115,8 @@ def _carryOut(scene, act, traits, args, settings):
         farther = not running.advanced and scene.script.compare(running.scriptBefore)
         if scene.collapsed:
             say(
-                f"note: {name} is left out, because the structure has fallen; stepBack() takes it to its last state at rest"
+                f"note: {name} is left out, because the structure has fallen; stepBack() takes it"
+                " to its last state at rest"
             )
             return COLLAPSED
         if scene.only and not traits.bounded:

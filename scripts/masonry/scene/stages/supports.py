@@ -20,14 +20,12 @@ from .stage import Timed, stage, timed
 
 ROWS = 2000  # of curve.csv while a block is driven over a distance
 millimetres = number("mm", -MOST, MOST)  # the kind of a displacement
-Along = Annotated[Union[float, Callable[[float, float, float], float]], orFunction(millimetres)]  # fmt: skip
+Along = Annotated[Union[float, Callable[[float, float, float], float]], orFunction(millimetres)]
 Distance = Annotated[Union[float, Callable[[], float]], orFunction(millimetres)]
 
 
 @stage(bounded=True)
-def release(
-    scene: Any, target: AnyTarget, axes: Freedoms, force: Force | None = None
-) -> str:
+def release(scene: Any, target: AnyTarget, axes: Freedoms, force: Force | None = None) -> str:
     """Take a support away, or let the drive of a platen go. What follows is the next stage's, for example ``settle``.
 
     :param target: a brick or platen that is held, a platen with a drive, or what a push has left under its drive
@@ -126,7 +124,7 @@ def move(
 
 def _path(scene, target, along):
     """The displacement of a target in :func:`move` [mm]. Raises ValueError."""
-    values = [atPlace(v, target.recorded, millimetres, "move") if callable(v) else v for v in along]  # fmt: skip
+    values = [atPlace(v, target.recorded, millimetres, "move") if callable(v) else v for v in along]
     checkPlane(scene.description, values, "move")
     path = scene.share * Vector3(*values)
     loose = [a for a, w in zip("xyz", path) if w and a not in target.freedom]
@@ -172,7 +170,8 @@ def drive(
     given = {a: v for a, v in zip("xyz", (x, y, z)) if callable(v) or v}
     if len(given) != 1 or [*given][0] not in target.drives:
         raise ValueError(
-            f"drive: give one displacement other than 0, along an axis that has a drive; {_drivesOf(target)}"
+            "drive: give one displacement other than 0, along an axis that has a drive;"
+            f" {_drivesOf(target)}"
         )
     ((axis, value),) = given.items()
 
@@ -193,8 +192,8 @@ def checkStress(scene, target, joint, stress):
     bed = scene.masonry.joints["bed"]
     if bed.cap and not bed.elastic and -stress >= bed.compressiveStrength:
         raise Refused(
-            f"pressJoint: {1e-6 * stress:g} MPa crushes the bed joint, whose compressive strength is "
-            f"{1e-6 * bed.compressiveStrength:g} MPa"
+            f"pressJoint: {1e-6 * stress:g} MPa crushes the bed joint, whose compressive strength"
+            f" is {1e-6 * bed.compressiveStrength:g} MPa"
         )
 
 

@@ -35,18 +35,29 @@ def standings(scene, rows):
     at = scene.running.memory
     if not isinstance(at, Travelling):
         return
-    how = "the load stood at so many of its places, one after the other, and the structure came to rest"
+    how = (
+        "the load stood at so many of its places, one after the other, and the structure came to"
+        " rest"
+    )
     yield Answer("places_held", "-", len(at.moved), how)
     if at.moved:
         least = min(at.moved)
-        where = f"of the loaded point, upwards, since the load came, at place {at.moved.index(least) + 1} of {len(at.began)}"
+        where = (
+            "of the loaded point, upwards, since the load came, at place"
+            f" {at.moved.index(least) + 1} of {len(at.began)}"
+        )
         yield Answer("largest_displacement", "mm", least, where)
     if at.place > len(at.began):
-        last = "largest amount of the vertical displacement of a place since the load came, when it has left"
+        last = (
+            "largest amount of the vertical displacement of a place since the load came, when it"
+            " has left"
+        )
         yield Answer("displacement_after", "mm", at.after, last)
     scene.bounds.take(True)
     entries = scene.bounds.entries.values()
-    bounds = {e["load"]: e["factor"] for e in entries if e["load"].startswith(TRAVELS) and "factor" in e}  # fmt: skip
+    bounds = {
+        e["load"]: e["factor"] for e in entries if e["load"].startswith(TRAVELS) and "factor" in e
+    }
     if bounds:
         name, least = min(bounds.items(), key=lambda one: one[1])
         why = "limit analysis: the least load, at which an upper bound is found"
