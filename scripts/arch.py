@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""A voussoir arch, 7 flat stones, springing angle 157.5°: pushed sideways by a growing acceleration, until it falls.
+"""A voussoir arch, 7 flat stones, springing angle 157.5°: pushed sideways by a growing
+acceleration, until it falls.
 
-It falls with four hinges, between 0.371 and 0.373 g; limit analysis of rigid blocks has 0.3736 g. ``--spread`` moves its
-supports apart instead. It takes about 1 s.
+It falls with four hinges, between 0.371 and 0.373 g; limit analysis of rigid blocks has 0.3736 g.
+``--spread`` moves its supports apart instead. It takes about 1 s.
 """
 
 

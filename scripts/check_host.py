@@ -6,8 +6,9 @@
     /usr/bin/python3 scripts/check_host.py FOLDER --show [CLASS...]    prints its virtual functions
     /usr/bin/python3 scripts/check_host.py FOLDER --write VERSION MODULE     writes its table for the built _masonry.so
 
-Compared are the virtual functions and the size of each class of Yade.hpp, and the functions that the plugin calls, with
-the tables of the YADE versions that the plugin knows. Needs binutils, which g++ brings.
+Compared are the virtual functions and the size of each class of Yade.hpp, and the functions that
+the plugin calls, with the tables of the YADE versions that the plugin knows. Needs binutils, which
+g++ brings.
 """
 
 import functools
@@ -72,7 +73,8 @@ class Library:
         return found
 
     def tableOf(self, name):
-        """Functions of a class in the order of its slots, without their classes; None if there is no table here."""
+        """Functions of a class in the order of its slots, without their classes; None if there is
+        no table here."""
         address, size = self.symbols.get(f"_ZTVN4yade{len(name)}{name}E", (0, 0))
         if not size:
             return None
@@ -93,7 +95,8 @@ class Library:
 
 
 def brief(function):
-    """The name of a function with its arguments, without its class: a class may override what its base has."""
+    """The name of a function with its arguments, without its class: a class may override what its
+    base has."""
     for long, short in SHORTER:
         function = re.sub(long, short, function)
     function = re.sub(r".*::(?=[~\w]+\()", "", function)
@@ -103,7 +106,8 @@ def brief(function):
 
 
 class Yade:
-    """What the plugin needs to know of a YADE: classes {name: (size, functions)} and names of functions it calls."""
+    """What the plugin needs to know of a YADE: classes {name: (size, functions)} and names of
+    functions it calls."""
 
     def __init__(self, version, classes, calls):
         self.version, self.classes, self.calls = version, classes, calls
@@ -143,7 +147,8 @@ class Yade:
         return cls(path.stem, classes, calls)
 
     def write(self, module):
-        """A class is written from where its functions are others than those of the class that it begins as."""
+        """A class is written from where its functions are others than those of the class that it
+        begins as."""
         lines, written = [], {}
         for name, (size, table) in self.classes.items():
             like = [w for w, t in written.items() if table[: len(t)] == t]
@@ -177,7 +182,8 @@ class Yade:
 
 
 def callsOf(module, classes):
-    """Functions of YADE that a built module calls by name: neither virtual ones nor those that save objects."""
+    """Functions of YADE that a built module calls by name: neither virtual ones nor those that save
+    objects."""
     wanted = output("nm", "-D", "--undefined-only", module).split()
     mine = [s for s in wanted if "4yade" in s and not re.match("_ZT|.*archive", s)]
     named = output("c++filt", text="\n".join(mine)).split("\n")

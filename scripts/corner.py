@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Two walls that interlock at a corner: a horizontal acceleration out of the plane of one of them, until it falls.
+"""Two walls that interlock at a corner: a horizontal acceleration out of the plane of one of them,
+until it falls.
 
 The return bends off the wall with which it interlocks. It takes about 7 s.
 """

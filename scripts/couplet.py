@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Two bricks and one bed joint: opening, shear under constant normal stress, closure, or closure and then shear.
+"""Two bricks and one bed joint: opening, shear under constant normal stress, closure, or closure
+and then shear.
 
-A fixed block holds the lower brick, a driven one that does not turn the upper. The closed forms for these paths are in
-yade_plugin/law/README.md (yield surfaces, softening tables, compression).
+A fixed block holds the lower brick, a driven one that does not turn the upper. The closed forms for
+these paths are in yade_plugin/law/README.md (yield surfaces, softening tables, compression).
 """
 
 from masonry import Scene, bricks, materials

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""A dome of voussoirs with an oculus, under its own weight and then under a growing horizontal acceleration.
+"""A dome of voussoirs with an oculus, under its own weight and then under a growing horizontal
+acceleration.
 
 It opens like a flower. It takes about 5 s.
 """

@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""A wall of stones from their outlines in a drawing, with mortar between them and a window, pushed along itself.
+"""A wall of stones from their outlines in a drawing, with mortar between them and a window, pushed
+along itself.
 
-Cracks go through the mortar, from the corners of the window to those of the wall. It takes about 5 s.
+Cracks go through the mortar, from the corners of the window to those of the wall. It takes about 5
+s.
 """
 
 import os

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """A dry-stone wall of 10 courses of 5 stones: its ground is tilted until it falls.
 
-It falls along a stepped crack. It holds a horizontal acceleration of 0.508 of the vertical one, and 0.511 not. Limit analysis
-gives 0.538 as an upper bound, and 0.514 for joints that slip without opening. It takes about 8 s.
+It falls along a stepped crack. It holds a horizontal acceleration of 0.508 of the vertical one, and
+0.511 not. Limit analysis gives 0.538 as an upper bound, and 0.514 for joints that slip without
+opening. It takes about 8 s.
 """
 
 from masonry import Scene, bricks, materials

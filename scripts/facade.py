@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""A façade of two storeys with doors, windows and spandrels, 16.28 × 6.885 m, 5,010 bricks: pushed at its top.
+"""A façade of two storeys with doors, windows and spandrels, 16.28 × 6.885 m, 5,010 bricks: pushed
+at its top.
 
 It sways in its piers. It takes about 25 s.
 """

@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""A gable on a thicker wall is shaken out of its plane by pulses that grow, until it falls. The wall below stands.
+"""A gable on a thicker wall is shaken out of its plane by pulses that grow, until it falls. The
+wall below stands.
 
-The triangle is 0.22 m thick, in a weak lime mortar, so what falls is pieces that hold together until they land. At the end 62
-stones lie in front of the wall. Without damping. It takes about a minute.
+The triangle is 0.22 m thick, in a weak lime mortar, so what falls is pieces that hold together
+until they land. At the end 62 stones lie in front of the wall. Without damping. It takes about a
+minute.
 """
 
 import math

@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""A gable wall of dry stones that turns over out of its plane, with a ring beam at the eaves or with stones there.
+"""A gable wall of dry stones that turns over out of its plane, with a ring beam at the eaves or
+with stones there.
 
-``--eaves beam``: a ring beam of concrete, which the cross walls hold at its ends, so that only the triangle above it turns over,
-about its lower edge, at 3 t / (2 h). ``--eaves stones``: the whole wall turns over about its foot, at t / (2 z). In both the
-thickness is t, h is the height of the triangle and z that of the centroid of rectangle and triangle together.
+``--eaves beam``: a ring beam of concrete, which the cross walls hold at its ends, so that only the
+triangle above it turns over, about its lower edge, at 3 t / (2 h). ``--eaves stones``: the whole
+wall turns over about its foot, at t / (2 z). In both the thickness is t, h is the height of the
+triangle and z that of the centroid of rectangle and triangle together.
 
-With the beam the gable falls between 0.187 and 0.188 g, with stones between 0.0744 and 0.0746 g; limit analysis and closed
-forms have 0.1875 and 0.0746 g. It takes about 16 s.
+With the beam the gable falls between 0.187 and 0.188 g, with stones between 0.0744 and 0.0746 g;
+limit analysis and closed forms have 0.1875 and 0.0746 g. It takes about 16 s.
 """
 
 from masonry import Scene, bricks, materials

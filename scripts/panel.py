@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""A panel under a load as large as its weight, held at foot and top: how much acceleration out of its plane it stands.
+"""A panel under a load as large as its weight, held at foot and top: how much acceleration out of
+its plane it stands.
 
-A strip of thickness t and height h under a load O in the middle of its top, which weighs W and cracks at the share ξ of
-its height, falls at (t/h)/ξ·(2 + (O/W)(1 + 1/(1 - ξ))). With O = W the least is 9 t/h, at ξ = 2/3: 0.343 g. The run cracks there
-and falls between 0.338 and 0.344 g. It takes about 10 s.
+A strip of thickness t and height h under a load O in the middle of its top, which weighs W and
+cracks at the share ξ of its height, falls at (t/h)/ξ·(2 + (O/W)(1 + 1/(1 - ξ))). With O = W the
+least is 9 t/h, at ξ = 2/3: 0.343 g. The run cracks there and falls between 0.338 and 0.344 g. It
+takes about 10 s.
 """
 
 from masonry import AT_REST, Scene, bricks, materials

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""A free-standing parapet, 0.9 m high and 0.22 m thick, shaken out of its plane by a record. Without damping.
+"""A free-standing parapet, 0.9 m high and 0.22 m thick, shaken out of its plane by a record.
+Without damping.
 
 It rocks, slides and stays. It takes about 2 s.
 """

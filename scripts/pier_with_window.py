@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""A pier with a window, under cycles: calcium-silicate wall of 3.08 × 2.43 m between stiff beams, 0.3 MPa.
+"""A pier with a window, under cycles: calcium-silicate wall of 3.08 × 2.43 m between stiff beams,
+0.3 MPa.
 
 Cycles of 2, 4 and 8 mm crack it in steps to both sides. It takes about 20 s.
 """

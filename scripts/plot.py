@@ -2,8 +2,8 @@
 """Curves of runs and of measured CSV files over each other, in one picture.
 
 /usr/bin/python3 scripts/plot.py results/wall_comp4 results/wall_comp6 --out walls.png
-/usr/bin/python3 scripts/plot.py results/wall_comp4 --csv test.csv:displacement:force --label run --label test
-/usr/bin/python3 scripts/plot.py results/shaken --x time_s --y top_mm
+/usr/bin/python3 scripts/plot.py results/wall_comp4 --csv test.csv:displacement:force --label run
+--label test /usr/bin/python3 scripts/plot.py results/shaken --x time_s --y top_mm
 """
 
 from masonry.read.comparison import main

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""A dry-stone wall after a flood of pulses along it and out of its plane: its stones slide step by step, and its joints open.
+"""A dry-stone wall after a flood of pulses along it and out of its plane: its stones slide step by
+step, and its joints open.
 
 After 20 pulses it still stands, with its crest 0.26 m out of the plane. It takes about 15 s.
 """

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""A parapet that pulses shake off a façade onto the pavement, whose reaction is recorded. Two floors hold the façade.
-Without damping.
+"""A parapet that pulses shake off a façade onto the pavement, whose reaction is recorded. Two
+floors hold the façade. Without damping.
 
 It takes about 16 s.
 """

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""A house of two storeys of dry stone: weights on its piers by hand and in a run, then the acceleration that it carries along ± x and
-± y, and along the weakest of these also with floors whose mass is 5 % off their middle.
+"""A house of two storeys of dry stone: weights on its piers by hand and in a run, then the
+acceleration that it carries along ± x and ± y, and along the weakest of these also with floors
+whose mass is 5 % off their middle.
 
 It ends with a table of runs beside bounds of limit analysis. It takes about two minutes.
 """
@@ -19,7 +20,8 @@ upper = bricks.Storey(2.4, front=[window], back=[window], span="y", ring=0.2)
 
 
 def push(side, off):
-    """The acceleration that was held [g], with the mass of the floors off their middle by a share of the plan."""
+    """The acceleration that was held [g], with the mass of the floors off their middle by a share
+    of the plan."""
     house = bricks.House(4.0, 3.2, [ground, upper], unit=(0.8, 0.4, 0.4), eccentricity=(off, off))
     stones = materials.dry(friction=0.6, density=2200)
     house.withFloors(stones, shear=1e6, mass=[300, 150])  # [N/m], [kg/m²] of the floor and the roof

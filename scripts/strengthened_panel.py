@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""A panel held at foot and top, under an acceleration out of its plane, as it is and with a textile in mortar on the face that opens.
+"""A panel held at foot and top, under an acceleration out of its plane, as it is and with a textile
+in mortar on the face that opens.
 
-``--layer`` puts the textile on. The panel stands 0.174 g without it, and 0.438 g with it, when it slides off its top; limit
-analysis has 0.1745 and 0.462 g at most. It takes about 10 s.
+``--layer`` puts the textile on. The panel stands 0.174 g without it, and 0.438 g with it, when it
+slides off its top; limit analysis has 0.1745 and 0.462 g at most. It takes about 10 s.
 """
 
 from masonry import Scene, bricks, materials
@@ -27,7 +28,9 @@ top = scene.platen("top", rotation="free", guided="xy", height=0.02)
 scene.press(top, 20e3)  # [Pa] a light roof
 if (
     args.layer
-):  # glass: E t of the fibres, their strength, their strain when they break; free over 0.1 m at a crack
+    # glass: E t of the fibres, their strength, their strain when they break; free over 0.1 m at a
+    # crack
+):
     scene.overlay(
         (0, 1, 0),
         stiffness=3e6,

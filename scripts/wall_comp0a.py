@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""TUD-COMP-0a: slender calcium-silicate wall, double clamped, 0.70 MPa. Tables 1 and 2 of the paper."""
+"""TUD-COMP-0a: slender calcium-silicate wall, double clamped, 0.70 MPa. Tables 1 and 2 of the
+paper."""
 
 from masonry import Scene, bricks, materials
 from masonry.assembly import columns

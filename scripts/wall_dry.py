@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Granite walls with dry joints, Vasconcelos and Lourenço (2009): 1.0 × 1.2 m, cantilever pushed at 1.325 m.
+"""Granite walls with dry joints, Vasconcelos and Lourenço (2009): 1.0 × 1.2 m, cantilever pushed at
+1.325 m.
 
 The vertical load is what the top course feels. The granite blocks do not crack.
 """
@@ -26,8 +27,8 @@ parser.add_argument(
     default="fixed",
     help="whether the vertical load stays in place or moves with the wall",
 )
-# The stiffness of these joints was measured, and lets the toe give way: with 3 points the peak is 4 % higher than with 16, with
-# 6 it is within 1 %.
+# The stiffness of these joints was measured, and lets the toe give way: with 3 points the peak is 4
+# % higher than with 16, with 6 it is within 1 %.
 parser.set_defaults(crack_surfaces="off", points="6,6")
 args = parser.parse_args()
 if args.blocks == "deformable":

@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Rings, fastest first: common, law, motion, blocks, contact, files (C++, doctest), gates, host, package, then those below.
+"""Rings, fastest first: common, law, motion, blocks, contact, files (C++, doctest), gates, host,
+package, then those below.
 
-Those of C++, the gates and some files of the package ring need no YADE, and run where it is not installed. All others
-have the installed YADE in this process; without it they are skipped, with that reason. Tests marked ``slow`` stand at
-the end, whatever their ring, and the quick ring (``scripts/test.sh quick``) leaves them out. With pytest-xdist every
-worker has a YADE of its own; what shares an expensive fixture stays in one worker (``--dist loadgroup``).
+Those of C++, the gates and some files of the package ring need no YADE, and run where it is not
+installed. All others have the installed YADE in this process; without it they are skipped, with
+that reason. Tests marked ``slow`` stand at the end, whatever their ring, and the quick ring
+(``scripts/test.sh quick``) leaves them out. With pytest-xdist every worker has a YADE of its own;
+what shares an expensive fixture stays in one worker (``--dist loadgroup``).
 """
 
 import contextlib
@@ -47,8 +49,9 @@ WITHOUT_YADE = ["common", "law", "motion", "blocks", "contact", "files", "gates"
 #: Fixtures that many tests share.
 TOGETHER = {"programs", "targets", "squat", "whole", "site"}
 
-#: Tests that take some seconds to a minute each, and of which others try a part: ``scripts/test.sh`` leaves them out, with the
-#: site, the sanitizers and what needs a browser. ``scripts/test.sh long`` runs these alone, ``scripts/test.sh all`` both.
+#: Tests that take some seconds to a minute each, and of which others try a part:
+#: ``scripts/test.sh`` leaves them out, with the site, the sanitizers and what needs a browser.
+#: ``scripts/test.sh long`` runs these alone, ``scripts/test.sh all`` both.
 LONG = [
     "test_a_quick_case_holds_its_limits_or_says_why_not",
     "test_the_program_of_the_benchmark_prints_its_table",
@@ -73,7 +76,8 @@ LONG = [
     "test_a_wall_of_the_law_goes_on_from_a_checkpoint",
 ]
 
-#: Tests whose cases take some tenths of a second to a second each: the quick ring has the first case alone.
+#: Tests whose cases take some tenths of a second to a second each: the quick ring has the first
+#: case alone.
 FIRST_CASE = [
     "test_two_cubes_that_meet_keep_momentum_and_energy_at_any_time_step",
     "test_a_block_that_is_erased_is_an_error_or_left_out",
@@ -177,8 +181,8 @@ def pytest_configure(config):
     given = [pathlib.Path(arg.split("::")[0]).absolute() for arg in config.args]
     # pytest-xdist gives all tests to its workers
     if any(map(needsYade, given)) and config.getoption("dist", "no") == "no":
-        # The package registers YADE's classes only if YADE was imported before it, so YADE comes first of all. Its
-        # version, which it prints, would stand after pytest's closing line.
+        # The package registers YADE's classes only if YADE was imported before it, so YADE comes
+        # first of all. Its version, which it prints, would stand after pytest's closing line.
         with contextlib.redirect_stdout(None), warnings.catch_warnings():
             warnings.simplefilter("ignore", DeprecationWarning)
             with contextlib.suppress(ModuleNotFoundError):
@@ -213,7 +217,8 @@ def pytest_collection_modifyitems(items):
 
 
 def pytest_terminal_summary(terminalreporter):
-    """Tests that were not run, and why, just before the closing line, which counts them among the others."""
+    """Tests that were not run, and why, just before the closing line, which counts them among the
+    others."""
     reasons = {}
     for report in terminalreporter.stats.get("skipped", []):
         said = report.longrepr
@@ -237,7 +242,8 @@ def scene():
 
 
 def runProgram(name, *words, check=True, **settings):
-    """Run a program of scripts/, or one at a path, in YADE as a user does: the finished process, whose output is text."""
+    """Run a program of scripts/, or one at a path, in YADE as a user does: the finished process,
+    whose output is text."""
     path = name if name.endswith(".py") else os.path.join(ROOT, "scripts", name + ".py")
     process = subprocess.run(
         ["yade", "-n", "-x", path, *map(str, words)],
@@ -249,7 +255,8 @@ def runProgram(name, *words, check=True, **settings):
 
 @pytest.fixture(scope="session")
 def comp4(tmp_path_factory):
-    """The folder of a run of the wall COMP-4 beyond its peak: a stepped crack from corner to corner."""
+    """The folder of a run of the wall COMP-4 beyond its peak: a stepped crack from corner to
+    corner."""
     folder = str(tmp_path_factory.mktemp("comp4"))
     words = "--preset fast --until 4 --vtk-every 0.5 --out".split()
     runProgram("wall_comp4", *words, folder, timeout=900)
@@ -266,7 +273,8 @@ def chromium():
 
 @pytest.fixture
 def runScene(tmp_path):
-    """Run a program of scripts/ as a user does; returns the finished process and its folder of results."""
+    """Run a program of scripts/ as a user does; returns the finished process and its folder of
+    results."""
 
     def run(name, *options, check=True):
         out = str(tmp_path / "results")

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What tests of scenes in YADE begin with, for ``from hosted import *``: names that nearly all of them use, and small helpers."""
+"""What tests of scenes in YADE begin with, for ``from hosted import *``: names that nearly all of
+them use, and small helpers."""
 
 import errno
 
@@ -23,7 +24,8 @@ def letGo():
 
 @pytest.fixture(autouse=True)
 def emptyScene(scene):
-    """Every test of a file that begins with hosted.py has an empty scene, and need not finish one of its own."""
+    """Every test of a file that begins with hosted.py has an empty scene, and need not finish one
+    of its own."""
     yield
     letGo()
 
@@ -130,7 +132,8 @@ def saveAndLoad(through, path, build):
 
 
 def run(steps=1):
-    """Take steps one by one: O.run(steps, True) may end before it waits, and then only prints an error."""
+    """Take steps one by one: O.run(steps, True) may end before it waits, and then only prints an
+    error."""
     for _ in range(steps):
         O.step()
 

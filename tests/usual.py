@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What most tests begin with, for ``from usual import *``. It needs no YADE; what needs it begins with hosted.py."""
+"""What most tests begin with, for ``from usual import *``. It needs no YADE; what needs it begins
+with hosted.py."""
 
 import contextlib  # noqa: F401
 import csv  # noqa: F401

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Figures of the walls' cases and of the couplets, drawn from the results of validate.py into the folder of the case.
+"""Figures of the walls' cases and of the couplets, drawn from the results of validate.py into the
+folder of the case.
 
 /usr/bin/python3 validation/figures.py CASE
 """
@@ -25,7 +26,8 @@ def save(figure, case, name):
 
 
 def wall(case):
-    """curve.png: all runs over the window of the peak; cracks_RUN.png: the crack pattern of each."""
+    """curve.png: all runs over the window of the peak; cracks_RUN.png: the crack pattern of
+    each."""
     runs = {
         name: os.path.join(RESULTS, "validation", case, name)
         for name in readCase(case)
@@ -50,7 +52,8 @@ def wall(case):
 
 
 def couplet(case):
-    """curves.png: the four paths, both block models, over the closed forms of a joint alone: yade_plugin/law/README.md."""
+    """curves.png: the four paths, both block models, over the closed forms of a joint alone:
+    yade_plugin/law/README.md."""
     kn, ks, ft, cp, mu = 3.352e11, 1.445e11, 0.1e6, 0.11e6, 0.43
     GfI, GfII = 16 - ft**2 / (2 * kn), 160 - cp**2 / (2 * ks)  # after the peak
     fcp, fel, fcr, Gc = 7.55e6, 0.3 * 7.55e6, 0.2 * 7.55e6, 15000

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Keeps all results of this folder of one age: knows what makes each, finds what is stale, and makes it anew.
+"""Keeps all results of this folder of one age: knows what makes each, finds what is stale, and
+makes it anew.
 
 /usr/bin/python3 validation/remake.py --list                 # what there is, how old it is, how long it takes
 /usr/bin/python3 validation/remake.py [NAME ...]             # makes what is stale, of these, or of all
@@ -9,13 +10,15 @@
 
 NAME may be a folder, as trade, or one of its results, as wall_comp4/rigid.
 
-A result is stale if what decides its numbers has changed since it was made: the numbers of tests/references, which a change of
-the law, the scheme or a default changes and a change of the structure does not; the usual options; the materials; or its own
-program, scene and case, without their comments. made.json records this fingerprint, the commit, the date and the time of each. A result that was
-made before made.json has the date and the commit of its files and counts as stale.
+A result is stale if what decides its numbers has changed since it was made: the numbers of
+tests/references, which a change of the law, the scheme or a default changes and a change of the
+structure does not; the usual options; the materials; or its own program, scene and case, without
+their comments. made.json records this fingerprint, the commit, the date and the time of each. A
+result that was made before made.json has the date and the commit of its files and counts as stale.
 
-What is stopped goes on with the same command. Runs that an older state of the code has left in results/ are removed before a
-result is made, since studies take what is there. Text that quotes numbers is not changed: read it when its result is new.
+What is stopped goes on with the same command. Runs that an older state of the code has left in
+results/ are removed before a result is made, since studies take what is there. Text that quotes
+numbers is not changed: read it when its result is new.
 """
 
 import argparse
@@ -43,8 +46,8 @@ MARKS = "<!-- remake.py: begin -->", "<!-- remake.py: end -->"
 PYTHON = sys.executable
 YADE = ["yade", "-n", "-x"]
 
-#: What decides the numbers of every result, beside its own sources and the usual options; patterns below the root of the
-#: repository.
+#: What decides the numbers of every result, beside its own sources and the usual options; patterns
+#: below the root of the repository.
 COMMON = ["scripts/masonry/scene/materials/published.py"]
 #: Families of stored references: a result depends on some of them.
 RIGID = [
@@ -65,7 +68,8 @@ class Result:
 
     :param name: folder, or folder/part
     :param commands: lists of words, run from the root of the repository, one after another
-    :param makes: files that are committed, as patterns below validation/; none if its numbers stand in the README alone
+    :param makes: files that are committed, as patterns below validation/; none if its numbers stand
+        in the README alone
     :param sources: patterns below the root of what decides its numbers, beside COMMON
     :param minutes: on one core, about
     :param results: folders below results/ that it uses, and that are of no use when it is stale
@@ -488,7 +492,8 @@ def ofStudies():
 
 
 def everything():
-    """All results by their names, each after those that it needs; what needs nothing stands in the order of its time."""
+    """All results by their names, each after those that it needs; what needs nothing stands in the
+    order of its time."""
     found = {r.name: r for r in [*ofCases(), *ofStudies()]}
     ordered = {}
 
@@ -504,11 +509,12 @@ def everything():
     return ordered
 
 
-# -- how old a result is ----------------------------------------------------------------------------------------------
+# -- how old a result is ---------------------------------------------------------------------------
 
 
 def fingerprint(result, every=None):
-    """What decides the numbers of a result, as a text: of its sources, and of the results that it needs."""
+    """What decides the numbers of a result, as a text: of its sources, and of the results that it
+    needs."""
     digest = hashlib.sha256(json.dumps([USUAL, PRESETS], sort_keys=True).encode())
     for pattern in dict.fromkeys([*COMMON, *result.sources]):
         for path in sorted(glob.glob(os.path.join(ROOT, pattern))):
@@ -520,7 +526,8 @@ def fingerprint(result, every=None):
 
 
 def _numbers(path):
-    """What a file says: of a program without comments and docstrings, of a stored reference without who made it."""
+    """What a file says: of a program without comments and docstrings, of a stored reference without
+    who made it."""
     with open(path, "rb") as file:
         text = file.read()
     if os.sep + "references" + os.sep in path:
@@ -565,7 +572,8 @@ def commitOf(result):
 
 
 def stateOf(result, made, every):
-    """How old a result is: ``fresh``, ``stale`` or ``unrecorded``, with the commit and the date of its making."""
+    """How old a result is: ``fresh``, ``stale`` or ``unrecorded``, with the commit and the date of
+    its making."""
     known = made.get(result.name)
     if not known:
         return ("unrecorded", *commitOf(result))
@@ -573,13 +581,14 @@ def stateOf(result, made, every):
     return "fresh" if same else "stale", known["commit"], known["date"]
 
 
-# -- making -----------------------------------------------------------------------------------------------------------
+# -- making ----------------------------------------------------------------------------------------
 
 
 def make(result, now):
     """Run the commands of a result. Returns whether they came to their end.
 
-    Runs of an older fingerprint are removed before; those of this one, of an attempt that was stopped, are taken.
+    Runs of an older fingerprint are removed before; those of this one, of an attempt that was
+    stopped, are taken.
     """
     under = os.path.join(RESULTS, "remake", result.name.replace("/", "_") + ".txt")
     os.makedirs(os.path.dirname(under), exist_ok=True)
@@ -603,7 +612,8 @@ def make(result, now):
 
 
 def builtFrom():
-    """The commit of the plugin that runs use. Raises SystemExit if that is none of the state of the sources here."""
+    """The commit of the plugin that runs use. Raises SystemExit if that is none of the state of the
+    sources here."""
     done = subprocess.run(
         [PYTHON, "-c", "import masonry; print(masonry.commit)"], capture_output=True, text=True
     )
@@ -641,7 +651,8 @@ def record(result, now, seconds, built):
 
 
 def table(every):
-    """The table of validation/README.md: results of a folder in one line if they are of one state, commit and date."""
+    """The table of validation/README.md: results of a folder in one line if they are of one state,
+    commit and date."""
     made, rows = readMade(), {}
     for result in every.values():
         state, commit, date = stateOf(result, made, every)

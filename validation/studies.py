@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What the studies of this folder share: where their runs go, running what is missing, and tables.
 
-A study is a program that runs scenes with options as a user would, or builds scenes itself, and prints a table. This
-module needs no YADE.
+A study is a program that runs scenes with options as a user would, or builds scenes itself, and
+prints a table. This module needs no YADE.
 """
 
 import json
@@ -63,7 +63,8 @@ def runMissing(tasks, jobs=1):
 
 
 def nameOf(text):
-    """A text as the name of a folder: options without their dashes, blanks and signs as underscores."""
+    """A text as the name of a folder: options without their dashes, blanks and signs as
+    underscores."""
     plain = "".join(c if c.isalnum() or c in ".…-" else "_" for c in text)
     return plain.replace("--", "") or "default"
 

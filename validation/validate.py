@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Runs validation cases as a user would, measures the results and holds them against the limits of case.json.
+"""Runs validation cases as a user would, measures the results and holds them against the limits of
+case.json.
 
 /usr/bin/python3 validation/validate.py CASE [RUN ...] [--measure]
 """
@@ -15,7 +16,8 @@ from studies import HERE, RESULTS, readCase, run
 
 
 def bounds(limits, name, other):
-    """The two bounds of a number. A bound that is the name of a case stands for that number in its run."""
+    """The two bounds of a number. A bound that is the name of a case stands for that number in its
+    run."""
     value = lambda bound: other(bound)[name] if isinstance(bound, str) else bound
     low, high = (value(bound) for bound in limits)
     return (-math.inf if low is None else low, math.inf if high is None else high)

@@ -3,8 +3,8 @@
 
     /usr/bin/python3 scripts/docs/build.py [--out build/docs] [--no-pdf]
 
-Needs Debian's python3-sphinx, python3-myst-parser, furo and libjs-mathjax, for the PDF chromium, and the plugin, which is
-imported. Nothing is fetched from a network.
+Needs Debian's python3-sphinx, python3-myst-parser, furo and libjs-mathjax, for the PDF chromium,
+and the plugin, which is imported. Nothing is fetched from a network.
 """
 
 import argparse
@@ -38,7 +38,8 @@ PARTS = [
     "localization/en",
 ]
 
-#: The pages of the site by their sections. What stands in a folder of ``validation`` comes below its README.
+#: The pages of the site by their sections. What stands in a folder of ``validation`` comes below
+#: its README.
 FIRST = "First steps"  # the notebooks of the tutorial come before its other pages
 SECTIONS = {
     FIRST: ["scripts/TASKS", "scripts/WALL", "gallery"],
@@ -165,8 +166,8 @@ def sphinx(out, builder, target, *more):
 
 
 def bundle(static):
-    """Make one script and one style sheet of those of the theme, which Debian leaves in parts that a web server would put
-    together: browsers load neither modules nor ``/javascript`` from files.
+    """Make one script and one style sheet of those of the theme, which Debian leaves in parts that
+    a web server would put together: browsers load neither modules nor ``/javascript`` from files.
     """
     scripts = os.path.join(static, "scripts")
     for path, first, folder in (

@@ -33,7 +33,8 @@ autodoc_typehints = "description"
 autodoc_typehints_description_target = "documented_params"
 autodoc_typehints_format = "short"
 
-# MathJax of Debian draws equations as SVG: it needs no font and no request, not even where a browser opens files.
+# MathJax of Debian draws equations as SVG: it needs no font and no request, not even where a
+# browser opens files.
 mathjax_path = "mathjax/MathJax.js?config=TeX-AMS_SVG-full"
 mathjax2_config = {
     "showMathMenu": False,

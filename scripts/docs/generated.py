@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Pages of the site that are made from the code: the commands of a scene, the options, the plugin's classes, all modules."""
+"""Pages of the site that are made from the code: the commands of a scene, the options, the plugin's
+classes, all modules."""
 
 import argparse
 import contextlib
@@ -20,7 +21,8 @@ from masonry.scene.stages import LATER, STAGES
 
 from tree import ROOT, read
 
-#: Programs with options of their own: how they are called, and what Python runs then. Others take a folder alone.
+#: Programs with options of their own: how they are called, and what Python runs then. Others take a
+#: folder alone.
 PROGRAMS = (
     ("python3 scripts/plot.py", ["scripts/plot.py"]),
     ("python3 scripts/view.py", ["scripts/view.py"]),
@@ -36,7 +38,8 @@ def heading(text, line="="):
 
 
 def table(rows, widths):
-    """A table of reStructuredText, whose first row is its head; cells are reStructuredText of one paragraph."""
+    """A table of reStructuredText, whose first row is its head; cells are reStructuredText of one
+    paragraph."""
     text = f".. list-table::\n   :header-rows: 1\n   :widths: {widths}\n\n"
     for row in rows:
         first, *others = (" ".join(cell.split()) or "\\ " for cell in row)

@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What a word takes, in words, as the word itself says it: a kind of argument is asked to refuse something that fits none.
+"""What a word takes, in words, as the word itself says it: a kind of argument is asked to refuse
+something that fits none.
 
-So the unit and the bounds that the site shows are those that the check has (:mod:`masonry.common.arguments`).
+So the unit and the bounds that the site shows are those that the check has
+(:mod:`masonry.common.arguments`).
 """
 
 import inspect
@@ -13,7 +15,8 @@ ODD = type("Odd", (), {"__repr__": lambda self: "odd"})()
 
 
 def _refusal(kind, value):
-    """What a kind says against a value: nothing if it takes it, None if it cannot tell without a scene."""
+    """What a kind says against a value: nothing if it takes it, None if it cannot tell without a
+    scene."""
     try:
         kind(value, None)
     except ValueError as error:
@@ -24,7 +27,8 @@ def _refusal(kind, value):
 
 
 def meaning(kind):
-    """What a kind takes, as ``a number at least 0 Pa, or None``; an empty text if the kind takes anything."""
+    """What a kind takes, as ``a number at least 0 Pa, or None``; an empty text if the kind takes
+    anything."""
     said = _refusal(kind, ODD)
     if said is None:
         found = re.match(r"The kind of (.*?)\.?$", inspect.getdoc(kind) or "", re.S)

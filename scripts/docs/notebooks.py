@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Notebooks as pages: they are run, and their cells and outputs are written as Markdown.
 
-They run in a folder of their own, with the kernel of ``/usr/bin/python3``. What came out is kept under the contents of the
-notebook and the version of the package, so that a site that is made again does not run them again.
+They run in a folder of their own, with the kernel of ``/usr/bin/python3``. What came out is kept
+under the contents of the notebook and the version of the package, so that a site that is made again
+does not run them again.
 """
 
 import base64

@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Brings the documents of the repository into a folder from which Sphinx makes the site. This module needs no Sphinx.
+"""Brings the documents of the repository into a folder from which Sphinx makes the site. This
+module needs no Sphinx.
 
-Nothing is written twice: every Markdown file of the repository is a page, at its own path, and the README at the top is the
-first page. Only links are changed: those that lead to a folder lead to its README, those to a module of the package to the
-page of that module, and those to any other source to a page that shows it.
+Nothing is written twice: every Markdown file of the repository is a page, at its own path, and the
+README at the top is the first page. Only links are changed: those that lead to a folder lead to its
+README, those to a module of the package to the page of that module, and those to any other source
+to a page that shows it.
 """
 
 import ast
@@ -112,7 +114,8 @@ class Stage:
         return posixpath.relpath(found, folder or ".") + (anchor and "#" + anchor)
 
     def toModule(self, path, link):
-        """A link to a module of the package as one to the place where the site documents it; any other link as it is."""
+        """A link to a module of the package as one to the place where the site documents it; any
+        other link as it is."""
         there = posixpath.normpath(posixpath.join(posixpath.dirname(path), link[2]))
         name = moduleOf(there)
         return f"{{py:mod}}`{link[1].replace('`', '')} <{name}>`" if name else link[0]
@@ -142,7 +145,8 @@ class Stage:
         self.write(page(path), text)
 
     def sources(self):
-        """Make a page of each source to which a document leads, and of each scene of the gallery."""
+        """Make a page of each source to which a document leads, and of each scene of the
+        gallery."""
         scenes = {f"scripts/{name}.py": name for name in gallery()}
         for path in sorted(self.shown | set(scenes)):
             file = posixpath.basename(path)

@@ -14,29 +14,32 @@ A scene of one's own is bricks, materials and stages::
 
 ``help()`` of its rooms leads on, and each of them names its modules:
 
-- :mod:`masonry.scene`: ``Scene``, its platens, loads, records and stages; materials, random fields, histories, options
+- :mod:`masonry.scene`: ``Scene``, its platens, loads, records and stages; materials, random fields,
+  histories, options
 - :mod:`masonry.bricks`: walls, openings, bonds, corners, arches, vaults, blocks from files
 - :mod:`masonry.study`: one scene, run many times with values that vary
 - :mod:`masonry.limit`: limit analysis, the bound beside every run
 - :mod:`masonry.read`: what reads the files of a run: numbers, figures, pictures by ParaView
 - :mod:`masonry.capacity`: bilinear curves, the demand of an earthquake, N-V domains
 - :mod:`masonry.run`: a run: checkpoints, results, presets, rows of a table
-- :mod:`masonry.assembly`: ``addBlock``, ``engines``, ``connect``, for scenes that are built body by body; the 3-D view
+- :mod:`masonry.assembly`: ``addBlock``, ``engines``, ``connect``, for scenes that are built body by
+  body; the 3-D view
 - :mod:`masonry.common`: checks of arguments, and what the package needs of the machine
 - :mod:`masonry.basics`: gravity, how a run can end before its time, what is said on the terminal
 
-``masonry.read``, ``masonry.capacity``, ``masonry.study``, ``masonry.bricks`` and what they import work without YADE.
+``masonry.read``, ``masonry.capacity``, ``masonry.study``, ``masonry.bricks`` and what they import
+work without YADE.
 
-Import it from a script of ``yade``, of plain Python or from a notebook: where YADE does not run yet, it starts when
-something is first used that needs it (:mod:`masonry.common.host`). The classes that are then registered in YADE
-(``masonry.classes``) are also in ``yade.wrapper``; their manual is ``help(masonry.MasonryJoint)``,
-``help(masonry.MasonryMat)`` and so on.
+Import it from a script of ``yade``, of plain Python or from a notebook: where YADE does not run
+yet, it starts when something is first used that needs it (:mod:`masonry.common.host`). The classes
+that are then registered in YADE (``masonry.classes``) are also in ``yade.wrapper``; their manual is
+``help(masonry.MasonryJoint)``, ``help(masonry.MasonryMat)`` and so on.
 """
 
 import sys
 
-# "python3 -m masonry.read.figures" searches the present folder first, and would run a file csv.py or token.py that lies
-# there.
+# "python3 -m masonry.read.figures" searches the present folder first, and would run a file csv.py
+# or token.py that lies there.
 if sys.argv[:1] == ["-m"] and not sys.flags.safe_path:
     del sys.path[0]
 
@@ -50,7 +53,8 @@ from typing import TYPE_CHECKING
 # YADE ends without it, and cron jobs and containers may have none.
 os.environ.setdefault("HOME", os.path.expanduser("~"))
 
-# YADE does not search the folder of its script for modules. It comes last, so that nothing in it hides another module.
+# YADE does not search the folder of its script for modules. It comes last, so that nothing in it
+# hides another module.
 if hasattr(sys, "yade_argv") and sys.argv and os.path.isfile(sys.argv[0]):
     sys.path.append(os.path.dirname(os.path.abspath(sys.argv[0])))
 
@@ -59,16 +63,18 @@ def _hasPlugin(folder):
     return bool(glob.glob(os.path.join(glob.escape(folder), "_masonry*.so")))
 
 
-# In plain Python the folder of a script comes first. Scripts of a clone of the project lie beside its sources, which have no
-# plugin: then the installed package is used, as in YADE.
+# In plain Python the folder of a script comes first. Scripts of a clone of the project lie beside
+# its sources, which have no plugin: then the installed package is used, as in YADE.
 if not _hasPlugin(__path__[0]):
     _others = (os.path.join(_entry, "masonry") for _entry in sys.path)
     __path__[:0] = [_folder for _folder in _others if _hasPlugin(_folder)][:1]
 
-#: The version of the project, which the plugin, run.json, checkpoints and the Debian package have from this line.
+#: The version of the project, which the plugin, run.json, checkpoints and the Debian package have
+#: from this line.
 __version__ = "3.0.0"
 
-#: What the package hands on under a short name: modules, and names of modules. They are loaded when one is used first.
+#: What the package hands on under a short name: modules, and names of modules. They are loaded when
+#: one is used first.
 _MODULES = {
     "bricks": "bricks",
     "fields": "scene.fields",
@@ -164,7 +170,8 @@ def __dir__():
 
 
 def _start():
-    """Start YADE, if it does not run in this process yet, and register the classes of the plugin. Raises ImportError."""
+    """Start YADE, if it does not run in this process yet, and register the classes of the plugin.
+    Raises ImportError."""
     importlib.import_module("yade")
     if _OF_PLUGIN[0] not in globals():
         _register()
@@ -215,8 +222,8 @@ def _register():
 
 
 def _started():
-    """What is done when YADE was imported after this package. A plugin that does not fit leaves YADE as it is: the error
-    comes when the plugin is used."""
+    """What is done when YADE was imported after this package. A plugin that does not fit leaves
+    YADE as it is: the error comes when the plugin is used."""
     with contextlib.suppress(ImportError):
         _register()
 

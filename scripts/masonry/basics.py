@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What every part of the package shares: gravity, how a run can end before its time, and what is said on the terminal."""
+"""What every part of the package shares: gravity, how a run can end before its time, and what is
+said on the terminal."""
 
 import collections
 import contextlib
@@ -12,20 +13,22 @@ GRAVITY = 9.81  # [m/s²]
 #: Units in which accelerations may be given, in m/s².
 ACCELERATION_UNITS = {"m/s²": 1.0, "g": GRAVITY, "cm/s²": 0.01}
 
-# A terminal or a log that has no ³ or µ shows their numbers; that is no reason to stop a run either.
+# A terminal or a log that has no ³ or µ shows their numbers; that is no reason to stop a run
+# either.
 for _stream in (sys.stdout, sys.stderr):
     with contextlib.suppress(AttributeError, ValueError, OSError):
         if _stream.errors in ("strict", "surrogateescape"):
             getattr(_stream, "reconfigure")(errors="backslashreplace")
 
 
-#: What a terminal obeys and does not show: control characters but for the ends of lines and tabs, and marks that turn the
-#: direction of a text.
+#: What a terminal obeys and does not show: control characters but for the ends of lines and tabs,
+#: and marks that turn the direction of a text.
 _CONTROL = re.compile(r"[\x00-\x08\x0b-\x1f\x7f-\x9f\u200e\u200f\u2028-\u202e\u2066-\u2069]")
 
 
 def plain(text):
-    """A text in which control characters are written out, as ``\\x1b``: what comes from a file must not steer a terminal."""
+    """A text in which control characters are written out, as ``\\x1b``: what comes from a file must
+    not steer a terminal."""
     return _CONTROL.sub(lambda found: ascii(found[0])[1:-1], str(text))
 
 
@@ -35,9 +38,11 @@ _listeners = []  # of the present run
 
 
 def say(text, stream=None, noted=True):
-    """Print a text, as :func:`plain` writes it. A terminal that is gone or a log that is full is no reason to stop a run.
+    """Print a text, as :func:`plain` writes it. A terminal that is gone or a log that is full is no
+    reason to stop a run.
 
-    Notes and warnings are kept: the run that hears them writes them to run.json, also those that were said before it began.
+    Notes and warnings are kept: the run that hears them writes them to run.json, also those that
+    were said before it began.
 
     :param noted: False: a note that is kept elsewhere
     """
@@ -50,7 +55,8 @@ def say(text, stream=None, noted=True):
 
 
 def listen(listener: Callable[[str], None]) -> None:
-    """From now on a function gets all notes, first those that nobody has heard. Another listener hears no more."""
+    """From now on a function gets all notes, first those that nobody has heard. Another listener
+    hears no more."""
     _listeners[:] = [listener]
     while _pending:
         listener(_pending.popleft())
@@ -63,10 +69,11 @@ def stopListening(listener: Callable[[str], None]) -> None:
 
 @contextlib.contextmanager
 def withoutCollector() -> Iterator[None]:
-    """Let Python look for unused circles of objects only when a block is over. It may decorate a function, too.
+    """Let Python look for unused circles of objects only when a block is over. It may decorate a
+    function, too.
 
-    Each look goes through all objects of YADE and numpy. A block that makes many thousands of records starts dozens of
-    looks, which find nothing and take half of its time.
+    Each look goes through all objects of YADE and numpy. A block that makes many thousands of
+    records starts dozens of looks, which find nothing and take half of its time.
     """
     enabled = gc.isenabled()
     gc.disable()

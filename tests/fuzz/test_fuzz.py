@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The readers of checkpoints and of joints' numbers under libFuzzer, AddressSanitizer and UBSan: a few seconds each.
+"""The readers of checkpoints and of joints' numbers under libFuzzer, AddressSanitizer and UBSan: a
+few seconds each.
 
 For longer: build/fuzz/fuzz_checkpoint -max_total_time=600
 """
@@ -36,7 +37,8 @@ def test_no_bytes_break_a_reader(targets, target, tmp_path):
             "-max_total_time=4",
             "-timeout=10",
             "-max_len=512",
-            # A program inherits the largest memory of the one that starts it, so the limit is on single allocations.
+            # A program inherits the largest memory of the one that starts it, so the limit is on
+            # single allocations.
             "-rss_limit_mb=0",
             "-malloc_limit_mb=1024",
         ],

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What documents promise: links lead somewhere, commands name files and modules that exist, and so do paths.
+"""What documents promise: links lead somewhere, commands name files and modules that exist, and so
+do paths.
 
     /usr/bin/python3 tests/gates/documents.py    prints what leads nowhere
 """
@@ -49,7 +50,8 @@ def withoutBlocks(source):
 
 
 def _exists(name, folder, root):
-    """Whether a path exists from the document's folder or from a folder of the code, if need be with an ending."""
+    """Whether a path exists from the document's folder or from a folder of the code, if need be
+    with an ending."""
     for base in (folder, *FOLDERS):
         path = os.path.normpath(os.path.join(root, base, name))
         if os.path.exists(path) or glob.glob(glob.escape(path) + ".*"):

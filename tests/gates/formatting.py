@@ -4,10 +4,11 @@
     /usr/bin/python3 tests/gates/formatting.py          prints what is wrong
     /usr/bin/python3 tests/gates/formatting.py --write  formats the tree and takes unused imports out
 
-C++ is formatted by clang-format 14 after ``.clang-format``, Python by black 23 after ``pyproject.toml``. Other versions
-break other lines, so the gate takes these alone, which are those of Debian 12. Unused imports are those that pyflakes
-finds. An import that is there for what it does, or that gives a name on, says so with ``# noqa: F401`` and the reason.
-The ``__init__.py`` of a package gives names on, and is left out.
+C++ is formatted by clang-format 14 after ``.clang-format``, Python by black 23 after
+``pyproject.toml``. Other versions break other lines, so the gate takes these alone, which are those
+of Debian 12. Unused imports are those that pyflakes finds. An import that is there for what it
+does, or that gives a name on, says so with ``# noqa: F401`` and the reason. The ``__init__.py`` of
+a package gives names on, and is left out.
 """
 
 import ast

@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Weight of the repository: lines, tokens, and the largest module, class and function, against ``budget.json``.
+"""Weight of the repository: lines, tokens, and the largest module, class and function, against
+``budget.json``.
 
     /usr/bin/python3 tests/gates/sizes.py           all sizes, beside their budgets
     /usr/bin/python3 tests/gates/sizes.py --write   lowers the budgets to the sizes of today
 
-Tokens keep a text from getting shorter by longer lines. In Python they are those of the tokenizer without comments,
-line ends and indentation; a docstring counts by its words, since as a string it would be one. Elsewhere each word and each
-symbol outside comments is one. A module is a file. A class in C++ counts without the functions that stand outside it.
+Tokens keep a text from getting shorter by longer lines. In Python they are those of the tokenizer
+without comments, line ends and indentation; a docstring counts by its words, since as a string it
+would be one. Elsewhere each word and each symbol outside comments is one. A module is a file. A
+class in C++ counts without the functions that stand outside it.
 """
 
 import ast
@@ -64,7 +66,8 @@ def ofPython(text):
 
 
 def ofCpp(text):
-    """The same of a source that clang-format has formatted: a block ends where a brace stands below its beginning."""
+    """The same of a source that clang-format has formatted: a block ends where a brace stands below
+    its beginning."""
     lines = text.splitlines()
     first = 0  # line in which the present declaration begins
     for number, line in enumerate(lines):

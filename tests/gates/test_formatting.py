@@ -42,7 +42,7 @@ def test_no_import_is_unused():
     assert {path: unused for path, unused in found.items() if unused} == {}
 
 
-# -- the gates see what they are for ----------------------------------------------------------------------------------
+# -- the gates see what they are for ---------------------------------------------------------------
 
 
 @needsClangFormat

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Type hints of what users call: they are there, mypy finds no error in them, and finds those of a user."""
+"""Type hints of what users call: they are there, mypy finds no error in them, and finds those of a
+user."""
 
 import ast
 import os

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The list of pages in scripts/docs/build.py holds every document and nothing else. Needs neither Sphinx nor YADE."""
+"""The list of pages in scripts/docs/build.py holds every document and nothing else. Needs neither
+Sphinx nor YADE."""
 
 import ast
 import os

@@ -15,7 +15,7 @@ def test_every_word_has_another_in_its_place_and_every_exception_a_reason():
     assert all((words.NAMES | words.PROSE | words.ALLOWED).values())
 
 
-# -- the gate sees what it is for -------------------------------------------------------------------------------------
+# -- the gate sees what it is for ------------------------------------------------------------------
 
 
 def test_a_word_is_found_as_part_of_a_name_however_it_is_written():

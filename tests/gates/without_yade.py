@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Runs pytest as on a machine without YADE: ``/usr/bin/python3 tests/gates/without_yade.py [arguments of pytest]``.
+"""Runs pytest as on a machine without YADE: ``/usr/bin/python3 tests/gates/without_yade.py
+[arguments of pytest]``.
 
 Whatever imports YADE fails. Without arguments these are the rings and files that need no YADE.
 """

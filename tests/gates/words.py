@@ -4,9 +4,10 @@
     /usr/bin/python3 tests/gates/words.py            every place in the tree
     /usr/bin/python3 tests/gates/words.py FILE ...   every place in these files
 
-Two rules hold. A name of the code (C++ and Python) has none of the words in ``NAMES`` as a part: ``stepsLeft`` and
-``steps_left`` both have the part ``left``. And comments, docstrings and documents have none of the words in ``PROSE``;
-the other words are ordinary English there. Names of tests are sentences, so the second rule holds for them.
+Two rules hold. A name of the code (C++ and Python) has none of the words in ``NAMES`` as a part:
+``stepsLeft`` and ``steps_left`` both have the part ``left``. And comments, docstrings and documents
+have none of the words in ``PROSE``; the other words are ordinary English there. Names of tests are
+sentences, so the second rule holds for them.
 """
 
 import functools
@@ -91,7 +92,8 @@ def inName(name):
 
 
 def inProse(text):
-    """Banned words in a comment or document. Names of the code between backticks are left to the other rule."""
+    """Banned words in a comment or document. Names of the code between backticks are left to the
+    other rule."""
     plain = re.sub(r"`+[^`\n]*`+", "", text)
     return [w for w in re.findall(r"[a-z]+", plain.lower()) if w in PROSE]
 
@@ -115,7 +117,9 @@ def ofPython(source):
     """The same of a Python file. A text that stands alone is a docstring."""
     found = []
     before = tokenize.NEWLINE  # type of the token before
-    depth = 0  # of texts with braces, which are one token before Python 3.12; what stands in them is not looked at
+    # of texts with braces, which are one token before Python 3.12; what stands in them is not
+    # looked at
+    depth = 0
     for token in tokenize.generate_tokens(io.StringIO(source).readline):
         kind = tokenize.tok_name[token.type]
         depth += (kind == "FSTRING_START") - (kind == "FSTRING_END")

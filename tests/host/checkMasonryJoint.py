@@ -3,7 +3,8 @@
 
     yade -n -x tests/host/checkMasonryJoint.py
 
-The largest force is tensile strength times area, and the energy that the joint takes is fracture energy times area.
+The largest force is tensile strength times area, and the energy that the joint takes is fracture
+energy times area.
 """
 
 import masonry

@@ -19,11 +19,12 @@ nan, inf = math.nan, math.inf
 ABOVE = (0, 0, UNIT[2])
 
 
-# -- scenes -----------------------------------------------------------------------------------------------------------
+# -- scenes ----------------------------------------------------------------------------------------
 
 
 def blocks(*places, size=UNIT):
-    """Bricks with their lower corners at these places, the first fixed; two on each other if no place is given."""
+    """Bricks with their lower corners at these places, the first fixed; two on each other if no
+    place is given."""
     unit = mat()
     for place in places or ((0, 0, 0), ABOVE):
         addBlock(box(place, size), unit)
@@ -88,7 +89,7 @@ def turned(degrees):
     engines([MasonryJoint()])
 
 
-# -- acts -------------------------------------------------------------------------------------------------------------
+# -- acts ------------------------------------------------------------------------------------------
 
 
 def assign(thing, name, value):
@@ -109,7 +110,8 @@ def update(thing, **values):
 
 
 def script(name, *words):
-    """Run a scene of scripts/ with its options in this process. What it prints before ending with status 2 is the error."""
+    """Run a scene of scripts/ with its options in this process. What it prints before ending with
+    status 2 is the error."""
     said, argv = io.StringIO(), sys.argv
     sys.argv = [os.path.join(ROOT, "scripts", name + ".py"), *words]
     try:
@@ -154,7 +156,8 @@ def files(run="{}", curve="time_s,base_shear_kN\r\n0,1\r\n1,2\r\n", **others):
 
 
 def read(act, *words, **content):
-    """Run a program that reads results on a folder with these files. What it prints before status 2 is the error."""
+    """Run a program that reads results on a folder with these files. What it prints before status 2
+    is the error."""
     if content:
         files(**content)
     said = io.StringIO()
@@ -784,7 +787,7 @@ def test_bad_input_is_refused_and_nothing_is_lost(case, tmp_path, monkeypatch):
     assert snapshot() == before
 
 
-# -- what is unusual, and what is accepted ----------------------------------------------------------------------------
+# -- what is unusual, and what is accepted ---------------------------------------------------------
 
 
 def joint(**changes):
@@ -896,7 +899,7 @@ def test_gaps_that_are_meant_are_left_and_a_tolerance_of_the_users_makes_the_joi
     assert len(connect(tolerance=0.005)) == 1
 
 
-# -- as a user meets it -----------------------------------------------------------------------------------------------
+# -- as a user meets it ----------------------------------------------------------------------------
 
 
 WRONG = {"--rate=0": "--rate: 0.0 mm/s must", "--normal-stress=-8": "crushes the bed"}

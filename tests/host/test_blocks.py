@@ -8,7 +8,8 @@ polyhedra = mark.skipif(not hasattr(yade.wrapper, "Polyhedra"), reason="this YAD
 
 
 def samples():
-    """Corners of many blocks: boxes, turned boxes, voussoirs, prisms and random ones, of at most 14 points."""
+    """Corners of many blocks: boxes, turned boxes, voussoirs, prisms and random ones, of at most 14
+    points."""
     rng = random.Random(15)
     place = lambda: [rng.uniform(-3, 3) for _ in range(3)]
     size = lambda: [rng.uniform(0.05, 0.5) for _ in range(3)]
@@ -37,7 +38,7 @@ def cloud(rng, count):
     return [Vector3(*(rng.gauss(0, 0.2) for _ in range(3))) for _ in range(count)]
 
 
-# -- shape ------------------------------------------------------------------------------------------------------------
+# -- shape -----------------------------------------------------------------------------------------
 
 
 @polyhedra
@@ -113,7 +114,7 @@ def test_a_body_with_a_block_without_corners_is_refused():
         connect()
 
 
-# -- runs -------------------------------------------------------------------------------------------------------------
+# -- runs ------------------------------------------------------------------------------------------
 
 
 def addPolyhedra(points, material):
@@ -127,7 +128,8 @@ def addPolyhedra(points, material):
 
 
 def stack(kinds, functors=False, zones=False, steps=1500):
-    """Three turned bricks, the lowest held, the highest driven sideways until joints are damaged. All state at the end."""
+    """Three turned bricks, the lowest held, the highest driven sideways until joints are damaged.
+    All state at the end."""
     O.reset()
     turn = IN_SPACE
     material = MasonryMat(density=1800)
@@ -162,7 +164,8 @@ def test_runs_of_both_kinds_of_body_are_equal_to_the_bit(how):
 
 @polyhedra
 def test_a_joint_may_lie_between_both_kinds_of_body():
-    """YADE swaps the bodies of a joint whose functor names the other kind first, which turns signs and rounding."""
+    """YADE swaps the bodies of a joint whose functor names the other kind first, which turns signs
+    and rounding."""
     own = stack([addBlock] * 3, steps=50)
     mixed = stack([addPolyhedra, addBlock, addPolyhedra], steps=50)
     assert [(j[0], j[1]) for j in mixed[2]] == [(1, 0), (1, 2)]

@@ -26,7 +26,8 @@ def test_the_yade_that_is_installed_fits_as_its_own_version(capsys):
 
 
 def test_three_releases_differ_in_what_is_known_of_them():
-    """The function more in the shapes of 2026.1.0, two members of its integrator, and no Polyhedra without CGAL."""
+    """The function more in the shapes of 2026.1.0, two members of its integrator, and no Polyhedra
+    without CGAL."""
     first, second, third = (KNOWN[v] for v in ("2023.02a", "2025.2.0", "2026.1.0"))
     assert "Polyhedra" in first.classes and "Polyhedra" not in second.classes
     assert list(second.differences(first)) == [
@@ -72,7 +73,8 @@ def test_each_fault_in_each_class_is_shown_with_its_name(version):
 
 
 def test_the_tables_name_all_that_the_module_calls():
-    """Whoever adds a call writes the tables anew, or a YADE without that function would be called fitting."""
+    """Whoever adds a call writes the tables anew, or a YADE without that function would be called
+    fitting."""
     module = os.path.join(
         *importlib.util.find_spec("masonry").submodule_search_locations, "_masonry.so"
     )

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""A scene's state on disk and back: to the last bit, whole or not at all, and never into another scene."""
+"""A scene's state on disk and back: to the last bit, whole or not at all, and never into another
+scene."""
 
 import struct
 

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""A block that has left the small displacements its joints are made for ends the run as collapsed; a wrong balance is reported.
+"""A block that has left the small displacements its joints are made for ends the run as collapsed;
+a wrong balance is reported.
 
 Rocking and sliding within a face do not end it.
 """
@@ -46,7 +47,7 @@ def collapses(seconds, message):
     return str(text.value)
 
 
-# -- what is reported ----------------------------------------------------------------------------------------------------
+# -- what is reported ------------------------------------------------------------------------------
 
 
 @FUNCTORS
@@ -153,7 +154,7 @@ def test_a_collapse_goes_before_motion_out_of_nothing_and_tells_both():
         go(20 * O.dt)
 
 
-# -- what is none ----------------------------------------------------------------------------------------------------
+# -- what is none ----------------------------------------------------------------------------------
 
 
 @FUNCTORS
@@ -191,7 +192,7 @@ def test_a_base_that_turns_with_all_its_blocks_is_no_collapse():
     assert O.bodies[1].state.ori.toAngleAxis()[0] > math.radians(90)
 
 
-# -- the balance -----------------------------------------------------------------------------------------------------
+# -- the balance -----------------------------------------------------------------------------------
 
 
 def pushed(share, steps, watch=True):
@@ -214,8 +215,8 @@ def test_a_balance_that_is_off_is_reported_once_while_it_is_watched(capfd, watch
 
 @mark.parametrize("share", [0.0, -0.0091, -0.0111, -0.05, 0.05])
 def test_a_balance_is_reported_from_one_per_cent_of_the_work_on(capfd, share):
-    """An uncounted force F down beside the weight W moves the block by u: (W + F) u is taken up, and W u is counted. One up
-    takes its share of W u."""
+    """An uncounted force F down beside the weight W moves the block by u: (W + F) u is taken up,
+    and W u is counted. One up takes its share of W u."""
     pushed(share, 2500)
     off = share / (1 - min(share, 0))
     assert balance()["error"] == approx(off, abs=2e-4)

@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Ties and springs between two blocks, body by body, against their forces by hand. In scenes: tests/scenes/test_connections.py."""
+"""Ties and springs between two blocks, body by body, against their forces by hand. In scenes:
+tests/scenes/test_connections.py."""
 
 from hosted import *
 
 STIFF = 1e6  # [N/m] of a bar that is 1 m long
-#: strength [N], elongation at which it breaks [m], whether it carries compression, rest [m]; elongation [m] and force [N]
+#: strength [N], elongation at which it breaks [m], whether it carries compression, rest [m];
+#: elongation [m] and force [N]
 BARS = {
     "elastic": (1e4, 1, 0, 0, 0.004, 4e3),
     "yields": (1e4, 1, 0, 0, 0.02, 1e4),
@@ -19,7 +21,8 @@ BARS = {
 
 
 def pair(connectors):
-    """Two free bricks, 1 m from middle to middle along x, and what connects them; far away a joint, which every scene has."""
+    """Two free bricks, 1 m from middle to middle along x, and what connects them; far away a joint,
+    which every scene has."""
     places = (0, 0, 0), (1, 0, 0), (9, 0, 0), (9, 0, UNIT[2])
     ids = [addBlock(box(place), unitMaterial()) for place in places]
     engines([MasonryJoint(elastic=True)], gravity=(0, 0, 0))
@@ -53,7 +56,8 @@ def test_the_force_of_a_bar(case):
 
 
 def test_springs_between_two_bricks_turn_both():
-    """At the middle between both, the second turned by 1 mrad about y: its point moves up, and the spring turns it back."""
+    """At the middle between both, the second turned by 1 mrad about y: its point moves up, and the
+    spring turns it back."""
     kz, rotational, turn = 2e6, 3e5, 1e-3
     point = Vector3(0.5 + UNIT[0] / 2, UNIT[1] / 2, UNIT[2] / 2)
     springs = MasonrySprings(

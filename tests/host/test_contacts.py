@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Rigid blocks that meet without a joint: they fall, rest, slide, collide, rock and lie in heaps."""
+"""Rigid blocks that meet without a joint: they fall, rest, slide, collide, rock and lie in
+heaps."""
 
 from hosted import *
 
@@ -35,7 +36,8 @@ def contacts(**properties):
 
 
 def inclined(angle, along=0.0):
-    """A brick on an incline of so many degrees, as deep in it as its weight presses it: its state and the direction down."""
+    """A brick on an incline of so many degrees, as deep in it as its weight presses it: its state
+    and the direction down."""
     slope = math.radians(angle)
     turn = Quaternion(ABOUT_Y, slope)
     ground(turn, (8, 2, 0.4))
@@ -96,7 +98,8 @@ def test_a_brick_falls_freely_then_comes_to_rest_and_does_not_sink():
 
 @mark.parametrize("swapped", [False, True])
 def test_the_force_of_a_pair_is_opposite_on_both_blocks_and_has_one_line(swapped):
-    """Turned and shifted blocks that lie in each other; the force itself is tested in tests/contact."""
+    """Turned and shifted blocks that lie in each other; the force itself is tested in
+    tests/contact."""
     dice = np.random.default_rng(4)
     for _ in range(20):
         O.reset()
@@ -118,7 +121,8 @@ def test_the_force_of_a_pair_is_opposite_on_both_blocks_and_has_one_line(swapped
 
 
 def test_a_bar_that_turns_meets_what_lay_beside_it():
-    """Its end goes down by 12.5 mm, onto a block 10 mm below, while its middle stays where it is: pairs are looked for anew."""
+    """Its end goes down by 12.5 mm, onto a block 10 mm below, while its middle stays where it is:
+    pairs are looked for anew."""
     bar = box((1, 0.05, 0.05))
     box((0.1, 0.1, 0.1), (0.45, 0, -0.085))
     contacts = prepare(1e-9, gravity=(0, 0, 0))
@@ -142,7 +146,8 @@ MEETINGS = {
     "tilted by 1°": (Quaternion(ABOUT_Y, math.radians(1)), 3e-3),
 }
 
-#: Speed [m/s], share of it along the face, offset along the face [m] and density of the second cube [kg/m³].
+#: Speed [m/s], share of it along the face, offset along the face [m] and density of the second cube
+#: [kg/m³].
 APPROACHES = [
     (1, 0, (0, 0), 1800),
     (3, 0, (0, 0), 1800),
@@ -159,7 +164,8 @@ def kinetic(s):
 
 
 def meeting(turn, approach, step, phase):
-    """Two cubes without gravity, damping and friction. The first meets the second two to three steps later."""
+    """Two cubes without gravity, damping and friction. The first meets the second two to three
+    steps later."""
     speed, along, aside, density = approach
     edge = 0.1
     one = O.bodies[box((edge,) * 3)].state
@@ -215,8 +221,9 @@ def test_faces_that_meet_have_the_given_restitution(restitution):
 
 @mark.parametrize("lift", [1e-3, 1.0], ids=["near", "far"])
 def test_what_friction_has_stored_is_lost_when_the_blocks_part(lift):
-    """A brick lies 10 µm deep and is shifted by 1 µm, below the limit of friction: k A s²/2 is stored. It is lost at once when the
-    brick is lifted, be it so little that both remain a pair of neighbours, or so far that they are none.
+    """A brick lies 10 µm deep and is shifted by 1 µm, below the limit of friction: k A s²/2 is
+    stored. It is lost at once when the brick is lifted, be it so little that both remain a pair of
+    neighbours, or so far that they are none.
     """
     depth, slip = 1e-5, 1e-6
     ground()

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The cyclic law in YADE: properties, and scenes of two laws. Its runs are those of test_joint_loop.py and others."""
+"""The cyclic law in YADE: properties, and scenes of two laws. Its runs are those of
+test_joint_loop.py and others."""
 
 from hosted import *
 

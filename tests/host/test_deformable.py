@@ -17,7 +17,8 @@ def test_a_bar_s_wave_speed_converges_to_theory_at_second_order():
 
 @mark.slow
 def test_a_cantilever_s_deflection_converges_to_theory():
-    # Zones of constant strain are too stiff in bending. The relative error falls with the square of their size.
+    # Zones of constant strain are too stiff in bending. The relative error falls with the square of
+    # their size.
     pairs = [deflection(cells) for cells in (1, 2)]
     coarse, fine = (theory / measured - 1 for theory, measured in pairs)
     assert 0 < fine < 1
@@ -123,7 +124,8 @@ def test_the_stiffness_of_a_pair_is_that_of_bricks_and_joint_in_series():
     run(20000)
     area = UNIT[0] * UNIT[1]
     series = area / (2 * UNIT[2] / E + 1 / elastic.normalStiffness)
-    # The plates hold the ends of the bricks sideways. That can only make them stiffer, by a part of nu².
+    # The plates hold the ends of the bricks sideways. That can only make them stiffer, by a part of
+    # nu².
     assert 1 < load.reaction / (series * load.displacement()[2]) < 1 + 2 * NU**2
 
 
@@ -136,5 +138,6 @@ def test_a_deformable_run_saved_in_the_middle_goes_on_the_same(tmp_path, extensi
     go = lambda: [(O.step(), balance())[1] for _ in range(500)][-1]
     there = go()
     O.load(path)
-    # The host calculates the centre of a block again when it loads a scene, so the nodes move by round-off.
+    # The host calculates the centre of a block again when it loads a scene, so the nodes move by
+    # round-off.
     assert go() == approx(there, rel=1e-6, abs=1e-8)

@@ -22,8 +22,8 @@ def pier(out, *words, stones=6, rotation="free", material=None, press=0.2e6, **p
 
 @mark.parametrize("stones", [1, 2, 3, 6, 9])
 def test_a_dry_pier_tips_about_its_toe_or_slides(tmp_path, stones):
-    """A cantilever pushed at its height h: N b/2 = V h about the toe, N with the weight; V = μ N in the joint below the platen,
-    with the pressure alone."""
+    """A cantilever pushed at its height h: N b/2 = V h about the toe, N with the weight; V = μ N in
+    the joint below the platen, with the pressure alone."""
     made, top = pier(tmp_path / "r", "--preset", "bound", "--lean", stones=stones)
     made.settle()
     entries = made.domain(top, NORMALS)
@@ -43,8 +43,8 @@ def test_a_dry_pier_tips_about_its_toe_or_slides(tmp_path, stones):
 
 @mark.slow
 def test_where_joints_crush_the_domain_is_concave_and_ends(tmp_path):
-    """Bed joints of calcium-silicate masonry crush at some MPa: the shear force grows, and falls again, to nothing at the strength
-    of the section."""
+    """Bed joints of calcium-silicate masonry crush at some MPa: the shear force grows, and falls
+    again, to nothing at the strength of the section."""
     made, top = pier(tmp_path / "r", "--preset", "bound", material=materials.calciumSilicate())
     made.settle()
     made.domain(top, [10, 200, 400, 800, 1200])
@@ -78,7 +78,8 @@ def test_the_scene_stays_as_it_is(tmp_path):
 
 @mark.slow
 def test_a_run_is_a_point_below_its_bound(tmp_path):
-    """A slow push of a dry pier with stiff joints reaches what rigid blocks carry, but for what it leans."""
+    """A slow push of a dry pier with stiff joints reaches what rigid blocks carry, but for what it
+    leans."""
     stiff = materials.dry(FRICTION, normalStiffness=1e11, density=DENSITY)
     made, top = pier(tmp_path / "r", "--rate", "5", material=stiff)
     made.settle()

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Work of a gravity that changes during a run: raised step by step, turned, and under blocks that were moved before."""
+"""Work of a gravity that changes during a run: raised step by step, turned, and under blocks that
+were moved before."""
 
 from hosted import *
 from motion_cases import gravityWork
@@ -8,7 +9,8 @@ WAYS = mark.parametrize("direction", ["rigid", "deformable", "functors"])
 
 
 def stack(direction, joint=None, damping=0.5, free=(1, 2), blocked="", **around):
-    """Two bricks on a fixed one: rigid, or those that are free deformable, or with YADE's own loop and integrator."""
+    """Two bricks on a fixed one: rigid, or those that are free deformable, or with YADE's own loop
+    and integrator."""
     O.reset()
     for body in pile(3)[1:]:
         O.bodies[body].state.blockedDOFs = blocked
@@ -44,7 +46,8 @@ def test_the_balance_closes_while_gravity_turns(direction):
 
 @mark.parametrize("direction", ["rigid", "functors"])
 def test_blocks_moved_before_the_first_step_fall_from_where_they_are(direction):
-    """connect() refuses blocks that were moved before it, so the joints are those of the reference."""
+    """connect() refuses blocks that were moved before it, so the joints are those of the
+    reference."""
     dry = MasonryJoint(tensileStrength=0, cohesion=0, friction=0, residualFriction=0)
     stack(direction, dry, damping=0, gravity=(0, 0, -G))
     bodies = [O.bodies[k].state for k in (1, 2)]

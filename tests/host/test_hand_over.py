@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Joints that are handed over to contact: blocks that tip over or slide off go on, land and come to rest."""
+"""Joints that are handed over to contact: blocks that tip over or slide off go on, land and come to
+rest."""
 
 from hosted import *
 
@@ -8,7 +9,8 @@ STIFF = 1e10  # [Pa/m]
 
 
 def standing(count=1, push=1.2, step=0.5, joint=dry, beside=(), **around):
-    """Blocks on top of each other, on the ground, under a horizontal gravity that is `push` times the one that tips them."""
+    """Blocks on top of each other, on the ground, under a horizontal gravity that is `push` times
+    the one that tips them."""
     O.reset()
     mat = unitMaterial(young=1e12)
     addBlock(corners((-3, -1, -0.4), (3, 1, 0)), mat)
@@ -45,7 +47,8 @@ def test_a_block_tips_over_lands_on_its_side_and_rests():
 
 
 def test_the_force_of_a_joint_goes_on_when_it_is_handed_over():
-    """Force on the ground in the last step of the joint and in the first of the contact, of a block that does not swing."""
+    """Force on the ground in the last step of the joint and in the first of the contact, of a block
+    that does not swing."""
     contacts = standing(damping=0.3)
     while contacts.handed == 0:
         O.step()
@@ -84,7 +87,8 @@ def test_a_joint_that_turns_while_its_bond_holds_is_not_handed_over():
 
 @mark.parametrize("axis", [0, 1], ids="xy")
 def test_a_joint_slides_out_of_its_place_along_either_side(axis):
-    """Handed over at 2 % of its length: without that the run would end where the block has left the joint."""
+    """Handed over at 2 % of its length: without that the run would end where the block has left the
+    joint."""
     slippery = lambda: dry(0.05)
     contacts = standing(push=0, joint=slippery, step=0.9)
     gravity = [0, 0, -G]
@@ -98,7 +102,8 @@ def test_a_joint_slides_out_of_its_place_along_either_side(axis):
 
 
 def neighbours(gap):
-    """Two blocks on the ground, side by side along x, without gravity; they wake when they have come by half the skin, 1 mm."""
+    """Two blocks on the ground, side by side along x, without gravity; they wake when they have
+    come by half the skin, 1 mm."""
     contacts = standing(push=0, beside=[B + gap])
     contacts.skin, engine("integrator").gravity, O.dt = 2e-3, (0, 0, 0), 1e-9
     run(10)
@@ -107,7 +112,8 @@ def neighbours(gap):
 
 
 def test_blocks_that_lie_in_each_other_when_one_wakes_just_touch():
-    """0.2 mm, which the stress of joints around may press them together, would be 500 kN all at once. What comes then counts."""
+    """0.2 mm, which the stress of joints around may press them together, would be 500 kN all at
+    once. What comes then counts."""
     contacts, s = neighbours(1e-3)
     s.pos += Vector3(1.2e-3, 0, 0)
     run(10)
@@ -118,8 +124,8 @@ def test_blocks_that_lie_in_each_other_when_one_wakes_just_touch():
 
 
 def test_a_block_that_turns_in_its_place_wakes():
-    """By 0.002 its edges move by a millimetre, by 0.01 they go through the gap of 0.5 mm: 1.25 mm along x. Its joint stays, since
-    that is handed over at 1°."""
+    """By 0.002 its edges move by a millimetre, by 0.01 they go through the gap of 0.5 mm: 1.25 mm
+    along x. Its joint stays, since that is handed over at 1°."""
     contacts, s = neighbours(5e-4)
     for turn in (0.002, 0.008):
         s.ori = Quaternion(Vector3(0, 0, 1), turn) * s.ori

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Impacts of joints that close: what a block that rocks keeps, and that they take energy and never give any."""
+"""Impacts of joints that close: what a block that rocks keeps, and that they take energy and never
+give any."""
 
 from hosted import *
 from motion_cases import restitution

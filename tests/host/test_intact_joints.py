@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Joints that have always been elastic are advanced without their points, and nobody sees a difference."""
+"""Joints that have always been elastic are advanced without their points, and nobody sees a
+difference."""
 
 from hosted import *
 from test_checkpoint import bits
@@ -98,7 +99,8 @@ def test_damping_of_intact_joints_takes_the_energy_that_points_would_give():
 
 
 def test_all_points_are_looked_at_where_the_elastic_domain_is_not_convex():
-    # With a linear term of the cap above zero, a point between the corners of a joint may yield first.
+    # With a linear term of the cap above zero, a point between the corners of a joint may yield
+    # first.
     runs = []
     for functors in (True, False):
         interactions = panel(functors, capLinear=5e5)

@@ -1,11 +1,13 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Joints are grouped by the values of their properties, whether these stand in one MasonryJoint or in many."""
+"""Joints are grouped by the values of their properties, whether these stand in one MasonryJoint or
+in many."""
 
 from hosted import *
 
 
 def couplets(count, joint):
-    """Separate couplets whose upper bricks are pulled up. ``joint``: gives the MasonryJoint of each."""
+    """Separate couplets whose upper bricks are pulled up. ``joint``: gives the MasonryJoint of
+    each."""
     O.reset()
     mat = unitMaterial()
     for n in range(count):

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""MasonryJointLoop and MasonryIntegrator against the functors and NewtonIntegrator, which are the reference."""
+"""MasonryJointLoop and MasonryIntegrator against the functors and NewtonIntegrator, which are the
+reference."""
 
 
 from hosted import *
@@ -14,8 +15,8 @@ STRAIGHT = Quaternion.Identity
 
 
 def panel(functors, blocks="rigid", halves=True, turn=STRAIGHT, size=4, **how):
-    """A small panel that is pressed and torn at once, so that joints open, slip and crush within some hundred steps. ``how``:
-    damping and points, and properties of its joints."""
+    """A small panel that is pressed and torn at once, so that joints open, slip and crush within
+    some hundred steps. ``how``: damping and points, and properties of its joints."""
     O.reset()
     damping = how.pop("damping", 0)
     points = dict(rows=how.pop("rows", 2), subcontacts=how.pop("subcontacts", None))
@@ -41,7 +42,8 @@ def panel(functors, blocks="rigid", halves=True, turn=STRAIGHT, size=4, **how):
 
 
 def state(interactions):
-    """All that must agree between two runs: stresses, jumps, damages, energies and places, each over its own size."""
+    """All that must agree between two runs: stresses, jumps, damages, energies and places, each
+    over its own size."""
     columns = {
         "stress": [s for i in interactions for s in i.phys.stress],
         "jump": [j for i in interactions for j in i.geom.jumps],
@@ -73,8 +75,8 @@ CASES = {
 
 @mark.parametrize("case", CASES)
 def test_the_loop_gives_the_functors_run(case):
-    # Without damping, because damping depends on the sign of velocities that may be round-off. The differences that
-    # remain start at 1e-16 and grow slowly.
+    # Without damping, because damping depends on the sign of velocities that may be round-off. The
+    # differences that remain start at 1e-16 and grow slowly.
     runs, balances = [], []
     for functors in (True, False):
         interactions = panel(functors, **CASES[case])
@@ -82,7 +84,8 @@ def test_the_loop_gives_the_functors_run(case):
         runs.append(state(interactions))
         balances.append(balance())
     size = max(abs(v) for v in balances[0].values())
-    # MasonryEnergy only predicts the angular velocity of a body that is free to turn in space. MasonryIntegrator knows it.
+    # MasonryEnergy only predicts the angular velocity of a body that is free to turn in space.
+    # MasonryIntegrator knows it.
     errors = [one.pop("error") for one in balances]
     assert errors[1] == approx(errors[0], abs=1e-4)
     assert balances[1] == approx(balances[0], abs=1e-6 * size)

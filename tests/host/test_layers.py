@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Who may know whom, by what the sources include. These tests need no YADE: they only read the sources."""
+"""Who may know whom, by what the sources include. These tests need no YADE: they only read the
+sources."""
 
 import glob
 import graphlib
@@ -62,7 +63,8 @@ def test_a_folder_of_the_scene_includes_only_those_before_it():
 
 
 def circle(folder):
-    """Files below a folder that include each other, directly or through others, or None; a .hpp, its .cpp and its .inl are one."""
+    """Files below a folder that include each other, directly or through others, or None; a .hpp,
+    its .cpp and its .inl are one."""
     knows = {}
     for name in sources(folder):
         own = os.path.relpath(os.path.splitext(name)[0], folder)

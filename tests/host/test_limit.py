@@ -29,7 +29,7 @@ def sideways(a, direction=(1, 0, 0)):
     return a.largest(a.weights(G * np.array(direction)), a.weights((0, 0, -G)))
 
 
-# -- closed forms ------------------------------------------------------------------------------------------------------
+# -- closed forms ----------------------------------------------------------------------------------
 
 
 @mark.parametrize("plane", [True, False])
@@ -80,8 +80,8 @@ def test_tension_cohesion_and_crushing_are_those_of_the_joint():
 
 
 def test_a_support_that_settles_keeps_its_least_reaction():
-    """A beam on two supports, of which one goes down: the joint opens, and the beam turns about the far edge of the
-    other. Pushed up, it carries at most what turns the beam about the near side."""
+    """A beam on two supports, of which one goes down: the joint opens, and the beam turns about the
+    far edge of the other. Pushed up, it carries at most what turns the beam about the near side."""
     a = assembly(
         [
             ((0, 0, -0.1), (0.1, 0.3, 0.1)),
@@ -96,7 +96,8 @@ def test_a_support_that_settles_keeps_its_least_reaction():
     dead = a.weights((0, 0, -G))
     dead[1] = 0
     up = a.force(1, (0, 0, 1))
-    # about the left and the right edge of the support at the left, with the reaction at an end of the other
+    # about the left and the right edge of the support at the left, with the reaction at an end of
+    # the other
     assert a.smallest(up, dead).factor == approx(weight * 0.4 / 0.9, rel=1e-6)
     assert a.largest(up, dead).factor == approx(weight * 0.5 / 0.9, rel=1e-6)
 
@@ -161,7 +162,7 @@ def test_dry_walls_fall_where_another_programme_says(courses, units, friction, f
     assert bound.slides and not bound.exact
 
 
-# -- against itself ----------------------------------------------------------------------------------------------------
+# -- against itself --------------------------------------------------------------------------------
 
 
 def test_a_solver_that_is_late_missing_or_dies_is_one_sentence(monkeypatch):
@@ -191,7 +192,8 @@ def test_a_solver_that_is_late_missing_or_dies_is_one_sentence(monkeypatch):
 @mark.parametrize("plane", [True, False])
 @mark.parametrize("bond", [0.0, 0.05e6])
 def test_the_mechanism_takes_as_much_power_as_the_loads_give(plane, bond):
-    """The value of the programme is found again from the velocities of its dual alone, with the strengths."""
+    """The value of the programme is found again from the velocities of its dual alone, with the
+    strengths."""
     kind = dry(0.6, tensileStrength=0.5 * bond, cohesion=bond)
     boxes = [((0, 0, -0.2), (0.8, 0.1, 0.2))]
     corners = [(0.2 * n, 0, 0) for n in range(4)]
@@ -225,12 +227,14 @@ def test_without_dilatancy_a_wall_carries_less_and_no_joint_is_above_its_frictio
     opening, slide = least.jumps(a.contacts.joint, a.contacts.at)
     beds = np.abs(a.normals[a.contacts.joint, 2]) > 0.5
     pressed = beds & (least.normal > 1e-3 * least.normal.max())
-    # where a bed is pressed it slips without opening; under friction's own flow it would open by half of the slip
+    # where a bed is pressed it slips without opening; under friction's own flow it would open by
+    # half of the slip
     assert opening[pressed].max() < 0.05 * np.linalg.norm(slide, axis=1).max()
 
 
 def test_a_bond_in_which_no_joint_slides_is_not_called_exact():
-    """With such friction the wall tips as a whole at 1 g, if joints that slip must open; its open wedge falls at 0.58 g."""
+    """With such friction the wall tips as a whole at 1 g, if joints that slip must open; its open
+    wedge falls at 0.58 g."""
     bound = sideways(wall(6, 3, 2.0))
     assert bound.factor == approx(1.0, rel=1e-4) and bound.rigid
     assert not bound.exact and "upper bound" in bound.sentence("x", "g")
@@ -250,7 +254,7 @@ def test_odd_loads_are_refused():
         limit.read()
 
 
-# -- files and scenes --------------------------------------------------------------------------------------------------
+# -- files and scenes ------------------------------------------------------------------------------
 
 
 def test_a_mechanism_is_drawn_and_written_for_paraview(tmp_path):
@@ -318,8 +322,8 @@ def test_the_preset_bound_runs_nothing(tmp_path, capsys):
 
 
 def stones(out, load, friction=0.7, *words, **more):
-    """Three stones, 0.3 m wide and 0.6 m high, on a base, with a dead load [N] on the highest, at rest for limit analysis
-    alone: the scene, the highest stone, and the weight of all [N]."""
+    """Three stones, 0.3 m wide and 0.6 m high, on a base, with a dead load [N] on the highest, at
+    rest for limit analysis alone: the scene, the highest stone, and the weight of all [N]."""
     words = ["--preset", "bound", "--lean", "--out", str(out), *words]
     dry = materials.dry(friction, density=DENSITY)
     s = Scene("stones", bricks.stack(3, (0.3, 0.3, 0.2)), dry, arguments=words, **more)
@@ -342,7 +346,8 @@ def test_the_bound_of_a_push_lacks_what_dead_loads_push_already(tmp_path, sign):
 
 
 def test_a_tilt_is_the_same_under_another_gravity(tmp_path):
-    """The factor is the tangent of the tilt, b/h, and that of an acceleration is in g of the earth."""
+    """The factor is the tangent of the tilt, b/h, and that of an acceleration is in g of the
+    earth."""
     moon, _, _ = stones(tmp_path, (0, 0, 0), gravity=1.62)
     moon.tilt(60)
     moon.accelerate(1)
@@ -367,7 +372,8 @@ def test_limit_analysis_alone_replaces_a_load_and_stands_under_one_that_moves_no
 
 
 def test_scaled_masses_change_no_bound(tmp_path):
-    """Gravity is less by as much as the masses are more: the stack tips at (W + P) b/(W h) with the true W."""
+    """Gravity is less by as much as the masses are more: the stack tips at (W + P) b/(W h) with the
+    true W."""
     s, _, weight = stones(tmp_path, (0, 0, -200), 4, "--density-scaling", "9")
     s.accelerate(1)
     s.tilt(60)
@@ -410,8 +416,8 @@ def test_a_bound_is_found_anew_beside_another_load_and_where_the_structure_went(
 
 @mark.parametrize("share", [0.0, 0.5, 1.5])
 def test_the_bound_of_a_tilt_turns_weight_and_not_dead_loads(tmp_path, share):
-    """W sin(a) h/2 turns the stack over its edge, (W cos(a) + P) b/2 holds it. The bound of an acceleration has the same
-    tip at W a h/2 = (W + P) b/2."""
+    """W sin(a) h/2 turns the stack over its edge, (W cos(a) + P) b/2 holds it. The bound of an
+    acceleration has the same tip at W a h/2 = (W + P) b/2."""
     b, h = 0.3, 0.6
     down = share * DENSITY * G * b * b * h
     s, _, weight = stones(tmp_path, (0, 0, -down), friction=4)
@@ -441,7 +447,8 @@ def test_a_peak_may_be_above_its_bound_by_two_per_cent():
     entries = {"lean": {"factor": 0.5, "unit": "g"}}
 
     def warned(peak, held):
-        """Whether a push to both sides and a load that was held are above their bounds, of 40 kN, 60 kN and 0.5 g."""
+        """Whether a push to both sides and a load that was held are above their bounds, of 40 kN,
+        60 kN and 0.5 g."""
         run = dict(
             peak_base_shear_kN=40 * peak,
             bound_base_shear_kN=40,

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Selective mass scaling in the engine loop: the time step, energy, bricks that crack, checkpoints and threads."""
+"""Selective mass scaling in the engine loop: the time step, energy, bricks that crack, checkpoints
+and threads."""
 
 from hosted import *
 
@@ -7,7 +8,8 @@ X, Y, Z = 0.11, 0.102, 0.081  # half a brick [m]
 
 
 def bricks(scaling, damping=0.3, strength=0.3e6, plane=True, kind="combined", pieces=2):
-    """Two bricks of two halves each on a plate, and a plate on top that pulls the right half up and breaks a brick."""
+    """Two bricks of two halves each on a plate, and a plate on top that pulls the right half up and
+    breaks a brick."""
     O.reset()
     mat, stiff = unitMaterial(), unitMaterial(young=1e16, jointSet="plate")
     put = lambda low, high, m: addBlock(corners(low, high), m, inPlane=plane)

@@ -1,15 +1,16 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Damping, drives, prescribed places and neighbours of another kind, against numbers that follow by hand."""
+"""Damping, drives, prescribed places and neighbours of another kind, against numbers that follow by
+hand."""
 
 from hosted import *
 from masonry._masonry import loadScene, saveScene
 from yade.utils import sphere
 
-# -- damping ---------------------------------------------------------------------------------------------------------
+# -- damping ---------------------------------------------------------------------------------------
 
-#: For a motion along the force: the force over that of the first step, and what damping takes of it over alpha times
-#: its size. Local damping takes all of that. Combined damping takes nothing while the force grows, half of it while the
-#: force is steady, and all of it while the force falls.
+#: For a motion along the force: the force over that of the first step, and what damping takes of it
+#: over alpha times its size. Local damping takes all of that. Combined damping takes nothing while
+#: the force grows, half of it while the force is steady, and all of it while the force falls.
 HISTORY = {
     "local": [(1, 1), (2, 1), (2, 1), (1.5, 1), (0.5, 1)],
     "combined": [(1, 0), (2, 0), (2, 0.5), (1.5, 1), (0.5, 1)],
@@ -76,7 +77,7 @@ def stack(count=4, **around):
     join(MasonryJoint(elastic=True), 0.8, inPlane=True, **around)
 
 
-# -- drives ----------------------------------------------------------------------------------------------------------
+# -- drives ----------------------------------------------------------------------------------------
 
 
 @mark.parametrize("blocked", ["", "XYZ", "yXZ"], ids=lambda b: b or "free")
@@ -162,8 +163,8 @@ def test_a_load_that_is_dead_does_no_work():
 
 @PLANES
 def test_a_motion_that_a_script_changes_at_every_step_does_its_work(scene, plane):
-    """The work of a step is done with the velocity of that step, also if the next one has another, or several ones
-    while bodies are added and states are loaded."""
+    """The work of a step is done with the velocity of that step, also if the next one has another,
+    or several ones while bodies are added and states are loaded."""
     stack(count=2, damping=0.1)
     base, dice = O.bodies[0].state, random.Random(3)
     if not plane:
@@ -187,10 +188,10 @@ def test_a_motion_that_a_script_changes_at_every_step_does_its_work(scene, plane
     assert imbalance() < 1e-6
 
 
-# -- joints that are nearly alike ------------------------------------------------------------------------------------
+# -- joints that are nearly alike ------------------------------------------------------------------
 
-#: The property of which the last of seventy couplets has one per cent more. Its joint is in another batch than the
-#: first ones.
+#: The property of which the last of seventy couplets has one per cent more. Its joint is in another
+#: batch than the first ones.
 UNLIKE = {
     "stiffness": dict(young=4.8e9 * 1.01),
     "length": dict(size=(UNIT[0] * 1.01, *UNIT[1:])),
@@ -200,7 +201,8 @@ UNLIKE = {
 
 
 def couplets(other, functors, turn):
-    """Seventy separate couplets, of which the last differs a little. Every upper brick gets a velocity."""
+    """Seventy separate couplets, of which the last differs a little. Every upper brick gets a
+    velocity."""
     O.reset()
     dice = np.random.default_rng(5)
     for number in range(70):
@@ -237,13 +239,13 @@ def test_one_couplet_of_seventy_that_is_other_keeps_its_numbers(other, turn):
             expected = np.array(i.geom.jumps)[:, :2] * stiffness
             found = np.array(i.phys.stress)[:, :2]
             assert np.allclose(found, expected, rtol=1e-9, atol=1e-3)
-    # The round-off of places 17 m from the origin is 2e-15 m. Times the stiffness that is 1e-4 of stresses of some
-    # 1e3 Pa.
+    # The round-off of places 17 m from the origin is 2e-15 m. Times the stiffness that is 1e-4 of
+    # stresses of some 1e3 Pa.
     for one, same in zip(*ends):
         assert np.abs(one - same).max() < 1e-6 * np.abs(one).max()
 
 
-# -- joints that go, and units that differ ---------------------------------------------------------------------------
+# -- joints that go, and units that differ ---------------------------------------------------------
 
 
 @FUNCTORS

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""A scene in a notebook: what it shows, how it is interrupted, and how it goes on. Needs the packages of Jupyter."""
+"""A scene in a notebook: what it shows, how it is interrupted, and how it goes on. Needs the
+packages of Jupyter."""
 
 import base64
 import queue
@@ -28,7 +29,8 @@ class Kernel:
         self.manager, self.client = jupyter.manager.start_new_kernel(**around)
 
     def ask(self, code, until=None, seconds=120):
-        """Run a cell; ``until``: function of a message after which the kernel is interrupted once. Returns its messages."""
+        """Run a cell; ``until``: function of a message after which the kernel is interrupted once.
+        Returns its messages."""
         sent = self.client.execute(code, allow_stdin=False, stop_on_error=False)
         found = []
         ends = time.monotonic() + seconds

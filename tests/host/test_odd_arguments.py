@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Every word that a script may use, with odd values: each is refused in a sentence, or means something.
+"""Every word that a script may use, with odd values: each is refused in a sentence, or means
+something.
 
-A word is found by looking at the package; one without an example here is a failure. The values of an argument are drawn with
-a seed that the message of a failure has; ODD_SEED=number draws others.
+A word is found by looking at the package; one without an example here is a failure. The values of
+an argument are drawn with a seed that the message of a failure has; ODD_SEED=number draws others.
 """
 
 import inspect
@@ -92,7 +93,7 @@ def odd():
     }
 
 
-# -- examples: what stands before a word, and legal arguments of it ----------------------------------------------------
+# -- examples: what stands before a word, and legal arguments of it --------------------------------
 
 
 def scene(blocks=WALL, stones=None, **settings):
@@ -162,8 +163,8 @@ PUSHES = dict(target=TOP, rate=200.0, control=TOP)
 WINDS = dict(pressure=10.0, towards=LEVEL)
 GROWS = dict(over=0.02, within=0.5)
 
-#: What stands before a word of a scene, and its arguments but for those that have a default. A word that describes, and is a
-#: stage later, has two examples.
+#: What stands before a word of a scene, and its arguments but for those that have a default. A word
+#: that describes, and is a stage later, has two examples.
 WORDS = {
     "platen": (bare, dict(where="top")),
     "hold": (bare, dict(where=0)),
@@ -212,7 +213,8 @@ WORDS = {
     "press, a stage": (settled, dict(platen=TOP, stress=1e4, longest=0.05)),
     "hold, a stage": (holding, dict(target=Of("grip"), axes="xz")),
 }
-#: Methods of a scene that scripts do not call with arguments of their own: other parts of the package do.
+#: Methods of a scene that scripts do not call with arguments of their own: other parts of the
+#: package do.
 INTERNAL = {"checkOpen", "failed", "findBound", "keepState", "noted", "probe"}
 
 CUBE = bricks.boxCorners((0, 0, 0), (1, 1, 1))
@@ -278,7 +280,8 @@ def iterated(push=None, **settings):
     return capacity.iterated(push or capacity.pushover("run"), **settings)
 
 
-#: Functions and classes by their names: what is called, its arguments but for those that have a default, and what stands before.
+#: Functions and classes by their names: what is called, its arguments but for those that have a
+#: default, and what stands before.
 CALLS = {
     "Scene": (
         Scene,
@@ -481,7 +484,7 @@ def folder(tmp_path, monkeypatch, pushed):
     return tmp_path
 
 
-# -- what comes of a word ---------------------------------------------------------------------------------------------
+# -- what comes of a word --------------------------------------------------------------------------
 
 
 @contextlib.contextmanager
@@ -556,7 +559,8 @@ def legalOf(name):
 NOT_OURS = (
     "truth value|could not be broadcast|codec can't|JSON compliant|unpack|invalid literal|NoneType"
 )
-#: By what else a message may name an argument: a property in words, points as corners, or what a lintel lies on.
+#: By what else a message may name an argument: a property in words, points as corners, or what a
+#: lintel lies on.
 OTHERWISE = {
     "addBlock": "corner",
     "bricks.Lintel": "openings",
@@ -615,7 +619,7 @@ def test_odd_values_are_refused_in_a_sentence_or_mean_something(folder, name):
                 assert isNamed(name, argument, message), f"{where}: {message}"
 
 
-# -- every word is here -----------------------------------------------------------------------------------------------
+# -- every word is here ----------------------------------------------------------------------------
 
 
 def test_every_word_of_a_scene_has_an_example_and_kinds_of_all_its_arguments():
@@ -661,7 +665,7 @@ def test_every_function_that_scripts_call_has_an_example():
     assert names <= set(CALLS), names - set(CALLS)
 
 
-# -- bounds -----------------------------------------------------------------------------------------------------------
+# -- bounds ----------------------------------------------------------------------------------------
 
 
 def commandsWithKinds():
@@ -763,7 +767,7 @@ def _isReadOnly(cls, name):
     return "Read-only." in vars(cls)[name].__doc__ if name in vars(cls) else True
 
 
-# -- what is refused, in which words ----------------------------------------------------------------------------------
+# -- what is refused, in which words ---------------------------------------------------------------
 
 
 @mark.parametrize(

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What a script can do to a scene that runs: it takes effect, or an error says why not. Nothing ends the process."""
+"""What a script can do to a scene that runs: it takes effect, or an error says why not. Nothing
+ends the process."""
 
 import gc
 
@@ -13,7 +14,8 @@ def cube(x=0.0, z=0.0):
 
 
 def stack(number=3, zones=(), lone=False, functors=False, reset=True):
-    """Cubes on each other, the lowest of which is fixed, and a load on the highest. Returns the joints."""
+    """Cubes on each other, the lowest of which is fixed, and a load on the highest. Returns the
+    joints."""
     if reset:
         O.reset()
     O.materials.append(MasonryMat(young=5e9, poisson=0.2, density=1800))
@@ -37,7 +39,7 @@ def refused(message, act=steps):
         act()
 
 
-# -- no crash ----------------------------------------------------------------------------------------------------------
+# -- no crash --------------------------------------------------------------------------------------
 
 
 def test_bodies_that_are_gone_are_reported():
@@ -85,7 +87,8 @@ def test_a_joint_of_no_scene_has_no_points():
 
 @mark.parametrize("which", ["loop", "load", "all"])
 def test_an_engine_in_a_parallel_engine_is_reported(which, capfd):
-    """Threads of the host cannot pass an error on: an engine that follows does, and the error stream has it anyway."""
+    """Threads of the host cannot pass an error on: an engine that follows does, and the error
+    stream has it anyway."""
     stack()
     reset, loop, load, *others = O.engines
     inside = {"loop": [loop], "load": [load], "all": [loop, load, *others]}[which]
@@ -102,7 +105,7 @@ def test_an_engine_in_a_parallel_engine_is_reported(which, capfd):
     steps()
 
 
-# -- no silence --------------------------------------------------------------------------------------------------------
+# -- no silence ------------------------------------------------------------------------------------
 
 
 def replaceState(body):
@@ -205,7 +208,7 @@ def test_a_python_class_of_joints_is_a_joint():
     assert made.phys.joint.name == "mortar"
 
 
-# -- files -------------------------------------------------------------------------------------------------------------
+# -- files -----------------------------------------------------------------------------------------
 
 
 def test_frames_that_somebody_removed_are_not_listed(tmp_path):

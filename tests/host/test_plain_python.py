@@ -43,7 +43,7 @@ def done(code, **more):
     return run.stdout
 
 
-# -- how YADE starts --------------------------------------------------------------------------------------------------
+# -- how YADE starts -------------------------------------------------------------------------------
 
 
 @mark.slow
@@ -189,7 +189,7 @@ sys.argv = ['ipykernel_launcher.py', '-f', 'x.json']
     played(tmp_path, begin.lstrip(), end=end)
 
 
-# -- where it cannot --------------------------------------------------------------------------------------------------
+# -- where it cannot -------------------------------------------------------------------------------
 
 ASK = """
 import masonry
@@ -248,7 +248,7 @@ def test_a_scene_beside_the_sources_uses_the_installed_package(tmp_path):
     assert run.stdout.splitlines()[-1].startswith(INSTALLED)
 
 
-# -- the same as the program yade -------------------------------------------------------------------------------------
+# -- the same as the program yade ------------------------------------------------------------------
 
 BANNER = (
     "Welcome to Yade",
@@ -262,8 +262,8 @@ TIMES = re.compile(
     r'"(date|seconds|setup|steps|rows|frames|wall_clock_s|microseconds_per_step|nanoseconds_per_subcontact_step|out)": .*'
 )
 
-#: The same in a report: when the run ended, and how long it took; and numbers of its picture, whose last digits depend on where
-#: LAPACK finds its arrays in the memory.
+#: The same in a report: when the run ended, and how long it took; and numbers of its picture, whose
+#: last digits depend on where LAPACK finds its arrays in the memory.
 CLOCK = re.compile(
     (
         r"\d{4}-\d\d-\d\d [\d:]+ UTC|time of (the run|a step[^<]*)</th><td[^>]*>[^<]*|<script"
@@ -274,7 +274,8 @@ CLOCK = re.compile(
 
 
 def both(tmp_path, name, *words):
-    """A scene of scripts/ in YADE and in plain Python, in folders of the same name: pairs of process and folder."""
+    """A scene of scripts/ in YADE and in plain Python, in folders of the same name: pairs of
+    process and folder."""
     scene = os.path.join(ROOT, "scripts", name + ".py")
     for how in (["yade", "-n", "-x"], [sys.executable]):
         folder = tmp_path / how[0].rpartition("/")[2]
@@ -286,7 +287,8 @@ def both(tmp_path, name, *words):
 
 
 def lines(run, folder):
-    """What a run prints, without YADE's own lines and what depends on the clock: progress, and whether it waited for a figure."""
+    """What a run prints, without YADE's own lines and what depends on the clock: progress, and
+    whether it waited for a figure."""
     text = (run.stdout + run.stderr).replace(str(folder.parent), "")
     kept = [n for n in text.splitlines() if not n.startswith(BANNER)]
     kept = [re.sub(r"of \d+ µs, [\d.]+ s|^(yade|python3)\b", "", n) for n in kept]

@@ -25,7 +25,7 @@ def pair(turn=Quaternion.Identity, offset=(0, 0, UNIT[2]), joints=None, **kw):
     return interaction
 
 
-# -- registration -----------------------------------------------------------------------------------------------------
+# -- registration ----------------------------------------------------------------------------------
 
 
 @mark.parametrize("name", classes)
@@ -45,7 +45,8 @@ def test_a_class_stands_in_yade_with_docs_keywords_and_dict(name):
 
 
 def test_every_member_of_the_joint_properties_is_described_once():
-    """Adding a property is its member and its description: none is forgotten, none is described twice."""
+    """Adding a property is its member and its description: none is forgotten, none is described
+    twice."""
     path = os.path.join(ROOT, "yade_plugin", "law", "common", "JointProperties.hpp")
     header = open(path).read()
     struct = header[header.index("struct JointProperties {") :]
@@ -92,7 +93,7 @@ def test_plugin_package_and_help_name_one_version_and_the_help_of_a_scene_the_co
     assert last == f"masonry {masonry.__version__}, commit {masonry.commit}"
 
 
-# -- joints -----------------------------------------------------------------------------------------------------------
+# -- joints ----------------------------------------------------------------------------------------
 
 
 @mark.parametrize("seed", range(5))
@@ -150,7 +151,7 @@ def test_rigid_units_are_lumped_in_series():
     assert phys.shearStiffness == approx(2.17e10, rel=2e-3)
 
 
-# -- mechanics --------------------------------------------------------------------------------------------------------
+# -- mechanics -------------------------------------------------------------------------------------
 
 
 def test_a_turned_scene_gives_the_turned_answer():
@@ -169,7 +170,7 @@ def test_a_turned_scene_gives_the_turned_answer():
     assert np.abs(stresses - again).max() < 1e-5 * np.abs(stresses).max() > 0.01
 
 
-# -- saving -----------------------------------------------------------------------------------------------------------
+# -- saving ----------------------------------------------------------------------------------------
 
 
 @mark.parametrize("extension", [".xml", ".yade.gz"])

@@ -1,11 +1,14 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Points of a joint: rocking blocks, stacks and arches against closed forms and limit analysis, with default points.
+"""Points of a joint: rocking blocks, stacks and arches against closed forms and limit analysis,
+with default points.
 
-Every limit is bracketed: the structure must stand at one per cent below the limit and fall at one per cent above it.
-Joints are so stiff that deformation changes the limits by much less. Gravity grows smoothly from zero or to one side and
-then stays, so that inertia adds nothing to it. Local damping takes a share of the unbalanced force only, so it brings a
-structure to rest, and slows the fall of a mechanism, but cannot hold one: without balance there is no rest. With 0.8 a
-stack of four dry blocks took ten seconds to fall; with 0.3 it takes half a second, and what stands is at rest as soon.
+Every limit is bracketed: the structure must stand at one per cent below the limit and fall at one
+per cent above it. Joints are so stiff that deformation changes the limits by much less. Gravity
+grows smoothly from zero or to one side and then stays, so that inertia adds nothing to it. Local
+damping takes a share of the unbalanced force only, so it brings a structure to rest, and slows the
+fall of a mechanism, but cannot hold one: without balance there is no rest. With 0.8 a stack of four
+dry blocks took ten seconds to fall; with 0.3 it takes half a second, and what stands is at rest as
+soon.
 """
 
 from hosted import *
@@ -15,7 +18,7 @@ from structures import DENSITY, arch, box, dry, falls, fix, mat, semicircle
 from wall_cases import prismTips, tips
 
 
-# -- stiffness -------------------------------------------------------------------------------------------------------
+# -- stiffness -------------------------------------------------------------------------------------
 
 
 @mark.parametrize("about", [(0, 1, 0), (1, 0, 0)], ids=["along", "across"])
@@ -34,7 +37,7 @@ def test_any_mesh_has_the_rotational_stiffness(blocked, about, divisions, functo
     assert measured == approx(true, rel=1e-6)
 
 
-# -- how many points -------------------------------------------------------------------------------------------------
+# -- how many points -------------------------------------------------------------------------------
 
 
 def pointsOf(held, size=(0.22, 0.102, 0.081), where=(0, 0, 1), zones=None, **kw):
@@ -80,11 +83,12 @@ def test_what_is_asked_for_goes_before_what_the_freedom_says():
     assert len(pointsOf("yXZ", rows=2, subcontacts=5).centres) == 10
     assert len(pointsOf("", rows=1, subcontacts=4).centres) == 4
     assert len(pointsOf("", subcontacts=4).centres) == 12
-    # Rows that were asked for in another direction than that of the axis need their number from it, too.
+    # Rows that were asked for in another direction than that of the axis need their number from it,
+    # too.
     assert len(pointsOf("xYZ", inPlane=True).centres) == 9
 
 
-# -- blocks that tip -------------------------------------------------------------------------------------------------
+# -- blocks that tip -------------------------------------------------------------------------------
 
 
 @mark.parametrize("share", [0.99, 1.01])
@@ -105,7 +109,7 @@ def test_a_prism_on_a_triangle_tips_about_its_edge(share):
     assert prismTips(share) == (share > 1)
 
 
-# -- arches ----------------------------------------------------------------------------------------------------------
+# -- arches ----------------------------------------------------------------------------------------
 
 
 @mark.parametrize("share", [0.99, 1.01])

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What a user does at the prompt while a scene runs, or after it has ended, gives an answer or an error, never a crash.
+"""What a user does at the prompt while a scene runs, or after it has ended, gives an answer or an
+error, never a crash.
 
 Most of it runs in a YADE of its own, so that a crash is a failed test and not the end of pytest.
 """
@@ -35,7 +36,8 @@ def bits(interactions):
 
 
 def inYade(code, threads=1, timeout=120):
-    """Run a program in a YADE of its own and return what it printed. Fails if the process crashes or does not end."""
+    """Run a program in a YADE of its own and return what it printed. Fails if the process crashes
+    or does not end."""
     folders = [HERE, os.path.join(HERE, "..", "references"), os.path.join(HERE, "..")]
     env = dict(os.environ, OMP_NUM_THREADS=str(threads), PYTHONFAULTHANDLER="1")
     path = os.pathsep.join([os.environ.get("PYTHONPATH", ""), *folders])
@@ -48,7 +50,7 @@ def inYade(code, threads=1, timeout=120):
     return run.stdout
 
 
-# -- beside a run in the background ----------------------------------------------------------------------------------
+# -- beside a run in the background ----------------------------------------------------------------
 
 READER = """
 STEPS = {steps}
@@ -143,8 +145,8 @@ for path in random.Random(1).sample(saved, min(8, len(saved))):
 @THREADS
 @KINDS
 def test_random_tries_beside_a_run_do_no_harm(blocks, threads, tmp_path):
-    """Whatever is read, set, saved or loaded beside O.run() works, or is refused in a sentence. ``BESIDE_TRIES`` says how
-    often."""
+    """Whatever is read, set, saved or loaded beside O.run() works, or is refused in a sentence.
+    ``BESIDE_TRIES`` says how often."""
     count = int(os.environ.get("BESIDE_TRIES", 400))
     code = f"""
 import random
@@ -190,7 +192,8 @@ assert O.iter > 10 and 0 < refused < 0.3 * {count}, (O.iter, refused)
 @THREADS
 @KINDS
 def test_a_step_right_after_a_pause_ends(blocks, threads):
-    """O.pause() does not wait for the end of the step that is under way, so two threads make steps for a moment."""
+    """O.pause() does not wait for the end of the step that is under way, so two threads make steps
+    for a moment."""
     code = f"""
 panel(False, {blocks!r}, size=8, damping=0.3)
 for n in range(60):
@@ -205,7 +208,8 @@ for n in range(60):
 @THREADS
 @mark.parametrize("beside", [False, True])
 def test_a_forked_process_goes_on(threads, beside):
-    """It has none of the other threads, neither of a run in the background nor those of the loops."""
+    """It has none of the other threads, neither of a run in the background nor those of the
+    loops."""
     code = f"""
 import random
 interactions = panel(False, "rigid", damping=0.3)
@@ -249,7 +253,7 @@ assert O.iter == STEPS and bits(interactions) == plain
     inYade(reader("rigid") + code)
 
 
-# -- what outlives its scene -----------------------------------------------------------------------------------------
+# -- what outlives its scene -----------------------------------------------------------------------
 
 #: What is read -> whether it is state of a scene, and so an error once the scene is gone.
 STATE = """phys.stress phys.damage phys.slip phys.regime phys.dissipated geom.jumps
@@ -314,7 +318,7 @@ assert all((before[name] == after[name]).all() for name in before)
     inYade(code)
 
 
-# -- other engines in the middle -------------------------------------------------------------------------------------
+# -- other engines in the middle -------------------------------------------------------------------
 
 
 @mark.slow
@@ -331,7 +335,7 @@ assert O.iter == 3000
     inYade(code)
 
 
-# -- blocks that come and go -----------------------------------------------------------------------------------------
+# -- blocks that come and go -----------------------------------------------------------------------
 
 
 @mark.parametrize("steps", [0, 1, 150], ids=lambda n: f"after {n} steps")
@@ -373,7 +377,7 @@ O.run(20, True)
     inYade(code)
 
 
-# -- misspelt names --------------------------------------------------------------------------------------------------
+# -- misspelt names --------------------------------------------------------------------------------
 
 
 def ownProperties(cls):

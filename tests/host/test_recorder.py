@@ -59,8 +59,9 @@ def test_every_column_of_the_joints_is_that_of_python(frame):
         size = np.abs(here).max()
         assert size > 0, name
         assert np.abs(cells[name] - here).max() <= 1e-12 * size, name
-    # Python does not show crushing and dilation by themselves. Of a closed joint they follow from sigma = kn (opening +
-    # crushing - dilation), where the dilation is at most dilatancy times slip. A joint of the cyclic law may have lost stiffness.
+    # Python does not show crushing and dilation by themselves. Of a closed joint they follow from
+    # sigma = kn (opening + crushing - dilation), where the dilation is at most dilatancy times
+    # slip. A joint of the cyclic law may have lost stiffness.
     crushed = cells["crushing"]
     assert crushed.min() >= 0 and crushed.max() > 0
     for k, (i, _) in enumerate(rows):
@@ -99,7 +100,8 @@ def test_a_cell_of_a_joint_lies_around_its_subcontact_and_has_its_area(frame):
 
 
 def test_the_points_of_a_joint_move_with_each_of_its_two_blocks(frame):
-    """With a deformable unit a point of a joint moves as its nodes do; the jump is what opens and slides there."""
+    """With a deformable unit a point of a joint moves as its nodes do; the jump is what opens and
+    slides there."""
     _, folder, _ = frame
     points = readFrame(folder, "joints")
     places, corners = points["points"], points["cells"]
@@ -163,7 +165,8 @@ def test_the_points_of_blocks_move_as_bodies_and_nodes_do(frame):
 
 @mark.parametrize("turn", [Quaternion.Identity, IN_SPACE], ids=["straight", "turned"])
 def test_stresses_of_zones_are_those_of_a_brick_that_is_pressed(tmp_path, turn):
-    """A deformable brick between plates under pressure p carries -p along it and nothing else, in the global axes."""
+    """A deformable brick between plates under pressure p carries -p along it and nothing else, in
+    the global axes."""
     plate, mat = unitMaterial(young=1e16, jointSet="plate"), unitMaterial(poisson=0.0)
     put = lambda z, height, m: addBlock(box((0, 0, z), (0.22, 0.1, height), turn), m)
     hold(put(-0.05, 0.05, plate))

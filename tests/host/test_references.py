@@ -1,16 +1,19 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Short runs against the stored numbers of the build that made them; tests/references/references.py says what they are.
+"""Short runs against the stored numbers of the build that made them; tests/references/references.py
+says what they are.
 
-A build that calculates in another order may differ from the stored numbers by round-off. Round-off grows once joints slide and crack, because its sign then decides what happens. The tolerances are relative to
-the size of a quantity:
+A build that calculates in another order may differ from the stored numbers by round-off. Round-off
+grows once joints slide and crack, because its sign then decides what happens. The tolerances are
+relative to the size of a quantity:
 
 - ROUND_OFF for every quantity, as long as round-off has not grown;
 - PEAK for the largest reaction at any time;
-- CRACKED for every quantity at later instants. Velocities are then noise about zero, and subcontacts at a strength may
-  be in one regime or the other.
+- CRACKED for every quantity at later instants. Velocities are then noise about zero, and
+  subcontacts at a strength may be in one regime or the other.
 
-The numbers were made with Eigen 3.4. Another version adds products in another order, also in YADE, which turns the corners
-of scenes that lie askew in space. So with another version the first instant of each run counts, and none of such scenes.
+The numbers were made with Eigen 3.4. Another version adds products in another order, also in YADE,
+which turns the corners of scenes that lie askew in space. So with another version the first instant
+of each run counts, and none of such scenes.
 """
 
 from usual import *
@@ -20,10 +23,12 @@ FOLDER = references.FOLDER
 
 ROUND_OFF, PEAK, CRACKED = 1e-9, 2e-4, 0.02
 EIGEN = "4"  # EIGEN_MAJOR_VERSION
-# Factor on the tolerance of velocities, which are small differences of large numbers and so nearer to round-off.
+# Factor on the tolerance of velocities, which are small differences of large numbers and so nearer
+# to round-off.
 NOISE = 10
 
-#: Run -> how many of its instants lie before round-off has grown, where that is not the first alone; None: all of them.
+#: Run -> how many of its instants lie before round-off has grown, where that is not the first
+#: alone; None: all of them.
 QUIET = {"couplets_combined": 5, "changes": 2}
 QUIET |= dict.fromkeys(["couplets", "couplets_undamped", "flying", "flying_combined"])
 QUIET |= dict.fromkeys(["collapse", "collapse_space", "collapse_deformable"])
@@ -79,7 +84,8 @@ def test_every_run_has_its_tolerance_and_its_file():
 
 @mark.slow
 def test_two_threads_give_the_same_numbers():
-    """Bit for bit those of one thread, but for YADE's own loop, which sums forces in the order of its threads."""
+    """Bit for bit those of one thread, but for YADE's own loop, which sums forces in the order of
+    its threads."""
     program = os.path.join(FOLDER, "references.py")
     message = []
     for threads in ("-j1", "-j2"):

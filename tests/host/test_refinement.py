@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Joints that are about to yield get more points: what they take over, and that the rest of a run does not notice."""
+"""Joints that are about to yield get more points: what they take over, and that the rest of a run
+does not notice."""
 
 from hosted import *
 from masonry.assembly.engines import functorLoop
@@ -34,7 +35,8 @@ def couplet(refine=3, inPlane=True, subcontacts=3, rows=None, **properties):
 
 
 def press(force, lever=0.0, shear=0.0):
-    """Load the upper brick: a force down [N] at a lever [m] from the middle, and one along x [N]."""
+    """Load the upper brick: a force down [N] at a lever [m] from the middle, and one along x
+    [N]."""
     load = engine("load")
     load.force = Vector3(shear, 0, -force)
     load.point = (LENGTH / 2 + lever, WIDTH / 2, HEIGHT)
@@ -118,7 +120,8 @@ def test_a_cracked_joint_takes_its_crack_along_and_the_balance_closes(law):
     assert energies("dissipated") > lost
 
 
-# ---- a panel: several joints are refined one after the other ---------------------------------------------------------
+# ---- a panel: several joints are refined one after the other
+# ---------------------------------------------------------
 
 CASES = {
     "softening": {},
@@ -176,8 +179,9 @@ def test_a_run_that_was_saved_goes_on_in_the_same_bits(case, tmp_path):
 
 
 def test_joints_keep_their_points_to_the_bit_when_others_are_refined(tmp_path):
-    """Points of joints of one size are kept once, where they differ by round-off; those of two sizes are not. When all of the
-    second size have got other points, those of the first must stay what they were, or no earlier state could be loaded.
+    """Points of joints of one size are kept once, where they differ by round-off; those of two
+    sizes are not. When all of the second size have got other points, those of the first must stay
+    what they were, or no earlier state could be loaded.
     """
     O.reset()
     unit, path = unitMaterial(young=1e13, poisson=0.2), str(tmp_path / "c")
@@ -280,11 +284,13 @@ def test_files_and_functors_take_joints_with_other_numbers_of_points(tmp_path):
     assert imbalance() < 2e-3
 
 
-# ---- joints in space ------------------------------------------------------------------------------------------------
+# ---- joints in space
+# ------------------------------------------------------------------------------------------------
 
 
 def bent(points, across, force, parts, **how):
-    """The couplet in space, pressed by a force that grows, off its middle by so much [m] along both sides of the joint."""
+    """The couplet in space, pressed by a force that grows, off its middle by so much [m] along both
+    sides of the joint."""
     joint = couplet(points, inPlane=False, **how)
     x, y = across
     engine("load").point = Vector3(LENGTH / 2 + x, WIDTH / 2 + y, HEIGHT)
@@ -319,7 +325,8 @@ def test_an_elastic_joint_in_space_keeps_force_moments_and_energy(law, points):
 
 @LAWS
 def test_a_joint_that_bends_across_is_as_one_that_has_had_its_points_from_the_beginning(law):
-    """The crack goes through the thickness of the wall; with three rows the joint turns otherwise."""
+    """The crack goes through the thickness of the wall; with three rows the joint turns
+    otherwise."""
     turned, errors = {}, {}
     for name, few, points in (("few", 3, 3), ("refined", 3, 9), ("many", 9, 9)):
         bent(points, (0, 0.025), 60e3, 200, subcontacts=few, rows=few, law=law)
@@ -331,7 +338,8 @@ def test_a_joint_that_bends_across_is_as_one_that_has_had_its_points_from_the_be
 
 
 def test_joints_that_have_not_their_stiffness_keep_their_points():
-    """With two points along a side a joint is three times too stiff against rotation: more would change that."""
+    """With two points along a side a joint is three times too stiff against rotation: more would
+    change that."""
     couplet(5, inPlane=False, rows=2, cap=False)
     run(20)
     ramp(-0.95 * 0.1e6 * AREA)

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Points of the joints of a scene: ``--points``, in the plane along a joint, in space along each side of its face."""
+"""Points of the joints of a scene: ``--points``, in the plane along a joint, in space along each
+side of its face."""
 
 from hosted import *
 
@@ -50,7 +51,8 @@ def test_a_scene_in_the_plane_has_one_row(tmp_path):
 
 
 def test_a_strip_that_bends_cracks_at_a_force_that_settles_with_more_points(tmp_path):
-    """With three rows the middle of a joint, with two thirds of its area, cracks at once, and a quarter too late."""
+    """With three rows the middle of a joint, with two thirds of its area, cracks at once, and a
+    quarter too late."""
     peaks = {}
     for points in (None, "3", "5", "9,9"):
         words = ["--points", points] if points else []

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What acts in a stage whose load grows, and the search for the load that is held, on structures that are known."""
+"""What acts in a stage whose load grows, and the search for the load that is held, on structures
+that are known."""
 
 import base64
 
@@ -13,7 +14,7 @@ from masonry.scene.stages.rest import CALM, EVERY, LOOKS, rampTime
 X = Vector3.UnitX
 
 
-# -- what acts --------------------------------------------------------------------------------------------------------
+# -- what acts -------------------------------------------------------------------------------------
 
 
 def model():
@@ -24,7 +25,8 @@ def model():
 @mark.parametrize("share", [0.0, 0.3, 1.0])
 def test_an_acceleration_grows_beside_a_gravity_that_stays(share):
     load = Acceleration(model(), 0.4, X, "a")
-    # blocks are four times as heavy as they are, so that a quarter makes the forces of the true masses
+    # blocks are four times as heavy as they are, so that a quarter makes the forces of the true
+    # masses
     assert load.at(None, share) == approx([share * 0.4 * GRAVITY / 4, 0, -5 / 4])
     assert load.shareOf(load.factor(share)) == approx(share)
 
@@ -53,7 +55,7 @@ def test_forces_add_to_what_is_there_or_replace_it_beside_one_that_stays():
     assert [tuple(e.force) for e in engines] == [(20, 0, 7), (0, 0, -33)]
 
 
-# -- the growth -------------------------------------------------------------------------------------------------------
+# -- the growth ------------------------------------------------------------------------------------
 
 
 class Load:
@@ -96,7 +98,8 @@ def standing(scaling=1.0, height=0.6):
 
 
 def test_a_growth_takes_longer_with_scaled_masses_and_has_the_load_of_the_middle():
-    """Times go with the root of the masses, so that the growth is as slow beside the waves in the blocks."""
+    """Times go with the root of the masses, so that the growth is as slow beside the waves in the
+    blocks."""
     O.dt = 1e-3
     load = Load(most=3.0)
     made = growing._Growth(standing(scaling=4.0), growing.Growing(), load, 2.0)
@@ -108,12 +111,12 @@ def test_a_growth_takes_longer_with_scaled_masses_and_has_the_load_of_the_middle
     assert load.values[-1] == 3.0  # no more than the whole
 
 
-# -- a trial ----------------------------------------------------------------------------------------------------------
+# -- a trial ---------------------------------------------------------------------------------------
 
 
 def trial(looks, source=0.2, goal=0.5, scaling=1.0, speeds=None):
-    """A trial in which the looks find the structure at rest or not, as a function of their number says. Returns whether it
-    was held, its memory and the load at each look."""
+    """A trial in which the looks find the structure at rest or not, as a function of their number
+    says. Returns whether it was held, its memory and the load at each look."""
     O.dt = 1e-4
     scene, load, number = standing(scaling), Load(), iter(range(10**6))
     at = growing.Growing(goal=goal, source=source, marks=[])
@@ -161,13 +164,14 @@ def test_a_trial_ends_when_the_structure_moves_faster_and_faster():
     assert trial(lambda n: n > 8, speeds=swing)[0]
 
 
-# -- the search -------------------------------------------------------------------------------------------------------
+# -- the search ------------------------------------------------------------------------------------
 
 
 def search(patch, capacity, moving, fell, setsOff, growth, buckling=math.inf):
-    """A search on a structure that holds loads below its capacity from rest, and below another one from a state in which it
-    moves, and that buckles from a third load on. Returns its memory, the scene and the trials: factor, whether it began at rest,
-    the state it began with, and whether it was held."""
+    """A search on a structure that holds loads below its capacity from rest, and below another one
+    from a state in which it moves, and that buckles from a third load on. Returns its memory, the
+    scene and the trials: factor, whether it began at rest, the state it began with, and whether it
+    was held."""
     last, states = growth["last"], growth["states"]
     here, trials = {"state": None, "factor": last}, []
     text = lambda factor: base64.b64encode(repr(factor).encode()).decode()
@@ -203,7 +207,8 @@ def search(patch, capacity, moving, fell, setsOff, growth, buckling=math.inf):
     return at, made, trials, found
 
 
-#: The last load of a growth, how near the search shall come to what is held, and how many states are kept.
+#: The last load of a growth, how near the search shall come to what is held, and how many states
+#: are kept.
 GROWTH = dict(last=some.floats(0.5, 20.0), states=some.integers(1, 60))
 GROWTH["within"] = some.sampled_from([0.002, 0.005, 0.05])
 growths = some.fixed_dictionaries(GROWTH)

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What horizontal sections transmit, against statics: weight and loads above, and the reaction of the base."""
+"""What horizontal sections transmit, against statics: weight and loads above, and the reaction of
+the base."""
 
 from hosted import *
 
@@ -31,7 +32,8 @@ def column(scene, head):
 @BLOCKS
 @mark.parametrize("plane, axis", [(True, 0), (False, 0), (False, 1)], ids=["plane", "x", "y"])
 def test_a_push_is_the_shear_and_its_lever_arm_the_moment(tmp_path, plane, axis, blocks):
-    """The platen can turn, so what acts on it are the push and the pressure, at places that are known."""
+    """The platen can turn, so what acts on it are the push and the pressure, at places that are
+    known."""
     words = "--blocks", blocks, "--rate", "2.5"
     wall = made(tmp_path, bricks.Wall(0.66, 0.486), *words, plane=plane)
     wall.platen("bottom")
@@ -68,7 +70,8 @@ def test_a_push_is_the_shear_and_its_lever_arm_the_moment(tmp_path, plane, axis,
 @BLOCKS
 @PLANES
 def test_the_section_at_the_foot_has_what_the_base_feels(tmp_path, plane, blocks):
-    """Also of a wall that has cracked and moved far, in the middle of a push, but for the motion of a step."""
+    """Also of a wall that has cracked and moved far, in the middle of a push, but for the motion of
+    a step."""
     wall = made(tmp_path, bricks.Wall(0.44, 0.648), "--blocks", blocks, plane=plane)
     base = wall.platen("bottom")
     top = wall.platen("top", rotation="free", height=0.1)
@@ -119,7 +122,8 @@ def test_tractions_of_a_frame_add_up_to_the_section(tmp_path):
 @mark.parametrize("damping", [0, 1e-5], ids=["elastic", "damped"])
 @mark.parametrize("negative", [False, True], ids=["", "negative"])
 def test_a_joint_transmits_what_both_of_its_blocks_feel(damping, negative):
-    """Far from the reference state and by a large jump; a quaternion and its negative are the same rotation."""
+    """Far from the reference state and by a large jump; a quaternion and its negative are the same
+    rotation."""
     joint = MasonryJoint(elastic=True, normalStiffness=1e9, shearStiffness=5e8)
     oscillator(joint, blocked="xyzXYZ")
     loop().stiffnessDamping, O.dt = damping, 1e-5

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The self-check of the plugin: what it refuses, what it leaves alone, and what the module shows to others."""
+"""The self-check of the plugin: what it refuses, what it leaves alone, and what the module shows to
+others."""
 
 import importlib.util
 from usual import *
@@ -28,7 +29,8 @@ TABLES = re.findall(r"\bX\((\w+)\)", CHECK)
 MEMBERS = re.findall(r"^ +AT\((\w+), (\w+)\)", CHECK, re.MULTILINE) + [("State", "se3")]
 SIZES = re.findall(r'{"(\w+)", sizeof\(\w+\), "(\w+)", "(\w+)"}', CHECK)
 
-#: Changes the tables of the running YADE in its memory, tries to import the module, and changes them back.
+#: Changes the tables of the running YADE in its memory, tries to import the module, and changes
+#: them back.
 FAULTS = """
 from yade import *
 import ctypes, importlib.util, yade.wrapper
@@ -113,8 +115,9 @@ print("ALL REFUSED")
 
 
 def test_a_yade_with_another_table_member_or_size_is_refused_by_name_and_stays_usable():
-    """A function more, fewer or exchanged in each class, each member moved, each base grown: one line each. A function
-    more in Shape is what YADE 2026.1.0 has, which a check of some functions of each class took for fitting.
+    """A function more, fewer or exchanged in each class, each member moved, each base grown: one
+    line each. A function more in Shape is what YADE 2026.1.0 has, which a check of some functions
+    of each class took for fitting.
     """
     assert len(TABLES) > 20 and len(MEMBERS) > 40 and len(SIZES) > 10
     lists = f"MODULE, TABLES, MEMBERS, SIZES = {MODULE!r}, {TABLES}, {MEMBERS}, {SIZES}"

@@ -8,7 +8,8 @@ LIMIT = r"its limit \S+ s, which (joint \"bed\" between bodies \d+ and \d+|unit 
 
 
 def panel(blocks="rigid", young=4.8e9, rigid=0, **around):
-    """A small panel under its weight on a fixed course; so many of its last bricks are rigid in any case. Returns its free ones."""
+    """A small panel under its weight on a fixed course; so many of its last bricks are rigid in any
+    case. Returns its free ones."""
     O.reset()
     mat = unitMaterial(young=young)
     wall = bricks.Wall(2 * UNIT[0], 4 * UNIT[2], UNIT)
@@ -22,7 +23,7 @@ def panel(blocks="rigid", young=4.8e9, rigid=0, **around):
     return laid[first:]
 
 
-# -- runs that cannot be trusted --------------------------------------------------------------------------------------
+# -- runs that cannot be trusted -------------------------------------------------------------------
 
 
 @mark.parametrize("how", ["step", "run", "background"])
@@ -76,7 +77,8 @@ def test_the_limit_follows_joints_and_damping(blocks, functors):
 
 @BLOCKS
 def test_motion_out_of_nothing_is_seen_within_a_hundred_steps(blocks):
-    """A brick whose mass a script divides by 1000 in the middle of a run. No engine is informed of that."""
+    """A brick whose mass a script divides by 1000 in the middle of a run. No engine is informed of
+    that."""
     rigid = max(panel(blocks, damping=0, rigid=1))
     O.run(20, True)
     O.bodies[rigid].state.mass /= 1000
@@ -119,11 +121,12 @@ def test_a_user_who_knows_better_can_go_on():
     assert O.iter == 50
 
 
-# -- the energy balance against closed forms --------------------------------------------------------------------------
+# -- the energy balance against closed forms -------------------------------------------------------
 
 
 def pair(joint, functors, damping=0.0):
-    """A fixed brick, and one on it whose motion is prescribed, except in directions that a test sets free."""
+    """A fixed brick, and one on it whose motion is prescribed, except in directions that a test
+    sets free."""
     hold(pile()[1])
     (made,) = join(joint, damping=damping, gravity=(0, 0, 0), functors=functors)
     O.dt = 1e-5
@@ -138,7 +141,8 @@ def move(distance, direction, steps=4000):
 
 
 def perArea(**expected):
-    """Compare the energies over the joint's area [J/m²] with the expected ones; all that are not given must be zero."""
+    """Compare the energies over the joint's area [J/m²] with the expected ones; all that are not
+    given must be zero."""
     b = balance()
     size = max(expected.values())
     # where a prescribed velocity jumps under load, half of a step's work is not counted
@@ -191,8 +195,9 @@ def test_a_sliding_joint_dissipates_its_energy_and_friction(functors, pressure):
     slide = 60e-3
     move(slide, (1, 0, 0), 60000)
     peak, friction = 0.11e6 + 0.43 * pressure, 0.43 * pressure
-    # An elastic triangle to the peak, an exponential above friction whose length grows with the peak, and friction
-    # (law/README.md, softening). The bricks in series store energy, and give back all but what friction holds.
+    # An elastic triangle to the peak, an exponential above friction whose length grows with the
+    # peak, and friction (law/README.md, softening). The bricks in series store energy, and give
+    # back all but what friction holds.
     elastic = peak / joint.shearStiffness
     length = joint.shearStiffness * 160 / 0.11e6**2 - 0.5  # over the elastic slide
     kept = 0.5 * friction**2 / phys.shearStiffness
@@ -213,7 +218,8 @@ def test_a_joint_crushed_to_its_peak_dissipates_what_lies_under_its_curve(functo
     elastic = fel / joint.normalStiffness
     peak = joint.peakRatio * fcp / joint.normalStiffness
     move(-(peak + fcp * bricks), (0, 0, 1), 20000)
-    # a quarter of an ellipse from the elastic limit to the peak (law/README.md, compression), and what bricks store
+    # a quarter of an ellipse from the elastic limit to the peak (law/README.md, compression), and
+    # what bricks store
     work = 0.5 * fel * elastic + (peak - elastic) * (fel + (fcp - fel) * math.pi / 4)
     work += 0.5 * fcp**2 * bricks
     kept = 0.5 * fcp**2 / phys.normalStiffness

@@ -176,7 +176,8 @@ def test_a_damped_run_goes_on_bit_for_bit_after_saving_and_loading(tmp_path, thr
 
 
 def dampingStresses():
-    """The stresses of damping in the state that a checkpoint keeps [Pa], three for every subcontact."""
+    """The stresses of damping in the state that a checkpoint keeps [Pa], three for every
+    subcontact."""
     found = records(saveScene(""))
     joints = O.interactions[0, 1].geom.areas
     numbers = np.frombuffer(found["scene.joints"])

@@ -113,7 +113,8 @@ def test_blocks_joints_and_the_legend_are_drawn(seen):
 
 
 def test_a_run_with_the_view_costs_no_more_than_the_drawing(seen):
-    """The time of the processor beside that of the drawing, with half as much again for what a noisy machine adds."""
+    """The time of the processor beside that of the drawing, with half as much again for what a
+    noisy machine adds."""
     _, (_, (view, drawing)), (_, (plain, _)) = seen
     assert drawing > 0
     assert view - drawing < 1.5 * plain

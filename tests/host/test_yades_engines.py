@@ -8,7 +8,8 @@ from yade import plot, timing, utils
 
 
 def standing(friction, **settings):
-    """A block on a held one, without bond; returns its id and the weight that friction carries [N]."""
+    """A block on a held one, without bond; returns its id and the weight that friction carries
+    [N]."""
     _, upper = pile(size=(0.6, 0.3, 0.3), material=MasonryMat(density=2500))
     bond = dict(tensileStrength=0, cohesion=0, cap=False)
     joint = MasonryJoint(friction=friction, residualFriction=friction, **bond)
@@ -18,7 +19,8 @@ def standing(friction, **settings):
 
 
 def test_connect_chooses_the_time_step_that_a_script_has_not():
-    """Of the 1e-8 s that YADE begins with, a wall would need days; one that the script has chosen stays."""
+    """Of the 1e-8 s that YADE begins with, a wall would need days; one that the script has chosen
+    stays."""
     standing(0.5)
     assert O.dt == approx(0.5 * criticalTimeStep()[0], rel=0.02)
     O.reset()
@@ -28,8 +30,8 @@ def test_connect_chooses_the_time_step_that_a_script_has_not():
 
 
 def test_forces_motions_and_records_of_yades_engines_hold_beside_ours(tmp_path, capfd):
-    """A force of YADE's that grows to 0.6 of the weight moves a block where friction is 0.5: it slides from there on. Its
-    work, and that of a motion of YADE's, are in the energy balance."""
+    """A force of YADE's that grows to 0.6 of the weight moves a block where friction is 0.5: it
+    slides from there on. Its work, and that of a motion of YADE's, are in the energy balance."""
     block, weight = standing(0.5)
     push = ForceEngine(ids=[block], force=(0, 0, 0))
     rows = []
@@ -58,7 +60,8 @@ def test_forces_motions_and_records_of_yades_engines_hold_beside_ours(tmp_path, 
 
 @mark.parametrize("functors, place", [(False, 2), (True, 1), (True, 2)])
 def test_work_that_is_not_counted_is_said_and_ends_no_run(capfd, functors, place):
-    """Behind the loop of the joints, and with functors, forces of YADE's engines are not apart from those of joints."""
+    """Behind the loop of the joints, and with functors, forces of YADE's engines are not apart from
+    those of joints."""
     block, weight = standing(0.5, functors=functors)
     ours = list(O.engines)
     O.engines = [*ours[:place], ForceEngine(ids=[block], force=(0.6 * weight, 0, 0)), *ours[place:]]
@@ -69,8 +72,8 @@ def test_work_that_is_not_counted_is_said_and_ends_no_run(capfd, functors, place
 
 @mark.slow
 def test_tables_tags_plots_and_timing_are_those_of_yade(tmp_path, monkeypatch):
-    """A value of a table of yade-batch reaches the scene and O.tags; a PyRunner fills yade.plot; and
-    yade.timing knows each engine of ours."""
+    """A value of a table of yade-batch reaches the scene and O.tags; a PyRunner fills yade.plot;
+    and yade.timing knows each engine of ours."""
     table = tmp_path / "table"
     table.write_text("friction\n0.3\n0.4\n", encoding="utf-8")
     monkeypatch.setenv("YADE_BATCH", f"{table}:3")

@@ -3,7 +3,8 @@
 
 import html.parser
 
-#: Attributes by which a page loads something when it is opened. A link that a reader follows is none.
+#: Attributes by which a page loads something when it is opened. A link that a reader follows is
+#: none.
 LOADED = {
     "script": "src",
     "link": "href",
@@ -13,13 +14,15 @@ LOADED = {
     "object": "data",
     "embed": "src",
 }
-#: Texts that break out of a page, turn its reading round or steer a terminal, if they are not escaped.
+#: Texts that break out of a page, turn its reading round or steer a terminal, if they are not
+#: escaped.
 HOSTILE = "</script><script>alert(1)</script><!-- \"' & <b>\u202e\x1b"
 SHOWN = HOSTILE.replace("\u202e", "\\u202e").replace("\x1b", "\\x1b")
 
 
 class Page(html.parser.HTMLParser):
-    """The elements of a page, each with its attributes and its own text; texts in turn; and cells of all rows of tables."""
+    """The elements of a page, each with its attributes and its own text; texts in turn; and cells
+    of all rows of tables."""
 
     def __init__(self, text):
         super().__init__()

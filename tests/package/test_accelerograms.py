@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Records of ground acceleration: the formats that are read, what is refused, and when a record drifts."""
+"""Records of ground acceleration: the formats that are read, what is refused, and when a record
+drifts."""
 
 from usual import *
 from masonry.scene import accelerograms
@@ -223,7 +224,8 @@ EVERY = 0.01
 
 
 def pulse(n=400, cycles=4):
-    """A ground motion whose velocity is a sine under a bell, so that velocity and displacement come back to zero."""
+    """A ground motion whose velocity is a sine under a bell, so that velocity and displacement come
+    back to zero."""
     time = [EVERY * k for k in range(n + 1)]
     bell = lambda t: math.sin(math.pi * t / time[-1]) ** 4
     place = lambda t: 0.05 * bell(t) * math.sin(2 * math.pi * cycles * t / time[-1])
@@ -239,7 +241,8 @@ def test_a_motion_that_ends_at_rest_does_not_drift():
 
 
 def test_integrals_are_those_of_closed_forms():
-    """A constant acceleration a: v = a t, d = a t²/2, whose line of least squares rises by a t²/2 over the whole."""
+    """A constant acceleration a: v = a t, d = a t²/2, whose line of least squares rises by a t²/2
+    over the whole."""
     found = drift([2.0] * 101, EVERY)
     assert found.endVelocity == approx(2.0)
     assert found.peakDisplacement == approx(1.0)

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What was not given of a masonry is noted, printed and written; what cannot be assumed is refused."""
+"""What was not given of a masonry is noted, printed and written; what cannot be assumed is
+refused."""
 
 from hosted import *
 import masonry
@@ -38,7 +39,7 @@ def names(entries):
     return {entry["name"] for entry in entries}
 
 
-# -- what counts as given ---------------------------------------------------------------------------------------------
+# -- what counts as given --------------------------------------------------------------------------
 
 WAYS = ["made", "attribute", "set", "updateAttrs"]
 
@@ -97,7 +98,7 @@ def test_what_has_no_effect_is_not_named(changes, without):
     assert "bed.normalStiffness" in found and "bed.name" not in found
 
 
-# -- what must be given -----------------------------------------------------------------------------------------------
+# -- what must be given ----------------------------------------------------------------------------
 
 
 @mark.parametrize(
@@ -156,7 +157,7 @@ def test_an_elastic_joint_needs_no_strength(tmp_path):
     made.finish()
 
 
-# -- what is said -----------------------------------------------------------------------------------------------------
+# -- what is said ----------------------------------------------------------------------------------
 
 
 def test_a_scene_prints_once_what_it_assumes_and_writes_it(tmp_path, capsys):
@@ -257,7 +258,7 @@ def test_the_defaults_of_dry_joints_are_those_of_its_help():
     assert (unit.density, unit.young, unit.poisson) == (2600, 20e9, 0.2)
 
 
-# -- joints to platens ------------------------------------------------------------------------------------------------
+# -- joints to platens -----------------------------------------------------------------------------
 
 
 def test_stones_slide_on_their_platen(tmp_path):
@@ -310,7 +311,7 @@ def test_joints_without_a_name_have_that_of_their_place():
         assert names == "bed head collar support"
 
 
-# -- properties that go together --------------------------------------------------------------------------------------
+# -- properties that go together -------------------------------------------------------------------
 
 
 @given(

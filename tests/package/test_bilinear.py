@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Bilinear curves and drifts of a push: closed forms, what does not depend on units, and curves that have none."""
+"""Bilinear curves and drifts of a push: closed forms, what does not depend on units, and curves
+that have none."""
 
 from usual import *
 from masonry.read import bilinear
@@ -16,12 +17,13 @@ def curve(*points, rows=401):
     return moved, np.interp(moved, corners, values)
 
 
-# -- closed forms -----------------------------------------------------------------------------------------------------
+# -- closed forms ----------------------------------------------------------------------------------
 
 
 @mark.parametrize("rule", bilinear.RULES)
 def test_a_perfect_bilinear_curve_gives_itself(rule):
-    """50 kN/mm up to 100 kN, a plateau to 12 mm and a fall within a thousandth of it; its mechanism may form anywhere on it."""
+    """50 kN/mm up to 100 kN, a plateau to 12 mm and a fall within a thousandth of it; its mechanism
+    may form anywhere on it."""
     moved, force = curve((0, 0), (2, 100), (12, 100), (12.001, 0))
     for mechanism in (None, 5.0, 12.0):
         found = bilinear.bilinear(moved, force, rule, mechanism=mechanism)
@@ -34,7 +36,8 @@ def test_a_perfect_bilinear_curve_gives_itself(rule):
 
 
 def test_a_triangle_has_its_closed_form():
-    """Up to 1 at 1 and down to 0 at 2: K = 1, du = 1.2, area 1/2 + (1 + 0.8)/2 × 0.2 = 0.68, Vy = 1.2 - √(1.44 - 1.36)."""
+    """Up to 1 at 1 and down to 0 at 2: K = 1, du = 1.2, area 1/2 + (1 + 0.8)/2 × 0.2 = 0.68, Vy =
+    1.2 - √(1.44 - 1.36)."""
     found = bilinear.bilinear(*curve((0, 0), (1, 1), (2, 0)))
     assert found.stiffness == approx(1)
     assert found.ultimateDisplacement == approx(1.2)
@@ -45,7 +48,8 @@ def test_a_triangle_has_its_closed_form():
 
 
 def test_a_parabola_has_its_closed_form():
-    """V = 1 - (d - 1)²: 0.7 at 1 - √0.3, 0.8 at 1 + √0.2, area d² - d³/3; up to the peak 2/3, so dy = 2 (1 - 2/3)."""
+    """V = 1 - (d - 1)²: 0.7 at 1 - √0.3, 0.8 at 1 + √0.2, area d² - d³/3; up to the peak 2/3, so dy
+    = 2 (1 - 2/3)."""
     moved = np.linspace(0, 2, 20001)
     force = 1 - (moved - 1) ** 2
     stiffness, end = 0.7 / (1 - math.sqrt(0.3)), 1 + math.sqrt(0.2)
@@ -80,7 +84,7 @@ def test_the_curve_itself_has_the_plateau_and_no_force_beyond_its_end():
     assert math.isnan(force[4])
 
 
-# -- whatever the curve -----------------------------------------------------------------------------------------------
+# -- whatever the curve ----------------------------------------------------------------------------
 
 shares = some.floats(0.05, 1.0)
 
@@ -101,7 +105,8 @@ def pushes(draw):
 
 
 def found(moved, force, *words):
-    """The bilinear curve. Those that lie too far above their secant to have one are left out of a test."""
+    """The bilinear curve. Those that lie too far above their secant to have one are left out of a
+    test."""
     try:
         return bilinear.bilinear(moved, force, *words)
     except Refused as refused:
@@ -157,7 +162,7 @@ def test_more_rows_of_the_same_curve_change_nothing(push, times):
     assert two.ductility == approx(one.ductility, rel=1e-6)
 
 
-# -- curves that end early, and curves that are none ------------------------------------------------------------------
+# -- curves that end early, and curves that are none -----------------------------------------------
 
 
 def test_a_curve_that_does_not_fall_so_far_ends_at_its_end_and_says_so():
@@ -253,7 +258,7 @@ def test_a_curve_with_more_area_than_any_bilinear_one_is_refused():
         bilinear.bilinear(moved, force, "en1998", mechanism=9.0)
 
 
-# -- of a run ---------------------------------------------------------------------------------------------------------
+# -- of a run --------------------------------------------------------------------------------------
 
 
 PUSH = {"stage": "push", "first_row": 0, "load": ["push", "top along x", ""]}

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Walls as plain records: bonds, openings, junctions, and collections of blocks.
 
-What a wall must be is computed here: its blocks fill what they should fill, no two overlap, and no head joint goes
-through two courses. The checks that find overlaps, gaps and loose parts are tested in test_bricks_checks.
+What a wall must be is computed here: its blocks fill what they should fill, no two overlap, and no
+head joint goes through two courses. The checks that find overlaps, gaps and loose parts are tested
+in test_bricks_checks.
 """
 
 from usual import *
@@ -32,7 +33,8 @@ def volume(wall):
 
 
 def assertFits(wall, filled, axes=(0,)):
-    """Its blocks have this volume [m³], and nothing overlaps, gapes, is loose or has a straight head joint."""
+    """Its blocks have this volume [m³], and nothing overlaps, gapes, is loose or has a straight
+    head joint."""
     assert volume(wall) == approx(filled, rel=1e-9)
     assert [p for p in wall.problems() if "odd size" not in p] == []
     assert not any(straightJoints(wall, axis) for axis in axes)
@@ -56,7 +58,7 @@ def straightJoints(wall, axis=0):
     ]
 
 
-# -- whole bricks and faces ---------------------------------------------------------------------------------------------
+# -- whole bricks and faces ------------------------------------------------------------------------
 
 
 @few
@@ -102,7 +104,7 @@ def test_free_faces_are_what_no_joint_covers():
         wall.freeFaces((0, 0, 0))
 
 
-# -- bonds ------------------------------------------------------------------------------------------------------------
+# -- bonds -----------------------------------------------------------------------------------------
 
 
 #: Bonds, their wythes, thickness [m] and shortest brick [m].
@@ -126,7 +128,8 @@ def test_a_bond_fills_the_wall_and_has_no_straight_head_joint(bond, n, courses, 
 
 
 def test_straight_joints_are_found_in_a_stack_bond():
-    """Holds the test above against a wall that has them: two head joints, in all pairs of three courses."""
+    """Holds the test above against a wall that has them: two head joints, in all pairs of three
+    courses."""
     wall = Wall(3 * L, 3 * H, bond="stack")
     places = [(c, approx(x)) for c in (0, 1) for x in (L, 2 * L)]
     assert sorted(straightJoints(wall)) == places
@@ -184,7 +187,7 @@ def test_courses_of_different_height():
         Wall(2 * L, 0.4, courses=heights)
 
 
-# -- openings ---------------------------------------------------------------------------------------------------------
+# -- openings --------------------------------------------------------------------------------------
 
 
 spans, rows = some.integers(1, 30), some.integers(1, 8)  # quarters, and courses
@@ -233,7 +236,8 @@ def test_any_opening_is_cut_out_or_refused(x, z, width, height):
 
 
 def test_a_brick_that_an_opening_leaves_in_an_l_is_pieces_of_one_brick():
-    """The opening's corner lies in the whole brick from 2 L to 3 L of course 2, at a quarter of it and half its height."""
+    """The opening's corner lies in the whole brick from 2 L to 3 L of course 2, at a quarter of it
+    and half its height."""
     opening = Opening(2.25 * L, 2.5 * H, 1.5 * L, 3 * H)
     wall = Wall(6 * L, 8 * H, openings=[opening], halves=False)
     pieces = [b for b in wall if b.course == 2 and b.high[0] <= 3.0001 * L < 3.5 * L]
@@ -280,7 +284,7 @@ def test_impossible_openings_are_refused(openings, said):
         Wall(2.2, 1.62, openings=openings)
 
 
-# -- junctions --------------------------------------------------------------------------------------------------------
+# -- junctions -------------------------------------------------------------------------------------
 
 sizes = (L, T, H), (0.25, 0.125, 0.065), (0.3, 0.1, 0.1), (0.4, 0.2, 0.2)
 junctionUnits = some.sampled_from([*sizes, (0.2, 0.12, 0.1)])
@@ -345,7 +349,7 @@ def test_a_stem_in_the_wrong_place_is_reported_the_nearest_right_one():
         Tee(2.2, 1.65, 1.1, 1.62)
 
 
-# -- what is refused --------------------------------------------------------------------------------------------------
+# -- what is refused -------------------------------------------------------------------------------
 
 
 @mark.parametrize(
@@ -396,7 +400,7 @@ def test_headers_are_as_long_as_the_brick_is(bond):
     assertFits(wall, 2.6 * 0.75 * 0.25)
 
 
-# -- collections ------------------------------------------------------------------------------------------------------
+# -- collections -----------------------------------------------------------------------------------
 
 
 def test_a_collection_is_an_immutable_sequence():

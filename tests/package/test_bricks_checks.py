@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What the checks of a set of blocks find: gaps, overlaps, slivers, loose parts and joints of odd size."""
+"""What the checks of a set of blocks find: gaps, overlaps, slivers, loose parts and joints of odd
+size."""
 
 from usual import *
 from dataclasses import replace
@@ -104,8 +105,8 @@ def test_a_gap_that_another_block_fills_is_none():
 @few
 @given(some.integers(0, 10**6))
 def test_blocks_at_any_angle_overlap_as_sampled_points_say(seed):
-    """Two boxes at random. Points are sampled in one; the checks tell an overlap if any lies clearly in the other, and
-    tell none if a plane (one of many directions) parts them."""
+    """Two boxes at random. Points are sampled in one; the checks tell an overlap if any lies
+    clearly in the other, and tell none if a plane (one of many directions) parts them."""
     random = np.random.default_rng(seed)
     one = block((0, 0, 0), tuple(random.uniform(0.3, 1, 3)))
     two = block((0, 0, 0), tuple(random.uniform(0.3, 1, 3)))
@@ -130,7 +131,8 @@ def test_blocks_at_any_angle_overlap_as_sampled_points_say(seed):
 
 
 def test_edges_that_cross_are_parted_although_no_face_parts_them():
-    """Two wedges, edge above edge at right angles: only the product of the edges is an axis that separates them."""
+    """Two wedges, edge above edge at right angles: only the product of the edges is an axis that
+    separates them."""
     corners = [(x, y, -abs(y)) for x in (-1, 1) for y in (-1, 0, 1)]
     wedge = Bricks([Block(tuple(corners), 0)])
     other = wedge.turned(180, "x").turned(90, "z")
@@ -164,7 +166,8 @@ def test_a_sliver_and_a_narrow_joint_are_reported():
 
 @mark.parametrize("direction", ["missing", "pushed", "swollen"])
 def test_one_wrong_brick_in_a_wall_is_found(direction):
-    """A wall has 20 courses of five bricks; brick 52 is taken out, pushed by 3 mm, or made 3 mm longer."""
+    """A wall has 20 courses of five bricks; brick 52 is taken out, pushed by 3 mm, or made 3 mm
+    longer."""
     wall = Wall(1.1, 1.62, halves=False)
     assert wall.problems() == []
     if direction == "missing":  # a hole is no fault: it may be meant
@@ -181,7 +184,8 @@ def test_one_wrong_brick_in_a_wall_is_found(direction):
 
 
 def test_ten_thousand_blocks_take_seconds():
-    """The bound is that of the brief, 5 s on one core, in CPU time so that a busy machine does not fail it."""
+    """The bound is that of the brief, 5 s on one core, in CPU time so that a busy machine does not
+    fail it."""
     for made in (Wall(11, 8.1), Wall(11, 8.1).turned(10, "x").turned(20)):
         start = time.process_time()
         assert len(made) == 10_000 and made.problems() == []

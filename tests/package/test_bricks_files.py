@@ -7,7 +7,8 @@ from masonry.bricks import Arch, Bricks, Dome, Wall, fromFile, stack
 from masonry.bricks.geometry import hull
 import meshio
 
-#: 27 blocks: a wall whose blocks touch at faces of different size, an arch, and a keystone with many corners.
+#: 27 blocks: a wall whose blocks touch at faces of different size, an arch, and a keystone with
+#: many corners.
 ARCH, DOME = Arch(0.3, 0.5, 9, radius=1.0).moved(dx=2), Dome(1, 0.2, 2, 5).moved(dx=6)
 MODEL = Wall(0.66, 0.243) + ARCH + DOME
 
@@ -25,7 +26,8 @@ def oneMesh(blocks):
 
 
 def writeObj(path, blocks, word="g", relative=False):
-    """A group or an object for each block; numbers of corners from the first one on, or back from the last."""
+    """A group or an object for each block; numbers of corners from the first one on, or back from
+    the last."""
     start, lines = 1, []
     for n, (corners, faces) in enumerate(surfaces(blocks)):
         first, end = (-len(corners), "") if relative else (start, "//1")
@@ -101,7 +103,8 @@ FORMATS = {
 
 @mark.parametrize("name", FORMATS)
 def test_every_format_gives_the_blocks_that_were_written(tmp_path, name):
-    """Blocks that touch are distinguished also where all surfaces stand in one mesh. STL as bytes has single precision."""
+    """Blocks that touch are distinguished also where all surfaces stand in one mesh. STL as bytes
+    has single precision."""
     FORMATS[name](tmp_path / name, MODEL)
     read = fromFile(tmp_path / name)
     assert len(read) == len(MODEL) == len({b.brick for b in read})
@@ -129,7 +132,8 @@ def test_faces_may_all_run_clockwise(tmp_path):
 
 
 def test_points_inside_faces_and_edges_are_no_corners(tmp_path):
-    """The top of a cube in four squares about its middle, whose outer points lie on the edges of the sides."""
+    """The top of a cube in four squares about its middle, whose outer points lie on the edges of
+    the sides."""
     ring = [(0, 0), (0.5, 0), (1, 0), (1, 0.5), (1, 1), (0.5, 1), (0, 1), (0, 0.5)]
     points = [(x, y, 1) for x, y in ring] + [(x, y, 0) for x, y in ring[::2]]
     faces = [(11, 10, 9, 8)]

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Arches, barrel vaults and domes against closed forms of their polygons, and as sets of blocks that fit."""
+"""Arches, barrel vaults and domes against closed forms of their polygons, and as sets of blocks
+that fit."""
 
 from usual import *
 from masonry.bricks import Arch, BarrelVault, Dome
@@ -96,11 +97,12 @@ holes = some.one_of(some.none(), some.floats(0.05, 0.6))
 @few
 @given(*spheres, *numbers, angles, holes, some.booleans())
 def test_a_dome_fits(radius, share, courses, stones, angle, hole, staggered):
-    """Inner and outer surface are similar about the centre, as (r + t) / r; so the shell has ((r + t)³ - r³) / r³ of the
-    volume of the pyramids from the centre to the inner surface."""
+    """Inner and outer surface are similar about the centre, as (r + t) / r; so the shell has ((r +
+    t)³ - r³) / r³ of the volume of the pyramids from the centre to the inner surface."""
     thickness = share * radius
     oculus = None if hole is None else hole * radius * math.sin(math.radians(angle / 2))
-    # stones on either side of a hole that is narrower than a third of them seem to have a gap between them
+    # stones on either side of a hole that is narrower than a third of them seem to have a gap
+    # between them
     assume(oculus is None or 2 * oculus > thickness / 3)
     dome = Dome(radius, thickness, courses, stones, oculus, angle, staggered)
     sectors = 2 * stones if staggered else stones

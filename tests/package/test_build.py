@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What the build makes: objects for one kind of vector units alone, and an installed package without old modules."""
+"""What the build makes: objects for one kind of vector units alone, and an installed package
+without old modules."""
 
 from usual import *
 import glob
@@ -10,7 +11,8 @@ FILES = glob.glob(CORE + "/**/CyclicOn*.cpp.o", recursive=True)
 
 @mark.parametrize("file", FILES, ids=os.path.basename)
 def test_a_file_for_vector_units_defines_its_own_function_alone(file):
-    """A processor without these vector units would otherwise run instructions that it does not have."""
+    """A processor without these vector units would otherwise run instructions that it does not
+    have."""
     lines = subprocess.check_output(["nm", "-C", "--defined-only", file], text=True)
     found = [line.split(maxsplit=2)[1:] for line in lines.splitlines()]
     shared = [words for kind, words in found if not kind.islower() or kind in "uvw"]

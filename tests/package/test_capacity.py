@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Capacity and demand: spectra of EN 1998-1, the N2 method against numbers by hand, the files of a run, and N-V domains."""
+"""Capacity and demand: spectra of EN 1998-1, the N2 method against numbers by hand, the files of a
+run, and N-V domains."""
 
 from usual import *
 from masonry import capacity
@@ -7,11 +8,12 @@ from masonry.capacity import __main__ as program
 from test_bilinear import PUSH, WHOLE, curve, run
 from test_figures import writeRun
 
-# -- spectra ----------------------------------------------------------------------------------------------------------
+# -- spectra ---------------------------------------------------------------------------------------
 
 
 def test_the_spectrum_has_its_values_at_the_corners():
-    """Type 1, ground B, agR 0.2 g, importance 1.2: ag S = 0.2 × 9.81 × 1.2 × 1.2 m/s², TB 0.15, TC 0.5, TD 2 s."""
+    """Type 1, ground B, agR 0.2 g, importance 1.2: ag S = 0.2 × 9.81 × 1.2 × 1.2 m/s², TB 0.15, TC
+    0.5, TD 2 s."""
     found = capacity.elastic(0.2, "g", type=1, ground="B", importance=1.2)
     top = 2.5 * 0.2 * 9.81 * 1.2 * 1.2
     assert found.corner == 0.5
@@ -49,7 +51,8 @@ def test_grounds_have_the_corners_of_the_tables(type, ground, soil, corners):
 
 
 def test_damping_lowers_the_spectrum_as_far_as_055():
-    """η = √(10/(5 + ξ)), 0.816 at 10 %, not below 0.55; the acceleration at the period 0 is that of the ground."""
+    """η = √(10/(5 + ξ)), 0.816 at 10 %, not below 0.55; the acceleration at the period 0 is that of
+    the ground."""
     usual = capacity.elastic(1.0, "m/s²", type=1, ground="A")
     for damping, correction in {
         5: 1,
@@ -125,7 +128,7 @@ def test_odd_files_of_spectra_are_refused(tmp_path, text, words, message):
         capacity.readSpectrum(path, **words)
 
 
-# -- the equivalent system --------------------------------------------------------------------------------------------
+# -- the equivalent system -------------------------------------------------------------------------
 
 
 def test_two_storeys_have_their_equivalent_mass_and_factor():
@@ -166,7 +169,7 @@ def test_a_run_says_its_system_or_what_is_missing():
         capacity.ofRun({"answers": [{**mass, "unit": "t"}, gamma]})
 
 
-# -- the target displacement ------------------------------------------------------------------------------------------
+# -- the target displacement -----------------------------------------------------------------------
 
 
 def bilinearOf(stiffness, force, ultimate, rule="en1998"):
@@ -181,8 +184,8 @@ GROUND_A = capacity.elastic(0.2, "g", type=1, ground="A")
 
 
 def test_above_tc_displacements_are_equal():
-    """10 kN/mm and 250 t: T* = 2π √(250/10000) = 0.9935 s, above TC = 0.4 s of ground A. Se = 2.5 × 1.962 × 0.4/0.9935 m/s², times
-    (T*/2π)² = 0.025 s²."""
+    """10 kN/mm and 250 t: T* = 2π √(250/10000) = 0.9935 s, above TC = 0.4 s of ground A. Se = 2.5 ×
+    1.962 × 0.4/0.9935 m/s², times (T*/2π)² = 0.025 s²."""
     system = capacity.equivalent(250e3, 1.0)
     found = capacity.demand(bilinearOf(10, 100, 90), system, GROUND_A)
     period = 2 * math.pi * math.sqrt(0.025)
@@ -199,8 +202,8 @@ def test_above_tc_displacements_are_equal():
 
 
 def test_below_tc_they_are_not():
-    """100 kN/mm, 100 kN and 100 t: T* = 0.1987 s on the plateau of ground A, Se 4.905 m/s², Fy*/m* 1 m/s², qu 4.905; det* = 4.905 mm,
-    dt* = det*/qu (1 + (qu - 1) TC/T*) with TC = 0.4 s."""
+    """100 kN/mm, 100 kN and 100 t: T* = 0.1987 s on the plateau of ground A, Se 4.905 m/s², Fy*/m*
+    1 m/s², qu 4.905; det* = 4.905 mm, dt* = det*/qu (1 + (qu - 1) TC/T*) with TC = 0.4 s."""
     made = bilinearOf(100, 100, 12)
     found = capacity.demand(made, capacity.equivalent(100e3, 1.0), GROUND_A)
     period = 2 * math.pi * math.sqrt(1e-3)
@@ -218,7 +221,8 @@ def test_below_tc_they_are_not():
 
 
 def test_the_least_of_the_annex_is_taken_only_if_it_is_asked_for():
-    """T* = 0.0628 s, TC = 0.8 s: dt* of (B.10) is 12 times as much as TC/T* says, and more than 3 det*."""
+    """T* = 0.0628 s, TC = 0.8 s: dt* of (B.10) is 12 times as much as TC/T* says, and more than 3
+    det*."""
     words = (
         bilinearOf(100, 10, 12),
         capacity.equivalent(10e3, 1.0),
@@ -276,8 +280,9 @@ def test_what_does_not_hold_says_so_and_a_short_curve_is_not_known():
 
 @mark.parametrize("gamma", [2 / 3, 1.0, 1.5])
 def test_the_curve_of_the_structure_is_compared_with_its_own_displacement(gamma):
-    """dt = Γ dt*, also with Γ below 1: the structure holds where du reaches dt, and 4.3.3.4.2.3(1) of EN 1998-1 wants a curve up to
-    1.5 dt. T* = 2π √(250/10000) s does not depend on Γ, so dt* is that of the test above TC.
+    """dt = Γ dt*, also with Γ below 1: the structure holds where du reaches dt, and 4.3.3.4.2.3(1)
+    of EN 1998-1 wants a curve up to 1.5 dt. T* = 2π √(250/10000) s does not depend on Γ, so dt* is
+    that of the test above TC.
     """
     system = capacity.equivalent(250e3, gamma)
     moved = gamma * 1e3 * 2.5 * 1.962 * 0.4 / (2 * math.pi) * math.sqrt(0.025)
@@ -292,7 +297,8 @@ def test_the_curve_of_the_structure_is_compared_with_its_own_displacement(gamma)
 
 
 def test_the_iteration_ends_where_the_mechanism_forms_at_the_target(tmp_path):
-    """The curve is 1 - exp(-d/5): with a mechanism at d, Fy is that, and dy = 2 (d - (d - 5 Fy)/Fy)."""
+    """The curve is 1 - exp(-d/5): with a mechanism at d, Fy is that, and dy = 2 (d - (d - 5
+    Fy)/Fy)."""
     moved = np.append(np.linspace(0, 60, 6001), 60.001)
     force = 100 * (1 - np.exp(-moved / 5))
     force[-1] = 0
@@ -334,7 +340,7 @@ def test_a_period_beyond_the_spectrum_is_refused_with_its_equation():
         capacity.demand(bilinearOf(1, 10, 90), capacity.equivalent(1e6, 1.0), GROUND_A)
 
 
-# -- files of a run ---------------------------------------------------------------------------------------------------
+# -- files of a run --------------------------------------------------------------------------------
 
 SYSTEM = [
     {"name": "equivalent_mass", "value": 30e3, "unit": "kg"},
@@ -489,7 +495,7 @@ def test_damaged_files_give_a_sentence_or_are_left_alone(tmp_path, entries):
         json.loads((tmp_path / "capacity.json").read_text(), parse_constant=pytest.fail)
 
 
-# -- N-V domains ------------------------------------------------------------------------------------------------------
+# -- N-V domains -----------------------------------------------------------------------------------
 
 
 def bounds(*rows):

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The comparison of the dry-joint walls' loops says yes to the measured curves themselves, and no to others."""
+"""The comparison of the dry-joint walls' loops says yes to the measured curves themselves, and no
+to others."""
 
 from usual import *
 import compare_loops
@@ -54,7 +55,8 @@ def test_work_is_held_within_a_fifth(factor, verdict):
 
 
 def test_residual_displacements_are_held_against_each_other():
-    """A shift of all displacements by 0.4 mm moves both residual displacements, and leaves the width of the loops."""
+    """A shift of all displacements by 0.4 mm moves both residual displacements, and leaves the
+    width of the loops."""
     rows = cycleRows(curves(shift=0.4))
     assert "missed" in verdicts(rows, 6) and "missed" in verdicts(rows, 8)
     assert set(verdicts(rows, 10)) == {"holds"}
@@ -89,7 +91,8 @@ def test_runs_get_every_property_of_the_blind_set_for_every_kind_of_joint():
 
 
 def test_the_closing_curve_gives_the_measured_moduli():
-    """Em of a course with one joint, tangent to the curve at the mean stress of the tests: within 1.5 % of the data."""
+    """Em of a course with one joint, tangent to the curve at the mean stress of the tests: within
+    1.5 % of the data."""
     blind, height, block = compare_loops.BLIND["properties"], 0.15, 20.2e9
     first, limit = blind["initialClosingStiffness"], blind["closureLimit"]
     for load, modulus in ((104.8e3, 3287e6), (179.8e3, 4068e6), (254.8e3, 4722e6)):

@@ -12,7 +12,8 @@ MONOTONIC = np.array([[0.0, 2.0, 50.0], [0.0, 20.0, 20.0]])
 
 
 def slider(amplitudes, repeats=2, negative=1.0):
-    """Loops of a spring and a slider in series; in the negative direction the slider has another strength."""
+    """Loops of a spring and a slider in series; in the negative direction the slider has another
+    strength."""
     corners = [0.0]
     for a in amplitudes:
         corners += repeats * [a, -a, 0.0]
@@ -29,7 +30,8 @@ def slider(amplitudes, repeats=2, negative=1.0):
 
 
 def test_an_ideal_slider_has_its_closed_form():
-    """Work 4 F (A - F/K) a cycle that begins where the one before ended, stiffness F/A, damping 2/π (1 - F/(K A))."""
+    """Work 4 F (A - F/K) a cycle that begins where the one before ended, stiffness F/A, damping 2/π
+    (1 - F/(K A))."""
     found = walls.numbers(*slider([1, 4, 10]), MONOTONIC)
     assert [n.repeat for n in found] == [0, 1, 0, 1, 0, 1]
     assert [n.stiffness for n in found] == approx([1, 1, 0.5, 0.5, 0.2, 0.2], rel=1e-6)

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The Debian package that ``scripts/package.sh`` makes: what is in it, and that a wall runs with it."""
+"""The Debian package that ``scripts/package.sh`` makes: what is in it, and that a wall runs with
+it."""
 
 from usual import *
 import masonry

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The site of the documentation: it is made without a warning, needs no network, and has what it promises."""
+"""The site of the documentation: it is made without a warning, needs no network, and has what it
+promises."""
 
 from usual import *
 import glob
@@ -220,7 +221,8 @@ def test_a_notebook_becomes_a_page():
         notebooks.markdown(notebook, "one", kept.__setitem__)
 
 
-#: A documentation of classes as YADE makes its own: its roles, and autodoc of classes in yade.wrapper.
+#: A documentation of classes as YADE makes its own: its roles, and autodoc of classes in
+#: yade.wrapper.
 LIKE_YADES = """
 import sys
 sys.path[:0] = {path!r}

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Figures of any run: what is drawn where, from frames of real joints and from curves made up for it."""
+"""Figures of any run: what is drawn where, from frames of real joints and from curves made up for
+it."""
 
 from usual import *
 from masonry.read import curve_figure, drawing, elevation, figures, frames
@@ -37,7 +38,7 @@ def axis(column, label=None):
     return {"column": column, "label": label or column}
 
 
-# -- curve.png ---------------------------------------------------------------------------------------------------------
+# -- curve.png -------------------------------------------------------------------------------------
 
 
 def test_a_history_over_time_shows_all_values_and_needs_no_energies(tmp_path, drawn):
@@ -98,7 +99,7 @@ def test_what_cannot_be_drawn_is_refused_in_a_sentence(tmp_path):
         figures.draw(writeRun(tmp_path, columns, rows, figure={"x": axis("u_mm")}))
 
 
-# -- how a part is seen --------------------------------------------------------------------------------------------------
+# -- how a part is seen ----------------------------------------------------------------------------
 
 
 def boxPoints(length, thickness, height, angle=0.0):
@@ -179,14 +180,15 @@ def test_the_magnification_is_the_usual_one_unless_that_is_absurd():
     assert of(jointFrame(0, 0, 1e-3), 12e-3) == MAGNIFICATIONS[0]
 
 
-# -- what hides what -----------------------------------------------------------------------------------------------------
+# -- what hides what -------------------------------------------------------------------------------
 
 
 @mark.parametrize(
     "towards", [(0.5, -0.75, 0.4), (-0.5, -0.75, 0.4), (0, -1, 0), (0.3, 0.9, 0.2), (0, 0, 1)]
 )
 def test_blocks_are_drawn_after_those_that_they_hide(towards):
-    """A wall of two wythes in bond, of bricks of two lengths, on a slab that is wider than all of them."""
+    """A wall of two wythes in bond, of bricks of two lengths, on a slab that is wider than all of
+    them."""
     bricks = [boxCorners((-1, -1, -0.1), (2, 1, 0))]
     for z in range(5):
         for y in range(2):
@@ -225,7 +227,7 @@ def test_the_ground_and_the_stones_have_colours_of_other_brightness():
     assert min(np.diff(bright)) > 20
 
 
-# -- frames and cracks.png of real blocks ----------------------------------------------------------------------------
+# -- frames and cracks.png of real blocks ----------------------------------------------------------
 
 
 def box(low, high):
@@ -302,7 +304,8 @@ def test_frames_are_in_the_order_of_their_numbers_and_damage_is_refused(scene, t
 
 
 def polygonsOf(axes):
-    """All that is drawn of blocks and cracks: polygons with the colours of their faces and edges."""
+    """All that is drawn of blocks and cracks: polygons with the colours of their faces and
+    edges."""
     (all_,) = [c for c in axes.collections if isinstance(c, PolyCollection) and len(c.get_paths())]
     shapes = [path.vertices[:-1] for path in all_.get_paths()]
     faces, edges = all_.get_facecolors(), all_.get_edgecolors()
@@ -356,7 +359,8 @@ def test_the_seam_in_a_brick_of_two_halves_is_no_mortar_joint(scene, tmp_path, d
 
 
 def test_drawn_blocks_overlap_by_their_closure_and_no_more(scene, tmp_path, drawn):
-    """A brick that is pushed along its bed joint and into it, so that the joint slides and closes."""
+    """A brick that is pushed along its bed joint and into it, so that the joint slides and
+    closes."""
     lower = box((0, 0, 0), (3 * L, T, H))
     pull(scene, tmp_path, box((L, 0, H), (2 * L, T, 2 * H)), (1.0, 0, -0.02))
     folder = writeRun(tmp_path, ["time_s", "f_kN"], [[0, 0], [1, 1]])
@@ -428,7 +432,8 @@ def test_a_facade_has_one_elevation_with_all_parts_in_it():
 
 
 def test_a_picture_names_its_moment_as_it_is(tmp_path):
-    """Three frames of a run that fell: the collapse was noticed at the first, the first block had fallen at the second."""
+    """Three frames of a run that fell: the collapse was noticed at the first, the first block had
+    fallen at the second."""
     sets = "".join(f'<DataSet timestep="{t}"/>' for t in (0.5, 1.0, 1.5))
     (tmp_path / "joints.pvd").write_text(f"<VTKFile><Collection>{sets}</Collection></VTKFile>")
     entry = {"x": axis("u_mm", "displacement of ridge [mm]"), "y": [axis("f_kN")]}
@@ -457,7 +462,7 @@ def test_bodies_that_are_not_there_are_refused(scene, tmp_path):
             elevation.cracks(writeRun(tmp_path, ["time_s"], [[0], [1]], **message))
 
 
-# -- inside YADE -----------------------------------------------------------------------------------------------------
+# -- inside YADE -----------------------------------------------------------------------------------
 
 INSIDE = """
 import sys

@@ -5,7 +5,8 @@ from usual import *
 import ast
 
 PACKAGE = os.path.join(ROOT, "scripts", "masonry")
-#: Rooms of many modules. Those of bricks, limit and study are named by what users call, not by their modules.
+#: Rooms of many modules. Those of bricks, limit and study are named by what users call, not by
+#: their modules.
 ROOMS = ["assembly", "capacity", "read", "run", "scene", "scene/stages"]
 
 

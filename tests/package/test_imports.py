@@ -39,7 +39,8 @@ def source(module):
 
 
 def imports(path):
-    """Every import of a source: (module, function-level or not), with the whole names of modules."""
+    """Every import of a source: (module, function-level or not), with the whole names of
+    modules."""
     tree = ast.parse(open(path).read())
     top = set(map(id, tree.body))
     if os.path.basename(path) == "__init__.py":  # they start YADE, or hand names on
@@ -63,7 +64,8 @@ def imports(path):
 
 
 def ownModule(name):
-    """The module of the package that an import names, or None. A package that is imported is its ``__init__``."""
+    """The module of the package that an import names, or None. A package that is imported is its
+    ``__init__``."""
     package, *rest = name.split(".")
     if package != "masonry" or rest[:1] == ["_masonry"]:  # the plugin
         return None

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What a script says of its options holds unless the command line gives them, however they are read."""
+"""What a script says of its options holds unless the command line gives them, however they are
+read."""
 
 from usual import *
 from masonry import Scene, bricks, materials

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Numbers of loops, on loops of which they are known in closed form, whole and with the noise of a measurement."""
+"""Numbers of loops, on loops of which they are known in closed form, whole and with the noise of a
+measurement."""
 
 from usual import *
 from masonry.read import loops
@@ -8,7 +9,8 @@ FINE = 20001  # rows of a cycle
 
 
 def path(*corners, rows=400):
-    """A polyline through corners, with so many rows between two of them: one array for each coordinate."""
+    """A polyline through corners, with so many rows between two of them: one array for each
+    coordinate."""
     corners = np.array(corners, float)
     places = np.linspace(0, len(corners) - 1, rows * (len(corners) - 1) + 1)
     return tuple(np.interp(places, range(len(corners)), column) for column in corners.T)
@@ -36,7 +38,8 @@ def test_an_ellipse_has_the_damping_that_drew_it(amplitude, stiffness, damping):
 
 
 def test_a_slider_with_a_spring_draws_a_parallelogram():
-    # spring 10 kN/mm, slips at 20 kN, amplitude 5 mm: W = 4 Fy (A - Fy/K) = 240 J, and after 5 mm it is free at 3 mm
+    # spring 10 kN/mm, slips at 20 kN, amplitude 5 mm: W = 4 Fy (A - Fy/K) = 240 J, and after 5 mm
+    # it is free at 3 mm
     moved, force = path(
         (0, 0),
         (2, 20),
@@ -52,7 +55,8 @@ def test_a_slider_with_a_spring_draws_a_parallelogram():
     )
     first, second = loops.cycles(moved, force, threshold=0.1)
     assert second.work_J == approx(240, rel=1e-9)
-    # The first begins without force: it lacks the triangle of 2 mm and 20 kN that it has not unloaded from.
+    # The first begins without force: it lacks the triangle of 2 mm and 20 kN that it has not
+    # unloaded from.
     assert first.work_J == approx(240 - 20 * 2 / 2, rel=1e-9)
     for cycle in (first, second):
         assert cycle.stiffness_kN_per_mm == approx(4)
@@ -65,7 +69,8 @@ def test_a_slider_with_a_spring_draws_a_parallelogram():
 
 
 def test_a_rocking_wall_with_friction_draws_a_flag():
-    # 10 kN/mm to 20 kN, flat to 5 mm, 12 kN lower on the way back: a flag of 12 kN × (5 - 2) mm a side
+    # 10 kN/mm to 20 kN, flat to 5 mm, 12 kN lower on the way back: a flag of 12 kN × (5 - 2) mm a
+    # side
     side = ((0, 0), (2, 20), (5, 20), (3.8, 8), (0.8, 8), (0, 0))
     moved, force = path(*side, *[(-x, -f) for x, f in side[1:]])
     (cycle,) = loops.cycles(moved, force, threshold=0.1)

@@ -20,7 +20,8 @@ def blank():
 
 
 def stair(bed, upright, lines, shift=0):
-    """A stepped crack that falls to the right by a half unit a course, through the upright joints ``lines``."""
+    """A stepped crack that falls to the right by a half unit a course, through the upright joints
+    ``lines``."""
     for line in lines:
         course = COURSES - 2 - line - shift
         upright["opening"][course, line] = WIDE
@@ -133,8 +134,8 @@ def test_crushing_is_shared_by_the_corners():
 
 
 def test_joints_of_a_frame_find_their_place():
-    # two subcontacts of the bed joint above course 2, column 5, one of the upright joint of course 2 at line 5, and one of the
-    # support, below a brick of two half units from column 5 on
+    # two subcontacts of the bed joint above course 2, column 5, one of the upright joint of course
+    # 2 at line 5, and one of the support, below a brick of two half units from column 5 on
     points, cells = [], []
     half, height = 0.11, 0.08
     for x, z in ((5.25, 3.0), (5.75, 3.0), (6.0, 2.5), (6.0, 0.0)):

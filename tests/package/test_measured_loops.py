@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The measured loops of the dry-joint walls are read, put in order and thinned as their README says."""
+"""The measured loops of the dry-joint walls are read, put in order and thinned as their README
+says."""
 
 from usual import *
 import measured
@@ -8,8 +9,9 @@ from scipy.integrate import trapezoid
 
 @mark.parametrize("wall", measured.walls())
 def test_repaired_pieces_follow_each_other(wall):
-    """Between two pieces the wall moves outwards on the negative side, where the force hardly changes with
-    displacement, or the next piece begins where the last one ended. The hole of WS1.100 is the one exception.
+    """Between two pieces the wall moves outwards on the negative side, where the force hardly
+    changes with displacement, or the next piece begins where the last one ended. The hole of
+    WS1.100 is the one exception.
     """
     found = measured.pieces(wall)
     holes = {repair[1] for repair in measured.REPAIRS[wall] if repair[0] == "hole"}
@@ -54,7 +56,8 @@ def test_a_stray_row_is_found_and_a_turning_point_is_not():
 
 @mark.parametrize("wall", measured.walls())
 def test_the_history_file_is_that_of_the_loops(wall):
-    """reference/history_*.csv is what measured.py --write makes; it turns at every row and reaches the extremes."""
+    """reference/history_*.csv is what measured.py --write makes; it turns at every row and reaches
+    the extremes."""
     with open(measured.historyPath(wall)) as f:
         assert f.read() == measured.historyText(wall)
     history, (moved, _, _) = measured.history(wall), measured.curve(wall)
@@ -66,7 +69,8 @@ def test_the_history_file_is_that_of_the_loops(wall):
 
 @mark.parametrize("level", measured.LEVELS)
 def test_the_loops_reach_the_peaks_that_the_database_gives(level):
-    """Within 4 %: one row of WS3.100 has 39.3 kN where the database gives 38.0. The repaired WS1.250 no longer has the 102 kN of its file."""
+    """Within 4 %: one row of WS3.100 has 39.3 kN where the database gives 38.0. The repaired
+    WS1.250 no longer has the 102 kN of its file."""
     for wall, (positive, negative) in measured.peaks(level).items():
         _, force, _ = measured.curve(wall)
         assert force.max() == approx(positive, rel=0.04), wall
@@ -74,8 +78,9 @@ def test_the_loops_reach_the_peaks_that_the_database_gives(level):
 
 
 def test_work_over_the_history_of_one_wall():
-    """3,129 J is the net work over the raw rows of WS2.175 in the order of the file; that order ends at -6.6 mm. In the
-    order of time the work up to that row differs by less than 1 %, because the file had only exchanged pieces.
+    """3,129 J is the net work over the raw rows of WS2.175 in the order of the file; that order
+    ends at -6.6 mm. In the order of time the work up to that row differs by less than 1 %, because
+    the file had only exchanged pieces.
     """
     path = os.path.join(measured.REFERENCE, "FD_WS2175_Vasconcelos2009.csv")
     raw = np.concatenate(measured.rawPieces(path)[0])

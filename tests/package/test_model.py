@@ -14,7 +14,8 @@ import test_figures
 
 L, T, H = 0.2, 0.1, 0.08  # [m] of a brick
 BOX = [(x, y, z) for x in (0, L) for y in (0, T) for z in (0, H)]
-#: How the upper block moves from frame to frame: its shift [m], and the axis and angle of its rotation [rad].
+#: How the upper block moves from frame to frame: its shift [m], and the axis and angle of its
+#: rotation [rad].
 STEPS = [
     ((0, 0, 0), (0, 0, 1), 0.0),
     ((1e-4, 0, 2e-4), (0, 1, 0), 1e-3),
@@ -106,7 +107,7 @@ def run(recorded, tmp_path):
     return tmp_path
 
 
-# -- motions ---------------------------------------------------------------------------------------------------------
+# -- motions ---------------------------------------------------------------------------------------
 
 
 def test_blocks_move_as_the_recorder_says(run):
@@ -224,7 +225,7 @@ def test_the_displacement_of_a_ground_is_taken_off_all_blocks(run):
     assert model.displacements(2) == approx(whole.displacements(2) - mean)
 
 
-# -- the page --------------------------------------------------------------------------------------------------------
+# -- the page --------------------------------------------------------------------------------------
 
 
 def test_numbers_in_a_page_are_those_of_the_run_to_half_a_step(run):
@@ -314,9 +315,10 @@ def test_without_three_the_package_is_named(run, monkeypatch):
         page.page(run)
 
 
-# -- glTF ------------------------------------------------------------------------------------------------------------
+# -- glTF ------------------------------------------------------------------------------------------
 
-#: Prints what VTK reads of a .glb file: its animations, and at some times the numbers of leaves and triangles, and bounds.
+#: Prints what VTK reads of a .glb file: its animations, and at some times the numbers of leaves and
+#: triangles, and bounds.
 READ = """
 import json, sys
 from vtkmodules.vtkIOGeometry import vtkGLTFReader
@@ -348,13 +350,15 @@ print(json.dumps(found))
 
 
 def readByVtk(path, *times):
-    """What VTK reads of a .glb file, in a process of its own: its libraries are not those of YADE's process."""
+    """What VTK reads of a .glb file, in a process of its own: its libraries are not those of YADE's
+    process."""
     command = ["/usr/bin/python3", "-c", READ, path, *map(str, times)]
     return json.loads(subprocess.check_output(command, text=True))
 
 
 def bounds(points):
-    """Lowest and highest coordinates in a glTF file, in which y is up: x stays, z becomes y, y becomes -z."""
+    """Lowest and highest coordinates in a glTF file, in which y is up: x stays, z becomes y, y
+    becomes -z."""
     turned = np.column_stack([points[:, 0], points[:, 2], -points[:, 1]])
     return turned.min(axis=0).tolist(), turned.max(axis=0).tolist()
 
@@ -393,7 +397,7 @@ def test_vtk_reads_the_deformed_shape_of_a_frame_and_its_cracks(
     assert high == approx(expected[1], abs=1e-6)
 
 
-# -- what is refused -------------------------------------------------------------------------------------------------
+# -- what is refused -------------------------------------------------------------------------------
 
 
 def test_folders_without_frames_are_refused_with_the_reason(tmp_path):

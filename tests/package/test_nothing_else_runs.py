@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Nothing runs that was not asked: files in the present folder, ports of YADE, and what apt-get would remove."""
+"""Nothing runs that was not asked: files in the present folder, ports of YADE, and what apt-get
+would remove."""
 
 from usual import *
 

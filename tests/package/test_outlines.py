@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Drawn stones become a wall whose joints lie in the middle of the mortar, whatever file they come from."""
+"""Drawn stones become a wall whose joints lie in the middle of the mortar, whatever file they come
+from."""
 
 from collections import Counter
 

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Masonry of one's own by formulas: the numbers of its joints, what it refuses and warns of, and one wall that has its modulus."""
+"""Masonry of one's own by formulas: the numbers of its joints, what it refuses and warns of, and
+one wall that has its modulus."""
 
 from usual import *
 from masonry import AT_REST, Scene, bricks, materials
@@ -165,7 +166,8 @@ def test_head_joints_are_of_the_same_mortar_or_have_their_share():
 
 
 def test_the_least_fracture_energy_is_that_of_the_law_or_of_rigid_units():
-    """strength²/stiffness, or strength² (lumped + 1/(2 stiffness)) where the units give more than half of that back."""
+    """strength²/stiffness, or strength² (lumped + 1/(2 stiffness)) where the units give more than
+    half of that back."""
     assert materials.leastEnergy(0.2e6, 1e10) == approx(0.2e6**2 / 1e10)
     for lumped, share in ((0.4e-10, 1e-10), (2e-10, 2e-10 + 0.5e-10)):
         found = materials.leastEnergy(0.2e6, 1e10, lumped)
@@ -255,7 +257,8 @@ def test_all_wrong_values_are_named_at_once():
 
 
 def wall(masonry, folder, length=0.52, height=0.375, **settings):
-    """A small wall of these bricks between platens, before its first stage, and its upper platen."""
+    """A small wall of these bricks between platens, before its first stage, and its upper
+    platen."""
     blocks = bricks.Wall(length, height, unit=SIZE, joint=MORTAR)
     words = ["--no-vtk", "--lean", "--out", str(folder)]
     scene = Scene("own", blocks, masonry, arguments=words, **settings)

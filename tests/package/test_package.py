@@ -13,7 +13,7 @@ from masonry.scene.settings import applySettings, setting
 from masonry.basics import Unwritable
 
 
-# -- materials --------------------------------------------------------------------------------------------------------
+# -- materials -------------------------------------------------------------------------------------
 
 
 def test_the_published_set_is_the_paper_s_table_2():
@@ -36,7 +36,7 @@ def test_the_compression_curve_passes_its_named_points():
     assert curve == approx([2.265e6, 7.55e6, 4.53e6, 1.51e6], rel=1e-3)
 
 
-# -- options ----------------------------------------------------------------------------------------------------------
+# -- options ---------------------------------------------------------------------------------------
 
 
 def parse(*words):
@@ -141,7 +141,7 @@ def test_every_option_is_explained_with_its_unit():
         assert "[mm" in action.help or action.metavar not in ("MM", "MM_PER_S")
 
 
-# -- results ----------------------------------------------------------------------------------------------------------
+# -- results ---------------------------------------------------------------------------------------
 
 
 def test_rows_and_run_are_read_back(tmp_path):
@@ -227,7 +227,8 @@ def test_initial_stiffness_is_that_between_a_twentieth_and_a_quarter_of_the_peak
 
 @mark.parametrize("period, slope", [(0.004, 100.0), (0.013, 5.0)])
 def test_the_stiffness_of_a_bar_in_shear_is_found_while_its_drive_grows(period, slope):
-    """The waves of a bar that is driven at one end, in closed form: their speed crosses it in half a period."""
+    """The waves of a bar that is driven at one end, in closed form: their speed crosses it in half
+    a period."""
     step, rate = period / 4000, 100.0
     times = [n * step for n in range(4 * 4000)]
     moved = lambda t: rate * (t**2 / 2 / period if t < period else t - period / 2)
@@ -289,7 +290,7 @@ def test_the_energies_are_those_of_the_balance(scene):
     assert set(columns.ENERGIES) | {"error"} == set(scene.engines[0].balance())
 
 
-# -- a push whose force falls at once is doubted; ordinary softening and waves are not ------------------------------------
+# -- a push whose force falls at once is doubted; ordinary softening and waves are not -------------
 
 
 def curve(force, step=0.01, until=5.0):

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What is said and left out where a package that only a part of the project needs is not installed."""
+"""What is said and left out where a package that only a part of the project needs is not
+installed."""
 
 from usual import *
 from masonry.common import packages

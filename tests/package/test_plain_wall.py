@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The plain model of the dry-joint wall against statics, and against the closed form of its shear stiffness."""
+"""The plain model of the dry-joint wall against statics, and against the closed form of its shear
+stiffness."""
 
 from usual import *
 import plain_wall
@@ -11,7 +12,8 @@ def program(tmp_path_factory):
 
 
 def test_the_wall_rocks_below_the_limit_of_a_rigid_one(program):
-    """N L/(2 h0) is 68.3 kN with the weight of the blocks; soft joints take a few percent of the lever arm."""
+    """N L/(2 h0) is 68.3 kN with the weight of the blocks; soft joints take a few percent of the
+    lever arm."""
     moved, force = plain_wall.run([10], program, points=2, rate=100)
     assert moved[-1] == approx(10, abs=0.06)
     assert 0.85 * 68.3 < force.max() < 68.3
@@ -20,8 +22,9 @@ def test_the_wall_rocks_below_the_limit_of_a_rigid_one(program):
 def test_soft_joints_shear_as_springs_in_series(program):
     """Nine joints of 0.2 m² with ks in series, while nothing slips or opens: 9/(ks A).
 
-    Bending adds what it has with stiff shear, therefore two runs are compared. Courses that stay rigid would be stiffer
-    than loose blocks, which also turn on their own: so that is the least, and a tenth more is allowed.
+    Bending adds what it has with stiff shear, therefore two runs are compared. Courses that stay
+    rigid would be stiffer than loose blocks, which also turn on their own: so that is the least,
+    and a tenth more is allowed.
     """
     flexibility = []
     for ks in (0.5e9, 1e12):

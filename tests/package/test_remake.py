@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""validation/remake.py knows what makes every result of validation/, in which order, and which of them are stale."""
+"""validation/remake.py knows what makes every result of validation/, in which order, and which of
+them are stale."""
 
 from usual import *
 import fnmatch

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What a report says of folders that are made up: numbers with units and sources, and a sentence for everything that is missing."""
+"""What a report says of folders that are made up: numbers with units and sources, and a sentence
+for everything that is missing."""
 
 from usual import *
 import itertools
@@ -21,7 +22,8 @@ PARTS = [
     "The structure in 3-D",
     "How far to trust it",
 ]
-#: A push along straight lines: from 0 to 100 kN at 1 mm, and down to 40 kN at 4 mm, so 80 kN are reached at 2 mm.
+#: A push along straight lines: from 0 to 100 kN at 1 mm, and down to 40 kN at 4 mm, so 80 kN are
+#: reached at 2 mm.
 MOVED = np.linspace(0, 4, 401)
 FORCE = np.interp(MOVED, [0, 1, 4], [0, 100, 40])
 COLUMNS = {
@@ -193,9 +195,10 @@ def pushed(tmp_path_factory):
     return page(folder(tmp_path_factory.mktemp("pushed")))
 
 
-# -- what it says -----------------------------------------------------------------------------------------------------
+# -- what it says ----------------------------------------------------------------------------------
 
-#: Of the bilinear curve: up to 2 mm the area is 50 + 90 J, so with K = 100 kN/mm: Vy (2 - Vy/200) = 140.
+#: Of the bilinear curve: up to 2 mm the area is 50 + 90 J, so with K = 100 kN/mm: Vy (2 - Vy/200) =
+#: 140.
 YIELD = 200 * (1 - math.sqrt(1 - 0.7))
 #: Cells of rows after their first one; None: any.
 ROWS = {
@@ -399,7 +402,7 @@ def test_the_promise_of_a_preset_and_the_width_of_an_accuracy_are_said(tmp_path)
     assert "one run does not tell" not in said
 
 
-# -- runs of all kinds ------------------------------------------------------------------------------------------------
+# -- runs of all kinds -----------------------------------------------------------------------------
 
 
 NO_PUSH = {
@@ -588,7 +591,7 @@ def test_sections_have_normal_force_shear_and_moment(tmp_path):
     assert "no section was recorded" not in found.said()
 
 
-# -- damaged and hostile files ----------------------------------------------------------------------------------------
+# -- damaged and hostile files ---------------------------------------------------------------------
 
 
 def test_what_stands_in_files_is_text_in_the_report(tmp_path):
@@ -618,7 +621,7 @@ def test_whatever_stands_in_an_entry_there_is_a_page(tmp_path):
         assert "alert(1)</script>" not in text, key
 
 
-# -- size, picture, program -------------------------------------------------------------------------------------------
+# -- size, picture, program ------------------------------------------------------------------------
 
 
 def test_a_report_asks_nobody_and_forbids_it(tmp_path):

@@ -26,7 +26,8 @@ def test_a_sine_in_resonance_grows_by_pi_in_every_period():
 
 
 def test_a_stiff_oscillator_follows_the_ground_and_a_slow_one_stays():
-    """The limit of short periods is the largest acceleration; that of long ones is ω² times the largest displacement."""
+    """The limit of short periods is the largest acceleration; that of long ones is ω² times the
+    largest displacement."""
     every = 0.01
     time = every * np.arange(201)
     place = lambda t: 0.1 * np.sin(math.pi * t / 2) ** 4 * ((t > 0) & (t < 2))
@@ -38,6 +39,7 @@ def test_a_stiff_oscillator_follows_the_ground_and_a_slow_one_stays():
 
 
 def test_the_largest_displacement_after_the_record_counts():
-    """A pulse of a hundredth of the period: u = v/ω sin ωt, with its largest a quarter of a period after the pulse."""
+    """A pulse of a hundredth of the period: u = v/ω sin ωt, with its largest a quarter of a period
+    after the pulse."""
     found = spectralAcceleration([5.0] * 11, 1e-3, 1.0, 0.0)
     assert found == approx(2 * math.pi * 0.05, rel=2e-3)

@@ -3,7 +3,8 @@
 
 from usual import *
 
-#: What only pictures, limit analysis, studies and files of bricks need: each takes a tenth of a second or more.
+#: What only pictures, limit analysis, studies and files of bricks need: each takes a tenth of a
+#: second or more.
 NOT_NEEDED = [
     "matplotlib",
     "meshio",

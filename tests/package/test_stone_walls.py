@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Predictions of stone walls see nothing that was measured in the tests, and are of what the rules say."""
+"""Predictions of stone walls see nothing that was measured in the tests, and are of what the rules
+say."""
 
 import csv
 

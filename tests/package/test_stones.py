@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Walls of natural stone fill their rectangle with convex stones, and interlock as they are asked to."""
+"""Walls of natural stone fill their rectangle with convex stones, and interlock as they are asked
+to."""
 
 from usual import *
 from masonry import bricks

@@ -1,15 +1,17 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Short runs whose numbers are stored, so that a rewrite of the internals can be compared with them.
+"""Short runs whose numbers are stored, so that a rewrite of the internals can be compared with
+them.
 
     yade -n -x tests/references/references.py             # compares all runs with what is stored
     yade -n -x tests/references/references.py --write     # makes the stored files anew, with the plugin that is imported
     yade -n -x tests/references/references.py rigid ...   # only the runs whose names begin so
 
-A run is a scene and its stages. After each stage the state is read through the public Python interface alone: reactions
-of loads, forces on the base, energies, two bodies, sums and extremes over all joints, and a fingerprint of every number
-of every joint, body and node. Time steps are written down here and not taken from criticalTimeStep(), so that a change
-of the limit in its last digit changes the limit alone. The numbers are those of glibc 2.36 on a processor with FMA
-(glibc uses other polynomials without it). They do not depend on the number of threads.
+A run is a scene and its stages. After each stage the state is read through the public Python
+interface alone: reactions of loads, forces on the base, energies, two bodies, sums and extremes
+over all joints, and a fingerprint of every number of every joint, body and node. Time steps are
+written down here and not taken from criticalTimeStep(), so that a change of the limit in its last
+digit changes the limit alone. The numbers are those of glibc 2.36 on a processor with FMA (glibc
+uses other polynomials without it). They do not depend on the number of threads.
 """
 
 import hashlib
@@ -37,7 +39,7 @@ TURN = Quaternion(Vector3(1, 2, 0.5).normalized(), 0.7)
 STRAIGHT = Quaternion.Identity
 
 
-# -- what is read ----------------------------------------------------------------------------------------------------
+# -- what is read ----------------------------------------------------------------------------------
 
 REGIMES = ("elastic", "opening", "slipping", "crushing")
 peaks = {}  # smallest and largest reaction of every load since the run began [N]
@@ -61,12 +63,14 @@ def step(count):
 
 
 def spread(rows):
-    """Sum, smallest and largest of every column. The sum is rounded once, so the order of the rows does not matter."""
+    """Sum, smallest and largest of every column. The sum is rounded once, so the order of the rows
+    does not matter."""
     return [f(column) for column in zip(*rows) for f in (math.fsum, min, max)]
 
 
 def state():
-    """What is stored of an instant: quantity -> list of numbers; and a fingerprint of all numbers of the state."""
+    """What is stored of an instant: quantity -> list of numbers; and a fingerprint of all numbers
+    of the state."""
     joints = sorted(O.interactions.all(), key=lambda i: (i.id1, i.id2))
     points = {
         "stress [Pa]": [s for i in joints for s in i.phys.stress],
@@ -114,7 +118,7 @@ def state():
     return numbers, hashlib.sha256(packed).hexdigest()[:16]
 
 
-# -- scenes ----------------------------------------------------------------------------------------------------------
+# -- scenes ----------------------------------------------------------------------------------------
 
 
 def put(low, high, material, turn=STRAIGHT):
@@ -164,7 +168,8 @@ def wall(
     functors=False,
     cyclic=False,
 ):
-    """A small wall in running bond between plates: bed, head, crack and support joints; the upper plate is driven."""
+    """A small wall in running bond between plates: bed, head, crack and support joints; the upper
+    plate is driven."""
     inPlane = turn == STRAIGHT
     unit, plate = unitAndPlate()
     length, height = halfUnits * LENGTH / 2, courses * HEIGHT
@@ -244,7 +249,8 @@ def kinds():
 
 
 def couplets(dt, turn=STRAIGHT, damping=0.6, kind="local"):
-    """One stack for every kind of joint: two bricks with this joint, and a driven block on them with an elastic one."""
+    """One stack for every kind of joint: two bricks with this joint, and a driven block on them
+    with an elastic one."""
     inPlane = turn == STRAIGHT
     mat, _ = unitAndPlate()
     offered, drives = kinds(), []
@@ -287,7 +293,8 @@ def tilted(
     rate=2.0,
     impacts=False,
 ):
-    """A wall without an upper plate on a base that turns until the wall topples; ``impacts``: whether corners that land lose energy."""
+    """A wall without an upper plate on a base that turns until the wall topples; ``impacts``:
+    whether corners that land lose energy."""
     unit, plate = unitAndPlate()
     base = put((0, 0, -0.1), (4 * LENGTH / 2, THICKNESS, 0), plate, turn)
     bodies = [*laid(5, 4, unit, turn, halves=False)]
@@ -309,7 +316,8 @@ def tilted(
 
 
 def flying(dt, kind="local", damping=0.1):
-    """A brick that spins about none of its principal axes, and a pair that spins until its joint breaks."""
+    """A brick that spins about none of its principal axes, and a pair that spins until its joint
+    breaks."""
     mat, _ = unitAndPlate()
     for low in ((0, 0, 0), (0, 0, HEIGHT), (1, 0, 0)):
         high = [a + b for a, b in zip(low, (LENGTH, THICKNESS, HEIGHT))]
@@ -359,7 +367,7 @@ CHANGES = [
 ]
 
 
-# -- runs ------------------------------------------------------------------------------------------------------------
+# -- runs ------------------------------------------------------------------------------------------
 
 
 @dataclass
@@ -367,9 +375,8 @@ class Run:
     build: callable  # takes the keywords
     stages: list  # (instant, steps to it, what is changed before them)
     keywords: dict
-    through: str = (  # after its second stage the scene is saved and loaded: by "checkpoint" or "file"
-        ""
-    )
+    # after its second stage the scene is saved and loaded: by "checkpoint" or "file"
+    through: str = ""
     like: str = ""  # the run whose stored numbers this one must give; empty: its own
 
 
@@ -426,7 +433,8 @@ RUNS = {
 
 
 def go(name):
-    """The run's instants: name -> (quantity -> numbers, fingerprint). Leaves the scene as it is at the end."""
+    """The run's instants: name -> (quantity -> numbers, fingerprint). Leaves the scene as it is at
+    the end."""
     wanted, instants = RUNS[name], {}
     O.reset()
     peaks.clear()
@@ -455,7 +463,7 @@ def through(wanted):
         loadCheckpoint(path)
 
 
-# -- files -----------------------------------------------------------------------------------------------------------
+# -- files -----------------------------------------------------------------------------------------
 
 
 def pathOf(name):
@@ -492,7 +500,8 @@ def stored(name):
 
 
 def sizes(instants):
-    """Largest number of every quantity in a run. The error of a balance is relative already, so its size is 1."""
+    """Largest number of every quantity in a run. The error of a balance is relative already, so its
+    size is 1."""
     largest = {}
     for numbers, _ in instants.values():
         for quantity, values in numbers.items():
@@ -502,7 +511,8 @@ def sizes(instants):
 
 
 def differences(name, instants):
-    """All that differs in any bit from the stored numbers: (instant, quantity, difference over the quantity's size)."""
+    """All that differs in any bit from the stored numbers: (instant, quantity, difference over the
+    quantity's size)."""
     before, found = stored(name), []
     if list(before)[: len(instants)] != list(instants):
         return [("all", "instants", math.inf)]

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Law, geometry and files under AddressSanitizer and UBSan; the threaded engines in YADE under ThreadSanitizer."""
+"""Law, geometry and files under AddressSanitizer and UBSan; the threaded engines in YADE under
+ThreadSanitizer."""
 
 import os
 import subprocess
@@ -28,7 +29,8 @@ def build(sanitizers, name, *targets):
     return folder
 
 
-#: What the threads of the engines do at the same time, and what a thread of Python reads beside them.
+#: What the threads of the engines do at the same time, and what a thread of Python reads beside
+#: them.
 THREADED = """
 import threading
 import masonry
@@ -82,10 +84,11 @@ def test_memory_and_arithmetic_are_sound_in(programs, ring):
 
 
 def test_no_two_threads_race(tmp_path):
-    """The panels of test_joint_loop.py on two threads; then a Python thread reads joints, energies and nodes while a run
-    works in the background.
+    """The panels of test_joint_loop.py on two threads; then a Python thread reads joints, energies
+    and nodes while a run works in the background.
 
-    The host's own code is not instrumented, so only races in which code of this plugin has a part are found.
+    The host's own code is not instrumented, so only races in which code of this plugin has a part
+    are found.
     """
     folder = build("thread", "thread", "masonry_module_fit")
     subprocess.run(["cmake", "--install", folder], check=True, capture_output=True)

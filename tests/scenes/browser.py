@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Chromium without a window, driven through a pipe by its DevTools protocol. It draws by its own software (SwiftShader)."""
+"""Chromium without a window, driven through a pipe by its DevTools protocol. It draws by its own
+software (SwiftShader)."""
 
 import base64
 import contextlib
@@ -37,7 +38,8 @@ def near(pixels, colour, within=0.08):
 
 
 def seen(chromium, tmp_path, element=None):
-    """Colours of the window, an array (high, wide, 3) from 0 to 1, after an element has been brought into it."""
+    """Colours of the window, an array (high, wide, 3) from 0 to 1, after an element has been
+    brought into it."""
     if element:
         chromium.value(f"(document.querySelector('{element}').scrollIntoView(), 0)")
     path = str(tmp_path / "seen.png")
@@ -64,8 +66,10 @@ def moved(chromium, frame):
 class Browser:
     """A page in a browser of its own.
 
-    - ``problems``: what the page wrote to the console as an error or a warning, and exceptions that nothing caught
-    - ``requests``: addresses that it asked for, other than parts of itself (``data:`` and ``blob:``)
+    - ``problems``: what the page wrote to the console as an error or a warning, and exceptions that
+      nothing caught
+    - ``requests``: addresses that it asked for, other than parts of itself (``data:`` and
+      ``blob:``)
     """
 
     def __init__(self, pipes, process):
@@ -193,7 +197,8 @@ def browser(*options):
     """
     down, up = os.pipe(), os.pipe()  # to Chromium, and from it
 
-    def pipes():  # Chromium reads what is for it from 3, and writes to 4; the ends of this process are above them
+    # Chromium reads what is for it from 3, and writes to 4; the ends of this process are above them
+    def pipes():
         ends = [os.dup2(end, 100 + n) for n, end in enumerate((down[0], up[1]))]
         for n, end in enumerate(ends):
             os.dup2(end, 3 + n)

@@ -12,7 +12,8 @@ from masonry.scene import options
 
 @dataclass
 class Wall:
-    """A wall that is tested as those of the paper: pressed, and pushed by a block that can turn or not."""
+    """A wall that is tested as those of the paper: pressed, and pushed by a block that can turn or
+    not."""
 
     name: str = "small"
     length: float = 0.66  # [m]
@@ -70,7 +71,8 @@ def carryOut(wall, args):
 
 
 def settled(folder, *words, wall=SMALL):
-    """A wall at rest, without ParaView files: the scene, what it is in YADE, and its loading block."""
+    """A wall at rest, without ParaView files: the scene, what it is in YADE, and its loading
+    block."""
     scene, top = wall.scene(parsed("--no-vtk", "--out", str(folder), *words))
     scene.settle(damping="local", record=False)
     return scene, scene.model, top

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Random scripts of stages, and runs of them that are stopped at a step and resumed.
 
-A run that was stopped and resumed must leave what an unbroken one leaves, byte for byte: rows, frames, the checkpoint at the
-end, and the numbers of run.json but for times.
+A run that was stopped and resumed must leave what an unbroken one leaves, byte for byte: rows,
+frames, the checkpoint at the end, and the numbers of run.json but for times.
 """
 
 from hosted import *
@@ -42,8 +42,9 @@ def bracket(load):
     return TRY.format(f"scene.bracket({rests}, 0.01, <0.3~3>, within=0.3)")
 
 
-#: Stages by when they can be said: always, of rigid bricks, of a target that moves, of a platen, of a handle, of a drive.
-#: <a~b> is a random number, <x|y> one of several texts; DIRECTION and AXIS are chosen by :class:`Writer`.
+#: Stages by when they can be said: always, of rigid bricks, of a target that moves, of a platen, of
+#: a handle, of a drive. <a~b> is a random number, <x|y> one of several texts; DIRECTION and AXIS
+#: are chosen by :class:`Writer`.
 STAGES = {
     "always": {
         "settle": f"scene.settle({LONGEST}<|, damping='combined'|, damping='local'>)",
@@ -208,7 +209,8 @@ def carryOut(script, *words, stop=None, most=math.inf):
 
     :param words: of the command line
     :param most: steps after which it is given up
-    :param stop: function of the run and the number of steps that were taken, which is called after each of them
+    :param stop: function of the run and the number of steps that were taken, which is called after
+        each of them
     """
     folder, before, take = os.getcwd(), sys.argv, Run._take
     forget = lambda text: None  # notes of scenes that were refused before
@@ -257,8 +259,8 @@ def signalled(number, step):
 
 
 def killed(folder, step):
-    """What happens when a checkpoint is made after a step, and the process is killed at a later one: the files stay as they
-    are on the disk at that moment."""
+    """What happens when a checkpoint is made after a step, and the process is killed at a later
+    one: the files stay as they are on the disk at that moment."""
 
     def act(run, taken):
         if taken == step:
@@ -271,10 +273,12 @@ def killed(folder, step):
 
 
 def left(folder):
-    """What a run leaves, by name: contents of files, and the numbers of run.json and of the checkpoint but times."""
+    """What a run leaves, by name: contents of files, and the numbers of run.json and of the
+    checkpoint but times."""
     found = {}
     for name in sorted(os.listdir(folder)):
-        # another process may have found the mechanism of limit analysis, and was killed before it wrote it
+        # another process may have found the mechanism of limit analysis, and was killed before it
+        # wrote it
         if name.endswith((".csv", ".vtu", ".vtp", ".pvd")) and "mechanism" not in name:
             with open(os.path.join(folder, name), "rb") as f:
                 found[name] = f.read()
@@ -297,8 +301,8 @@ def left(folder):
 
 
 def differences(whole, resumed):
-    """Names of what two runs have left that is not alike. A resumed run has the checkpoint from which it went on, if the
-    unbroken one has none."""
+    """Names of what two runs have left that is not alike. A resumed run has the checkpoint from
+    which it went on, if the unbroken one has none."""
     kept = any(name.startswith("checkpoint") for name in whole)
     names = {*whole, *(n for n in resumed if kept or not n.startswith("checkpoint"))}
     return sorted(n for n in names if whole.get(n) != resumed.get(n))

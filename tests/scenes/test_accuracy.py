@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""--accuracy: the interval covers what companions differ by, and every way in which a run with it can end is in order."""
+"""--accuracy: the interval covers what companions differ by, and every way in which a run with it
+can end is in order."""
 
 from usual import *
 from masonry.run import accuracy

@@ -53,7 +53,8 @@ def test_a_lean_answers_with_what_was_held_and_with_nothing_if_it_was_not(tmp_pa
 
 
 def brackets(stage, unit, *factors):
-    """Answers of stages from the second on with a load that was held, or, of negative factors, not held."""
+    """Answers of stages from the second on with a load that was held, or, of negative factors, not
+    held."""
     for number, factor in enumerate(factors, 2):
         held, lost = (factor, None) if factor > 0 else (None, -factor)
         for name, value in (("factor_held", held), ("factor_not_held", lost)):

@@ -25,7 +25,8 @@ def test_a_cantilever_sags_as_a_beam_with_shear(tmp_path, words):
 
 @pytest.mark.parametrize("along", ["x", "y"])
 def test_a_floor_shares_a_force_as_its_shear_stiffness_says(tmp_path, along):
-    """Walls of stiffness k1 and k2 hold the outer strips; between them and the loaded strip the floor has G t l / (n w)."""
+    """Walls of stiffness k1 and k2 hold the outer strips; between them and the loaded strip the
+    floor has G t l / (n w)."""
     strips, length, pitch, shear, k1, k2 = 9, 4.0, 0.5, 2e6, 3e6, 1e6
     floor = bricks.Floor((0, 0, 3), length, strips * pitch, 0.2, along=along, strips=strips)
     stones = materials.dry(0.6).withFloor(floor, shear=shear, mass=100)

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Runs that are killed, interrupted or stopped by a full disk, and resumed. Their curve must be that of a whole run."""
+"""Runs that are killed, interrupted or stopped by a full disk, and resumed. Their curve must be
+that of a whole run."""
 
 from hosted import *
 from pathlib import Path
@@ -18,7 +19,8 @@ def contents(folder):
 def files(folder):
     """Contents of the files that a resumed run and a whole one must have in common, byte for byte.
 
-    The mechanism of limit analysis is none of them: the process that finds it writes it at its end, and a kill comes before.
+    The mechanism of limit analysis is none of them: the process that finds it writes it at its end,
+    and a kill comes before.
     """
     wanted = (".csv", ".vtu", ".vtp", ".pvd")
     found = contents(folder).items()
@@ -62,7 +64,8 @@ CANTILEVER = Wall(loadHeight=0.6, riding=False)  # under rollers
 
 
 def interrupted(at, start, out, every, first=None):
-    """Interrupt a run before every so many-th ``advance`` until it ends; ``start`` gets whether it is resumed. What was kept."""
+    """Interrupt a run before every so many-th ``advance`` until it ends; ``start`` gets whether it
+    is resumed. What was kept."""
     kept = []
     while True:
         at(first if first and not kept else every, interrupt)
@@ -219,11 +222,12 @@ def test_a_lost_frame_is_said_and_in_no_list(tmp_path, at, capsys, monkeypatch):
         assert len(listed) > 2 and all((out / file).exists() for file in listed)
 
 
-# -- rows that wait ----------------------------------------------------------------------------------------------------
+# -- rows that wait --------------------------------------------------------------------------------
 
 
 def test_a_row_waits_for_a_fifth_of_a_second_at_most(tmp_path, at):
-    """While steps are slow, every row is written at once; while they are fast, several rows are written together."""
+    """While steps are slow, every row is written at once; while they are fast, several rows are
+    written together."""
     seen = []
 
     def look(run):
@@ -268,7 +272,7 @@ def test_rows_that_wait_are_kept(tmp_path, at, monkeypatch, end):
         assert rows == seen[0]
 
 
-# -- what is refused ---------------------------------------------------------------------------------------------------
+# -- what is refused -------------------------------------------------------------------------------
 
 
 @pytest.fixture

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The quick variants of the closed forms hold their aims, and what is known to miss one does so still."""
+"""The quick variants of the closed forms hold their aims, and what is known to miss one does so
+still."""
 
 from hosted import *
 import closed_forms
@@ -11,7 +12,8 @@ from structures import arch, bound, rests, semicircle, unbalanced
 
 QUICK = [c for c in CASES if c.quick]
 
-#: Cases without an aim, whose value the README only reports: what the quick variant measures, and how far it may go.
+#: Cases without an aim, whose value the README only reports: what the quick variant measures, and
+#: how far it may go.
 REPORTED = {"restitution-elastic": (0.98764, 1e-3)}
 
 
@@ -83,6 +85,7 @@ def test_an_arch_too_thin_does_not_rest_whatever_the_solver_says(thickness):
 
 @pytest.mark.parametrize("thickness", [0.1, 0.105, 0.1095, 0.11, 0.12])
 def test_an_arch_of_many_voussoirs_rests_as_its_thickness_says(thickness):
-    """The interior point of Clp misses equilibrium by 3e-5 in some of them; the least thickness is 0.1074."""
+    """The interior point of Clp misses equilibrium by 3e-5 in some of them; the least thickness is
+    0.1074."""
     arch(semicircle(40, thickness))
     assert rests(limit.read()) == (thickness > 0.1074)

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Ties and springs: what they carry against statics, what a run says of them, and what is refused."""
+"""Ties and springs: what they carry against statics, what a run says of them, and what is
+refused."""
 
 from hosted import *
 from masonry.scene import resuming
@@ -84,7 +85,8 @@ def test_a_tie_breaks_at_its_strain(tmp_path, capsys):
 
 
 def test_a_checkpoint_may_know_more_ties_that_yielded_than_have_so_far(tmp_path):
-    """A run that is resumed gets the state in which its stage began, and then that of the checkpoint."""
+    """A run that is resumed gets the state in which its stage began, and then that of the
+    checkpoint."""
     scene = standing(tmp_path, WALL)
     scene.tie(3, anchor=(-1, 0.15, 0.2), stiffness=1e6, strength=100)
     scene.begin()
@@ -100,7 +102,8 @@ def test_a_checkpoint_may_know_more_ties_that_yielded_than_have_so_far(tmp_path)
 
 
 def test_prestress_grows_in_settle_and_its_work_is_counted(tmp_path):
-    """The tie and the weight press the block down by u on a support of stiffness K: (P - k u) + W = K u."""
+    """The tie and the weight press the block down by u on a support of stiffness K: (P - k u) + W =
+    K u."""
     scene, force = block(tmp_path), 2e3
     scene.platen("bottom")
     scene.watch(0, "top")
@@ -196,7 +199,8 @@ def test_what_makes_no_sense_is_refused(tmp_path, word, settings, text):
 
 
 def test_no_energy_is_made_by_ties_in_a_shaken_wall(tmp_path):
-    """Bars that slacken, yield and tighten again under a strong motion: the balance closes, and what is lost never falls."""
+    """Bars that slacken, yield and tighten again under a strong motion: the balance closes, and
+    what is lost never falls."""
     scene = standing(tmp_path, WALL, plane=False)
     rng = np.random.default_rng(5)
     for n in range(8):
@@ -226,7 +230,8 @@ def test_fibres_cross_the_joints_of_one_face_only(tmp_path):
     level = sum(abs(joint.normal[2]) > 0.9 for joint in joints)
     upright = scene.overlay((0, -1, 0), **layer, fibres="vertical", name="other")
     assert len(upright.ties) == 2 * level
-    # a level crack crosses the layer over all of the wall's length, with the strength and the stiffness of that
+    # a level crack crosses the layer over all of the wall's length, with the strength and the
+    # stiffness of that
     crack = [one for one in upright.ties if abs(one.place()[2] - 0.081) < 1e-9]
     assert sum(one.strength for one in crack) == pytest.approx(1e4 * 0.66)
     assert sum(one.stiffness for one in crack) == pytest.approx(1e7 * 0.66 / 0.1)
@@ -252,8 +257,8 @@ def test_a_layer_on_a_part_leaves_the_others_bare(tmp_path):
 
 
 def test_a_spring_between_two_blocks_turns_nothing_as_a_whole(tmp_path):
-    """Its force and the opposite one have one line, at a point that is the middle of neither block: the moment at the base is that of
-    the load alone."""
+    """Its force and the opposite one have one line, at a point that is the middle of neither block:
+    the moment at the base is that of the load alone."""
     twins = bricks.stack(1, BLOCK) + bricks.stack(1, BLOCK).moved(2 * WIDTH)
     scene = standing(tmp_path, twins, STONE)
     scene.load(scene.handle(at(1.5)), (400, 0, 0))
@@ -266,7 +271,8 @@ def test_a_spring_between_two_blocks_turns_nothing_as_a_whole(tmp_path):
 
 
 def test_ends_that_a_script_moves_are_where_it_moved_them(tmp_path):
-    """A tie is fixed at half the height, then at the top: what the block, which a drive turned, stretches it by."""
+    """A tie is fixed at half the height, then at the top: what the block, which a drive turned,
+    stretches it by."""
     scene = block(tmp_path, rate=20)
     scene.platen("bottom")
     top = scene.handle(at(HEIGHT / 2), "top")
@@ -323,7 +329,8 @@ def test_bricks_at_ties_of_deformable_walls_are_said_to_be_rigid(tmp_path, capsy
 
 
 def test_frames_have_ties_and_springs(tmp_path):
-    """The file of a frame for ParaView, and the page that draws it, against what the engines say."""
+    """The file of a frame for ParaView, and the page that draws it, against what the engines
+    say."""
     scene = lean(tmp_path, WALL)
     scene.args.lean = False
     scene.platen("bottom", springs={"x": 1e7})

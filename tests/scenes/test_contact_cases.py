@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The quick variants of the cases of contact hold their limits, or miss them for the reason that the program says."""
+"""The quick variants of the cases of contact hold their limits, or miss them for the reason that
+the program says."""
 
 import contact
 from hosted import *
@@ -29,7 +30,8 @@ def test_the_statics_of_the_arch_is_that_of_three_hinges():
 
 
 def test_the_theory_of_dominoes_has_the_speed_of_a_single_impact():
-    """The second domino gets the momentum of the first: after a plastic impact of two equal ones both turn half as fast."""
+    """The second domino gets the momentum of the first: after a plastic impact of two equal ones
+    both turn half as fast."""
     speeds, spin = theory(0.02, 0.0, count=2, spin=50.0)
     first = 50.0 - 0.5 * (50.0 - 2 * spin)
     assert 40 < 2 * spin < 52 and 40 < first < 52

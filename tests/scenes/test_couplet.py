@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Two bricks through the whole of the host against the closed forms of the law, with both block models."""
+"""Two bricks through the whole of the host against the closed forms of the law, with both block
+models."""
 
 from hosted import *
 from scipy.integrate import trapezoid

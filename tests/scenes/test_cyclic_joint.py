@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""One joint in cycles, as validation/cyclic/joint.py drives it, against the closed forms of the paper's law."""
+"""One joint in cycles, as validation/cyclic/joint.py drives it, against the closed forms of the
+paper's law."""
 
 from hosted import *
 
@@ -30,7 +31,8 @@ def ways(values):
 
 @pytest.mark.parametrize("name", figures.SHEAR[1:])
 def test_slip_cycles_take_the_work_of_friction(paths, name):
-    """Where the bond is gone, a way from -a to +a takes 2 τr (a - τr/ks): within 3 %, as a bit of bond is left."""
+    """Where the bond is gone, a way from -a to +a takes 2 τr (a - τr/ks): within 3 %, as a bit of
+    bond is left."""
     rows = paths[0][name]
     slide, shear = rows["slide_mm"], rows["shear_stress_MPa"]
     residual = FRICTION * float(name.split("_")[1])

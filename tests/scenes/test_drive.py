@@ -30,7 +30,8 @@ def test_the_period_of_a_brick_between_two_joints_is_its_closed_form(tmp_path, s
     assert firstPeriod(model, Vector3.UnitX, 0.5 * expected) is None
 
 
-#: A clamped wall that is pushed fast begins to crack within the first quarter of its peak, and then seems softer.
+#: A clamped wall that is pushed fast begins to crack within the first quarter of its peak, and then
+#: seems softer.
 @pytest.mark.parametrize("turns, within", [(False, 0.08), (True, 0.05)])
 def test_the_initial_stiffness_hardly_depends_on_the_rate(tmp_path, turns, within):
     found = {}

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""A run ends in order and in time when it is interrupted while it does not step, and when the system sets a limit."""
+"""A run ends in order and in time when it is interrupted while it does not step, and when the
+system sets a limit."""
 
 from hosted import *
 import threading
@@ -25,7 +26,8 @@ def undrawn(monkeypatch):
 
 @pytest.fixture
 def signalled():
-    """Function that sends this process a signal when something is so; returns the moments at which signals were sent."""
+    """Function that sends this process a signal when something is so; returns the moments at which
+    signals were sent."""
     sent, threads = [], []
 
     def act(number, isSo):

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Random scenes at the extremes, as validation/stability/extremes.py draws them: other ones every day."""
+"""Random scenes at the extremes, as validation/stability/extremes.py draws them: other ones every
+day."""
 
 from usual import *
 
@@ -31,7 +32,8 @@ def test_scenes_of_today_are_confirmed_or_end_with_a_reason(scene, monkeypatch):
 
 
 def test_walls_that_cannot_stand_collapse_with_a_balance_that_closes(scene):
-    """Among them joints so soft that bricks would pass through each other between two looks a hundred steps apart."""
+    """Among them joints so soft that bricks would pass through each other between two looks a
+    hundred steps apart."""
     results = extremes.runAll(6, seed="1", falls=True)
     assert [found["class"] for found in results] == ["collapsed"] * 6
     assert max(found["balance"] for found in results) < 1e-5

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Scenes whose collapse is followed to the ground: what they say of it, against what stands in YADE, and how they go on."""
+"""Scenes whose collapse is followed to the ground: what they say of it, against what stands in
+YADE, and how they go on."""
 
 from hosted import *
 import functools
@@ -63,8 +64,8 @@ def test_what_fell_lies_on_the_ground_at_rest(fallen):
 
 
 def test_the_base_section_has_what_contacts_carry(fallen):
-    """All that stands on the base passes through it, whether by joints or by contacts, and later to the ground. The force of a
-    joint that turns is along the mean of both faces, hence 1e-4 kN."""
+    """All that stands on the base passes through it, whether by joints or by contacts, and later to
+    the ground. The force of a joint that turns is along the mean of both faces, hence 1e-4 kN."""
     _, rows = fallen
     for force, axis in (("N", "z"), ("V_y", "y")):
         carried = rows[f"base_force_{axis}_kN"] + rows[f"ground_force_{axis}_kN"]
@@ -88,7 +89,8 @@ def test_the_table_has_a_row_for_every_fallen_block(fallen):
     assert [int(row["block"]) for row in rows] == list(range(6))
     first = min(float(row["fallen_at_s"]) for row in rows)
     assert answer(scene, "first_fall") == pytest.approx(first, rel=1e-8)
-    # those that lay below turn over once, about any axis; how far the upper ones roll on depends on how they strike the ground
+    # those that lay below turn over once, about any axis; how far the upper ones roll on depends on
+    # how they strike the ground
     fronts = [(turn * Vector3.UnitY)[2] for turn in scene.turns[:4]]
     assert fronts == pytest.approx([-1] * 4, abs=1e-3)
     for row, place, turn in zip(rows, scene.places, scene.turns):
@@ -138,7 +140,8 @@ def test_a_shaken_wall_goes_on_while_its_top_falls(tmp_path):
     assert min(fell) < answer(scene, "noticed_at")
     times = scene.results.column("time_s")
     assert answer(scene, "time_of_collapse") == pytest.approx(min(fell) - times[1], abs=0.05)
-    # the shake is not damped, and what stands when the fall is noticed has the damping of the options from then on
+    # the shake is not damped, and what stands when the fall is noticed has the damping of the
+    # options from then on
     damped, noticed = scene.results.column("damping_J"), answer(scene, "noticed_at")
     shaken = max(d for d, t in zip(damped, times) if t <= noticed)
     assert shaken == pytest.approx(damped[1], rel=1e-6) and damped[-1] > 2 * shaken
@@ -211,8 +214,9 @@ def test_the_ground_where_the_scene_has_it(tmp_path):
 
 
 def test_a_tilt_stays_when_the_block_that_it_overturned_lies(tmp_path):
-    """It turns over at 14°, where the tangent is 0.25, and lies on the slope, since friction is 0.6: the force on the ground has
-    that share along y to the last, and all of the weight. After an acceleration, which ends, it would press straight down.
+    """It turns over at 14°, where the tangent is 0.25, and lies on the slope, since friction is
+    0.6: the force on the ground has that share along y to the last, and all of the weight. After an
+    acceleration, which ends, it would press straight down.
     """
     scene = following(tmp_path, bricks.stack(1, (SIDE, SIDE, 4 * SIDE)), stones())
     scene.platen("bottom")
@@ -239,7 +243,8 @@ def test_without_follow_the_run_ends_where_it_fell(tmp_path):
 
 
 def test_what_is_released_keeps_its_momentum_and_nothing_brakes_its_flight(tmp_path):
-    """A block without joints, which falls by half a metre; the settling brakes it until its collapse is noticed."""
+    """A block without joints, which falls by half a metre; the settling brakes it until its
+    collapse is noticed."""
     made = bricks.block((0, 0, 0.5), (SIDE, SIDE, 0.7)) + bricks.stack(2, (SIDE,) * 3).moved(dx=3)
     for stage in ("run", "settle"):
         scene = following(tmp_path / stage, made, stones(), plane=None, allowGaps=True)

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""A further kind of connector is its class of records and a command: columns, run.json, ``--set``, energies and sections
-know it without a line of their own. Here it is a rope over a pulley with a weight at its end, whose force hardly changes."""
+"""A further kind of connector is its class of records and a command: columns, run.json, ``--set``,
+energies and sections know it without a line of their own. Here it is a rope over a pulley with a
+weight at its end, whose force hardly changes."""
 
 from dataclasses import dataclass
 

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""A law that is no part of the plugin: its folder (tests/law/coulomb_friction) and an entry in the list are all it takes.
+"""A law that is no part of the plugin: its folder (tests/law/coulomb_friction) and an entry in the
+list are all it takes.
 
 The build makes a second module that holds it, which is used here in the place of the installed one.
 """

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Loads that grow and the search for the one that is held; loads in later stages; pushes of any direction."""
+"""Loads that grow and the search for the one that is held; loads in later stages; pushes of any
+direction."""
 
 from hosted import *
 from masonry._masonry import saveScene
@@ -83,7 +84,8 @@ def test_loads_of_later_stages_replace_others_and_can_be_bracketed(tmp_path):
 
 
 class Fragile:
-    """In place of a scene: a structure that carries loads below its capacity, and stands again only after a step back."""
+    """In place of a scene: a structure that carries loads below its capacity, and stands again only
+    after a step back."""
 
     share, stands = 1, True
     collapsed = property(lambda self: not self.stands)
@@ -332,8 +334,8 @@ def test_buckling_is_looked_for_in_the_state_that_was_held(monkeypatch):
 
 @pytest.mark.parametrize("stage", ["growLoad", "load"])
 def test_a_perfect_column_holds_no_more_than_its_buckling_load(tmp_path, stage):
-    """A chain of n rigid blocks on elastic joints with the rotational stiffness k buckles at 4 k/h sin²(π/(4 n + 2)), in space
-    along y, where it is thinner."""
+    """A chain of n rigid blocks on elastic joints with the rotational stiffness k buckles at 4 k/h
+    sin²(π/(4 n + 2)), in space along y, where it is thinner."""
     n, side, stiffness, plane = 10, 0.2, 5e8, stage == "growLoad"
     wide = side if plane else 1.5 * side
     joint = MasonryJoint(elastic=True, normalStiffness=stiffness, shearStiffness=2e8)

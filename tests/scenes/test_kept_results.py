@@ -100,7 +100,8 @@ def noLocks(file, how):
 
 @pytest.mark.parametrize("locks", [True, False])
 def test_a_folder_is_for_one_run_at_a_time(finished, monkeypatch, capsys, locks):
-    """Also where the file system has no locks, as some network folders: then the text of the file counts."""
+    """Also where the file system has no locks, as some network folders: then the text of the file
+    counts."""
     if not locks:
         monkeypatch.setattr(lock.fcntl, "flock", noLocks)
     report, tell = os.pipe()

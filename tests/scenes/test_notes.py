@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What a run says while it goes on stands in run.json and in the report, with the stage in which it was said."""
+"""What a run says while it goes on stands in run.json and in the report, with the stage in which it
+was said."""
 
 from hosted import *
 from masonry import basics

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The 3-D page of real runs in a real browser, as its user sees it. What a page holds, tests/package/test_model.py compares."""
+"""The 3-D page of real runs in a real browser, as its user sees it. What a page holds,
+tests/package/test_model.py compares."""
 
 from usual import *
 import browser
@@ -95,7 +96,8 @@ def test_blocks_and_joints_stand_where_the_run_says(opened, comp4):
         opened.value(f"(view.show({k}), 0)")
         found = np.array(opened.value("[...view.moved]")).reshape(-1, 3)
         expected = model.displacements(k)
-        # a step of the shift, and one of the turn for a corner that is at most half a metre from the centre of its brick
+        # a step of the shift, and one of the turn for a corner that is at most half a metre from
+        # the centre of its brick
         steps = np.abs(model.shift).max() / 32767 + 0.2 * np.abs(model.turn).max() / 32767
         brick = model.looks[model.owner] == BRICK_BLOCK
         assert np.abs(found - expected)[brick].max() < steps

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Pressures that vary, loads that grow together, and a load that travels, against answers by hand."""
+"""Pressures that vary, loads that grow together, and a load that travels, against answers by
+hand."""
 
 from hosted import *
 from masonry.scene import pressures
@@ -35,7 +36,7 @@ def water(level):
     return lambda x, y, z: WATER * max(0, level - z)
 
 
-# -- forces on faces --------------------------------------------------------------------------------------------------
+# -- forces on faces -------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("plane", [None, False])
@@ -65,7 +66,8 @@ def test_what_a_joint_covers_of_a_face_has_no_pressure():
 
 
 def test_snow_weighs_its_pressure_times_the_area_in_plan(tmp_path):
-    """On a semicircular arch of 2.3 m to its outside: 1.2 kPa × 4.6 m × 0.5 m; water on it presses to the sides, too."""
+    """On a semicircular arch of 2.3 m to its outside: 1.2 kPa × 4.6 m × 0.5 m; water on it presses
+    to the sides, too."""
     arch = bricks.Arch(0.3, 0.5, 21, radius=2.0)
     scene = made(tmp_path, arch)
     total = scene.pressure(1200, (0, 0, -1), part="arch", normal=False)
@@ -84,12 +86,13 @@ def test_a_level_within_a_face_is_found_within_a_part_of_it():
     assert force[0] == pytest.approx(0.8 * WATER * 1.37**2 / 2, rel=4e-3)
 
 
-# -- runs -------------------------------------------------------------------------------------------------------------
+# -- runs ------------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("words", [[], ["--preset", "bound"]])
 def test_a_dam_of_blocks_tips_over_under_the_water_of_statics(tmp_path, words):
-    """A dam of b × h tips about its foot under the factor f of a water level at its crown: W b/2 = f γ t h³/6."""
+    """A dam of b × h tips about its foot under the factor f of a water level at its crown: W b/2 =
+    f γ t h³/6."""
     h, b = 2.0, 0.8
     scene = made(tmp_path, bricks.stack(4, (b, 1.0, h / 4)), *words)
     scene.settle()
@@ -113,7 +116,8 @@ def test_water_that_rises_in_stages_replaces_what_was_there(tmp_path):
 
 
 def test_two_loads_in_proportion_tip_a_stack_at_the_factor_of_statics(tmp_path):
-    """1 kN sideways tips it about its foot, and the load on the windward edge holds it, which grows along."""
+    """1 kN sideways tips it about its foot, and the load on the windward edge holds it, which grows
+    along."""
     scene = made(tmp_path, bricks.stack(3, (0.3, 0.3, 0.2)), plane=False)
     side, edge = scene.handle((0.15, 0.15, 0.39)), scene.handle((0.0, 0.15, 0.55), name="edge")
     scene.load(edge, (0, 0, -300))

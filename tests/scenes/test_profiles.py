@@ -20,8 +20,9 @@ def footed(folder, count):
 
 
 def test_a_rigid_beam_follows_supports_that_move_on_a_slope(tmp_path):
-    """Footings that sink by 4 mm at every metre turn it by 4 mrad. They do not turn themselves, so it rests on their right corners,
-    of which that of the second, which sinks by 3 mm, is in the middle."""
+    """Footings that sink by 4 mm at every metre turn it by 4 mrad. They do not turn themselves, so
+    it rests on their right corners, of which that of the second, which sinks by 3 mm, is in the
+    middle."""
     scene, footings, _ = footed(tmp_path, 4)
     scene.move(footings, z=lambda x, y, z: -4 * x)
     scene.settle()
@@ -74,7 +75,7 @@ def test_what_cannot_be_moved_is_refused(tmp_path, last, z, message):
         scene.move([*footings, beam][:last], z=z)
 
 
-# -- a soil without tension -------------------------------------------------------------------------------------------
+# -- a soil without tension ------------------------------------------------------------------------
 
 SIDE, HIGH, SOIL = 2.0, 3.0, 1e8  # [m], [m], [N/m]
 
@@ -92,8 +93,8 @@ def tower(folder, plane=None):
 
 @pytest.mark.parametrize("plane", [None, False])
 def test_a_tower_on_a_soil_without_tension_turns_as_by_hand(tmp_path, plane):
-    """With the eccentricity e = H h/W beyond the kern, the soil carries on c = 3 (b/2 - e) with a triangle of stresses:
-    W = k/b θ c²/2."""
+    """With the eccentricity e = H h/W beyond the kern, the soil carries on c = 3 (b/2 - e) with a
+    triangle of stresses: W = k/b θ c²/2."""
     scene, top = tower(tmp_path, plane)
     weight, e = WEIGHT * (1 + 0.01 / HIGH), 0.6 * SIDE / 2
     assert scene.load(top, (weight * e / HIGH, 0, 0)) == AT_REST
@@ -108,7 +109,8 @@ def test_a_tower_on_a_soil_without_tension_turns_as_by_hand(tmp_path, plane):
 
 
 def test_a_soil_without_tension_that_shakes_lets_the_tower_rock(tmp_path):
-    """A pulse beyond b/h lifts one edge; the soil only ever pushes, and carries the weight at the end."""
+    """A pulse beyond b/h lifts one edge; the soil only ever pushes, and carries the weight at the
+    end."""
     scene, top = tower(tmp_path)
     pulse = [0.5 * G * math.sin(math.pi * n / 50) for n in range(51)]
     scene.shake([*pulse, *(-a for a in pulse)], every=0.01, after=0.5)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The report that real runs leave: when there is one, and what its reader sees in a real browser. What it says of a run,
-tests/package/test_report_content.py compares."""
+"""The report that real runs leave: when there is one, and what its reader sees in a real browser.
+What it says of a run, tests/package/test_report_content.py compares."""
 
 from hosted import *
 import base64

@@ -10,8 +10,9 @@ import stopped
 SEED = int(os.environ.get("RESUME_SEED", 1000))
 MOST = 20_000  # steps of a script
 SCRIPTS = int(os.environ.get("RESUME_SCRIPTS", 20))
-#: Stages from whose beginning displacements count on; supports and a search of later stages; steps so long that a run is
-#: stopped within a look at rest; a vertical load that keeps its line, so that it moves with every row; a fall to the ground.
+#: Stages from whose beginning displacements count on; supports and a search of later stages; steps
+#: so long that a run is stopped within a look at rest; a vertical load that keeps its line, so that
+#: it moves with every row; a fall to the ground.
 KNOWN = {
     "stages": """
 scene = Scene("s", bricks.Wall(0.44, 0.324), materials.calciumSilicate())

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""``--set`` and ``--field`` of ties, springs, fibre layers, beams and floors: what they change, and what is refused."""
+"""``--set`` and ``--field`` of ties, springs, fibre layers, beams and floors: what they change, and
+what is refused."""
 
 from hosted import *
 from masonry.scene import fields
@@ -9,7 +10,8 @@ LEVEL = 1.2  # of the tie [m]
 
 
 def tied(tmp_path, *words):
-    """A tall block on a platen on springs, with a tie, and a wall of two bricks with a fibre layer beside it."""
+    """A tall block on a platen on springs, with a tie, and a wall of two bricks with a fibre layer
+    beside it."""
     stack = bricks.stack(1, (WIDTH, DEPTH, HEIGHT)) + bricks.stack(3, (0.4, 0.3, 0.2)).moved(2)
     stones = materials.dry(5.0, normalStiffness=1e11)
     scene = lean(tmp_path, stack, stones, *words, plane=False)

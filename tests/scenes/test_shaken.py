@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Scenes that are shaken: the record and its strength from the command line, and what a run says of a record."""
+"""Scenes that are shaken: the record and its strength from the command line, and what a run says of
+a record."""
 
 from hosted import *
 from masonry.assembly.scheme import Scheme
@@ -76,7 +77,8 @@ def test_the_command_line_replaces_the_record_with_its_factor_and_unit(tmp_path,
 
 
 def test_three_components_act_at_once(tmp_path):
-    """Each by itself is what the one record is along its direction, and the vertical one is felt by the base."""
+    """Each by itself is what the one record is along its direction, and the vertical one is felt by
+    the base."""
     paths = {name: str(tmp_path / name) for name in ("some", "none", "up")}
     for name, factor in (("some", 1), ("none", 0), ("up", 0.5)):
         (tmp_path / name).write_text(

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Records one after the other on one structure: what remains after each, by hand, and a run that is stopped within one."""
+"""Records one after the other on one structure: what remains after each, by hand, and a run that is
+stopped within one."""
 
 import csv
 
@@ -41,8 +42,9 @@ def table(folder):
 
 
 def test_a_slab_slides_with_every_pulse_and_keeps_its_period(tmp_path, monkeypatch):
-    """Newmark's sliding block. The second pulse, of half the acceleration, is 3 m/s² and just stronger than friction. The last pulse
-    moves the slab back: then friction and joint set it rocking."""
+    """Newmark's sliding block. The second pulse, of half the acceleration, is 3 m/s² and just
+    stronger than friction. The last pulse moves the slab back: then friction and joint set it
+    rocking."""
     monkeypatch.chdir(tmp_path)
     status, steps, said = stopped.carryOut(stopped.BEGIN + SCRIPT, "--out", "whole")
     assert status == 0, said

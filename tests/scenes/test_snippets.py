@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Every command and every piece of Python in the documents is run, or has a reason here why it is not.
+"""Every command and every piece of Python in the documents is run, or has a reason here why it is
+not.
 
-Commands run in the order of the documents, in one folder, as a reader types them but for what REPLACED says: scenes take a
-tenth of their way, and names such as FILE get a meaning. Those of the tutorial are run by test_tutorial.py.
+Commands run in the order of the documents, in one folder, as a reader types them but for what
+REPLACED says: scenes take a tenth of their way, and names such as FILE get a meaning. Those of the
+tutorial are run by test_tutorial.py.
 """
 
 from hosted import *
@@ -67,7 +69,8 @@ REPLACED = (
     (r"\bFILE\b", "study.py"),
     (r"\bDIR\b", "study"),
 )
-#: Documents with Python, and what becomes of it: a file that commands name, or a program of its own.
+#: Documents with Python, and what becomes of it: a file that commands name, or a program of its
+#: own.
 BLOCKS = {
     "README.md": ["my_scene.py"],
     "scripts/FILES.md": ["checkpoint.py"],
@@ -84,7 +87,8 @@ SHORTER = {
     ],
     "couplets.py": [("unknown=", "runs=9,\n    unknown=")],
 }
-#: A record of the format of PEER: a sine that swells and fades, with another frequency in every file.
+#: A record of the format of PEER: a sine that swells and fades, with another frequency in every
+#: file.
 PEER = """PEER NGA STRONG MOTION DATABASE RECORD
 none
 ACCELERATION TIME SERIES IN UNITS OF G
@@ -103,7 +107,8 @@ def documents():
 
 
 def commands(text):
-    """The commands of a document: lines of its indented blocks, without comments, those that go on joined."""
+    """The commands of a document: lines of its indented blocks, without comments, those that go on
+    joined."""
     fenced = re.compile(r"^```(?!bash|sh).*?^```", re.M | re.S)
     lines = fenced.sub("", text).replace("\\\n", " ").splitlines()
     inside = False

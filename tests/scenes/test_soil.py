@@ -1,11 +1,13 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""A tower on soil that turns: it leans by its weight, and above a height it falls over however small the load is."""
+"""A tower on soil that turns: it leans by its weight, and above a height it falls over however
+small the load is."""
 
 from hosted import *
 from masonry.scene.stages import growing, rest
 
 SIDE, HEIGHT, DENSITY = 2.0, 20.0, 2000.0  # [m], [m], [kg/m³]
-#: Weight times the height of the middle [N m]: a soil that is less stiff per radian does not hold the tower upright.
+#: Weight times the height of the middle [N m]: a soil that is less stiff per radian does not hold
+#: the tower upright.
 OVERTURNING = DENSITY * G * SIDE**2 * HEIGHT**2 / 2
 
 
@@ -88,7 +90,8 @@ def test_small_horizontal_loads_must_be_carried_on_their_own(tmp_path):
 
 
 def test_a_wall_that_is_soft_sinks_far_and_slowly_and_has_not_fallen(tmp_path):
-    """Its blocks move by a tenth of their size, as fast as blocks fall if the load comes in the usual time."""
+    """Its blocks move by a tenth of their size, as fast as blocks fall if the load comes in the
+    usual time."""
     side, pressure, stiffness = 0.25, 1e6, 2e8
     blocks = bricks.stack(4, (side, side, side))
     stones = materials.dry(friction=0.7, density=DENSITY, normalStiffness=stiffness)
@@ -100,7 +103,8 @@ def test_a_wall_that_is_soft_sinks_far_and_slowly_and_has_not_fallen(tmp_path):
 
 
 def test_a_press_over_rollers_keeps_its_line_while_what_it_presses_leans(tmp_path):
-    """If it rode with the platen until a push begins, and then came back to its line at once, that would be a blow."""
+    """If it rode with the platen until a push begins, and then came back to its line at once, that
+    would be a blow."""
     scene = tower(tmp_path, 3 * OVERTURNING)
     roof = scene.platen("top", rotation="free", name="roof")
     scene.press(roof, 1e4, riding=False)

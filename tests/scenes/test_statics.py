@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Stages against Newton's laws: a few cells of validation/statics, other ones in every run of the tests."""
+"""Stages against Newton's laws: a few cells of validation/statics, other ones in every run of the
+tests."""
 
 from hosted import *
 import statics

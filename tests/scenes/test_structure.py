@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Scenes of one's own: stages, how they end, closed forms of what they measure, and what they refuse."""
+"""Scenes of one's own: stages, how they end, closed forms of what they measure, and what they
+refuse."""
 
 from hosted import *
 from masonry.run.results import Results
@@ -161,11 +162,12 @@ def test_a_property_varies_from_place_to_place(tmp_path):
         assert cohesion == pytest.approx(0.11e6 * (1 + height), rel=5.1e-3)
 
 
-# -- supports that go, wind, drift, pushes that go on, records --------------------------------------------------------
+# -- supports that go, wind, drift, pushes that go on, records -------------------------------------
 
 
 def test_a_support_is_released_and_the_other_one_carries_all(tmp_path):
-    """A stone on two legs, which stand on held stones; a third one in the middle takes the weight when one leg goes."""
+    """A stone on two legs, which stand on held stones; a third one in the middle takes the weight
+    when one leg goes."""
     leg, beam = bricks.stack(1, (0.2,) * 3), bricks.block((0, 0, 0.2), (1.0, 0.2, 0.4))
     blocks = sum([leg, leg.moved(0.4), leg.moved(0.8), beam])
     scene = lean(tmp_path, blocks, materials.dry(normalStiffness=1e10))
@@ -242,7 +244,8 @@ def test_storey_drift_is_the_difference_of_two_floors(tmp_path):
 
 
 def test_wind_overturns_a_wall_at_the_pressure_of_statics(tmp_path):
-    """A wall t thick and h high falls over its edge at the pressure ρ g t²/h; its joints are stiff."""
+    """A wall t thick and h high falls over its edge at the pressure ρ g t²/h; its joints are
+    stiff."""
     blocks = bricks.Wall(0.44, 0.81, halves=False)
     limit = STONE * 0.102**2 / 0.81
     for share, ends in ((0.96, AT_REST), (1.04, COLLAPSED)):
@@ -262,7 +265,8 @@ def test_wind_overturns_a_wall_at_the_pressure_of_statics(tmp_path):
 
 @pytest.mark.parametrize("stage", ["tilt", "accelerate"])
 def test_scaled_masses_leave_the_weight_of_a_structure_that_leans(tmp_path, stage):
-    """Four times the masses under a fourth of gravity weigh the same, and feel a fourth of the acceleration."""
+    """Four times the masses under a fourth of gravity weigh the same, and feel a fourth of the
+    acceleration."""
     scene = standing(tmp_path, THREE, density_scaling=4)
     scene.settle()
     angle = math.atan(0.1)
@@ -281,7 +285,8 @@ def test_scaled_masses_leave_the_weight_of_a_structure_that_leans(tmp_path, stag
 
 
 def test_columns_are_read_as_often_in_a_run_of_many_rows(tmp_path, monkeypatch):
-    """A column is a list that is made anew whenever it is asked for, so asking for it row by row takes hours in long loops."""
+    """A column is a list that is made anew whenever it is asked for, so asking for it row by row
+    takes hours in long loops."""
     counts = []
     for until in ("0.02", "0.2"):
         asked, read = [], Results.column

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The tutorial: its three notebooks run from top to bottom, and so does every command that they name."""
+"""The tutorial: its three notebooks run from top to bottom, and so does every command that they
+name."""
 
 from usual import *
 import base64

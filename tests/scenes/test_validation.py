@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The quick variants of the validation cases hold their limits, and the program says so when one does not."""
+"""The quick variants of the validation cases hold their limits, and the program says so when one
+does not."""
 
 from hosted import *
 import pathlib
@@ -62,7 +63,8 @@ def test_a_variation_changes_joints_within_their_bounds(row):
 
 @pytest.mark.parametrize("axis", [a for a in stability.AXES if "COMP-4" not in a])
 def test_walls_at_the_extremes_are_stable_or_stopped_with_a_reason(axis):
-    """Of the stability map: rigid units at both ends of each axis, deformable ones in its middle."""
+    """Of the stability map: rigid units at both ends of each axis, deformable ones in its
+    middle."""
     points = stability.AXES[axis]
     ends = (0, -2) if axis == "size / usual" else (0, -1)
     runs = [(points[end], "rigid") for end in ends]

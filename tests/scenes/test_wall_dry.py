@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The dry-joint granite walls: their stiffness under load, their load line, and what they refuse."""
+"""The dry-joint granite walls: their stiffness under load, their load line, and what they
+refuse."""
 
 from functools import partial
 
@@ -31,8 +32,9 @@ def test_the_vertical_load_turns_the_wall_about_its_toe_and_keeps_its_line(runSc
 
 @pytest.mark.parametrize("blocks, tolerance", [("rigid", 1e-3), ("deformable", 0.02)])
 def test_joints_and_units_in_series_give_the_masonry(tmp_path, blocks, tolerance):
-    # plane strain and the stiff platens make deformable units up to 1/(1 - 0.2²) stiffer, a fifth of the whole
-    # Of one cell, the corners that lie on no diagonal of a face are held too loosely: the wall is 2.3 % too soft.
+    # plane strain and the stiff platens make deformable units up to 1/(1 - 0.2²) stiffer, a fifth
+    # of the whole Of one cell, the corners that lie on no diagonal of a face are held too loosely:
+    # the wall is 2.3 % too soft.
     words = "--crack-surfaces off --blocks " + blocks
     words += " --divisions 2" * (blocks == "deformable")
     _, model, _ = settled(tmp_path, *words.split(), wall=GRANITE)

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Walls as a user runs them: quick variants of the scenes, what they leave behind, and how they end."""
+"""Walls as a user runs them: quick variants of the scenes, what they leave behind, and how they
+end."""
 
 from hosted import *
 import glob
@@ -112,7 +113,8 @@ def test_deformable_units_carry_the_weight_and_keep_the_balance(tmp_path):
 
 @pytest.mark.parametrize("blocks", ["rigid", "deformable"])
 def test_density_scaling_is_another_rate(tmp_path, blocks):
-    """Four times the mass at half the rate: the same run in twice the time, bit for bit, as these are powers of two."""
+    """Four times the mass at half the rate: the same run in twice the time, bit for bit, as these
+    are powers of two."""
     curves = []
     for scaling, rate in ((1, 40), (4, 20)):
         words = f"--density-scaling {scaling} --rate {rate} --until 0.3"

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Walls that follow a history: where they turn, what they leave, how they collapse, and how they are taken up again."""
+"""Walls that follow a history: where they turn, what they leave, how they collapse, and how they
+are taken up again."""
 
 from hosted import *
 from masonry.read import drawing, figures, loops, measure
@@ -70,7 +71,8 @@ def test_the_velocity_changes_evenly_where_the_drive_turns(tmp_path):
     start = data["time_s"][0] + 2e-3  # it begins within a first period, 1.3 ms
     change = change[middle[1:] > start]
     even = 40 / rest.RAMP  # [mm/s²]
-    # A row near a turn is a step or two long, so that its speed is known less well than those of others.
+    # A row near a turn is a step or two long, so that its speed is known less well than those of
+    # others.
     assert np.percentile(np.abs(change), 99) < 1.2 * even
     assert (np.abs(change) < 1.7 * even).all()
 
@@ -80,7 +82,8 @@ def test_a_push_is_the_history_of_one_point(tmp_path):
         words = ["--no-vtk", f"--{option}", "1", "--rate", "20"]
         assert run(tmp_path / option, *words) == 0
     push, loop = arrays(tmp_path / "until"), arrays(tmp_path / "history")
-    # before it is at its full speed, a loop adds the velocity up, a push multiplies: equal but for round-off
+    # before it is at its full speed, a loop adds the velocity up, a push multiplies: equal but for
+    # round-off
     rows = np.flatnonzero(push["displacement_mm"] < 1 - 20 * rest.RAMP / 2)
     assert len(rows) > 80 and set(loop) - set(push) == {"point", "target_mm"}
     for name in ("time_s", "displacement_mm", "base_shear_kN"):
@@ -131,7 +134,8 @@ def test_run_json_tells_the_history_and_the_cycles(looped):
 
 
 def test_what_the_drive_puts_into_a_cycle_is_lost_or_stored(looped):
-    """The loading block of the small wall does not turn, so the drive works over the displacement of curve.csv."""
+    """The loading block of the small wall does not turn, so the drive works over the displacement
+    of curve.csv."""
     text, data = readRun(looped), arrays(looped)
     vertical = 0.5e6 * SMALL.area  # [N] that the top course feels
     for cycle in text["cycles"]:
@@ -177,7 +181,8 @@ def test_frames_stand_at_turning_points_and_zeros(looped):
     pvd = open(os.path.join(looped, "joints.pvd")).read()
     times = [float(t) for t in re.findall(r'timestep="([^"]+)"', pvd)]
     at = np.interp(times, data["time_s"], data["displacement_mm"])
-    # --vtk-every 1: the swings of 0.1 mm have no frame of their own, those of 2 mm have three a side
+    # --vtk-every 1: the swings of 0.1 mm have no frame of their own, those of 2 mm have three a
+    # side
     for place, count in ((2, 1), (-2, 1), (0, 2)):
         assert (np.abs(at - place) < 0.012).sum() >= count
     path = np.cumsum(np.abs(np.diff(data["displacement_mm"], prepend=0)))
@@ -241,7 +246,8 @@ def test_how_far_a_wall_may_move_against_its_push(whole, most):
 
 
 def test_a_wall_that_loses_its_force_in_a_loop_ends_the_run(tmp_path):
-    """Without friction and with brittle bond the small wall slides on a bed joint as soon as the bond is gone."""
+    """Without friction and with brittle bond the small wall slides on a bed joint as soon as the
+    bond is gone."""
     bare = ["residualCohesion=0", "friction=0", "residualFriction=0", "tensileStrength=1e4"]
     words = [f"--set={name}.{value}" for name in ("bed", "head") for value in bare]
     words += ["--joints", "brittle", "--no-vtk", "--rate", "40"]
@@ -257,7 +263,8 @@ def test_a_finished_history_can_be_extended(tmp_path):
     assert run(tmp_path / "whole", "--history", "0.1,0.5,0.6", *words) == 0
     assert run(tmp_path / "parts", "--history", "0.1,0.5", *words) == 0
     assert run(tmp_path / "parts", "--history", longer, resume=True) == 0
-    # Before 0 mm the drive does not brake for 0.6 mm yet, so that both runs are the same to the last bit.
+    # Before 0 mm the drive does not brake for 0.6 mm yet, so that both runs are the same to the
+    # last bit.
     assert files(tmp_path / "parts") == files(tmp_path / "whole")
     text = readRun(tmp_path / "parts")
     assert len(text["cycles"]) == 3 and text["options"]["history"] == longer

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Where a structure stands, and which way it looks, changes no number of a run but those of places."""
+"""Where a structure stands, and which way it looks, changes no number of a run but those of
+places."""
 
 import functools
 
@@ -61,7 +62,8 @@ def here(build, folder):
 
 
 def answers(build, folder, stand, towards):
-    """All numbers of a run: the quantities, those of its joints and pattern, and the answers of its stages."""
+    """All numbers of a run: the quantities, those of its joints and pattern, and the answers of its
+    stages."""
     O.reset()
     build(folder, stand, towards)
     run = readRun(folder)

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""A Slurm cluster of this machine alone, on the loopback address: munged, slurmctld and slurmd in a folder of their own."""
+"""A Slurm cluster of this machine alone, on the loopback address: munged, slurmctld and slurmd in a
+folder of their own."""
 
 import contextlib
 import getpass

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""A free block of 0.25 × 1 m for incremental dynamic analysis. A line a run is added to the file ended.txt beside the table."""
+"""A free block of 0.25 × 1 m for incremental dynamic analysis. A line a run is added to the file
+ended.txt beside the table."""
 
 import os
 

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""A small wall for studies: ``--fall`` lets it fail. A line a run that ended is added to the file ended.txt beside the table."""
+"""A small wall for studies: ``--fall`` lets it fail. A line a run that ended is added to the file
+ended.txt beside the table."""
 
 import os
 

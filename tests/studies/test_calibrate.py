@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Properties from tests: closed forms of linear tests, how often intervals have the truth, rounds, accurate runs, a couplet."""
+"""Properties from tests: closed forms of linear tests, how often intervals have the truth, rounds,
+accurate runs, a couplet."""
 
 from usual import *
 from masonry.study import Calibration, Specimen, Study, calibrate, normal
@@ -31,7 +32,8 @@ def designed(act, ends, rows, seed=1):
 
 
 class Direct(Calibration):
-    """A calibration whose scene is a function; accurate runs are higher by ``off``. ``rounds`` has the rows of each study."""
+    """A calibration whose scene is a function; accurate runs are higher by ``off``. ``rounds`` has
+    the rows of each study."""
 
     act, off = staticmethod(pressed), 0.0
 
@@ -49,7 +51,8 @@ def direct(measured, error=0.02, names=RANGES, **settings):
 
 def test_a_linear_test_has_intervals_and_correlation_of_the_closed_form(tmp_path):
     found = direct([0.33, 0.58]).find(tmp_path)
-    # friction 0.25/0.4, its deviation 0.02 √2/0.4; cohesion 1.5 · 0.33 - 0.5 · 0.58, 0.02 √(1.5² + 0.5²); -5/√(2.5 · 12.5)
+    # friction 0.25/0.4, its deviation 0.02 √2/0.4; cohesion 1.5 · 0.33 - 0.5 · 0.58, 0.02 √(1.5² +
+    # 0.5²); -5/√(2.5 · 12.5)
     assert found.sample.mean(axis=0) == pytest.approx([0.205, 0.625], abs=0.006)
     assert found.sample.std(axis=0) == pytest.approx([0.03162, 0.07071], rel=0.08)
     assert found.correlation[0, 1] == pytest.approx(-0.8944, abs=0.02)
@@ -135,7 +138,8 @@ def test_a_second_round_fills_what_the_first_keeps_of_the_ranges(tmp_path, act):
 
 
 def test_a_run_is_added_where_the_surrogate_is_off(tmp_path, act):
-    """A step between the rows: the first surrogate is smooth there, and its interval has not the truth."""
+    """A step between the rows: the first surrogate is smooth there, and its interval has not the
+    truth."""
     act(lambda x: np.column_stack([x[:, 0] + 0.4 * (x[:, 0] > 0.93), x[:, 1]]))
     one = direct([1.36, 0.5], names=TWO, runs=12)
     found = one.find(tmp_path)
@@ -202,7 +206,8 @@ calibration = Calibration([curve, peak], {{"bed.cohesion": (0.05e6, 0.2e6), ("be
 
 
 def test_couplets_give_their_cohesion_and_friction_back(tmp_path):
-    """Those of calcium silicate, 0.11 MPa and 0.43, by a command that goes on where it was stopped."""
+    """Those of calcium silicate, 0.11 MPa and 0.43, by a command that goes on where it was
+    stopped."""
     slide = np.linspace(0, 0.28, 15)
     stress = np.where(slide > 0, 0.215 + 0.11 * np.exp(-0.11 * slide / 0.07), 0)
     lines = [f"{x},{y}" for x, y in zip(slide, stress)]

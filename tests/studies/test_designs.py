@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Designs of studies: moments, bounds, dependence, strata, and that the same seed gives the same rows."""
+"""Designs of studies: moments, bounds, dependence, strata, and that the same seed gives the same
+rows."""
 
 from usual import *
 from masonry.study import Study, choice, lognormal, normal, uniform
@@ -23,7 +24,8 @@ def column(name, what, **settings):
 def test_values_have_the_moments_of_their_distribution(law, design):
     what, mean, deviation = LAWS[law]
     values = column("bed.cohesion", what, runs=1024, design=design)
-    # the mean of 1,024 independent numbers is within four of its standard deviations; of the others it is closer
+    # the mean of 1,024 independent numbers is within four of its standard deviations; of the others
+    # it is closer
     wide = 4 * deviation / 32 / (1 if design == "random" else 10)
     assert abs(values.mean() - mean) < wide
     assert values.std() == pytest.approx(deviation, rel=0.12)
@@ -100,7 +102,8 @@ def test_every_stratum_of_a_latin_hypercube_has_one_row():
 
 
 def test_sobol_fills_the_square_evenly():
-    """Moved by a random vector, the points still fill squares far more evenly than random ones do."""
+    """Moved by a random vector, the points still fill squares far more evenly than random ones
+    do."""
     vary = {"a.b": uniform(0, 1), "a.c": uniform(0, 1)}
 
     def unevenness(design):

@@ -1,24 +1,28 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Multi-fidelity estimates against models whose truth is known: their bias, their intervals, and what they save."""
+"""Multi-fidelity estimates against models whose truth is known: their bias, their intervals, and
+what they save."""
 
 from usual import *
 from masonry.study import estimate
 from scipy import stats
 
 REPEATS = 600
-#: How far the share of intervals that have the truth may be from 95 % by chance: three standard deviations of a binomial.
+#: How far the share of intervals that have the truth may be from 95 % by chance: three standard
+#: deviations of a binomial.
 CHANCE = 3 * math.sqrt(0.95 * 0.05 / REPEATS)
 
 
 def line(generator, shared, rows, correlation):
-    """Normal numbers of mean 7 and standard deviation 5, and cheap ones of another size with this correlation."""
+    """Normal numbers of mean 7 and standard deviation 5, and cheap ones of another size with this
+    correlation."""
     u = generator.standard_normal(rows)
     r = math.sqrt(1 - correlation**2) * generator.standard_normal(shared)
     return 7 + 5 * (correlation * u[:shared] + r), 3 - 2 * u
 
 
 def bent(generator, shared, rows):
-    """Skewed numbers that bend over the cheap ones and scatter more where they are large: the bridge does not hold."""
+    """Skewed numbers that bend over the cheap ones and scatter more where they are large: the
+    bridge does not hold."""
     x = np.exp(0.4 * generator.standard_normal(rows))
     near = x[:shared]
     return near**2 + 0.3 * near * generator.standard_normal(shared), x
@@ -51,7 +55,8 @@ def test_intervals_have_the_truth_as_often_as_they_say(ofLine, name):
 def test_estimates_are_right_in_the_mean(ofLine, name):
     values = np.array([e.value for e in ofLine[name]])
     away = (values.mean() - TRUTH[name]) / values.std()
-    # by chance, and a bias that is small beside the scatter: a tenth of it changes the coverage by less than 0.2 %
+    # by chance, and a bias that is small beside the scatter: a tenth of it changes the coverage by
+    # less than 0.2 %
     assert abs(away) < 3 / math.sqrt(REPEATS) + 0.1
 
 
@@ -66,7 +71,8 @@ def test_the_predicted_variance_is_that_of_repetitions(ofLine):
 
 
 def test_few_shared_rows_make_no_spread_too_small():
-    """Residuals of a line that is fitted to 12 rows are smaller than the errors they show: by a sixth of their variance."""
+    """Residuals of a line that is fitted to 12 rows are smaller than the errors they show: by a
+    sixth of their variance."""
     quantile = estimate.quantile
     find = lambda y, x: [
         estimate.deviation(y, x),
@@ -76,7 +82,8 @@ def test_few_shared_rows_make_no_spread_too_small():
     spread, low, high = repeated(find, lambda g: line(g, 12, 60, 0.5), seed=3)
     squares = np.array([e.value**2 for e in spread])
     error = squares.std() / math.sqrt(REPEATS)
-    # a slope that happens to be small is not made smaller than 0, which adds some variance where the correlation is low
+    # a slope that happens to be small is not made smaller than 0, which adds some variance where
+    # the correlation is low
     assert 25 - 2 * error < squares.mean() < 1.06 * 25 + 2 * error
     inside = np.mean([e.low <= 5 <= e.high for e in spread])
     assert inside == pytest.approx(0.95, abs=CHANCE)
@@ -94,8 +101,8 @@ def test_a_dear_row_alone_is_reported_with_its_own_variance(ofLine):
 def test_the_mean_needs_no_line():
     """The control variate is right whatever the cheap numbers are; only its gain depends on them.
 
-    Where the expensive numbers bend, its slope depends on which rows are shared. That is a bias of order 1/N: a tenth of the
-    scatter with 60 shared rows, which takes 1 % from the coverage.
+    Where the expensive numbers bend, its slope depends on which rows are shared. That is a bias of
+    order 1/N: a tenth of the scatter with 60 shared rows, which takes 1 % from the coverage.
     """
     draw = lambda g: bent(g, 60, 600)
     (found,) = repeated(lambda y, x: [estimate.mean(y, x)], draw)
@@ -140,7 +147,8 @@ def test_doubts_come_as_seldom_as_they_say_where_the_bridge_holds():
 
 
 def test_cheap_rows_that_tell_nothing_do_no_harm():
-    """Then the mean and its interval are those of the expensive rows alone, but for one degree of freedom."""
+    """Then the mean and its interval are those of the expensive rows alone, but for one degree of
+    freedom."""
     generator, ratios = np.random.default_rng(6), []
     for _ in range(200):
         y, x = generator.standard_normal(40), generator.standard_normal(400)
@@ -153,7 +161,8 @@ def test_cheap_rows_that_tell_nothing_do_no_harm():
 
 
 def test_what_is_saved_is_the_rule_of_two_models():
-    """Of Peherstorfer, Willcox and Gunzburger: cost over cost alone is (sqrt(1 - ρ²) + sqrt(d/c ρ²))², at the best ratio."""
+    """Of Peherstorfer, Willcox and Gunzburger: cost over cost alone is (sqrt(1 - ρ²) + sqrt(d/c
+    ρ²))², at the best ratio."""
     rho, prices = 0.98, (60.0, 3.0)
     parts = 25 * (1 - rho**2), 25 * rho**2
     pilot = estimate.Estimate("mean", 0, -1, 1, *parts, 25, 20, 200)

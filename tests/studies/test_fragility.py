@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Fragility from the levels between which records reach a limit: drawn data, closed forms, and what cannot be found."""
+"""Fragility from the levels between which records reach a limit: drawn data, closed forms, and what
+cannot be found."""
 
 from usual import *
 from xml.etree import ElementTree
@@ -22,8 +23,9 @@ def drawn(seed, records, median=0.8, dispersion=0.5):
 
 
 def test_drawn_data_give_their_distribution_back():
-    """A thousand records: standard errors are β/√1000 = 0.016 of ln θ and 0.011 of β. Levels that are 0.39 apart in the
-    logarithm add a variance of 0.39²/12 to that of 0.25 of an intensity, so 0.004 and 0.003 to these errors.
+    """A thousand records: standard errors are β/√1000 = 0.016 of ln θ and 0.011 of β. Levels that
+    are 0.39 apart in the logarithm add a variance of 0.39²/12 to that of 0.25 of an intensity, so
+    0.004 and 0.003 to these errors.
     """
     for seed in range(3):
         logs = 0.5 * np.random.default_rng(seed).standard_normal(1000)
@@ -36,7 +38,8 @@ def test_drawn_data_give_their_distribution_back():
 
 @pytest.mark.parametrize("records", [6, 12])
 def test_intervals_hold_the_truth_as_often_as_they_say(records):
-    """Of 100 samples 95 should; the binomial standard deviation is 2.2, and 88 are three of them below."""
+    """Of 100 samples 95 should; the binomial standard deviation is 2.2, and 88 are three of them
+    below."""
     held = np.zeros(3)
     tried = 0
     for seed in range(100):
@@ -57,7 +60,8 @@ def test_intervals_hold_the_truth_as_often_as_they_say(records):
 
 
 def test_two_levels_have_a_closed_form():
-    """Shares p and q at or below two levels: Φ⁻¹ of both is ln(level/θ)/β, which are two equations for θ and β."""
+    """Shares p and q at or below two levels: Φ⁻¹ of both is ln(level/θ)/β, which are two equations
+    for θ and β."""
     low, high = between([0.1] * 2 + [0.7] * 5 + [2] * 3, [0.5, 1.0])
     found = fragility.fit(low, high)
     p, q = special.ndtri(0.2), special.ndtri(0.7)
@@ -70,7 +74,8 @@ def test_two_levels_have_a_closed_form():
 
 
 def test_fine_levels_give_the_interval_of_student():
-    """With intensities that are known nearly exactly, the interval of ln θ is that of Student's t about the mean."""
+    """With intensities that are known nearly exactly, the interval of ln θ is that of Student's t
+    about the mean."""
     from scipy import stats
 
     values = np.exp(0.4 * np.random.default_rng(3).standard_normal(8))

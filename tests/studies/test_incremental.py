@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Incremental dynamic analysis: which rows are run, what they find beside closed forms, and what is said of them."""
+"""Incremental dynamic analysis: which rows are run, what they find beside closed forms, and what is
+said of them."""
 
 from commands import *
 import hashlib
@@ -38,13 +39,14 @@ def write(folder, **changes):
     return path
 
 
-# -- the whole, beside Housner ----------------------------------------------------------------------------------------
+# -- the whole, beside Housner ---------------------------------------------------------------------
 
 
 def housner(seconds, level):
-    """Largest rotation over the slope of a slender block under a rectangular pulse, and whether it falls: G. W. Housner,
-    "The behavior of inverted pendulum structures during earthquakes", Bulletin of the Seismological Society of
-    America 53 (1963), where cosh(pt) = 1 + 1/(2 r (r - 1)) with r = a/(gα) is the limit.
+    """Largest rotation over the slope of a slender block under a rectangular pulse, and whether it
+    falls: G. W. Housner, "The behavior of inverted pendulum structures during earthquakes",
+    Bulletin of the Seismological Society of America 53 (1963), where cosh(pt) = 1 + 1/(2 r (r - 1))
+    with r = a/(gα) is the limit.
     """
     slope, radius = 0.25, math.hypot(0.125, 0.5)
     p = math.sqrt(3 * 9.81 / (4 * radius))
@@ -85,7 +87,8 @@ def test_a_block_falls_at_the_levels_of_housner_and_no_row_above_is_run(whole):
 
 
 def test_rotations_are_those_of_housner(whole):
-    """His equations are for small slopes; that of this block is 0.25, whose square is 6 %. Joints add about a millimetre."""
+    """His equations are for small slopes; that of this block is 0.25, whose square is 6 %. Joints
+    add about a millimetre."""
     compared = 0
     for row, level in zip(table(whole[0]), LEVELS * 3):
         share, falls = housner(PULSES[row["record"]], level)
@@ -145,7 +148,8 @@ def test_a_study_that_is_done_runs_nothing_and_compares_its_records(whole, tmp_p
 
 
 def test_interruptions_and_the_order_of_rows_change_no_number(whole, tmp_path):
-    """A row above a collapse is run first, by hand; then the study is killed, and interrupted, and goes on."""
+    """A row above a collapse is run first, by hand; then the study is killed, and interrupted, and
+    goes on."""
     path, out = write(tmp_path), tmp_path / "out"
     done(path, "--out", out, "--prepare")
     run(*ROW, "--scene", ROCKING, out, 4, check=True)
@@ -175,7 +179,7 @@ def test_a_task_of_slurm_runs_the_levels_of_a_record(whole, slurm, tmp_path):
     assert read(out) == read(whole[0]) and len(ended(out)) == 9
 
 
-# -- what is planned --------------------------------------------------------------------------------------------------
+# -- what is planned -------------------------------------------------------------------------------
 
 
 def planned(tmp_path, **changes):
@@ -294,7 +298,8 @@ def test_rows_of_one_record_follow_each_other():
 
 
 def test_a_scene_that_is_not_shaken_gives_no_data(tmp_path):
-    """A run that ended without a shake is no row of an analysis: it is counted as failed, with the reason."""
+    """A run that ended without a shake is no row of an analysis: it is counted as failed, with the
+    reason."""
     out = fake(tmp_path, [0.3, 0.6], ["a"], {}, shaken=False)
     folder = Folder(out)
     assert [folder.status(n) for n in (1, 2)] == ["failed", "missing"]
@@ -319,7 +324,7 @@ def test_a_row_refuses_a_record_that_was_cut_off(tmp_path):
     assert "a.txt is not the record with which the study began" in process.stderr
 
 
-# -- what is found ----------------------------------------------------------------------------------------------------
+# -- what is found ---------------------------------------------------------------------------------
 
 
 def fake(tmp_path, levels, names, found, shaken=True):
@@ -358,7 +363,8 @@ inf = math.inf
 
 @pytest.fixture
 def three(tmp_path):
-    """A study of three records and levels, of which the first falls at 0.9 g, the second at 0.6 g and the third never."""
+    """A study of three records and levels, of which the first falls at 0.9 g, the second at 0.6 g
+    and the third never."""
     found = {1: 1.0, 2: 4.0, 3: inf, 4: 2.0, 5: inf, 7: 3.0, 8: 6.0, 9: 12.0}
     return fake(tmp_path, [0.3, 0.6, 0.9], ["a", "b", "c"], found)
 

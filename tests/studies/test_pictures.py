@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Sensitivities against closed forms, and pictures of what they must show, drawn from numbers and from a study's folder."""
+"""Sensitivities against closed forms, and pictures of what they must show, drawn from numbers and
+from a study's folder."""
 
 from commands import *
 import pathlib
@@ -50,7 +51,8 @@ def test_sobol_indices_do_not_depend_on_the_distribution_of_a_property():
 
 
 def test_a_product_has_total_indices_above_its_first_ones():
-    """y = a b of standard uniform numbers about 0: no first index, and all of the variance in both totals."""
+    """y = a b of standard uniform numbers about 0: no first index, and all of the variance in both
+    totals."""
     x = uniforms(np.random.default_rng(3), 300, -1, 1)
     found = sensitivity.sobol(x, x[NAMES[0]] * x[NAMES[1]]).indices
     for name in NAMES[:2]:
@@ -108,7 +110,7 @@ def test_what_no_sensitivity_can_be_made_of_is_refused(call, message):
         call()
 
 
-# -- pictures --------------------------------------------------------------------------------------------------------
+# -- pictures --------------------------------------------------------------------------------------
 
 
 PEAKS, PEAK = "peak_base_shear_kN", "peak base shear [kN]"
@@ -186,11 +188,12 @@ def test_bars_stand_for_the_numbers_with_the_largest_on_top(drawn):
     assert totals[-1] == max(totals)
 
 
-# -- a study's folder ------------------------------------------------------------------------------------------------
+# -- a study's folder ------------------------------------------------------------------------------
 
 
 def writeStudy(folder, rows, measures, curves=0):
-    """A folder as gathering leaves it. Of ``rows`` and ``measures`` a cell that is empty has no number."""
+    """A folder as gathering leaves it. Of ``rows`` and ``measures`` a cell that is empty has no
+    number."""
     lines = [["run", *NAMES, "status", *measures]]
     times = ["run,status,host,run_seconds,job_seconds,commit,told"]
     for n, (row, cells) in enumerate(zip(rows, zip(*measures.values())), 1):
@@ -210,7 +213,8 @@ def writeStudy(folder, rows, measures, curves=0):
 
 @pytest.fixture
 def studies(tmp_path):
-    """An expensive study with the first 15 rows of a cheap one of 120, whose peaks miss those of the expensive one by a little."""
+    """An expensive study with the first 15 rows of a cheap one of 120, whose peaks miss those of
+    the expensive one by a little."""
     generator = np.random.default_rng(10)
     rows = generator.uniform(0, 1, (120, 3)).tolist()
     scatter = 0.3 * generator.standard_normal((2, 120))
@@ -263,7 +267,8 @@ def test_studies_of_which_it_cannot_be_reported_what_they_share_are_refused(stud
 
 def test_studies_of_other_walls_or_options_are_not_joined(studies):
     def shared(scene="wall_comp4", **more):
-        """How many rows studies of a scene and another one share, of which the other has more options."""
+        """How many rows studies of a scene and another one share, of which the other has more
+        options."""
         described = (("wall_comp4", {"preset": "accurate"}), (scene, {"preset": "fast", **more}))
         for directory, (name, options) in zip(studies, described):
             study = {"scene": name, "runs": 15, "options": options, "vary": {}}

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Studies that run: here, killed at random moments, on Slurm, and by plain yade-batch; always with the same study.csv."""
+"""Studies that run: here, killed at random moments, on Slurm, and by plain yade-batch; always with
+the same study.csv."""
 
 from commands import *
 from masonry.run import batch
@@ -180,7 +181,7 @@ def test_a_row_that_fails_is_named_and_the_others_run(tmp_path):
     assert "it was told to fall" in table(out, "times.csv")[1]["told"]
 
 
-# -- bad input --------------------------------------------------------------------------------------------------------
+# -- bad input -------------------------------------------------------------------------------------
 
 
 def refused(tmp_path, text, *words, env=None):
@@ -272,7 +273,7 @@ def test_another_study_in_the_folder_is_refused(whole, tmp_path):
     assert os.listdir(tmp_path / "mine") == ["letter.txt"]
 
 
-# -- a folder that somebody else has packed ---------------------------------------------------------------------------
+# -- a folder that somebody else has packed --------------------------------------------------------
 
 
 @pytest.fixture
@@ -482,11 +483,12 @@ def test_a_disk_that_fills_up_stops_the_study_in_order(whole, tmp_path):
         assert ended(small / "out")[4:] == ["0003"]
 
 
-# -- Slurm ------------------------------------------------------------------------------------------------------------
+# -- Slurm -----------------------------------------------------------------------------------------
 
 
 def test_slurm_gives_the_same(whole, slurm, tmp_path):
-    """Three tasks for four rows; one task is out of time, another one's node fails, and both go on."""
+    """Three tasks for four rows; one task is out of time, another one's node fails, and both go
+    on."""
     path, out = write(tmp_path), tmp_path / "out"
     done(path, "--out", out, "--slurm", "--partition=walls", env=slurm)
     job = (out / "slurm.job").read_text().strip()

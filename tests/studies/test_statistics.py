@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Statistics of a study hold what they promise: how often their intervals have the truth, and what they say of few rows."""
+"""Statistics of a study hold what they promise: how often their intervals have the truth, and what
+they say of few rows."""
 
 from usual import *
 from masonry.study import statistics
 from scipy import stats
 
 REPEATS = 1000
-#: How far the share of intervals that have the truth may be from 95 % by chance: three standard deviations of a binomial.
+#: How far the share of intervals that have the truth may be from 95 % by chance: three standard
+#: deviations of a binomial.
 CHANCE = 3 * math.sqrt(0.95 * 0.05 / REPEATS)
 
 
@@ -24,7 +26,8 @@ def test_intervals_of_a_mean_have_it_as_often_as_they_say():
 
 @pytest.mark.parametrize("normal", [True, False])
 def test_intervals_of_a_standard_deviation_have_it_as_often_as_they_say(normal):
-    """Also of a distribution that is not normal: the lognormal one of a strength that scatters by 20 %."""
+    """Also of a distribution that is not normal: the lognormal one of a strength that scatters by
+    20 %."""
     scale = math.sqrt(math.log(1.04))
     skewed = lambda g: g.lognormal(-(scale**2) / 2, scale, 60)
     draw = (lambda g: g.standard_normal(60)) if normal else skewed
@@ -35,7 +38,8 @@ def test_intervals_of_a_standard_deviation_have_it_as_often_as_they_say(normal):
 
 @pytest.mark.parametrize("share", [0.05, 0.5, 0.95])
 def test_intervals_of_a_quantile_have_it_at_least_as_often_as_they_say(share):
-    """They are of steps of one row, so they may have it more often; by how much follows from the binomial distribution."""
+    """They are of steps of one row, so they may have it more often; by how much follows from the
+    binomial distribution."""
     n = 100
     inside = stats.binom.cdf(np.arange(n), n, share)
     low = np.flatnonzero(inside <= 0.025)[-1] + 1  # of so many rows below
@@ -51,8 +55,8 @@ def test_intervals_of_a_quantile_have_it_at_least_as_often_as_they_say(share):
     "n, low, high", [(6, 1, 6), (10, 2, 9), (20, 6, 15), (50, 18, 33), (100, 40, 61)]
 )
 def test_the_interval_of_a_median_has_the_ranks_of_the_sign_test(n, low, high):
-    """Ranks of the 95 % interval as in tables of the sign test: fewer than 2.5 % lie beyond each, and one rank further in
-    it would be more."""
+    """Ranks of the 95 % interval as in tables of the sign test: fewer than 2.5 % lie beyond each,
+    and one rank further in it would be more."""
     found = statistics.quantile(np.arange(1.0, n + 1), 0.5)
     assert (found.low, found.high) == (low, high)
     beyond = lambda rank: sum(math.comb(n, k) for k in range(rank)) / 2**n

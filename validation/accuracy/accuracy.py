@@ -3,8 +3,9 @@
 
 /usr/bin/python3 validation/accuracy/accuracy.py [--jobs N] [--walls WALL ...] [--show]
 
-Makes what is missing in results/accuracy: of every wall of walls.py a run with --accuracy 2, and the reference. It goes on
-where it was stopped, and runs one wall a core. Then it writes table.md and accuracy.json beside itself; --show only does that.
+Makes what is missing in results/accuracy: of every wall of walls.py a run with --accuracy 2, and
+the reference. It goes on where it was stopped, and runs one wall a core. Then it writes table.md
+and accuracy.json beside itself; --show only does that.
 """
 
 import argparse
@@ -65,7 +66,8 @@ def over(wall, kind):
 
 
 def runOne(wall, kind, cores):
-    """Run a wall on a core of its own, so that its companions run there, too. Returns a sentence if it failed."""
+    """Run a wall on a core of its own, so that its companions run there, too. Returns a sentence if
+    it failed."""
     core = cores.get()
     out, (shape, masonry) = folder(wall, kind), wall.split("_")
     os.makedirs(os.path.dirname(out), exist_ok=True)
@@ -96,7 +98,8 @@ def runOne(wall, kind, cores):
 
 
 def runAll(walls, jobs):
-    """Run what is missing, the references, which are longest, among the others. Returns what failed."""
+    """Run what is missing, the references, which are longest, among the others. Returns what
+    failed."""
     cores = SimpleQueue()
     for core in sorted(os.sched_getaffinity(0))[:jobs]:
         cores.put(core)

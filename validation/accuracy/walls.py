@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The walls of the study of --accuracy: ten shapes of four kinds of masonry, of bricks of 220 × 162 mm."""
+"""The walls of the study of --accuracy: ten shapes of four kinds of masonry, of bricks of 220 × 162
+mm."""
 
 from masonry import Scene, bricks, materials
 from masonry.scene import options
@@ -20,7 +21,8 @@ SHAPES = {
     "long-low": (3.3, 0.972, False, 0.4e6, 3, []),
     "tall-narrow": (0.66, 2.43, False, 0.5e6, 12, []),
 }
-#: Kinds of masonry: changes of the calcium-silicate joints, by property; None: granite with dry joints.
+#: Kinds of masonry: changes of the calcium-silicate joints, by property; None: granite with dry
+#: joints.
 MASONRY = {
     "silicate": {},
     "weak": {

@@ -3,19 +3,21 @@
 
 yade -n -x [-j THREADS] validation/benchmark/benchmark.py [STEPS]
 
-compares, on the wall TUD-COMP-4 and side by side in one run: the plugin with rigid and deformable units from the first
-push to the end of the test, with features on and off, and through YADE's own interaction loop and integrator; walls of
-1,000 to 100,000 half bricks and their memory; YADE's volumetric law on the half bricks of COMP-4; YADE's one-point
-mortar law on spheres in their places. It prints one table, and writes results/benchmark/benchmark.json.
+compares, on the wall TUD-COMP-4 and side by side in one run: the plugin with rigid and deformable
+units from the first push to the end of the test, with features on and off, and through YADE's own
+interaction loop and integrator; walls of 1,000 to 100,000 half bricks and their memory; YADE's
+volumetric law on the half bricks of COMP-4; YADE's one-point mortar law on spheres in their places.
+It prints one table, and writes results/benchmark/benchmark.json.
 
 yade -n -x [-j THREADS] validation/benchmark/benchmark.py --push wall_comp4 --until 3 --rate 20
 
-runs a scene with its options, in a process of its own, and prints the mean cost of a step over its whole push, and of a
-row of curve.csv. Two builds of the plugin are compared by PYTHONPATH.
+runs a scene with its options, in a process of its own, and prints the mean cost of a step over its
+whole push, and of a row of curve.csv. Two builds of the plugin are compared by PYTHONPATH.
 
 yade -n -x validation/benchmark/benchmark.py --wide 224 224
 
-builds one wall of so many courses and half units, and prints what its set-up and a step take and its memory.
+builds one wall of so many courses and half units, and prints what its set-up and a step take and
+its memory.
 """
 
 import json
@@ -96,8 +98,8 @@ def resident():
 def wide(courses, halfUnits):
     """Cost of a step of a wall as laid, and of its set-up.
 
-    :returns: seconds a step, subcontacts, and a dict: bytes a half brick of YADE's bodies and of our joints, and seconds
-        of set-up with the first step
+    :returns: seconds a step, subcontacts, and a dict: bytes a half brick of YADE's bodies and of
+        our joints, and seconds of set-up with the first step
     """
     O.reset()
     began = time.perf_counter()
@@ -152,7 +154,8 @@ def volumetric():
 
 
 def mortar():
-    """A sphere in the place of every half brick, one contact a joint, without a collider as our walls."""
+    """A sphere in the place of every half brick, one contact a joint, without a collider as our
+    walls."""
     O.reset()
     O.materials.append(MortarMat(density=1800, young=4.8e9, poisson=0.2, neverDamage=True))
     length, height = 0.11, 0.081

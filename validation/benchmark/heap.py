@@ -1,19 +1,22 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """A heap of boxes that fall on a slab: contacts of the plugin beside YADE's own polyhedra.
 
-/usr/bin/python3 validation/benchmark/heap.py [--blocks 60] [--seconds 1.5] [--stiffness 1e8] [--damping 0.2] [--friction 0.5]
+/usr/bin/python3 validation/benchmark/heap.py [--blocks 60] [--seconds 1.5] [--stiffness 1e8]
+[--damping 0.2] [--friction 0.5]
     [--step 0.5] [--stock-step SECONDS] [--minutes 60] [--only engine|stock ...]
 
-drops the same bricks, turned at random, in two processes that step in turns of a hundredth of a second of the heap: with the
-engine MasonryContacts, and with YADE's polyhedra and their volumetric law (where YADE has them). It prints one table. Times are
-those of the processor, on one thread.
+drops the same bricks, turned at random, in two processes that step in turns of a hundredth of a
+second of the heap: with the engine MasonryContacts, and with YADE's polyhedra and their volumetric
+law (where YADE has them). It prints one table. Times are those of the processor, on one thread.
 
-The volumetric law presses with kn times the volume of the overlap. Two faces that overlap by a depth d over an area A have the
-volume A d, so kn in N/m³ is the stiffness per area in Pa/m, and the same number is taken for both: each block has twice of it as
-`young`. Its shear stiffness is one of a contact, not of an area: that of the plugin on a whole bed face. It has no damping
-of its own, so NewtonIntegrator damps its blocks by --damping, and the plugin's contacts have a restitution of 0.3 and no other
-damping. The time step is the share --step of the plugin's limit for the plugin, and the same number of seconds for the volumetric
-law, which knows no limit for itself, unless --stock-step gives another one in seconds.
+The volumetric law presses with kn times the volume of the overlap. Two faces that overlap by a
+depth d over an area A have the volume A d, so kn in N/m³ is the stiffness per area in Pa/m, and the
+same number is taken for both: each block has twice of it as `young`. Its shear stiffness is one of
+a contact, not of an area: that of the plugin on a whole bed face. It has no damping of its own, so
+NewtonIntegrator damps its blocks by --damping, and the plugin's contacts have a restitution of 0.3
+and no other damping. The time step is the share --step of the plugin's limit for the plugin, and
+the same number of seconds for the volumetric law, which knows no limit for itself, unless
+--stock-step gives another one in seconds.
 
 After --minutes the table shows what has been reached until then.
 """
@@ -48,7 +51,8 @@ def options():
     return parser.parse_args()
 
 
-# ---- in YADE ----------------------------------------------------------------------------------------------------
+# ---- in YADE
+# --------------------------------------------------------------------------------------------------
 
 
 def corners(middle, turn, size):
@@ -76,7 +80,8 @@ def places(count):
 
 
 def build(given):
-    """The bricks of a child, their slab and their engines. Returns the law functor or engine that knows energies."""
+    """The bricks of a child, their slab and their engines. Returns the law functor or engine that
+    knows energies."""
     from masonry import addBlock
     from yade import O, Quaternion, Vector3
     from yade.wrapper import (
@@ -182,7 +187,8 @@ class Heap:
         return dict(self.O.energy.items()).get("nonviscDamp", 0) + law.plasticDissipation()
 
     def sunk(self):
-        """How far the lowest corner is below the slab's face, and the least distance of two middles [m]."""
+        """How far the lowest corner is below the slab's face, and the least distance of two middles
+        [m]."""
         bodies = [b for b in self.O.bodies if b.id > 0]
         low = min((b.state.pos + b.state.ori * v)[2] for b in bodies for v in b.shape.v)
         near = min(
@@ -217,7 +223,8 @@ class Heap:
 
 
 def child(given):
-    """Answers every line of standard input: a number is a time to step to, ``dt NUMBER`` sets the time step."""
+    """Answers every line of standard input: a number is a time to step to, ``dt NUMBER`` sets the
+    time step."""
     heap = Heap(given)
     limit = None
     if given.child == "engine":
@@ -234,7 +241,8 @@ def child(given):
     os._exit(0)  # the scene has no end that would be of use
 
 
-# ---- beside it ----------------------------------------------------------------------------------------------------
+# ---- beside it
+# --------------------------------------------------------------------------------------------------
 
 
 class Process:

@@ -1,12 +1,15 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What a step of a wall costs beside a plain program that does nothing else, and whether both find the same peak.
+"""What a step of a wall costs beside a plain program that does nothing else, and whether both find
+the same peak.
 
-/usr/bin/python3 validation/benchmark/plain.py [--rounds N] [--until MM] [--rate MM/S] [--plane] [OPTIONS OF THE SCENE]
+/usr/bin/python3 validation/benchmark/plain.py [--rounds N] [--until MM] [--rate MM/S] [--plane]
+[OPTIONS OF THE SCENE]
 
-compiles plain_comp4.cpp, which says what it models, and pushes the wall COMP-4 in it and in the plugin, on one thread each, one
-after the other, in so many rounds (default 3). It prints for each the quickest round in microseconds a step of the push, its
-steps, their time, peak and work. By default units are rigid, to 3 mm at 20 mm/s. With --plane they are of plane stress in the
-plain program and deformable, two by two cells, in the plugin. All other options go to the scene.
+compiles plain_comp4.cpp, which says what it models, and pushes the wall COMP-4 in it and in the
+plugin, on one thread each, one after the other, in so many rounds (default 3). It prints for each
+the quickest round in microseconds a step of the push, its steps, their time, peak and work. By
+default units are rigid, to 3 mm at 20 mm/s. With --plane they are of plane stress in the plain
+program and deformable, two by two cells, in the plugin. All other options go to the scene.
 """
 
 import argparse

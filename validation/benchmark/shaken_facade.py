@@ -4,8 +4,9 @@
     yade -n -x validation/benchmark/shaken_facade.py --lean --preset fast --seconds 10 --peak 0.2
     yade -n -x validation/benchmark/shaken_facade.py --lean --preset fast --seconds 2 --peak 0.2 --pier
 
-A façade of two storeys, whose bricks can crack in half, moves in its plane; with ``--pier`` a pier of two wythes in English bond,
-1.26 x 2.6 m, whose bricks do not crack, moves in space, across its plane.
+A façade of two storeys, whose bricks can crack in half, moves in its plane; with ``--pier`` a pier
+of two wythes in English bond, 1.26 x 2.6 m, whose bricks do not crack, moves in space, across its
+plane.
 """
 
 import time
@@ -21,8 +22,8 @@ EVERY = 0.005  # [s]
 
 
 def noise(seed, seconds):
-    """Accelerations of white noise, filtered between 0.5 and 12 Hz; the peak is 1. Its displacements are under a bell, so that
-    the ground begins and ends at rest."""
+    """Accelerations of white noise, filtered between 0.5 and 12 Hz; the peak is 1. Its
+    displacements are under a bell, so that the ground begins and ends at rest."""
     count = round(seconds / EVERY) + 1
     band = signal.butter(2, (0.5, 12), "bandpass", fs=1 / EVERY, output="sos")
     white = np.random.default_rng(seed).standard_normal(count)

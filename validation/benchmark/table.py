@@ -4,9 +4,10 @@
     /usr/bin/python3 validation/benchmark/table.py                            # the plugin that is installed
     /usr/bin/python3 validation/benchmark/table.py SITE OLDER --rows fast wide    # two folders with a `masonry` package each, some rows
 
-The builds take turns, and of each the best of ``--repeat`` runs counts. Scenes are those of this repository. A row whose run fails, for
-example because an older build does not know one of its options, has a dash. ``plain`` and ``plain plane`` are the steps of the plain
-program beside those of ``rigid`` and ``deformable``, see ``plain.py``.
+The builds take turns, and of each the best of ``--repeat`` runs counts. Scenes are those of this
+repository. A row whose run fails, for example because an older build does not know one of its
+options, has a dash. ``plain`` and ``plain plane`` are the steps of the plain program beside those
+of ``rigid`` and ``deformable``, see ``plain.py``.
 """
 
 import argparse
@@ -52,7 +53,8 @@ PLAIN = [*PYTHON, "validation/benchmark/plain.py", "--rounds", "1"]
 IMPORT = (
     "import time, masonry, yade; t = time.time(); from masonry import Scene; print(time.time() - t)"
 )
-#: Rows: the command, and a function of the folder of results, the seconds of the run, and what it said that gives number and unit.
+#: Rows: the command, and a function of the folder of results, the seconds of the run, and what it
+#: said that gives number and unit.
 ROWS = {
     "fast": ([*YADE, COMP4, "--preset", "fast"], ofRun),
     "lean": ([*YADE, COMP4, "--preset", "fast", "--lean"], ofRun),

@@ -3,11 +3,12 @@
 
 /usr/bin/python3 validation/benchmark/threads.py [ROUNDS]
 
-steps walls of some hundred, of 1,224 (TUD-COMP-4) and of 10,000 half bricks, as laid, on one thread and on two, one after the
-other, in so many rounds (default 3): first alone, then beside as many programs that use a core each as there are cores. It
-prints the mean cost of a step in the median round and what two threads gain in it, the same gain in the best tenth of a second of
-all rounds, which other guests of the machine disturb least, and how much of a step is outside the loops that threads share. It
-takes some four minutes. Run it where nothing else runs.
+steps walls of some hundred, of 1,224 (TUD-COMP-4) and of 10,000 half bricks, as laid, on one thread
+and on two, one after the other, in so many rounds (default 3): first alone, then beside as many
+programs that use a core each as there are cores. It prints the mean cost of a step in the median
+round and what two threads gain in it, the same gain in the best tenth of a second of all rounds,
+which other guests of the machine disturb least, and how much of a step is outside the loops that
+threads share. It takes some four minutes. Run it where nothing else runs.
 """
 
 import json
@@ -25,7 +26,8 @@ BUSY = "while True: pass"
 
 
 def child(halfUnits, courses):
-    """Step a wall, in YADE. Prints a line: microseconds a step, those of them outside loops, half bricks, share on two."""
+    """Step a wall, in YADE. Prints a line: microseconds a step, those of them outside loops, half
+    bricks, share on two."""
     from masonry import Scene, advance, bricks, materials
     from masonry.assembly import threads
     from yade import O

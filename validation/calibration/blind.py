@@ -3,8 +3,8 @@
 
 /usr/bin/python3 validation/calibration/blind.py [--jobs 2]
 
-Runs what is missing in results/validation/calibration, prints the table and writes table.md. README.md says what was fixed
-before the first comparison.
+Runs what is missing in results/validation/calibration, prints the table and writes table.md.
+README.md says what was fixed before the first comparison.
 """
 
 import argparse
@@ -51,7 +51,8 @@ def options(stress):
 
 
 def tested(jobs):
-    """Test the hidden couplets: their properties, a line a case. Writes a measured curve a case and a couplet."""
+    """Test the hidden couplets: their properties, a line a case. Writes a measured curve a case and
+    a couplet."""
     noise = np.random.default_rng(HIDDEN)
     vary = {name: uniform(*ends) for name, ends in RANGES.items()}
     for number, stress in enumerate(STRESSES, 1):

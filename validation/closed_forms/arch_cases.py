@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Arches: least thickness, friction, horizontal acceleration, tilt, thrust and spreading supports."""
+"""Arches: least thickness, friction, horizontal acceleration, tilt, thrust and spreading
+supports."""
 
 from cases import between, case
 from masonry import AT_REST, bricks, limit
@@ -93,7 +94,8 @@ def oppenheim():
 
 
 def acceleration(blocks, quick, stiffness=1e11, words=(), expected=None):
-    """Horizontal acceleration of an arch [g]: of limit analysis, if no other is given, and bracket of the engine."""
+    """Horizontal acceleration of an arch [g]: of limit analysis, if no other is given, and bracket
+    of the engine."""
     with sceneOf(blocks, rigidlike(stiffness=stiffness), words) as s:
         holdFeet(s)
         s.settle()
@@ -156,7 +158,8 @@ def arch_7_tilt(quick):
 
 
 def thrust(assembly, foot):
-    """Smallest thrust by limit analysis [N]: the least force along -x that holds a support which could slide away."""
+    """Smallest thrust by limit analysis [N]: the least force along -x that holds a support which
+    could slide away."""
     number = assembly.ids.index(foot)
     assembly.held[number, 0] = False
     live = assembly.force(number, (-1, 0, 0))
@@ -179,7 +182,8 @@ def arch_thrust(quick):
 
 
 def spread(quick, share):
-    """Thrust of an arch whose support has moved away, against the least one of the displaced polygon [N]."""
+    """Thrust of an arch whose support has moved away, against the least one of the displaced
+    polygon [N]."""
     with sceneOf(oppenheim(), rigidlike(), rate=50) as s:
         left, right = holdFeet(s)
         s.settle()

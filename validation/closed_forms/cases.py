@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What a case of this folder is: a closed form, and a function that measures the same with the engine."""
+"""What a case of this folder is: a closed form, and a function that measures the same with the
+engine."""
 
 import math
 import os
@@ -18,8 +19,8 @@ class Case:
     :param group: heading in the table
     :param what: what is compared, with its unit
     :param source: of the expected value
-    :param measure: function of whether the quick variant is asked for; it gives the expected value and the measured one,
-        a number, or the two ends between which it lies
+    :param measure: function of whether the quick variant is asked for; it gives the expected value
+        and the measured one, a number, or the two ends between which it lies
     :param aim: largest error; None: the value is reported only
     :param absolute: whether the aim is in the unit of the value, not a share of the expected value
     :param misses: why the aim is not met, if that is known
@@ -45,7 +46,8 @@ class Case:
 
 @dataclass
 class Result:
-    """What a case gave: expected value, measured one (a number or two ends), and seconds of processor time."""
+    """What a case gave: expected value, measured one (a number or two ends), and seconds of
+    processor time."""
 
     case: Case
     expected: float
@@ -60,7 +62,8 @@ class Result:
 
     @property
     def error(self):
-        """Of the measured value, or of the middle of its bracket: in its unit if the aim is, else as a share."""
+        """Of the measured value, or of the middle of its bracket: in its unit if the aim is, else
+        as a share."""
         away = self.middle - self.expected
         return away if self.case.absolute else away / self.expected
 
@@ -73,7 +76,8 @@ class Result:
 
 
 def case(group, what, source, **settings):
-    """Make a case of a function, whose name becomes that of the case. Parameters as of :class:`Case`."""
+    """Make a case of a function, whose name becomes that of the case. Parameters as of
+    :class:`Case`."""
 
     def made(measure):
         name = measure.__name__.strip("_").replace("_", "-")
@@ -86,14 +90,16 @@ def case(group, what, source, **settings):
 def between(below, expected, aim, quick, spread=0.15, within=0.002):
     """The two ends of a bracket around a limit.
 
-    The quick variant asks at two places only, the aim below and the aim above the expected value. The other one halves.
+    The quick variant asks at two places only, the aim below and the aim above the expected value.
+    The other one halves.
 
-    :param below: function of a value that tells whether it lies below the limit, for example whether a structure stands
-        under that load
+    :param below: function of a value that tells whether it lies below the limit, for example
+        whether a structure stands under that load
     :param aim: of the quick variant, as a share of the expected value
     :param spread: where halving begins, around the expected value [-]
     :param within: width of the bracket at the end, as a share of the expected value
-    :returns: low and high end. If the limit lies outside of what was asked for, one end is 0 or infinite
+    :returns: low and high end. If the limit lies outside of what was asked for, one end is 0 or
+        infinite
     """
     share = aim if quick else spread
     low, high = (1 - share) * expected, (1 + share) * expected

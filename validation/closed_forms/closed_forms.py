@@ -13,7 +13,8 @@ import traceback
 
 HERE = os.path.dirname(os.path.abspath(sys.argv[0]))
 sys.path[:0] = [HERE, os.path.dirname(HERE)]  # yade leaves it out
-import arch_cases, elastic_cases, motion_cases, part_cases, shear_cases, wall_cases  # noqa: E401, E402, F401
+# E401, E402, F401
+import arch_cases, elastic_cases, motion_cases, part_cases, shear_cases, wall_cases  # noqa:
 from cases import CASES  # noqa: E402
 from studies import head, line  # noqa: E402
 
@@ -47,7 +48,8 @@ def row(result):
 
 
 def carryOut(case, quick):
-    """Run a case without what it prints. Returns its result, or None after telling what was raised."""
+    """Run a case without what it prints. Returns its result, or None after telling what was
+    raised."""
     said = io.StringIO()
     try:
         with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
@@ -59,7 +61,8 @@ def carryOut(case, quick):
 
 
 def chosen(only, problem):
-    """The cases with these names, or beginnings of names; without any, all. ``problem`` is called with what is wrong."""
+    """The cases with these names, or beginnings of names; without any, all. ``problem`` is called
+    with what is wrong."""
     names = [c.name for c in CASES]
     idle = [o for o in only if not any(n.startswith(o) for n in names)]
     if idle:

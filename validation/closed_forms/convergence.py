@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""How answers of the engine come to those of rigid blocks with stiffer joints, more points and slower loads.
+"""How answers of the engine come to those of rigid blocks with stiffer joints, more points and
+slower loads.
 
 yade -n -x validation/closed_forms/convergence.py [--out FILE]
 """
@@ -20,7 +21,8 @@ from studies import head, line  # noqa: E402
 from wall_cases import panel, tipping  # noqa: E402
 
 STIFFNESS, POINTS = "joint stiffness [Pa/m]", "points along a joint"
-#: What is measured, what changes, its values, and a function of such a value that gives the expected and measured one.
+#: What is measured, what changes, its values, and a function of such a value that gives the
+#: expected and measured one.
 STUDIES = [
     (
         "arch of 7, acceleration",

@@ -23,11 +23,12 @@ PATCH, WAVES = "Patch tests in space", "Waves"
 BRICK = (0.22, 0.102, 0.081)  # [m]
 
 
-# -- joints -----------------------------------------------------------------------------------------------------------
+# -- joints ----------------------------------------------------------------------------------------
 
 
 def jointMoment(about, points=None, functors=False, divisions=None, blocked=""):
-    """Moment that turns one brick against another by an angle, over that angle: expected and measured [N m/rad].
+    """Moment that turns one brick against another by an angle, over that angle: expected and
+    measured [N m/rad].
 
     :param divisions: zones of the upper brick; None: it is rigid
     """
@@ -117,13 +118,14 @@ def joint_turns_2(quick):
     return 3 * true, measured
 
 
-# -- cantilevers of deformable units ----------------------------------------------------------------------------------
+# -- cantilevers of deformable units ---------------------------------------------------------------
 
 E, NU, RHO = 4.8e9, 0.16, 1800.0
 
 
 def deflection(cells, length=0.4, section=0.05):
-    """Deflection of the tip of a deformable bar under its own weight sideways: of the beam, and measured [m].
+    """Deflection of the tip of a deformable bar under its own weight sideways: of the beam, and
+    measured [m].
 
     :param cells: across the bar; it has eight times as many along its length
     """
@@ -195,14 +197,16 @@ def cantilever_4(quick):
     return deflection(4)
 
 
-# -- patch tests ------------------------------------------------------------------------------------------------------
+# -- patch tests -----------------------------------------------------------------------------------
 
 
 def patch(deformable, force=(3.0, -2.0, -60.0), where=(0.02, -0.01)):
-    """Largest error of the stress at points of a joint under a force on the block above it, over the largest stress.
+    """Largest error of the stress at points of a joint under a force on the block above it, over
+    the largest stress.
 
-    The blocks are turned in space. The force acts at a point off the middle of a joint that is much longer than wide, so
-    the stress is linear along both: N/A + M·y/I about both axes. What turns about the normal is held.
+    The blocks are turned in space. The force acts at a point off the middle of a joint that is much
+    longer than wide, so the stress is linear along both: N/A + M·y/I about both axes. What turns
+    about the normal is held.
     """
     O.reset()
     length, thickness, height = BRICK
@@ -275,7 +279,8 @@ def patch_deformable(quick):
 
 
 def together(seed, functors=False):
-    """Largest jump in the joint of two deformable bricks of other meshes that move together, over their way [-]."""
+    """Largest jump in the joint of two deformable bricks of other meshes that move together, over
+    their way [-]."""
     O.reset()
     dice = np.random.default_rng(seed)
     turn = Quaternion(*dice.normal(size=4))
@@ -309,11 +314,12 @@ def patch_together(quick):
     return 0.0, together(1)
 
 
-# -- waves ------------------------------------------------------------------------------------------------------------
+# -- waves -----------------------------------------------------------------------------------------
 
 
 def frequency(cells, length=0.4, section=0.05):
-    """First longitudinal frequency of a deformable bar: of theory, and measured from its free vibration [Hz]."""
+    """First longitudinal frequency of a deformable bar: of theory, and measured from its free
+    vibration [Hz]."""
     O.reset()
     unit = MasonryMat(density=RHO, young=E, poisson=0.0)
     base = addBlock(corners((0, 0, -section), (section, section, 0)), mat())

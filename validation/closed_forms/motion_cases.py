@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Motion: free fall, sliding and rocking blocks, restitution, momentum, rotation, viscous damping, work of gravity."""
+"""Motion: free fall, sliding and rocking blocks, restitution, momentum, rotation, viscous damping,
+work of gravity."""
 
 import math
 
@@ -34,7 +35,7 @@ def go(seconds):
         O.step()
 
 
-# -- flight -----------------------------------------------------------------------------------------------------------
+# -- flight ----------------------------------------------------------------------------------------
 
 
 def fly(deformable):
@@ -74,7 +75,8 @@ def fall_deformable(quick):
 
 
 def flyingStack(deformable=False):
-    """A stack of three bricks, free in space, that flies, turns and swings in its elastic joints."""
+    """A stack of three bricks, free in space, that flies, turns and swings in its elastic
+    joints."""
     O.reset()
     unit = MasonryMat(density=1800, young=4.8e9, poisson=0.16)
     bodies = []
@@ -121,8 +123,8 @@ def flight_energy(quick):
 
 
 def turned(degrees):
-    """Largest stress in joints of a stack that turns as one rigid body [Pa], with what a hundredth of a turn of one
-    block against the next would make."""
+    """Largest stress in joints of a stack that turns as one rigid body [Pa], with what a hundredth
+    of a turn of one block against the next would make."""
     O.reset()
     for k in range(3):
         box((0, 0, k * 0.1), (0.2, 0.1, 0.1), mat())
@@ -159,7 +161,7 @@ def turned_720(quick):
     return 0.0, turned(720)
 
 
-# -- sliding and rocking ----------------------------------------------------------------------------------------------
+# -- sliding and rocking ---------------------------------------------------------------------------
 
 
 def newmark(friction, pulse, lasts, stiffness=1e12):
@@ -189,7 +191,8 @@ B, H = 0.25, 1.0  # of the rocking block [m]
 
 
 def standing(share, stiffness=1e10, size=(B, H), fraction=0.4, restitution=1.0, points=None):
-    """A free block on a fixed one, turned about its edge by a share of its slenderness angle; returns its state."""
+    """A free block on a fixed one, turned about its edge by a share of its slenderness angle;
+    returns its state."""
     O.reset()
     width, height = size
     fix(box((-1, 0, -0.2), (2 + width, 0.25, 0.2), mat()))
@@ -217,8 +220,8 @@ def angle(state):
 def quarter(share, stiffness=1e10):
     """Time from rest until a rocking block stands upright: expected and measured [s].
 
-    What is expected is the integral over the angle at which the block stands, without a small angle: Housner's
-    acosh(1/(1 − θ0/α))/p takes that of the slenderness for small.
+    What is expected is the integral over the angle at which the block stands, without a small
+    angle: Housner's acosh(1/(1 − θ0/α))/p takes that of the slenderness for small.
     """
     alpha, p = math.atan2(B, H), math.sqrt(0.75 * G / (0.5 * math.hypot(B, H)))
     from0 = lambda lean: math.cos(alpha - share * alpha) - math.cos(alpha - lean)
@@ -250,9 +253,11 @@ def rocking_75(quick):
 
 
 def restitution(size, stiffness=1e10, **joint):
-    """Angular velocity after the first impact over that before it [-]: of rigid blocks, and measured.
+    """Angular velocity after the first impact over that before it [-]: of rigid blocks, and
+    measured.
 
-    Both velocities follow from the energy of the block at rest, before the impact and at the largest angle after it.
+    Both velocities follow from the energy of the block at rest, before the impact and at the
+    largest angle after it.
     """
     alpha, share = math.atan2(*size), 0.5
     state = standing(share, stiffness, size, **joint)
@@ -270,7 +275,8 @@ RIGID = "1 − 1.5·sin²α: rigid blocks, conserved angular momentum; Housner 1
 
 
 def impact(name, size, aim=0.02, points=3, of=0.0):
-    """A case of the restitution at the first impact, with joints that have this restitution and as many points."""
+    """A case of the restitution at the first impact, with joints that have this restitution and as
+    many points."""
     what = (
         f"restitution at the first impact, {size[0]} × {size[1]:g} m, {points} points, joint"
         f" restitution {of:g}"
@@ -288,8 +294,8 @@ impact("restitution_elastic", (0.25, 1.0), aim=None, of=1.0)
 
 
 def housnerFalls(pulse, lasts, kept):
-    """Whether a rigid block on a rigid base turns over under a ground acceleration, with so much of its spin kept at an
-    impact: Housner's equation of motion.
+    """Whether a rigid block on a rigid base turns over under a ground acceleration, with so much of
+    its spin kept at an impact: Housner's equation of motion.
 
     :param pulse: ground acceleration [m/s²] as a function of time, none after it has lasted
     """
@@ -381,7 +387,7 @@ def overturning_elastic(quick):
     return overturning(SINE, 0.4, 1.0, quick)
 
 
-# -- damping and work -------------------------------------------------------------------------------------------------
+# -- damping and work ------------------------------------------------------------------------------
 
 
 def oscillator(joint=None, blocked="xyXYZ", gravity=(0, 0, 0), zones=False, inPlane=False):
@@ -402,7 +408,8 @@ def oscillator(joint=None, blocked="xyXYZ", gravity=(0, 0, 0), zones=False, inPl
 
 
 def decrement(periods, count):
-    """Logarithmic decrement of a vibration about zero along z, from its peaks in several periods of some steps each."""
+    """Logarithmic decrement of a vibration about zero along z, from its peaks in several periods of
+    some steps each."""
     s = O.bodies[1].state
     away = lambda: s.pos[2] - s.refPos[2]
     peaks, before = [], [0.0, 0.0]
@@ -488,9 +495,11 @@ def terminal_velocity(quick):
 
 
 def gravityWork(direction):
-    """Work of a gravity that is raised step by step on two bricks on a joint: half of weight times way, and counted [J].
+    """Work of a gravity that is raised step by step on two bricks on a joint: half of weight times
+    way, and counted [J].
 
-    :param way: ``"rigid"`` or ``"deformable"`` bricks, or ``"functors"``: YADE's own loop and integrator
+    :param way: ``"rigid"`` or ``"deformable"`` bricks, or ``"functors"``: YADE's own loop and
+        integrator
     """
     O.reset()
     unit = MasonryMat(density=1800, young=4.8e9, poisson=0.16)

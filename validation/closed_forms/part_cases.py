@@ -97,7 +97,8 @@ INERTIA, AREA, SHEAR = WIDE * HIGH**3 / 12, WIDE * HIGH, YOUNG / 2.4
 
 
 def sag(pieces, held, loaded):
-    """Sag [m] of a piece of a beam under a force of 1 kN, and the distance of the middles of the outer pieces [m]."""
+    """Sag [m] of a piece of a beam under a force of 1 kN, and the distance of the middles of the
+    outer pieces [m]."""
     beam = bricks.Beam((0, 0, 0), LENGTH, WIDE, HIGH, pieces=pieces)
     stones = materials.dry(0.6).withBeam(beam, young=YOUNG, density=500)
     with sceneOf(beam, stones, gravity=0.0) as s:

@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Elastic walls, arches and vaults of rigid units, which carry their elasticity in their joints, against the same solid.
+"""Elastic walls, arches and vaults of rigid units, which carry their elasticity in their joints,
+against the same solid.
 
-Rigid units are solved with the stiffness that the engine has: every block is moved and turned alone by a little, and the
-forces on all blocks are read after a step. The solid is divided into bricks with incompatible modes (Taylor, Beresford
-and Wilson 1976), which are exact in bending. Mortar is nearly rigid.
+Rigid units are solved with the stiffness that the engine has: every block is moved and turned alone
+by a little, and the forces on all blocks are read after a step. The solid is divided into bricks
+with incompatible modes (Taylor, Beresford and Wilson 1976), which are exact in bending. Mortar is
+nearly rigid.
 """
 
 import math
@@ -26,8 +28,9 @@ CORNERS = 2 * np.array(list(np.ndindex(2, 2, 2))) - 1
 
 
 class Structure:
-    """Stiffness ``K`` and masses ``M`` of points that have ``step`` degrees of freedom each, the first three of which are
-    displacements; ``sides`` has the degrees of freedom on each side that is held."""
+    """Stiffness ``K`` and masses ``M`` of points that have ``step`` degrees of freedom each, the
+    first three of which are displacements; ``sides`` has the degrees of freedom on each side that
+    is held."""
 
     def free(self, sides):
         free = np.ones(len(self.M), bool)
@@ -118,7 +121,8 @@ def _forces(bodies):
 
 
 class Solid(Structure):
-    """The same boxes without joints, in elements of about half a quarter of a brick by half a course."""
+    """The same boxes without joints, in elements of about half a quarter of a brick by half a
+    course."""
 
     step = 3
 
@@ -171,7 +175,7 @@ def _element(size):
     return K[outer, outer] - K[outer, inner] @ np.linalg.solve(K[inner, inner], K[inner, outer])
 
 
-# -- cases ------------------------------------------------------------------------------------------------------------
+# -- cases -----------------------------------------------------------------------------------------
 
 PLANE = "Elastic walls, arches and vaults of rigid units"
 SPACE = "Elastic walls of rigid units out of their plane"
@@ -185,7 +189,8 @@ def add(name, group, what, source, aim, measure, misses=""):
 
 
 def wall(units, courses, **kw):
-    """A wall that is so many units long, in running bond of whole bricks unless it is said otherwise."""
+    """A wall that is so many units long, in running bond of whole bricks unless it is said
+    otherwise."""
     kw = {"halves": False, "unit": UNIT, **kw}
     return bricks.Wall(units * LENGTH, courses * COURSE, **kw)
 
@@ -200,10 +205,12 @@ def frequency(blocks, sides, axis=1):
 
 
 def crown(blocks, thickness, width):
-    """Stiffness of a semicircle of radius 1 m under a force at its crown [N/m]: of a curved beam, and of its units."""
+    """Stiffness of a semicircle of radius 1 m under a force at its crown [N/m]: of a curved beam,
+    and of its units."""
     a = np.linspace(0, math.pi / 2, 2001)
     c, s, none = np.cos(a), np.sin(a), 0 * a
-    # moment, normal and shear force at an angle from the crown: of the moment, the thrust and half of the force there
+    # moment, normal and shear force at an angle from the crown: of the moment, the thrust and half
+    # of the force there
     forces = np.array([[none + 1, 1 - c, -s], [none, -c, -s], [none, s, -c]])
     area = thickness * width
     soft = 1 / np.array([E * area * thickness**2 / 12, E * area, G * area / 1.2])
@@ -226,7 +233,8 @@ def vault():
 
 
 def twist(halves):
-    """Stiffness in twist over that of the solid [-]: of rigid blocks in a large plate, and of these."""
+    """Stiffness in twist over that of the solid [-]: of rigid blocks in a large plate, and of
+    these."""
     blocks, size = wall(5, 12, halves=halves), (5 * LENGTH, 12 * COURSE)
     solid = Solid(blocks, (LENGTH / 4, THICKNESS / 2, COURSE)).twist(*size)
     b, s = LENGTH / 2, 0.5 if halves else 0.82

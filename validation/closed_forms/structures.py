@@ -35,7 +35,7 @@ BALANCED = (
 )
 
 
-# -- body by body -----------------------------------------------------------------------------------------------------
+# -- body by body ----------------------------------------------------------------------------------
 
 
 def dry(stiffness=1e10, friction=0.7, **kw):
@@ -84,16 +84,19 @@ def arch(blocks, friction=0.9):
 
 
 def falls(sideways, beyond, grow=0.5, stay=3.0):
-    """Whether a structure falls under vertical gravity and this acceleration to the side [m/s², a vector].
+    """Whether a structure falls under vertical gravity and this acceleration to the side [m/s², a
+    vector].
 
-    The vertical part comes first. The part to the side grows over a time and then stays for another, both smoothly, so
-    that inertia adds nothing. Local damping takes a share of the unbalanced force only: it brings a structure to rest and
-    slows the fall of a mechanism, but cannot hold one. With 0.8 a stack of four dry blocks took ten seconds to fall; with
-    0.3 it takes half a second, and what stands is at rest as soon.
+    The vertical part comes first. The part to the side grows over a time and then stays for
+    another, both smoothly, so that inertia adds nothing. Local damping takes a share of the
+    unbalanced force only: it brings a structure to rest and slows the fall of a mechanism, but
+    cannot hold one. With 0.8 a stack of four dry blocks took ten seconds to fall; with 0.3 it takes
+    half a second, and what stands is at rest as soon.
 
     :param beyond: displacement of a body [m] that no structure at rest reaches
     :param grow: time over which each part grows [s]
-    :param stay: time that a structure has to fall [s]; if it is slower than that, it is said to stand
+    :param stay: time that a structure has to fall [s]; if it is slower than that, it is said to
+        stand
     """
     integrator = engine("integrator")
     O.dt = 0.8 * criticalTimeStep()[0]
@@ -113,7 +116,7 @@ def falls(sideways, beyond, grow=0.5, stay=3.0):
     return False
 
 
-# -- scenes -----------------------------------------------------------------------------------------------------------
+# -- scenes ----------------------------------------------------------------------------------------
 
 
 @contextlib.contextmanager
@@ -137,7 +140,8 @@ def _withoutFigures(model):
 
 
 def semicircle(stones, thickness, depth=0.3, foot=0.2):
-    """A semicircular arch of equal flat voussoirs on two blocks, of mean radius 1 m: a :class:`masonry.bricks.Bricks`.
+    """A semicircular arch of equal flat voussoirs on two blocks, of mean radius 1 m: a
+    :class:`masonry.bricks.Bricks`.
 
     The last two of its bricks are the blocks under its springings.
 
@@ -157,7 +161,8 @@ def holdFeet(scene):
 
 
 def leans(scene, towards=(1, 0, 0)):
-    """A function that tells whether a scene carries a horizontal acceleration [g]; after a fall it steps back."""
+    """A function that tells whether a scene carries a horizontal acceleration [g]; after a fall it
+    steps back."""
 
     def carries(factor):
         if scene.lean(factor, towards=towards) == AT_REST:
@@ -168,13 +173,15 @@ def leans(scene, towards=(1, 0, 0)):
     return carries
 
 
-# -- limit analysis of what stands in YADE ----------------------------------------------------------------------------
+# -- limit analysis of what stands in YADE ---------------------------------------------------------
 
 
 def bound(towards=(1, 0, 0), assembly=None):
-    """:class:`masonry.limit.Bound` of the scene under a horizontal acceleration; its factor is in g.
+    """:class:`masonry.limit.Bound` of the scene under a horizontal acceleration; its factor is in
+        g.
 
-    :raises Refused: if the blocks do not stand under their weight, or if the forces that were found are not in equilibrium
+    :raises Refused: if the blocks do not stand under their weight, or if the forces that were found
+        are not in equilibrium
     """
     assembly = assembly or limit.read()
     live = assembly.weights(G * Vector3(*towards))
@@ -191,8 +198,8 @@ def bound(towards=(1, 0, 0), assembly=None):
 def unbalanced(found):
     """Largest force or moment that is missing on a free block at the factor of a bound.
 
-    The forces of its contacts are added up here once more, so that nothing depends on what the solver says of itself.
-    Joints that never give way are left out, so there must be none.
+    The forces of its contacts are added up here once more, so that nothing depends on what the
+    solver says of itself. Joints that never give way are left out, so there must be none.
 
     :returns: over the mean weight of a block, or over that times a metre [-]
     """
@@ -218,7 +225,8 @@ def rests(assembly):
 
 
 def leastFriction(assembly, low=0.05, high=1.5, within=1e-4):
-    """The least friction [-] with which blocks stand under their weight by limit analysis, by halving."""
+    """The least friction [-] with which blocks stand under their weight by limit analysis, by
+    halving."""
     return _least(lambda mu: rests(_withFriction(assembly, mu)), low, high, within)
 
 
@@ -228,7 +236,8 @@ def _withFriction(assembly, friction):
 
 
 def leastThickness(stones, friction=0.9, low=0.05, high=0.4, within=1e-5):
-    """The least thickness over mean radius [-] with which :func:`semicircle` stands by limit analysis, by halving."""
+    """The least thickness over mean radius [-] with which :func:`semicircle` stands by limit
+    analysis, by halving."""
 
     def stands(thickness):
         O.reset()
@@ -246,5 +255,6 @@ def _least(stands, low, high, within):
 
 
 def rigidlike(friction=0.7, stiffness=1e11):
-    """Dry stones whose joints are so stiff that their deformation hardly matters. Stiffness in Pa/m."""
+    """Dry stones whose joints are so stiff that their deformation hardly matters. Stiffness in
+    Pa/m."""
     return materials.dry(friction=friction, normalStiffness=stiffness)

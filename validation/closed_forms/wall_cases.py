@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Dry walls in and out of their plane, single blocks and stacks, panels with overburden, piers that are pushed."""
+"""Dry walls in and out of their plane, single blocks and stacks, panels with overburden, piers that
+are pushed."""
 
 from cases import between, case
 from masonry import addBlock, bricks, connect, engines, limit
@@ -25,7 +26,7 @@ LIMIT = "limit analysis of these blocks (`masonry.limit`)"
 ELEMENTARY = "elementary"
 
 
-# -- walls in their plane ---------------------------------------------------------------------------------------------
+# -- walls in their plane --------------------------------------------------------------------------
 
 
 def wall(courses, units, friction, stiffness=1e11):
@@ -37,8 +38,9 @@ def wall(courses, units, friction, stiffness=1e11):
 def looseHeads():
     """Horizontal acceleration of limit analysis if head joints had no friction [g].
 
-    Associated flow lets a head joint slide only if it opens by the friction coefficient times the slide. In the wedge
-    over a stepped crack head joints open by less, and carry nothing, since they are open.
+    Associated flow lets a head joint slide only if it opens by the friction coefficient times the
+    slide. In the wedge over a stepped crack head joints open by less, and carry nothing, since they
+    are open.
     """
     assembly = limit.read()
     assembly.friction[abs(assembly.normals[:, 2]) < 0.5] = 0
@@ -71,8 +73,9 @@ def wall_6x3(quick):
 def wedge(courses):
     """Factor of the wedge over a stepped crack that tips about its lower corner [g], by hand.
 
-    Its n-th course from below has n half units of 0.1 m: its weight is as n, its arm 0.05·n about the corner, and its
-    middle 0.1·n − 0.05 above it. All joints of the crack are open, so friction takes no part.
+    Its n-th course from below has n half units of 0.1 m: its weight is as n, its arm 0.05·n about
+    the corner, and its middle 0.1·n − 0.05 above it. All joints of the crack are open, so friction
+    takes no part.
     """
     lengths = range(1, courses + 1)
     arms = sum(n * 0.05 * n for n in lengths)
@@ -148,7 +151,7 @@ def wall_out_of_plane(quick):
         return expected, between(carries, expected, 0.02, quick, within=0.005)
 
 
-# -- blocks -----------------------------------------------------------------------------------------------------------
+# -- blocks ----------------------------------------------------------------------------------------
 
 WIDTH, HEIGHT, DEPTH = 0.25, 1.0, 0.4
 
@@ -285,7 +288,8 @@ PRISM = 0.3, 0.6  # side and height of a prism on a triangle [m]
 
 
 def prismTips(share):
-    """Whether a prism on an equilateral triangle falls under this share of the acceleration at which it tips."""
+    """Whether a prism on an equilateral triangle falls under this share of the acceleration at
+    which it tips."""
     side, height = PRISM
     tall = side * 3**0.5 / 2
     plan = [(0, 0), (side, 0), (side / 2, tall)]
@@ -317,7 +321,7 @@ def prism_tips(quick):
     return prismLimit(), between(stands, prismLimit(), 0.02, quick, 0.05, 0.005)
 
 
-# -- panels -----------------------------------------------------------------------------------------------------------
+# -- panels ----------------------------------------------------------------------------------------
 
 SLENDER, COURSES = (0.1, 0.5, 0.2), 12  # a block of a strip [m], and their number
 
@@ -326,16 +330,17 @@ PLATEN = 0.02  # height of the platen on a strip [m]
 
 
 def panelFactor(over, arm, guide):
-    """Factor of a strip held at foot and top that cracks at the best of its bed joints [g], by virtual work.
+    """Factor of a strip held at foot and top that cracks at the best of its bed joints [g], by
+    virtual work.
 
-    The lower part, a share x of the height h, turns by 1 about its foot. The upper one turns by φ the other way, so that
-    the guide at the top stays where it is. The middle of the lower part rises by t/2, the crack by t, that of the upper
-    part by t/2·φ more, and the load by ``arm``·t·φ more than the crack. With a guide at the top this is
-    (t/h)/x·(2 + 2·(O/W)·(1 + arm·x/(1 - x))).
+    The lower part, a share x of the height h, turns by 1 about its foot. The upper one turns by φ
+    the other way, so that the guide at the top stays where it is. The middle of the lower part
+    rises by t/2, the crack by t, that of the upper part by t/2·φ more, and the load by ``arm``·t·φ
+    more than the crack. With a guide at the top this is (t/h)/x·(2 + 2·(O/W)·(1 + arm·x/(1 - x))).
 
     :param over: load on the top over weight [-]
-    :param arm: distance of the load from the edge about which the top turns, over the thickness: 0.5 in the middle, 1 at
-        the far edge [-]
+    :param arm: distance of the load from the edge about which the top turns, over the thickness:
+        0.5 in the middle, 1 at the far edge [-]
     :param guide: its height above the top [m]
     """
     t, h = SLENDER[0], COURSES * SLENDER[2]
@@ -357,7 +362,8 @@ def panel(over, quick, rotation, stiffness=2e11):
         top = s.platen("top", rotation=rotation, guided="x", height=PLATEN)
         s.press(top, over * 2600 * G * COURSES * SLENDER[2])
         s.settle()
-        # a platen that can turn is guided at its middle; one that cannot touches the strip at its edge
+        # a platen that can turn is guided at its middle; one that cannot touches the strip at its
+        # edge
         turns = rotation == "free"
         expected = panelFactor(over, *((0.5, PLATEN / 2) if turns else (1, 0)))
         return expected, between(leans(s), expected, 0.02, quick, within=0.005)
@@ -408,17 +414,19 @@ def panel_free(quick):
         return expected, between(leans(s), expected, 0.02, quick, within=0.005)
 
 
-# -- piers ------------------------------------------------------------------------------------------------------------
+# -- piers -----------------------------------------------------------------------------------------
 
 
 HIGH = 1.3  # of the push above the base: three blocks and the platen [m]
 
 
 def pier(friction, rate, stress=2e5, until=3.0):
-    """Mean shear force of a pier of three blocks in the second half of a push [N], and the mean displacement there [m].
+    """Mean shear force of a pier of three blocks in the second half of a push [N], and the mean
+    displacement there [m].
 
-    The blocks are 0.6 m long, 0.2 m thick and 0.4 m high. The platen on them can turn, and its load moves with it. The
-    first peak of a push is one of inertia: the pier is so stiff that it begins to move at once.
+    The blocks are 0.6 m long, 0.2 m thick and 0.4 m high. The platen on them can turn, and its load
+    moves with it. The first peak of a push is one of inertia: the pier is so stiff that it begins
+    to move at once.
     """
     with sceneOf(bricks.stack(3, (0.6, 0.2, 0.4)), rigidlike(friction), rate=rate) as s:
         s.platen("bottom")

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Contacts of rigid blocks beside closed forms and published results: runs the cases of this folder, and prints their table.
+"""Contacts of rigid blocks beside closed forms and published results: runs the cases of this
+folder, and prints their table.
 
 yade -n -x validation/contact/contact.py [--only NAME ...] [--quick] [--out FILE]
 """

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""A dry arch whose supports move apart: its joints become contacts, it falls, and the stones come to rest on the ground."""
+"""A dry arch whose supports move apart: its joints become contacts, it falls, and the stones come
+to rest on the ground."""
 
 import math
 
@@ -25,19 +26,21 @@ EDGES = "a block that stands on its edge is softer in contact than on the points
 BELOW = 0.4  # of the springings, to the ground [m]
 
 
-# -- statics of rigid stones ------------------------------------------------------------------------------------------
+# -- statics of rigid stones -----------------------------------------------------------------------
 
 
 def statics(spread, hinges=(4, 10, 17)):
-    """Equilibrium of the arch after its right support has moved away, by statics of rigid stones in the displaced position.
+    """Equilibrium of the arch after its right support has moved away, by statics of rigid stones in
+    the displaced position.
 
-    Three hinges: two parts turn about an edge at the inner side, each at its foot, and touch each other with an edge at the outer
-    side, beside the keystone. What is below the hinges stays with its support.
+    Three hinges: two parts turn about an edge at the inner side, each at its foot, and touch each
+    other with an edge at the outer side, beside the keystone. What is below the hinges stays with
+    its support.
 
     :param spread: by how much the supports have moved apart [m]
     :param hinges: numbers of these joints, counted from the right springing
-    :returns: thrust [N], and where it goes through each joint from the right to the left springing: 0 at the inner, 1 at the outer
-        side
+    :returns: thrust [N], and where it goes through each joint from the right to the left springing:
+        0 at the inner, 1 at the outer side
     """
     along = [
         np.array([math.cos(k * math.pi / STONES), math.sin(k * math.pi / STONES)])
@@ -97,15 +100,17 @@ def _middle(corners):
 
 
 def largestSpread():
-    """Spread at which the thrust reaches the outer side of a springing, so that one hinge too many opens [m]."""
+    """Spread at which the thrust reaches the outer side of a springing, so that one hinge too many
+    opens [m]."""
     return brentq(lambda s: statics(s)[1][0] - 1, 0.01, 0.05, xtol=1e-6)
 
 
-# -- the engine -------------------------------------------------------------------------------------------------------
+# -- the engine ------------------------------------------------------------------------------------
 
 
 class Arch:
-    """The arch on two blocks, over a ground block: its left foot is held, and its right one is driven.
+    """The arch on two blocks, over a ground block: its left foot is held, and its right one is
+    driven.
 
     :param stiffness: of joints and contacts [Pa/m]
     """
@@ -164,15 +169,17 @@ class Arch:
         return self.startKey - self.key.pos[2]
 
     def moveTo(self, spread, rate=0.02, slowing=5.0):
-        """Move the foot to a spread [m], with no more than a rate [m/s], and with no more than the rest of the path times ``slowing``
-        [1/s]: an arch that is stopped at once swings on, which is worth millimetres."""
+        """Move the foot to a spread [m], with no more than a rate [m/s], and with no more than the
+        rest of the path times ``slowing`` [1/s]: an arch that is stopped at once swings on, which
+        is worth millimetres."""
         while self.spread < spread:
             self.drive.velocity = min(rate, slowing * (spread - self.spread) + 2e-5)
             O.step()
         self.drive.velocity = 0
 
     def stands(self, longest=6):
-        """Whether the arch comes to rest while its supports stay: it falls if its keystone goes down by another 10 mm."""
+        """Whether the arch comes to rest while its supports stay: it falls if its keystone goes
+        down by another 10 mm."""
         began, sunk = O.time, self.sunk
         until(O.time + 0.3)
         while O.time < began + longest:
@@ -188,7 +195,8 @@ class Arch:
 
 @case
 def arch_spread(quick):
-    """The arch of 21 stones, t/R = 0.12, friction 0.6: thrust, spread at which it falls, and the heap on the ground."""
+    """The arch of 21 stones, t/R = 0.12, friction 0.6: thrust, spread at which it falls, and the
+    heap on the ground."""
     source = "statics of rigid stones in the displaced position"
     expected = largestSpread()
     arch = Arch(0.1 * STIFF if quick else STIFF)

@@ -8,7 +8,7 @@ from contact_rows import Row, case
 from contact_scenes import BRICK, G, balance, box, ground, lean, prepare, until
 from yade import O, Quaternion, Vector3
 
-# -- rest and slopes --------------------------------------------------------------------------------------------------
+# -- rest and slopes -------------------------------------------------------------------------------
 
 
 @case
@@ -82,13 +82,14 @@ def slope(quick):
     return rows
 
 
-# -- dominoes ---------------------------------------------------------------------------------------------------------
+# -- dominoes --------------------------------------------------------------------------------------
 
 THICK, WIDE, TALL = 0.0075, 0.024, 0.048  # of a domino [m]
 
 
 def toppling(gap, friction, count=20, restitution=0.3, stiffness=1e9):
-    """Times at which the dominoes of a row have turned by half of what brings each to the next [s]; the first is pushed.
+    """Times at which the dominoes of a row have turned by half of what brings each to the next [s];
+    the first is pushed.
 
     Restitution 0.3: the impacts of the theory are plastic, and softer impacts differ little.
     """
@@ -115,12 +116,14 @@ def toppling(gap, friction, count=20, restitution=0.3, stiffness=1e9):
 
 
 def theory(gap, friction, count=20, spin=6.0):
-    """Speeds of the wave between the dominoes of a row [m/s] by the theory of Shaw (1978) and van Leeuwen (2010): dominoes turn about their feet, which do not
-    slip, those behind the front lean on each other, and an impact is plastic.
+    """Speeds of the wave between the dominoes of a row [m/s] by the theory of Shaw (1978) and van
+    Leeuwen (2010): dominoes turn about their feet, which do not slip, those behind the front lean
+    on each other, and an impact is plastic.
 
-    The angles of those behind follow from that of the front. Friction acts where a top edge slides down the domino before it.
-    The equations of motion, of which factors let the forces between dominoes vanish, are integrated over the time between two
-    impacts; the factors carry the impact over, too.
+    The angles of those behind follow from that of the front. Friction acts where a top edge slides
+    down the domino before it. The equations of motion, of which factors let the forces between
+    dominoes vanish, are integrated over the time between two impacts; the factors carry the impact
+    over, too.
     """
     pitch = THICK + gap
     inertia = (TALL**2 + THICK**2) / 3  # over the mass, about the foot
@@ -205,7 +208,7 @@ def dominoes(quick):
     return rows
 
 
-# -- rocking ----------------------------------------------------------------------------------------------------------
+# -- rocking ---------------------------------------------------------------------------------------
 
 SLENDER, SQUAT = (0.1, 0.3, 1.0), (0.25, 0.3, 1.0)  # rocking blocks [m]
 
@@ -213,7 +216,8 @@ SLENDER, SQUAT = (0.1, 0.3, 1.0), (0.25, 0.3, 1.0)  # rocking blocks [m]
 def rocking(restitution, share, impacts, size=SLENDER, stiffness=1e12, step=0.5):
     """A block on the ground that is let go at a share of its slenderness angle.
 
-    :returns: shares of that angle at which it stands still, and the times at which it is upright [s]
+    :returns: shares of that angle at which it stands still, and the times at which it is upright
+        [s]
     """
     O.reset()
     ground(size=(2, 1, 0.4))
@@ -302,11 +306,12 @@ def rocking_loss(quick):
     return rows
 
 
-# -- heap -------------------------------------------------------------------------------------------------------------
+# -- heap ------------------------------------------------------------------------------------------
 
 
 def heap(count, seed=3, abreast=10, size=(0.11, 0.102, 0.081), density=1800.0):
-    """Half bricks above each other, so many abreast, turned at random, over a ground; returns their ids."""
+    """Half bricks above each other, so many abreast, turned at random, over a ground; returns their
+    ids."""
     scale = size[0] / 0.11
     ground(size=(20 * scale, 20 * scale, 0.4 * scale))
     dice = np.random.default_rng(seed)

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What a case of this folder is: a function that runs the engine and gives rows of measured numbers with their limits."""
+"""What a case of this folder is: a function that runs the engine and gives rows of measured numbers
+with their limits."""
 
 from dataclasses import dataclass
 
@@ -15,8 +16,8 @@ class Row:
     :param source: of the expected value or of the bound
     :param measured: the number
     :param expected: the value, or the two ends of a range; None: there is a bound alone
-    :param limit: largest error as a share of the expected value; without an expected value the largest measured number; None:
-        the number is reported only
+    :param limit: largest error as a share of the expected value; without an expected value the
+        largest measured number; None: the number is reported only
     :param misses: why the limit is not met, if that is known
     """
 
@@ -46,7 +47,8 @@ class Row:
         return bool(abs(self.error) <= self.limit)
 
     def cells(self):
-        """Cells of the table behind the name of the case: what, source, expected, measured, error, limit."""
+        """Cells of the table behind the name of the case: what, source, expected, measured, error,
+        limit."""
         expected = self.expected
         if isinstance(expected, tuple):
             shown, limit = f"{expected[0]:.5g} … {expected[1]:.5g}", "within"
@@ -62,6 +64,7 @@ class Row:
 
 
 def case(run):
-    """Make a case of a function of whether the quick variant is asked for, which gives rows. Its name is that of the case."""
+    """Make a case of a function of whether the quick variant is asked for, which gives rows. Its
+    name is that of the case."""
     CASES[run.__name__.strip("_").replace("_", "-")] = run
     return run

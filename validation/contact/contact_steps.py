@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The time step: blocks of all sizes, densities, stiffnesses and speeds at shares of the critical time step, and above it."""
+"""The time step: blocks of all sizes, densities, stiffnesses and speeds at shares of the critical
+time step, and above it."""
 
 import itertools
 import math
@@ -19,18 +20,21 @@ MEETINGS = {
     "corner": Quaternion(Vector3(0, 1, 0), math.atan(math.sqrt(0.5)))
     * Quaternion(Vector3(0, 0, 1), math.pi / 4),
 }
-#: Axes of the map of two blocks: sides of both [m], densities [kg/m³], stiffnesses [Pa/m], speeds [m/s].
+#: Axes of the map of two blocks: sides of both [m], densities [kg/m³], stiffnesses [Pa/m], speeds
+#: [m/s].
 SIZES = ((0.01, 0.01), (0.01, 10), (10, 0.01), (0.1, 1), (1, 0.1), (10, 10))
 DENSITIES, STIFFNESSES, SPEEDS = (200, 2700), (1e9, 1e10, 1e12), (0.01, 1, 10)
 
 
 def collide(step, meeting, sizes, density, stiffness, speed, restitution, phase):
-    """Two cubes without gravity, of which the first comes with a speed [m/s] and meets the second off its middle.
+    """Two cubes without gravity, of which the first comes with a speed [m/s] and meets the second
+    off its middle.
 
     :param step: over the critical time step
     :param sizes: sides of both [m]
     :param phase: share of a step at which they meet
-    :returns: energy over that before, when they have parted, or after 20000 steps: a small block may cling to a large one
+    :returns: energy over that before, when they have parted, or after 20000 steps: a small block
+        may cling to a large one
     :raises RuntimeError: if the engine refuses the time step
     """
     O.reset()

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""How far the answer of two walls with deformable units moves with mesh, rate, damping and time step.
+"""How far the answer of two walls with deformable units moves with mesh, rate, damping and time
+step.
 
 /usr/bin/python3 validation/convergence/converge.py [--draw]
 
-Runs what is missing in results/validation/convergence, one run after another, prints the table of all runs and draws
-curves.png beside itself; --draw leaves out what was not run.
+Runs what is missing in results/validation/convergence, one run after another, prints the table of
+all runs and draws curves.png beside itself; --draw leaves out what was not run.
 """
 
 import os
@@ -28,7 +29,8 @@ WALLS = {
 }
 COMMON = "--blocks deformable --no-vtk"
 
-#: Panels of the figure: what is varied, and the runs by name with their options; "" is the default run.
+#: Panels of the figure: what is varied, and the runs by name with their options; "" is the default
+#: run.
 SERIES = {
     "mesh: cells of a half brick along its length and height": {
         "1": "",

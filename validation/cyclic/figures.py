@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""joint.png: one joint in cycles, from what joint.py has written. Paths side by side, a colour a law.
+"""joint.png: one joint in cycles, from what joint.py has written. Paths side by side, a colour a
+law.
 
 /usr/bin/python3 validation/cyclic/figures.py
 """

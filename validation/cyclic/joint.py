@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""One joint in cycles: tension, shear under three normal stresses, closure. The rows of every path go to a CSV file.
+"""One joint in cycles: tension, shear under three normal stresses, closure. The rows of every path
+go to a CSV file.
 
 yade -n -x validation/cyclic/joint.py                        # the paper's law and the cyclic law, into results/
 yade -n -x validation/cyclic/joint.py --laws softening       # one of them
 yade -n -x validation/cyclic/joint.py --set shearStiffnessLoss=0.5
 
-Two blocks that do not deform share one bed joint of the calcium-silicate walls (table 2 of the paper). The lower block is
-fixed, and the upper one is driven without turning, so that all points of the joint do the same and the curves are those of
-the law itself. ``figures.py`` draws them.
+Two blocks that do not deform share one bed joint of the calcium-silicate walls (table 2 of the
+paper). The lower block is fixed, and the upper one is driven without turning, so that all points of
+the joint do the same and the curves are those of the law itself. ``figures.py`` draws them.
 """
 
 import argparse
@@ -91,7 +92,8 @@ class Joint:
     def read(self):
         """Append a row: means over the joint, in the units of COLUMNS. Returns it.
 
-        The jumps are those that the stresses were calculated from; the loads have moved on by a time step.
+        The jumps are those that the stresses were calculated from; the loads have moved on by a
+        time step.
         """
         phys = self.interaction.phys
         opening = self.mean(phys.opening)
@@ -105,7 +107,8 @@ class Joint:
             O.step()
 
     def drive(self, load, target, rows, until=lambda row: False):
-        """Move along the direction of a load to a displacement [m], in so many rows, or until a row says so."""
+        """Move along the direction of a load to a displacement [m], in so many rows, or until a row
+        says so."""
         axis = 2 if load is self.vertical else 0
         distance = target - load.displacement()[axis]
         load.velocity = distance / (rows * self.steps * O.dt)
@@ -167,7 +170,8 @@ def paths():
 
 
 def bedJoint(law, settings=()):
-    """A bed joint of the calcium-silicate walls under a law, with other properties if the user wants them.
+    """A bed joint of the calcium-silicate walls under a law, with other properties if the user
+    wants them.
 
     The block's own jointSet does not matter, as there is no other joint.
     """

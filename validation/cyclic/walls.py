@@ -1,15 +1,17 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The four calcium-silicate walls in cycles of growing amplitude, under both laws: walls.md and the figures.
+"""The four calcium-silicate walls in cycles of growing amplitude, under both laws: walls.md and the
+figures.
 
 /usr/bin/python3 validation/cyclic/walls.py                                  # runs what is missing, then all of these
 /usr/bin/python3 validation/cyclic/walls.py --walls comp4 --laws softening   # one wall, one law
 
-The runs stand in case.json: a monotonic push to each wall with the paper's law, which is the same for both laws as long as
-the load grows, and cycles, each amplitude twice. ``masonry.read.loops`` defines the numbers of a cycle.
+The runs stand in case.json: a monotonic push to each wall with the paper's law, which is the same
+for both laws as long as the load grows, and cycles, each amplitude twice. ``masonry.read.loops``
+defines the numbers of a cycle.
 
 - ``loops_WALL.png``: the loops of both laws, with the monotonic curve in both directions
-- ``degradation.png``: over the amplitude, stiffness from peak to peak, equivalent damping, and what is left of the
-  monotonic force in both directions
+- ``degradation.png``: over the amplitude, stiffness from peak to peak, equivalent damping, and what
+  is left of the monotonic force in both directions
 - ``walls.md``: the same as a table
 """
 
@@ -50,9 +52,9 @@ NAMES = (
     "residual after +, − mm",
 )
 
-#: A cycle under a law: the numbers of :class:`masonry.read.loops.Cycle`; ``repeat``, 0 where the amplitude is new; the force at
-#: the largest and at the smallest displacement over the monotonic force there [-]; the stiffness over that of the first
-#: cycle [-].
+#: A cycle under a law: the numbers of :class:`masonry.read.loops.Cycle`; ``repeat``, 0 where the
+#: amplitude is new; the force at the largest and at the smallest displacement over the monotonic
+#: force there [-]; the stiffness over that of the first cycle [-].
 Numbers = namedtuple("Numbers", "cycle repeat positive negative stiffness")
 
 

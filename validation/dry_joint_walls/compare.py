@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The dry-joint walls against their tests, from the runs of this case: envelopes.png and a table on the terminal.
+"""The dry-joint walls against their tests, from the runs of this case: envelopes.png and a table on
+the terminal.
 
 /usr/bin/python3 validation/validate.py dry_joint_walls
 /usr/bin/python3 validation/dry_joint_walls/compare.py
@@ -25,7 +26,8 @@ MODELS = {"rigid": "tab:red", "deformable": "tab:blue"}
 
 
 def tests(kind, level):
-    """Displacements [mm] and forces [kN] of every wall of a level; ``kind`` is 'FD' or 'envelope'."""
+    """Displacements [mm] and forces [kN] of every wall of a level; ``kind`` is 'FD' or
+    'envelope'."""
     for path in sorted(glob.glob(os.path.join(REFERENCE, f"{kind}_WS?{level}_*.csv"))):
         with open(path, encoding="latin-1") as f:
             rows = [row[:2] for row in list(csv.reader(f))[4:] if row]
@@ -33,7 +35,8 @@ def tests(kind, level):
 
 
 def peaks(level):
-    """Measured peaks of a level [kN], array (walls, 2): in the positive and in the negative direction."""
+    """Measured peaks of a level [kN], array (walls, 2): in the positive and in the negative
+    direction."""
     with open(os.path.join(REFERENCE, "peaks.csv"), newline="") as f:
         return np.array(
             [
@@ -45,7 +48,8 @@ def peaks(level):
 
 
 def secant(moved, force, share):
-    """Secant stiffness where a curve first reaches a share of its largest force [force/displacement]."""
+    """Secant stiffness where a curve first reaches a share of its largest force
+    [force/displacement]."""
     target = share * force.max()
     i = int(np.argmax(force >= target))
     part = (target - force[i - 1]) / (force[i] - force[i - 1])
@@ -53,7 +57,8 @@ def secant(moved, force, share):
 
 
 def signed(moved, force, sign):
-    """The branch of an envelope in one direction, from the origin on, as positive numbers: displacements and forces."""
+    """The branch of an envelope in one direction, from the origin on, as positive numbers:
+    displacements and forces."""
     branch = sign * moved > 0
     order = np.argsort(sign * moved[branch])
     return [np.append(0, sign * values[branch][order]) for values in (moved, force)]
@@ -91,7 +96,8 @@ def rocking(run):
 
 
 def draw():
-    """envelopes.png: a column a level; above whole tests, below the first millimetres, both directions folded."""
+    """envelopes.png: a column a level; above whole tests, below the first millimetres, both
+    directions folded."""
     figure, panels = plt.subplots(2, len(LEVELS), figsize=(14, 9))
     for level, (whole, start) in zip(LEVELS, panels.T):
         for moved, force in tests("FD", level):

@@ -1,14 +1,16 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The ten dry-joint walls, each driven through its own measured history, against its measured loops.
+"""The ten dry-joint walls, each driven through its own measured history, against its measured
+loops.
 
 /usr/bin/python3 validation/dry_joint_walls/compare_loops.py                      # all walls, cyclic law
 /usr/bin/python3 validation/dry_joint_walls/compare_loops.py --joints softening   # the paper's law
 /usr/bin/python3 validation/dry_joint_walls/compare_loops.py --walls WS1175       # one wall
 /usr/bin/python3 validation/dry_joint_walls/compare_loops.py --set shearStiffness=7.4e9 --results results/ks --out results/ks
 
-Runs what has no results yet, and writes loops_JOINTS.md, the tables, and loops_JOINTS_LEVEL.png, a figure a level. The
-cyclic law gets the properties and the limits of blind.json, the paper's law those of ``masonry.scene.materials``. Measured and
-calculated curves go through the same functions of ``masonry.read.loops``.
+Runs what has no results yet, and writes loops_JOINTS.md, the tables, and loops_JOINTS_LEVEL.png, a
+figure a level. The cyclic law gets the properties and the limits of blind.json, the paper's law
+those of ``masonry.scene.materials``. Measured and calculated curves go through the same functions
+of ``masonry.read.loops``.
 """
 
 import argparse
@@ -47,8 +49,8 @@ with open(os.path.join(HERE, "blind.json")) as f:
     BLIND = json.load(f)
 LIMITS = BLIND["limits"]
 
-#: A cycle, measured and calculated: half the distance of the measured turning points [mm], work [J], residual
-#: displacements after the positive and the negative turning point [mm].
+#: A cycle, measured and calculated: half the distance of the measured turning points [mm], work
+#: [J], residual displacements after the positive and the negative turning point [mm].
 Pair = namedtuple("Pair", "amplitude work residuals")
 
 
@@ -74,9 +76,11 @@ def calculated(directory):
 
 
 def pairs(wall, moved, force):
-    """Cycles of a wall, measured and calculated, but for the doubtful ones: a list of :class:`Pair`.
+    """Cycles of a wall, measured and calculated, but for the doubtful ones: a list of
+    :class:`Pair`.
 
-    Work and residual displacements are arrays whose first entry is measured and whose second is calculated.
+    Work and residual displacements are arrays whose first entry is measured and whose second is
+    calculated.
 
     :raises ValueError: if the calculated curve does not have the cycles of the measured one
     """
@@ -256,7 +260,8 @@ def tables(joints, curves):
 
 
 def draw(joints, level, curves, path):
-    """A figure of a level: a panel a wall, the measured loops in grey and the calculated ones over them."""
+    """A figure of a level: a panel a wall, the measured loops in grey and the calculated ones over
+    them."""
     names = [wall for wall in curves if measured.levelOf(wall) == level]
     figure, panels = plt.subplots(
         1, len(names), figsize=(4.6 * len(names), 4.4), sharey=True, squeeze=False

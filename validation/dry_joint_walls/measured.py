@@ -1,14 +1,16 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The measured loops of the ten dry-joint walls: reading, repairing, and the numbers of their cycles.
+"""The measured loops of the ten dry-joint walls: reading, repairing, and the numbers of their
+cycles.
 
 /usr/bin/python3 validation/dry_joint_walls/measured.py            # a table of all cycles, in markdown
 /usr/bin/python3 validation/dry_joint_walls/measured.py --write    # writes reference/history_*.csv again
 
-The files of the database are kept as they are, in ``reference/FD_*.csv``. Each consists of pieces, separated by rows that
-are not numbers. A piece usually is a whole cycle, from a negative turning point over the positive one back to the
-negative side. Between two pieces the wall was pushed on to the next negative turning point, and these rows are missing.
-Single stray rows are found by :func:`strays`. What else is wrong with the files stands in ``REPAIRS``, and :func:`pieces`
-repairs it.
+The files of the database are kept as they are, in ``reference/FD_*.csv``. Each consists of pieces,
+separated by rows that are not numbers. A piece usually is a whole cycle, from a negative turning
+point over the positive one back to the negative side. Between two pieces the wall was pushed on to
+the next negative turning point, and these rows are missing. Single stray rows are found by
+:func:`strays`. What else is wrong with the files stands in ``REPAIRS``, and :func:`pieces` repairs
+it.
 """
 
 import argparse
@@ -25,8 +27,8 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 REFERENCE = os.path.join(HERE, "reference")
 LEVELS = (100, 175, 250)  # [kN]
 
-#: A reversal of less than this is scatter of the digitised curves [mm]. The scatter is 0.1 mm, in WS2.100 up to 0.3 mm;
-#: the smallest cycle has an amplitude of 1.6 mm.
+#: A reversal of less than this is scatter of the digitised curves [mm]. The scatter is 0.1 mm, in
+#: WS2.100 up to 0.3 mm; the smallest cycle has an amplitude of 1.6 mm.
 THRESHOLD = 0.5
 
 #: How far a stray row lies off both rows beside it: displacement [mm], force [kN].
@@ -36,7 +38,8 @@ STRAY = (0.5, 4.0)
 #:
 #: - ("drop", piece, first, last, why): these rows of a piece are left out
 #: - ("swap", piece, why): this piece and the next one change places
-#: - ("hole", piece, why): after this piece rows are missing on a curved stretch, so that no work can be found there
+#: - ("hole", piece, why): after this piece rows are missing on a curved stretch, so that no work
+#: can be found there
 _ARTEFACT = (
     "the last row of the first piece is about (-1.6 mm, -16.4 kN) in eight of the ten files, at all"
     " three vertical loads and far from the row before: it belongs to none of these curves"
@@ -94,7 +97,8 @@ REPAIRS = {
     "WS4100": [],
 }
 
-#: Cycles that no run is held against, by the piece from which on, and why. The wall is driven through them all the same.
+#: Cycles that no run is held against, by the piece from which on, and why. The wall is driven
+#: through them all the same.
 DOUBTFUL = {
     "WS2100": (
         4,
@@ -114,7 +118,8 @@ DOUBTFUL = {
     ),
 }
 
-#: A cycle of a curve with its numbers: those of :class:`masonry.read.loops.Cycle`, and why it is ``doubtful`` (None if not).
+#: A cycle of a curve with its numbers: those of :class:`masonry.read.loops.Cycle`, and why it is
+#: ``doubtful`` (None if not).
 Measured = namedtuple("Measured", "cycle doubtful")
 
 
@@ -135,7 +140,8 @@ def levelOf(wall):
 def rawPieces(path):
     """Pieces of a file of the database as they stand there, and how many rows were no numbers.
 
-    :returns: a list of arrays of displacement [mm] and force [kN], a row a point, and the number of rows left out
+    :returns: a list of arrays of displacement [mm] and force [kN], a row a point, and the number of
+        rows left out
     """
     with open(path, encoding="latin-1", newline="") as f:
         rows = [row for row in list(csv.reader(f))[4:] if row]
@@ -154,11 +160,13 @@ def rawPieces(path):
 
 
 def strays(points):
-    """Rows of a piece that lie off the curve on their own, as letters of a figure do that were digitised with it.
+    """Rows of a piece that lie off the curve on their own, as letters of a figure do that were
+    digitised with it.
 
-    Where the displacement goes on, the force turns back and forth by more than ``STRAY``; or the displacement does where
-    the force goes on. The latter also happens at a true turning point, therefore only rows count whose force is below
-    0.8 of the largest of the piece. The farthest row is found first, and the others without it.
+    Where the displacement goes on, the force turns back and forth by more than ``STRAY``; or the
+    displacement does where the force goes on. The latter also happens at a true turning point,
+    therefore only rows count whose force is below 0.8 of the largest of the piece. The farthest row
+    is found first, and the others without it.
 
     :param points: array of displacement [mm] and force [kN]
     :returns: their numbers, a list
@@ -204,9 +212,11 @@ def pieces(wall):
 
 @functools.lru_cache(None)
 def curve(wall):
-    """Whole measured curve: displacements [mm], forces [kN], and the number of the piece of every row.
+    """Whole measured curve: displacements [mm], forces [kN], and the number of the piece of every
+    row.
 
-    The first row is the wall at rest, (0, 0) of piece -1. The files begin at the first negative turning point.
+    The first row is the wall at rest, (0, 0) of piece -1. The files begin at the first negative
+    turning point.
     """
     found = [(-1, np.zeros((1, 2))), *pieces(wall)]
     points = np.concatenate([points for _, points in found])
@@ -217,8 +227,9 @@ def curve(wall):
 def history(wall):
     """Displacements between which a wall was driven to and fro, in order of time [mm].
 
-    These are the turning points of the measured curve, reversals of less than ``THRESHOLD`` left out, and its last row.
-    The rows between are not needed: they lie on the way from one turning point to the next.
+    These are the turning points of the measured curve, reversals of less than ``THRESHOLD`` left
+    out, and its last row. The rows between are not needed: they lie on the way from one turning
+    point to the next.
     """
     moved = curve(wall)[0]
     points = moved[loops.turningPoints(moved, THRESHOLD)][1:]
@@ -255,7 +266,8 @@ def _since(wall, first):
 
 
 def peaks(level):
-    """Measured peaks of the walls of a level [kN]: dict of wall -> (positive, negative), both above 0."""
+    """Measured peaks of the walls of a level [kN]: dict of wall -> (positive, negative), both above
+    0."""
     with open(os.path.join(REFERENCE, "peaks.csv"), newline="") as f:
         return {
             row["wall"]: (

@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What decides the work of the dry-joint walls' cycles: variants of a plain model of the wall, against the test WS2.175.
+"""What decides the work of the dry-joint walls' cycles: variants of a plain model of the wall,
+against the test WS2.175.
 
 /usr/bin/python3 validation/dry_joint_walls/plain_wall.py          # all variants, a table in markdown
 /usr/bin/python3 validation/dry_joint_walls/plain_wall.py blind    # one of them
 
-plain_wall.cpp is the model, and says what it is. Every variant is a run through the measured history.
+plain_wall.cpp is the model, and says what it is. Every variant is a run through the measured
+history.
 """
 
 import argparse
@@ -30,7 +32,8 @@ CURVE = {
     "cm": _blind["closureLimit"],
     "kn": _blind["normalStiffness"],
 }
-#: Points along a joint of a half block, and rate [mm/s]: with twice the points at 50 mm/s the work grows by up to a third.
+#: Points along a joint of a half block, and rate [mm/s]: with twice the points at 50 mm/s the work
+#: grows by up to a third.
 COARSE = {"points": 4, "rate": 80}
 #: Names and options; what is not given is a linear joint with kn 34, ks 13.6 N/mm³, friction 0.65.
 VARIANTS = {
@@ -86,8 +89,9 @@ def run(history, program=PROGRAM, **options):
 
 
 def describe(moved, force):
-    """Cells of a row: stiffness from turn to turn of the first cycle, peaks, work over measured work by range, and mean
-    width of the loops from 5 mm on, the distance of both residual displacements."""
+    """Cells of a row: stiffness from turn to turn of the first cycle, peaks, work over measured
+    work by range, and mean width of the loops from 5 mm on, the distance of both residual
+    displacements."""
     first = loops.cycles(moved, force, measured.THRESHOLD)[0]
     cells = [f"{first.stiffness_kN_per_mm:.1f}"]
     cells.append(f"{force.max():.1f}, {-force.min():.1f}")

@@ -1,11 +1,13 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""A dry-joint wall on a base that gives way, in the history of its test: the hypothesis that the rig did.
+"""A dry-joint wall on a base that gives way, in the history of its test: the hypothesis that the
+rig did.
 
-yade -n -x validation/dry_joint_walls/rig.py --rig 37 --out results/validation/dry_joint_walls/rig_37
+yade -n -x validation/dry_joint_walls/rig.py --rig 37 --out
+results/validation/dry_joint_walls/rig_37
 
-37 kN/mm is the stiffness that makes the start of the plain model's curve that of the test (README.md, Loops); it was not
-measured. ``--rig 0`` is a base that does not give way. Prints the stiffness of the first cycle, both peaks, and the work
-of the cycles beside those of the test.
+37 kN/mm is the stiffness that makes the start of the plain model's curve that of the test
+(README.md, Loops); it was not measured. ``--rig 0`` is a base that does not give way. Prints the
+stiffness of the first cycle, both peaks, and the work of the cycles beside those of the test.
 """
 
 import os

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Held loads beside limit analysis: lets a load grow on fourteen structures, and prints and writes the brackets.
+"""Held loads beside limit analysis: lets a load grow on fourteen structures, and prints and writes
+the brackets.
 
 yade -n -x validation/held_loads/held_loads.py [--only NAME ...] [--quick] [--out FILE]
 
-A held load must be in a bracket of 1 %, lie between 0.94 of limit analysis without dilatancy and 1.02 of the associated one,
-and move by less than 1 % if the load grows at a third of the rate.
+A held load must be in a bracket of 1 %, lie between 0.94 of limit analysis without dilatancy and
+1.02 of the associated one, and move by less than 1 % if the load grows at a third of the rate.
 """
 
 import argparse
@@ -54,7 +55,8 @@ def bonded(courses, units, friction, stiffness):
 
 
 def corner(openings):
-    """An L of two walls; with openings it is accelerated between their directions, else across one."""
+    """An L of two walls; with openings it is accelerated between their directions, else across
+    one."""
     dry = materials.dry(friction=0.6)
     if not openings:
         blocks = bricks.Corner(1.65, 1.65, 1.62, halves=False)
@@ -81,7 +83,8 @@ def dome():
     return blocks, dry, {}, (1, 0, 0), 1.2, 0.2
 
 
-#: By name: function without arguments, and whether the ground tilts. Courses × units of walls in bond.
+#: By name: function without arguments, and whether the ground tilts. Courses × units of walls in
+#: bond.
 CASES = {
     "strip, 1e9 Pa/m": (lambda: strip(1e9), False),
     "strip, 1e10 Pa/m": (lambda: strip(1e10), False),
@@ -102,7 +105,8 @@ QUICK = ["strip, 1e10 Pa/m", "arch"]
 
 
 def grown(name, slower=1.0):
-    """A scene in which the load of a case has grown, with its memory: (scene, memory, processor time [s])."""
+    """A scene in which the load of a case has grown, with its memory: (scene, memory, processor
+    time [s])."""
     make, tilts = CASES[name]
     blocks, dry, settings, towards, most, rate = make()
     words = ["--no-vtk", "--lean", "--out", tempfile.mkdtemp(prefix="held_loads")]
@@ -123,7 +127,8 @@ def grown(name, slower=1.0):
 
 
 def limits(name):
-    """Limit analysis of a case at rest: associated, and without dilatancy, or the same if that is exact."""
+    """Limit analysis of a case at rest: associated, and without dilatancy, or the same if that is
+    exact."""
     make, tilts = CASES[name]
     blocks, dry, settings, towards, _, _ = make()
     words = ["--preset", "bound", "--out", tempfile.mkdtemp(prefix="held_loads")]

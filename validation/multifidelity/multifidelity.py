@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Few accurate runs and many fast ones, against accurate runs alone: what both say of the peak of two walls.
+"""Few accurate runs and many fast ones, against accurate runs alone: what both say of the peak of
+two walls.
 
 /usr/bin/python3 validation/multifidelity/multifidelity.py [--jobs 2] [--compare]
 
-Runs what is missing in results/validation/multifidelity, prints the table and draws multifidelity.png beside itself;
---compare leaves out the runs.
+Runs what is missing in results/validation/multifidelity, prints the table and draws
+multifidelity.png beside itself; --compare leaves out the runs.
 """
 
 import argparse
@@ -25,11 +26,12 @@ sys.path.insert(0, os.path.dirname(HERE))
 from studies import RESULTS, table
 
 MEASURE = "peak_base_shear_kN"
-#: The measure without pulses that one end alone feels. It was added when all studies had been run; README.md has why.
+#: The measure without pulses that one end alone feels. It was added when all studies had been run;
+#: README.md has why.
 BOTH_ENDS = "peak_at_both_ends_kN"
 
-# All numbers below were fixed before any run of these studies was made, but for slower, which was fixed when
-# the others had been run; README.md has the reasons.
+# All numbers below were fixed before any run of these studies was made, but for slower, which was
+# fixed when the others had been run; README.md has the reasons.
 
 #: Scene, and how far it is pushed [mm].
 WALLS = {"COMP-4": ("wall_comp4", 4), "COMP-1": ("wall_comp1", 25)}
@@ -42,8 +44,8 @@ VARY = {
     "bed.capNormal": lognormal(mean=1.0, cov=0.2),
 }
 
-#: Options, rows and seed of each study. The rows of ``few`` are the first of those with the same seed, ``alone``
-#: has others.
+#: Options, rows and seed of each study. The rows of ``few`` are the first of those with the same
+#: seed, ``alone`` has others.
 STUDIES = {
     "few": ({"preset": "accurate"}, 12, 1),
     "many": ({"preset": "fast"}, 150, 1),
@@ -51,7 +53,8 @@ STUDIES = {
     "slower": ({"preset": "fast", "rate": 50}, 150, 1),
 }
 
-#: Walls and cheap studies that are compared. The last one was added when those before had been run; README.md has why.
+#: Walls and cheap studies that are compared. The last one was added when those before had been run;
+#: README.md has why.
 COMPARED = [
     ("COMP-4", "many"),
     ("COMP-1", "many"),
@@ -87,7 +90,8 @@ def study(wall, name):
 
 
 def recorded(wall, name):
-    """The :class:`masonry.study.records.Record` of a study; its BOTH_ENDS are found from the curves."""
+    """The :class:`masonry.study.records.Record` of a study; its BOTH_ENDS are found from the
+    curves."""
     found = Record(folder(wall, name))
     curves = found.curves(range(len(found)), "top_shear_kN", "base_shear_kN")
     if len(curves) < len(found):
@@ -135,11 +139,13 @@ def alone(values):
 
 
 def compare(wall, cheap, measure):
-    """Lines of the table of a measure of a wall and its cheap study, and whether each of their three limits is met.
+    """Lines of the table of a measure of a wall and its cheap study, and whether each of their
+    three limits is met.
 
-    The limits are: (1) few and many together differ from accurate runs alone by no more than both intervals together
-    tell; (2) they cost at most SHARE of what accurate runs alone would cost for the same variance; (3) the interval of
-    the mean is not wider than that of accurate runs alone, which cost more.
+    The limits are: (1) few and many together differ from accurate runs alone by no more than both
+    intervals together tell; (2) they cost at most SHARE of what accurate runs alone would cost for
+    the same variance; (3) the interval of the mean is not wider than that of accurate runs alone,
+    which cost more.
     """
     few, many, other = (recorded(wall, name) for name in ("few", cheap, "alone"))
     y, x, shared, rows = paired(few, many, measure)
@@ -200,7 +206,8 @@ def _intervalText(interval):
 
 
 def draw(found):
-    """multifidelity.png: accurate over fast for the shared rows, and both distributions, wall by wall."""
+    """multifidelity.png: accurate over fast for the shared rows, and both distributions, wall by
+    wall."""
     from masonry.read.comparison import COLOURS
     from masonry.read import drawing
 

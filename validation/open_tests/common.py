@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What the programs of this folder share: options of a quiet run, its answers, and the table of a program."""
+"""What the programs of this folder share: options of a quiet run, its answers, and the table of a
+program."""
 
 import argparse
 import contextlib
@@ -41,9 +42,11 @@ def boundOf(scene):
 
 
 def section(ft, GfI, kn, depth, normal=0.0):
-    """The largest moment of a joint that stays plane, over its section modulus [Pa]: an integral of the law by itself.
+    """The largest moment of a joint that stays plane, over its section modulus [Pa]: an integral of
+    the law by itself.
 
-    Tension softens as exp(-ft·w/GfI) beyond the peak, compression is linear. A plane of opening is w = a + b·x.
+    Tension softens as exp(-ft·w/GfI) beyond the peak, compression is linear. A plane of opening is
+    w = a + b·x.
     """
     x = np.linspace(-0.5, 0.5, 4001) * depth
     u0 = ft / kn

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""A clay brick panel under pressure out of its plane, Griffith, Vaculik and others (Adelaide): what decides its strength.
+"""A clay brick panel under pressure out of its plane, Griffith, Vaculik and others (Adelaide): what
+decides its strength.
 
 yade -n -x validation/open_tests/panels.py [--only NAME ...]
 
-4.0 × 2.5 m, 110 mm thick, returns of 0.48 m at both ends; pressed by 0.1 MPa on top (wall s1, 4.76 kPa) or not (s2, 3.04 kPa).
-Every case is the first one with one thing changed.
+4.0 × 2.5 m, 110 mm thick, returns of 0.48 m at both ends; pressed by 0.1 MPa on top (wall s1, 4.76
+kPa) or not (s2, 3.04 kPa). Every case is the first one with one thing changed.
 """
 
 import os
@@ -30,12 +31,14 @@ INDEX = 0.029e-3  # [m] GfI over ft, as materials.masonry() assumes
 
 
 def direct(flexural, stiffness):
-    """The direct tensile strength with which a joint as thick as the wall has a flexural strength [Pa] in bending."""
+    """The direct tensile strength with which a joint as thick as the wall has a flexural strength
+    [Pa] in bending."""
     of = lambda ft: section(ft, INDEX * ft, stiffness, UNIT[1]) - flexural
     return brentq(of, flexural / 3, flexural / 1.01, rtol=1e-3)
 
 
-#: Strengths that give both tests back when they are simulated. Stiffness of a joint with the bricks around it [Pa/m].
+#: Strengths that give both tests back when they are simulated. Stiffness of a joint with the bricks
+#: around it [Pa/m].
 GIVEN_BACK = dict(
     ft=direct(WRENCH, DATA["E"] / UNIT[2]),
     unit_ft=direct(RUPTURE, DATA["unit_E"] / (UNIT[0] / 2)),
@@ -68,7 +71,8 @@ def hold(scene, blocks, edges):
 
 
 def support(scene, blocks, stress, top):
-    """Hold the top against moving out of the plane, and press it, through a beam that turns or each brick by itself."""
+    """Hold the top against moving out of the plane, and press it, through a beam that turns or each
+    brick by itself."""
     if stress and top == "beam":
         beam = scene.platen("top", rotation="free", guided="xy", height=0.02, part=blocks[0].part)
         scene.press(beam, stress)
@@ -107,9 +111,11 @@ def panel(stress=0.1e6, edges="returns", top="beam", halves=True, base=None, opt
 
 
 def byHand(vertical, fixed=True, stress=0.1e6):
-    """Cells of yield lines: pressure [kPa] with AS 3700's stepped strength along the courses and the bond wrench's across them.
+    """Cells of yield lines: pressure [kPa] with AS 3700's stepped strength along the courses and
+    the bond wrench's across them.
 
-    Diagonal cracks follow the bond, two courses in a unit; a horizontal crack joins them in the middle.
+    Diagonal cracks follow the bond, two courses in a unit; a horizontal crack joins them in the
+    middle.
 
     :param vertical: whether bending across the bed joints carries at the same time
     :param fixed: whether the vertical edges carry moments

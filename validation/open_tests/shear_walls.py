@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Brick shear walls of Raijmakers and Vermeltfoort (1992), with the properties of Lourenço and Rots (1997).
+"""Brick shear walls of Raijmakers and Vermeltfoort (1992), with the properties of Lourenço and Rots
+(1997).
 
 yade -n -x validation/open_tests/shear_walls.py [--only NAME ...]
 
-Walls of 990 × 1000 × 100 mm without openings, clamped between two courses in steel beams: pressed, then pushed at the top
-while it neither turns nor moves up or down (``height held``), or while the vertical load stays (``load held``).
+Walls of 990 × 1000 × 100 mm without openings, clamped between two courses in steel beams: pressed,
+then pushed at the top while it neither turns nor moves up or down (``height held``), or while the
+vertical load stays (``load held``).
 """
 
 import os
@@ -21,7 +23,8 @@ UNIT, COURSES = (
     0.062,
 ), 16  # [m] bricks of 210 × 100 × 52 mm, 10 mm joints
 UNTIL = 4.0  # [mm]
-#: Vertical stress [Pa]; kn, ks [Pa/m]; ft [Pa], GfI [J/m²]; c [Pa], GfII [J/m²]; fc [Pa]; peak of the tests [kN]. README: origin.
+#: Vertical stress [Pa]; kn, ks [Pa/m]; ft [Pa], GfI [J/m²]; c [Pa], GfII [J/m²]; fc [Pa]; peak of
+#: the tests [kN]. README: origin.
 WALLS = {
     "J4D, J5D": (0.30e6, 82e9, 36e9, 0.25e6, 18.0, 0.350e6, 125.0, 10.5e6, 50.0),
     "J6D": (1.21e6, 110e9, 50e9, 0.16e6, 12.0, 0.224e6, 50.0, 11.5e6, 72.0),

@@ -3,8 +3,8 @@
 
 yade -n -x validation/open_tests/specimens.py [--only NAME ...]
 
-Triplet (EN 1052-3), bond wrench (EN 1052-5), wallettes in four-point bending (EN 1052-2) and diagonal compression (ASTM E519)
-of the calcium-silicate masonry of masonry.materials.
+Triplet (EN 1052-3), bond wrench (EN 1052-5), wallettes in four-point bending (EN 1052-2) and
+diagonal compression (ASTM E519) of the calcium-silicate masonry of masonry.materials.
 """
 
 import os
@@ -23,11 +23,12 @@ BED = materials.calciumSilicate().joints["bed"]
 POINTS = "--points", "16,16"
 
 
-# -- triplet ------------------------------------------------------------------------------------------------------
+# -- triplet ---------------------------------------------------------------------------------------
 
 
 def triplet():
-    """Cohesion [MPa] and friction [-] by the line through the peaks of three bricks at 0.2, 0.6 and 1.0 MPa, and the inputs."""
+    """Cohesion [MPa] and friction [-] by the line through the peaks of three bricks at 0.2, 0.6 and
+    1.0 MPa, and the inputs."""
     stresses, peaks = (0.2, 0.6, 1.0), []
     for stress in stresses:
         scene = Scene(
@@ -51,11 +52,12 @@ def triplet():
     return ["cohesion MPa, friction", f"{cohesion:.4f}, {slope:.4f}", *given]
 
 
-# -- bond wrench --------------------------------------------------------------------------------------------------
+# -- bond wrench -----------------------------------------------------------------------------------
 
 
 def wrench(blocks):
-    """Flexural strength of a bond by a wrench with an arm of 1 m, over its direct tensile strength: run, and integral."""
+    """Flexural strength of a bond by a wrench with an arm of 1 m, over its direct tensile strength:
+    run, and integral."""
     arm, size = 1.0, (T, L, H)  # [m] bent about the long side
     stack = bricks.stack(2, size)
     scene = Scene(
@@ -88,14 +90,15 @@ def lumped():
     return H / materials.calciumSilicate().unit.young
 
 
-# -- wallettes ----------------------------------------------------------------------------------------------------
+# -- wallettes -------------------------------------------------------------------------------------
 
 
 def wallette(parallel, bound=False, masonry=None, unit=UNIT, most=0.6e6):
-    """Flexural strength in four-point bending [MPa]: the load that is held, or limit analysis, which grows to ``most`` [Pa].
+    """Flexural strength in four-point bending [MPa]: the load that is held, or limit analysis,
+    which grows to ``most`` [Pa].
 
-    ``parallel``: the plane of failure is that of bed joints. Lines of half bricks are held and loaded at their middles,
-    three courses, or three half bricks, apart from each other.
+    ``parallel``: the plane of failure is that of bed joints. Lines of half bricks are held and
+    loaded at their middles, three courses, or three half bricks, apart from each other.
     """
     courses, halves = (10, 4) if parallel else (6, 10)
     L, T, H = unit
@@ -129,7 +132,7 @@ def wallette(parallel, bound=False, masonry=None, unit=UNIT, most=0.6e6):
     return 1e-3 * share * found
 
 
-# -- diagonal compression -----------------------------------------------------------------------------------------
+# -- diagonal compression --------------------------------------------------------------------------
 
 SIDES, SHOE, PLATE = (
     (1.1, 1.134),
@@ -139,7 +142,8 @@ SIDES, SHOE, PLATE = (
 
 
 def shoe(corner, sign):
-    """Two plates around a corner, 152 mm on both sides: blocks that an elastic joint holds together."""
+    """Two plates around a corner, 152 mm on both sides: blocks that an elastic joint holds
+    together."""
     (x, z), reach = corner, sign * SHOE
     lying = sorted((x - reach, x + sign * PLATE)), sorted((z, z + sign * PLATE))
     standing = sorted((x, x + sign * PLATE)), sorted((z - reach, z))
@@ -176,7 +180,8 @@ def diagonal(bound=False):
 
 
 def firstSlip():
-    """Force [kN] at which bed joints in the middle would slip, by Frocht's elastic stresses 0.5 P/A and -1.62 P/A at 45 degrees."""
+    """Force [kN] at which bed joints in the middle would slip, by Frocht's elastic stresses 0.5 P/A
+    and -1.62 P/A at 45 degrees."""
     normal, shear = (0.5 - 1.62) / 2, (0.5 + 1.62) / 2
     area = T * sum(SIDES) / 2
     return 1e-3 * BED.cohesion * area / (shear + normal * BED.friction)
@@ -207,7 +212,8 @@ def others(parallel, bed, soft, depth):
 
 
 def bentClay(parallel, **changed):
-    """Cells of a wallette of the brickwork of panels.py, beside AS 3700: stepped and straight cracks."""
+    """Cells of a wallette of the brickwork of panels.py, beside AS 3700: stepped and straight
+    cracks."""
     masonry = panels.masonryOf(**changed)
     held = wallette(parallel, masonry=masonry, unit=panels.UNIT, most=2e6 if parallel else 4e6)
     bond, rupture = 1e-6 * panels.WRENCH, 1e-6 * panels.RUPTURE

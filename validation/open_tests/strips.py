@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""A cracked wall in one-way bending, pushed at mid-height: semi-rigid against rigid rocking, Doherty and others (2002).
+"""A cracked wall in one-way bending, pushed at mid-height: semi-rigid against rigid rocking,
+Doherty and others (2002).
 
 yade -n -x validation/open_tests/strips.py [--only NAME ...]
 
-A strip of 17 courses, 1.462 m high and 110 mm thick, stands on a base; its top course is held along the push and turns freely.
-It has cracked at its foot, below course 9 of 17, and at its top. It is pushed at the crack in the middle.
+A strip of 17 courses, 1.462 m high and 110 mm thick, stands on a base; its top course is held along
+the push and turns freely. It has cracked at its foot, below course 9 of 17, and at its top. It is
+pushed at the crack in the middle.
 """
 
 import os
@@ -73,7 +75,8 @@ def rocking(overburden, softer=1.0, points="12"):
 
 
 def rigidForce(overburden):
-    """The force of two rigid halves at a displacement [m] of the crack between them, small turns: a function [kN]."""
+    """The force of two rigid halves at a displacement [m] of the crack between them, small turns: a
+    function [kN]."""
     t, lower, upper = THICKNESS, CRACK, HEIGHT - CRACK
     arm = HEIGHT - UNIT[2] / 2 - CRACK  # from the crack to where the top is held
     area = UNIT[0] * UNIT[1]

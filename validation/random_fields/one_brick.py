@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""COMP-4 with bond strengths that vary over one brick. A file for masonry.study; README.md says how."""
+"""COMP-4 with bond strengths that vary over one brick. A file for masonry.study; README.md says
+how."""
 
 import os
 import sys

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Walls whose bond strengths vary from joint to joint. The studies beside this file differ in their correlation length."""
+"""Walls whose bond strengths vary from joint to joint. The studies beside this file differ in their
+correlation length."""
 
 from masonry.study import Study, field
 

@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""A façade of two storeys on which two floors lie, shaken in three directions at once. The first component acts along it.
+"""A façade of two storeys on which two floors lie, shaken in three directions at once. The first
+component acts along it.
 
-``--floors loose``: the joists hold the façade by friction. ``--floors tied``: every joist has an anchor. With ``--collapse
-follow`` a run goes on when blocks fall, and stones that have slid become contacts. README.md says what is assumed.
+``--floors loose``: the joists hold the façade by friction. ``--floors tied``: every joist has an
+anchor. With ``--collapse follow`` a run goes on when blocks fall, and stones that have slid become
+contacts. README.md says what is assumed.
 """
 
 import pathlib

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""A gable that carries the purlins of a roof, shaken in three directions at once. The first component acts along it.
+"""A gable that carries the purlins of a roof, shaken in three directions at once. The first
+component acts along it.
 
-With ``--collapse follow`` a run goes on when blocks fall, and stones that have slid become contacts. README.md says what
-is assumed.
+With ``--collapse follow`` a run goes on when blocks fall, and stones that have slid become
+contacts. README.md says what is assumed.
 """
 
 import pathlib

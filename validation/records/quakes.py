@@ -14,7 +14,8 @@ LEVELS = [0.35, 0.5, 0.7, 1.0, 1.4, 2.0]
 
 
 def triples():
-    """The files of every earthquake: both horizontal components in the order of their names, then the vertical one."""
+    """The files of every earthquake: both horizontal components in the order of their names, then
+    the vertical one."""
     files = sorted(
         glob.glob(os.path.join(HERE, "reference", "*.acc")),
         key=lambda f: (event(f), f.endswith("_UD.acc"), f),

@@ -18,7 +18,8 @@ from masonry.study.incremental import Measure
 from masonry.study.records import Record
 
 HERE = os.path.dirname(os.path.abspath(__file__))
-#: Of every structure the point whose largest displacement out of the plane is the demand, and half the thickness [mm].
+#: Of every structure the point whose largest displacement out of the plane is the demand, and half
+#: the thickness [mm].
 POINTS = {"parapet": ("crest", 100), "gable": ("ridge", 150), "facade": ("top", 200)}
 MEASURES = Measure(), Sa(0.3), Sa(1.0)
 WHAT = (
@@ -28,8 +29,8 @@ WHAT = (
 
 
 def fits(found, folder, limit=None):
-    """The fragility of collapse by every measure of intensity, dict of its name -> Fit. The levels of each record are
-    converted by its own ratio of the measures.
+    """The fragility of collapse by every measure of intensity, dict of its name -> Fit. The levels
+    of each record are converted by its own ratio of the measures.
 
     :param limit: of the demand in place of collapse [mm]
     """
@@ -56,7 +57,8 @@ def tell(name, made):
 
 
 def demands(name, found):
-    """Print the level at which every record makes a structure fall, and the quantiles of the demand at every level [mm]."""
+    """Print the level at which every record makes a structure fall, and the quantiles of the demand
+    at every level [mm]."""
     print(f"{name}: falls at {', '.join(f'{level:g}' for level in found.fell)} g")
     for level, fell, known in found.counts():
         print(
@@ -66,7 +68,8 @@ def demands(name, found):
 
 
 def draw(path, all):
-    """The fragilities of all structures by the peak ground acceleration, and the shares of records that fell."""
+    """The fragilities of all structures by the peak ground acceleration, and the shares of records
+    that fell."""
     with drawing.picture(path, 6.0, 3.8, 110, {"font.size": 8}) as figure:
         axis = figure.subplots()
         for n, (name, (found, made)) in enumerate(all.items()):

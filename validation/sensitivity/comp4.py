@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""COMP-4 with all values that the paper leaves open, each anywhere in its range. README.md says how to run it."""
+"""COMP-4 with all values that the paper leaves open, each anywhere in its range. README.md says how
+to run it."""
 
 import os
 import sys

@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The values of the joint law that the paper leaves open, each with its range and the reason for it.
+"""The values of the joint law that the paper leaves open, each with its range and the reason for
+it.
 
-Every name is that of a property of joints, or several that have the same value. All ranges hold together: any value of
-one goes with any value of the others. So some ends are closer than those that ``tornado.py`` gives to one value alone.
+Every name is that of a property of joints, or several that have the same value. All ranges hold
+together: any value of one goes with any value of the others. So some ends are closer than those
+that ``tornado.py`` gives to one value alone.
 """
 
 from masonry.study import uniform

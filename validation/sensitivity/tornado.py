@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""How far the answer of two walls moves when an assumed value of the joint law moves over its plausible range.
+"""How far the answer of two walls moves when an assumed value of the joint law moves over its
+plausible range.
 
 /usr/bin/python3 validation/sensitivity/tornado.py [--draw]
 
-Runs what is missing in results/validation/sensitivity, one run after another, prints the table of all runs and draws
-tornado.png beside itself; --draw leaves out what was not run. Rigid units.
+Runs what is missing in results/validation/sensitivity, one run after another, prints the table of
+all runs and draws tornado.png beside itself; --draw leaves out what was not run. Rigid units.
 """
 
 import os
@@ -21,13 +22,15 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.dirname(HERE))
 from studies import RESULTS, done, nameOf, readCase, runMissing, table
 
-#: Walls and their options: the rate moves the peak of COMP-4 by less than 0.5 %; COMP-1 peaks at 19 mm and then holds.
+#: Walls and their options: the rate moves the peak of COMP-4 by less than 0.5 %; COMP-1 peaks at 19
+#: mm and then holds.
 WALLS = {
     "COMP-4": ("wall_comp4", ["--rate", "40", "--vtk-every", "100"]),
     "COMP-1": ("wall_comp1", ["--until", "25", "--no-vtk"]),
 }
 
-#: ``low`` and ``high`` are options of a scene, "" the default; ``why`` tells where the range comes from.
+#: ``low`` and ``high`` are options of a scene, "" the default; ``why`` tells where the range comes
+#: from.
 Row = namedtuple("Row", "name default low high why")
 ENDS = "low", "high"
 
@@ -291,7 +294,8 @@ ROWS = [
 
 
 def folder(wall, row=None, end=None):
-    """Folder of a run's results; without a row, or at an end without options, that of the run with all defaults."""
+    """Folder of a run's results; without a row, or at an end without options, that of the run with
+    all defaults."""
     name = f"{row.name} {end}" if row and getattr(row, end) else "default"
     return os.path.join(RESULTS, "validation", "sensitivity", wall, nameOf(name).replace("-", "_"))
 
@@ -321,7 +325,8 @@ SHOWN = {"peak": "peak_base_shear_kN", "force at the end": "base_shear_end_kN"}
 
 
 def lines(ranges):
-    """Changes of peak and end force in percent and reach of the diagonal crack, low and high: a line a row."""
+    """Changes of peak and end force in percent and reach of the diagonal crack, low and high: a
+    line a row."""
     for row in ROWS:
         cells = [row.name, row.default, row.why]
         for wall in WALLS:
@@ -334,7 +339,8 @@ def lines(ranges):
 
 
 def draw(ranges):
-    """tornado.png: a bar a value, from low to high, as change from the default in percent; longest on top.
+    """tornado.png: a bar a value, from low to high, as change from the default in percent; longest
+    on top.
 
     A bar is hatched where the wall does not crack along its diagonal any more.
     """

@@ -3,13 +3,14 @@
 
 yade -n -x validation/stability/extremes.py [--scenes N] [--first N] [--seed S] [--falls N]
 
-A scene is a block, a stack or a wall between platens, with sizes from 1 mm to 10 m, stiffness from 1e6 to 1e14 Pa/m,
-friction from 0 to 5, strengths from 0 to 1e12 Pa and one or two stages after ``settle``. It must end with numbers that
-statics and closed forms confirm, with a stated reason, or with a refusal. Rates and times are drawn in time steps, so
-that a scene takes seconds; one that needs more than ``MOST_STEPS`` is counted as too long.
+A scene is a block, a stack or a wall between platens, with sizes from 1 mm to 10 m, stiffness from
+1e6 to 1e14 Pa/m, friction from 0 to 5, strengths from 0 to 1e12 Pa and one or two stages after
+``settle``. It must end with numbers that statics and closed forms confirm, with a stated reason, or
+with a refusal. Rates and times are drawn in time steps, so that a scene takes seconds; one that
+needs more than ``MOST_STEPS`` is counted as too long.
 
-With ``--falls`` the scenes are walls that cannot stand: each must collapse in ``settle`` with an energy balance that
-closes, or say why not.
+With ``--falls`` the scenes are walls that cannot stand: each must collapse in ``settle`` with an
+energy balance that closes, or say why not.
 """
 
 import argparse
@@ -53,7 +54,7 @@ class TooLong(Exception):
     """A scene needs more steps than there are for one."""
 
 
-# -- what is drawn ------------------------------------------------------------------------------------------------
+# -- what is drawn ---------------------------------------------------------------------------------
 
 
 class Dice(random.Random):
@@ -171,9 +172,10 @@ class Case:
         unit = MasonryMat(density=density, young=young, poisson=0.2)
         return materials.Masonry(unit, {"bed": joint})
 
-    # -- closed forms ---------------------------------------------------------------------------------------------
-    # Interface n is the bed below course n; the last one is that of the platen on top. Each is an upper bound: what is
-    # above an interface slides on it, or turns about its edge, and nothing else resists but bond, all of it at once.
+    # -- closed forms ------------------------------------------------------------------------------
+    # Interface n is the bed below course n; the last one is that of the platen on top. Each is an
+    # upper bound: what is above an interface slides on it, or turns about its edge, and nothing
+    # else resists but bond, all of it at once.
 
     def levels(self, loaded):
         """Numbers of the interfaces below a load.
@@ -262,7 +264,7 @@ class Case:
         return self.press(0)
 
 
-# -- scenes -------------------------------------------------------------------------------------------------------
+# -- scenes ----------------------------------------------------------------------------------------
 
 
 class Play:
@@ -276,7 +278,8 @@ class Play:
         self.case, self.dice = case, case.dice
         dice, self.found = case.dice, []
         self.said, self.stages, self.steps = io.StringIO(), [], 0
-        #: Whether nothing but gravity and the first loads acts, and whether a push holds its target.
+        #: Whether nothing but gravity and the first loads acts, and whether a push holds its
+        #: target.
         self.clean, self.driven, self.moved = True, False, 0.0
         words = ["--no-vtk", "--checkpoint-every", "0", "--out", folder]
         words += ["--joints", dice.choice(["softening"] * 3 + ["cyclic", "brittle"])]
@@ -345,7 +348,8 @@ class Play:
             checkColumns(scene)
 
     def _checkStatics(self):
-        """Newton's laws now, or, if moments are off by what moves in a step, when that has come to rest."""
+        """Newton's laws now, or, if moments are off by what moves in a step, when that has come to
+        rest."""
         scene = self.scene
         try:
             checkNewton(scene)
@@ -391,7 +395,8 @@ class Play:
     def _duration(self):
         return self.dice.power(2.3, 4.2) * O.dt
 
-    # Each stage draws its numbers about those of its closed form, so that some scenes stand and some fall.
+    # Each stage draws its numbers about those of its closed form, so that some scenes stand and
+    # some fall.
 
     def _about(self, most):
         return (
@@ -480,7 +485,8 @@ class Play:
         )
 
     def _force(self):
-        """The closed form of a horizontal load [N], and one about as large; there is none on what is only watched."""
+        """The closed form of a horizontal load [N], and one about as large; there is none on what
+        is only watched."""
         most = self.case.mostPush(self.loaded, self.height) if self.height else 0.0
         size = min(self._about(most), 1e14)
         return most, tuple(size * v for v in self._towards())
@@ -559,7 +565,7 @@ class Play:
     height, drive = 0.0, ""  # of the load [m], and axes of the platen's own drive
 
 
-# -- verdicts -----------------------------------------------------------------------------------------------------
+# -- verdicts --------------------------------------------------------------------------------------
 
 
 def judge(play, said, run):
@@ -634,7 +640,8 @@ def carryOut(make):
 
 
 def balanceOf(scene):
-    """The largest error of the energy balance [-]: what the run found, and that of its last row, which may be younger."""
+    """The largest error of the energy balance [-]: what the run found, and that of its last row,
+    which may be younger."""
     if not scene.model:
         return 0.0
     rows = scene.results.rows if scene.results else []
@@ -661,7 +668,7 @@ def verdict(play, said, folder):
     return {"class": kind if reasons else "confirmed", "why": "; ".join(reasons)}
 
 
-# -- walls that fall ----------------------------------------------------------------------------------------------
+# -- walls that fall -------------------------------------------------------------------------------
 
 
 class Falling(Play):

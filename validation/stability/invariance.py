@@ -1,11 +1,13 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The same panel described in other words: in millimetres and tonnes, mirrored, turned in space, numbered in another order.
+"""The same panel described in other words: in millimetres and tonnes, mirrored, turned in space,
+numbered in another order.
 
 yade -n -x validation/stability/invariance.py
 
-A panel of half bricks on a fixed plate is pressed and pushed by the plate above at once, in space, so hard that its
-joints open, slip and crush. Without damping, which acts along the axes of space, the force on the base must be the
-same in every telling, but for round-off that grows as in any motion of many bodies.
+A panel of half bricks on a fixed plate is pressed and pushed by the plate above at once, in space,
+so hard that its joints open, slip and crush. Without damping, which acts along the axes of space,
+the force on the base must be the same in every telling, but for round-off that grows as in any
+motion of many bodies.
 """
 
 import os
@@ -64,7 +66,8 @@ def curve(
     shuffle=False,
     damping=0.0,
 ):
-    """Force of the base on the panel along the push, up and across it, at every row [N], array (ROWS, 3).
+    """Force of the base on the panel along the push, up and across it, at every row [N], array
+    (ROWS, 3).
 
     :param length: metres of a unit of length, over one, and ``stress`` Pascals of a unit of stress
     """
@@ -132,7 +135,8 @@ TELLINGS = {
 
 
 def difference(blocks, telling, damping=0.0):
-    """Largest difference of the forces over the largest force, over the first tenth of the curve and over all of it."""
+    """Largest difference of the forces over the largest force, over the first tenth of the curve
+    and over all of it."""
     reference = curve(blocks, damping=damping)
     apart = np.abs(curve(blocks, damping=damping, **telling) - reference)
     return [apart[:n].max() / np.abs(reference).max() for n in (ROWS // 10, ROWS)]

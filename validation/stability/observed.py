@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Walls whose state is looked at all the time: what the studies of this folder share. It needs YADE."""
+"""Walls whose state is looked at all the time: what the studies of this folder share. It needs
+YADE."""
 
 from dataclasses import dataclass, field
 
@@ -39,9 +40,11 @@ class Point:
 
 
 class Observed(Scene):
-    """A run of a point, with ``model``. Every step or so, numbers that are not finite raise AssertionError.
+    """A run of a point, with ``model``. Every step or so, numbers that are not finite raise
+    AssertionError.
 
-    ``worst`` has the largest value of a yield function over its size, and the most that any memory of a joint fell.
+    ``worst`` has the largest value of a yield function over its size, and the most that any memory
+    of a joint fell.
 
     :param folder: of the results
     """

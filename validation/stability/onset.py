@@ -3,9 +3,10 @@
 
 yade -n -x validation/stability/onset.py
 
-Elastic columns of two and four bricks and COMP-4 are thrown at random and run for some thousand steps, with time steps
-above the limit. Without damping the onset is where motion grows a hundredfold, with damping where it does not fall to
-a thousandth. Every onset must lie within 1.0 and 1.6 times the limit.
+Elastic columns of two and four bricks and COMP-4 are thrown at random and run for some thousand
+steps, with time steps above the limit. Without damping the onset is where motion grows a
+hundredfold, with damping where it does not fall to a thousandth. Every onset must lie within 1.0
+and 1.6 times the limit.
 """
 
 import os
@@ -60,7 +61,8 @@ def comp4(blocks):
 
 
 def isCalm(make, damping, share):
-    """Whether motion stays within bounds, with damping whether it calms down, at a share of the limit."""
+    """Whether motion stays within bounds, with damping whether it calms down, at a share of the
+    limit."""
     bodies = make()
     for engine in O.engines:
         if hasattr(engine, "damping"):

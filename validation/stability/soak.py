@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""A small wall pushed to and fro for two million steps: memory must stay flat, and the energy balance closed.
+"""A small wall pushed to and fro for two million steps: memory must stay flat, and the energy
+balance closed.
 
 yade -n -x validation/stability/soak.py [STEPS]
 
-Prints, twenty times: steps, memory of the process, error of the balance, base shear and energy lost in the joints.
+Prints, twenty times: steps, memory of the process, error of the balance, base shear and energy lost
+in the joints.
 """
 
 import os
@@ -29,7 +31,8 @@ def memory():
 
 
 def soak(blocks, steps):
-    """Rows of steps, memory [MB], largest error of the balance [-], base shear [kN] and energy lost in the joints [J]."""
+    """Rows of steps, memory [MB], largest error of the balance [-], base shear [kN] and energy lost
+    in the joints [J]."""
     with tempfile.TemporaryDirectory() as folder:
         m = Observed(Point(0), blocks, folder)
         m.rest()

@@ -3,9 +3,10 @@
 
 yade -n -x validation/stability/stability.py [AXIS ...]
 
-Runs every point of every axis with rigid and with deformable units, draws map.png beside itself, and
-prints the table. At every point, every hundred steps and at every row of the curve: all numbers are finite, no yield
-surface is passed, nothing heals; the energy balance closes and no dissipated energy falls, or the run says so.
+Runs every point of every axis with rigid and with deformable units, draws map.png beside itself,
+and prints the table. At every point, every hundred steps and at every row of the curve: all numbers
+are finite, no yield surface is passed, nothing heals; the energy balance closes and no dissipated
+energy falls, or the run says so.
 """
 
 import os
@@ -23,12 +24,14 @@ from observed import BLOCKS, UNIT, Observed, Point  # noqa: E402
 from studies import table  # noqa: E402
 
 ROUND_OFF = 1e-12  # of yield functions over the size of what they carry
-SHARE = 0.01  # of the work done: largest error of the balance, largest energy made; a run with more says so
+# of the work done: largest error of the balance, largest energy made; a run with more says so
+SHARE = 0.01
 
 
 def undampedSteps(observed, ratio):
-    """Steps of the first period, over which the velocity of a drive grows without numerical damping: the limit of the time step
-    is larger then by the root of 1 + α, so a step above that of the damped run may be below it.
+    """Steps of the first period, over which the velocity of a drive grows without numerical
+    damping: the limit of the time step is larger then by the root of 1 + α, so a step above that of
+    the damped run may be below it.
     """
     if ratio >= (1 + observed.args.damping) ** 0.5:
         return 0
@@ -37,7 +40,8 @@ def undampedSteps(observed, ratio):
 
 
 def run(point, blocks):
-    """Run a point. Returns a dict: its verdict ('green', 'warned' or 'failed'), why, and its numbers."""
+    """Run a point. Returns a dict: its verdict ('green', 'warned' or 'failed'), why, and its
+    numbers."""
     began, found, m, settled = time.perf_counter(), {}, None, 0
     with tempfile.TemporaryDirectory() as folder:
         try:
@@ -87,7 +91,8 @@ def exponential(decay, rows):
 
 
 def softening(rows):
-    """Tables of the calcium-silicate bed joint (yade_plugin/law/README.md, softening tables) with so many rows, for all joints."""
+    """Tables of the calcium-silicate bed joint (yade_plugin/law/README.md, softening tables) with
+    so many rows, for all joints."""
     kn, ks, ft, cp, GfI, GfII = 3.352e11, 1.445e11, 0.1e6, 0.11e6, 16, 160
     tables = dict(
         tensionTable=exponential(ft**2 / (kn * GfI), rows),
@@ -97,7 +102,8 @@ def softening(rows):
 
 
 def crushing(strength, **more):
-    """Compressive strength [Pa] of bed and head joints, their energies so that the curves keep their shapes."""
+    """Compressive strength [Pa] of bed and head joints, their energies so that the curves keep
+    their shapes."""
     energy = lambda gc, fc: dict(
         compressiveStrength=strength,
         compressiveFractureEnergy=gc * (strength / fc) ** 2,
@@ -137,13 +143,15 @@ def friction(value):
 
 
 def stiffness(contrast):
-    """Crack surfaces `contrast` times as stiff as bed joints; masses go along, so that the steps are as many."""
+    """Crack surfaces `contrast` times as stiff as bed joints; masses go along, so that the steps
+    are as many."""
     k = dict(normalStiffness=contrast * 3.352e11, shearStiffness=contrast * 1.445e11)
     return dict(joints={"crack": k}, words=f"--density-scaling {max(1, contrast / 10)!r}")
 
 
 def losing(value, name="shearStiffnessLoss"):
-    """The cyclic law with this loss of stiffness in bed and head joints, in two cycles that crush."""
+    """The cyclic law with this loss of stiffness in bed and head joints, in two cycles that
+    crush."""
     values = {name: value}
     return dict(
         cycles(0.4, "cyclic"),

@@ -1,14 +1,16 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Statics as an oracle: every kind of stage × target × direction × block model × law, held against Newton's laws.
+"""Statics as an oracle: every kind of stage × target × direction × block model × law, held against
+Newton's laws.
 
 yade -n -x validation/statics/statics.py [--sample N --seed S] [--only STAGE] [--out FILE]
 
-In every scene a small wall goes through one stage after ``settle``. Then one more step is taken without damping, so that the
-accelerations of all bodies and nodes are known, and
+In every scene a small wall goes through one stage after ``settle``. Then one more step is taken
+without damping, so that the accelerations of all bodies and nodes are known, and
 
-- the forces of supports, drives and loads and the weights must give mass times acceleration, and their moments about the
-  origin the change of the angular momentum;
-- the force columns of curve.csv must have the same sum, and the work of what was pushed must be that of the ledger;
+- the forces of supports, drives and loads and the weights must give mass times acceleration, and
+  their moments about the origin the change of the angular momentum;
+- the force columns of curve.csv must have the same sum, and the work of what was pushed must be
+  that of the ledger;
 - what is answered as a peak must be in the curve, and the bound must not be below what stood.
 
 The table says of each cell how many checks passed, or why the scene refuses it.
@@ -140,11 +142,12 @@ def act(scene, cell, target, base):
     return scene.run(0.02)
 
 
-# -- Newton's laws ------------------------------------------------------------------------------------------------
+# -- Newton's laws ---------------------------------------------------------------------------------
 
 
 def _momenta(model):
-    """Mass, place, velocity, and angular momentum about its centre, of every body and node that moves."""
+    """Mass, place, velocity, and angular momentum about its centre, of every body and node that
+    moves."""
     zones, found = model.zones, []
     divided = set(zones.bodies) if zones else set()
     for body in O.bodies:
@@ -167,7 +170,8 @@ def _rows(matrix):
 
 
 def stepped(scene):
-    """Take a step without damping. Returns its sums: forces and moments of what acts from outside, and what they change."""
+    """Take a step without damping. Returns its sums: forces and moments of what acts from outside,
+    and what they change."""
     model = scene.model
     model.scheme.damp(0.0, scene.args.damping_kind)
     model.scheme.integrator.damping = 0.0  # of rigid bodies beside deformable ones
@@ -216,15 +220,17 @@ def checkNewton(scene):
     away = np.abs(force - change).max() / size
     if not away < ROUND_OFF:
         raise Wrong(f"forces {force} N from outside, mass times acceleration {change} N")
-    # a step turns bodies about where they stood: the second order of the rotation in a step remains; forces on the faces of
-    # deformable units go to their nodes as these stood when the unit was whole
+    # a step turns bodies about where they stood: the second order of the rotation in a step
+    # remains; forces on the faces of deformable units go to their nodes as these stood when the
+    # unit was whole
     away = np.abs(moment - spin).max() / couple
     if not away < (1e-4 if model.zones else 1e-6):
         raise Wrong(f"moments {moment} N m from outside, change of angular momentum {spin} N m")
 
 
 def checkColumns(scene):
-    """The force columns against weights, loads and mass times acceleration: a second sum, of what the user reads."""
+    """The force columns against weights, loads and mass times acceleration: a second sum, of what
+    the user reads."""
     model, plane = scene.model, scene.description.plane
     before = _momenta(model)
     O.step()
@@ -238,7 +244,8 @@ def checkColumns(scene):
     }
     gravity = np.array(model.scheme.now)
     named = {t.body: t for t in scene.targets.values()}
-    # the vertical column of a platen that no drive holds along z is the force of its joints, so its weight and loads are not missing
+    # the vertical column of a platen that no drive holds along z is the force of its joints, so its
+    # weight and loads are not missing
     pressed = {
         b
         for b, t in named.items()
@@ -275,7 +282,8 @@ def checkColumns(scene):
             if column in values:
                 total += 1e3 * values[column]
                 if axis in on and target.body not in held and target.body not in handles:
-                    # the weight of a guided platen along the guide is carried there, and the column leaves it out
+                    # the weight of a guided platen along the guide is carried there, and the column
+                    # leaves it out
                     total += O.bodies[target.body].state.mass * gravity[i]
             elif axis in on and target.body not in held:
                 raise Wrong(f"{target.name} is held along {axis} and has no column")
@@ -297,7 +305,7 @@ def _owners(model):
             yield body.id
 
 
-# -- what a run says ----------------------------------------------------------------------------------------------
+# -- what a run says -------------------------------------------------------------------------------
 
 
 def checkWork(scene, first):
@@ -341,7 +349,8 @@ def checkAnswers(scene):
 
 
 def carryOut(cell):
-    """Carry out a cell. Returns None if all holds, or the sentence with which the scene refuses it. Raises Wrong."""
+    """Carry out a cell. Returns None if all holds, or the sentence with which the scene refuses it.
+    Raises Wrong."""
     with tempfile.TemporaryDirectory() as folder:
         scene = None
         try:

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The 39 walls with results under all eight combinations of rules. A file for masonry.study; README.md says how."""
+"""The 39 walls with results under all eight combinations of rules. A file for masonry.study;
+README.md says how."""
 
 import os
 import sys

@@ -1,15 +1,18 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What four rules of today's practice predict for the stone walls: strength in the plane of the wall and drift capacity.
+"""What four rules of today's practice predict for the stone walls: strength in the plane of the
+wall and drift capacity.
 
 /usr/bin/python3 validation/stone_walls/codes.py        # a table of all walls, in markdown
 
-Inputs are what a surveyor knows, the columns of ``reference/walls.csv`` up to ``LMTvert``; no result of a test is read.
-All strengths are means without safety factors, and the confidence factor is 1.
+Inputs are what a surveyor knows, the columns of ``reference/walls.csv`` up to ``LMTvert``; no
+result of a test is read. All strengths are means without safety factors, and the confidence factor
+is 1.
 
-Strengths in shear follow from the typology by Table C8.5.I of the Circolare 7/2019 (``TABLE``). Compression of masonry and
-of units is that of the row. Dry joints have no cohesion and no tension, so that friction and the vertical force decide;
-Turnšek and Čačovič then say nothing. Rubble, uncut stone and cut stone have no ``fv0`` in the table: EN 1998-3:2005, which
-has only this formula for shear, takes ``tau0`` in its place, and the other rules have no sliding for them.
+Strengths in shear follow from the typology by Table C8.5.I of the Circolare 7/2019 (``TABLE``).
+Compression of masonry and of units is that of the row. Dry joints have no cohesion and no tension,
+so that friction and the vertical force decide; Turnšek and Čačovič then say nothing. Rubble, uncut
+stone and cut stone have no ``fv0`` in the table: EN 1998-3:2005, which has only this formula for
+shear, takes ``tau0`` in its place, and the other rules have no sliding for them.
 """
 
 import csv
@@ -25,8 +28,8 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 WALLS = os.path.join(HERE, "reference", "walls.csv")
 LAST_INPUT = "LMTvert [mm]"
 
-#: Middle of the ranges of mean values of tau0 and fv0 [MPa] by typology: Circolare 21 January 2019 n. 7, Table C8.5.I. E1 is E
-#: without mortar.
+#: Middle of the ranges of mean values of tau0 and fv0 [MPa] by typology: Circolare 21 January 2019
+#: n. 7, Table C8.5.I. E1 is E without mortar.
 TABLE = {
     kind: tuple(ends and sum(ends) / 2e6 for ends in (SAID[row].tau0, SAID[row].fv0))
     for kind, row in ROWS.items()
@@ -34,8 +37,8 @@ TABLE = {
 
 CODE_FRICTION = 0.4  # of a bed joint: EN 1998-3:2005, C.4.3.1; NTC 2018, 7.8.2.2.2
 UNIT_TENSION = 0.1  # over the compressive strength of the unit: Circolare 7/2019, C8.7.1.3.1.1
-#: Height of a unit over the overlap where the row has no units: the one at which the equivalent friction is 0.4, which the
-#: Circolare gives for good bond.
+#: Height of a unit over the overlap where the row has no units: the one at which the equivalent
+#: friction is 0.4, which the Circolare gives for good bond.
 GOOD_BOND = 1 / 0.4 - 1 / LOCAL_FRICTION
 
 
@@ -43,8 +46,9 @@ GOOD_BOND = 1 / 0.4 - 1 / LOCAL_FRICTION
 class Prediction:
     """One rule for one wall; None where the rule says nothing.
 
-    ``peak`` [kN] is the strength, ``failure`` is flexure, shear (diagonal cracks or failure of units) or sliding (along
-    a bed joint), ``drift`` [%] is the capacity at near collapse (EN) or at the ultimate limit state SLC (NTC).
+    ``peak`` [kN] is the strength, ``failure`` is flexure, shear (diagonal cracks or failure of
+    units) or sliding (along a bed joint), ``drift`` [%] is the capacity at near collapse (EN) or at
+    the ultimate limit state SLC (NTC).
     """
 
     peak: float | None = None
@@ -56,8 +60,9 @@ class Prediction:
 class Wall:
     """What the rules need of a wall: lengths [mm], force [N], strengths [MPa].
 
-    ``span`` is the height of zero moment H0, ``force`` acts at the base, ``slope`` is the height of a unit over the
-    overlap with the next course, ``unit`` is the compressive strength of the units or None.
+    ``span`` is the height of zero moment H0, ``force`` acts at the base, ``slope`` is the height of
+    a unit over the overlap with the next course, ``unit`` is the compressive strength of the units
+    or None.
     """
 
     height: float
@@ -86,7 +91,8 @@ class Wall:
 
 
 def number(cell: str) -> float | None:
-    """The number of a cell, the middle of a range such as 110-140, or None where the cell is empty."""
+    """The number of a cell, the middle of a range such as 110-140, or None where the cell is
+    empty."""
     parts = [float(part) for part in cell.split("-") if part.strip()]
     return sum(parts) / len(parts) if parts else None
 
@@ -129,8 +135,8 @@ def flexure(wall: Wall, block: float) -> float:
 def alongBed(wall: Wall, cohesion: float, friction: float) -> float:
     """Sliding strength [N] on the compressed part of the base, V = cohesion L' t + friction N.
 
-    L' = 3 (L/2 - V H0/N), at most L, belongs to linear compression without tension (NTC 2018, 7.8.2.2.2); V, with which
-    it becomes shorter, is solved for.
+    L' = 3 (L/2 - V H0/N), at most L, belongs to linear compression without tension (NTC 2018,
+    7.8.2.2.2); V, with which it becomes shorter, is solved for.
     """
     whole = cohesion * wall.area + friction * wall.force
     if whole * wall.span <= wall.force * wall.length / 6:
@@ -140,9 +146,11 @@ def alongBed(wall: Wall, cohesion: float, friction: float) -> float:
 
 
 def sliding(wall: Wall, cohesion: float, friction: float, bound: float) -> dict:
-    """Strengths [N] of a bed joint and, as shear, of its units; their bound [MPa] is ``bound`` times the unit strength.
+    """Strengths [N] of a bed joint and, as shear, of its units; their bound [MPa] is ``bound``
+    times the unit strength.
 
-    In slender walls of strong units the bound acts just below rocking, because the compressed part then is short.
+    In slender walls of strong units the bound acts just below rocking, because the compressed part
+    then is short.
     """
     found = {"sliding": alongBed(wall, cohesion, friction)}
     if wall.unit is not None:
@@ -151,12 +159,14 @@ def sliding(wall: Wall, cohesion: float, friction: float, bound: float) -> dict:
 
 
 def diagonal(wall: Wall, tension: float) -> float:
-    """Strength [N] by Turnšek and Čačovič, L t ft/b sqrt(1 + sigma0/ft): Circolare 7/2019, C8.7.1.16."""
+    """Strength [N] by Turnšek and Čačovič, L t ft/b sqrt(1 + sigma0/ft): Circolare 7/2019,
+    C8.7.1.16."""
     return wall.area * tension / wall.shape * math.sqrt(1 + wall.stress / tension)
 
 
 def stepped(wall: Wall, cohesion: float) -> float:
-    """Strength [N] of a crack in steps, at most that of the units: Circolare 7/2019, C8.7.1.17 and C8.7.1.18."""
+    """Strength [N] of a crack in steps, at most that of the units: Circolare 7/2019, C8.7.1.17 and
+    C8.7.1.18."""
     joints = (cohesion + LOCAL_FRICTION * wall.stress) / (1 + LOCAL_FRICTION * wall.slope)
     found = wall.area / wall.shape * joints
     return (
@@ -189,11 +199,13 @@ def eurocode(wall: Wall) -> Prediction:
 
 
 def eurocodeDraft(wall: Wall) -> Prediction:
-    """prEN 1998-3, the draft of 2018 to 2022: from memory, no public text of its formulas was found.
+    """prEN 1998-3, the draft of 2018 to 2022: from memory, no public text of its formulas was
+    found.
 
-    Rocking; sliding with the friction of a joint and diagonal cracks in steps where units are regular (the table has
-    fv0), diagonal cracks by tension where not. The forms of strength are likely, their coefficients are those of EN
-    1998-3:2005 and of the Circolare. The drift capacities 0.01 (1 - sigma0/fm), 0.008 and 0.006 are doubtful.
+    Rocking; sliding with the friction of a joint and diagonal cracks in steps where units are
+    regular (the table has fv0), diagonal cracks by tension where not. The forms of strength are
+    likely, their coefficients are those of EN 1998-3:2005 and of the Circolare. The drift
+    capacities 0.01 (1 - sigma0/fm), 0.008 and 0.006 are doubtful.
     """
     strengths = {"flexure": flexure(wall, 1.15)}
     if wall.fv0 is None:
@@ -210,16 +222,19 @@ def eurocodeDraft(wall: Wall) -> Prediction:
 
 
 def turnsekCacovic(wall: Wall) -> Prediction:
-    """Turnšek and Čačovič (1971) with ft = 1.5 tau0 and b = H/L: diagonal cracks alone, no drift, nothing for dry joints."""
+    """Turnšek and Čačovič (1971) with ft = 1.5 tau0 and b = H/L: diagonal cracks alone, no drift,
+    nothing for dry joints."""
     if not wall.tau0:
         return Prediction()
     return Prediction(diagonal(wall, 1.5 * wall.tau0) / 1e3, "shear", None)
 
 
 def italian(wall: Wall) -> Prediction:
-    """NTC 2018, 7.8.2.2, and Circolare 7/2019, C8.7.1.3.1.1, with mean values as for nonlinear static analysis.
+    """NTC 2018, 7.8.2.2, and Circolare 7/2019, C8.7.1.3.1.1, with mean values as for nonlinear
+    static analysis.
 
-    The bound of the unit strength is 0.065 fb/0.7 (C8.7.1.14). Drift capacities at SLC: 0.010 in flexure, 0.005 else.
+    The bound of the unit strength is 0.065 fb/0.7 (C8.7.1.14). Drift capacities at SLC: 0.010 in
+    flexure, 0.005 else.
     """
     strengths = {"flexure": flexure(wall, 1 / 0.85)}
     if wall.fv0 is None:

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The walls that were tested in cycles, with both laws. A file for masonry.study; README.md says how."""
+"""The walls that were tested in cycles, with both laws. A file for masonry.study; README.md says
+how."""
 
 import os
 import sys

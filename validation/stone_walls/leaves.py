@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""A wall of three leaves in space beside the same wall as one leaf in its plane: how much the decision of README.md costs.
+"""A wall of three leaves in space beside the same wall as one leaf in its plane: how much the
+decision of README.md costs.
 
-yade -n -x validation/stone_walls/leaves.py --wall 28 --leaves 3 --lean --out results/stone_walls/leaves_3
-yade -n -x validation/stone_walls/leaves.py --wall 28 --leaves 1 --lean --out results/stone_walls/leaves_1
+yade -n -x validation/stone_walls/leaves.py --wall 28 --leaves 3 --lean --out
+results/stone_walls/leaves_3 yade -n -x validation/stone_walls/leaves.py --wall 28 --leaves 1 --lean
+--out results/stone_walls/leaves_1
 
 Leaves have other stones each, and the joint between them, the collar, is a bed joint.
 """

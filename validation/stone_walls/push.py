@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""All walls, each pushed as often as its interval needs. A file for masonry.study; README.md says how."""
+"""All walls, each pushed as often as its interval needs. A file for masonry.study; README.md says
+how."""
 
 import os
 import sys

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What the runs of the stone walls say, and what was measured; README.md says how each number is defined.
+"""What the runs of the stone walls say, and what was measured; README.md says how each number is
+defined.
 
 /usr/bin/python3 validation/stone_walls/results.py --choose results/stone_walls/choose     # the eight combinations of rules
 /usr/bin/python3 validation/stone_walls/results.py results/stone_walls/push results/stone_walls/cycles       # predictions.csv and table.md
@@ -45,7 +46,8 @@ class Numbers:
     collapse: float
 
     def failure(self, wall):
-        """0 shear, 1 flexure: whether the peak is near the strength in flexure of EN 1998-3, C.4.2.1.
+        """0 shear, 1 flexure: whether the peak is near the strength in flexure of EN 1998-3,
+        C.4.2.1.
 
         :param wall: its number
         """
@@ -69,7 +71,8 @@ UNITS = dict(peak="kN", elastic="kN/mm", effective="kN/mm", atPeak="%", ultimate
 
 
 def ofRun(folder, height):
-    """The :class:`Numbers` of a push; None if the wall could not carry its vertical load, and fell before it was pushed.
+    """The :class:`Numbers` of a push; None if the wall could not carry its vertical load, and fell
+    before it was pushed.
 
     :param height: of the wall [m]
     """
@@ -104,7 +107,8 @@ def _secant(moved, force, share):
 
 
 def measured():
-    """By number of a wall, what was measured: dict of means of both sides by the names of :class:`Numbers`, and each side."""
+    """By number of a wall, what was measured: dict of means of both sides by the names of
+    :class:`Numbers`, and each side."""
     columns = dict(
         peak="Vmax,{} [kN]",
         elastic="Kel,{} [kN/mm]",
@@ -128,8 +132,8 @@ def measured():
 
 
 def rows(folder):
-    """Rows of a study that ended: pairs of a dict of what varies and the folder of a row, once for every wall that is like the
-    one that was run."""
+    """Rows of a study that ended: pairs of a dict of what varies and the folder of a row, once for
+    every wall that is like the one that was run."""
     same = rules.twins([*rules.read()])
     with open(os.path.join(folder, "study.csv"), encoding="utf-8", newline="") as f:
         for values in csv.DictReader(f):
@@ -173,13 +177,14 @@ def choose(folder):
         print(f"| {bond} | {stiffness} | {len(of)} | {' | '.join(cells)} | {right} |")
 
 
-# -- predictions ------------------------------------------------------------------------------------------------------
+# -- predictions -----------------------------------------------------------------------------------
 
 
 @dataclass
 class Prediction:
-    """Of one wall: the best estimate and the 10 and 90 % quantiles of every name of :class:`Numbers`, how many draws carried
-    the vertical load, peaks to both sides, and what its cycles say, by the law."""
+    """Of one wall: the best estimate and the 10 and 90 % quantiles of every name of
+    :class:`Numbers`, how many draws carried the vertical load, peaks to both sides, and what its
+    cycles say, by the law."""
 
     best: dict
     low: dict
@@ -225,16 +230,16 @@ def _peakOf(samples, side):
 
 
 def errors(made):
-    """What the walls with results say of the model: mean and standard deviation of the logarithms of measured over predicted
-    values, by the names of :class:`Numbers`."""
+    """What the walls with results say of the model: mean and standard deviation of the logarithms
+    of measured over predicted values, by the names of :class:`Numbers`."""
     tests = measured()
     logs = {name: [math.log(tests[w][name] / made[w].best[name]) for w in tests] for name in NAMES}
     return {name: (fmean(values), stdev(values)) for name, values in logs.items()}
 
 
 def expected(prediction, error):
-    """Between which values four of five tests are expected, by name: the interval of a wall, moved and widened by the error of
-    the model as the known walls have it.
+    """Between which values four of five tests are expected, by name: the interval of a wall, moved
+    and widened by the error of the model as the known walls have it.
 
     :param error: of :func:`errors`
     """
@@ -248,7 +253,8 @@ def expected(prediction, error):
 
 
 def ofCycles(folder):
-    """Work of all cycles [J], mean damping ratio of those from 0.2 % on [-], and the last residual displacement [mm]."""
+    """Work of all cycles [J], mean damping ratio of those from 0.2 % on [-], and the last residual
+    displacement [mm]."""
     cycles = readRun(folder).get("cycles")
     if not cycles:  # the wall fell before or within the first one
         return None
@@ -298,7 +304,8 @@ def write(made):
 
 
 def table(made):
-    """Lines of table.md: mean and coefficient of variation of predicted over measured, by typology and for all 39."""
+    """Lines of table.md: mean and coefficient of variation of predicted over measured, by typology
+    and for all 39."""
     tests, walls = measured(), rules.read()
     of = lambda kind: [w for w in tests if kind in ("all", walls[w].typology)]
     kinds = [kind for kind in (*rules.TABLE, "all") if of(kind)]

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""From what a surveyor knows of a stone wall to its blocks and joints, by published rules; README.md tells them in words.
+"""From what a surveyor knows of a stone wall to its blocks and joints, by published rules;
+README.md tells them in words.
 
 Nothing here reads what was measured in the tests: :func:`read` leaves those columns to results.py.
 """
@@ -27,27 +28,32 @@ POINTS = ("8", "5", "12")  # along a joint, by turns
 #: Drifts of the cycles [%].
 DRIFTS = (0.1, 0.2, 0.4, 0.6, 1.0, 1.5, 2.0)
 
-#: Rows of table C8.5.I of Circolare 2019 by typology, and what their mean values say; E1 is E without mortar.
+#: Rows of table C8.5.I of Circolare 2019 by typology, and what their mean values say; E1 is E
+#: without mortar.
 ROWS = dict(
     A="rubble", B="roughly cut stone", C="split stone", D="squared soft stone", E="squared stone"
 )
 TABLE = {kind: ntc2018(row, "LC2", confidence=1) for kind, row in ROWS.items()}
 TABLE["E1"] = {**TABLE["E"], "fv0": 0.0}
 
-#: Mean cohesion of general purpose mortar, JCSS Probabilistic Model Code, part 3.2: from a strength [MPa] on [Pa].
+#: Mean cohesion of general purpose mortar, JCSS Probabilistic Model Code, part 3.2: from a strength
+#: [MPa] on [Pa].
 JCSS = ((20.0, 0.42e6), (10.0, 0.37e6), (5.0, 0.28e6), (2.5, 0.14e6), (0.0, 0.04e6))
-#: Dry joints of sawn granite: their stiffness where they begin to close [Pa/m] and the most that they close [m], fitted to the
-#: moduli of walls at three stresses (validation/dry_joint_walls/README.md, What was fixed beforehand). Poisson's ratio of stone [-].
+#: Dry joints of sawn granite: their stiffness where they begin to close [Pa/m] and the most that
+#: they close [m], fitted to the moduli of walls at three stresses
+#: (validation/dry_joint_walls/README.md, What was fixed beforehand). Poisson's ratio of stone [-].
 CLOSING_STIFFNESS, CLOSURE, POISSON = 17.8e9, 0.136e-3, 0.2
 STIFFER = 20.0  # least modulus of stones, which are rigid, over that of the masonry [-]
 TOUGH = 1.2  # least energy of crushing over that up to the peak [-]
 STONE_TENSION = 0.1  # tensile over compressive strength of a soft stone [-]
 
-#: Coefficients of variation, JCSS Probabilistic Model Code, part 3.2; of E and of fc where only a table or a few prisms speak.
+#: Coefficients of variation, JCSS Probabilistic Model Code, part 3.2; of E and of fc where only a
+#: table or a few prisms speak.
 SCATTER = dict(friction=0.19, bond=0.40, stiffness=0.30, strength=0.20)
 #: What a length and a height of stones that nobody wrote down may be, over the assumed ones [-].
 UNKNOWN_SIZE = 0.7, 1.4
-#: Line of minimum trace of rubble and uncut stone where none was measured, that of the other such walls of the database [-].
+#: Line of minimum trace of rubble and uncut stone where none was measured, that of the other such
+#: walls of the database [-].
 TRACE = {"A": 1.1, "B": 1.1}
 #: Assumed sizes of such stones by typology: length and height [m].
 SIZES = {
@@ -64,8 +70,8 @@ def _byMortar(row, table):
     return 0.0 if row.dry else next(c for least, c in table if (row.mortar or 0.0) >= least)
 
 
-#: Cohesion [Pa] and friction [-] of joints, functions of a row by the name of a rule: OTHERS is of natural stone in general
-#: purpose mortar, and mortar without a known strength counts as air lime.
+#: Cohesion [Pa] and friction [-] of joints, functions of a row by the name of a rule: OTHERS is of
+#: natural stone in general purpose mortar, and mortar without a known strength counts as air lime.
 BONDS = {
     "en1996": lambda row: (_byMortar(row, OTHERS) / SHEAR, FRICTION / SHEAR),
     "ntc2018": lambda row: (TABLE[row.typology]["fv0"], LOCAL_FRICTION),
@@ -160,7 +166,8 @@ def read():
 
 
 def twins(numbers):
-    """Walls that no surveyor could tell apart have one run: dict from the number of the first to the numbers of all."""
+    """Walls that no surveyor could tell apart have one run: dict from the number of the first to
+    the numbers of all."""
     rows, found = read(), {}
     for number in numbers:
         own = rows[number]
@@ -176,8 +183,8 @@ class Guess:
     :param row: :class:`Row`
     :param bond: key of :data:`BONDS`
     :param stiffness: key of :data:`STIFFNESSES`
-    :param sample: 0 and 1 are best estimates, pushed to the right and to the left, with two draws of the stones; 2 to SAMPLES + 1
-        a Latin hypercube of what is not known
+    :param sample: 0 and 1 are best estimates, pushed to the right and to the left, with two draws
+        of the stones; 2 to SAMPLES + 1 a Latin hypercube of what is not known
     """
 
     def __init__(self, row, bond, stiffness, sample):
@@ -266,7 +273,8 @@ class Guess:
         return made
 
     def _sawn(self, joints):
-        """Dry joints of sawn stone close by a curve, and their stones do not crush. The modulus of prisms says nothing of them."""
+        """Dry joints of sawn stone close by a curve, and their stones do not crush. The modulus of
+        prisms says nothing of them."""
         closing = CLOSING_STIFFNESS * self.factors["stiffness"]
         for joint in (joints["bed"], joints["head"]):
             joint.updateAttrs(

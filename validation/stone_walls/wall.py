@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""One of the 96 stone walls of reference/walls.csv, pushed until it has lost half of its force, or in cycles.
+"""One of the 96 stone walls of reference/walls.csv, pushed until it has lost half of its force, or
+in cycles.
 
 Its joints, stones and scatter come from rules.py; README.md says how.
 """
@@ -16,7 +17,9 @@ from masonry.scene import options
 LOST = 0.5  # share of the peak at which a push ends [-]
 STEP = 0.25  # drift from one look at the force to the next [%]
 FARTHEST = 4.0  # drift at which a push ends [%]
-RATE = 30  # of a wall whose modulus is 1 GPa [mm/s]; with its root for others, as the period of a soft wall is longer
+# of a wall whose modulus is 1 GPa [mm/s]; with its root for others, as the period of a soft wall is
+# longer
+RATE = 30
 
 parser = options.parser(__doc__, until=1)
 parser.add_argument(

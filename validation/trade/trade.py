@@ -3,9 +3,9 @@
 
 /usr/bin/python3 validation/trade/trade.py [--draw | --time-only] [--jobs N] [--walls WALL ...]
 
-Runs what is missing in results/trade, times what is not timed yet, prints the table and writes table.md, trade.json and
-figures beside itself: one a wall, and one of the worst wall. --draw runs nothing; --time-only measures all times anew,
-for an idle machine.
+Runs what is missing in results/trade, times what is not timed yet, prints the table and writes
+table.md, trade.json and figures beside itself: one a wall, and one of the worst wall. --draw runs
+nothing; --time-only measures all times anew, for an idle machine.
 """
 
 import argparse
@@ -125,13 +125,14 @@ def runAll(walls, jobs):
     runMissing([(w, words(w, o), folder(w, o)) for w, o in runs], jobs)
 
 
-# -- what a run says ----------------------------------------------------------------------------------------------
+# -- what a run says -------------------------------------------------------------------------------
 
 
 def pattern(directory):
     """Where a wall is cracked: crack volumes [m³] of its patches.
 
-    The crack volume of a joint is its opening and slide, where that is more than CRACK, times its area.
+    The crack volume of a joint is its opening and slide, where that is more than CRACK, times its
+    area.
     """
     entry = readRun(directory)["wall"]
     half, thickness, height = entry["unit_m"][0] / 2, *entry["unit_m"][1:]
@@ -146,7 +147,8 @@ def pattern(directory):
 
 
 def numbers(wall, options):
-    """Peak and force at the end [kN], initial stiffness [kN/mm], work of the push and what joints dissipated [J]."""
+    """Peak and force at the end [kN], initial stiffness [kN/mm], work of the push and what joints
+    dissipated [J]."""
     directory = folder(wall, options)
     entry, curve = readRun(directory), readCurve(directory)
     lost = [c for name, c in curve.items() if name.startswith("dissipated_")]
@@ -162,8 +164,9 @@ def numbers(wall, options):
 def errors(wall, runs):
     """Signed errors [-] of runs against the mean of the reference runs, a dict of lists.
 
-    ``pattern`` is the share of the crack volume that lies in other patches than those of the first reference run: 0 is
-    the same pattern, 1 has nothing in common. ``imbalance`` is the dynamic imbalance of run.json.
+    ``pattern`` is the share of the crack volume that lies in other patches than those of the first
+    reference run: 0 is the same pattern, 1 has nothing in common. ``imbalance`` is the dynamic
+    imbalance of run.json.
     """
     references = [numbers(wall, r) for r in RUNS["reference"]]
     mean = {name: np.mean([r[name] for r in references]) for name in references[0]}
@@ -178,7 +181,7 @@ def errors(wall, runs):
     return result
 
 
-# -- what a run costs ---------------------------------------------------------------------------------------------
+# -- what a run costs ------------------------------------------------------------------------------
 
 
 def kind(wall, options):
@@ -192,7 +195,8 @@ def kind(wall, options):
 
 
 def timeOne(wall, kind, threads):
-    """Run a short stretch; seconds of a step, a row, a frame, and of all that does not grow with the run."""
+    """Run a short stretch; seconds of a step, a row, a frame, and of all that does not grow with
+    the run."""
     out = os.path.join(RESULTS, "times", wall)
     words = STRETCH[kind.split()[1]].split() + kind.split()
     before, began = resource.getrusage(resource.RUSAGE_CHILDREN), time.perf_counter()
@@ -227,7 +231,8 @@ def readTimes():
 
 
 def timeAll(walls, anew):
-    """Time every distinct step, once with one thread and once with two; those that are known only if ``anew``."""
+    """Time every distinct step, once with one thread and once with two; those that are known only
+    if ``anew``."""
     times = readTimes()
 
     def keep(key, measure):
@@ -247,9 +252,11 @@ def timeAll(walls, anew):
 
 
 def cost(wall, options, threads):
-    """Wall-clock time [s] and CPU time [s] of a run as a user starts it, with a frame every millimetre.
+    """Wall-clock time [s] and CPU time [s] of a run as a user starts it, with a frame every
+    millimetre.
 
-    A step that was not timed counts as it did in the run itself, on one core of a machine that may have been busy.
+    A step that was not timed counts as it did in the run itself, on one core of a machine that may
+    have been busy.
     """
     entry, curve = readRun(folder(wall, options)), readCurve(folder(wall, options))
     time = readTimes().get(f"{wall} {kind(wall, options)} {threads}")
@@ -260,11 +267,12 @@ def cost(wall, options, threads):
     return spent, spent * time["cpu"]
 
 
-# -- what comes out -----------------------------------------------------------------------------------------------
+# -- what comes out --------------------------------------------------------------------------------
 
 
 def bounds(walls):
-    """The bound of the peak of every wall that has one: how far it is above the reference's [-], and its time [s]."""
+    """The bound of the peak of every wall that has one: how far it is above the reference's [-],
+    and its time [s]."""
     found, times = {}, readTimes()
     for wall in [w for w in walls if done(w, BOUND)]:
         peak = np.mean([numbers(wall, r)["peak"] for r in RUNS["reference"]])
@@ -286,9 +294,11 @@ ERRORS = ["peak", "work", "end", "stiffness", "dissipated", "pattern", "imbalanc
 
 
 def study(walls):
-    """Everything that is known, as trade.json has it: list of runs with options, errors, steps and times.
+    """Everything that is known, as trade.json has it: list of runs with options, errors, steps and
+    times.
 
-    A run that was repeated has the error that is largest in magnitude, and in ``spread`` half the range of each.
+    A run that was repeated has the error that is largest in magnitude, and in ``spread`` half the
+    range of each.
     """
     again = {RUNS[s][0]: repeats(s) for s in REPEATED}
     found = []
@@ -317,7 +327,8 @@ def study(walls):
 
 
 def worst(found):
-    """Runs that all walls have, as if of one wall: errors that are largest in magnitude, times together."""
+    """Runs that all walls have, as if of one wall: errors that are largest in magnitude, times
+    together."""
     walls = {e["wall"] for e in found}
     groups = {}
     for e in found:
@@ -344,7 +355,8 @@ def percent(entry, name):
 
 
 def summary(found):
-    """Markdown: a row a run, its errors of peak and work and its time on two cores for every wall."""
+    """Markdown: a row a run, its errors of peak and work and its time on two cores for every
+    wall."""
     walls = list(dict.fromkeys(e["wall"] for e in found))
     heads = ["series", "options"]
     heads += [f"{w[5:]}: peak, work %; s" for w in walls]
@@ -402,7 +414,8 @@ def front(points):
 
 
 def draw(found, wall, bound):
-    """WALL.png: time against the errors of the peak and of the work; the front is numbered, its runs listed below.
+    """WALL.png: time against the errors of the peak and of the work; the front is numbered, its
+    runs listed below.
 
     :param bound: the wall's entry of :func:`bounds`, or None
     """

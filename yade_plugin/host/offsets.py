@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Byte offsets of the data members of YADE's classes, as the running YADE reports them through Python.
+"""Byte offsets of the data members of YADE's classes, as the running YADE reports them through
+Python.
 
     yade -n -x yade_plugin/host/offsets.py [CLASS...]
 
-Without names: the classes that Yade.hpp declares. An attribute is listed under the class that defines it. Attributes
-that Python reads by calling a function have no offset and are left out.
+Without names: the classes that Yade.hpp declares. An attribute is listed under the class that
+defines it. Attributes that Python reads by calling a function have no offset and are left out.
 """
 
 import ctypes
@@ -26,9 +27,10 @@ def pointerAt(address):
 def memberOffset(getter):
     """Offset that a getter of Boost.Python reads at, or None if it calls a function.
 
-    The Python function object holds, after its header, a pointer to its caller object. That object begins with the
-    pointer to its virtual function table, and then holds the C++ pointer to the data member, which is the offset. The
-    word before slot 0 of the table leads to the type information of the caller, whose second word is its name.
+    The Python function object holds, after its header, a pointer to its caller object. That object
+    begins with the pointer to its virtual function table, and then holds the C++ pointer to the
+    data member, which is the offset. The word before slot 0 of the table leads to the type
+    information of the caller, whose second word is its name.
     """
     if "Boost" not in type(getter).__module__:
         return None
@@ -40,7 +42,8 @@ def memberOffset(getter):
 
 
 def membersOf(cls):
-    """(offset, name) of the attributes that a class itself defines, in the order in which they lie."""
+    """(offset, name) of the attributes that a class itself defines, in the order in which they
+    lie."""
     members = []
     for name, attribute in vars(cls).items():
         if isinstance(attribute, property):

@@ -20,8 +20,9 @@ THINNEST = 1e-6
 def properties(cls) -> list[dict[str, Any]]:
     """The plugin's description of the properties of one of its classes: a list of dicts.
 
-    Keys are ``name``, ``unit``, ``meaning``, ``source``, the bounds ``low`` and ``high``, and what is usual:
-    ``usual_low`` and ``usual_high``. A value beyond these is probably given in ``other_unit``.
+    Keys are ``name``, ``unit``, ``meaning``, ``source``, the bounds ``low`` and ``high``, and what
+    is usual: ``usual_low`` and ``usual_high``. A value beyond these is probably given in
+    ``other_unit``.
     """
     return cls.properties()
 
@@ -32,13 +33,15 @@ def units(cls) -> dict[str, str]:
 
 
 def refuse(problems: list[str], *hints: str) -> None:
-    """Raise ValueError with the first problems of a list, if there are any, and what helps against them."""
+    """Raise ValueError with the first problems of a list, if there are any, and what helps against
+    them."""
     if problems:
         raise ValueError("\n".join([*firstOf(problems), *hints]))
 
 
 def vector(value: Any, what: str) -> Any:
-    """Three finite numbers as a Vector3. ``what`` begins the sentence that refuses anything else."""
+    """Three finite numbers as a Vector3. ``what`` begins the sentence that refuses anything
+    else."""
     try:
         found = Vector3(*value)
         if len(value) == 3 and math.isfinite(found.norm()):
@@ -56,7 +59,8 @@ def placeOf(body: int, point: Any) -> Any:
 
 
 def _extent(points):
-    """Longest extent of some points, and how far they reach out of a plane through three of them [m]."""
+    """Longest extent of some points, and how far they reach out of a plane through three of them
+    [m]."""
     first = points[0]
     away = max((p - first for p in points), key=Vector3.norm)
     side = max((away.cross(p - first) for p in points), key=Vector3.norm)
@@ -73,7 +77,8 @@ def addBlock(
 ) -> int:
     """Append a convex block to the scene. Returns its body id.
 
-    :param vertices: corners [m], at least four, in global axes; every one a corner of the convex block
+    :param vertices: corners [m], at least four, in global axes; every one a corner of the convex
+        block
     :param inPlane: only x, z and the rotation about y stay free: a wall in the x-z plane
     """
     return placeBlock(vertices, material, inPlane, color)

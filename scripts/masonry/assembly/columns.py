@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The columns of curve.csv: name, unit, meaning and value of each stand in one place.
 
-Adding a column is adding a line here, to :meth:`masonry.scene.targets.Target.columns` if every target shall have it, or to
-:data:`masonry.scene.targets.OF_JOINTS` if every recorded joint shall. ``scene.column`` adds one from a script.
+Adding a column is adding a line here, to :meth:`masonry.scene.targets.Target.columns` if every
+target shall have it, or to
+:data:`masonry.scene.targets.OF_JOINTS` if every recorded joint shall. ``scene.column`` adds one
+    from a script.
 """
 
 from dataclasses import dataclass
@@ -40,18 +42,21 @@ class Column:
 
 
 class Reading:
-    """What a structure measures of itself at one moment, in SI units. The values of all columns are taken from it at once.
+    """What a structure measures of itself at one moment, in SI units. The values of all columns are
+    taken from it at once.
 
     - ``time`` since the scene was built [s]
-    - ``along``, ``up``: displacement of the followed point since the push or load began, along it and upwards [m]
+    - ``along``, ``up``: displacement of the followed point since the push or load began, along it
+      and upwards [m]
     - ``sunk``: displacement of the pushed point downwards since the scene was built [m]
     - ``rotation`` of the pushed block, about y in a plane, else its angle [rad]
     - ``baseShear``: force of the structure on all that is held, along the push or load [N]
     - ``topShear``: force that drives the pushed point [N]
     - ``energy``: the energy balance [J]
-    - ``goal``: number of the point of a history that the drive is going to, from 1, and its displacement [mm]
-    - ``forces``: force of the structure on what is held, along the axes that are held now or that springs hold, by the name of
-      the target [N]
+    - ``goal``: number of the point of a history that the drive is going to, from 1, and its
+      displacement [mm]
+    - ``forces``: force of the structure on what is held, along the axes that are held now or that
+      springs hold, by the name of the target [N]
     """
 
     def __init__(self, structure):
@@ -80,7 +85,8 @@ class Reading:
         self.goal = loading.goal
 
     def moved(self, target):
-        """Displacement of a target's recorded point since the scene was built [m], and its rotation [rad]."""
+        """Displacement of a target's recorded point since the scene was built [m], and its rotation
+        [rad]."""
         if target.name not in self._moved:
             self._moved[target.name] = self.structure.supports.moved(target)
         return self._moved[target.name]

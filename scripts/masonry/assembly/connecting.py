@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The joints of a scene: made of all pairs of blocks that share a face. Bad input raises ValueError, with all problems at
-once."""
+"""The joints of a scene: made of all pairs of blocks that share a face. Bad input raises
+ValueError, with all problems at once."""
 
 from typing import Annotated, Any, Callable
 
@@ -25,7 +25,8 @@ YADES_TIME_STEP = 1e-8
 
 @validated
 def touchingPairs(tolerance: Tolerance = 1e-4) -> list[tuple[int, int]]:
-    """Pairs of ids of the blocks that share a face, smaller id first. Parameters as in :func:`connect`."""
+    """Pairs of ids of the blocks that share a face, smaller id first. Parameters as in
+    :func:`connect`."""
     return _masonry.touchingPairs(tolerance)
 
 
@@ -35,18 +36,22 @@ def connect(
     tolerance: Tolerance = 1e-4,
     allowGaps: bool = False,
 ) -> list[Any]:
-    """Make the joints between all blocks that share a face. The present state is the reference. Returns the interactions.
+    """Make the joints between all blocks that share a face. The present state is the reference.
+    Returns the interactions.
 
-    Blocks that lie in each other are refused, and those that miss a shared face by less than a quarter of their
-    thickness; the message has the gap. A scene without any joint is refused, too, and one that has its joints already.
-    Nothing changes then. Values that look like those of another unit, blocks without joints, and properties
-    without effect under the law of their joint are printed as warnings.
+    Blocks that lie in each other are refused, and those that miss a shared face by less than a
+    quarter of their thickness; the message has the gap. A scene without any joint is refused, too,
+    and one that has its joints already. Nothing changes then. Values that look like those of
+    another unit, blocks without joints, and properties without effect under the law of their joint
+    are printed as warnings.
 
-    If ``O.dt`` is still the 1e-8 s that YADE begins with, it becomes half of the stable limit; see ``criticalTimeStep()``.
+    If ``O.dt`` is still the 1e-8 s that YADE begins with, it becomes half of the stable limit; see
+    ``criticalTimeStep()``.
 
-    :param rule: function (body1, body2, geom) that returns a MasonryJoint, or None to leave the choice to direction and
-        joint set
-    :param tolerance: largest gap or overlap of coincident faces, relative to the smaller block's size, at most 0.01
+    :param rule: function (body1, body2, geom) that returns a MasonryJoint, or None to leave the
+        choice to direction and joint set
+    :param tolerance: largest gap or overlap of coincident faces, relative to the smaller block's
+        size, at most 0.01
     :param allowGaps: whether blocks that nearly share a face stand apart on purpose
     """
     made = makeJoints(rule, tolerance, allowGaps)
@@ -82,7 +87,8 @@ def makeJoints(
             functor.tolerance = tolerance
         pairs, sizes = _pairs(tolerance, allowGaps)
         if not ofYade:
-            # YADE makes interactions with the functors of an InteractionLoop: one stands in for a moment
+            # YADE makes interactions with the functors of an InteractionLoop: one stands in for a
+            # moment
             O.engines = [functorLoop(geometry, physics)]
         made, joints = _connect(pairs, physics, rule)
     except ValueError:
@@ -132,7 +138,8 @@ def _pairs(tolerance, allowGaps):
 
 
 def _connect(pairs, physics, rule):
-    """Make the joints of all pairs, or none of them. Returns the interactions and the MasonryJoint objects."""
+    """Make the joints of all pairs, or none of them. Returns the interactions and the MasonryJoint
+    objects."""
     made, problems, due = [], [], 256
     joints = {id(j): j for j in physics.joints}
     try:
@@ -168,7 +175,8 @@ def _connect(pairs, physics, rule):
 
 
 def _warn(pairs, joints, sizes, engines):
-    """Print warnings of what looks like a mistake: other units, blocks without joints, properties without effect."""
+    """Print warnings of what looks like a mistake: other units, blocks without joints, properties
+    without effect."""
     (thin, thickness), (large, size) = sizes
     if thickness < 1e-3:
         say(f"warning: body {thin} is {thickness:g} m thick: are corners in m?")
@@ -219,8 +227,8 @@ def _warnOfUnits(things):
 
 
 def _warnOfIdle(joints):
-    """Warn of properties that were given and that the law of their joint does not read; of an elastic joint, of those that one law
-    alone reads."""
+    """Warn of properties that were given and that the law of their joint does not read; of an
+    elastic joint, of those that one law alone reads."""
     default, read = MasonryJoint(), [law["properties"] for law in LAWS.values()]
     readers = {
         p["name"]: sum(p["name"] in names for names in read) for p in properties(MasonryJoint)
@@ -241,7 +249,8 @@ def _warnOfZones(zones, bodies):
     """Warn of zones without bodies, and of bodies that divisions do not divide."""
     if not zones.bodies:
         say("warning: MasonryZones has no bodies")
-    # of a plane unit that is no hexahedron the nodes are the corners of its base and one in the middle
+    # of a plane unit that is no hexahedron the nodes are the corners of its base and one in the
+    # middle
     stars = []
     for i in zones.bodies:
         n, nodes = len(bodies[i].shape.v), len(range(*zones.nodesOf(i)))

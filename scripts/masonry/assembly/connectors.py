@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Ties, springs and whatever else connects bricks beside the joints: their engines, forces and news."""
+"""Ties, springs and whatever else connects bricks beside the joints: their engines, forces and
+news."""
 
 from yade import O, Vector3
 
@@ -7,7 +8,8 @@ from .blocks import placeOf
 
 
 class Connectors:
-    """What connects blocks beside the joints, in YADE. A kind of connector is a class of records as those in
+    """What connects blocks beside the joints, in YADE. A kind of connector is a class of records as
+    those in
     :mod:`masonry.scene.ties`: one engine has all of a kind.
 
     - ``engines``: by their class of records, in the order in which the scene named them first
@@ -35,7 +37,8 @@ class Connectors:
             kind.grow(self.description.connectorsOf(kind), made, share)
 
     def onGround(self):
-        """Force of ties and springs on the ground, to which they are fixed, along the axes of the scene [N]."""
+        """Force of ties and springs on the ground, to which they are fixed, along the axes of the
+        scene [N]."""
         force = self._onGround(lambda one: True)
         return Vector3(*(force[i] if i in self.axes else 0.0 for i in range(3)))
 

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The loads of a structure: what is driven, alone or with others in a fixed proportion, pressed and blown at, and whose displacement is followed."""
+"""The loads of a structure: what is driven, alone or with others in a fixed proportion, pressed and
+blown at, and whose displacement is followed."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -22,14 +23,17 @@ def smooth(x):
 class Loading:
     """Loads and drives of a structure, from its description and from stages.
 
-    - ``loads``: MasonryLoad engines by label, in the order in which they act; ``push``: the one that drives the pushed target, or None
+    - ``loads``: MasonryLoad engines by label, in the order in which they act; ``push``: the one
+      that drives the pushed target, or None
     - ``target``: what is pushed; from the beginning the target that a drive holds
-    - ``followed``: whose displacement is recorded along the load, or None; ``direction`` of the present push or load, and
-      ``origin``: that displacement when it began, along it and up, and that of the bricks at the followed platen along it [m]
+    - ``followed``: whose displacement is recorded along the load, or None; ``direction`` of the
+      present push or load, and ``origin``: that displacement when it began, along it and up, and
+      that of the bricks at the followed platen along it [m]
     - ``pushing``: whether the present load is a push
     - ``grown``: whether presses, dead loads and wind have their whole
     - ``loadFactor`` of the load that a stage puts on or lets grow [-]
-    - ``goal``: point of a history that the drive is going to: its number, from 1, and its displacement [mm]
+    - ``goal``: point of a history that the drive is going to: its number, from 1, and its
+      displacement [mm]
     """
 
     def __init__(self, structure):
@@ -49,7 +53,8 @@ class Loading:
         self._lines = {}  # points of the presses, as they were built [m]
 
     def _made(self):
-        """A dead load for every target that has one, and a drive for every one that can be pushed."""
+        """A dead load for every target that has one, and a drive for every one that can be
+        pushed."""
         for target in self.description.targets.values():
             if not target.loaded:
                 continue
@@ -67,7 +72,8 @@ class Loading:
             yield MasonryLoad(label=f"wind_{n}", damped=True, **on)
 
     def begin(self):
-        """Find what presses, dead loads and wind are when they have grown, when all joints are there."""
+        """Find what presses, dead loads and wind are when they have grown, when all joints are
+        there."""
         self.supports = self.structure.supports
         for target in self.description.targets.values():
             if target.pressed is None and target.force is None:
@@ -82,7 +88,8 @@ class Loading:
             self._grown[f"wind_{n}"] = Vector3(*force)
 
     def _centre(self, load, target):
-        """Let a resultant go through the middle of what a platen presses. Returns the area of that [m²]."""
+        """Let a resultant go through the middle of what a platen presses. Returns the area of that
+        [m²]."""
         area, middle = self.supports.contactOf(target)
         load.point = (middle[0], middle[1], target.point[2])
         return area
@@ -95,8 +102,8 @@ class Loading:
         self.structure.connectors.grow(smooth(x))
 
     def deadLoads(self):
-        """Loads, each with its force, or that which it will have when presses, dead loads and wind have grown: pairs of MasonryLoad and
-        force [N]."""
+        """Loads, each with its force, or that which it will have when presses, dead loads and wind
+        have grown: pairs of MasonryLoad and force [N]."""
         for label, load in self.loads.items():
             grown = load.force if self.grown else self._grown.get(label, load.force)
             yield load, grown
@@ -112,8 +119,8 @@ class Loading:
         return load, self.supports.contactOf(target)[0] if known else self._centre(load, target)
 
     def onBricks(self, label, places):
-        """The engines of forces at pairs of the number of a brick and a point [m], by how their labels begin; they are made if they are
-        missing."""
+        """The engines of forces at pairs of the number of a brick and a point [m], by how their
+        labels begin; they are made if they are missing."""
         made = {
             f"{label}_{n}": dict(body=self.ids[brick], point=point, damped=True)
             for n, (brick, point) in enumerate(places)
@@ -126,8 +133,8 @@ class Loading:
         return self._loadsOf({PATTERN: on})[0]
 
     def _loadsOf(self, made):
-        """Loads by their labels; those that are missing get their attributes and are made all at once, before the engine of the energy
-        balance."""
+        """Loads by their labels; those that are missing get their attributes and are made all at
+        once, before the engine of the energy balance."""
         new = {n: MasonryLoad(label=n, **of) for n, of in made.items() if n not in self.loads}
         if new:
             before = list(O.engines)
@@ -154,7 +161,8 @@ class Loading:
         return self.loads.get(f"{target.name}_drive_{axis}")
 
     def pushOf(self, target, axis):
-        """The drive that a push made, if it holds a target along an axis, alone or with others, else None."""
+        """The drive that a push made, if it holds a target along an axis, alone or with others,
+        else None."""
         made = map(self.loads.get, (f"{target.name}_drive", PATTERN))
         return next((load for load in made if load and isAlong(load, axis, target.body)), None)
 
@@ -170,8 +178,8 @@ class Loading:
         return reactionOf(self.driveOf(target, axis))
 
     def follow(self, target, direction, origin=None):
-        """From now on record the displacement of a target, or None, along a direction, from an origin [m]; None: where it is now. Returns
-        that."""
+        """From now on record the displacement of a target, or None, along a direction, from an
+        origin [m]; None: where it is now. Returns that."""
         self.followed, self.direction, self.pushing = target, direction, False
         self.origin = origin or (0, 0, 0)
         if target and origin is None:
@@ -179,14 +187,15 @@ class Loading:
         return list(self.origin)
 
     def topDisplacement(self):
-        """Displacement since the scene was built [m] of the followed point, along the push or load and upwards, and of the bricks at
-        the followed platen along it."""
+        """Displacement since the scene was built [m] of the followed point, along the push or load
+        and upwards, and of the bricks at the followed platen along it."""
         moved = self.supports.moved(self.followed)[0]
         masonry = self.supports.masonryMoved(self.followed, self.direction)
         return moved.dot(self.direction), moved[2], masonry
 
     def masonryAlong(self):
-        """Displacement of the bricks at the followed platen along the push or load since that began [m]; 0 if none is followed."""
+        """Displacement of the bricks at the followed platen along the push or load since that began
+        [m]; 0 if none is followed."""
         return self.topDisplacement()[2] - self.origin[2] if self.followed else 0.0
 
     def alongNow(self):
@@ -194,7 +203,8 @@ class Loading:
         return self.topDisplacement()[0] - self.origin[0] if self.followed else 0.0
 
     def hasSunk(self, down=None):
-        """Whether the pushed platen has come down by half the height of a brick; ``down``: how far, if that is known [m]."""
+        """Whether the pushed platen has come down by half the height of a brick; ``down``: how far,
+        if that is known [m]."""
         down = -self.supports.moved(self.target)[0][2] if down is None else down
         block = self.description.bricks[-1].corners
         return down > 0.5 * (max(p[2] for p in block) - min(p[2] for p in block))
@@ -211,7 +221,8 @@ class Loading:
             load.point = self._lines[target.name] - Vector3(*away)
 
     def besideThePush(self):
-        """What acts on the structure beside a push: weights, dead loads, and other drives [N]. Nothing if none is pushed."""
+        """What acts on the structure beside a push: weights, dead loads, and other drives [N].
+        Nothing if none is pushed."""
         if not self.pushing:
             return Vector3.Zero
         beside = self.supports.applied()
@@ -220,7 +231,7 @@ class Loading:
                 beside += reactionOf(load)
         return beside
 
-    # -- what a checkpoint keeps beside the state in YADE ------------------------------------------------------------
+    # -- what a checkpoint keeps beside the state in YADE ------------------------------------------
 
     def state(self):
         """What stages have set: a dict of values that JSON can hold."""
@@ -237,7 +248,8 @@ class Loading:
         }
 
     def putState(self, state):
-        """Give it a state of :meth:`state`. Raises KeyError if it names a target or a load that is not there."""
+        """Give it a state of :meth:`state`. Raises KeyError if it names a target or a load that is
+        not there."""
         targets = {"": None, **self.description.targets}
         self.target, self.followed = targets[state["target"]], targets[state["followed"]]
         self.push = {"": None, **self.loads}[state["push"]]
@@ -251,17 +263,19 @@ def _on(target):
     return dict(body=target.body, point=target.point, damped=target.brick is not None)
 
 
-# -- drives of pushes ---------------------------------------------------------------------------------------------
+# -- drives of pushes ------------------------------------------------------------------------------
 
 
 @dataclass(frozen=True)
 class Pattern:
-    """Blocks that a push moves with forces in a fixed proportion; what a push moves in place of a target.
+    """Blocks that a push moves with forces in a fixed proportion; what a push moves in place of a
+    target.
 
     :param name: in bounds and messages
-    :param parts: of each block its body, the point on which its force acts in the structure as built [m], and its share of the whole
-        force [-]
-    :param damped: whether the blocks keep their numerical damping. Where all blocks are driven nothing else would be damped
+    :param parts: of each block its body, the point on which its force acts in the structure as
+        built [m], and its share of the whole force [-]
+    :param damped: whether the blocks keep their numerical damping. Where all blocks are driven
+        nothing else would be damped
     """
 
     name: str
@@ -270,8 +284,8 @@ class Pattern:
 
 
 def pushTo(loading, pushed, control, direction, name="push"):
-    """From now on ``push`` moves a target, or all of a :class:`Pattern`, in a direction, and the displacement of a control is recorded. The
-    other drives hold what they hold."""
+    """From now on ``push`` moves a target, or all of a :class:`Pattern`, in a direction, and the
+    displacement of a control is recorded. The other drives hold what they hold."""
     checkPlane(loading.description, direction, name)
     for body, *_ in pushed.parts:
         blocked = O.bodies[body].state.blockedDOFs
@@ -355,7 +369,8 @@ def bodiesOf(load):
 
 
 def isAlong(load, axis, body):
-    """Whether a MasonryLoad is a drive that holds or moves a body along an axis, also across its direction."""
+    """Whether a MasonryLoad is a drive that holds or moves a body along an axis, also across its
+    direction."""
     along = axis in "xyz" and abs(load.direction["xyz".index(axis)]) > 1e-12
     return load.driven and along and body in bodiesOf(load)
 

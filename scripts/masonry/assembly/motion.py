@@ -7,13 +7,17 @@ from yade import O, Vector3
 
 from ..basics import GRAVITY, Collapsed
 
-#: A block falls when it has moved by this share of its largest side and is as fast as :data:`FAST` says.
+#: A block falls when it has moved by this share of its largest side and is as fast as :data:`FAST`
+#: says.
 FALLEN = 0.05
-#: The same share where a block may swing as far as :data:`FALLEN` without falling: where joints are soft, or a drive let it go.
+#: The same share where a block may swing as far as :data:`FALLEN` without falling: where joints are
+#: soft, or a drive let it go.
 FAR = 1.0
-#: The velocity of a falling block over √(g·side). A block that falls freely has it after half a hundredth of its side.
+#: The velocity of a falling block over √(g·side). A block that falls freely has it after half a
+#: hundredth of its side.
 FAST = 0.1
-#: A structure is at rest when the forces at its supports differ from its load by no more than this share of the load.
+#: A structure is at rest when the forces at its supports differ from its load by no more than this
+#: share of the load.
 REST = 5e-3
 
 
@@ -30,13 +34,15 @@ class Motion:
         self.restart()
 
     def restart(self):
-        """From now on :meth:`checkFall` counts displacements, up to :attr:`far` over the largest side of a block [-]."""
+        """From now on :meth:`checkFall` counts displacements, up to :attr:`far` over the largest
+        side of a block [-]."""
         self.far = FALLEN
         self._places = [Vector3(state.pos) for state in self._states]
 
     @property
     def places(self):
-        """From where :meth:`checkFall` counts displacements: three numbers for every block, in one list [m]."""
+        """From where :meth:`checkFall` counts displacements: three numbers for every block, in one
+        list [m]."""
         return [value for place in self._places for value in place]
 
     @places.setter
@@ -50,11 +56,13 @@ class Motion:
         return [value for state in self._states for value in state.pos]
 
     def baseWeight(self, before, direction, moved):
-        """The weight of the base in the shear force of a push, as in :func:`masonry.read.curves.quasiStatic` [-].
+        """The weight of the base in the shear force of a push, as in
+        :func:`masonry.read.curves.quasiStatic` [-].
 
         :param before: :meth:`positions` when the push began
         :param moved: displacement of the driven point along it since then [m]
-        :returns: None if the blocks have not moved with the push, so that there is none from above 0 to 1
+        :returns: None if the blocks have not moved with the push, so that there is none from above
+            0 to 1
         """
         along = squares = 0.0
         for n, state in enumerate(self._states):
@@ -67,7 +75,8 @@ class Motion:
         return weight if 0 < weight <= 1 else None
 
     def _speeds(self):
-        """Velocity of every block [m/s]: of its centre, or, of deformable ones, the mean of their nodes."""
+        """Velocity of every block [m/s]: of its centre, or, of deformable ones, the mean of their
+        nodes."""
         speeds = {i: state.vel.norm() for i, state in zip(self.ids, self._states)}
         if self.zones:
             velocities = self.zones.velocities
@@ -78,8 +87,8 @@ class Motion:
         return [*speeds.values()]
 
     def fastest(self, far=0.0):
-        """Velocity over that of a block that has fallen [-], of the fastest one that has moved so far since the last state at rest, over
-        its largest side [-]."""
+        """Velocity over that of a block that has fallen [-], of the fastest one that has moved so
+        far since the last state at rest, over its largest side [-]."""
         blocks = zip(self._speeds(), self._falling, self._moved(), self._sizes)
         return max(
             (v / falling for v, falling, moved, size in blocks if moved.norm() >= far * size),
@@ -90,7 +99,8 @@ class Motion:
         return [state.pos - place for state, place in zip(self._states, self._places)]
 
     def checkFall(self, far=None):
-        """Raise Collapsed if a block has moved far since the last state at rest, over its largest side [-], and is fast."""
+        """Raise Collapsed if a block has moved far since the last state at rest, over its largest
+        side [-], and is fast."""
         far, moved = self.far if far is None else far, self._moved()
         beyond = [n for n, v in enumerate(moved) if v.norm() > far * self._sizes[n]]
         speeds = beyond and self._speeds()

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The ports that the program ``yade`` opens when it starts.
 
-One is a Python prompt, whose password is short and stands in the log; the other answers to XML-RPC without a password, and
-can stop the run. Both listen on every address of the machine, whatever the lines of the start say.
+One is a Python prompt, whose password is short and stands in the log; the other answers to XML-RPC
+without a password, and can stop the run. Both listen on every address of the machine, whatever the
+lines of the start say.
 """
 
 import gc
@@ -13,7 +14,8 @@ import threading
 
 
 def close():
-    """Close both. Importing :mod:`masonry` does this; ``yade.remote.runServers()`` opens them again."""
+    """Close both. Importing :mod:`masonry` does this; ``yade.remote.runServers()`` opens them
+    again."""
     remote = sys.modules.get("yade.remote")
     if not remote:
         return

@@ -14,7 +14,8 @@ class Scheme:
     """Damping, masses, time step and gravity of a structure that is built.
 
     - ``limit``: the stable limit of the time step under the present damping [s]
-    - ``massScaling``: selective scaling of masses that the options say [-]; ``joints``: the engine of the joints
+    - ``massScaling``: selective scaling of masses that the options say [-]; ``joints``: the engine
+      of the joints
     """
 
     def __init__(self, args, zones):
@@ -25,9 +26,10 @@ class Scheme:
     def begin(self):
         """Choose masses and time step, when all joints are there.
 
-        With ``--mass-scaling auto`` there are two limits of the time step: with true masses, and with deformation so slow that only the
-        rigid motions of bricks are left. Waves through a brick get slower by the root of 1 + massScaling, so the least that brings
-        their limit to the second one is known.
+        With ``--mass-scaling auto`` there are two limits of the time step: with true masses, and
+        with deformation so slow that only the rigid motions of bricks are left. Waves through a
+        brick get slower by the root of 1 + massScaling, so the least that brings their limit to the
+        second one is known.
         """
         self.massScaling = self.args.mass_scaling if self.zones else 0.0
         if self.massScaling == "auto":
@@ -52,12 +54,14 @@ class Scheme:
         self.joints.stiffnessDamping = stiffnessDamping
 
     def scaleMasses(self, scaling):
-        """Choose the selective scaling of the masses of deformable units from now on [-]; :meth:`chooseTimeStep` follows it."""
+        """Choose the selective scaling of the masses of deformable units from now on [-];
+        :meth:`chooseTimeStep` follows it."""
         if self.zones and self.zones.massScaling != scaling:
             self.zones.massScaling = scaling
 
     def trueMasses(self, stage):
-        """Have true masses from now on, because a stage runs in real time, and say so if the options say otherwise;
+        """Have true masses from now on, because a stage runs in real time, and say so if the
+        options say otherwise;
         :meth:`chooseTimeStep` follows it."""
         if self.zones and self.massScaling:
             say(
@@ -67,8 +71,9 @@ class Scheme:
             self.scaleMasses(0.0)
 
     def dampByOptions(self):
-        """Choose the damping and the masses that the options say, for a stage that says nothing else, and its time step if a
-        stage has chosen another one. A time step that the script sets stays."""
+        """Choose the damping and the masses that the options say, for a stage that says nothing
+        else, and its time step if a stage has chosen another one. A time step that the script sets
+        stays."""
         self.damp(self.args.damping, self.args.damping_kind)
         self.scaleMasses(self.massScaling)
         if self.limit != self._usualLimit:
@@ -77,14 +82,16 @@ class Scheme:
     def chooseTimeStep(self, limit=None):
         """Choose the time step that the present damping allows. Returns the stable limit.
 
-        :param limit: the stable limit if it is known [s]: that of blocks that have moved differs in its third digit
+        :param limit: the stable limit if it is known [s]: that of blocks that have moved differs in
+            its third digit
         """
         self.limit = limit or timeStepLimit()
         O.dt = self.args.dt_fraction * self.limit
         return self.limit
 
     def keepStable(self):
-        """Shorten the time step where blocks that have moved, or joints that have become contacts, have a smaller limit."""
+        """Shorten the time step where blocks that have moved, or joints that have become contacts,
+        have a smaller limit."""
         limit = timeStepLimit()
         if limit < self.limit:
             self.chooseTimeStep(limit)

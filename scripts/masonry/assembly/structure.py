@@ -20,15 +20,17 @@ from .supports import Supports
 class Structure:
     """What a scene is in YADE, and what acts on it.
 
-    ``__init__`` takes the description, so that what the user asks for can be refused before anything changes. From :meth:`build` on it
-    has
+    ``__init__`` takes the description, so that what the user asks for can be refused before
+    anything changes. From :meth:`build` on it has
 
-    - ``ids``: body ids of the bricks, in their order; ``parts``: those of every part; ``bricks``: number of the brick by
-      body id, for all bodies that are bricks or parts of bricks
+    - ``ids``: body ids of the bricks, in their order; ``parts``: those of every part; ``bricks``:
+      number of the brick by body id, for all bodies that are bricks or parts of bricks
     - ``widest``: width of the widest crack when it was looked for last [mm]
     - ``interactions``: the joints between blocks; ``subcontacts``: how many points they have
-    - ``loading``, ``connectors``, ``supports``, ``scheme``, ``motion``: objects of the modules of these names
-    - ``zones``, ``contacts``: the engines of deformable units and of contacts, or None; ``energy``: that of the balance
+    - ``loading``, ``connectors``, ``supports``, ``scheme``, ``motion``: objects of the modules of
+      these names
+    - ``zones``, ``contacts``: the engines of deformable units and of contacts, or None; ``energy``:
+      that of the balance
 
     :param masonry: the materials for these options: :class:`masonry.scene.materials.Masonry`
     """
@@ -38,7 +40,8 @@ class Structure:
         kinds = {block.kind for block in description.bricks} - set(masonry.units)
         self.unit, self.joints = masonry.unit, masonry.joints
         self.units = {**masonry.units, **dict.fromkeys(kinds, masonry.unit)}
-        # Heavier blocks that are attracted less weigh the same; waves are slower and the time step is longer.
+        # Heavier blocks that are attracted less weigh the same; waves are slower and the time step
+        # is longer.
         for unit in {id(u): u for u in (self.unit, *self.units.values())}.values():
             unit.density *= args.density_scaling
         # as it is built [m/s²]
@@ -48,7 +51,7 @@ class Structure:
         self.zones = self.contacts = None
         self.atRest = None  # the last state at rest, as saveScene gave it
 
-    # -- building -------------------------------------------------------------------------------------------------
+    # -- building ----------------------------------------------------------------------------------
 
     def build(self, loadingBlock):
         """Build all of it in YADE, with a MasonryMat of the platens."""
@@ -119,7 +122,8 @@ class Structure:
                 " because ties, springs or fibre layers end at them"
             )
         if args.mass_scaling and "crack" in self.joints:
-            # the halves of a brick move as one, as far as masses are scaled, until their crack surface yields
+            # the halves of a brick move as one, as far as masses are scaled, until their crack
+            # surface yields
             self.joints["crack"].monolithic = True
         # cells of a half brick along its length; a whole one has twice as many
         n = args.divisions
@@ -170,9 +174,9 @@ class Structure:
         return 1e3 * max(0.0, *(max(one.phys.opening) for one in self.interactions))
 
     def fallen(self):
-        """Blocks that have fallen, in a scene whose collapse is followed: a dict from the index of the block to a dict with
-        ``since``, when it had come loose [s], ``fell`` [s], ``most``, its largest kinetic energy [J], and ``at``, when it had
-        that [s]."""
+        """Blocks that have fallen, in a scene whose collapse is followed: a dict from the index of
+        the block to a dict with ``since``, when it had come loose [s], ``fell`` [s], ``most``, its
+        largest kinetic energy [J], and ``at``, when it had that [s]."""
         if not self.contacts:
             return {}
         known = {b: one for b, one in self.contacts.fallen().items() if one["fell"] is not None}
@@ -190,8 +194,8 @@ class Structure:
             )
 
     def letFall(self):
-        """From now on no drive and no support moves, no numerical damping brakes blocks that have come loose, and impacts of
-        joints that close take energy."""
+        """From now on no drive and no support moves, no numerical damping brakes blocks that have
+        come loose, and impacts of joints that close take energy."""
         self.scheme.joints.impacts = True
         for target in self.supports.held:  # one that was released moves on
             state = O.bodies[target.body].state
@@ -203,7 +207,7 @@ class Structure:
                 drive.driven = False
         self.contacts.dampsLoose = False
 
-    # -- what a checkpoint keeps beside the state in YADE ------------------------------------------------------------
+    # -- what a checkpoint keeps beside the state in YADE ------------------------------------------
 
     def state(self):
         """What stages have set, beside what YADE keeps: a dict of values that JSON can hold."""
@@ -217,7 +221,8 @@ class Structure:
         }
 
     def putState(self, state):
-        """Give it a state of :meth:`state`. Raises KeyError if it names a target or a load that is not there."""
+        """Give it a state of :meth:`state`. Raises KeyError if it names a target or a load that is
+        not there."""
         targets = self.description.targets
         self.loading.putState(state)
         self.supports.held = [targets[name] for name in state["held"]]

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What holds a structure, and what its platens and held bricks feel: forces, displacements, and whether it is at rest."""
+"""What holds a structure, and what its platens and held bricks feel: forces, displacements, and
+whether it is at rest."""
 
 import math
 
@@ -18,7 +19,8 @@ FILLED = 1e-9  # of a platen's side: what may be free of bricks if it is said to
 
 
 class _Point:
-    """A point of a body, at ``arm`` from its centre as it was built, and how far it has moved since [m]."""
+    """A point of a body, at ``arm`` from its centre as it was built, and how far it has moved since
+    [m]."""
 
     def __init__(self, body, at):
         self.state = O.bodies[body].state
@@ -54,8 +56,8 @@ class Supports:
         return [i for i in self.structure.interactions if target.body in (i.id1, i.id2)]
 
     def _faceOf(self, target):
-        """The middles of a platen's joints, as points of the bricks there, each with its share of the platen's area. Of a deformable
-        brick its own middle stands for that."""
+        """The middles of a platen's joints, as points of the bricks there, each with its share of
+        the platen's area. Of a deformable brick its own middle stands for that."""
         joints = self._jointsOf(target)
         whole = sum(sum(one.geom.areas) for one in joints)
         for one in joints:
@@ -78,7 +80,8 @@ class Supports:
         return O.forces.f(target.body, True)
 
     def supportedBy(self, target):
-        """Force of the structure on a target along the axes that are held now, 0 along the others [N]."""
+        """Force of the structure on a target along the axes that are held now, 0 along the others
+        [N]."""
         force, blocked = self.forceOn(target), O.bodies[target.body].state.blockedDOFs
         return Vector3(*(f if a in blocked else 0.0 for a, f in zip("xyz", force)))
 
@@ -96,14 +99,15 @@ class Supports:
         return self.forceOn(target) - self._loadsOn(target)
 
     def moved(self, target):
-        """Displacement of a target's recorded point since the scene was built [m], and its rotation, about y in a plane,
-        else its angle [rad]."""
+        """Displacement of a target's recorded point since the scene was built [m], and its
+        rotation, about y in a plane, else its angle [rad]."""
         point = self._points[target.name]
         axis, angle = (point.state.ori * point.upright).toAxisAngle()
         return point.moved(), angle * axis[1] if self.description.plane else angle
 
     def masonryMoved(self, target, direction):
-        """Displacement of the bricks at a platen along a direction since the scene was built [m]; of a brick, that of its point."""
+        """Displacement of the bricks at a platen along a direction since the scene was built [m];
+        of a brick, that of its point."""
         face = self._faces.get(target.name)
         if not face:
             return self.moved(target)[0].dot(direction)
@@ -117,7 +121,8 @@ class Supports:
         return sum(share * (p.state.refPos[2] + p.arm[2]) for share, p in face)
 
     def applied(self):
-        """Sum of the weights of what is free to follow them, and of the loads without drives [N]."""
+        """Sum of the weights of what is free to follow them, and of the loads without drives
+        [N]."""
         gravity = self.structure.scheme.now
         applied = self.freeMass * gravity
         for target in self.held:
@@ -138,8 +143,8 @@ class Supports:
         return carried - self.structure.connectors.onGround()
 
     def unrest(self):
-        """What of the loads is missing at the supports, of all or of the horizontal ones where that is more, and kinetic over
-        elastic energy [-]."""
+        """What of the loads is missing at the supports, of all or of the horizontal ones where that
+        is more, and kinetic over elastic energy [-]."""
         energy = self.structure.energy.balance()
         elastic = sum(
             energy.get(f"elastic_{m}", 0.0)
@@ -158,14 +163,16 @@ class Supports:
         if across > HORIZONTAL * size:  # else it is round-off of what is vertical
             missing = max(missing, flat / across)
         moving = abs(energy["kinetic"])
-        # without loads there is next to no energy, and motion is compared with the weight over a picometre
+        # without loads there is next to no energy, and motion is compared with the weight over a
+        # picometre
         least = 1e-12 * GRAVITY * self.freeMass
         return missing, moving / max(elastic, least) if moving else 0.0
 
     def _sinkingPeriod(self):
-        """The vertical period of a structure that is so soft that it could be taken for one that falls, while it only sinks under
-        its loads and swings [s]; 0 of a stiffer one, and of one that would lose more of its height than :data:`LOST` says. The
-        structure counts as a column of its height and volume that is everywhere as soft as at its softest joint.
+        """The vertical period of a structure that is so soft that it could be taken for one that
+        falls, while it only sinks under its loads and swings [s]; 0 of a stiffer one, and of one
+        that would lose more of its height than :data:`LOST` says. The structure counts as a column
+        of its height and volume that is everywhere as soft as at its softest joint.
         """
         structure, description = self.structure, self.description
         load = structure.gravity * self.freeMass
@@ -180,7 +187,8 @@ class Supports:
         return 2 * math.pi * math.sqrt(sinking * structure.args.density_scaling / GRAVITY)
 
     def _softest(self):
-        """The least modulus of the masonry across any of its joints [Pa]; deformable bricks add their own compliance."""
+        """The least modulus of the masonry across any of its joints [Pa]; deformable bricks add
+        their own compliance."""
         moduli = [math.inf]
         for one in self.structure.interactions:
             thickness = one.geom.distance1 + one.geom.distance2
@@ -191,9 +199,10 @@ class Supports:
         return min(moduli)
 
     def slowest(self):
-        """The longest period of what is free [s]: as one rigid body on the springs of a platen, or of a structure that sinks so far
-        under its loads that a swing would look like a fall; 0 without either. Its weight makes a rotation slower; where that
-        overturns it, there is no period."""
+        """The longest period of what is free [s]: as one rigid body on the springs of a platen, or
+        of a structure that sinks so far under its loads that a swing would look like a fall; 0
+        without either. Its weight makes a rotation slower; where that overturns it, there is no
+        period."""
         held = {target.body for target in self.held}
         found = [self._sinkingPeriod()]
         free = [body.state for body in O.bodies if body.id not in held]

@@ -5,8 +5,9 @@
 
     window.show(joints="damage", blocks="displacement", scale=50)
 
-The script must run in a YADE with its graphical interface (``yade my_scene.py``, without ``-n``), on a display. Where
-there is none, ``xvfb-run`` gives one that nobody sees, and :func:`picture` saves what it would show.
+The script must run in a YADE with its graphical interface (``yade my_scene.py``, without ``-n``),
+on a display. Where there is none, ``xvfb-run`` gives one that nobody sees, and :func:`picture`
+saves what it would show.
 """
 
 import threading
@@ -31,18 +32,20 @@ def show(
     scale: float = 1.0,
     edges: bool = True,
 ) -> Any:
-    """Open YADE's 3-D view with blocks, joints and a legend, and keep it alive while the script takes steps.
+    """Open YADE's 3-D view with blocks, joints and a legend, and keep it alive while the script
+    takes steps.
 
-    Call it when the scene has its engines. What is drawn costs time, ten times a second at most; a run without the
-    view is not changed. Deformable units are drawn undeformed.
+    Call it when the scene has its engines. What is drawn costs time, ten times a second at most; a
+    run without the view is not changed. Deformable units are drawn undeformed.
 
-    :param blocks: what the colours of blocks show: ``"displacement"``, ``"velocity"``, ``"material"``, or ``"own"``
-        for the colour that each block was made with
-    :param joints: what the colours of joints show: ``"damage"`` (the largest of tension, shear and compression),
-        ``"opening"``, ``"regime"``, or None for no joints
+    :param blocks: what the colours of blocks show: ``"displacement"``, ``"velocity"``,
+        ``"material"``, or ``"own"`` for the colour that each block was made with
+    :param joints: what the colours of joints show: ``"damage"`` (the largest of tension, shear and
+        compression), ``"opening"``, ``"regime"``, or None for no joints
     :param scale: factor of displacements and rotations [-]
     :param edges: whether the edges of blocks are drawn
-    :raises ValueError: if a choice is not known, or if this YADE runs without its graphical interface
+    :raises ValueError: if a choice is not known, or if this YADE runs without its graphical
+        interface
     """
     qt = _qt()
     Gl1_MasonryBlock(colours=blocks, edges=edges)
@@ -64,7 +67,8 @@ def show(
 
 
 def _look(view, scale):
-    """Turn the view to all blocks, from the side of a wall in the x-z plane and a little from above."""
+    """Turn the view to all blocks, from the side of a wall in the x-z plane and a little from
+    above."""
     corners = [
         b.state.pos + (scale - 1) * b.state.displ() + b.state.ori * v
         for b in O.bodies
@@ -78,7 +82,8 @@ def _look(view, scale):
 
 
 def refresh() -> None:
-    """Let the view draw and answer the mouse now. Does nothing beside a run in the background, which needs no help."""
+    """Let the view draw and answer the mouse now. Does nothing beside a run in the background,
+    which needs no help."""
     global _drawingTime
     if threading.current_thread() is threading.main_thread():
         start = time.process_time()

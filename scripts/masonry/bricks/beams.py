@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Beams and floors as rows of boxes. What they are made of is said by ``withBeam`` and ``withFloor`` of
+"""Beams and floors as rows of boxes. What they are made of is said by ``withBeam`` and
+``withFloor`` of
 :class:`masonry.scene.materials.Masonry`."""
 
 from typing import Annotated
@@ -33,10 +34,11 @@ def Beam(
     pieces: Annotated[int, whole(1, MOST)] = 8,
     name: str = "beam",
 ) -> Bricks:
-    """A beam that bends, as a ring beam, a lintel or a wall plate: a row of pieces, a :class:`Bricks`.
+    """A beam that bends, as a ring beam, a lintel or a wall plate: a row of pieces, a
+    :class:`Bricks`.
 
-    Pieces are rigid, and bend against each other: with eight of them between its supports a beam sags by 1.6 % too little, with
-    16 by 0.4 %.
+    Pieces are rigid, and bend against each other: with eight of them between its supports a beam
+    sags by 1.6 % too little, with 16 by 0.4 %.
 
     :param start: lower left front corner [m]
     :param length: along its axis [m]
@@ -59,9 +61,11 @@ def Floor(
     strips: Annotated[int, whole(2, MOST)] = 8,
     name: str = "floor",
 ) -> Bricks:
-    """A floor or a roof that spans one way, and shears in its plane: strips side by side, a :class:`Bricks`.
+    """A floor or a roof that spans one way, and shears in its plane: strips side by side, a
+    :class:`Bricks`.
 
-    Every strip is stiff along its span and bears on what lies under its ends. So walls across the span carry the floor.
+    Every strip is stiff along its span and bears on what lies under its ends. So walls across the
+    span carry the floor.
 
     :param start: lower left front corner [m]
     :param length: along the span, bearing included [m]

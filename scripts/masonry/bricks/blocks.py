@@ -68,12 +68,15 @@ KINDS = "brick", "lintel", "voussoir", "block"
 class Block:
     """One convex block, rigid or deformable: a brick, or a piece of one.
 
-    :param corners: tuple of (x, y, z) [m]: all corners of the convex solid, in any order, at least four
-    :param brick: number of the brick that it is, or is a piece of. Pieces of one brick share the number, and what they
-        share is a crack surface of the brick, not a mortar joint
-    :param part: name of the part of the structure, such as "wall" or "arch". Figures draw part by part
+    :param corners: tuple of (x, y, z) [m]: all corners of the convex solid, in any order, at least
+        four
+    :param brick: number of the brick that it is, or is a piece of. Pieces of one brick share the
+        number, and what they share is a crack surface of the brick, not a mortar joint
+    :param part: name of the part of the structure, such as "wall" or "arch". Figures draw part by
+        part
     :param course: number of the course, or of the voussoir, from 0; -1: none
-    :param kind: one of :data:`KINDS`, or another one for which the materials have something of its own
+    :param kind: one of :data:`KINDS`, or another one for which the materials have something of its
+        own
     """
 
     corners: tuple
@@ -126,8 +129,9 @@ class Block:
 class Bricks:
     """An immutable collection of blocks. Whatever changes something returns a new collection.
 
-    ``bricks[3]`` is a :class:`Block`, ``bricks[2:5]`` a collection; ``len()`` and iteration are those of a tuple. The
-    sum of two collections renumbers the bricks of the second so that numbers stay unique.
+    ``bricks[3]`` is a :class:`Block`, ``bricks[2:5]`` a collection; ``len()`` and iteration are
+    those of a tuple. The sum of two collections renumbers the bricks of the second so that numbers
+    stay unique.
 
     :param blocks: the :class:`Block` records
     """
@@ -182,7 +186,7 @@ class Bricks:
             number = numbers.setdefault(block.brick, first + len(numbers))
             yield block if number == block.brick else replace(block, brick=number)
 
-    # -- size -----------------------------------------------------------------------------------------------------
+    # -- size --------------------------------------------------------------------------------------
 
     @functools.cached_property
     def low(self) -> tuple[float, ...]:
@@ -218,7 +222,7 @@ class Bricks:
     def _solids(self):
         return Solids([b.corners for b in self._blocks])
 
-    # -- moving and naming ----------------------------------------------------------------------------------------
+    # -- moving and naming -------------------------------------------------------------------------
 
     @validated
     def moved(self, dx: Coordinate = 0.0, dy: Coordinate = 0.0, dz: Coordinate = 0.0) -> Bricks:
@@ -232,7 +236,8 @@ class Bricks:
         axis: Annotated[str, oneOf("x", "y", "z")] = "z",
         about: Point = (0, 0, 0),
     ) -> Bricks:
-        """The blocks turned about an axis through a point, by the right-hand rule. Quarter turns are exact.
+        """The blocks turned about an axis through a point, by the right-hand rule. Quarter turns
+        are exact.
 
         :param degrees: angle [°]
         :param axis: "x", "y" or "z"
@@ -263,11 +268,12 @@ class Bricks:
     def _mapped(self, function):
         return Bricks(replace(b, corners=tuple(map(function, b.corners))) for b in self._blocks)
 
-    # -- choosing -------------------------------------------------------------------------------------------------
+    # -- choosing ----------------------------------------------------------------------------------
 
     @validated
     def where(self, function: Callable[[Block], bool]) -> Bricks:
-        """The blocks for which a function of the :class:`Block` is true, with their numbers of bricks."""
+        """The blocks for which a function of the :class:`Block` is true, with their numbers of
+        bricks."""
         return Bricks([b for b in self._blocks if function(b)])
 
     @validated
@@ -296,17 +302,18 @@ class Bricks:
 
         return self.where(hasFace)
 
-    # -- cutting --------------------------------------------------------------------------------------------------
+    # -- cutting -----------------------------------------------------------------------------------
 
     @validated
     def cut(self, point: Point, normal: Direction, own: bool = False) -> Bricks:
-        """The blocks, with every one that a plane crosses cut in two. Order and numbers of bricks stay.
+        """The blocks, with every one that a plane crosses cut in two. Order and numbers of bricks
+        stay.
 
         :param point: a point of the plane [m]
         :param normal: its normal, of any length
-        :param own: whether the part beyond the plane (along the normal) becomes a brick of its own, together with the
-            other parts of its brick there, so that the cut is a mortar joint; else the parts stay pieces of one brick
-            and the cut is a crack surface
+        :param own: whether the part beyond the plane (along the normal) becomes a brick of its own,
+            together with the other parts of its brick there, so that the cut is a mortar joint;
+            else the parts stay pieces of one brick and the cut is a crack surface
         """
         length = math.hypot(*normal)
         normal = tuple(n / length for n in normal)
@@ -357,12 +364,13 @@ class Bricks:
         refuse("whole", problems)
         return Bricks(joined)
 
-    # -- checking -------------------------------------------------------------------------------------------------
+    # -- checking ----------------------------------------------------------------------------------
 
     def joints(self) -> list[checks.Joint]:
         """Joints of all blocks that share a face: a list of :class:`masonry.bricks.Joint`.
 
-        Two faces coincide as they do for the plugin: within 1e-4 of the diagonal of the smaller block.
+        Two faces coincide as they do for the plugin: within 1e-4 of the diagonal of the smaller
+        block.
         """
         return list(self._pairs[0])
 
@@ -372,10 +380,12 @@ class Bricks:
         direction: Direction,
         least: Annotated[float, number("", -1, 1)] = checks.LOOKING,
     ) -> list[checks.FreePart]:
-        """Faces that look in a direction, with what no joint covers of them: a list of :class:`masonry.bricks.checks.FreePart`.
+        """Faces that look in a direction, with what no joint covers of them: a list of
+        :class:`masonry.bricks.checks.FreePart`.
 
         :param direction: three numbers, of any length
-        :param least: cosine of the largest angle between direction and normal [-]; by default that of 45 degrees
+        :param least: cosine of the largest angle between direction and normal [-]; by default that
+            of 45 degrees
         """
         solids = self._convex("freeFaces")
         return checks.freeParts(solids, self.joints(), direction, least)
@@ -391,7 +401,8 @@ class Bricks:
 
         - a block whose corners are not those of a convex solid, or lie in one plane;
         - an overlap deeper than 1e-4 of the diagonal of the smaller block;
-        - a gap between two faces that nearly coincide: within 6°, and within a quarter of the thinner block;
+        - a gap between two faces that nearly coincide: within 6°, and within a quarter of the
+          thinner block;
         - a sliver: thinner than a quarter of what is usual for its kind;
         - a joint of odd size: narrower than a tenth of the thinner block;
         - blocks that have no joint with the rest.
@@ -419,7 +430,7 @@ def summary(bricks: Annotated[Bricks, isA(Bricks)]) -> dict[str, Any]:
     )
 
 
-# -- what the generators share ----------------------------------------------------------------------------------------
+# -- what the generators share ---------------------------------------------------------------------
 
 
 def refuse(what: str, problems: list[str]) -> None:

@@ -24,12 +24,14 @@ def _laid(ends, rows):
 
 
 def _headerBond(n, odd):
-    """Head joints of a course, in quarter units. Odd courses start and end with three-quarter bats."""
+    """Head joints of a course, in quarter units. Odd courses start and end with three-quarter
+    bats."""
     return range(3, n - 2, 2) if odd else range(2, n, 2)
 
 
 def _englishBond(n, odd):
-    """Head joints of a course. Odd courses are headers, with a queen closer next to each outer one."""
+    """Head joints of a course. Odd courses are headers, with a queen closer next to each outer
+    one."""
     if odd:
         return [2, *range(3, n - 2, 2), n - 2] if n > 6 else range(2, n, 2)
     if n == 6:
@@ -42,8 +44,9 @@ def _englishBond(n, odd):
 
 
 def _flemishBond(n, odd):
-    """Head joints of a course. Odd courses start with a header and a queen closer, so that headers stand over the
-    middle of stretchers; they end likewise, or with a three-quarter bat where the length asks for that.
+    """Head joints of a course. Odd courses start with a header and a queen closer, so that headers
+    stand over the middle of stretchers; they end likewise, or with a three-quarter bat where the
+    length asks for that.
     """
     if not odd:
         return [k for k in range(4, n, 2) if k % 6 != 2]

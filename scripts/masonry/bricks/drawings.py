@@ -35,7 +35,8 @@ class Outline:
 
 
 def read(path: str, layer: str | None) -> list[Outline]:
-    """The outlines of a file, in its units, z upwards. Raises ValueError for a file that cannot be read.
+    """The outlines of a file, in its units, z upwards. Raises ValueError for a file that cannot be
+    read.
 
     :param layer: only those of this layer of a DXF file, or group of an SVG file
     """

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Blocks from files of surface meshes: OBJ, OFF, STL, PLY, and JSON of COMPAS.
 
-PLY and binary STL are read by meshio. It loses the names of groups (OBJ) and of solids (STL as text), takes nothing but
-triangles (OFF) and knows no COMPAS, so these are read here.
+PLY and binary STL are read by meshio. It loses the names of groups (OBJ) and of solids (STL as
+text), takes nothing but triangles (OFF) and knows no COMPAS, so these are read here.
 """
 
 import json
@@ -21,12 +21,12 @@ from .checks import components, where
 from .geometry import FLAT
 from .mortar import closed
 
-#: Points of one solid are the same if they are no further apart than this share of its size; STL as bytes, and text of
-#: six digits, round by less.
+#: Points of one solid are the same if they are no further apart than this share of its size; STL as
+#: bytes, and text of six digits, round by less.
 SAME = 1e-6
 
-#: Faces of two solids that touch coincide if the angle between them about an edge is below this [rad]. Single precision
-#: turns the smallest faces by less, and no solid has so sharp an edge.
+#: Faces of two solids that touch coincide if the angle between them about an edge is below this
+#: [rad]. Single precision turns the smallest faces by less, and no solid has so sharp an edge.
 COINCIDE = 1e-3
 
 #: A surface as a file has it: name, points (n, 3), and faces, tuples of point numbers.
@@ -40,19 +40,23 @@ def fromFile(
     kind: str = "block",
     mortar: Annotated[float, number("m", 0, 1)] = 0.0,
 ) -> Bricks:
-    """Blocks from a file, one for each closed convex surface in it: a :class:`Bricks`, each block a brick of its own.
+    """Blocks from a file, one for each closed convex surface in it: a :class:`Bricks`, each block a
+    brick of its own.
 
-    Formats: ``.obj`` (each ``g`` or ``o`` is a group), ``.off``, ``.stl`` (as text, each ``solid`` is a group, or as
-    bytes), ``.ply``, and ``.json`` of COMPAS: a mesh, or anything that holds meshes, such as an assembly. Solids in one
-    group are distinguished, also where they touch. Each group gives a part its name; files without groups give their own.
-    Faces run counter-clockwise seen from outside, or all of them clockwise.
+    Formats: ``.obj`` (each ``g`` or ``o`` is a group), ``.off``, ``.stl`` (as text, each ``solid``
+    is a group, or as bytes), ``.ply``, and ``.json`` of COMPAS: a mesh, or anything that holds
+    meshes, such as an assembly. Solids in one group are distinguished, also where they touch. Each
+    group gives a part its name; files without groups give their own. Faces run counter-clockwise
+    seen from outside, or all of them clockwise.
 
     :param scale: metres in one unit of the file; 0.001 if it is in millimetres
     :param kind: kind of the blocks
-    :param mortar: largest thickness of the mortar between two faces that look at each other within 20° [m]: they move to its
-        middle, with all faces in line with them; 0: solids meet as they are
-    :raises ValueError: for a file that cannot be read, and with every solid that is open, not convex or has a bent face;
-        each is named by its group and its number there, with the face and its place
+    :param mortar: largest thickness of the mortar between two faces that look at each other within
+        20° [m]: they move to its middle, with all faces in line with them; 0: solids meet as they
+        are
+    :raises ValueError: for a file that cannot be read, and with every solid that is open, not
+        convex or has a bent face; each is named by its group and its number there, with the face
+        and its place
     """
     problems = []
     surfaces = readBy(_READERS, path)
@@ -80,7 +84,7 @@ def fromFile(
 MISREAD = OSError, SyntaxError, ValueError, LookupError, TypeError, AttributeError
 
 
-# -- formats ----------------------------------------------------------------------------------------------------------
+# -- formats ---------------------------------------------------------------------------------------
 
 
 def readBy(readers: dict[str, Any], path: FilePath, *more: Any) -> list[Any]:
@@ -239,7 +243,8 @@ def _readJson(path):
 
 
 def _meshes(data, name):
-    """Every dictionary with the vertices and faces of a COMPAS mesh, with the name that it or its holder has."""
+    """Every dictionary with the vertices and faces of a COMPAS mesh, with the name that it or its
+    holder has."""
     if isinstance(data, dict):
         own = data.get("attributes")
         own = own.get("name") if isinstance(own, dict) else None
@@ -262,7 +267,7 @@ _READERS = {
 }
 
 
-# -- from surfaces to solids ------------------------------------------------------------------------------------------
+# -- from surfaces to solids -----------------------------------------------------------------------
 
 
 def _solids(surface, scale, problems):
@@ -334,10 +339,11 @@ def _merged(points, used):
 
 
 def _mates(points, faces):
-    """Which faces of one solid share an edge: pairs of their numbers. And the edges without a second face.
+    """Which faces of one solid share an edge: pairs of their numbers. And the edges without a
+    second face.
 
-    Where solids touch, an edge has more than two faces. Of these the first that one meets on the way from a face through
-    the inside of its solid is the one of the same solid.
+    Where solids touch, an edge has more than two faces. Of these the first that one meets on the
+    way from a face through the inside of its solid is the one of the same solid.
     """
     edges = defaultdict(list)
     for n, face in enumerate(faces):
@@ -371,7 +377,8 @@ def _mates(points, faces):
 
 
 def _turn(into, inside, other):
-    """Angle from one face to another about their edge through the inside of the solid; a whole turn if they coincide."""
+    """Angle from one face to another about their edge through the inside of the solid; a whole turn
+    if they coincide."""
     angle = math.atan2(np.dot(other, inside), np.dot(other, into))
     return angle if angle > COINCIDE else angle + 2 * math.pi
 
@@ -384,7 +391,8 @@ def _normal(polygon):
 
 
 def _corners(points, faces, numbers, members, solid, problems):
-    """Corners of one solid if it is convex, else None and a sentence. Points inside a face or an edge are left out."""
+    """Corners of one solid if it is convex, else None and a sentence. Points inside a face or an
+    edge are left out."""
     used = sorted({n for face in members for n in faces[face]})
     own = points[used]
     width = FLAT * np.linalg.norm(np.ptp(own, axis=0))

@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Convex solids that are given by their corners: faces, volumes, joints, gaps and overlaps. Many at a time, with numpy.
+"""Convex solids that are given by their corners: faces, volumes, joints, gaps and overlaps. Many at
+a time, with numpy.
 
-Solids whose corners stand in the same order have the same faces, so the faces are looked for once for all of them.
+Solids whose corners stand in the same order have the same faces, so the faces are looked for once
+for all of them.
 """
 
 import itertools
@@ -12,16 +14,18 @@ import numpy as np
 
 from ..common.arguments import Numbers, items, shown
 
-#: Largest gap or overlap of two faces that still share a joint, as a share of the diagonal of the smaller block. It is
-#: the plugin's own bound (coincidentFaces in yade_plugin/blocks/FaceContact.hpp).
+#: Largest gap or overlap of two faces that still share a joint, as a share of the diagonal of the
+#: smaller block. It is the plugin's own bound (coincidentFaces in
+#: yade_plugin/blocks/FaceContact.hpp).
 COINCIDENT = 1e-4
 
-#: Largest distance of a corner from its face's plane, as a share of the diagonal of the block. Coordinates in a file of
-#: six digits keep it.
+#: Largest distance of a corner from its face's plane, as a share of the diagonal of the block.
+#: Coordinates in a file of six digits keep it.
 FLAT = 1e-5
 
-#: Two faces look at each other if the cosine between their outward normals is below this. Faces within 6° of that, and
-#: no further apart than a quarter of the thinner block, were probably meant to touch. Both are the plugin's bounds.
+#: Two faces look at each other if the cosine between their outward normals is below this. Faces
+#: within 6° of that, and no further apart than a quarter of the thinner block, were probably meant
+#: to touch. Both are the plugin's bounds.
 OPPOSITE = -np.cos(np.radians(0.5))
 NEARLY_OPPOSITE = -np.cos(np.radians(6))
 REACH = 0.25
@@ -31,7 +35,8 @@ _CHUNK = 10_000
 
 
 def hull(corners):
-    """Faces of the convex solid around some corners: tuples of corner numbers, counter-clockwise seen from outside.
+    """Faces of the convex solid around some corners: tuples of corner numbers, counter-clockwise
+    seen from outside.
 
     :param corners: (n, 3) [m]
     :raises ValueError: if the corners have no volume, or if one of them is no corner of the solid
@@ -129,7 +134,8 @@ class Solids:
     """Faces, joints, gaps and overlaps of convex solids.
 
     :param solids: for each solid its corners, (corners, 3) [m]
-    :ivar problems: dict from the number of a solid to what is wrong with it; such a solid has no faces here
+    :ivar problems: dict from the number of a solid to what is wrong with it; such a solid has no
+        faces here
     """
 
     def __init__(self, solids):
@@ -184,7 +190,8 @@ class Solids:
         return found
 
     def padded(self, name):
-        """``corners``, ``normals`` or ``offsets`` of all in one array; where one has fewer than others, its last is repeated."""
+        """``corners``, ``normals`` or ``offsets`` of all in one array; where one has fewer than
+        others, its last is repeated."""
         values = [getattr(group, name) for group in self.groups]
         numbers = np.arange(max(own.shape[1] for own in values))
         found = np.zeros((self.count, len(numbers), *values[0].shape[2:]))
@@ -201,10 +208,11 @@ class Solids:
         group, row = self.of(solid)
         return group.corners[row][list(group.faces[number])]
 
-    # -- pairs ----------------------------------------------------------------------------------------------------
+    # -- pairs -------------------------------------------------------------------------------------
 
     def nearPairs(self, reach):
-        """Pairs of solids whose bounding boxes are no further apart than `reach` [m] of both: arrays of their numbers."""
+        """Pairs of solids whose bounding boxes are no further apart than `reach` [m] of both:
+        arrays of their numbers."""
         good = np.flatnonzero(self.groupOf >= 0)
         if len(good) < 2:
             return np.zeros((2, 0), int)
@@ -226,8 +234,9 @@ class Solids:
     def compare(self, one, two):
         """How far pairs of solids are apart, and with which of their faces they look at each other.
 
-        :returns: distance [m] along the normal of a face that parts them best, (n,), negative for an overlap; the
-            number of that face, of the first solid's and of the second's; and the cosine between these two faces
+        :returns: distance [m] along the normal of a face that parts them best, (n,), negative for
+            an overlap; the number of that face, of the first solid's and of the second's; and the
+            cosine between these two faces
         """
         pairs = np.array([one, two])
         beyond, normals = self.beyond(pairs), self.padded("normals")
@@ -241,7 +250,8 @@ class Solids:
         return np.maximum(mine, theirs), np.where(first, faces, faces[::-1]), cosines.min(axis=1)
 
     def beyond(self, pairs):
-        """How far both solids of pairs (2, n) are beyond each face of the other [m]: (2, n, faces), those of the first one first."""
+        """How far both solids of pairs (2, n) are beyond each face of the other [m]: (2, n, faces),
+        those of the first one first."""
         corners, normals, offsets = map(self.padded, ("corners", "normals", "offsets"))
         parts = np.array_split(pairs, pairs.shape[1] // _CHUNK + 1, axis=1)
         heights = [
@@ -250,7 +260,8 @@ class Solids:
         return np.concatenate(heights, axis=1) - offsets[pairs]
 
     def separation(self, one, two):
-        """How far two solids are apart [m] by the separating axis theorem; negative for an overlap: its smallest depth."""
+        """How far two solids are apart [m] by the separating axis theorem; negative for an overlap:
+        its smallest depth."""
         corners, sides, axes = [], [], []
         for solid in (one, two):
             group, row = self.of(solid)
@@ -312,7 +323,8 @@ def clip(polygon, other, normal):
 
 
 def measures(polygon, normal):
-    """Area [m²], perimeter [m] and centroid [m] of a convex polygon; the centroid is None without an area."""
+    """Area [m²], perimeter [m] and centroid [m] of a convex polygon; the centroid is None without
+    an area."""
     x0, y0, z0 = polygon[0]
     nx, ny, nz = normal
     twice = mx = my = mz = 0.0
@@ -330,9 +342,11 @@ def measures(polygon, normal):
 
 
 def cutCorners(corners, faces, point, normal, width):
-    """Corners of the two parts of a convex solid on either side of a plane: beyond it (along the normal), and below.
+    """Corners of the two parts of a convex solid on either side of a plane: beyond it (along the
+    normal), and below.
 
-    A corner no further from the plane than `width` [m] counts as lying in it. A part without volume is None.
+    A corner no further from the plane than `width` [m] counts as lying in it. A part without volume
+    is None.
     """
     corners = [tuple(map(float, c)) for c in corners]
     heights = [sum((x - p) * n for x, p, n in zip(c, point, normal)) for c in corners]
@@ -351,7 +365,8 @@ def cutCorners(corners, faces, point, normal, width):
 
 
 def joinedCorners(pieces):
-    """Corners of the convex solid that some pieces make up, each given by its corners; None if they make up none."""
+    """Corners of the convex solid that some pieces make up, each given by its corners; None if they
+    make up none."""
     volume = math.fsum(Solids(pieces).volumes())
     points = list(dict.fromkeys(corner for piece in pieces for corner in piece))
     low, high = (tuple(map(end, zip(*points))) for end in (min, max))

@@ -18,10 +18,12 @@ SIDES = "front", "right", "back", "left"
 @validated
 @dataclass(frozen=True)
 class Storey:
-    """A storey of a :func:`House`: four walls, what is on top of them, and the floor that covers them.
+    """A storey of a :func:`House`: four walls, what is on top of them, and the floor that covers
+    them.
 
     :param height: of the walls, without ring beam and floor [m]; whole courses
-    :param front: openings of this wall, and likewise ``right``, ``back`` and ``left``, as for :func:`Room`
+    :param front: openings of this wall, and likewise ``right``, ``back`` and ``left``, as for
+        :func:`Room`
     :param span: direction of the span of its floor, ``"x"`` or ``"y"``
     :param ring: height of a ring beam on the walls [m]; 0: none
     """
@@ -36,7 +38,8 @@ class Storey:
 
 
 class House(Bricks):
-    """A house of one room on each storey: walls with interlocking corners, ring beams, floors: a :class:`Bricks`.
+    """A house of one room on each storey: walls with interlocking corners, ring beams, floors: a
+    :class:`Bricks`.
 
     ::
 
@@ -44,16 +47,18 @@ class House(Bricks):
         house = bricks.House(4.8, 3.6, [ground, bricks.Storey(2.4, span="y", ring=0.3)], unit=(0.6, 0.3, 0.3))
         house.withFloors(stones, shear=1e6, mass=300)
 
-    Storeys are counted from 1. Parts are ``front 1`` and so on. What stands between the openings of a wall, at the heights at
-    which all of them are open, is a part of its own: ``front 1 pier 1`` and so on, from the origin. Floors are ``floor 1`` and
-    ring beams ``ring 1``. Floors lie on the walls or ring beams, and carry the next storey.
+    Storeys are counted from 1. Parts are ``front 1`` and so on. What stands between the openings of
+    a wall, at the heights at which all of them are open, is a part of its own: ``front 1 pier 1``
+    and so on, from the origin. Floors are ``floor 1`` and ring beams ``ring 1``. Floors lie on the
+    walls or ring beams, and carry the next storey.
 
     :param length: along x, measured outside [m]; ``width``: along y. Both are whole units
     :param storeys: :class:`Storey` records, from below
     :param unit: length, thickness and height of a unit, joints included [m]
     :param thickness: of the floors [m]
-    :param eccentricity: how far the mass of each floor is off its middle, over length and width [-]: the accidental
-        eccentricity of EN 1998-1 is 0.05. The share of the mass that it takes stands as a strip on the floor, along the wall
+    :param eccentricity: how far the mass of each floor is off its middle, over length and width
+        [-]: the accidental eccentricity of EN 1998-1 is 0.05. The share of the mass that it takes
+        stands as a strip on the floor, along the wall
     :ivar heights: for each storey the height of the section through its piers [m]
     :ivar piers: for each storey a dict from the part to (wall, from where, to where along it [m])
     """
@@ -162,11 +167,13 @@ class House(Bricks):
     def withFloors(
         self, masonry: Any, shear: float, mass: Any, bearing: Any = "fixed", ring: float = 30e9
     ) -> Any:
-        """Say what floors and ring beams are made of, by ``withFloor`` and ``withBeam`` of the masonry. Returns it.
+        """Say what floors and ring beams are made of, by ``withFloor`` and ``withBeam`` of the
+        masonry. Returns it.
 
         :param masonry: :class:`masonry.scene.materials.Masonry`
         :param shear: shear stiffness G t of the floors [N/m]
-        :param mass: with what lies on it [kg/m²], of every floor from below, the last one is the roof; or one for all
+        :param mass: with what lies on it [kg/m²], of every floor from below, the last one is the
+            roof; or one for all
         :param bearing: of the floors, as for ``withFloor``
         :param ring: Young's modulus of ring beams [Pa]; their density is 2400 kg/m³
         """
@@ -200,10 +207,12 @@ class House(Bricks):
 
     @validated
     def weights(self, masonry: Any, storey: Annotated[int, whole(1)] = 1) -> dict[str, float]:
-        """Weight on each pier of a storey as by hand [kN]: of all above the section through the piers.
+        """Weight on each pier of a storey as by hand [kN]: of all above the section through the
+        piers.
 
-        What is above a pier or nearer to it than to the next one of its wall goes to it, and half of each strip of a floor to
-        the wall at either end; what makes a floor eccentric is carried by its strips, as by beams.
+        What is above a pier or nearer to it than to the next one of its wall goes to it, and half
+        of each strip of a floor to the wall at either end; what makes a floor eccentric is carried
+        by its strips, as by beams.
         """
         if storey > len(self.piers):
             refuse("weights", [f"storey {storey} must be at most {len(self.piers)}"])

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The lines between the stones of a drawing, straightened so that both stones keep the same line.
 
-Cells of a Voronoi diagram give lines of many short pieces, which meet at nodes. At each node the two lines that go on most
-nearly straight are one line, so that a bed joint stays straight where head joints meet it.
+Cells of a Voronoi diagram give lines of many short pieces, which meet at nodes. At each node the
+two lines that go on most nearly straight are one line, so that a bed joint stays straight where
+head joints meet it.
 """
 
 from collections import defaultdict
@@ -15,11 +16,11 @@ from .polygons import area, turns, withoutStraight
 def straightened(cells, fine):
     """The outlines of stones, with as few corners as a tolerance allows.
 
-    :param cells: sides of the cells: ``places`` (n, 2) [m], ``ends``, numbers of places (m, 2), and ``labels`` of what is
-        left and right of them (m, 2)
+    :param cells: sides of the cells: ``places`` (n, 2) [m], ``ends``, numbers of places (m, 2), and
+        ``labels`` of what is left and right of them (m, 2)
     :param fine: the tolerance [m]
-    :returns: dict from the label to the numbers of its corners, counter-clockwise; the places of all corners; and the
-        outlines of holes in the wall
+    :returns: dict from the label to the numbers of its corners, counter-clockwise; the places of
+        all corners; and the outlines of holes in the wall
     """
     ends, places = _contracted(cells, fine)
     rings, holes = _rings(ends, cells.labels, places)
@@ -46,7 +47,8 @@ def straightened(cells, fine):
 
 
 def _shallow(rings, places, between, fine):
-    """Corners at which a stone is concave by less than the tolerance: where they come to lie between their neighbours."""
+    """Corners at which a stone is concave by less than the tolerance: where they come to lie
+    between their neighbours."""
     found = {}
     for ring in rings.values():
         good = withoutStraight(places[ring], numbers=True) if len(ring) > 2 else []
@@ -60,7 +62,8 @@ def _shallow(rings, places, between, fine):
 
 
 def _contracted(cells, fine):
-    """The sides with nodes nearer to each other than two tolerances made one, and the places. A node moves by one at most."""
+    """The sides with nodes nearer to each other than two tolerances made one, and the places. A
+    node moves by one at most."""
     places, first = cells.places.copy(), np.arange(len(cells.places))
     air = set(cells.ends[(cells.labels < 0).any(axis=1)].ravel().tolist())
     done, lines = set(), _lines(cells.ends, places)
@@ -76,7 +79,8 @@ def _contracted(cells, fine):
 
 
 def _rings(ends, labels, places):
-    """Numbers of the places around each stone, counter-clockwise, of the largest of its cells; and the outlines of holes."""
+    """Numbers of the places around each stone, counter-clockwise, of the largest of its cells; and
+    the outlines of holes."""
     following = defaultdict(lambda: defaultdict(list))
     for (v, w), (left, right) in zip(ends.tolist(), labels.tolist()):
         if v != w:
@@ -105,7 +109,8 @@ def _rings(ends, labels, places):
 
 
 def _lines(ends, places):
-    """Lines from node to node, and closed ones from their lowest left corner to it again: lists of numbers."""
+    """Lines from node to node, and closed ones from their lowest left corner to it again: lists of
+    numbers."""
     beside = defaultdict(dict)
     for v, w in ends.tolist():
         if v != w:

@@ -8,18 +8,20 @@ import numpy as np
 from .checks import components, where
 from .geometry import Solids, clip, measures
 
-#: Faces look at each other across mortar if the cosine between their outward normals is below this: within 20°.
+#: Faces look at each other across mortar if the cosine between their outward normals is below this:
+#: within 20°.
 FACING = -np.cos(np.radians(20))
 
-#: Two faces with mortar between: (solid, face) of each, area [m²] that they share, middle of the mortar there [m], and the
-#: normal of its middle plane from the first to the second.
+#: Two faces with mortar between: (solid, face) of each, area [m²] that they share, middle of the
+#: mortar there [m], and the normal of its middle plane from the first to the second.
 _Gap = namedtuple("_Gap", "one two area middle normal")
 
 
 def closed(solids, mortar, problems):
     """Corners of the solids after all faces with mortar between them have moved to its middle.
 
-    Faces that look at each other, and all faces in line with them, such as those of a bed joint, come into one plane.
+    Faces that look at each other, and all faces in line with them, such as those of a bed joint,
+    come into one plane.
 
     :param solids: corners of each
     :param mortar: largest thickness of a joint [m]

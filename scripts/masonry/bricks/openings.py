@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Bricks while a wall is laid, the openings that are cut out of it, and the blocks that come of it."""
+"""Bricks while a wall is laid, the openings that are cut out of it, and the blocks that come of
+it."""
 
 from dataclasses import dataclass, replace
 from typing import Annotated
@@ -134,7 +135,8 @@ def _overlap(a, b):
 
 
 def _without(bricks, hole):
-    """The bricks outside a hole. A brick at its edge is cut; what is left of it in an L is two or more pieces of it."""
+    """The bricks outside a hole. A brick at its edge is cut; what is left of it in an L is two or
+    more pieces of it."""
     x0, z0, x1, z1 = hole
     found, spare = [], _unused(bricks)
     for brick in bricks:
@@ -147,7 +149,8 @@ def _without(bricks, hole):
         beds += [(a, z1, b, d)] if d > z1 else []
         sides = [(a, low, x0, high)] if a < x0 else []
         sides += [(x1, low, b, high)] if b > x1 else []
-        # Beds and sides touch. Two beds alone, or two sides alone, are apart, and bricks of their own.
+        # Beds and sides touch. Two beds alone, or two sides alone, are apart, and bricks of their
+        # own.
         for n, (p, r, s, t) in enumerate(beds + sides):
             number = brick.number
             if n and not (beds and sides):
@@ -158,7 +161,8 @@ def _without(bricks, hole):
 
 
 def _slivers(bricks, holes, unit, levels):
-    """Sentences about pieces of bricks, cut by openings or lintels, that are shorter or lower than a quarter."""
+    """Sentences about pieces of bricks, cut by openings or lintels, that are shorter or lower than
+    a quarter."""
     slivers = []
     for brick in bricks:
         box = brick.low[0], brick.low[2], brick.high[0], brick.high[2]

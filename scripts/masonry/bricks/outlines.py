@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Walls of stones as they are drawn, with mortar between them: gaps are closed to the middle of the mortar.
+"""Walls of stones as they are drawn, with mortar between them: gaps are closed to the middle of the
+mortar.
 
-Closely spaced points a little inside the outlines are the points of a Voronoi diagram, in which the cells of one stone
-make up what belongs to it. Joints are lines between two stones. They are straightened together, so that both stones
-keep the same line.
+Closely spaced points a little inside the outlines are the points of a Voronoi diagram, in which the
+cells of one stone make up what belongs to it. Joints are lines between two stones. They are
+straightened together, so that both stones keep the same line.
 """
 
 import math
@@ -33,7 +34,8 @@ class DrawnWall(Bricks):
     """The wall that :func:`fromOutlines` makes: a :class:`Bricks` that knows its mortar.
 
     :ivar mortar: mean thickness of the mortar between stones, by length of joint [m]
-    :ivar unit: mean length of the stones as they are drawn, thickness of the wall, and mean height of the stones [m]
+    :ivar unit: mean length of the stones as they are drawn, thickness of the wall, and mean height
+        of the stones [m]
     """
 
     def __init__(self, blocks: Any, mortar: float, unit: Any, points: Any) -> None:
@@ -47,8 +49,8 @@ class DrawnWall(Bricks):
         self._boxes = np.array([(tree.mins, tree.maxes) for tree in self._trees])
 
     def thickness(self, x: float, y: float, z: float) -> float:
-        """Thickness of the mortar at a place of a joint [m]: the distances of the two nearest stones together; where stones
-        touch, a quarter of the tolerance."""
+        """Thickness of the mortar at a place of a joint [m]: the distances of the two nearest
+        stones together; where stones touch, a quarter of the tolerance."""
         place = x, z
         beyond = np.maximum(self._boxes[:, 0] - place, place - self._boxes[:, 1])
         near = np.argsort(np.linalg.norm(np.maximum(beyond, 0), axis=1))[:8]
@@ -62,10 +64,12 @@ class DrawnWall(Bricks):
         return math.hypot(float(arm @ normal), max(beside - self._step / 2, 0.0))
 
     def withMortar(self, masonry: Any) -> Any:
-        """Let the joints of a :class:`masonry.scene.materials.Masonry` be as stiff as the mortar is thin. Returns the same masonry.
+        """Let the joints of a :class:`masonry.scene.materials.Masonry` be as stiff as the mortar is
+        thin. Returns the same masonry.
 
-        Its properties are those of a joint of the mean thickness. At another one, t, the stiffness has the factor mean/t; strengths
-        are the same, and so are strains, so the compressive fracture energy has the factor t/mean.
+        Its properties are those of a joint of the mean thickness. At another one, t, the stiffness
+        has the factor mean/t; strengths are the same, and so are strains, so the compressive
+        fracture energy has the factor t/mean.
         """
         thinner = lambda *place: self.mortar / self.thickness(*place)
         for name in (n for n in ("bed", "head") if n in masonry.joints):
@@ -88,24 +92,29 @@ def fromOutlines(
     mend: bool = False,
     part: str = "wall",
 ) -> DrawnWall:
-    """A wall of the stones of a drawing or an orthophoto, its lower left front corner at the origin: a :class:`Bricks`.
+    """A wall of the stones of a drawing or an orthophoto, its lower left front corner at the
+    origin: a :class:`Bricks`.
 
-    Formats: ``.dxf`` (closed polylines, and curves), ``.svg`` (polygon, rect, and paths of straight lines), ``.geojson``
-    (polygons), and ``.csv`` with rows of name, x, z. The plane of the drawing is that of the wall. Stones meet in the
-    middle of the mortar between them, and reach to the sides of the box around all of them where they are no farther from
-    it than twice ``mortar``. Where a ball of the radius ``mortar`` has space there is no mortar, but a window, a door, or the air
-    around the wall. At a step of the box, as of a gable, stones get tongues of up to ``mortar``. Stones that are not convex
-    are several blocks of one brick, whose joint is ``crack``.
+    Formats: ``.dxf`` (closed polylines, and curves), ``.svg`` (polygon, rect, and paths of straight
+    lines), ``.geojson`` (polygons), and ``.csv`` with rows of name, x, z. The plane of the drawing
+    is that of the wall. Stones meet in the middle of the mortar between them, and reach to the
+    sides of the box around all of them where they are no farther from it than twice ``mortar``.
+    Where a ball of the radius ``mortar`` has space there is no mortar, but a window, a door, or the
+    air around the wall. At a step of the box, as of a gable, stones get tongues of up to
+    ``mortar``. Stones that are not convex are several blocks of one brick, whose joint is
+    ``crack``.
 
     :param thickness: of the wall [m]
     :param mortar: largest thickness of a joint [m]
     :param scale: metres in one unit of the file
-    :param tolerance: largest distance by which a joint moves when short ones are closed, again when lines are straightened, and
-        again when stones become convex [m]; None: a quarter of ``mortar``
+    :param tolerance: largest distance by which a joint moves when short ones are closed, again when
+        lines are straightened, and again when stones become convex [m]; None: a quarter of
+        ``mortar``
     :param layer: layer of a DXF file, or id or label of a group of an SVG file; None: all
-    :param mend: whether to close open outlines, to leave out stones thinner than two tolerances, and to share overlaps in
-        halves. Each is named in a note
-    :raises ValueError: for a file that cannot be read, and with everything that is wrong with an outline, with its place
+    :param mend: whether to close open outlines, to leave out stones thinner than two tolerances,
+        and to share overlaps in halves. Each is named in a note
+    :raises ValueError: for a file that cannot be read, and with everything that is wrong with an
+        outline, with its place
     """
     fine = mortar / 4 if tolerance is None else tolerance
     drawn = read(str(path), layer)
@@ -144,7 +153,8 @@ def _at(ring):
 
 
 def _checked(path, drawn, fine, mend):
-    """The outlines that are stones, counter-clockwise. Raises ValueError, or with `mend` says what was mended."""
+    """The outlines that are stones, counter-clockwise. Raises ValueError, or with `mend` says what
+    was mended."""
     fatal, found, kept = [], [], []
     for outline in drawn:
         ring = outline.ring
@@ -176,7 +186,8 @@ def _checked(path, drawn, fine, mend):
 
 
 def _overlapping(stone, others, fine, found):
-    """Add sentences on what a stone shares with others; returns whether it lies within one, which swallows it."""
+    """Add sentences on what a stone shares with others; returns whether it lies within one, which
+    swallows it."""
     ring = stone.ring
     points, normals = _along(ring, fine)
     points = points - fine / 2 * normals  # two equal outlines lie within each other
@@ -210,11 +221,12 @@ def _overlapping(stone, others, fine, found):
     return False
 
 
-#: Points on outlines (n, 2), the normals outwards there, the numbers of their stones, and their distance [m].
+#: Points on outlines (n, 2), the normals outwards there, the numbers of their stones, and their
+#: distance [m].
 _Points = namedtuple("_Points", "places normals stones step")
 
-#: Sides of cells that part two labels: their ends, numbers of places (n, 2), the labels left and right of them, and the mean
-#: thickness of the mortar [m].
+#: Sides of cells that part two labels: their ends, numbers of places (n, 2), the labels left and
+#: right of them, and the mean thickness of the mortar [m].
 _Cells = namedtuple("_Cells", "places ends labels mortar")
 
 
@@ -251,7 +263,8 @@ def _within(places, ring):
 
 
 def _grown(points, stones, radius):
-    """Cells of the stones. Where a ball of a radius that rolls along the outlines touches them, they are at the air."""
+    """Cells of the stones. Where a ball of a radius that rolls along the outlines touches them,
+    they are at the air."""
     from scipy.spatial import Voronoi, cKDTree
 
     places, normals, _, inset = points

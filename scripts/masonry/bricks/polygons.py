@@ -5,7 +5,8 @@ import numpy as np
 
 from .geometry import FLAT
 
-#: A corner is straight if it is no farther from the line between its neighbours, over the size of the polygon.
+#: A corner is straight if it is no farther from the line between its neighbours, over the size of
+#: the polygon.
 STRAIGHT = 2 * FLAT
 
 
@@ -34,7 +35,8 @@ def area(ring):
 
 
 def turns(ring):
-    """How far each corner is out of the line between its neighbours [m]; negative: into the polygon."""
+    """How far each corner is out of the line between its neighbours [m]; negative: into the
+    polygon."""
     before, after = np.roll(ring, 1, axis=0), np.roll(ring, -1, axis=0)
     base = np.maximum(np.linalg.norm(after - before, axis=1), 1e-300)
     return np.cross(ring - before, after - ring) / base
@@ -52,7 +54,8 @@ def withoutStraight(ring, numbers=False):
 
 
 def convexParts(ring):
-    """Convex polygons that make up one that need not be. Every cut begins at a corner that is not convex."""
+    """Convex polygons that make up one that need not be. Every cut begins at a corner that is not
+    convex."""
     ring = withoutStraight(ring)
     bent = np.flatnonzero(turns(ring) < 0)
     if not len(bent):
@@ -62,14 +65,16 @@ def convexParts(ring):
 
 
 def _worth(parts):
-    """How good a cut is: first by the corners that stay concave, then by the thickness of the thinner part."""
+    """How good a cut is: first by the corners that stay concave, then by the thickness of the
+    thinner part."""
     concave = sum((turns(withoutStraight(part)) < 0).sum() for part in parts)
     thin = min(area(p) / np.linalg.norm(np.ptp(p, axis=0)) for p in parts)
     return -concave, thin
 
 
 def _cuts(ring, bent):
-    """Pairs of polygons into which a polygon is cut from a corner to another one, or straight on to the opposite side."""
+    """Pairs of polygons into which a polygon is cut from a corner to another one, or straight on to
+    the opposite side."""
     following = np.roll(ring, -1, axis=0)
     sides = following - ring
     for n in bent:

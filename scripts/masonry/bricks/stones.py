@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Walls of natural stone, squared or irregular, whose interlocking is as good as a surveyor found it."""
+"""Walls of natural stone, squared or irregular, whose interlocking is as good as a surveyor found
+it."""
 
 import math
 from random import Random
@@ -15,7 +16,8 @@ from .geometry import prism
 #: Walls that are drawn until one has the trace that is asked for, and how near it must come [-].
 DRAWS, NEAR = 30, 0.03
 
-#: The largest scatter of the joints, over a stone's length or height [-]. Beyond it stones are no longer laid on beds.
+#: The largest scatter of the joints, over a stone's length or height [-]. Beyond it stones are no
+#: longer laid on beds.
 MOST_SCATTER = 0.4
 
 #: The shortest piece of a squared stone, over the length of a stone [-].
@@ -24,12 +26,14 @@ SHORTEST = 0.3
 #: Vertices of stones that are no further apart than this share of the wall are one [-].
 SAME = 1e-9
 
-#: Where the points of the stones at both ends of a wall stand, in lengths of a stone from there [-]. As they stand above each
-#: other, the joints between these stones are level, as masons dress them: a wedge would be squeezed out.
+#: Where the points of the stones at both ends of a wall stand, in lengths of a stone from there
+#: [-]. As they stand above each other, the joints between these stones are level, as masons dress
+#: them: a wedge would be squeezed out.
 END = 0.3
 
-#: The least overlap of two head joints, and the shortest side of an irregular stone, over the size of a stone [-]. Shorter
-#: ones are closed: a joint that is so small would end a run as soon as its stones have slid along it.
+#: The least overlap of two head joints, and the shortest side of an irregular stone, over the size
+#: of a stone [-]. Shorter ones are closed: a joint that is so small would end a run as soon as its
+#: stones have slid along it.
 LEAST = 0.12
 
 MOST_STONES = 20_000
@@ -49,24 +53,28 @@ def StoneWall(
     seed: Annotated[int, whole(0, 2**31)] = 1,
     part: str = "wall",
 ) -> Bricks:
-    """A wall of natural stone along x, its lower left front corner at the origin: a :class:`Bricks` of one leaf.
+    """A wall of natural stone along x, its lower left front corner at the origin: a :class:`Bricks`
+    of one leaf.
 
     ::
 
         StoneWall(1.0, 1.2, unit=(0.20, 0.20, 0.15), scatter=0.1)                         # ashlar, nearly a running bond
         StoneWall(1.6, 1.6, unit=(0.30, 0.40, 0.10), pattern="irregular", trace=1.1, seed=7)
 
-    Stones contain their mortar: they meet in the middle of the joint. Squared stones lie in level courses. Irregular ones
-    are the Voronoi cells of points, with lengths measured in lengths of a stone and heights in heights of a stone, so
-    that all are convex. In both the middle is a running bond; ``scatter`` moves its head joints, or its points.
+    Stones contain their mortar: they meet in the middle of the joint. Squared stones lie in level
+    courses. Irregular ones are the Voronoi cells of points, with lengths measured in lengths of a
+    stone and heights in heights of a stone, so that all are convex. In both the middle is a running
+    bond; ``scatter`` moves its head joints, or its points.
 
-    :param length: [m]; ``height``: likewise. Courses and stones are stretched by the little that makes them fill the wall
+    :param length: [m]; ``height``: likewise. Courses and stones are stretched by the little that
+        makes them fill the wall
     :param unit: mean length of a stone, thickness of the wall, and mean height of a stone [m]
-    :param scatter: largest displacement of a head joint or a point, over the length and the height of a stone [-]. None:
-        0.2, and with ``trace`` another one in every draw
-    :param trace: length of the line of minimum trace over the height of the wall [-], see :func:`leastTrace`. Up to 30
-        walls are drawn, those of squared stones after the running bond itself with overlaps from none to half a stone: the
-        first within 3 % of it is taken, else the nearest, and a note says how near it is
+    :param scatter: largest displacement of a head joint or a point, over the length and the height
+        of a stone [-]. None: 0.2, and with ``trace`` another one in every draw
+    :param trace: length of the line of minimum trace over the height of the wall [-], see
+        :func:`leastTrace`. Up to 30 walls are drawn, those of squared stones after the running bond
+        itself with overlaps from none to half a stone: the first within 3 % of it is taken, else
+        the nearest, and a note says how near it is
     :param seed: of the draws; another one is another wall of the same kind
     """
     problems = []
@@ -120,9 +128,10 @@ def StoneWall(
 
 @validated
 def leastTrace(bricks: Annotated[Any, isA(Bricks)]) -> float:
-    """The line of minimum trace of a wall along x, the shortest way through its joints from its foot to its top, over its
-    height [-]. It is 1 if a straight vertical joint goes through, and grows with the interlocking of the stones; it is inf if
-    no way goes through because a course is one stone."""
+    """The line of minimum trace of a wall along x, the shortest way through its joints from its
+    foot to its top, over its height [-]. It is 1 if a straight vertical joint goes through, and
+    grows with the interlocking of the stones; it is inf if no way goes through because a course is
+    one stone."""
     from scipy.sparse import csr_array
     from scipy.sparse.csgraph import dijkstra
     from scipy.spatial import cKDTree
@@ -143,7 +152,8 @@ def leastTrace(bricks: Annotated[Any, isA(Bricks)]) -> float:
 
 
 def _joints(bricks):
-    """Ends (x, z) of the joints of a wall along x, (n, 2, 2) [m]. What two pieces of a brick share is no joint."""
+    """Ends (x, z) of the joints of a wall along x, (n, 2, 2) [m]. What two pieces of a brick share
+    is no joint."""
     found = []
     for joint in bricks.joints():
         x, y, z = joint.normal

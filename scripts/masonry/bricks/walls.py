@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Straight walls in five bonds, with openings and lintels; walls that meet at corners and junctions; stacks of blocks.
+"""Straight walls in five bonds, with openings and lintels; walls that meet at corners and
+junctions; stacks of blocks.
 
-A wall stands along x from the origin, its thickness along y, its height along z. Units contain their joints: blocks
-meet face to face. All positions along a wall are multiples of a quarter unit, except cuts at openings and junctions.
+A wall stands along x from the origin, its thickness along y, its height along z. Units contain
+their joints: blocks meet face to face. All positions along a wall are multiples of a quarter unit,
+except cuts at openings and junctions.
 """
 
 import functools
@@ -18,7 +20,8 @@ from .bonds import layout
 from .geometry import FLAT, boxCorners
 from .openings import WHOLE, LaidBrick, Opening, blocksOf, opened
 
-#: A calcium-silicate unit of the walls in the paper (yade_plugin/law/README.md): length, thickness and height [m].
+#: A calcium-silicate unit of the walls in the paper (yade_plugin/law/README.md): length, thickness
+#: and height [m].
 UNIT = (0.220, 0.102, 0.081)
 
 #: No wall has more bricks: lengths that need them are probably not in metres.
@@ -54,26 +57,27 @@ def Wall(
         Wall(2.2, 1.62, bond="flemish", wythes=2)
         Wall(2.6, 1.5, unit=(0.25, 0.12, 0.065), joint=0.010)    # bricks without their mortar, and its thickness
 
-    Even courses, from 0, of a running bond start with a whole unit, odd ones with a half. English bond has courses of
-    stretchers and courses of headers in turn, Flemish bond a header after every stretcher, header bond nothing but
-    headers. Queen closers, half bats and three-quarter bats keep the bond at the ends, so that no vertical joint goes
-    through two courses; in stack bond all do.
+    Even courses, from 0, of a running bond start with a whole unit, odd ones with a half. English
+    bond has courses of stretchers and courses of headers in turn, Flemish bond a header after every
+    stretcher, header bond nothing but headers. Queen closers, half bats and three-quarter bats keep
+    the bond at the ends, so that no vertical joint goes through two courses; in stack bond all do.
 
     :param length: [m]; whole half units, in stack bond whole units
     :param height: [m]; whole courses. None: that of ``courses``
-    :param unit: length, thickness and height of a unit, joints included [m]; default: the paper's calcium-silicate unit.
-        With ``joint`` it is the brick without mortar
-    :param joint: thickness of the mortar [m], which is added to length and height of every unit; it is none across the
-        wall, where headers are as long as the brick is
+    :param unit: length, thickness and height of a unit, joints included [m]; default: the paper's
+        calcium-silicate unit. With ``joint`` it is the brick without mortar
+    :param joint: thickness of the mortar [m], which is added to length and height of every unit; it
+        is none across the wall, where headers are as long as the brick is
     :param bond: "running", "stack", "header", "english" or "flemish"
-    :param wythes: bricks across the wall. Header, English and Flemish bond need 2, with headers that go through both.
-        Leaves of a running or stack bond are parts of their own, "wall leaf 1" and so on; those of running bond are
-        shifted by half a unit against each other
+    :param wythes: bricks across the wall. Header, English and Flemish bond need 2, with headers
+        that go through both. Leaves of a running or stack bond are parts of their own, "wall leaf
+        1" and so on; those of running bond are shifted by half a unit against each other
     :param openings: :class:`masonry.bricks.Opening` records
     :param courses: heights of the courses from below [m]; None: all have the height of a unit
-    :param halves: whether every whole brick is two half bricks that may crack apart; cut bricks are one block
-    :param collar: thickness of the joint between two wythes [m], which they share in halves. None: 0, and where headers
-        go through, what these are longer than two thicknesses
+    :param halves: whether every whole brick is two half bricks that may crack apart; cut bricks are
+        one block
+    :param collar: thickness of the joint between two wythes [m], which they share in halves. None:
+        0, and where headers go through, what these are longer than two thicknesses
     :param part: name of the part
     """
     problems = []
@@ -135,14 +139,18 @@ def Corner(
     halves: bool = True,
     joint: Gap = 0.0,
 ) -> Bricks:
-    """Two walls of one wythe in running bond that meet at a right angle at the origin, with interlocking courses.
+    """Two walls of one wythe in running bond that meet at a right angle at the origin, with
+    interlocking courses.
 
-    The first, part "wall", runs along x; the second, part "return", along y. Even courses of the wall and odd ones of
-    the return go through to the corner. The bricks beside the corner are cut or stretched by what the thickness of the
-    unit differs from half its length, so that the bond goes on.
+    The first, part "wall", runs along x; the second, part "return", along y. Even courses of the
+    wall and odd ones of the return go through to the corner. The bricks beside the corner are cut
+    or stretched by what the thickness of the unit differs from half its length, so that the bond
+    goes on.
 
-    :param length: of the wall, measured outside [m]; whole half units, at least 1.5 units. ``length2``: of the return
-    :param openings: of the wall, ``openings2``: of the return; x is measured along each from the corner's outer edge
+    :param length: of the wall, measured outside [m]; whole half units, at least 1.5 units.
+        ``length2``: of the return
+    :param openings: of the wall, ``openings2``: of the return; x is measured along each from the
+        corner's outer edge
     :param height: as for :func:`Wall`, like ``unit``, ``courses``, ``halves`` and ``joint``
     """
     sizes = dict(length=(length, 0.5, 1.5), length2=(length2, 0.5, 1.5))
@@ -167,15 +175,18 @@ def Tee(
     halves: bool = True,
     joint: Gap = 0.0,
 ) -> Bricks:
-    """A wall of one wythe in running bond along x, part "wall", and another, part "stem", that meets it from behind.
+    """A wall of one wythe in running bond along x, part "wall", and another, part "stem", that
+    meets it from behind.
 
     Odd courses of the stem go through the wall, even courses of the wall go through the stem.
 
     :param length: of the wall [m]; whole half units
-    :param length2: of the stem along y, measured from the outer face of the wall [m]; whole half units, at least 1.5 units
-    :param at: distance of the stem's axis from the start of the wall [m]: half a unit more than whole units, so that it
-        stands over the middle of a brick
-    :param openings: of the wall, ``openings2``: of the stem; there x is measured from the outer face of the wall
+    :param length2: of the stem along y, measured from the outer face of the wall [m]; whole half
+        units, at least 1.5 units
+    :param at: distance of the stem's axis from the start of the wall [m]: half a unit more than
+        whole units, so that it stands over the middle of a brick
+    :param openings: of the wall, ``openings2``: of the stem; there x is measured from the outer
+        face of the wall
     :param height: as for :func:`Wall`, like ``unit``, ``courses``, ``halves`` and ``joint``
     """
     problems, long = [], unit[0] + joint
@@ -217,14 +228,16 @@ def Room(
     halves: bool = True,
     joint: Gap = 0.0,
 ) -> Bricks:
-    """Four walls of one wythe in running bond around a rectangle, with interlocking courses at its four corners.
+    """Four walls of one wythe in running bond around a rectangle, with interlocking courses at its
+    four corners.
 
-    The parts "front" and "back" run along x, "left" and "right" along y. Even courses of front and back, and odd ones of
-    left and right, go through to the corners.
+    The parts "front" and "back" run along x, "left" and "right" along y. Even courses of front and
+    back, and odd ones of left and right, go through to the corners.
 
-    :param length: along x, measured outside [m]; whole units, at least 3. ``width``: along y, likewise
-    :param front: openings of this wall, and likewise ``right``, ``back`` and ``left``; x is measured along x or y from
-        the outer edge of the corner nearer to the origin
+    :param length: along x, measured outside [m]; whole units, at least 3. ``width``: along y,
+        likewise
+    :param front: openings of this wall, and likewise ``right``, ``back`` and ``left``; x is
+        measured along x or y from the outer edge of the corner nearer to the origin
     :param height: as for :func:`Wall`, like ``unit``, ``courses``, ``halves`` and ``joint``
     """
     problems, long = [], unit[0] + joint
@@ -247,7 +260,8 @@ def Room(
 
 @validated
 def stack(count: Annotated[int, whole(1, MOST_BRICKS)], size: Sides, part: str = "stack") -> Bricks:
-    """Blocks on top of each other, the lowest one's lower left front corner at the origin: a :class:`Bricks`.
+    """Blocks on top of each other, the lowest one's lower left front corner at the origin: a
+    :class:`Bricks`.
 
     :param count: number of blocks
     :param size: length, thickness and height of a block [m]
@@ -259,7 +273,8 @@ def stack(count: Annotated[int, whole(1, MOST_BRICKS)], size: Sides, part: str =
 
 @validated
 def block(low: Point, high: Point, part: str = "block", kind: str = "block") -> Bricks:
-    """One block, a box between two opposite corners [m]: a :class:`Bricks`. It can be a platen, a pier or a beam."""
+    """One block, a box between two opposite corners [m]: a :class:`Bricks`. It can be a platen, a
+    pier or a beam."""
     if not all(a < b for a, b in zip(low, high)):
         raise ValueError(
             f"block: low corner {tuple(low)} m must lie below high corner {tuple(high)} m on every"
@@ -268,15 +283,16 @@ def block(low: Point, high: Point, part: str = "block", kind: str = "block") -> 
     return Bricks([Block(boxCorners(low, high), 0, part, -1, kind)])
 
 
-# -- checks of what a user gives --------------------------------------------------------------------------------------
+# -- checks of what a user gives -------------------------------------------------------------------
 
 
 def _counted(name, unit, joint, height, courses, problems, times, **sizes):
-    """Sides of a unit with its joints, lengths in quarter units, and heights of bed joints. Raises ValueError, with problems
-    that are known before, too.
+    """Sides of a unit with its joints, lengths in quarter units, and heights of bed joints. Raises
+    ValueError, with problems that are known before, too.
 
     :param times: walls of all these lengths
-    :param sizes: of each length its value [m], the multiple of units that it must be, and how many units it needs
+    :param sizes: of each length its value [m], the multiple of units that it must be, and how many
+        units it needs
     """
     if joint >= min(unit[0], unit[2]):
         raise ValueError(
@@ -343,14 +359,15 @@ def _levels(height, courses, unit, problems):
     return count and [course * unit[2] for course in range(count + 1)]
 
 
-# -- leaves that meet others ------------------------------------------------------------------------------------------
+# -- leaves that meet others -----------------------------------------------------------------------
 
 
 def _leaf(levels, unit, halves, quarters, part, openings, ys, meets=(None, None), crossed=None):
     """A leaf in running bond, as (bricks, lintels), along x between the two ``ys``.
 
-    :param meets: for both ends, where another wall may meet this one, the remainder by 2 of the courses that go through to
-        the end; the other courses begin beside that wall. None: no wall there
+    :param meets: for both ends, where another wall may meet this one, the remainder by 2 of the
+        courses that go through to the end; the other courses begin beside that wall. None: no wall
+        there
     :param crossed: from where to where another wall goes through the odd courses [m]
     """
     joined = [end is not None for end in meets]
@@ -371,7 +388,8 @@ def _leaf(levels, unit, halves, quarters, part, openings, ys, meets=(None, None)
 
 
 def _course(quarters, unit, shifted, free, joined):
-    """Bricks of a course in running bond: start, end, and where its two halves meet (None: it is no whole brick).
+    """Bricks of a course in running bond: start, end, and where its two halves meet (None: it is no
+    whole brick).
 
     :param shifted: whether the head joints stand half a unit off
     :param free: where a shifted course starts and ends [m]
@@ -405,7 +423,8 @@ def _course(quarters, unit, shifted, free, joined):
 
 
 def _along(leaf):
-    """A leaf turned so that it runs along y: x and y change places, so that all coordinates stay exact."""
+    """A leaf turned so that it runs along y: x and y change places, so that all coordinates stay
+    exact."""
     swap = lambda p: (p[1], p[0], p[2])
     split = lambda cut: cut and (1 - cut[0], cut[1])
     turn = lambda b: replace(b, low=swap(b.low), high=swap(b.high), split=split(b.split))
@@ -414,7 +433,8 @@ def _along(leaf):
 
 @withoutCollector()
 def _joined(*leaves):
-    """Blocks of the bricks of some leaves, course by course, then of their lintels. Bricks are numbered in this order."""
+    """Blocks of the bricks of some leaves, course by course, then of their lintels. Bricks are
+    numbered in this order."""
     bricks, lintels = [], []
     for n, (laid, over) in enumerate(leaves):
         own = lambda brick: replace(brick, number=brick.number * len(leaves) + n)

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Capacity for engineers: bilinear curves, the demand of an earthquake, and N-V domains, from the files of runs.
+"""Capacity for engineers: bilinear curves, the demand of an earthquake, and N-V domains, from the
+files of runs.
 
 On the command line::
 
@@ -18,20 +19,25 @@ and in Python, also where there is no YADE::
     found.targetDisplacement, found.ductility, found.holds, found.verdict()
 
 - :mod:`masonry.capacity.spectra`: elastic spectra of EN 1998-1:2004, and from files
-- :mod:`masonry.capacity.n2`: the equivalent system, and the target displacement by the N2 method of EN 1998-1:2004, annex B
+- :mod:`masonry.capacity.n2`: the equivalent system, and the target displacement by the N2 method of
+  EN 1998-1:2004, annex B
 - :mod:`masonry.capacity.domains`: the N-V domain of a pier, by limit analysis, with runs as points
-- :mod:`masonry.capacity.report`: all of that as files in a folder of results; :mod:`masonry.capacity.figure` draws them
+- :mod:`masonry.capacity.report`: all of that as files in a folder of results;
+  :mod:`masonry.capacity.figure` draws them
 
 Bilinear curves themselves are :mod:`masonry.read.bilinear`.
 
-**What the equivalent system is.** The structure is one mass on a spring: it moves in one shape, that of the push, and keeps that shape
-after it yields. The spring is the bilinear curve of the push. The mass m* and the factor Γ are those of the structure in an earthquake, not
-of the test: a wall that is pushed at its top holds back the mass of the floors that move with its top, and a share of its own. With all of
-it at the height of the loaded point Γ is 1. The precompression of a test says what presses the wall; that this mass also moves with it
-is for the user to say. So neither is guessed: they are given, or the script of the run says them by ``scene.result``.
+**What the equivalent system is.** The structure is one mass on a spring: it moves in one shape,
+that of the push, and keeps that shape after it yields. The spring is the bilinear curve of the
+push. The mass m* and the factor Γ are those of the structure in an earthquake, not of the test: a
+wall that is pushed at its top holds back the mass of the floors that move with its top, and a share
+of its own. With all of it at the height of the loaded point Γ is 1. The precompression of a test
+says what presses the wall; that this mass also moves with it is for the user to say. So neither is
+guessed: they are given, or the script of the run says them by ``scene.result``.
 
-**What the demand is not.** Annex B has the relation of ductility and force of structures whose loops take energy; rocking walls take
-less. Torsion, walls that fall out of their plane, and the change of the stiffness by the cycles of an earthquake are not in it.
+**What the demand is not.** Annex B has the relation of ductility and force of structures whose
+loops take energy; rocking walls take less. Torsion, walls that fall out of their plane, and the
+change of the stiffness by the cycles of an earthquake are not in it.
 """
 
 from ..read.bilinear import Bilinear, Pushover, bilinear, drifts, pushover

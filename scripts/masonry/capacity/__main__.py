@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Bilinear curve, capacity and demand of runs: ``/usr/bin/python3 -m masonry.capacity results/WALL ...``."""
+"""Bilinear curve, capacity and demand of runs: ``/usr/bin/python3 -m masonry.capacity results/WALL
+...``."""
 
 import argparse
 import re

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The N-V domain of a pier: the shear force that it carries under every normal force, from limit analysis, and runs as points.
+"""The N-V domain of a pier: the shear force that it carries under every normal force, from limit
+analysis, and runs as points.
 
-A scene says ``scene.domain(top, normal=[50, 100, 200])`` after its presses are described; with ``--preset bound`` that takes no run.
-Limit analysis of the scene is then in run.json, for each of these normal forces, and :func:`domain` reads it, with the peaks of other
-runs beside it.
+A scene says ``scene.domain(top, normal=[50, 100, 200])`` after its presses are described; with
+``--preset bound`` that takes no run. Limit analysis of the scene is then in run.json, for each of
+these normal forces, and :func:`domain` reads it, with the peaks of other runs beside it.
 """
 
 import math
@@ -36,7 +37,8 @@ class BoundPoint:
 
     normal: float  #: at the supports, compression is positive [kN]
     largest: float  #: upper bound of the shear force, joints that slip open [kN]
-    withoutDilatancy: float | None  #: of one collapse in which joints slip without opening [kN], where that was looked for
+    #: of one collapse in which joints slip without opening [kN], where that was looked for
+    withoutDilatancy: float | None
     exact: bool  #: whether rigid blocks carry just ``largest``
 
 
@@ -61,8 +63,9 @@ class Domain:
     notes: list[str]
 
     def shear(self, normal: float) -> float:
-        """The bound of the shear force under a normal force [kN], between two of the domain by a line. A domain is convex, so
-        limit analysis for this normal force itself would give as much or more.
+        """The bound of the shear force under a normal force [kN], between two of the domain by a
+        line. A domain is convex, so limit analysis for this normal force itself would give as much
+        or more.
 
         :param normal: [kN]
         :raises Refused: if the domain does not reach so far
@@ -87,8 +90,9 @@ class Domain:
 def runPoint(directory: FilePath) -> RunPoint:
     """Normal force and shear force at the peak of the push of a run.
 
-    The normal force is the sum of the vertical forces on all that is held, at the row of the peak. A wall whose curve.csv does not
-    have them, in running bond and pressed by a platen that moves freely up and down, has that of its precompression and weight.
+    The normal force is the sum of the vertical forces on all that is held, at the row of the peak.
+    A wall whose curve.csv does not have them, in running bond and pressed by a platen that moves
+    freely up and down, has that of its precompression and weight.
 
     :param directory: folder of results
     :raises Refused: if the run has no whole push, or if its normal force is not known

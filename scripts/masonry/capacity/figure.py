@@ -39,7 +39,8 @@ def forces(push: Pushover, curve: Bilinear, path: FilePath) -> None:
 
 
 def capacity(push: Pushover, found: Demand, path: FilePath) -> None:
-    """Draw capacity and demand of the equivalent system: acceleration over displacement. Writes a PNG file."""
+    """Draw capacity and demand of the equivalent system: acceleration over displacement. Writes a
+    PNG file."""
     gamma, mass, spectrum = found.system.gamma, found.system.mass, found.spectrum
     asAcceleration = lambda force: 1e3 * force / gamma / mass
     with drawing.picture(path, 7, 5.2, DPI) as figure:

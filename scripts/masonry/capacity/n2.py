@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The target displacement of a structure by the N2 method, EN 1998-1:2004, annex B.
 
-Equations have the numbers of the annex. Units are those of curve.csv: mm, kN, and accelerations in m/s².
+Equations have the numbers of the annex. Units are those of curve.csv: mm, kN, and accelerations in
+m/s².
 """
 
 import math
@@ -16,12 +17,15 @@ from ..read.files import filesOf
 from ..read.quantities import Number
 from .spectra import Spectrum
 
-#: Names and units of the answers of a script by which a run says its equivalent system (``scene.result``).
+#: Names and units of the answers of a script by which a run says its equivalent system
+#: (``scene.result``).
 MASS, GAMMA = ("equivalent_mass", "kg"), ("participation_factor", "-")
 ANNEX = "EN 1998-1:2004, annex B"
-#: Rounds of :func:`iterated` at most, and the difference of two target displacements at which it ends [-].
+#: Rounds of :func:`iterated` at most, and the difference of two target displacements at which it
+#: ends [-].
 ROUNDS, SAME = 50, 1e-4
-#: The largest ratio of the target displacement to that of the elastic system that annex B asks for [-].
+#: The largest ratio of the target displacement to that of the elastic system that annex B asks for
+#: [-].
 MOST = 3.0
 
 
@@ -55,7 +59,8 @@ def ofMasses(
     """The equivalent system of masses that move along a shape, equations (B.2) and (B.3).
 
     :param masses: of the storeys or points (n) [kg]
-    :param shape: their displacements over that of the point whose displacement the push records (n) [-]
+    :param shape: their displacements over that of the point whose displacement the push records (n)
+        [-]
     :raises Refused: with what is wrong
     """
     if len(masses) != len(shape):
@@ -80,8 +85,8 @@ def ofMasses(
 
 @validated
 def ofRun(run: Annotated[dict[str, Any], isA(dict)], directory: str = "run.json") -> Equivalent:
-    """The equivalent system that a run has: its script says it by
-    ``scene.result("equivalent_mass", 30e3, "kg")`` and ``scene.result("participation_factor", 1.0)``.
+    """The equivalent system that a run has: its script says it by ``scene.result("equivalent_mass",
+    30e3, "kg")`` and ``scene.result("participation_factor", 1.0)``.
 
     :param run: entries of run.json
     :param directory: folder, for messages
@@ -114,7 +119,8 @@ def ofRun(run: Annotated[dict[str, Any], isA(dict)], directory: str = "run.json"
 
 @dataclass(frozen=True)
 class Demand:
-    """What :func:`demand` found. An asterisk of the annex is ``equivalent`` here: of the equivalent system."""
+    """What :func:`demand` found. An asterisk of the annex is ``equivalent`` here: of the equivalent
+    system."""
 
     curve: Bilinear  #: of the structure
     system: Equivalent
@@ -128,7 +134,8 @@ class Demand:
     ductility: float  #: dt*/dy* [-]
     reduction: float  #: qu, Se(T*) over Fy*/m* [-]
     branch: str  #: number of the equation that gave dt*
-    scale: float  #: by which the spectrum may be multiplied until the demand is the ultimate displacement [-]
+    #: by which the spectrum may be multiplied until the demand is the ultimate displacement [-]
+    scale: float
     holds: bool | None  #: whether du is at least dt; None: the curve ends before that can be seen
     notes: tuple[str, ...]  #: sentences
 
@@ -275,11 +282,12 @@ def demand(
 ) -> Demand:
     """The target displacement that a spectrum demands of a structure, EN 1998-1:2004, annex B.
 
-    :param curve: bilinear curve of the structure, of :func:`masonry.read.bilinear.ofRun`; the annex has its rule ``en1998``
+    :param curve: bilinear curve of the structure, of :func:`masonry.read.bilinear.ofRun`; the annex
+        has its rule ``en1998``
     :param system: :class:`Equivalent`
     :param spectrum: :class:`masonry.capacity.spectra.Spectrum`
-    :param limited: whether the target displacement is at most 3 det*, which annex B allows; else it is what equation (B.10)
-        gives, which is more where the period is short
+    :param limited: whether the target displacement is at most 3 det*, which annex B allows; else it
+        is what equation (B.10) gives, which is more where the period is short
     :raises Refused: if the spectrum does not have the period of the structure
     """
     gamma, mass = system.gamma, system.mass
@@ -334,7 +342,8 @@ def demand(
 
 
 def _remarks(curve, target, ratio):
-    """Sentences on a capacity curve, the target displacement of its structure [mm] and the ratio qu."""
+    """Sentences on a capacity curve, the target displacement of its structure [mm] and the ratio
+    qu."""
     if curve.ultimateDisplacement < 1.5 * target and not curve.reached:
         yield (
             "EN 1998-1:2004, 4.3.3.4.2.3(1), wants a capacity curve up to 1.5 times the target"
@@ -348,7 +357,8 @@ def _remarks(curve, target, ratio):
 
 
 def _scale(ductility, corner, limited):
-    """The ratio qu at which the demand is a ductility of at least 1: (B.9), (B.10) or (B.12) solved for qu.
+    """The ratio qu at which the demand is a ductility of at least 1: (B.9), (B.10) or (B.12) solved
+    for qu.
 
     :param corner: TC/T*, or 1 where the period is longer
     """
@@ -363,11 +373,12 @@ def iterated(
     spectrum: Annotated[Spectrum, isA(Spectrum)],
     limited: bool = False,
 ) -> Demand:
-    """The target displacement by the iterative procedure of EN 1998-1:2004, annex B: the plastic mechanism forms at the target
-    displacement itself, which is found again until both agree.
+    """The target displacement by the iterative procedure of EN 1998-1:2004, annex B: the plastic
+    mechanism forms at the target displacement itself, which is found again until both agree.
 
     :param push: of :func:`masonry.read.bilinear.pushover`; other parameters as in :func:`demand`
-    :raises Refused: as in :func:`demand`. Where the procedure leads nowhere, a note says so, and the result is that of its last round
+    :raises Refused: as in :func:`demand`. Where the procedure leads nowhere, a note says so, and
+        the result is that of its last round
     """
     found = demand(bilinearOf(push, "en1998"), system, spectrum, limited)
     for _ in range(ROUNDS):

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Capacity and demand of a run, as files in its folder: capacity.json and capacity.png, or domain.json and domain.png."""
+"""Capacity and demand of a run, as files in its folder: capacity.json and capacity.png, or
+domain.json and domain.png."""
 
 import json
 import os
@@ -41,22 +42,27 @@ def assess(
     out: FilePath | None = None,
     column: str | None = None,
 ) -> dict[str, Any]:
-    """Write capacity.json and capacity.png of a run: the bilinear curve of its push, its drifts and, for a spectrum, the
-    target displacement by the N2 method. Returns what capacity.json has.
+    """Write capacity.json and capacity.png of a run: the bilinear curve of its push, its drifts
+    and, for a spectrum, the target displacement by the N2 method. Returns what capacity.json has.
 
     :param directory: folder of results
-    :param spectrum: of :func:`masonry.capacity.elastic` or :func:`masonry.capacity.readSpectrum`; None: no demand
-    :param system: of :func:`masonry.capacity.equivalent` or :func:`masonry.capacity.ofMasses`; None: that which the script of the run
-        gives, :func:`masonry.capacity.ofRun`
-    :param rule: of the bilinear curve, and ``mechanism``: as in :func:`masonry.read.bilinear.bilinear`
+    :param spectrum: of :func:`masonry.capacity.elastic` or :func:`masonry.capacity.readSpectrum`;
+        None: no demand
+    :param system: of :func:`masonry.capacity.equivalent` or :func:`masonry.capacity.ofMasses`;
+        None: that which the script of the run gives, :func:`masonry.capacity.ofRun`
+    :param rule: of the bilinear curve, and ``mechanism``: as in
+        :func:`masonry.read.bilinear.bilinear`
     :param limited: as in :func:`masonry.capacity.demand`
-    :param iterate: whether the plastic mechanism forms at the target displacement, :func:`masonry.capacity.iterated`
+    :param iterate: whether the plastic mechanism forms at the target displacement,
+        :func:`masonry.capacity.iterated`
     :param height: as in :func:`masonry.read.bilinear.drifts`
     :param out: folder of both files; None: ``directory``
     :param column: as in :func:`masonry.read.bilinear.pushover`
-    :returns: dict with ``scene``, ``title``, ``rule``, ``numbers`` (a list of dicts as in :class:`masonry.read.bilinear.Number`), ``notes``,
-        and with a spectrum ``spectrum``, ``holds``, ``verdict`` and ``assumed``
-    :raises Refused: if the run has no whole push, or if something is missing for the demand; nothing is written then
+    :returns: dict with ``scene``, ``title``, ``rule``, ``numbers`` (a list of dicts as in
+        :class:`masonry.read.bilinear.Number`), ``notes``, and with a spectrum ``spectrum``,
+        ``holds``, ``verdict`` and ``assumed``
+    :raises Refused: if the run has no whole push, or if something is missing for the demand;
+        nothing is written then
     """
     if iterate and (rule != "en1998" or mechanism is not None or not spectrum):
         raise Refused(
@@ -99,7 +105,8 @@ def assessDomain(
     runs: Annotated[Sequence[FilePath], listOf(path, 0)] = (),
     out: FilePath | None = None,
 ) -> Domain:
-    """Write domain.json and domain.png: the N-V domain of a scene, with runs as points. Returns the domain.
+    """Write domain.json and domain.png: the N-V domain of a scene, with runs as points. Returns the
+    domain.
 
     :param directory: folder of results, and ``runs``: as in :func:`masonry.capacity.domain`
     :param out: folder of both files; None: ``directory``

@@ -18,8 +18,8 @@ UNITS = {
     "m/s2": ACCELERATION_UNITS["m/s²"],
     "cm/s2": ACCELERATION_UNITS["cm/s²"],
 }
-#: EN 1998-1:2004, tables 3.2 (type 1) and 3.3 (type 2): S [-], TB, TC and TD [s] by the ground type. These are the recommended
-#: values; a National Annex may have others.
+#: EN 1998-1:2004, tables 3.2 (type 1) and 3.3 (type 2): S [-], TB, TC and TD [s] by the ground
+#: type. These are the recommended values; a National Annex may have others.
 PARAMETERS: dict[int, dict[str, tuple[float, float, float, float]]] = {
     1: {
         "A": (1.0, 0.15, 0.4, 2.0),
@@ -36,7 +36,8 @@ PARAMETERS: dict[int, dict[str, tuple[float, float, float, float]]] = {
         "E": (1.6, 0.05, 0.25, 1.2),
     },
 }
-#: The longest period of the spectrum of EN 1998-1:2004, 3.2.2.2 [s], and the least damping correction, equation (3.6) [-].
+#: The longest period of the spectrum of EN 1998-1:2004, 3.2.2.2 [s], and the least damping
+#: correction, equation (3.6) [-].
 LONGEST, LEAST_CORRECTION = 4.0, 0.55
 
 
@@ -71,7 +72,8 @@ class Spectrum:
         return float(np.interp(period, self.periods, self.accelerations))
 
     def displacement(self, period: float) -> float:
-        """Se (T/2π)² at a period [mm], EN 1998-1:2004, equation (3.7). Parameters as in :meth:`acceleration`."""
+        """Se (T/2π)² at a period [mm], EN 1998-1:2004, equation (3.7). Parameters as in
+        :meth:`acceleration`."""
         return 1e3 * self.acceleration(period) * (period / (2 * math.pi)) ** 2
 
 
@@ -85,15 +87,20 @@ def elastic(
     damping: Annotated[float, number("%", 0, 100, above=True)] = 5.0,
     parameters: Numbers | None = None,
 ) -> Spectrum:
-    """The horizontal elastic response spectrum of EN 1998-1:2004, 3.2.2.2, equations (3.2) to (3.5).
+    """The horizontal elastic response spectrum of EN 1998-1:2004, 3.2.2.2, equations (3.2) to
+    (3.5).
 
     :param ag: agR, the reference peak ground acceleration on ground of type A, in ``unit``
     :param unit: ``"g"``, ``"m/s²"`` or ``"cm/s²"``
-    :param type: 1, or 2 where earthquakes of a surface-wave magnitude above 5.5 do not count, 3.2.2.2(2)
+    :param type: 1, or 2 where earthquakes of a surface-wave magnitude above 5.5 do not count,
+        3.2.2.2(2)
     :param ground: ground type ``"A"`` to ``"E"``, table 3.1
-    :param importance: importance factor by which agR is multiplied, 4.2.5; 1.0 is that of ordinary buildings, class II [-]
-    :param damping: viscous damping, of which equation (3.6) makes the correction η [%]; 5 % is that of the spectrum itself
-    :param parameters: S [-], TB, TC and TD [s] of a National Annex; None: the recommended values of tables 3.2 and 3.3
+    :param importance: importance factor by which agR is multiplied, 4.2.5; 1.0 is that of ordinary
+        buildings, class II [-]
+    :param damping: viscous damping, of which equation (3.6) makes the correction η [%]; 5 % is that
+        of the spectrum itself
+    :param parameters: S [-], TB, TC and TD [s] of a National Annex; None: the recommended values of
+        tables 3.2 and 3.3
     :raises Refused: with what is wrong
     """
     soil, tb, tc, td = PARAMETERS[type][ground] if parameters is None else _four(parameters)
@@ -154,12 +161,15 @@ def readSpectrum(
     unit: Annotated[str, oneOf(*UNITS)],
     corner: Annotated[float, number("s", 0, 1000, above=True)] | None = None,
 ) -> Spectrum:
-    """A spectrum from a file of two columns: period [s] and acceleration. Between its rows it is a line.
+    """A spectrum from a file of two columns: period [s] and acceleration. Between its rows it is a
+    line.
 
-    Columns are apart by commas, semicolons, tabs or blanks; lines that begin with # and a first line of names are left out.
+    Columns are apart by commas, semicolons, tabs or blanks; lines that begin with # and a first
+    line of names are left out.
 
     :param unit: of the accelerations: ``"g"``, ``"m/s²"`` or ``"cm/s²"``
-    :param corner: TC, the upper limit of the periods with constant acceleration, which the target displacement needs [s]
+    :param corner: TC, the upper limit of the periods with constant acceleration, which the target
+        displacement needs [s]
     :raises Refused: if the file cannot be read, is no such table, or if the corner is missing
     """
     rows: list[list[float]] = []

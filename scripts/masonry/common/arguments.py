@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What a script says to a command is checked here: every argument, before the command does anything.
+"""What a script says to a command is checked here: every argument, before the command does
+anything.
 
 Type hints say what a parameter takes::
 
@@ -8,9 +9,11 @@ Type hints say what a parameter takes::
     @validated
     def press(description: Any, platen: MovingPlaten, stress: Stress, riding: bool = True) -> None: ...
 
-A hint is ``Annotated`` with a kind: a function of a value and of the first argument of the command, the scene or its description.
-It returns the value as the command uses it, or raises ValueError with a sentence that goes on behind the name: "-1 Pa must be at
-least 0". Kinds of numbers have their ``unit``, and ``of``, the type of Python; kinds of some texts have ``choices``. Texts, switches and functions need no kind; hints of other types without one are not checked. All problems of a call are
+A hint is ``Annotated`` with a kind: a function of a value and of the first argument of the command,
+the scene or its description. It returns the value as the command uses it, or raises ValueError with
+a sentence that goes on behind the name: "-1 Pa must be at least 0". Kinds of numbers have their
+``unit``, and ``of``, the type of Python; kinds of some texts have ``choices``. Texts, switches and
+functions need no kind; hints of other types without one are not checked. All problems of a call are
 in one error, and an argument that is not known is answered with the nearest name.
 """
 
@@ -53,12 +56,13 @@ def shown(value):
 
 
 def nearest(name, names):
-    """The end of a sentence that names what is nearest to a name: ``, did you mean 'x'?``, or nothing."""
+    """The end of a sentence that names what is nearest to a name: ``, did you mean 'x'?``, or
+    nothing."""
     close = difflib.get_close_matches(str(name)[:SHOWN], [str(n) for n in names], 1)
     return f", did you mean {close[0]!r}?" if close else ""
 
 
-# -- kinds ------------------------------------------------------------------------------------------------------------
+# -- kinds -----------------------------------------------------------------------------------------
 
 
 def isNumber(value):
@@ -324,7 +328,7 @@ def orFunction(kind):
     return lambda value, first=None: value if callable(value) else kind(value, first)
 
 
-# -- hints ------------------------------------------------------------------------------------------------------------
+# -- hints -----------------------------------------------------------------------------------------
 
 #: What a user gives, with its kind.
 Name = Annotated[str, name]
@@ -355,8 +359,8 @@ def kindOf(hint: Any) -> Kind | None:
 def validated(act: F) -> F:
     """Let a function, or a class, check its arguments by the kinds of its hints.
 
-    A function gets ``kinds``, which returns them by name, and ``checked``, a function of its positional and its named arguments that
-    gives both as the kinds return them.
+    A function gets ``kinds``, which returns them by name, and ``checked``, a function of its
+    positional and its named arguments that gives both as the kinds return them.
 
     :raises Refused: from the function, with all problems
     """

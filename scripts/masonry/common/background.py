@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Other processes: tasks that a copy of this one carries out, and programs, several at a time.
 
-A :class:`Task` begins with the scene as it is at that moment, so nothing need be packed for it, and what the run does then does
-not change what the copy sees. It takes no steps and ends without any clean-up. Where the system gives no process the work is
-done at once instead. :func:`carryOut` is the pool: it runs programs beside each other. Both end when this process does.
+A :class:`Task` begins with the scene as it is at that moment, so nothing need be packed for it, and
+what the run does then does not change what the copy sees. It takes no steps and ends without any
+clean-up. Where the system gives no process the work is done at once instead. :func:`carryOut` is
+the pool: it runs programs beside each other. Both end when this process does.
 """
 
 import contextlib
@@ -23,7 +24,8 @@ from ..basics import Interrupted, Refused
 LONGEST = 60.0  # [s] that is waited for at once
 LOOK_EVERY = 0.05  # [s] between looks at programs
 PARENT_ENDS = 1  # PR_SET_PDEATHSIG of prctl
-#: Name in the environment of a :class:`Program`: number of the open file that takes why it refuses its input.
+#: Name in the environment of a :class:`Program`: number of the open file that takes why it refuses
+#: its input.
 REFUSAL = "MASONRY_REFUSAL"
 _refusal = int(os.environ.pop(REFUSAL, -1))  # programs that it starts have their own
 
@@ -33,7 +35,8 @@ class Failed(Exception):
 
 
 class Task:
-    """Work that goes on in a copy of this process. What it gives can be had from :meth:`result`, one after the other.
+    """Work that goes on in a copy of this process. What it gives can be had from :meth:`result`,
+    one after the other.
 
     :param work: a function without arguments whose result can be iterated, as a generator
     :param parts: how many results it gives
@@ -75,7 +78,8 @@ class Task:
         return True
 
     def result(self, part: int = 0) -> Any:
-        """A result; it is waited for. Raises what the work raised, or Failed if its process has ended without it."""
+        """A result; it is waited for. Raises what the work raised, or Failed if its process has
+        ended without it."""
         self.ready(part, math.inf)
         last = self._results[-1] if self._results else None
         if isinstance(last, BaseException):
@@ -149,7 +153,8 @@ class Program(subprocess.Popen[bytes]):
         )
 
     def refusal(self) -> tuple[str, str]:
-        """The class and the text of what the program has refused; two empty texts if it has refused nothing."""
+        """The class and the text of what the program has refused; two empty texts if it has refused
+        nothing."""
         self._refusal.seek(0)
         kind, _, reason = self._refusal.read().decode().partition("\n")
         return kind, reason

@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Folders that others may have packed: what is written in them stays in them, and what is read from them is data.
+"""Folders that others may have packed: what is written in them stays in them, and what is read from
+them is data.
 
-Results, studies and checkpoints are handed on as folders, and an archive keeps symbolic links. A file in such a folder is
-opened by :func:`inside` or :func:`replaced` alone, which write through no link, and :func:`check` names all links of a
-folder before anything is written there. ``scripts/README.md`` says what may be shared.
+Results, studies and checkpoints are handed on as folders, and an archive keeps symbolic links. A
+file in such a folder is opened by :func:`inside` or :func:`replaced` alone, which write through no
+link, and :func:`check` names all links of a folder before anything is written there.
+``scripts/README.md`` says what may be shared.
 """
 
 import contextlib
@@ -18,7 +20,8 @@ MOST = 5  # names that are listed
 
 
 def check(*folders):
-    """Refuse folders that hold symbolic links, pipes or devices, all at once. A folder that is missing holds none.
+    """Refuse folders that hold symbolic links, pipes or devices, all at once. A folder that is
+    missing holds none.
 
     A folder itself may be reached through a link: its user has named it.
 
@@ -43,9 +46,11 @@ def check(*folders):
 
 
 def inside(path, flags):
-    """The ``opener`` of Python's ``open`` for a file in such a folder: a regular one, because a pipe or a device has no end.
+    """The ``opener`` of Python's ``open`` for a file in such a folder: a regular one, because a
+    pipe or a device has no end.
 
-    What is written is reached through no symbolic link, and has no second name (a hard link): that would change, too.
+    What is written is reached through no symbolic link, and has no second name (a hard link): that
+    would change, too.
 
     :raises OSError: with the reason
     """
@@ -76,7 +81,8 @@ def inside(path, flags):
 
 @contextlib.contextmanager
 def replaced(path, mode="w", **settings):
-    """A file to write, which takes the place of ``path`` when it is whole and on the disk; else ``path`` stays as it is.
+    """A file to write, which takes the place of ``path`` when it is whole and on the disk; else
+    ``path`` stays as it is.
 
     It is ``path + ".new"`` until then, and is removed after an error.
 

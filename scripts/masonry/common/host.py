@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Finds the YADE of this machine in plain Python, and starts it when it is first needed.
 
-The program ``yade`` puts the folder of YADE's modules on ``sys.path`` before it runs a script; ``/usr/bin/python3`` does not.
-After ``import masonry`` this module does it instead, as soon as anything imports ``yade``: a scene, a module of this
-package, or the script itself. Nothing is imported before that, so what reads results stays as quick as without YADE.
+The program ``yade`` puts the folder of YADE's modules on ``sys.path`` before it runs a script;
+``/usr/bin/python3`` does not. After ``import masonry`` this module does it instead, as soon as
+anything imports ``yade``: a scene, a module of this package, or the script itself. Nothing is
+imported before that, so what reads results stays as quick as without YADE.
 
-YADE then starts without ports, without a change of ``sys.argv``, with one thread unless ``OMP_NUM_THREADS`` says another
-number, and without its lines on the terminal. The classes of the plugin are registered at once.
+YADE then starts without ports, without a change of ``sys.argv``, with one thread unless
+``OMP_NUM_THREADS`` says another number, and without its lines on the terminal. The classes of the
+plugin are registered at once.
 """
 
 import contextlib
@@ -37,13 +39,15 @@ INSTALLED = "on Debian, apt-get install yade installs it"
 
 
 class Finder:
-    """The place of YADE among those of all modules. It stands before the other finders, whose answers it takes first."""
+    """The place of YADE among those of all modules. It stands before the other finders, whose
+    answers it takes first."""
 
     def __init__(self, started):
         self._started = started  # called when YADE has been imported
 
     def find_spec(self, name, path=None, target=None):
-        """As of :class:`importlib.abc.MetaPathFinder`. Raises ModuleNotFoundError with a sentence if there is no YADE."""
+        """As of :class:`importlib.abc.MetaPathFinder`. Raises ModuleNotFoundError with a sentence
+        if there is no YADE."""
         if name == YADE:
             found = self._byOthers() or _installed()
             found.loader = Loader(YADE, found.origin)
@@ -57,7 +61,8 @@ class Finder:
         return None
 
     def _byOthers(self):
-        """YADE as the other finders see it, by sys.path; a folder of this name that is not YADE is passed over."""
+        """YADE as the other finders see it, by sys.path; a folder of this name that is not YADE is
+        passed over."""
         for finder in sys.meta_path:
             find = getattr(finder, "find_spec", None)
             found = find(YADE, None) if find and finder is not self else None
@@ -70,7 +75,8 @@ class Loader(importlib.machinery.SourceFileLoader):
     """Imports YADE quietly, with one thread unless the user wants more."""
 
     def exec_module(self, module):
-        """Run the module. Raises ImportError with a sentence if this Python lacks what YADE needs."""
+        """Run the module. Raises ImportError with a sentence if this Python lacks what YADE
+        needs."""
         printed, asked = io.StringIO(), THREADS in os.environ
         os.environ.setdefault(THREADS, "1")  # OpenMP reads it when it is loaded
         quietly = contextlib.redirect_stdout(printed)
@@ -96,8 +102,8 @@ class Loader(importlib.machinery.SourceFileLoader):
             found = printed.getvalue().replace(GREETING, "").strip()
             if found:
                 say(found)
-        # YADE puts the folder of its own modules before the standard library, where its config.py, log.py or plot.py would
-        # hide modules of these names: it comes last.
+        # YADE puts the folder of its own modules before the standard library, where its config.py,
+        # log.py or plot.py would hide modules of these names: it comes last.
         own = os.path.realpath(os.path.dirname(module.__file__))
         sys.path.sort(key=lambda folder: os.path.realpath(folder or ".") == own)
         self.started()
@@ -105,8 +111,8 @@ class Loader(importlib.machinery.SourceFileLoader):
 
 @contextlib.contextmanager
 def _withoutShell():
-    """Let YADE find the version of IPython without importing it, which is all that it does with it in plain Python, and takes a
-    third of its start."""
+    """Let YADE find the version of IPython without importing it, which is all that it does with it
+    in plain Python, and takes a third of its start."""
     standIn = types.ModuleType(SHELL)
     with contextlib.suppress(importlib.metadata.PackageNotFoundError):
         standIn.__version__ = importlib.metadata.version(SHELL)
@@ -133,7 +139,8 @@ class Imported:
 def folders():
     """Folders in which YADE's modules can lie on this machine, the likeliest first.
 
-    They are those that the program ``yade`` adds to ``sys.path``, and those of a library folder of Debian.
+    They are those that the program ``yade`` adds to ``sys.path``, and those of a library folder of
+    Debian.
     """
     text = _program()
     named = re.findall(r"^sys\.path\.insert\(\d+, *'([^']+)'\)", text, re.MULTILINE)
@@ -154,8 +161,8 @@ def _program():
 
 
 def interpreter():
-    """The interpreter that the installed YADE was built for, as its program names it, and its version as a pair of numbers.
-    Both are None if that cannot be known."""
+    """The interpreter that the installed YADE was built for, as its program names it, and its
+    version as a pair of numbers. Both are None if that cannot be known."""
     found = re.match(r"#! *(/\S*python\S*)", _program())
     if not found:
         return None, None
@@ -165,7 +172,8 @@ def interpreter():
 
 
 def _installed():
-    """The spec of the YADE that is installed. Raises ImportError if there is none, or if it is of another Python."""
+    """The spec of the YADE that is installed. Raises ImportError if there is none, or if it is of
+    another Python."""
     path, version = interpreter()
     if version and version != sys.version_info[:2]:
         raise ImportError(

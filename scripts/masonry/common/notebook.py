@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What is different in a notebook: lines that are kept up to date, pictures and tables, and how a run that ends is shown.
+"""What is different in a notebook: lines that are kept up to date, pictures and tables, and how a
+run that ends is shown.
 
 This module loads nothing of Jupyter: it uses what the kernel of a notebook has loaded.
 """
@@ -50,7 +51,8 @@ class Stopped(KeyboardInterrupt):
 
 
 class Failed(Exception):
-    """A run ended before its time, as was said above the error. The cells that follow do not run."""
+    """A run ended before its time, as was said above the error. The cells that follow do not
+    run."""
 
     def _render_traceback_(self):
         return [str(self)]
@@ -72,8 +74,8 @@ def ended(name, status, folder, error):
 
 
 def picture(figure, dpi):
-    """A figure of matplotlib as an image that stands in the HTML itself. It has a palette of :data:`COLOURS` colours, which
-    makes it a third as large."""
+    """A figure of matplotlib as an image that stands in the HTML itself. It has a palette of
+    :data:`COLOURS` colours, which makes it a third as large."""
     from PIL import Image
 
     drawn, small = io.BytesIO(), io.BytesIO()

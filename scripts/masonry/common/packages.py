@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Debian's packages that only a part of the project needs: what is left out without each, and how it is installed.
+"""Debian's packages that only a part of the project needs: what is left out without each, and how
+it is installed.
 
-``scripts/setup.sh`` installs what a run needs, and with ``--tests`` also what studies and tests need.
+``scripts/setup.sh`` installs what a run needs, and with ``--tests`` also what studies and tests
+need.
 """
 
 import importlib
@@ -22,7 +24,8 @@ NEEDED_FOR = {
 
 
 class Missing(Refused, ImportError):
-    """A Python module is not installed; the text is one sentence with the command that installs it."""
+    """A Python module is not installed; the text is one sentence with the command that installs
+    it."""
 
 
 def needed(name):

@@ -26,9 +26,11 @@ class Endless(Refused):
 
 @dataclass
 class Assembly:
-    """Rigid blocks and their joints. Arrays run over blocks (n), joints (m) or points of joints (p).
+    """Rigid blocks and their joints. Arrays run over blocks (n), joints (m) or points of joints
+    (p).
 
-    Loads are arrays (n, 6): force [N] and moment about the centroid [N m] of each block. They can be added and scaled.
+    Loads are arrays (n, 6): force [N] and moment about the centroid [N m] of each block. They can
+    be added and scaled.
 
     :param centres: centroids of the blocks (n, 3) [m]
     :param masses: (n) [kg]
@@ -48,11 +50,12 @@ class Assembly:
     :param corners: corners of the blocks, a list of arrays (k, 3) [m]
     :param seams: whether a joint is a crack surface in a brick (m); pictures show it where it opens
     :param stood: whether blocks are where they stood when the joints were made
-    :param deadline: end of the time that the solver has for all programmes together, as time.monotonic() counts [s]
-    :param props: points of blocks that cannot move in a direction, whatever force that takes: a list of (number of the
-        block, unit vector, point [m])
-    :param links: ties and springs: a list of (loads that a unit of the force makes, as a list of (number of the block, force
-        and moment about its centroid), least force, largest force [N])
+    :param deadline: end of the time that the solver has for all programmes together, as
+        time.monotonic() counts [s]
+    :param props: points of blocks that cannot move in a direction, whatever force that takes: a
+        list of (number of the block, unit vector, point [m])
+    :param links: ties and springs: a list of (loads that a unit of the force makes, as a list of
+        (number of the block, force and moment about its centroid), least force, largest force [N])
     """
 
     centres: np.ndarray
@@ -89,10 +92,11 @@ class Assembly:
         #: whether some joints close a loop, as in a bond, unlike those of an arch or a stack
         self.bonded = self._bonded(free)
 
-    # -- loads ----------------------------------------------------------------------------------------------------
+    # -- loads -------------------------------------------------------------------------------------
 
     def weights(self, acceleration: Numbers) -> np.ndarray:
-        """Mass times an acceleration (x, y, z) [m/s²] on every block that is free to follow it, as a load."""
+        """Mass times an acceleration (x, y, z) [m/s²] on every block that is free to follow it, as
+        a load."""
         load = np.zeros((len(self.centres), 6))
         load[:, :3] = self.masses[:, None] * np.asarray(acceleration, float)
         return load
@@ -110,7 +114,7 @@ class Assembly:
             load[block, 3:] = np.cross(np.asarray(point) - self.centres[block], vector)
         return load
 
-    # -- the programme --------------------------------------------------------------------------------------------
+    # -- the programme -----------------------------------------------------------------------------
 
     def largest(self, live: np.ndarray, dead: np.ndarray) -> Bound:
         """The largest factor on a load that the structure carries beside others.
@@ -118,14 +122,16 @@ class Assembly:
         :param live: load that grows
         :param dead: loads that stay
         :returns: :class:`Bound`
-        :raises Refused: if the structure does not carry the dead loads alone, with the block that moves most; if nothing
-            gives way, however large the factor is; or if the numbers of the programme are too far apart to be solved
+        :raises Refused: if the structure does not carry the dead loads alone, with the block that
+            moves most; if nothing gives way, however large the factor is; or if the numbers of the
+            programme are too far apart to be solved
         """
         return self._bound(live, dead, 1)
 
     def smallest(self, live: np.ndarray, dead: np.ndarray) -> Bound:
-        """The smallest factor with which a load keeps the structure at rest, for example the least reaction of a support
-        that settles. Its mechanism is that in which the structure follows the support. Parameters as in :meth:`largest`.
+        """The smallest factor with which a load keeps the structure at rest, for example the least
+        reaction of a support that settles. Its mechanism is that in which the structure follows the
+        support. Parameters as in :meth:`largest`.
         """
         return self._bound(live, dead, -1)
 
@@ -151,13 +157,14 @@ class Assembly:
     ) -> Bound:
         """A collapse of joints that slip without opening, by repeated limit analysis.
 
-        Friction is replaced, joint by joint, by a cohesion that is the friction under the normal force of the last round,
-        with hardly any slope, so that joints which slip do not open. When normal forces repeat, the forces obey friction
-        and the mechanism does not dilate (the idea of Gilbert, Casapulla and Ahmed, "Limit analysis of masonry block
-        structures with non-associative frictional joints using linear programming", Computers and Structures 84, 2006).
-        The same is done without friction in head joints, and with joints that lose their friction where nothing presses
-        them, and the smallest result is taken. It is a collapse of such joints, and often the least, but no proof that
-        there is none below.
+        Friction is replaced, joint by joint, by a cohesion that is the friction under the normal
+        force of the last round, with hardly any slope, so that joints which slip do not open. When
+        normal forces repeat, the forces obey friction and the mechanism does not dilate (the idea
+        of Gilbert, Casapulla and Ahmed, "Limit analysis of masonry block structures with
+        non-associative frictional joints using linear programming", Computers and Structures 84,
+        2006). The same is done without friction in head joints, and with joints that lose their
+        friction where nothing presses them, and the smallest result is taken. It is a collapse of
+        such joints, and often the least, but no proof that there is none below.
 
         :param most: rounds
         :param within: change of the factor at which it ends [-]
@@ -173,7 +180,8 @@ class Assembly:
         turns: int = TURNS,
         sense: int = 1,
     ) -> Bound:
-        """The bound of associated flow alone, with facets of friction that turn to where forces point.
+        """The bound of associated flow alone, with facets of friction that turn to where forces
+        point.
 
         :param fixed: and ``sense``: as in :meth:`_solve`
         :param turns: how often the facets are turned at most
@@ -202,8 +210,8 @@ class Assembly:
 
         :param sense: 1 for the largest factor, -1 for the smallest
         :param turn: angles of the first vertices of the friction polygons [rad]
-        :param fixed: normal forces (one a joint or, in space, one a contact) [N], and the share [-] of the friction that
-            still grows with them; None: all of it
+        :param fixed: normal forces (one a joint or, in space, one a contact) [N], and the share [-]
+            of the friction that still grows with them; None: all of it
         :param most: the largest factor to look for
         """
         free = ~self.held
@@ -238,7 +246,8 @@ class Assembly:
         return Bound(self, factor / step, speed, live, dead, *programme.read(values))
 
     def _endless(self, live, dead):
-        """A factor that no strength explains: a million times all strengths and loads over the live load."""
+        """A factor that no strength explains: a million times all strengths and loads over the live
+        load."""
         areas = np.bincount(self.joint, self.areas, len(self.pairs))
         finite = np.where(np.isfinite(self.crushing), self.crushing, 0)
         strength = (areas * (self.tension + self.cohesion + finite)).sum()
@@ -267,10 +276,11 @@ class Assembly:
             pass
         return Refused(f"{message}{unsolved}")
 
-    # -- geometry -------------------------------------------------------------------------------------------------
+    # -- geometry ----------------------------------------------------------------------------------
 
     def _tangents(self):
-        """Two unit vectors in the plane of every joint (m, 2, 3); in the x-z plane the first lies in it."""
+        """Two unit vectors in the plane of every joint (m, 2, 3); in the x-z plane the first lies
+        in it."""
         first = np.cross(self.normals, [0, 1, 0])
         flat = np.linalg.norm(first, axis=1) < 0.1
         first[flat] = np.cross(self.normals[flat], [1, 0, 0])
@@ -312,7 +322,8 @@ _Contacts = namedtuple("_Contacts", "at area joint")
 
 
 def _force(load, free):
-    """The usual size of the forces of a load [N], or of its moments [N m] if there are none; 1 if there is nothing."""
+    """The usual size of the forces of a load [N], or of its moments [N m] if there are none; 1 if
+    there is nothing."""
     load = np.abs(np.where(free, load, 0))
     for part in (load[:, :3], load[:, 3:]):
         sizes = part.max(axis=1)

@@ -14,7 +14,8 @@ from ..read.elevation import Structure, figureOf
 from .programme import FACETS
 
 SLIDES = 1e-4  # share of the power of a mechanism that is friction, from which its joints slide [-]
-GIVES = 0.02  # less than this share of the largest motion between two blocks of the mechanism is not listed [-]
+# less than this share of the largest motion between two blocks of the mechanism is not listed [-]
+GIVES = 0.02
 
 LOST = "cohesion", "tension", "crushing"  # strengths that a joint can lose
 MECHANISM = "mechanism_blocks.vtu", "mechanism_joints.vtu"  # files for ParaView
@@ -25,7 +26,8 @@ SHOWN = 0.06  # how far the fastest corner is drawn to move, over the size of th
 class Bound:
     """What limit analysis found: a load factor, and the mechanism at which the structure gives way.
 
-    Velocities are those with which the live load has a power of 1, so only their ratios mean something.
+    Velocities are those with which the live load has a power of 1, so only their ratios mean
+    something.
     """
 
     assembly: Any  #: :class:`Assembly`
@@ -36,8 +38,8 @@ class Bound:
     dead: np.ndarray
     normal: np.ndarray  #: force on each contact, positive in compression [N]
     along: np.ndarray  #: force along the joint on each contact (c, 3) [N]
-    #: change of the factor when the facets of friction were turned last [-]; 0 in the plane, where there are none; how far
-    #: their corners are outside the cone where turning takes too long
+    #: change of the factor when the facets of friction were turned last [-]; 0 in the plane, where
+    #: there are none; how far their corners are outside the cone where turning takes too long
     facetError: float = 0.0
     dilates: bool = True  #: whether joints that slip open as friction tells
     settled: bool = False  #: of :meth:`Assembly.withoutDilatancy`
@@ -48,11 +50,12 @@ class Bound:
     def __post_init__(self):
         self.factor = self.value
 
-    # -- forces ---------------------------------------------------------------------------------------------------
+    # -- forces ------------------------------------------------------------------------------------
 
     @property
     def compressed(self) -> np.ndarray:
-        """Normal forces by which friction is judged [N]: one a joint in the plane, one a contact in space."""
+        """Normal forces by which friction is judged [N]: one a joint in the plane, one a contact in
+        space."""
         a = self.assembly
         if a.plane:
             return np.bincount(a.contacts.joint, self.normal, len(a.pairs))
@@ -60,13 +63,15 @@ class Bound:
 
     @property
     def directions(self) -> np.ndarray:
-        """Angle of the force along the joint on each contact, from the joint's first tangent [rad]."""
+        """Angle of the force along the joint on each contact, from the joint's first tangent
+        [rad]."""
         one, two = self.assembly.tangents[self.assembly.contacts.joint].swapaxes(0, 1)
         return np.arctan2((self.along * two).sum(1), (self.along * one).sum(1))
 
     @property
     def overstressed(self) -> float:
-        """How far forces along the joints are above friction and cohesion, as a share of all of them [-]."""
+        """How far forces along the joints are above friction and cohesion, as a share of all of
+        them [-]."""
         a, c = self.assembly, self.assembly.contacts
         strength = a.cohesion[c.joint] * c.area + a.friction[c.joint] * self.normal
         along = np.linalg.norm(self.along, axis=1)
@@ -76,7 +81,7 @@ class Bound:
             strength = np.bincount(c.joint, strength)
         return float(np.maximum(along - strength, 0).sum() / max(along.sum(), 1e-300))
 
-    # -- the mechanism --------------------------------------------------------------------------------------------
+    # -- the mechanism -----------------------------------------------------------------------------
 
     def motion(self, block: np.ndarray, at: np.ndarray) -> np.ndarray:
         """Velocities of points of blocks. ``block`` are numbers, ``at`` their points (k, 3) [m]."""
@@ -97,8 +102,9 @@ class Bound:
 
     @property
     def powers(self) -> dict[str, float]:
-        """Power of the mechanism by what takes it, with the live load at its factor and the dead loads, as a dict:
-        ``friction``, ``cohesion``, ``tension``, ``crushing``, and ``loads``, the sum of what the loads do, all counted positive.
+        """Power of the mechanism by what takes it, with the live load at its factor and the dead
+        loads, as a dict: ``friction``, ``cohesion``, ``tension``, ``crushing``, and ``loads``, the
+        sum of what the loads do, all counted positive.
         """
         a, c = self.assembly, self.assembly.contacts
         opening, slide = self.jumps(c.joint, c.at)
@@ -130,17 +136,20 @@ class Bound:
 
     @property
     def rigid(self) -> bool:
-        """Whether no joint slides in the mechanism, and none has a strength there that it could lose."""
+        """Whether no joint slides in the mechanism, and none has a strength there that it could
+        lose."""
         return not self.slides and not self._takes(*LOST)
 
     @property
     def exact(self) -> bool:
-        """Whether the factor is what rigid blocks with dry joints carry: no joint slides or loses strength in the mechanism,
-        and no joints close a loop, so that none can slip while others keep it open."""
+        """Whether the factor is what rigid blocks with dry joints carry: no joint slides or loses
+        strength in the mechanism, and no joints close a loop, so that none can slip while others
+        keep it open."""
         return self.rigid and not self.assembly.bonded
 
     def joints(self) -> np.ndarray:
-        """What joints do in the mechanism: an array of ``"rests"``, ``"opens"``, ``"slides"`` or ``"crushes"`` (m)."""
+        """What joints do in the mechanism: an array of ``"rests"``, ``"opens"``, ``"slides"`` or
+        ``"crushes"`` (m)."""
         a, c = self.assembly, self.assembly.contacts
         states = np.full(len(a.pairs), "rests", dtype="<U7")
         opening, slide = self.jumps(c.joint, c.at)
@@ -201,12 +210,14 @@ class Bound:
             "facet_error": self.facetError,
         }
 
-    # -- files ----------------------------------------------------------------------------------------------------
+    # -- files -------------------------------------------------------------------------------------
 
     def frames(self) -> tuple[dict[str, Any], dict[str, Any]]:
-        """The mechanism as frames of blocks and joints, as :func:`masonry.read.frames.readFrame` gives those of a run.
+        """The mechanism as frames of blocks and joints, as :func:`masonry.read.frames.readFrame`
+        gives those of a run.
 
-        It is scaled so that the corner that moves most moves by :data:`SHOWN` of the structure's size.
+        It is scaled so that the corner that moves most moves by :data:`SHOWN` of the structure's
+        size.
         """
         a = self.assembly
         sizes = [len(c) for c in a.corners]
@@ -250,7 +261,8 @@ class Bound:
         return blocks, joints
 
     def save(self, directory: FilePath) -> None:
-        """Write the mechanism for ParaView: ``mechanism_blocks.vtu`` and ``mechanism_joints.vtu``."""
+        """Write the mechanism for ParaView: ``mechanism_blocks.vtu`` and
+        ``mechanism_joints.vtu``."""
         Mesh = needed("meshio").Mesh
         from scipy.spatial import ConvexHull
 

@@ -14,8 +14,8 @@ KEPT = 1e-6  # how well equilibrium and strength must be kept, relative to the l
 
 
 class Programme:
-    """The linear programme: columns are force variables, rows are equilibrium and strength. Forces are in units of a
-    typical one, lengths of a typical one."""
+    """The linear programme: columns are force variables, rows are equilibrium and strength. Forces
+    are in units of a typical one, lengths of a typical one."""
 
     def __init__(self, assembly, rows, size, force):
         self.assembly, self.rows, self.size, self.force = assembly, rows, size, force
@@ -23,14 +23,16 @@ class Programme:
         self._equal, self._unequal = [], []
         self._parts = (
             []
-        )  # of the forces on contacts: which, columns, share that is normal, direction along the joint
+            # of the forces on contacts: which, columns, share that is normal, direction along the
+            # joint
+        )
         self.limits = np.zeros(0)
 
     def factor(self, load, most):
         """The factor on a load.
 
-        A variable that acts on many blocks would couple them all in the solver. So it has one copy for every :data:`SHARE`
-        entries of the load, and each copy equals the one before.
+        A variable that acts on many blocks would couple them all in the solver. So it has one copy
+        for every :data:`SHARE` entries of the load, and each copy equals the one before.
 
         :param load: entries of equilibrium, in units
         :param most: largest value; None: none
@@ -52,7 +54,8 @@ class Programme:
         return first + np.arange(count)
 
     def _forces(self, joint, at, direction, columns, turns=False):
-        """Let variables act as forces in a direction, or as moments about it, on both blocks of a joint."""
+        """Let variables act as forces in a direction, or as moments about it, on both blocks of a
+        joint."""
         for side, sign in ((0, -1), (1, 1)):
             block = self.assembly.pairs[joint, side]
             moment = np.cross((at - self.assembly.centres[block]) / self.size, direction)
@@ -93,7 +96,8 @@ class Programme:
                 self._forces(which, middle, along, self._new(len(which)), turns)
 
     def _dry(self, which, turn):
-        """Contacts of dry joints in space: forces within the friction cone, as sums of its edges."""
+        """Contacts of dry joints in space: forces within the friction cone, as sums of its
+        edges."""
         a, c = self.assembly, self.assembly.contacts
         joint, at = c.joint[which], c.at[which]
         one, two = a.tangents[joint].swapaxes(0, 1)
@@ -104,7 +108,8 @@ class Programme:
             self._parts.append((which, columns, 1, along))
 
     def _strong(self, which, turn, fixed):
-        """Contacts of the other joints: a normal force within bounds, and forces along the joint below the strength."""
+        """Contacts of the other joints: a normal force within bounds, and forces along the joint
+        below the strength."""
         a, c = self.assembly, self.assembly.contacts
         joint, at, area = c.joint[which], c.at[which], c.area[which] / self.force
         one, two = a.tangents[joint].swapaxes(0, 1)
@@ -121,7 +126,8 @@ class Programme:
             pressed, share = fixed
             pressed = np.maximum(pressed[groups] / self.force, 0)
             strength, slope = strength + (1 - share) * slope * pressed, share * slope
-        # the force along the joint is a sum of forces to the corners of a polygon, and their sum is below the strength
+        # the force along the joint is a sum of forces to the corners of a polygon, and their sum is
+        # below the strength
         limits = len(self.limits) + np.arange(len(first))
         self.limits = np.append(self.limits, strength)
         self._unequal.append((limits[group], columns, -slope[group]))
@@ -164,7 +170,8 @@ class Programme:
         return values[self._last], values, dual[: len(still)]
 
     def read(self, values):
-        """Normal force, positive in compression, (one a contact) and force along the joint (contact, 3) [N]."""
+        """Normal force, positive in compression, (one a contact) and force along the joint
+        (contact, 3) [N]."""
         count = len(self.assembly.contacts.at)
         normal, along = np.zeros(count), np.zeros((count, 3))
         for which, columns, share, direction in self._parts:
@@ -175,7 +182,8 @@ class Programme:
 
 
 def _polygon(turn, one, two):
-    """Corners of a polygon around the unit circle between two directions (k, 3): a list of :data:`FACETS` arrays (k, 3).
+    """Corners of a polygon around the unit circle between two directions (k, 3): a list of
+    :data:`FACETS` arrays (k, 3).
 
     :param turn: angle of the first corner from ``one`` (k) [rad]
     """

@@ -10,13 +10,14 @@ from ..basics import Refused
 from ..read.cracks import CRACK_SURFACE
 from .assembly import Assembly
 
-#: What has moved by less, over the size of a typical block, is taken where it stood when the joints were made [-]. It changes
-#: a factor by as much, and without it all coefficients of a programme differ by a little, which takes Clp ten times as long.
+#: What has moved by less, over the size of a typical block, is taken where it stood when the joints
+#: were made [-]. It changes a factor by as much, and without it all coefficients of a programme
+#: differ by a little, which takes Clp ten times as long.
 STOOD = 1e-3
 NEVER = 1e300  # strength of a tie that does not yield [N]
 AXES = "xyzXYZ"  # as blockedDOFs names the freedoms of a body
-#: Components of normals that are smaller are zero [-]. A structure at rest under its weight has such ones everywhere, and with
-#: them the solver takes up to a hundred times as long.
+#: Components of normals that are smaller are zero [-]. A structure at rest under its weight has
+#: such ones everywhere, and with them the solver takes up to a hundred times as long.
 SMALLEST = 1e-5
 
 
@@ -25,10 +26,12 @@ def _unit(vectors):
 
 
 def read() -> Assembly:
-    """The blocks and joints of the scene in YADE, as they stand now: an :class:`Assembly`. Where no block has moved by more
-    than :data:`STOOD`, they are taken as they stood when the joints were made.
+    """The blocks and joints of the scene in YADE, as they stand now: an :class:`Assembly`. Where no
+    block has moved by more than :data:`STOOD`, they are taken as they stood when the joints were
+    made.
 
-    Joints that have opened are taken as closed, so after supports have moved far the answer is one for other joints.
+    Joints that have opened are taken as closed, so after supports have moved far the answer is one
+    for other joints.
 
     :raises Refused: if there are no joints
     """
@@ -72,8 +75,8 @@ def read() -> Assembly:
 
 
 def _links(numbers, place):
-    """Ties and springs of the scene, as :class:`Assembly` takes them. Springs carry any force; ties that break keep theirs, so
-    what is found stays an upper bound."""
+    """Ties and springs of the scene, as :class:`Assembly` takes them. Springs carry any force; ties
+    that break keep theirs, so what is found stays an upper bound."""
     found = []
     for engine in O.engines:
         kind = type(engine).__name__
@@ -110,8 +113,8 @@ def _rows(vectors):
 
 
 def _held(blocks):
-    """Whether each block cannot move along x, y, z or turn about them (n, 6). The nodes of deformable units are held in their
-    engine, not in the States of their bodies."""
+    """Whether each block cannot move along x, y, z or turn about them (n, 6). The nodes of
+    deformable units are held in their engine, not in the States of their bodies."""
     blocked = [b.state.blockedDOFs for b in blocks]
     numbers = {body.id: number for number, body in enumerate(blocks)}
     for engine in O.engines:
@@ -139,27 +142,31 @@ class _Placement:
             self.now, self.turns = self.was, np.tile(np.eye(3), (len(blocks), 1, 1))
 
     def placed(self, block, point):
-        """Where a point of a block is, given in the reference state; of None, the ground, the point itself."""
+        """Where a point of a block is, given in the reference state; of None, the ground, the point
+        itself."""
         point = np.array(point)
         if block is None:
             return point
         return self.turns[block] @ (point - self.was[block]) + self.now[block]
 
     def turned(self, pairs, vectors):
-        """The mean of directions fixed to both blocks of pairs (k, 2), from the reference state (k, 3)."""
+        """The mean of directions fixed to both blocks of pairs (k, 2), from the reference state (k,
+        3)."""
         return 0.5 * (self._turn(pairs[:, 0], vectors) + self._turn(pairs[:, 1], vectors))
 
     def _turn(self, blocks, vectors):
         return np.einsum("kij,kj->ki", self.turns[blocks], vectors)
 
     def moved(self, pairs, points):
-        """The mean of points fixed to both blocks of pairs (k, 2), from the reference state (k, 3)."""
+        """The mean of points fixed to both blocks of pairs (k, 2), from the reference state (k,
+        3)."""
         at = lambda side: self._turn(side, points - self.was[side]) + self.now[side]
         return 0.5 * (at(pairs[:, 0]) + at(pairs[:, 1]))
 
 
 def _strengths(p):
-    """Tensile strength, cohesion, friction, compressive strength, and whether a joint never gives way."""
+    """Tensile strength, cohesion, friction, compressive strength, and whether a joint never gives
+    way."""
     crushing = math.inf
     if p.cap and not p.elastic:
         # of eq. (8c) without shear: Cnn σ² - Cn σ = fc²

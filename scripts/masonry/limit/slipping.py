@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Mechanisms in which joints slip without opening, below the bound of associated flow.
 
-When a part of a wall tips over a stepped crack, nearly all of its head joints are open, and slip along their faces without
-anything to resist. Associated flow does not allow that, since joints that slip would have to open more. So this module
-solves programmes of the same structure with less friction where nothing presses joints together: in head joints first
-(:func:`_smooth`), then in every joint that carries nothing (:func:`loosened`). :func:`repeated` replaces friction by a
+When a part of a wall tips over a stepped crack, nearly all of its head joints are open, and slip
+along their faces without anything to resist. Associated flow does not allow that, since joints that
+slip would have to open more. So this module solves programmes of the same structure with less
+friction where nothing presses joints together: in head joints first (:func:`_smooth`), then in
+every joint that carries nothing (:func:`loosened`). :func:`repeated` replaces friction by a
 cohesion. A mechanism counts only if hardly any friction is missing in it (:func:`_belongs`).
 """
 
@@ -21,9 +22,11 @@ MISSED = 0.02  # share of a mechanism's power that the friction it misses may ha
 
 
 def loosened(assembly, live, dead):
-    """The weakest mechanism that is found when joints without pressure lose their friction, as a Bound; None if there is none.
+    """The weakest mechanism that is found when joints without pressure lose their friction, as a
+    Bound; None if there is none.
 
-    It begins with the head joints. Then other joints that carry nothing lose their friction, too, and so on.
+    It begins with the head joints. Then other joints that carry nothing lose their friction, too,
+    and so on.
     """
     smooth, least = _smooth(assembly, dead), None
     for _ in range(LOOSENED if smooth else 0):
@@ -43,7 +46,8 @@ def loosened(assembly, live, dead):
 
 
 def withoutDilatancy(assembly, live, dead, most, within):
-    """The smallest of all that this module finds. :meth:`Assembly.withoutDilatancy` describes it."""
+    """The smallest of all that this module finds. :meth:`Assembly.withoutDilatancy` describes
+    it."""
     found = repeated(assembly, live, dead, most, within)
     smooth = _smooth(assembly, dead)
     if smooth:
@@ -62,7 +66,8 @@ def withoutDilatancy(assembly, live, dead, most, within):
 
 
 def repeated(assembly, live, dead, most, within):
-    """Rounds in which the friction of a joint is a cohesion: the friction under the normal force of the last round."""
+    """Rounds in which the friction of a joint is a cohesion: the friction under the normal force of
+    the last round."""
     bound = assembly.associated(live, dead)
     pressed, factor, slope = bound.compressed, bound.factor, 0.3
     for _ in range(most):
@@ -81,8 +86,8 @@ def repeated(assembly, live, dead, most, within):
 
 
 def _smooth(assembly, dead):
-    """The same structure without friction in its head joints, which the dead loads do not press together; None if it has
-    none."""
+    """The same structure without friction in its head joints, which the dead loads do not press
+    together; None if it has none."""
     down = np.where(assembly.held[:, :3], 0, dead[:, :3]).sum(axis=0)
     if not down.any():
         return None
@@ -92,7 +97,8 @@ def _smooth(assembly, dead):
 
 
 def _belongs(assembly, bound):
-    """Whether the mechanism of a structure with less friction is one of the whole structure, too."""
+    """Whether the mechanism of a structure with less friction is one of the whole structure,
+    too."""
     c = assembly.contacts
     speed = np.linalg.norm(bound.jumps(c.joint, c.at)[1], axis=1)
     friction = (assembly.friction - bound.assembly.friction)[c.joint]

@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Solves linear programmes by the interior-point method of Clp.
 
-A solver cannot be interrupted from Python while it works. So a copy of this process does it, which can be ended at any moment: by
-Ctrl-C or SIGTERM, when its time is over, and when it fails.
+A solver cannot be interrupted from Python while it works. So a copy of this process does it, which
+can be ended at any moment: by Ctrl-C or SIGTERM, when its time is over, and when it fails.
 
-HiGHS, which scipy has, takes 4 to 6 times as long for a wall in its plane with 1,000 to 3,000 joints, and more than 25 times as
-long in space: forces can be shared in many ways among many points, and its way to a corner of the solution takes most of the time.
+HiGHS, which scipy has, takes 4 to 6 times as long for a wall in its plane with 1,000 to 3,000
+joints, and more than 25 times as long in space: forces can be shared in many ways among many
+points, and its way to a corner of the solution takes most of the time.
 """
 
 import ctypes
@@ -36,7 +37,8 @@ def solve(whole, limits, seconds):
     """Solve a linear programme in a copy of the process.
 
     :param whole: its matrix (csc)
-    :param limits: least and largest value of each variable, what is made as small as possible, and the same two of each row
+    :param limits: least and largest value of each variable, what is made as small as possible, and
+        the same two of each row
     :returns: the variables, and the multipliers of the rows
     :raises Unsolved:
     :raises Refused: if Clp is missing, or its process has failed
@@ -79,7 +81,8 @@ def _solved(whole, limits, seconds):
     sizes = dict(zip(SOLUTION, (columns, count, count)))
     values = lambda name: np.array(getattr(clp, name)(model)[: sizes[name]])
     if not clp.Clp_status(model):
-        # Without its scaling, the solution may miss rows by more than the tolerance. The simplex method mends that.
+        # Without its scaling, the solution may miss rows by more than the tolerance. The simplex
+        # method mends that.
         found = values("Clp_primalRowSolution")
         if not ((arrays[-2] - MISSED <= found) & (found <= arrays[-1] + MISSED)).all():
             clp.Clp_scaling(model, 0)

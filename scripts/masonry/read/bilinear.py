@@ -10,17 +10,20 @@
     found.notes                                              # sentences on what the numbers do not say
     bilinear.drifts("results/wall_comp4")
 
-A bilinear curve is elastic with the stiffness K up to the yield force Vy, and keeps that force up to the ultimate displacement
-du. There are two rules:
+A bilinear curve is elastic with the stiffness K up to the yield force Vy, and keeps that force up
+to the ultimate displacement du. There are two rules:
 
-- ``masonry``, a convention of tests on masonry walls and of no code in particular: K is the secant stiffness at 0.7 of the peak, du is
-  where the force has fallen to 0.8 of the peak, and Vy is the force for which both curves have the same area up to du.
-- ``en1998``: EN 1998-1:2004, annex B.3, equation (B.6). Vy is the force at which the plastic mechanism forms, at the displacement
-  dm, and dy = 2 (dm - E/Vy), where E is the area under the curve up to dm. Annex B leaves it to its user when the mechanism
-  forms; here that is at the peak, if nothing else is given. It has no rule for du, which is that of ``masonry``.
+- ``masonry``, a convention of tests on masonry walls and of no code in particular: K is the secant
+  stiffness at 0.7 of the peak, du is where the force has fallen to 0.8 of the peak, and Vy is the
+  force for which both curves have the same area up to du.
+- ``en1998``: EN 1998-1:2004, annex B.3, equation (B.6). Vy is the force at which the plastic
+  mechanism forms, at the displacement dm, and dy = 2 (dm - E/Vy), where E is the area under the
+  curve up to dm. Annex B leaves it to its user when the mechanism forms; here that is at the peak,
+  if nothing else is given. It has no rule for du, which is that of ``masonry``.
 
-The curve of a run is the force that both ends carry at once: in every row of curve.csv the smaller of the force at the supports and
-that at the loaded point, so its peak is ``peak_at_both_ends_kN`` of run.json.
+The curve of a run is the force that both ends carry at once: in every row of curve.csv the smaller
+of the force at the supports and that at the loaded point, so its peak is ``peak_at_both_ends_kN``
+of run.json.
 """
 
 import math
@@ -43,10 +46,11 @@ SECANT = 0.7  # of the peak: where the secant stiffness is taken
 BEGIN = 0.01
 #: By how much of its largest displacement a push may go back [-].
 BACK = 0.02
-#: A curve that still grows in the last tenth of its displacement with more than this share of its stiffness has no peak [-].
+#: A curve that still grows in the last tenth of its displacement with more than this share of its
+#: stiffness has no peak [-].
 GROWS = 0.05
-#: A plateau is above this share of the peak [-], and makes the mechanism of annex B.3 uncertain if it begins before this share of
-#: the displacement at the peak [-].
+#: A plateau is above this share of the peak [-], and makes the mechanism of annex B.3 uncertain if
+#: it begins before this share of the displacement at the peak [-].
 PLATEAU, LONG = 0.95, 0.5
 #: Round-off, relative [-].
 SMALL = 1e-9
@@ -73,8 +77,10 @@ class Bilinear:
     area: float  #: under the curve up to du [J], which is kN mm
     secant: float  #: share of the peak at which K was taken [-]; not used by ``en1998``
     fall: float  #: share of the peak to which the force falls at du [-]
-    mechanism: float  #: displacement at which the plastic mechanism forms [mm]; not used by ``masonry``
-    unreached: str  #: a sentence if the force does not fall so far, so that du is the end of the curve; else empty
+    #: displacement at which the plastic mechanism forms [mm]; not used by ``masonry``
+    mechanism: float
+    #: a sentence if the force does not fall so far, so that du is the end of the curve; else empty
+    unreached: str
     remarks: tuple[str, ...]  #: other sentences on what the numbers do not say
 
     @property
@@ -251,12 +257,14 @@ def bilinear(
     :param force: along the push [kN] (n)
     :param rule: ``"masonry"`` or ``"en1998"``
     :param secant: share of the peak at which ``masonry`` takes the stiffness, between 0 and 1 [-]
-    :param fall: share of the peak to which the force falls at the ultimate displacement, between 0 and 1 [-]
-    :param mechanism: of ``en1998``, displacement at which the plastic mechanism forms [mm]; None: that of the peak
-    :param pulse: a fall that is over within this displacement, or begins within it of the end, may be a wave that passes through
-        the structure, and does not count [mm]
-    :raises Refused: if there is no such curve: it is empty, goes back, does not begin at zero, has no peak, or has more
-        area than any bilinear one with its stiffness
+    :param fall: share of the peak to which the force falls at the ultimate displacement, between 0
+        and 1 [-]
+    :param mechanism: of ``en1998``, displacement at which the plastic mechanism forms [mm]; None:
+        that of the peak
+    :param pulse: a fall that is over within this displacement, or begins within it of the end, may
+        be a wave that passes through the structure, and does not count [mm]
+    :raises Refused: if there is no such curve: it is empty, goes back, does not begin at zero, has
+        no peak, or has more area than any bilinear one with its stiffness
     """
     moved, forces = _checked(displacement, force)
     at = int(forces.argmax())
@@ -299,7 +307,8 @@ def bilinear(
 
 
 def _end(moved, force, at, fall, pulse):
-    """The ultimate displacement; a sentence if the force does not fall so far, else an empty text; and further sentences."""
+    """The ultimate displacement; a sentence if the force does not fall so far, else an empty text;
+    and further sentences."""
     level = fall * float(force[at])
     place = curves.fallen(moved, force, at, level, pulse)
     if place is None:
@@ -340,8 +349,8 @@ def _annexB(moved, force, forms, end):
 
 
 def _onPlateau(moved, force, forms, stiffness):
-    """A sentence if the curve is nearly at its peak long before, so that the stiffness of annex B.3 depends on where within the
-    plateau the peak happens to be; else nothing."""
+    """A sentence if the curve is nearly at its peak long before, so that the stiffness of annex B.3
+    depends on where within the plateau the peak happens to be; else nothing."""
     early = _reached(moved, force, PLATEAU * float(force.max()))
     work, highest = _area(moved, force, early)
     yields = 2 * (early - work / highest)
@@ -356,7 +365,8 @@ def _onPlateau(moved, force, forms, stiffness):
 
 
 def _equalArea(stiffness, end, area):
-    """The plateau Vy whose curve has this area up to its end: the smaller root of Vy end - Vy²/(2 K) = area."""
+    """The plateau Vy whose curve has this area up to its end: the smaller root of Vy end - Vy²/(2
+    K) = area."""
     rest = end * end - 2 * area / stiffness
     if rest < -SMALL * end * end:
         raise Refused(
@@ -389,8 +399,8 @@ def pushover(directory: FilePath, column: str | None = None) -> Pushover:
     """Read the curve of the push of a run.
 
     :param directory: folder of results
-    :param column: of curve.csv whose displacement the curve has, for example ``roof_x_mm``, from where the push began; None: that of the
-        pushed point
+    :param column: of curve.csv whose displacement the curve has, for example ``roof_x_mm``, from
+        where the push began; None: that of the pushed point
     :raises Refused: if the run has no push, was interrupted, failed, or goes along a history
     """
     data = RunData.read(directory, column)
@@ -439,11 +449,13 @@ def ofRun(
     fall: Share = FALL,
     mechanism: Mechanism | None = None,
 ) -> Bilinear:
-    """The bilinear curve of the push of a run. A fall of the force that is over within the first period of the structure does
-    not count.
+    """The bilinear curve of the push of a run. A fall of the force that is over within the first
+    period of the structure does not count.
 
-    :param directory: folder of results, or what :func:`pushover` read of it; other parameters as in :func:`bilinear`
-    :raises Refused: if the run has no whole push, or its curve has no bilinear one; the message names the folder
+    :param directory: folder of results, or what :func:`pushover` read of it; other parameters as in
+        :func:`bilinear`
+    :raises Refused: if the run has no whole push, or its curve has no bilinear one; the message
+        names the folder
     """
     push = directory if isinstance(directory, Pushover) else pushover(directory)
     try:
@@ -468,14 +480,15 @@ def drifts(
     height: Annotated[float, number("m", 0, above=True)] | None = None,
     fall: Share = FALL,
 ) -> list[Number]:
-    """Drifts of the push of a run [mrad] at the first crack, at the peak, where the force has fallen to a share of the peak, and at
-    the collapse: displacement of the masonry over its height.
+    """Drifts of the push of a run [mrad] at the first crack, at the peak, where the force has
+    fallen to a share of the peak, and at the collapse: displacement of the masonry over its height.
 
     :param directory: folder of results, or what :func:`pushover` read of it
-    :param height: of the point whose displacement is recorded above the base [m], for drifts of that point; None: those of the
-        masonry, of which run.json has the height
+    :param height: of the point whose displacement is recorded above the base [m], for drifts of
+        that point; None: those of the masonry, of which run.json has the height
     :param fall: as in :func:`bilinear`
-    :returns: four numbers; one that the run does not have has the value None and a note that says why
+    :returns: four numbers; one that the run does not have has the value None and a note that says
+        why
     :raises Refused: if the run has no whole push, or if there is no height
     """
     push = directory if isinstance(directory, Pushover) else pushover(directory)
@@ -500,7 +513,8 @@ def drifts(
 
 
 def lines(numbers: list[Number], notes: Sequence[str] = ()) -> list[str]:
-    """Numbers as lines for the terminal: name, value, unit, meaning, and a mark where a note below says more.
+    """Numbers as lines for the terminal: name, value, unit, meaning, and a mark where a note below
+    says more.
 
     :param numbers: to print
     :param notes: more sentences, which follow

@@ -14,7 +14,8 @@ from ..basics import Refused, say
 from . import drawing
 from .files import program, readCurve, readRun
 
-#: Colours that differ in print, also for those who do not tell red from green (Okabe and Ito, 2008), and dashes.
+#: Colours that differ in print, also for those who do not tell red from green (Okabe and Ito,
+#: 2008), and dashes.
 COLOURS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#555555"]
 DASHES = ["-", (0, (6, 2)), (0, (4, 1.5, 1, 1.5)), (0, (1.2, 1.2))]
 
@@ -22,8 +23,8 @@ DASHES = ["-", (0, (6, 2)), (0, (4, 1.5, 1, 1.5)), (0, (1.2, 1.2))]
 def readMeasured(text: str) -> tuple[np.ndarray, np.ndarray, list[str]]:
     """A measured curve of ``FILE:X:Y``: its two columns as arrays, and their names.
 
-    The file has a line of column names and then numbers, with commas, semicolons or tabs between them. X and Y are names
-    of columns, or their numbers from 1. Empty cells are left out.
+    The file has a line of column names and then numbers, with commas, semicolons or tabs between
+    them. X and Y are names of columns, or their numbers from 1. Empty cells are left out.
 
     :raises Refused: if the text, the file or a column is not as it must be
     """
@@ -123,14 +124,15 @@ def compare(
     out: FilePath = "plot.png",
     title: str = "",
 ) -> FilePath:
-    """Draw curves over each other. Measured ones are black and behind, runs are in colours. Returns the path.
+    """Draw curves over each other. Measured ones are black and behind, runs are in colours. Returns
+    the path.
 
     :param directories: folders of runs
     :param measured: texts ``FILE:X:Y``, as in :func:`readMeasured`
     :param x: column of curve.csv; None: as curve.png has it
     :param y: as ``x``
-    :param labels: names for the legend, of all runs and then of all measured curves; what is missing is named after its
-        folder or file
+    :param labels: names for the legend, of all runs and then of all measured curves; what is
+        missing is named after its folder or file
     :param out: path of the picture, .png, .pdf or .svg
     :param title: of the picture
     :raises Refused: if something cannot be read or drawn
@@ -172,7 +174,8 @@ def _draw(out, tests, curves, names, labels, title):
 
 
 def _names(directories, measured):
-    """Short names of runs and measured curves, as much of the ends of their paths as tells them apart.
+    """Short names of runs and measured curves, as much of the ends of their paths as tells them
+    apart.
 
     Measured curves of one file have the name of their second column, too.
     """

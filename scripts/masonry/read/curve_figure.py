@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""curve.png: what the entry ``figure`` of run.json says, and the energies. This module needs no YADE."""
+"""curve.png: what the entry ``figure`` of run.json says, and the energies. This module needs no
+YADE."""
 
 import os
 import re
@@ -16,7 +17,8 @@ LINES = ["black", "tab:orange", "tab:green", "tab:purple", "tab:brown", "tab:cya
 
 
 def plan(run: dict[str, Any], data: dict[str, Any], directory: FilePath) -> dict[str, Any]:
-    """The entry ``figure`` of run.json, with all that may be left out. Raises Refused for one that cannot be drawn.
+    """The entry ``figure`` of run.json, with all that may be left out. Raises Refused for one that
+    cannot be drawn.
 
     :param run: what :func:`masonry.read.files.readRun` returns
     :param data: what :func:`masonry.read.files.readCurve` returns
@@ -41,8 +43,8 @@ def plan(run: dict[str, Any], data: dict[str, Any], directory: FilePath) -> dict
 
 
 def energies(data: dict[str, Any]) -> tuple[dict[str, Any], Any]:
-    """Energies to draw, since the first row: a dict of name -> values [J], and the work done, or None if there is none. One row
-    alone has none.
+    """Energies to draw, since the first row: a dict of name -> values [J], and the work done, or
+    None if there is none. One row alone has none.
 
     :param data: dict of column name -> array; what has an energy ends in ``_J``
     """
@@ -72,10 +74,11 @@ def curve(directory: FilePath) -> None:
 
 
 def figureOf(run: dict[str, Any], data: dict[str, Any], directory: FilePath) -> Any:
-    """The figure of curve.png, to be drawn and saved in :func:`masonry.read.drawing.style`. Raises Refused.
+    """The figure of curve.png, to be drawn and saved in :func:`masonry.read.drawing.style`. Raises
+    Refused.
 
-    Loops have axes through zero and their envelope in bold, and their energies are drawn over the length of the way.
-    Without energies there is no panel of them.
+    Loops have axes through zero and their envelope in bold, and their energies are drawn over the
+    length of the way. Without energies there is no panel of them.
 
     :param run: entries of run.json: ``figure`` and ``title``
     :param data: dict of column name -> numbers
@@ -179,7 +182,8 @@ def _curves(axes, spec, data, x, ideal=None):
 
 
 def limits(spec: dict[str, Any], data: dict[str, Any]) -> tuple[float, float]:
-    """Range of the upper panel that has all of the first curve, and of the others what is more than single swings."""
+    """Range of the upper panel that has all of the first curve, and of the others what is more than
+    single swings."""
     columns = [data[axis["column"]] for axis in spec["y"]]
     marks = [thing["y"] for key in ("marks", "bounds") for thing in spec[key]]
     low = min([np.nanmin(columns[0]), *(np.nanquantile(c, 0.01) for c in columns), *marks])

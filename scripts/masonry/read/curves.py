@@ -9,8 +9,9 @@ import numpy as np
 from ..common.arguments import Numbers
 from . import loops
 
-#: Of the elastic energy: what joints dissipate up to it is no crack [-]. Where mortar bonds, nothing is dissipated before
-#: the first crack, and this share finds it a row or two late; dry joints slip a little from the first row on.
+#: Of the elastic energy: what joints dissipate up to it is no crack [-]. Where mortar bonds,
+#: nothing is dissipated before the first crack, and this share finds it a row or two late; dry
+#: joints slip a little from the first row on.
 CRACKED = 1e-5
 #: Of :func:`suddenLoss`: the stretch of the push [mm].
 SUDDEN = 0.1
@@ -19,11 +20,13 @@ SHEAR = 2 / 3
 
 
 def dynamicImbalance(top: Numbers, base: Numbers) -> float:
-    """How much of the force of a push does not arrive at its base [-]: 0 if all does, 1 and more if none does.
+    """How much of the force of a push does not arrive at its base [-]: 0 if all does, 1 and more if
+    none does.
 
-    It is the root mean square of top less base shear over the largest of either: the larger of that from half the peak at the
-    base to that peak, and of that from there to the end. If this peak is less than half of the largest force, all rows count
-    together. Inertia makes the difference swing about zero, and damping makes it drag.
+    It is the root mean square of top less base shear over the largest of either: the larger of that
+    from half the peak at the base to that peak, and of that from there to the end. If this peak is
+    less than half of the largest force, all rows count together. Inertia makes the difference swing
+    about zero, and damping makes it drag.
     """
     differences, forces = np.subtract(top, base), np.abs(base)
     largest = max(np.abs(top).max(initial=0), forces.max(initial=0))
@@ -37,28 +40,32 @@ def dynamicImbalance(top: Numbers, base: Numbers) -> float:
 
 
 def quasiStatic(top: Numbers, base: Numbers, weight: float = SHEAR) -> list[float]:
-    """The shear force V_s of a push without the first-order inertia of the structure's own mass, in every row.
+    """The shear force V_s of a push without the first-order inertia of the structure's own mass, in
+    every row.
 
-    A structure with the masses m that follows the accelerated displacement u of its driven point by its static shape φ, which
-    is 1 there, holds back Σ m φ² ü at the driven point, and Σ m φ ü in all. So top less V_s is Σ m φ² ü, top less base is
-    Σ m φ ü, and V_s = (1 - w) top + w base with w = Σ m φ² / Σ m φ.
+    A structure with the masses m that follows the accelerated displacement u of its driven point by
+    its static shape φ, which is 1 there, holds back Σ m φ² ü at the driven point, and Σ m φ ü in
+    all. So top less V_s is Σ m φ² ü, top less base is Σ m φ ü, and V_s = (1 - w) top + w base with
+    w = Σ m φ² / Σ m φ.
 
-    :param weight: w [-]. That of a bar in shear is 2/3, which gives (top + 2 base)/3; of a bar that bends 0.63 if it is free to
-        turn at its driven end, and 0.74 if it is not
+    :param weight: w [-]. That of a bar in shear is 2/3, which gives (top + 2 base)/3; of a bar that
+        bends 0.63 if it is free to turn at its driven end, and 0.74 if it is not
     """
     return [(1 - weight) * t + weight * b for t, b in zip(top, base)]
 
 
 def stiffness(displacement: Numbers, force: Numbers, ramp: int = 0) -> float:
-    """Initial stiffness of a push [force/displacement]: that of a line through its beginning that fits its first part best.
+    """Initial stiffness of a push [force/displacement]: that of a line through its beginning that
+    fits its first part best.
 
-    The first part begins where the velocity of the drive has grown, because before that a wave passes through the structure,
-    which is over after a whole first period. It ends at the first row that has a quarter of the largest force and twice the
-    displacement of its beginning, because weaker waves go on. In a structure that cracks early it ends before that: at the
-    first row that has a third of the largest force and 1.1 times that displacement.
+    The first part begins where the velocity of the drive has grown, because before that a wave
+    passes through the structure, which is over after a whole first period. It ends at the first row
+    that has a quarter of the largest force and twice the displacement of its beginning, because
+    weaker waves go on. In a structure that cracks early it ends before that: at the first row that
+    has a third of the largest force and 1.1 times that displacement.
 
-    :param force: that of :func:`quasiStatic`. What it is in the first row does not count if it is more than a hundredth of
-        the peak, as for a drive that held a weight before
+    :param force: that of :func:`quasiStatic`. What it is in the first row does not count if it is
+        more than a hundredth of the peak, as for a drive that held a weight before
     :param ramp: number of the row at which the velocity of the drive has grown
     """
     if not force:
@@ -76,9 +83,11 @@ def stiffness(displacement: Numbers, force: Numbers, ramp: int = 0) -> float:
 
 
 def suddenLoss(displacement: Numbers, top: Numbers, base: Numbers) -> tuple[float, float]:
-    """The largest fall of the force of a push within :data:`SUDDEN`, over its peak [-], and the displacement at which it begins.
+    """The largest fall of the force of a push within :data:`SUDDEN`, over its peak [-], and the
+    displacement at which it begins.
 
-    The force is the mean of both ends, which leaves out waves that pass through. Rows that lie farther apart show none.
+    The force is the mean of both ends, which leaves out waves that pass through. Rows that lie
+    farther apart show none.
     """
     force = [0.5 * (t + b) for t, b in zip(top, base)]
     peak, beyond, found = max(force, default=0.0), 0, (0.0, 0.0)
@@ -91,8 +100,9 @@ def suddenLoss(displacement: Numbers, top: Numbers, base: Numbers) -> tuple[floa
 
 
 def fallen(displacement: Any, force: Any, at: int, level: float, pulse: float) -> float | None:
-    """Where the force falls below a level after a row and stays below for longer than a pulse: a number of a row with a fraction, or
-    None. What falls within a pulse before the end of the curve may be a wave, too. Without pulses the first fall counts.
+    """Where the force falls below a level after a row and stays below for longer than a pulse: a
+    number of a row with a fraction, or None. What falls within a pulse before the end of the curve
+    may be a wave, too. Without pulses the first fall counts.
 
     :param displacement: that does not go back, and ``force``: arrays
     :param at: number of the row
@@ -111,8 +121,9 @@ def fallen(displacement: Any, force: Any, at: int, level: float, pulse: float) -
 
 
 def stillGrows(displacement: Numbers, force: Numbers) -> bool:
-    """Whether the force of a push is largest at its end, and grows there with more than a twentieth of its initial stiffness:
-    then nothing has given way yet. The end is the last tenth of the displacement."""
+    """Whether the force of a push is largest at its end, and grows there with more than a twentieth
+    of its initial stiffness: then nothing has given way yet. The end is the last tenth of the
+    displacement."""
     if len(force) < 10 or max(force) > 1.001 * max(force[-3:]):
         return False
     start = displacement[-1] - 0.1 * (displacement[-1] - displacement[0])
@@ -123,10 +134,11 @@ def stillGrows(displacement: Numbers, force: Numbers) -> bool:
 
 
 def initialStiffness(displacement: Numbers, force: Numbers) -> float:
-    """Slope [force/displacement] of the line fitted between 5 % and 25 % of the peak, on the way to it.
+    """Slope [force/displacement] of the line fitted between 5 % and 25 % of the peak, on the way to
+    it.
 
-    A push that begins under a force of more than a hundredth of the peak, as for a drive that held a weight before, counts
-    from that force.
+    A push that begins under a force of more than a hundredth of the peak, as for a drive that held
+    a weight before, counts from that force.
     """
     moved, forces = np.asarray(displacement, float), np.asarray(force, float)
     if not len(forces):
@@ -145,8 +157,9 @@ def initialStiffness(displacement: Numbers, force: Numbers) -> float:
 def firstCrack(column: Callable[[str], Numbers], rows: slice = slice(None)) -> int | None:
     """Number of the row at which the first crack of a push is seen, or None.
 
-    It is the first row at which the joints have dissipated, in tension and shear since the first of these rows, more than
-    CRACKED of the elastic energy that joints and units have there. So of dry joints it is the first slip that counts.
+    It is the first row at which the joints have dissipated, in tension and shear since the first of
+    these rows, more than CRACKED of the elastic energy that joints and units have there. So of dry
+    joints it is the first slip that counts.
 
     :param column: function of the name of a column of curve.csv that gives its values
     :param rows: those of the push, a slice
@@ -162,10 +175,11 @@ def firstCrack(column: Callable[[str], Numbers], rows: slice = slice(None)) -> i
 def cycleNumbers(column: Callable[[str], Numbers], threshold: float) -> list[dict[str, Any]]:
     """Numbers of every cycle of a wall that follows a history: a list of dicts, for run.json.
 
-    They are those of :class:`masonry.read.loops.Cycle`, None in place of NaN, with the base shear as the force. In place of
-    ``start`` and ``end`` there is ``rows``, the first and the last row of curve.csv, from 0. Beside them there are, of the
-    same stretch [J]: ``top_work_J``, the work of the force that drives the loading block over the same displacement;
-    ``dissipated_J``, what the joints dissipated; and ``damped_J``, what damping took.
+    They are those of :class:`masonry.read.loops.Cycle`, None in place of NaN, with the base shear
+    as the force. In place of ``start`` and ``end`` there is ``rows``, the first and the last row of
+    curve.csv, from 0. Beside them there are, of the same stretch [J]: ``top_work_J``, the work of
+    the force that drives the loading block over the same displacement; ``dissipated_J``, what the
+    joints dissipated; and ``damped_J``, what damping took.
 
     :param column: function of the name of a column of curve.csv that gives its values
     :param threshold: as in :mod:`masonry.read.loops` [mm]
@@ -191,7 +205,8 @@ def cycleNumbers(column: Callable[[str], Numbers], threshold: float) -> list[dic
 
 
 def dampedShare(column: Callable[[str], Numbers]) -> float:
-    """Of what joints and damping have taken since the first row, the share of damping [-]; 0 if nothing was taken."""
+    """Of what joints and damping have taken since the first row, the share of damping [-]; 0 if
+    nothing was taken."""
     grown = lambda name: column(name)[-1] - column(name)[0]
     damped = max(0.0, grown("damping_J"))
     lost = sum(grown(f"dissipated_{m}_J") for m in ("tension", "shear", "compression"))

@@ -10,7 +10,8 @@ from ..common.packages import needed
 
 
 def empty(width, height):
-    """An empty figure [inch]. It has no window, and pyplot, whose settings YADE changes, has no part in it."""
+    """An empty figure [inch]. It has no window, and pyplot, whose settings YADE changes, has no
+    part in it."""
     needed("matplotlib")
     from matplotlib.figure import Figure
 
@@ -18,7 +19,8 @@ def empty(width, height):
 
 
 def style(settings=()):
-    """The settings of matplotlib that all figures are drawn with, whatever the caller has set: a context.
+    """The settings of matplotlib that all figures are drawn with, whatever the caller has set: a
+    context.
 
     :param settings: more of them, a dict
     """
@@ -30,7 +32,8 @@ def style(settings=()):
 
 @contextlib.contextmanager
 def picture(path, width, height, dpi, settings=()):
-    """A figure [inch] that is written at the end of its block; ``settings`` are those of :func:`style`."""
+    """A figure [inch] that is written at the end of its block; ``settings`` are those of
+    :func:`style`."""
     with style(settings):
         figure = empty(width, height)
         yield figure

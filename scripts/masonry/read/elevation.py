@@ -21,8 +21,8 @@ from .painting import MORTAR, NONE, SHADES, TIES, Painting, fromBackToFront, rgb
 from .views import FROM_ABOVE, IN_SPACE, REACH, courseOf, magnificationOf, scaleText
 from .views import spaceViewOf, viewOf
 
-#: A block of a part is in an elevation if it reaches into the depth of the façade by this share of its own depth or of the
-#: façade's; what belongs to no part, as a platen, if it touches this depth.
+#: A block of a part is in an elevation if it reaches into the depth of the façade by this share of
+#: its own depth or of the façade's; what belongs to no part, as a platen, if it touches this depth.
 INSIDE = 0.25
 
 #: Arrays of frames of blocks and of joints that are drawn.
@@ -84,7 +84,8 @@ class Structure:
         return np.concatenate([self.corners[body] for body in bodies])
 
     def outer(self, body):
-        """Numbers of the points of a block that are corners of it, of as many as a deformable unit has."""
+        """Numbers of the points of a block that are corners of it, of as many as a deformable unit
+        has."""
         own = self.corners[body]
         if len(own) <= 8:
             return own
@@ -98,9 +99,11 @@ class Structure:
 
     @functools.cached_property
     def cracks(self):
-        """Joints that are cracked, crushed or seams: a list with an entry for each side of all joints that have the same number of
-        corners. An entry has arrays: the bodies on this side; the numbers of the joints; their kinds, as in
-        :mod:`masonry.read.painting`; their crushing, or 0 [m]; their corners as built [m]; and how these move with the bodies [m].
+        """Joints that are cracked, crushed or seams: a list with an entry for each side of all
+        joints that have the same number of corners. An entry has arrays: the bodies on this side;
+        the numbers of the joints; their kinds, as in
+        :mod:`masonry.read.painting`; their crushing, or 0 [m]; their corners as built [m]; and how
+            these move with the bodies [m].
         """
         j, found = self.joints, []
         if not j:
@@ -130,12 +133,15 @@ class Structure:
 
 
 class Elevation:
-    """What is seen of a structure from one side: a façade with all that stands in it, or all of it in space."""
+    """What is seen of a structure from one side: a façade with all that stands in it, or all of it
+    in space."""
 
     def __init__(self, structure, name, view, bodies, members=(), moment=""):
         """
-        :param view: a :class:`masonry.read.views.View`; ``bodies``: ids of the blocks that are drawn
-        :param members: of these, the ones of the façade, of which it is said whether they moved across it
+        :param view: a :class:`masonry.read.views.View`; ``bodies``: ids of the blocks that are
+            drawn
+        :param members: of these, the ones of the façade, of which it is said whether they moved
+            across it
         :param moment: what is said of it if it is not that of the other elevations
         """
         self.structure, self.name = structure, name
@@ -156,7 +162,8 @@ class Elevation:
         return (points - self.view.start) @ self.to
 
     def box(self, magnification):
-        """Two corners of what is drawn: all of it, but for what flew away, with room for the scale below."""
+        """Two corners of what is drawn: all of it, but for what flew away, with room for the scale
+        below."""
         flat = self.flat(self.structure.blocks["points"][self.nodes])
         now = flat + magnification * self.structure.moved[self.nodes] @ self.to
         low, high = flat.min(axis=0), flat.max(axis=0)
@@ -266,7 +273,8 @@ class Elevation:
 
 
 def elevationsOf(structure):
-    """One elevation for each façade: the largest parts first, and none for a part that is seen in another one's or is held."""
+    """One elevation for each façade: the largest parts first, and none for a part that is seen in
+    another one's or is held."""
     stands = lambda part: any(structure.shades.get(body) != "held" for body in part)
     parts = {n: part for n, part in structure.parts.items() if stands(part)} or {
         "": list(structure.corners)
@@ -302,12 +310,13 @@ def _facade(structure, name, members):
 
 
 def figureOf(structure, title, magnification=None, later=None):
-    """A figure of all façades in one scale, to be drawn and saved in :func:`masonry.read.drawing.style`: the deformed structure,
-    magnified, over the undeformed one, with its cracks. What moves across a façade, is seen from above or falls is seen in space,
-    too.
+    """A figure of all façades in one scale, to be drawn and saved in
+    :func:`masonry.read.drawing.style`: the deformed structure, magnified, over the undeformed one,
+    with its cracks. What moves across a façade, is seen from above or falls is seen in space, too.
 
     :param title: above it; ``{}`` in it is what is said of the magnification
-    :param magnification: of displacements; 0: the structure as it is built; None: as in :func:`magnificationOf`
+    :param magnification: of displacements; 0: the structure as it is built; None: as in
+        :func:`magnificationOf`
     :param later: a moment, and the structure at that moment, which is drawn true to scale; or None
     """
     elevations = elevationsOf(structure)
@@ -366,7 +375,8 @@ def figureOf(structure, title, magnification=None, later=None):
 
 
 def _scale(sizes, columns):
-    """The largest scale with which elevations of these sizes [m] stand on a page in so many columns [inch/m]."""
+    """The largest scale with which elevations of these sizes [m] stand on a page in so many columns
+    [inch/m]."""
     wide = sum(max(sizes[c::columns, 0]) for c in range(columns))
     high = sum(max(sizes[n : n + columns, 1]) for n in range(0, len(sizes), columns))
     rows = -(-len(sizes) // columns)
@@ -380,7 +390,8 @@ def _scale(sizes, columns):
 def structureOf(run, blocks, joints, directory):
     """The blocks and joints of a frame with what run.json says of them. Raises Refused.
 
-    :param run: entries of run.json: ``parts``, ``views``, ``targets``, ``ties``, ``reference_body`` and ``ground_body``
+    :param run: entries of run.json: ``parts``, ``views``, ``targets``, ``ties``, ``reference_body``
+        and ``ground_body``
     :param directory: folder, for messages
     """
     bodies = set(map(int, blocks["body"]))
@@ -411,9 +422,11 @@ def structureOf(run, blocks, joints, directory):
 
 
 def cracksOf(run, blocks, joints, when, directory, later=None):
-    """The figure of cracks.png. Cracks are red, joints that slid are blue, and crushed spots are black. Raises Refused.
+    """The figure of cracks.png. Cracks are red, joints that slid are blue, and crushed spots are
+    black. Raises Refused.
 
-    :param when: text that names the moment of the frame; ``later`` is as in :func:`figureOf`; the others are those of
+    :param when: text that names the moment of the frame; ``later`` is as in :func:`figureOf`; the
+        others are those of
         :func:`structureOf`
     """
     limits = f"open or slid more than {1e3 * CRACK:g} mm, crushed more than {1e3 * CRUSHED:g} mm"
@@ -422,10 +435,12 @@ def cracksOf(run, blocks, joints, when, directory, later=None):
 
 
 def cracksOfFrame(run, directory, number=None):
-    """The figure of cracks.png of a frame that a run has left; of a run that followed a collapse, with its end beside it.
+    """The figure of cracks.png of a frame that a run has left; of a run that followed a collapse,
+    with its end beside it.
 
     :param run: entries of run.json
-    :param number: of the frame, from 0; negative numbers count from the end; None: as in :func:`frameOfCracks`
+    :param number: of the frame, from 0; negative numbers count from the end; None: as in
+        :func:`frameOfCracks`
     """
     last = len(frameTimes(directory)) - 1
     chosen = frameOfCracks(run, directory) if number is None else number % (last + 1)
@@ -446,7 +461,8 @@ def cracks(directory, number=None):
         drawing.save(figure, os.path.join(directory, "cracks.png"), 110)
 
 
-#: What is said of the moments that a run that followed a collapse names, by their names among its answers.
+#: What is said of the moments that a run that followed a collapse names, by their names among its
+#: answers.
 MOMENTS = {
     "noticed_at": "when the collapse was noticed",
     "first_fall": "when the first block had fallen",
@@ -454,15 +470,16 @@ MOMENTS = {
 
 
 def _moments(run, directory):
-    """Numbers of the frames nearest to the moments of a collapse, and what they are, the first one first."""
+    """Numbers of the frames nearest to the moments of a collapse, and what they are, the first one
+    first."""
     times = {a["name"]: a["value"] for a in run.get("answers") or [] if a["stage"] == "fall"}
     found = sorted((times[name], text) for name, text in MOMENTS.items() if name in times)
     return [(frameAt(directory, time), text) for time, text in found]
 
 
 def frameOfCracks(run, directory):
-    """Number of the frame whose cracks are drawn, from 0: the last one, or, of a run that followed a collapse to the ground, that
-    when the collapse was noticed or the first block had fallen.
+    """Number of the frame whose cracks are drawn, from 0: the last one, or, of a run that followed
+    a collapse to the ground, that when the collapse was noticed or the first block had fallen.
 
     :param run: entries of run.json
     """

@@ -16,7 +16,8 @@ from ..common.folders import fromJson, inside
 
 
 def readWhole(path: FilePath) -> bytes:
-    """The bytes of a file. Raises OSError for what is no file, too: a pipe never ends, and a device has no end."""
+    """The bytes of a file. Raises OSError for what is no file, too: a pipe never ends, and a device
+    has no end."""
     with open(path, "rb", opener=inside) as file:
         return file.read()
 
@@ -32,7 +33,8 @@ def readText(path: FilePath) -> str:
 
 
 def readCurve(directory: FilePath) -> dict[str, list[float]]:
-    """curve.csv of a run as a dict of column name -> list of numbers. Raises Refused if there is none."""
+    """curve.csv of a run as a dict of column name -> list of numbers. Raises Refused if there is
+    none."""
     path = os.path.join(directory, "curve.csv")
     lines = list(csv.reader(readText(path).splitlines()))
     if len(lines) < 2:
@@ -52,7 +54,8 @@ def readCurve(directory: FilePath) -> dict[str, list[float]]:
 
 
 def readRun(directory: FilePath) -> dict[str, Any]:
-    """run.json of a run as a dict; this module's docstring lists its keys. Raises Refused if there is none."""
+    """run.json of a run as a dict; this module's docstring lists its keys. Raises Refused if there
+    is none."""
     path = os.path.join(directory, "run.json")
     text = readText(path)
     try:
@@ -66,7 +69,8 @@ def readRun(directory: FilePath) -> dict[str, Any]:
 
 @contextlib.contextmanager
 def filesOf(directory: FilePath) -> Iterator[None]:
-    """Use the files of a run. What they lack, since they are damaged or not of a finished run, becomes Refused."""
+    """Use the files of a run. What they lack, since they are damaged or not of a finished run,
+    becomes Refused."""
     try:
         yield
     except (KeyError, IndexError, AttributeError, TypeError, SyntaxError) as problem:

@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Frames for ParaView that MasonryVtkRecorder wrote, read again. This module needs no YADE and no VTK.
+"""Frames for ParaView that MasonryVtkRecorder wrote, read again. This module needs no YADE and no
+VTK.
 
-VTK's own reader is not used: its Python modules come with python3-vtk9 or, in its place, with python3-paraview, and
-either can end a process in which YADE runs with a VTK of its own. MasonryVtkRecorder writes one kind of file, with all
-numbers appended in base64 and compressed by zlib, and that kind is read here.
+VTK's own reader is not used: its Python modules come with python3-vtk9 or, in its place, with
+python3-paraview, and either can end a process in which YADE runs with a VTK of its own.
+MasonryVtkRecorder writes one kind of file, with all numbers appended in base64 and compressed by
+zlib, and that kind is read here.
 """
 
 import base64
@@ -66,8 +68,8 @@ def frameAt(directory: FilePath, time: Annotated[float, number("s")]) -> int:
 def readFrame(
     directory: FilePath, kind: Kind, number: FrameNumber = -1, names: Names | None = None
 ) -> dict[str, Any]:
-    """A frame of blocks, joints or connectors as a dict: ``points`` [m], ``cells`` (arrays of point numbers), and every data
-    array.
+    """A frame of blocks, joints or connectors as a dict: ``points`` [m], ``cells`` (arrays of point
+    numbers), and every data array.
 
     :param kind: ``blocks``, ``joints`` or ``connectors``, the ties and springs
     :param number: of the frame, from 0; negative numbers count from the end
@@ -83,8 +85,9 @@ def readSurfaces(
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Triangles around the blocks of a frame, as :func:`readFrame` numbers points and cells.
 
-    :returns: the corners of triangles, an array (n, 3) of point numbers; the cell of each of them; and whether cells are
-        rigid blocks, else they are zones of deformable units, all of whose sides are given, also those inside the unit
+    :returns: the corners of triangles, an array (n, 3) of point numbers; the cell of each of them;
+        and whether cells are rigid blocks, else they are zones of deformable units, all of whose
+        sides are given, also those inside the unit
     :raises Refused: as in :func:`readFrame`
     """
     return _read(_pathOf(directory, "blocks", number), _surfaces)
@@ -110,9 +113,11 @@ def _read(path, parsed):
 
 
 def asFrame(found: Any, names: Sequence[str] | None = None) -> dict[str, Any]:
-    """The same dict as :func:`readFrame` gives, of what ``MasonryVtkRecorder().joints()`` gives without a file.
+    """The same dict as :func:`readFrame` gives, of what ``MasonryVtkRecorder().joints()`` gives
+    without a file.
 
-    :param names: the arrays that are needed, beside the cells; None: all of them, which takes twice as long
+    :param names: the arrays that are needed, beside the cells; None: all of them, which takes twice
+        as long
     """
     arrays = [name for name in names or found if name != "cells"]
     cells = [np.array(cell) for cell in found["cells"]]
@@ -147,8 +152,8 @@ def _surfaces(root):
 
 
 def _oldFaces(cells, polyhedra):
-    """Triangles of each polyhedron, and the cell of each of them, as VTK wrote them before 9.4: how many faces the polyhedron
-    has, then of each how many corners, and these."""
+    """Triangles of each polyhedron, and the cell of each of them, as VTK wrote them before 9.4: how
+    many faces the polyhedron has, then of each how many corners, and these."""
     start = 0
     for cell in polyhedra:
         faces = cells["faces"][start : cells["faceoffsets"][cell]]
@@ -160,7 +165,8 @@ def _oldFaces(cells, polyhedra):
 
 
 def _newFaces(cells):
-    """The same of all polyhedra at once, as later versions write them: corners by face, and faces by cell."""
+    """The same of all polyhedra at once, as later versions write them: corners by face, and faces
+    by cell."""
     if (np.diff(cells["face_offsets"], prepend=0) != 3).any():
         raise ValueError("faces of its cells are no triangles")
     faces = cells["face_connectivity"].reshape(-1, 3)[cells["polyhedron_to_faces"]]
@@ -207,8 +213,9 @@ def _frame(root, names):
 def _array(array, text, size):
     """The numbers of a DataArray: a row a tuple if it has several components.
 
-    Its part of the text is a head and the data. The head has the number of blocks, the bytes of a full block and of the
-    last one before they were compressed, and the compressed bytes of each. Head and data are encoded one by one.
+    Its part of the text is a head and the data. The head has the number of blocks, the bytes of a
+    full block and of the last one before they were compressed, and the compressed bytes of each.
+    Head and data are encoded one by one.
     """
     start, width = int(array.get("offset")), struct.calcsize(size)
     letters = lambda count: -(-count // 3) * 4  # of so many bytes in base64

@@ -27,11 +27,11 @@ def write(directory, path, number=None, magnification=1.0, rate=10):
     """Write a run to a .glb file, whole or not at all.
 
     :param directory: folder of results
-    :param number: of the frame whose deformed shape is written, with its cracks as coloured faces, from 0. None: all
-        frames as an animation of the blocks, without cracks; of a run with deformable units, or with one frame alone, the
-        last one
-    :param magnification: of displacements [-]. In an animation a block stays rigid: its centre moves so many times as far,
-        and it turns by so many times the angle
+    :param number: of the frame whose deformed shape is written, with its cracks as coloured faces,
+        from 0. None: all frames as an animation of the blocks, without cracks; of a run with
+        deformable units, or with one frame alone, the last one
+    :param magnification: of displacements [-]. In an animation a block stays rigid: its centre
+        moves so many times as far, and it turns by so many times the angle
     :param rate: frames of the animation a second
     :returns: a sentence on what is in the file
     :raises Refused: as in :class:`masonry.read.model.Model`
@@ -108,7 +108,8 @@ class _File:
         )
 
     def _mesh(self, corners, material, colours=None):
-        """Triangles with flat sides, of an array (n, 3, 3) of their corners; the number of the mesh."""
+        """Triangles with flat sides, of an array (n, 3, 3) of their corners; the number of the
+        mesh."""
         normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
         lengths = np.linalg.norm(normals, axis=1)
         fine = lengths > 0
@@ -202,13 +203,15 @@ class _File:
 
 
 def linear(colour):
-    """Red, green and blue as light has them, from 0 to 1, of a colour "#rrggbb" as a screen has it."""
+    """Red, green and blue as light has them, from 0 to 1, of a colour "#rrggbb" as a screen has
+    it."""
     share = painting.rgb(colour) / 255
     return np.where(share <= 0.04045, share / 12.92, ((share + 0.055) / 1.055) ** 2.4)
 
 
 def quaternions(turns):
-    """Rotation vectors, an array (n, 3) [rad], as quaternions (x, y, z, w), none more than half a turn from that before."""
+    """Rotation vectors, an array (n, 3) [rad], as quaternions (x, y, z, w), none more than half a
+    turn from that before."""
     angle = np.linalg.norm(turns, axis=1)[:, None]
     found = np.hstack([0.5 * np.sinc(angle / (2 * np.pi)) * turns, np.cos(angle / 2)])
     flips = (found[1:] * found[:-1]).sum(axis=1) < 0

@@ -1,15 +1,18 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Numbers of loops of force over displacement, simulated or measured.
 
-Displacements are in mm and forces in kN, so that their products are in J. Both are given as one-dimensional sequences of
-the same length, in the order of time. Rows may be any distance apart and may repeat. Wrong input raises ValueError.
+Displacements are in mm and forces in kN, so that their products are in J. Both are given as
+one-dimensional sequences of the same length, in the order of time. Rows may be any distance apart
+and may repeat. Wrong input raises ValueError.
 
-``threshold`` is a displacement [mm] below which a reversal or an excursion is taken for noise. For a measured history
-take several times the scatter of its displacements, and less than half its smallest amplitude.
+``threshold`` is a displacement [mm] below which a reversal or an excursion is taken for noise. For
+a measured history take several times the scatter of its displacements, and less than half its
+smallest amplitude.
 
-A *half cycle* is an excursion to one side: from one passage through zero displacement to the next. A *cycle* is two half
-cycles in a row, one to either side. A place in a curve is given as a row number with a fraction: 7.25 is a quarter of
-the way from row 7 to row 8, with straight lines between rows.
+A *half cycle* is an excursion to one side: from one passage through zero displacement to the next.
+A *cycle* is two half cycles in a row, one to either side. A place in a curve is given as a row
+number with a fraction: 7.25 is a quarter of the way from row 7 to row 8, with straight lines
+between rows.
 """
 
 import math
@@ -20,8 +23,9 @@ import numpy as np
 
 from ..common.arguments import Numbers
 
-#: An excursion to one side. ``start`` and ``end`` are its places in the curve; ``extreme`` is the row of its largest
-#: displacement, the first of equal ones; ``side`` is 1 or -1; ``complete`` says whether it both begins and ends at zero.
+#: An excursion to one side. ``start`` and ``end`` are its places in the curve; ``extreme`` is the
+#: row of its largest displacement, the first of equal ones; ``side`` is 1 or -1; ``complete`` says
+#: whether it both begins and ends at zero.
 HalfCycle = namedtuple("HalfCycle", "start end extreme side complete")
 
 
@@ -67,12 +71,14 @@ def _noise(threshold):
 
 
 def turningPoints(displacement: Numbers, threshold: float = 0.0) -> np.ndarray:
-    """Rows at which a curve turns: an array, between whose rows the displacement changes by more than the threshold.
+    """Rows at which a curve turns: an array, between whose rows the displacement changes by more
+    than the threshold.
 
-    A maximum counts once the displacement has fallen by more than the threshold below it, a minimum once it has risen by
-    more. The first row of the array is where the first swing begins: row 0, or one that is not more than the threshold
-    away from it. The last one is where the last swing ends: the last row of the curve, or one from which the curve has
-    turned back by no more than the threshold. A curve without such a swing has row 0 alone.
+    A maximum counts once the displacement has fallen by more than the threshold below it, a minimum
+    once it has risen by more. The first row of the array is where the first swing begins: row 0, or
+    one that is not more than the threshold away from it. The last one is where the last swing ends:
+    the last row of the curve, or one from which the curve has turned back by no more than the
+    threshold. A curve without such a swing has row 0 alone.
     """
     moved = _row(displacement)
     _noise(threshold)
@@ -95,12 +101,14 @@ def turningPoints(displacement: Numbers, threshold: float = 0.0) -> np.ndarray:
 
 
 def halfCycles(displacement: Numbers, threshold: float, zero: float = 0.0) -> list[HalfCycle]:
-    """Excursions to either side that go beyond the threshold: a list of :class:`HalfCycle` that alternate in side.
+    """Excursions to either side that go beyond the threshold: a list of :class:`HalfCycle` that
+    alternate in side.
 
-    A half cycle ends at the last passage through zero before the displacement goes beyond the threshold on the other
-    side. The first one is complete if the curve begins within the threshold of zero or passes through zero before it. The
-    last one is complete if the curve ends within the threshold of zero; it then ends at the last passage through zero,
-    or at the last row if there is none.
+    A half cycle ends at the last passage through zero before the displacement goes beyond the
+    threshold on the other side. The first one is complete if the curve begins within the threshold
+    of zero or passes through zero before it. The last one is complete if the curve ends within the
+    threshold of zero; it then ends at the last passage through zero, or at the last row if there is
+    none.
 
     :param zero: the displacement from which excursions are counted [mm]
     """
@@ -126,7 +134,8 @@ def halfCycles(displacement: Numbers, threshold: float, zero: float = 0.0) -> li
 
 
 def _lastPassage(moved):
-    """The last place at which displacements pass through zero or leave it, or None; at zero itself the last row."""
+    """The last place at which displacements pass through zero or leave it, or None; at zero itself
+    the last row."""
     if moved[-1] == 0:
         return float(len(moved) - 1)
     other = np.flatnonzero(np.sign(moved) != np.sign(moved[-1]))
@@ -137,7 +146,8 @@ def _lastPassage(moved):
 
 
 def stretch(values: Numbers, start: float, end: float) -> np.ndarray:
-    """The part of a sequence between two places: the values at both, and those of the rows between."""
+    """The part of a sequence between two places: the values at both, and those of the rows
+    between."""
     values = np.asarray(values, float)
     rows = np.arange(len(values))
     between = rows[(rows > start) & (rows < end)]
@@ -147,7 +157,8 @@ def stretch(values: Numbers, start: float, end: float) -> np.ndarray:
 def area(force: Any, moved: Any) -> float:
     """Area under a curve of straight lines, for example the work of a force over its displacement.
 
-    :param force: values; ``moved``: the places of these, of which the unit times that of the force is the unit of the area
+    :param force: values; ``moved``: the places of these, of which the unit times that of the force
+        is the unit of the area
     """
     force, moved = np.asarray(force, float), np.asarray(moved, float)
     return float(0.5 * (force[1:] + force[:-1]) @ np.diff(moved))
@@ -156,15 +167,16 @@ def area(force: Any, moved: Any) -> float:
 def work(
     displacement: Numbers, force: Numbers, start: float = 0.0, end: float | None = None
 ) -> float:
-    """Integral of the force over the displacement between two places of a curve, from its first to its last row unless
-    they are given [J]. Trapezoids between rows."""
+    """Integral of the force over the displacement between two places of a curve, from its first to
+    its last row unless they are given [J]. Trapezoids between rows."""
     moved, force = _curve(displacement, force)
     end = len(moved) - 1 if end is None else end
     return area(stretch(force, start, end), stretch(moved, start, end))
 
 
 def secantStiffness(displacement: Numbers, force: Numbers, high: int, low: int) -> float:
-    """Slope of the line between two rows of a curve, the peak-to-peak stiffness if they are its extremes [kN/mm].
+    """Slope of the line between two rows of a curve, the peak-to-peak stiffness if they are its
+    extremes [kN/mm].
 
     It is NaN if both have the same displacement.
     """
@@ -176,8 +188,8 @@ def secantStiffness(displacement: Numbers, force: Numbers, high: int, low: int) 
 def equivalentDamping(work: float, stiffness: float, amplitude: float) -> float:
     """Ratio ξ of the viscous damping that takes as much work in a cycle, ξ = W / (4π·½·K·A²) [-].
 
-    It is W over 4π times the elastic energy ½·K·A² at the amplitude, as Jacobsen defined it (1930). It is NaN if
-    stiffness or amplitude are not above 0.
+    It is W over 4π times the elastic energy ½·K·A² at the amplitude, as Jacobsen defined it (1930).
+    It is NaN if stiffness or amplitude are not above 0.
 
     :param work: W of the cycle [J]
     :param stiffness: K, secant from peak to peak [kN/mm]
@@ -191,7 +203,8 @@ def equivalentDamping(work: float, stiffness: float, amplitude: float) -> float:
 def residualDisplacement(
     displacement: Numbers, force: Numbers, extreme: int, end: int | None = None
 ) -> float:
-    """Displacement at which the force first vanishes after an extreme, on the way back, linear between rows [mm].
+    """Displacement at which the force first vanishes after an extreme, on the way back, linear
+    between rows [mm].
 
     It is NaN if the force at the extreme is zero already, or does not come to zero up to the end.
 
@@ -214,7 +227,8 @@ def cycles(
 ) -> list[Cycle]:
     """The cycles of a curve with their numbers: a list of :class:`Cycle`.
 
-    Complete half cycles are joined in pairs from the first one on. One that is left over at the end is no cycle.
+    Complete half cycles are joined in pairs from the first one on. One that is left over at the end
+    is no cycle.
 
     :param zero: as in :func:`halfCycles`
     """

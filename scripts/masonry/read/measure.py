@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Numbers of a run, measured from the files in its folder and nothing else.
 
-``/usr/bin/python3 -m masonry.read.measure results/wall_comp4`` prints them, with units in the names. Walls are pushed to the
-right: the compressed corners are the toe at the bottom right and the top left, and a diagonal crack falls to the right.
-Of a wall that follows a history the numbers of cracks and crushing are those of the way to the right, and once more, with
-``_mirrored`` at the end of the name, those of the way to the left. It has a table of its cycles, too.
+``/usr/bin/python3 -m masonry.read.measure results/wall_comp4`` prints them, with units in the
+names. Walls are pushed to the right: the compressed corners are the toe at the bottom right and the
+top left, and a diagonal crack falls to the right. Of a wall that follows a history the numbers of
+cracks and crushing are those of the way to the right, and once more, with ``_mirrored`` at the end
+of the name, those of the way to the left. It has a table of its cycles, too.
 """
 
 import glob
@@ -24,7 +25,8 @@ from .run_data import BASE, TOP, RunData
 
 @validated
 def wallNumbers(directory: FilePath) -> dict[str, Any]:
-    """All numbers of a wall's run. Those of the crack pattern are left out if there are no ParaView files."""
+    """All numbers of a wall's run. Those of the crack pattern are left out if there are no ParaView
+    files."""
     data = RunData.read(directory)
     if not data.isPush:
         raise Refused(f"{directory}: nothing was pushed in this run")
@@ -41,12 +43,16 @@ def wallNumbers(directory: FilePath) -> dict[str, Any]:
 
 @validated
 def jointNumbers(directory: FilePath, name: Annotated[str, label]) -> dict[str, Any]:
-    """Areas under the curves of a joint whose means are recorded: its fracture energies, if it was torn, sheared or crushed.
+    """Areas under the curves of a joint whose means are recorded: its fracture energies, if it was
+    torn, sheared or crushed.
 
-    :param name: of the joint, which stands before the names of its columns and of these numbers; it may be empty
+    :param name: of the joint, which stands before the names of its columns and of these numbers; it
+        may be empty
 
-    - opening_work_J_per_m2, closure_work_J_per_m2: under tension over the opening, and under compression over the closure
-    - softening_work_J_per_m2: under the shear stress over the slide, above the shear stress at the end
+    - opening_work_J_per_m2, closure_work_J_per_m2: under tension over the opening, and under
+      compression over the closure
+    - softening_work_J_per_m2: under the shear stress over the slide, above the shear stress at the
+      end
     """
     curve, prefix = readCurve(directory), name + "_" if name else ""
     heads = "opening_mm", "slide_mm", "normal_stress_MPa", "shear_stress_MPa"
@@ -61,7 +67,8 @@ def jointNumbers(directory: FilePath, name: Annotated[str, label]) -> dict[str, 
 
 @validated
 def measure(directory: FilePath) -> dict[str, Any]:
-    """Numbers of a run as a dict by name: those at the top level of run.json, and those measured here.
+    """Numbers of a run as a dict by name: those at the top level of run.json, and those measured
+    here.
 
     ``balance_error`` is the ``energy_balance_error`` of run.json.
     """
@@ -76,7 +83,8 @@ def measure(directory: FilePath) -> dict[str, Any]:
 
 
 def cycleTable(cycles: list[dict[str, Any]]) -> Iterator[str]:
-    """The cycles of run.json as lines of a table, with the numbers of :data:`masonry.read.quantities.OF_CYCLES`."""
+    """The cycles of run.json as lines of a table, with the numbers of
+    :data:`masonry.read.quantities.OF_CYCLES`."""
     columns = quantities.OF_CYCLES
     heads = [name if unit == "-" else f"{name} [{unit}]" for _, name, unit, *_ in columns]
     line = lambda texts: "".join(f"{t:>{max(len(h), 9) + 2}}" for t, h in zip(texts, heads))

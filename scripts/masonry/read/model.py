@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The model of the 3-D picture of a run: its blocks, how they move, and what its joints do.
 
-The page (:mod:`masonry.read.page`), glTF files (:mod:`masonry.read.gltf`), the report and ParaView's pictures show this.
+The page (:mod:`masonry.read.page`), glTF files (:mod:`masonry.read.gltf`), the report and
+ParaView's pictures show this.
 """
 
 import os
@@ -35,24 +36,29 @@ class Sight(NamedTuple):
 
 
 class Model:
-    """The blocks and joints of a run in all of its frames, or in some. N points, B blocks, F frames.
+    """The blocks and joints of a run in all of its frames, or in some. N points, B blocks, F
+    frames.
 
-    - ``run``, ``title``: run.json and its title; ``times``: of the frames [s]; ``numbers``: of the frames that were read, from 0;
-      ``count``: of all frames of the run
+    - ``run``, ``title``: run.json and its title; ``times``: of the frames [s]; ``numbers``: of the
+      frames that were read, from 0; ``count``: of all frames of the run
     - ``points`` (N, 3): corners and nodes as built [m]; ``owner`` (N): number of the block of each
     - ``bodies`` (B): ids of the bodies of the blocks; ``centres`` (B, 3): means of their points [m]
     - ``looks`` (B): PLATEN (also supports and the like), BRICK or GROUND
-    - ``framed`` (N): whether a point is to be in the picture, and not one of the ground on which blocks fall
-    - ``triangles`` (n, 3): surfaces of the blocks, seen from outside counter-clockwise, and ``edges`` (n, 2): their edges,
-      both as numbers of points
+    - ``framed`` (N): whether a point is to be in the picture, and not one of the ground on which
+      blocks fall
+    - ``triangles`` (n, 3): surfaces of the blocks, seen from outside counter-clockwise, and
+      ``edges`` (n, 2): their edges, both as numbers of points
     - ``rigid`` (B): whether a block is rigid
-    - ``shift`` (F, B, 3): displacement of the centre of every rigid block [m], and ``turn`` (F, B, 3): its rotation as a vector
-      along the axis, of the length of the angle [rad]; zero for deformable units
-    - ``free``: numbers of the points of deformable units; ``moved`` (F, len(free), 3): their displacements [m]
+    - ``shift`` (F, B, 3): displacement of the centre of every rigid block [m], and ``turn`` (F, B,
+      3): its rotation as a vector along the axis, of the length of the angle [rad]; zero for
+      deformable units
+    - ``free``: numbers of the points of deformable units; ``moved`` (F, len(free), 3): their
+      displacements [m]
     - ``farthest`` (F): largest displacement of a point [m]
     - ``joints``: :class:`Joints`
 
-    If run.json names a ``reference_body``, as the ground of a shaken structure, its displacement is taken off all others.
+    If run.json names a ``reference_body``, as the ground of a shaken structure, its displacement is
+    taken off all others.
     """
 
     def __init__(self, directory, number=None, chosen=None):
@@ -60,9 +66,10 @@ class Model:
 
         :param directory: folder of results
         :param number: of the only frame to read, from 0; None: all
-        :param chosen: function of the number of frames and of the number of blocks that gives the numbers of the frames to read;
-            None: all
-        :raises Refused: if the folder has no frames, if they are damaged or of an older version, or without that frame
+        :param chosen: function of the number of frames and of the number of blocks that gives the
+            numbers of the frames to read; None: all
+        :raises Refused: if the folder has no frames, if they are damaged or of an older version, or
+            without that frame
         """
         self.directory, self.run = directory, readRun(directory)
         with filesOf(directory):
@@ -84,7 +91,8 @@ class Model:
             self._move()
 
     def _times(self):
-        """Times of the frames, as joints.pvd lists them [s]. Raises Refused with the reason if there is none.
+        """Times of the frames, as joints.pvd lists them [s]. Raises Refused with the reason if
+        there is none.
 
         A run that was killed can have written a frame more, which is not shown.
         """
@@ -186,21 +194,24 @@ class Model:
         return np.column_stack(sums) / np.bincount(self.owner)[:, None]
 
     def displacements(self, k):
-        """Displacements of all points in the k-th of the frames that were read, an array (N, 3) [m]."""
+        """Displacements of all points in the k-th of the frames that were read, an array (N, 3)
+        [m]."""
         found = self.displacementsOf(k, self.owner, self.points)
         found[self.free] = self.moved[k]
         return found
 
     def displacementsOf(self, k, block, points):
-        """Displacements of points (n, 3) in the k-th frame, each of which moves with the rigid block of a number (n) [m]."""
+        """Displacements of points (n, 3) in the k-th frame, each of which moves with the rigid
+        block of a number (n) [m]."""
         arms = points - self.centres[block]
         return self.shift[k][block] + turned(self.turn[k][block], arms)
 
     def sight(self, magnification=None):
-        """The :class:`Sight` in which all is in the picture in the last of the frames that were read, rubble too, but for what
-        flew away.
+        """The :class:`Sight` in which all is in the picture in the last of the frames that were
+        read, rubble too, but for what flew away.
 
-        :param magnification: of displacements; None: as in :func:`masonry.read.views.magnificationOf`
+        :param magnification: of displacements; None: as in
+            :func:`masonry.read.views.magnificationOf`
         """
         needed = "area damage_shear damage_tension normal opening slide".split()
         joints = readFrame(self.directory, "joints", self.numbers[-1], needed)
@@ -221,8 +232,8 @@ class Model:
         )
 
     def captions(self, curve=None):
-        """What is shown beside every frame: a list of dicts with ``time``, ``stage``, or None, and ``values``, a list of texts as
-        "supports: 92.1 kN" of the columns that curve.png shows.
+        """What is shown beside every frame: a list of dicts with ``time``, ``stage``, or None, and
+        ``values``, a list of texts as "supports: 92.1 kN" of the columns that curve.png shows.
 
         :param curve: columns of curve.csv; None: they are read
         """
@@ -246,7 +257,8 @@ class Model:
         return found
 
     def _stage(self, time, data):
-        """Name of the stage to which a time belongs, or None if the files do not tell, as after a change of the time step."""
+        """Name of the stage to which a time belongs, or None if the files do not tell, as after a
+        change of the time step."""
         stages, step = self.run.get("stages"), self.run.get("time_step_s")
         if not stages or not step or "time_s" not in data:
             return None
@@ -262,17 +274,19 @@ PAIR, POINT = 16, 24  # bytes of two numbers of bodies, and of a point
 
 
 class Joints:
-    """What the joints of a run do in the frames of a :class:`Model`: all of their points that crack, slide or crush in one of
-    them. P points, with n corners of their parts of the joints. What a joint that gets other points during the run does is
-    with those that it had in each frame.
+    """What the joints of a run do in the frames of a :class:`Model`: all of their points that
+    crack, slide or crush in one of them. P points, with n corners of their parts of the joints.
+    What a joint that gets other points during the run does is with those that it had in each frame.
 
-    - ``corners`` (n, 3): corners as built [m]; ``owner`` (n): the point of a joint that each belongs to
+    - ``corners`` (n, 3): corners as built [m]; ``owner`` (n): the point of a joint that each
+      belongs to
     - ``between`` (P, 2): numbers of the two blocks
-    - ``opening``, ``slide``, ``closure`` (F, P): opening, length of the slide, plastic closure [m]; ``damage`` (F, P) in tension
-      or shear, the larger [-]
-    - ``kind`` (F, P): OPEN or SLID as :func:`masonry.read.cracks.widths` finds it, plus CRUSHED_TOO, or 0
-    - ``moved`` (2, F, n, 3): displacements of the corners with the first and with the second block [m]; None if both blocks
-      of all points are rigid, since they move with these then
+    - ``opening``, ``slide``, ``closure`` (F, P): opening, length of the slide, plastic closure [m];
+      ``damage`` (F, P) in tension or shear, the larger [-]
+    - ``kind`` (F, P): OPEN or SLID as :func:`masonry.read.cracks.widths` finds it, plus
+      CRUSHED_TOO, or 0
+    - ``moved`` (2, F, n, 3): displacements of the corners with the first and with the second block
+      [m]; None if both blocks of all points are rigid, since they move with these then
     - ``count``: how many points joints have in the last frame
     """
 
@@ -354,7 +368,8 @@ class Joints:
         del self._numbers, self._frames, self._last
 
     def displacements(self, k):
-        """Displacements of all corners with the first and with the second block in the k-th frame, an array (2, n, 3) [m]."""
+        """Displacements of all corners with the first and with the second block in the k-th frame,
+        an array (2, n, 3) [m]."""
         if self.moved is not None:
             return self.moved[:, k]
         of = self._model.displacementsOf
@@ -366,7 +381,8 @@ LEAST = {"opening": CRACK, "slide": CRACK, "closure": CRACK, "damage": DAMAGED}
 
 
 def turned(turn, arms):
-    """How far arms move when they are turned by rotation vectors: arrays (n, 3), without a loss of digits at small angles."""
+    """How far arms move when they are turned by rotation vectors: arrays (n, 3), without a loss of
+    digits at small angles."""
     angle = np.linalg.norm(turn, axis=1)[:, None]
     half = np.sinc(angle / (2 * np.pi))  # sin(angle/2) / (angle/2)
     first = np.cross(turn, arms)
@@ -374,9 +390,11 @@ def turned(turn, arms):
 
 
 def sharpEdges(triangles, normals):
-    """Edges of surfaces at which they bend by more than 20°, or end: an array (n, 2) of point numbers.
+    """Edges of surfaces at which they bend by more than 20°, or end: an array (n, 2) of point
+    numbers.
 
-    :param triangles: numbers of corners (n, 3); two triangles share an edge if they share both of its points
+    :param triangles: numbers of corners (n, 3); two triangles share an edge if they share both of
+        its points
     :param normals: of the triangles, of any length (n, 3)
     """
     sides = np.sort(triangles[:, [(0, 1), (1, 2), (2, 0)]].reshape(-1, 2), axis=1)
@@ -390,11 +408,13 @@ def sharpEdges(triangles, normals):
     return sides[first[bends | (often != 2)]]
 
 
-MOST_PLACES = 80_000  # frames times blocks; reading them takes seconds, and they take some 12 bytes each in a page
+# frames times blocks; reading them takes seconds, and they take some 12 bytes each in a page
+MOST_PLACES = 80_000
 FEWEST = 10  # frames that are shown all the same, if there are as many
 
 
 def chosenFrames(count, blocks):
-    """Numbers of the frames of a long or large run that are shown, the first and the last among them, evenly spaced."""
+    """Numbers of the frames of a long or large run that are shown, the first and the last among
+    them, evenly spaced."""
     many = max(FEWEST, MOST_PLACES // max(blocks, 1))
     return sorted({round(n) for n in np.linspace(0, count - 1, min(count, many))})

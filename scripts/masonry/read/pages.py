@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Pages from templates of jinja2. Texts of files of a run are text in them: none becomes a tag or a script."""
+"""Pages from templates of jinja2. Texts of files of a run are text in them: none becomes a tag or a
+script."""
 
 import os
 
@@ -12,7 +13,8 @@ POLICY = "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inli
 
 
 def rendered(path, **values):
-    """A page, or a part of one, from a template of this folder, with control characters of texts written out.
+    """A page, or a part of one, from a template of this folder, with control characters of texts
+    written out.
 
     :param path: of the template; texts of other files beside it are ``own("name")`` there
     :param values: of its names; what is no ``markupsafe.Markup`` is escaped
@@ -36,7 +38,8 @@ def rendered(path, **values):
 
 
 def write(path, text):
-    """Write a page, whole or not at all. Raises OSError, also if its name is that of a symbolic link."""
+    """Write a page, whole or not at all. Raises OSError, also if its name is that of a symbolic
+    link."""
     with replaced(path, encoding="utf-8") as file:
         file.write(text)
 

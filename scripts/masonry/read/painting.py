@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The one style of all pictures of blocks: its colours, which pages, models and ParaView have, too, and how matplotlib draws faces,
-light and cracks."""
+"""The one style of all pictures of blocks: its colours, which pages, models and ParaView have, too,
+and how matplotlib draws faces, light and cracks."""
 
 import copy
 import heapq
@@ -39,13 +39,16 @@ FAR = 1e9  # beyond all blocks [m]
 
 
 def fromBackToFront(solids, sight):
-    """Numbers of convex blocks in the order in which they are drawn, so that each hides what is behind it.
+    """Numbers of convex blocks in the order in which they are drawn, so that each hides what is
+    behind it.
 
-    Of two blocks whose pictures overlap, that is in front which lies on the viewer's side of a face that parts them.
-    Where these answers go in a circle, the block that is farthest away comes first.
+    Of two blocks whose pictures overlap, that is in front which lies on the viewer's side of a face
+    that parts them. Where these answers go in a circle, the block that is farthest away comes
+    first.
 
     :param solids: :class:`masonry.bricks.geometry.Solids`
-    :param sight: unit vectors of the picture: right, up and towards the viewer, the rows of an array
+    :param sight: unit vectors of the picture: right, up and towards the viewer, the rows of an
+        array
     """
     seen, boxes = solids.padded("corners") @ sight.T, copy.copy(solids)
     boxes.low, boxes.high = seen.min(axis=1), seen.max(axis=1)
@@ -79,9 +82,11 @@ def fromBackToFront(solids, sight):
 
 
 class Painting:
-    """Polygons and lines, which have two corners, from the back to the front, and where joints are crushed.
+    """Polygons and lines, which have two corners, from the back to the front, and where joints are
+    crushed.
 
-    :param towards: unit vector to the viewer; ``thin`` and ``bold``: widths of the lines of blocks and cracks [1/72 inch]
+    :param towards: unit vector to the viewer; ``thin`` and ``bold``: widths of the lines of blocks
+        and cracks [1/72 inch]
     """
 
     def __init__(self, towards, thin, bold):
@@ -102,8 +107,8 @@ class Painting:
         self.polygons.append((places, points, looks))
 
     def blocks(self, places, alike, colours=None):
-        """The faces of blocks (:class:`masonry.bricks.geometry.Alike`) that are seen, in colours on which light falls from the viewer
-        and from above; None: where blocks stood."""
+        """The faces of blocks (:class:`masonry.bricks.geometry.Alike`) that are seen, in colours on
+        which light falls from the viewer and from above; None: where blocks stood."""
         for n, face in enumerate(alike.faces):
             normals = alike.normals[:, n]
             seen = normals @ self.towards > LEVEL
@@ -116,12 +121,13 @@ class Painting:
         return np.rint(np.minimum(1, light)[:, None] * colours)
 
     def cracks(self, places, crack, built, now, colours):
-        """Joints that are open, slid or crushed: their faces that are seen, and their edges on other faces of their blocks, from which
-        the edges of seams are taken away.
+        """Joints that are open, slid or crushed: their faces that are seen, and their edges on
+        other faces of their blocks, from which the edges of seams are taken away.
 
         :param places: of all blocks; ``colours``: theirs
-        :param crack: arrays of the numbers of the blocks and of what :meth:`masonry.read.elevation.Structure.cracks` gives, but at the
-            end the corners as drawn
+        :param crack: arrays of the numbers of the blocks and of what
+            :meth:`masonry.read.elevation.Structure.cracks` gives, but at the end the corners as
+            drawn
         :param built: :class:`masonry.bricks.geometry.Solids` as built; ``now``: as drawn
         """
         block, joint, kinds, closures, corners, drawn = crack

@@ -3,9 +3,10 @@
 
     python3 -P -m masonry.read.postprocess
 
-A run starts it early: it loads what it needs while the run goes on. Then it reads the folder from the standard input, up to a zero
-byte, when the files of the run are there. It draws curve.png and cracks.png in a copy of the process, and makes the report
-meanwhile, but for these figures. When the standard input ends, all figures that the run itself writes are there, too, and it writes
+A run starts it early: it loads what it needs while the run goes on. Then it reads the folder from
+the standard input, up to a zero byte, when the files of the run are there. It draws curve.png and
+cracks.png in a copy of the process, and makes the report meanwhile, but for these figures. When the
+standard input ends, all figures that the run itself writes are there, too, and it writes
 report.html. It ends without a word if it is given no folder.
 """
 

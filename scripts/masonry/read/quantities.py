@@ -1,13 +1,16 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The numbers that a run answers with: one list, which run.json and its documentation, the terminal, the report, notebooks, studies
-and capacity read.
+"""The numbers that a run answers with: one list, which run.json and its documentation, the
+terminal, the report, notebooks, studies and capacity read.
 
-To add a number is to add a :class:`Quantity` to :data:`QUANTITIES`: its entry in run.json, its name, its unit, what it is, where it
-comes from, and the function that finds it from a :class:`RunData`. That is what a run has at its end, and what its folder has later, so
-both give the same number. The module stands in this room and not in that of runs, because the report must be able to read it.
+To add a number is to add a :class:`Quantity` to :data:`QUANTITIES`: its entry in run.json, its
+name, its unit, what it is, where it comes from, and the function that finds it from a
+:class:`RunData`. That is what a run has at its end, and what its folder has later, so both give the
+same number. The module stands in this room and not in that of runs, because the report must be able
+to read it.
 
-A *push* below is the last one of the run, with those before it along the same line. Forces along it are at its two ends: those of
-all supports (``base_shear_kN``) and that of the drive (``top_shear_kN``).
+A *push* below is the last one of the run, with those before it along the same line. Forces along it
+are at its two ends: those of all supports (``base_shear_kN``) and that of the drive
+(``top_shear_kN``).
 """
 
 import math
@@ -22,7 +25,8 @@ IMBALANCE = (
     0.1  # a push with a larger dynamic imbalance is too fast: its peak is off by 1 to 5 % and more
 )
 
-#: Energies of the balance by their names in curve.csv, without the unit: what each is, and whether it is put in, stored or spent.
+#: Energies of the balance by their names in curve.csv, without the unit: what each is, and whether
+#: it is put in, stored or spent.
 ENERGIES = {
     "external": ("work of the loads", "in"),
     "gravity": ("work of gravity", "in"),
@@ -75,7 +79,8 @@ class Quantity:
     unit: str  #: ``"-"`` if it has none
     meaning: str  #: what it is, a sentence
     source: str  #: columns of curve.csv, an equation or a function
-    #: function of :class:`RunData`, or of a function that gives the columns of a joint; None: the run itself writes it
+    #: function of :class:`RunData`, or of a function that gives the columns of a joint; None: the
+    #: run itself writes it
     of: Callable[[Any], Any] | None = None
     group: str = "push"  #: one of :data:`GROUPS`, which says in which runs it is
     #: whether it is among the few that a notebook shows, and that stand first in study.csv
@@ -707,7 +712,8 @@ QUANTITIES: tuple[Quantity, ...] = (
         brief=True,
     ),
 )
-#: Numbers of a cycle: key in ``cycles`` of run.json, name, unit, digits behind the point on the terminal, and whether the report has it.
+#: Numbers of a cycle: key in ``cycles`` of run.json, name, unit, digits behind the point on the
+#: terminal, and whether the report has it.
 OF_CYCLES = (
     ("smallest_mm", "smallest displacement", "mm", 3, True),
     ("largest_mm", "largest displacement", "mm", 3, True),
@@ -730,8 +736,8 @@ def _damping(data):
 
 
 def found(data):
-    """All numbers that can be found from what a run has, by their entries in run.json. What needs a column that curve.csv does not
-    have, or a cycle of a run without one, is left out."""
+    """All numbers that can be found from what a run has, by their entries in run.json. What needs a
+    column that curve.csv does not have, or a cycle of a run without one, is left out."""
     entries = {}
     for one in QUANTITIES:
         if one.of and GROUPS[one.group][1](data):
@@ -755,7 +761,8 @@ def ofJoint(column, prefixed, brief=False):
 
 
 def known(data):
-    """All numbers of a run: those of run.json and, where it does not have them, those that can be found."""
+    """All numbers of a run: those of run.json and, where it does not have them, those that can be
+    found."""
     return {**found(data), **{k: v for k, v in data.run.items() if k in BY_KEY}}
 
 
@@ -772,8 +779,8 @@ def shown(entries, *groups, brief=False):
 
 
 def measures(run):
-    """Entries of run.json that measure the structure, for a row of study.csv: how it ended, and the numbers of this list, those
-    first that a notebook shows."""
+    """Entries of run.json that measure the structure, for a row of study.csv: how it ended, and the
+    numbers of this list, those first that a notebook shows."""
     names = ["failure_mode", "collapsed", "ended"]
     for one in sorted(QUANTITIES, key=lambda one: not one.brief):
         if one.group == "joint":
@@ -785,7 +792,8 @@ def measures(run):
 
 
 def headline(run, end=False):
-    """The peak of a push and its bound in a line, from the entries of run.json; empty if there was no push.
+    """The peak of a push and its bound in a line, from the entries of run.json; empty if there was
+    no push.
 
     :param end: whether the force at the end stands there, too, and how many cycles there were
     """
@@ -807,7 +815,8 @@ def headline(run, end=False):
 
 
 def described():
-    """What run.json has of these, for its documentation: a list of reStructuredText for every group."""
+    """What run.json has of these, for its documentation: a list of reStructuredText for every
+    group."""
     text = ""
     for group, (title, _) in GROUPS.items():
         lines = (
@@ -820,6 +829,7 @@ def described():
 
 
 def loadsOf(stages):
-    """The name of its load, by the number of a stage that has one, from the entries ``stages`` of run.json."""
+    """The name of its load, by the number of a stage that has one, from the entries ``stages`` of
+    run.json."""
     named = ((number, one.get("load")) for number, one in enumerate(stages, 1))
     return {number: load[1] for number, load in named if load}

@@ -28,7 +28,8 @@ DPI = 72  # of pictures in a notebook, for 10 to 50 kB each
 
 
 def unitOf(head, meaning):
-    """The unit of a column: in the brackets at the end of its meaning, else at the end of its name, else ``"-"``.
+    """The unit of a column: in the brackets at the end of its meaning, else at the end of its name,
+    else ``"-"``.
 
     :param head: its name in curve.csv; ``meaning``: its line in the entry ``columns`` of run.json
     """
@@ -48,9 +49,11 @@ UNITS = {"mm", "m", "s", "kN", "N", "MPa", "kPa", "Pa", "J", "g", "mrad", "rad",
 class Curve:
     """Columns of curve.csv: ``curve["base_shear_kN"]`` is an array of numpy.
 
-    ``units`` and ``meanings`` are dicts by the names of the columns; iterating gives the names, as with a dict.
+    ``units`` and ``meanings`` are dicts by the names of the columns; iterating gives the names, as
+    with a dict.
 
-    :param columns: dict of name -> numbers; ``meanings``: dict of name -> what it means, with its unit in brackets
+    :param columns: dict of name -> numbers; ``meanings``: dict of name -> what it means, with its
+        unit in brackets
     :param draws: function without arguments that gives a figure of matplotlib, or None
     """
 
@@ -114,7 +117,8 @@ class Curve:
         return notebook.titled(title, self.picture(), notebook.folded("columns", table))
 
     def picture(self):
-        """What curve.png shows as HTML; nothing where there are less than two rows, or no figure."""
+        """What curve.png shows as HTML; nothing where there are less than two rows, or no
+        figure."""
         return _drawn(self._draws) if len(self) > 1 else ""
 
 
@@ -139,7 +143,8 @@ def curveOf(columns, run, directory):
 
 
 def cracksOf(run, blocks, joints, when, directory):
-    """The picture of cracks.png as HTML; parameters as in :func:`masonry.read.elevation.cracksOf`."""
+    """The picture of cracks.png as HTML; parameters as in
+    :func:`masonry.read.elevation.cracksOf`."""
     return _drawn(lambda: elevation.cracksOf(run, blocks, joints, when, directory))
 
 
@@ -182,7 +187,8 @@ class RunFolder:
 
 
 def resultsOf(run):
-    """Rows of the table of results, from the entries of run.json: what it is, its value and its unit."""
+    """Rows of the table of results, from the entries of run.json: what it is, its value and its
+    unit."""
     rows = []
     if run.get("collapse"):
         rows.append(("collapsed", run["collapse"], ""))

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Runs in ParaView: in its window, or as a picture and a film without a display; and in a browser, or as a 3-D model, without
-ParaView. No YADE is needed.
+"""Runs in ParaView: in its window, or as a picture and a film without a display; and in a browser,
+or as a 3-D model, without ParaView. No YADE is needed.
 
-``scripts/view.py`` is the program. In ParaView's own Python works :mod:`masonry.read.paraview_macro`.
+``scripts/view.py`` is the program. In ParaView's own Python works
+:mod:`masonry.read.paraview_macro`.
 """
 
 import argparse
@@ -26,7 +27,8 @@ from .files import filesOf, program, readCurve, readRun
 from .frames import frameAt, frameTimes
 from .model import GROUND, OPEN, PLATEN, Model
 
-#: Folder into which python3-paraview can be unpacked where it cannot be installed beside python3-vtk9.
+#: Folder into which python3-paraview can be unpacked where it cannot be installed beside
+#: python3-vtk9.
 UNPACKED = os.path.expanduser("~/.local/share/masonry/paraview")
 FILMS = (".avi", ".ogv")  # what ParaView of Debian 12 writes; it has no .mp4
 DISPLAY = "-screen 0 1600x1200x24 -nolisten tcp -noreset"  # that nobody sees
@@ -40,7 +42,8 @@ and, since the package python3-paraview would remove python3-vtk9, on which othe
 def frameNear(directory: FilePath, at: Any) -> int:
     """Number of the frame next to a place in a run, from 0.
 
-    :param at: text: a number with ``s``, a time, or a number with or without the unit of x of curve.png; None: the end
+    :param at: text: a number with ``s``, a time, or a number with or without the unit of x of
+        curve.png; None: the end
     :raises Refused: if the text is no such place, or if the run never comes there
     """
     times = frameTimes(directory)
@@ -79,7 +82,8 @@ def sceneOf(
 ) -> dict[str, Any]:
     """What ParaView shall show of a run: an entry ``runs`` for :mod:`masonry.read.paraview_macro`.
 
-    :param number: of the frame after which camera, magnification and the range of colours are chosen
+    :param number: of the frame after which camera, magnification and the range of colours are
+        chosen
     :param shape: width of the picture over its height
     :param still: whether this frame alone is shown, whose place the title then tells
     """
@@ -133,8 +137,8 @@ def inParaView(
 
     :param at: the frame, as in :func:`frameNear`
     :param magnification: of displacements; None: chosen for each run
-    :param target: path of a .png file or, of a ``film``, of an .avi or .ogv file, or of a folder, which gets a .png file for
-        every frame; None: the window
+    :param target: path of a .png file or, of a ``film``, of an .avi or .ogv file, or of a folder,
+        which gets a .png file for every frame; None: the window
     :param size: of the picture [pixels]
     :param rate: frames of the film a second
     :raises Refused: if something is missing, or if ParaView ends with an error

@@ -6,8 +6,8 @@ import numpy as np
 
 from .cracks import widths
 
-#: Magnifications of displacements in cracks.png, the usual one first, as in figure 6 of the paper (see
-#: yade_plugin/law/README.md).
+#: Magnifications of displacements in cracks.png, the usual one first, as in figure 6 of the paper
+#: (see yade_plugin/law/README.md).
 MAGNIFICATIONS = 30, 20, 10, 5, 2, 1
 FARTHEST = 0.25  # largest drawn displacement over the size of the structure
 OVERLAP = 0.25  # how far blocks overlap at most where a joint closed, over the height of a course
@@ -17,18 +17,20 @@ ASIDE, ABOVE = 32, 24
 FROM_ABOVE, IN_SPACE = "from above", "in space"
 LEVEL = 1e-3  # cosine below which a face stands along the line of sight
 REACH = 1.5  # how far what moved is in a picture, over the size of what was built
-#: How a part is seen. ``right`` and ``up`` are unit vectors of the picture, ``towards`` is that to the viewer; ``labels``
-#: are those of the axes, and ``name`` says where the viewer stands. A point p lies at ((p - start)·right, (p - start)·up).
+#: How a part is seen. ``right`` and ``up`` are unit vectors of the picture, ``towards`` is that to
+#: the viewer; ``labels`` are those of the axes, and ``name`` says where the viewer stands. A point
+#: p lies at ((p - start)·right, (p - start)·up).
 View = namedtuple("View", "right up towards start labels name")
 
 
 def viewOf(points, normals, areas, sight=None):
     """The view of a part: a :class:`View`, chosen by its shape.
 
-    If all joints stand across one horizontal direction, as those of a wall of one wythe at any angle in plan and those of
-    an arch do, the part is seen along this direction. Else it is seen along the short side of the smallest rectangle
-    around its plan, or from above if it is wider than high, as a dome or a vault is. What is up stays up; from above, x
-    is to the right and y is up.
+    If all joints stand across one horizontal direction, as those of a wall of one wythe at any
+    angle in plan and those of an arch do, the part is seen along this direction. Else it is seen
+    along the short side of the smallest rectangle around its plan, or from above if it is wider
+    than high, as a dome or a vault is. What is up stays up; from above, x is to the right and y is
+    up.
 
     :param points: corners of its blocks, an array of (x, y, z) [m]
     :param normals: unit normals of its joints, an array
@@ -63,8 +65,8 @@ def viewOf(points, normals, areas, sight=None):
 
 
 def spaceViewOf(front, points, moved):
-    """The view of a structure in space, from above: from the side to which it moved, so that what fell lies in front, and beside
-    the front where most of it moved.
+    """The view of a structure in space, from above: from the side to which it moved, so that what
+    fell lies in front, and beside the front where most of it moved.
 
     :param front: direction to the viewer of the part that shows it, as :func:`viewOf` gives it
     :param points: as built (n, 3) [m]; ``moved``: their displacements (n, 3) [m]
@@ -84,7 +86,8 @@ def spaceViewOf(front, points, moved):
 
 
 def _viewFrom(away, points, either):
-    """The view of points by a viewer in this direction; ``either``: or opposite, if that turns x or y to the right."""
+    """The view of points by a viewer in this direction; ``either``: or opposite, if that turns x or
+    y to the right."""
     if abs(away[2]) > 1 - 1e-6:
         (right, up), name = np.eye(3)[:2], FROM_ABOVE
     else:
@@ -109,8 +112,9 @@ def _viewFrom(away, points, either):
 
 
 def magnificationOf(joints, moved, blocks):
-    """How much displacements are magnified: as usual, or less where blocks would be drawn far away or over each other, and not
-    at all where no joint is cracked, as rigid motion and elastic shortening alone would then be drawn.
+    """How much displacements are magnified: as usual, or less where blocks would be drawn far away
+    or over each other, and not at all where no joint is cracked, as rigid motion and elastic
+    shortening alone would then be drawn.
 
     :param joints: the frame of the joints, or None
     :param moved: displacements of points of the blocks (n, 3) [m]
@@ -126,14 +130,16 @@ def magnificationOf(joints, moved, blocks):
 
 
 def courseOf(blocks):
-    """The usual height of a block [m]: the median of their shortest sides, of arrays of their corners (n, 3) [m]."""
+    """The usual height of a block [m]: the median of their shortest sides, of arrays of their
+    corners (n, 3) [m]."""
     starts, points = np.cumsum([0, *map(len, blocks)])[:-1], np.concatenate(blocks)
     high, low = (end.reduceat(points, starts) for end in (np.maximum, np.minimum))
     return float(np.median((high - low).min(axis=1)))
 
 
 def scaleText(joints, magnification):
-    """What a picture says of its magnification and, where no joint of a frame is cracked, of that."""
+    """What a picture says of its magnification and, where no joint of a frame is cracked, of
+    that."""
     parted = "" if widths(joints)[2].any() else "no joint is cracked, "
     return parted + (
         "true to scale" if magnification == 1 else f"displacements × {magnification:g}"

@@ -1,13 +1,19 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""A run: its progress, checkpoints, folder of results, presets, and rows of a table in YADE's batch format.
+"""A run: its progress, checkpoints, folder of results, presets, and rows of a table in YADE's batch
+format.
 
 - :mod:`masonry.run.run`: a run in stages; :mod:`masonry.run.run_state`: how far it has come;
   :mod:`masonry.run.ending`: how it ends
-- :mod:`masonry.run.results`: the files that a run leaves, and the keys of run.json; :mod:`masonry.run.lock`: whose folder it is
-- :mod:`masonry.run.checkpoints`: the state of a scene on disk; :mod:`masonry.run.keeping`: when a run leaves one
-- :mod:`masonry.run.readings`: rows of curve.csv; :mod:`masonry.run.frames`: frames for ParaView; :mod:`masonry.run.signals`: Ctrl-C
-- :mod:`masonry.run.options`: the options that all scenes share; :mod:`masonry.run.presets`: those that trade accuracy for time, and
+- :mod:`masonry.run.results`: the files that a run leaves, and the keys of run.json;
+  :mod:`masonry.run.lock`: whose folder it is
+- :mod:`masonry.run.checkpoints`: the state of a scene on disk; :mod:`masonry.run.keeping`: when a
+  run leaves one
+- :mod:`masonry.run.readings`: rows of curve.csv; :mod:`masonry.run.frames`: frames for ParaView;
+  :mod:`masonry.run.signals`: Ctrl-C
+- :mod:`masonry.run.options`: the options that all scenes share; :mod:`masonry.run.presets`: those
+  that trade accuracy for time, and
   :mod:`masonry.run.accuracy`: a push whose error is found
 - :mod:`masonry.run.batch`: rows of a table for ``yade-batch``
-- :mod:`masonry.run.progress`, :mod:`masonry.run.plotting`: a run on the terminal, and in ``yade.plot``
+- :mod:`masonry.run.progress`, :mod:`masonry.run.plotting`: a run on the terminal, and in
+  ``yade.plot``
 """

@@ -1,14 +1,17 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""``--accuracy P``: a push whose peak and work are known within P percent, by the cheapest runs that show it.
+"""``--accuracy P``: a push whose peak and work are known within P percent, by the cheapest runs
+that show it.
 
-The error of a run is not known from the run. But cheaper runs of the same scene show how much its numbers depend on rate,
-mesh, points, block model and chance, and they cost little. So the scene is run several times, in processes of their own,
-side by side on all cores: the companions of the cheapest fidelity of :data:`masonry.run.presets.FIDELITIES`. What they
-differ by, and what validation/accuracy has measured of that fidelity, add up to a half-width. If it is too large, the next
-fidelity follows. The scene then goes on with the options of the one that was chosen, as any run.
+The error of a run is not known from the run. But cheaper runs of the same scene show how much its
+numbers depend on rate, mesh, points, block model and chance, and they cost little. So the scene is
+run several times, in processes of their own, side by side on all cores: the companions of the
+cheapest fidelity of :data:`masonry.run.presets.FIDELITIES`. What they differ by, and what
+validation/accuracy has measured of that fidelity, add up to a half-width. If it is too large, the
+next fidelity follows. The scene then goes on with the options of the one that was chosen, as any
+run.
 
-Companions are in the folder ``accuracy`` of the results, one a folder. A run that was interrupted and is started again
-with the same words takes those that are over.
+Companions are in the folder ``accuracy`` of the results, one a folder. A run that was interrupted
+and is started again with the same words takes those that are over.
 
 This module needs no YADE.
 """
@@ -34,14 +37,17 @@ PLAN = "plan.json"  # there: what was run, while it goes on
 COMPANION = "MASONRY_COMPANION"
 #: Whether this process is a companion of another run; what it starts itself is not.
 _isCompanion = bool(os.environ.pop(COMPANION, ""))
-#: Half the width of a 95 % interval over the range of three runs, for the difference from another run: Student's t with two
-#: degrees of freedom, 4.30, times sqrt(1 + 1/3), over 1.69, the mean range of three in standard deviations.
+#: Half the width of a 95 % interval over the range of three runs, for the difference from another
+#: run: Student's t with two degrees of freedom, 4.30, times sqrt(1 + 1/3), over 1.69, the mean
+#: range of three in standard deviations.
 BY_CHANCE = 2.9
-#: Ratio of two differences, each at half the step of the one before, that speaks for an order of 0.6 to 2.6.
+#: Ratio of two differences, each at half the step of the one before, that speaks for an order of
+#: 0.6 to 2.6.
 BEHAVES = 1.5, 6.0
 
-#: The quantities: their name, the entry of run.json, and its unit. The peak is that of supports and loaded point at once: a
-#: pulse that the supports alone feel when a crack tears is no strength, and it grows with the rate.
+#: The quantities: their name, the entry of run.json, and its unit. The peak is that of supports and
+#: loaded point at once: a pulse that the supports alone feel when a crack tears is no strength, and
+#: it grows with the rate.
 QUANTITIES = (("peak", "peak_at_both_ends_kN", "kN"), ("work", "push_work_J", "J"))
 #: What an interval does not say, in every report.
 NOT_COVERED = (
@@ -52,7 +58,7 @@ NOT_COVERED = (
 STAGES = ("settle", "push", "hold", "release", "move")
 
 
-# -- what runs say ----------------------------------------------------------------------------------------------------
+# -- what runs say ---------------------------------------------------------------------------------
 
 
 def shown(source, values, scale):
@@ -77,7 +83,8 @@ def halfWidth(number, quantity, values, scale):
     """Half the width of the interval of a quantity, over a scale [-], and its parts by their names.
 
     :param number: of the fidelity in :data:`masonry.run.presets.FIDELITIES`
-    :param values: of the runs that are there by name; the run itself is :data:`masonry.run.presets.MAIN`
+    :param values: of the runs that are there by name; the run itself is
+        :data:`masonry.run.presets.MAIN`
     """
     fidelity = FIDELITIES[number]
     parts = {"not shown by companions": fidelity.error[quantity]}
@@ -98,7 +105,7 @@ def needed(number):
     return [n for n in dict.fromkeys(of(FIDELITIES[number])) if n not in before]
 
 
-# -- companions -------------------------------------------------------------------------------------------------------
+# -- companions ------------------------------------------------------------------------------------
 
 
 class AuxiliaryRuns:
@@ -119,7 +126,8 @@ class AuxiliaryRuns:
         return os.path.join(self.folder, plain.replace("__", "_"))
 
     def begin(self, key):
-        """Make the folder, or take up what an interrupted run with this key left there. Raises Refused."""
+        """Make the folder, or take up what an interrupted run with this key left there. Raises
+        Refused."""
         try:
             check(os.path.dirname(self.folder), self.folder)
         except OSError as error:
@@ -147,7 +155,8 @@ class AuxiliaryRuns:
             raise Refused(f"--out: cannot write to {self.folder}: {error.strerror}") from None
 
     def clear(self):
-        """Remove the folder of a scene of which nothing can be said, but not the log of a run that failed."""
+        """Remove the folder of a scene of which nothing can be said, but not the log of a run that
+        failed."""
         if self.numbers or self.failed:
             return
         shutil.rmtree(self.folder, ignore_errors=True)
@@ -247,7 +256,8 @@ class AuxiliaryRuns:
         self.percent, self.fidelity = percent, fidelity
 
     def report(self, run):
-        """The entries of run.json for the numbers of a run: ``accuracy`` and the half-widths beside the values."""
+        """The entries of run.json for the numbers of a run: ``accuracy`` and the half-widths beside
+        the values."""
         number = FIDELITIES.index(self.fidelity)
         found, entries = [], {}
         for quantity, key, unit in QUANTITIES:
@@ -278,11 +288,12 @@ class AuxiliaryRuns:
         return entries
 
 
-# -- what is reported and asked ---------------------------------------------------------------------------------------
+# -- what is reported and asked --------------------------------------------------------------------
 
 
 def answers(entry):
-    """The entry ``accuracy`` of run.json as answers of the push: dicts with ``name``, ``unit``, ``value``, ``uncertainty``, ``how``."""
+    """The entry ``accuracy`` of run.json as answers of the push: dicts with ``name``, ``unit``,
+    ``value``, ``uncertainty``, ``how``."""
     lacks = f". It does not cover {entry['not_covered']}"
     return [
         {n: q[n] for n in ("name", "unit", "value")}
@@ -315,10 +326,12 @@ def lines(entry):
 
 
 def ask(name, args, script, words):
-    """Carry out ``--accuracy``: run companions, and give the options the values of the fidelity that was chosen.
+    """Carry out ``--accuracy``: run companions, and give the options the values of the fidelity
+    that was chosen.
 
     :param args: the options of the run, which are changed
-    :param script: path of the script of the scene, if it takes its options from the command line; else None
+    :param script: path of the script of the scene, if it takes its options from the command line;
+        else None
     :returns: :class:`AuxiliaryRuns`; None for a companion, a probe, and runs without ``--accuracy``
     :raises Refused: if it means nothing here
     """

@@ -1,20 +1,25 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Rows of a table in YADE's batch format: options of a scene for ``yade-batch``. This module needs no YADE.
+"""Rows of a table in YADE's batch format: options of a scene for ``yade-batch``. This module needs
+no YADE.
 
-``yade-batch table.txt scene.py`` runs a scene once for every row. A row has the options of the scene by their names, with
-underscores for dashes, and properties of joints. Values are written as in Python, without blanks::
+``yade-batch table.txt scene.py`` runs a scene once for every row. A row has the options of the
+scene by their names, with underscores for dashes, and properties of joints. Values are written as
+in Python, without blanks::
 
     description preset until bed.cohesion field:bed.tensileStrength
     0001        'fast' 6     110000.0     'lognormal(cov=0.3,length=0.5,seed=7)'
 
-- an option: its value, or True for one that has none; ``*`` is the default, ``=`` the value of the row before
+- an option: its value, or True for one that has none; ``*`` is the default, ``=`` the value of the
+  row before
 - ``record``: a path that is not absolute begins at the folder of the table
 - ``JOINT.PROPERTY``: as ``--set``; several of them that have the same value are joined by ``+``
 - ``field:JOINT.PROPERTY``: as ``--field``; several of them that vary alike are joined by ``+``
-- ``description``: names the row; its results are in the folder ``rows/DESCRIPTION`` beside the table
+- ``description``: names the row; its results are in the folder ``rows/DESCRIPTION`` beside the
+  table
 
-A row that was run to its end is not run again, and one that was stopped goes on from its checkpoint, if that has the values of
-the table, and is refused if not. So a row with other values needs another description.
+A row that was run to its end is not run again, and one that was stopped goes on from its
+checkpoint, if that has the values of the table, and is refused if not. So a row with other values
+needs another description.
 """
 
 import ast
@@ -31,14 +36,15 @@ OWN = {"help", *OPTIONS} - those("ofStudy")
 VARIABLE = "YADE_BATCH"  # of the environment: path of the table and number of the line
 ROWS = "rows"  # folder of the results, beside the table
 FIELD = "field:"  # begins the name of a column
-#: Name in the environment of a file: the scene is built, and what it knows is written there. There is no run. The line of
-#: the heads then stands for a scene without options.
+#: Name in the environment of a file: the scene is built, and what it knows is written there. There
+#: is no run. The line of the heads then stands for a scene without options.
 PROBE = "MASONRY_PROBE"
 UNWRITTEN = os.EX_IOERR  # exit status if that file cannot be written
 
 
 def readTable(path):
-    """The rows of a table by the number of their line, from 1: dicts of texts. Raises Refused if it is not one."""
+    """The rows of a table by the number of their line, from 1: dicts of texts. Raises Refused if it
+    is not one."""
     lines = (re.sub(r"\s*#.*", "", line).split() for line in readText(path).split("\n"))
     used = [(number, words) for number, words in enumerate(lines, 1) if words]
     if not used:
@@ -61,7 +67,8 @@ def readTable(path):
 
 
 def value(text):
-    """The value that a text of a table stands for; what is no value of Python is the text itself."""
+    """The value that a text of a table stands for; what is no value of Python is the text
+    itself."""
     try:
         return ast.literal_eval(text)
     except (ValueError, SyntaxError, TypeError, MemoryError, RecursionError):
@@ -87,7 +94,8 @@ def optionWords(row):
 
 
 def isColumn(name):
-    """Whether a column of a study can have this name: an option, or properties of joints with one value or field.
+    """Whether a column of a study can have this name: an option, or properties of joints with one
+    value or field.
 
     Columns that begin with ``!`` are orders to yade-batch: ``!EXEC`` is a program that it runs.
     """
@@ -97,7 +105,8 @@ def isColumn(name):
 
 
 def place(text):
-    """Path of the table and number of the line of what stands in the environment. Raises Refused."""
+    """Path of the table and number of the line of what stands in the environment. Raises
+    Refused."""
     path, _, line = text.rpartition(":")
     if not path or not line.isdecimal():
         raise Refused(f"{VARIABLE}={text}: must read TABLE:LINE")
@@ -105,7 +114,8 @@ def place(text):
 
 
 def beside(path):
-    """The path of a file that a row names: beside its table, if it is not absolute. In no row it is the path itself."""
+    """The path of a file that a row names: beside its table, if it is not absolute. In no row it is
+    the path itself."""
     text = os.environ.get(VARIABLE)
     if not text or os.path.isabs(path):
         return path
@@ -138,7 +148,8 @@ def ended(directory):
 
 
 def present():
-    """The words of the command line of the row that ``yade-batch`` runs in this process. None: it runs none.
+    """The words of the command line of the row that ``yade-batch`` runs in this process. None: it
+    runs none.
 
     :raises Done: if the row was run to its end
     :raises Refused: if there is no such row

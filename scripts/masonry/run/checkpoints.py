@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Checkpoints: the state of a scene on disk, from which a run goes on as if it had never stopped.
 
-:func:`saveCheckpoint` and :func:`loadCheckpoint` serve any scene. A run in stages leaves its checkpoints by them;
+:func:`saveCheckpoint` and :func:`loadCheckpoint` serve any scene. A run in stages leaves its
+    checkpoints by them;
 :mod:`masonry.run.run_state` is what such a checkpoint tells of the run.
 """
 
@@ -21,16 +22,19 @@ LARGEST = 1e100  # no number of a run is beyond; its square can be computed
 
 @validated
 def saveCheckpoint(path: FilePath, extra: Any = None) -> None:
-    """Save the state of the scene in a file, so that :func:`loadCheckpoint` goes on from it bit for bit.
+    """Save the state of the scene in a file, so that :func:`loadCheckpoint` goes on from it bit for
+    bit.
 
-    Saved are the time, the bodies, the joints, and the engines of this plugin. Other engines, for example a PyRunner,
-    stay as the script makes them. The new file is written beside the old one, brought to the disk, and renamed: a kill
-    or a full disk at any moment leaves one of the two, whole.
+    Saved are the time, the bodies, the joints, and the engines of this plugin. Other engines, for
+    example a PyRunner, stay as the script makes them. The new file is written beside the old one,
+    brought to the disk, and renamed: a kill or a full disk at any moment leaves one of the two,
+    whole.
 
     :param path: file to write; ``path + ".new"`` is beside it for a moment
     :param extra: what your script must know to go on: anything that JSON can hold
     :raises ValueError: if a number of the state is not finite; nothing is written then
-    :raises OSError: if the file cannot be written, or one of both is a symbolic link; the old one stays
+    :raises OSError: if the file cannot be written, or one of both is a symbolic link; the old one
+        stays
     """
     try:
         kept = json.dumps(extra, allow_nan=False)
@@ -53,7 +57,8 @@ def loadCheckpoint(path: FilePath) -> Any:
     """Give the scene, built by the same script with the same parameters, the state of a checkpoint.
 
     :returns: the ``extra`` of :func:`saveCheckpoint`
-    :raises ValueError: if the file is damaged, or of another scene or version; the scene stays as it is
+    :raises ValueError: if the file is damaged, or of another scene or version; the scene stays as
+        it is
     :raises OSError: if it cannot be read
     """
     data, extra = readState(path)  # first, so that a wrong one changes nothing
@@ -64,12 +69,14 @@ def loadCheckpoint(path: FilePath) -> Any:
 
 @validated
 def readCheckpoint(path: FilePath) -> Any:
-    """The ``extra`` of a checkpoint alone, of a file that is whole. Raises what :func:`loadCheckpoint` raises."""
+    """The ``extra`` of a checkpoint alone, of a file that is whole. Raises what
+    :func:`loadCheckpoint` raises."""
     return readState(path)[1]
 
 
 def readState(path: FilePath) -> tuple[bytes, Any]:
-    """The bytes of a checkpoint, as ``loadScene`` takes them, and its ``extra``. Raises as :func:`readCheckpoint`."""
+    """The bytes of a checkpoint, as ``loadScene`` takes them, and its ``extra``. Raises as
+    :func:`readCheckpoint`."""
     with _says(path):
         data = readWhole(path)
         return data, fromJson(savedText(data))
@@ -89,8 +96,9 @@ def _says(path):
 def alike(value: Any, example: Any) -> bool:
     """Whether a value that JSON gave is of the kind of another one.
 
-    An int is a counter, from 0 on; a float is any number up to LARGEST; a list or tuple has as many values, each of the kind of its
-    counterpart, and an empty one stands for any list; None stands for None and for a list of finite numbers.
+    An int is a counter, from 0 on; a float is any number up to LARGEST; a list or tuple has as many
+    values, each of the kind of its counterpart, and an empty one stands for any list; None stands
+    for None and for a list of finite numbers.
     """
     if example is None:
         listed = isinstance(value, list)

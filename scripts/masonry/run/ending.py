@@ -25,9 +25,10 @@ DATE = "%Y-%m-%dT%H:%M:%SZ"  # of the end of a run, in run.json
 def end(run, scene, error):
     """Finish a run in order after an error, or after none. Returns whether the error is dealt with.
 
-    ``run.status`` is then the exit status of the scene: 0 at the end; 1 if a file cannot be written, if the memory is too
-    small, or if the structure has fallen while its dead loads grew, before its test began; 2 for refused input; 130 after
-    Ctrl-C or SIGTERM. Another error is for the caller when the results are finished.
+    ``run.status`` is then the exit status of the scene: 0 at the end; 1 if a file cannot be
+    written, if the memory is too small, or if the structure has fallen while its dead loads grew,
+    before its test began; 2 for refused input; 130 after Ctrl-C or SIGTERM. Another error is for
+    the caller when the results are finished.
 
     :param scene: gives ``model``, ``columns`` and ``outcome``
     """
@@ -101,7 +102,8 @@ def _end(run, scene, error):
 
 @contextlib.contextmanager
 def _noting(stopped):
-    """Let a file that cannot be written, or a memory that is full, end a block, and add it to a list."""
+    """Let a file that cannot be written, or a memory that is full, end a block, and add it to a
+    list."""
     try:
         yield
     except Unwritable as unwritable:
@@ -125,7 +127,8 @@ def _beforeSteps(run, error):
 
 
 def _keepEarlier(run, error):
-    """End without results, so that those of an earlier run stay. Returns whether the error is dealt with."""
+    """End without results, so that those of an earlier run stay. Returns whether the error is dealt
+    with."""
     run.status = 130 if isinstance(error, Interrupted) else 1
     say(
         f"note: {'interrupted' if run.status == 130 else 'ended'} before there was a row: nothing"
@@ -137,7 +140,8 @@ def _keepEarlier(run, error):
 
 
 def _finish(run, scene):
-    """Write the last frame and run.json, which is written even if there is no room for the frame, and report."""
+    """Write the last frame and run.json, which is written even if there is no room for the frame,
+    and report."""
     try:
         try:
             run.takeFound(True)
@@ -158,7 +162,8 @@ def _finish(run, scene):
 
 
 def _unlessInterrupted(run, draw, lacking):
-    """Draw what a run that is interrupted leaves out, since it shall end at once; then a sentence says what is lacking."""
+    """Draw what a run that is interrupted leaves out, since it shall end at once; then a sentence
+    says what is lacking."""
     try:
         with run.breakable():
             draw(run.results.directory)

@@ -9,14 +9,16 @@ from yade.wrapper import MasonryVtkRecorder
 from ..common.background import Failed, Task
 from ..basics import Unwritable
 
-#: A frame that takes longer is written beside the run [s]; the copy of the process that does it takes some milliseconds.
+#: A frame that takes longer is written beside the run [s]; the copy of the process that does it
+#: takes some milliseconds.
 SLOW_FRAME = 0.02
 
 
 class Frames:
     """Writes frames into the folder of a run: beside the run if the last one was slow.
 
-    :param at: :class:`masonry.run.run_state.RunState`, whose ``frames`` are the times of the frames that are whole or being written
+    :param at: :class:`masonry.run.run_state.RunState`, whose ``frames`` are the times of the frames
+        that are whole or being written
     """
 
     def __init__(self, directory, at):
@@ -37,7 +39,8 @@ class Frames:
             self._recorder.collect()
 
     def add(self, final):
-        """Write a frame of the scene as it stands; the ``final`` one is whole when this returns. Raises Unwritable."""
+        """Write a frame of the scene as it stands; the ``final`` one is whole when this returns.
+        Raises Unwritable."""
         self.wait()
         self._recorder.times = self._at.frames
         if self._took > SLOW_FRAME and not final:
@@ -56,8 +59,8 @@ class Frames:
             raise Unwritable(str(error)) from None
 
     def wait(self):
-        """Wait until the frame is whole that is written beside the run. Raises Unwritable if it could not be written: then
-        the run has gone on, and the frame is none of its frames."""
+        """Wait until the frame is whole that is written beside the run. Raises Unwritable if it
+        could not be written: then the run has gone on, and the frame is none of its frames."""
         task, self._task = self._task, None
         try:
             if task:

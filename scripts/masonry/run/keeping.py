@@ -44,12 +44,14 @@ class Checkpoints:
         self.keep()
 
     def markFall(self):
-        """As :meth:`mark`, of a structure that was seen to fall between two steps; what fell within one has no checkpoint."""
+        """As :meth:`mark`, of a structure that was seen to fall between two steps; what fell within
+        one has no checkpoint."""
         if self.safe:
             self.mark()
 
     def write(self):
-        """Save the state after the last steps. Returns whether it could; a disk that refuses it does not end the run."""
+        """Save the state after the last steps. Returns whether it could; a disk that refuses it
+        does not end the run."""
         run, safe = self._run, self.safe
         if not (run.args.checkpoint_every and safe):
             return False

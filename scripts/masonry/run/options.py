@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The options that all scenes share: one row an option. The command line, ``--help``, the manual, keywords of ``Scene``, presets, the
-check of a run that is resumed, studies and run.json read these rows. This module needs no YADE.
+"""The options that all scenes share: one row an option. The command line, ``--help``, the manual,
+keywords of ``Scene``, presets, the check of a run that is resumed, studies and run.json read these
+rows. This module needs no YADE.
 
 An option is added by its row, and by the code that uses it.
 """
@@ -58,7 +59,8 @@ class Option:
 
 
 def reading(kind: Kind) -> Any:
-    """The function by which argparse reads values of a kind from texts. It raises argparse.ArgumentTypeError."""
+    """The function by which argparse reads values of a kind from texts. It raises
+    argparse.ArgumentTypeError."""
 
     def read(text):
         value = text
@@ -77,14 +79,16 @@ def asOption(name: str) -> str:
     return "--" + name.replace("_", "-")
 
 
-# -- kinds ------------------------------------------------------------------------------------------------------------
+# -- kinds -----------------------------------------------------------------------------------------
 
-#: Fewest points along a side that give a joint its stiffness against rotation: two give three times that, one none.
+#: Fewest points along a side that give a joint its stiffness against rotation: two give three times
+#: that, one none.
 FEWEST = 3
 
 
 def points(value: Any, first: Any = None) -> str:
-    """The kind of ``--points``: one number of points, or two of which the first is not below the second."""
+    """The kind of ``--points``: one number of points, or two of which the first is not below the
+    second."""
     along = whole(FEWEST, 100)
     numbers = [along(int(n) if n.isdecimal() else n) for n in str(value).split(",")]
     if len(numbers) > 2:
@@ -121,7 +125,7 @@ rate, damping = number("mm/s", 1e-3, 1000), number("", 0, 0.99)
 Rate = Annotated[float, rate]
 Damping = Annotated[float, damping]
 
-# -- the table --------------------------------------------------------------------------------------------------------
+# -- the table -------------------------------------------------------------------------------------
 
 _ROWS = (
     # masonry.run.presets has its choices
@@ -246,7 +250,7 @@ def those(trait: str) -> set[str]:
     return {name for name, one in OPTIONS.items() if getattr(one, trait)}
 
 
-#: Units of the options that have one; and the options that a preset chooses, as they are without one. A scene may have another
-#: rate.
+#: Units of the options that have one; and the options that a preset chooses, as they are without
+#: one. A scene may have another rate.
 UNITS = {name: one.unit for name, one in OPTIONS.items() if one.unit}
 USUAL = {name: one.default for name, one in OPTIONS.items() if one.chosen}

@@ -14,7 +14,8 @@ import sys
 def live(columns):
     """A function that adds a row to ``yade.plot.data``, or None if the user has not asked for it.
 
-    The user has asked if he has imported ``yade.plot`` and if one of these columns stands in ``plot.plots``.
+    The user has asked if he has imported ``yade.plot`` and if one of these columns stands in
+    ``plot.plots``.
 
     :param columns: names of the columns of curve.csv
     :returns: function of a row, which raises ValueError if it has another length
@@ -32,7 +33,8 @@ def live(columns):
 
 
 def _named(plots):
-    """All columns that ``plot.plots`` names: x, and each y by its name or with its style behind it."""
+    """All columns that ``plot.plots`` names: x, and each y by its name or with its style behind
+    it."""
     named = {x.strip() for x in plots}
     for wanted in plots.values():
         for y in [wanted] if isinstance(wanted, str) else wanted or ():

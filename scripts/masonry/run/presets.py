@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Presets of options that trade accuracy for time, and what each promises; and the fidelities from which ``--accuracy`` chooses.
-This module needs no YADE."""
+"""Presets of options that trade accuracy for time, and what each promises; and the fidelities from
+which ``--accuracy`` chooses. This module needs no YADE."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -18,11 +18,13 @@ for _preset in PRESETS.values():
 BOUND = "bound"  # the preset of limit analysis alone, without a run: see masonry.limit
 
 _WALLS = "wall_comp0a", "wall_comp1", "wall_comp4", "wall_comp6"
-#: What a preset promises. ``peak_error``, ``work_error`` and ``stiffness_error`` are the most that the peak, the work over the
-#: push and the initial stiffness differ from those of a fine and slow run [-]. ``walls`` has how far each wall was pushed for
-#: that [mm], and the time that it takes with ``yade -j2`` on two idle server cores [s]. validation/trade measures all of them.
-#: ``elsewhere`` has the errors of peak and work of these four and the forty walls of validation/accuracy, of which all but
-#: ``missed`` lay within them. Any wall in their :data:`RANGE` gets this promise.
+#: What a preset promises. ``peak_error``, ``work_error`` and ``stiffness_error`` are the most that
+#: the peak, the work over the push and the initial stiffness differ from those of a fine and slow
+#: run [-]. ``walls`` has how far each wall was pushed for that [mm], and the time that it takes
+#: with ``yade -j2`` on two idle server cores [s]. validation/trade measures all of them.
+#: ``elsewhere`` has the errors of peak and work of these four and the forty walls of
+#: validation/accuracy, of which all but ``missed`` lay within them. Any wall in their :data:`RANGE`
+#: gets this promise.
 PROMISES: dict[str, dict[str, Any]] = {
     "fast": {
         **dict(peak_error=0.02, work_error=0.02, stiffness_error=0.1),
@@ -47,15 +49,15 @@ RANGE: dict[str, tuple[float, float]] = {
     "friction of bed joints": (0.43, 0.65),
 }
 
-# -- fidelities: what --accuracy chooses from ---------------------------------------------------------------------------
+# -- fidelities: what --accuracy chooses from ------------------------------------------------------
 
 
 @dataclass(frozen=True)
 class Source:
     """A source of error of a fidelity, and the runs that show how large it is.
 
-    The difference of the last two runs counts. Of three, each with half the step of the one before, it counts less if their
-    differences shrink as those of a method of an order do (Richardson).
+    The difference of the last two runs counts. Of three, each with half the step of the one before,
+    it counts less if their differences shrink as those of a method of an order do (Richardson).
     """
 
     name: str
@@ -70,7 +72,8 @@ class Source:
 class Fidelity:
     """Options of a run, and what is known of their error.
 
-    validation/trade has the runs from which ``error`` was taken, and validation/accuracy measures what it is worth.
+    validation/trade has the runs from which ``error`` was taken, and validation/accuracy measures
+    what it is worth.
     """
 
     name: str  # as the terminal says it
@@ -80,14 +83,16 @@ class Fidelity:
     sources: tuple  # what companions show
 
 
-#: The run itself among those of a :class:`Source`. Before it has been made, the source counts as in the fidelity before.
+#: The run itself among those of a :class:`Source`. Before it has been made, the source counts as in
+#: the fidelity before.
 MAIN = "this run"
 
 _ONE, _TWO, _THREE = (
     dict(blocks="deformable", divisions=n, mass_scaling="auto") for n in (1, 2, 3)
 )
 
-#: Runs beside a run, by name: options that replace those without options. They are cheap beside the run that they judge.
+#: Runs beside a run, by name: options that replace those without options. They are cheap beside the
+#: run that they judge.
 COMPANIONS: dict[str, dict[str, Any]] = {
     "rigid, 200 mm/s": {"rate": 200.0},
     "rigid, 100 mm/s": {"rate": 100.0},
@@ -167,7 +172,8 @@ def fidelityOf(args):
 def outsideOf(properties):
     """Sentences on properties in which a scene is unlike the walls on which ``fast`` was measured.
 
-    :param properties: values by name, as :func:`masonry.scene.facts.properties` gives them; None: it moves in space
+    :param properties: values by name, as :func:`masonry.scene.facts.properties` gives them; None:
+        it moves in space
     """
     if properties is None:
         return ["it moves in space, and they were pushed in their plane"]
@@ -184,9 +190,10 @@ def outsideOf(properties):
 def presetOf(args, scene, properties):
     """What run.json says of the preset: None without one, or a dict.
 
-    ``name`` is the preset's. ``overrides`` are options given beside it. ``outside`` are sentences on what was not measured.
-    ``promise`` is None if there are any of both. Else it holds ``peak_error`` and ``work_error`` [-]; of a wall on which
-    it was measured also ``stiffness_error`` [-], ``until_mm`` and ``seconds``; of another one that is like these
+    ``name`` is the preset's. ``overrides`` are options given beside it. ``outside`` are sentences
+    on what was not measured. ``promise`` is None if there are any of both. Else it holds
+    ``peak_error`` and ``work_error`` [-]; of a wall on which it was measured also
+    ``stiffness_error`` [-], ``until_mm`` and ``seconds``; of another one that is like these
     ``walls``, how many these are, and ``missed``, how many of them had larger errors.
     """
     if not args.preset:

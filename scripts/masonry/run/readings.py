@@ -10,8 +10,9 @@ FLUSH_EVERY = 0.2  # [s] of wall-clock time: rows are on the disk after it
 
 
 class Readings:
-    """Readings that are not in curve.csv yet. They wait for 0.2 s of wall-clock time at most, and not beyond a checkpoint or the
-    end, so only a kill can lose them, and a run that is resumed after a kill makes them again.
+    """Readings that are not in curve.csv yet. They wait for 0.2 s of wall-clock time at most, and
+    not beyond a checkpoint or the end, so only a kill can lose them, and a run that is resumed
+    after a kill makes them again.
 
     :param live: function that adds a row to yade.plot, or None
     """
@@ -38,8 +39,8 @@ class Readings:
         return reading
 
     def isDue(self):
-        """Whether the rows should be written, after one was added: the next one is expected as long after it as it came after the
-        last."""
+        """Whether the rows should be written, after one was added: the next one is expected as long
+        after it as it came after the last."""
         before, self._read = self._read, time.perf_counter()
         return 2 * self._read - self._written - before > FLUSH_EVERY
 

@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """A run in stages, in a folder of results, with checkpoints from which it can be taken up again.
 
-A stage steps by :meth:`Run.advance` alone. What it must know to go on after a checkpoint is a dataclass that it gives
-to :meth:`Run.stage`. In a run that is resumed, stages that were over are left out (:mod:`masonry.scene.resuming`). The
-stage in which the checkpoint was made is entered with the scene and its memory as they were right after the steps of an
-``advance``, and its first ``advance`` takes the steps that were left, or none. So a stage changes its memory after it
-has advanced, and what it does before it advances may be done twice.
+A stage steps by :meth:`Run.advance` alone. What it must know to go on after a checkpoint is a
+dataclass that it gives to :meth:`Run.stage`. In a run that is resumed, stages that were over are
+left out (:mod:`masonry.scene.resuming`). The stage in which the checkpoint was made is entered with
+the scene and its memory as they were right after the steps of an ``advance``, and its first
+``advance`` takes the steps that were left, or none. So a stage changes its memory after it has
+advanced, and what it does before it advances may be done twice.
 """
 
 import contextlib
@@ -34,16 +35,20 @@ SHOW_EVERY = 0.05  # [s] of wall-clock time: what is shown on the terminal is no
 LOOK_EVERY = (
     0.5  # [s] of wall-clock time: within slow steps a checkpoint that is due is made no later
 )
-LOOKED = 300  # steps after which the widest crack is looked for again: a hundredth of the time of steps in which joints yield
+# steps after which the widest crack is looked for again: a hundredth of the time of steps in which
+# joints yield
+LOOKED = 300
 
 
 class Run:
-    """A run in stages; the module says how to use it. :func:`masonry.run.ending.end` ends it in order.
+    """A run in stages; the module says how to use it. :func:`masonry.run.ending.end` ends it in
+    order.
 
-    Results of an earlier run in the folder are replaced when there is a first row or frame, or at the end. A run that is
-    interrupted or fails before leaves them as they are.
+    Results of an earlier run in the folder are replaced when there is a first row or frame, or at
+    the end. A run that is interrupted or fails before leaves them as they are.
 
-    :param name: name of the scene; its results go to ``results/<name>`` if the options do not say otherwise
+    :param name: name of the scene; its results go to ``results/<name>`` if the options do not say
+        otherwise
     :param args: the options of :func:`masonry.scene.options.parser`
     :param script: what the script says, as data: a list that grows
     """
@@ -72,10 +77,11 @@ class Run:
         self._now = time.perf_counter()  # at the end of the last steps [s]
         self._shown = self._now  # when progress was shown last [s]
 
-    # -- beginning ------------------------------------------------------------------------------------------------
+    # -- beginning ---------------------------------------------------------------------------------
 
     def open(self, columns, properties):
-        """Open the folder, and read the checkpoint of a run that is resumed. No file is written yet.
+        """Open the folder, and read the checkpoint of a run that is resumed. No file is written
+        yet.
 
         :param properties: of the scene, as :func:`masonry.scene.facts.properties` gives them
         """
@@ -104,7 +110,8 @@ class Run:
             say(presetNote(self.preset))
 
     def start(self, model, space, state):
-        """Take up the model that now stands in YADE, in the state of the checkpoint if the run is resumed.
+        """Take up the model that now stands in YADE, in the state of the checkpoint if the run is
+        resumed.
 
         :param space: bytes that the run writes at least, and those that it will probably write
         :param state: what a checkpoint keeps of the scene beside its state in YADE:
@@ -141,8 +148,8 @@ class Run:
         return self.saved.script if self.saved else []
 
     def hear(self, text):
-        """Keep a note or a warning with the stage and the time in the scene in which it was said first. A run that is resumed
-        says again what it said."""
+        """Keep a note or a warning with the stage and the time in the scene in which it was said
+        first. A run that is resumed says again what it said."""
         # before the first stage, another scene may stand in YADE
         self.at.hear(text, self.entered, O.time if self.entered else 0.0)
 
@@ -157,8 +164,9 @@ class Run:
         return self.saved is not None and not self.advanced
 
     def continueFrom(self, number, redoes):
-        """In a run that is resumed and has taken no steps yet, let rows and frames be those of the beginning of the stage of a
-        number; of the stage of the checkpoint, which ``redoes`` says, those of the checkpoint.
+        """In a run that is resumed and has taken no steps yet, let rows and frames be those of the
+        beginning of the stage of a number; of the stage of the checkpoint, which ``redoes`` says,
+        those of the checkpoint.
         """
         at, rows = self.at, self.saved.rows
         self.redoes = redoes
@@ -171,7 +179,8 @@ class Run:
             self.readings.time = rows[-1][0]
 
     def takeUp(self):
-        """From here on files are written; those of a run that is resumed are cut back to its checkpoint."""
+        """From here on files are written; those of a run that is resumed are cut back to its
+        checkpoint."""
         if self.saved:
             at = self.at
             # a stage acts before it advances: that was done before the steps of the checkpoint
@@ -189,14 +198,15 @@ class Run:
                 raise NotResumed(f"--resume: {error}") from None
         self.advanced = True
 
-    # -- what stages call -----------------------------------------------------------------------------------------
+    # -- what stages call --------------------------------------------------------------------------
 
     def stage(self, name, memory):
-        """Enter the next stage. Returns its memory; None if it is a part of the stage of the checkpoint, and was over then.
+        """Enter the next stage. Returns its memory; None if it is a part of the stage of the
+        checkpoint, and was over then.
 
         :param name: what it is called on the terminal
-        :param memory: what the stage must know to go on, as it is at the beginning: a dataclass of values that JSON can
-            hold. Checkpoints keep it.
+        :param memory: what the stage must know to go on, as it is at the beginning: a dataclass of
+            values that JSON can hold. Checkpoints keep it.
         """
         self.entered += 1
         resumed = self.redoes and not self.advanced
@@ -216,12 +226,14 @@ class Run:
     def advance(self, steps, one=None):
         """Take time steps, and leave a checkpoint if one is due.
 
-        Ctrl-C and SIGTERM are obeyed after the present step. A checkpoint is made after the last step, and between steps
-        only if they are slow, see LOOK_EVERY.
+        Ctrl-C and SIGTERM are obeyed after the present step. A checkpoint is made after the last
+        step, and between steps only if they are slow, see LOOK_EVERY.
 
-        Raises Interrupted after Ctrl-C and SIGTERM, and Collapsed if a block has fallen (help(masonry.MasonryEnergy)).
+        Raises Interrupted after Ctrl-C and SIGTERM, and Collapsed if a block has fallen
+        (help(masonry.MasonryEnergy)).
 
-        :param one: function that makes one step, of its number in this call, from 0; None: YADE makes it
+        :param one: function that makes one step, of its number in this call, from 0; None: YADE
+            makes it
         """
         at = self.at
         self.model.loading.keepLoadLine()
@@ -287,7 +299,8 @@ class Run:
             self.takeFound(False)
 
     def frame(self, final=False):
-        """Write a frame for ParaView, if the user wants any; the ``final`` one is whole when this returns."""
+        """Write a frame for ParaView, if the user wants any; the ``final`` one is whole when this
+        returns."""
         if self.frames:
             self.flush()
             self.results.begin()
@@ -295,14 +308,15 @@ class Run:
                 self.frames.add(final)
 
     def show(self, fraction, detail, final=False):
-        """Show on the terminal how far the present stage has come, if it is time to: :meth:`masonry.run.progress.Progress.show`."""
+        """Show on the terminal how far the present stage has come, if it is time to:
+        :meth:`masonry.run.progress.Progress.show`."""
         if final or self._now - self._shown > SHOW_EVERY:
             at = self.at
             rate = at.steps / at.seconds["steps"] if at.steps else 0.0
             self.progress.show(at.stage, fraction, detail, rate, final)
             self._shown = self._now
 
-    # -- the end --------------------------------------------------------------------------------------------------
+    # -- the end -----------------------------------------------------------------------------------
 
     def fall(self, what):
         """Note that the structure has fallen."""

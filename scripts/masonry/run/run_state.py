@@ -13,7 +13,8 @@ PARTS = "setup", "steps", "rows", "frames"  # of a run's time
 
 
 def _holding(kind, example):
-    """A field that is a list or a dict, whose values are like an example: see :func:`masonry.run.checkpoints.alike`."""
+    """A field that is a list or a dict, whose values are like an example: see
+    :func:`masonry.run.checkpoints.alike`."""
     return field(default_factory=kind, metadata={"example": example})
 
 
@@ -21,8 +22,8 @@ def _holding(kind, example):
 class RunState:
     """How far a run has come, beside the state of the scene."""
 
-    #: What the scene is at the beginning of the present stage and at the checkpoint, beside its state in YADE, as
-    #: :func:`masonry.scene.resuming.stateOf` gives it.
+    #: What the scene is at the beginning of the present stage and at the checkpoint, beside its
+    #: state in YADE, as :func:`masonry.scene.resuming.stateOf` gives it.
     before: dict = field(default_factory=dict)
     now: dict = field(default_factory=dict)
     begun: int = 0  # number of the stage whose beginning ``before`` is
@@ -33,21 +34,25 @@ class RunState:
     left: int = 0  # of the present advance that are not taken yet
     rows: int = 0  # of curve.csv when the memory was as it is here
     frameCount: int = 0  # ParaView frames then
-    #: Of every stage so far: its name, and the steps, their seconds of wall-clock time and the rows before it.
+    #: Of every stage so far: its name, and the steps, their seconds of wall-clock time and the rows
+    #: before it.
     stages: list = _holding(list, ["", 0, 0.0, 0])
     seconds: dict = _holding(lambda: dict.fromkeys(PARTS, 0.0), 0.0)
     frames: list = _holding(list, 0.0)  # times of the ParaView frames [s]
     origins: dict = _holding(dict, None)  # where pushes began, by their name
-    #: Of the pushes, by the numbers of their stages: the first period when it began [s], the weight of the base in its shear
-    #: force [-], and the time at which its velocity had grown [s]; 0 where that was not found.
+    #: Of the pushes, by the numbers of their stages: the first period when it began [s], the weight
+    #: of the base in its shear force [-], and the time at which its velocity had grown [s]; 0 where
+    #: that was not found.
     freeVibrations: dict = _holding(dict, [0.0] * 3)
     bounds: dict = _holding(dict, {})  # what limit analysis found, by the load
     #: Load factors under which the structure came to rest, by the names of their bounds.
     held: dict = _holding(dict, 0.0)
-    #: What stages pushed or put on, by their numbers: the kind, "push", "lean" or "growth", the name of the load
-    #: and that of the opposite one; and the target whose displacement is counted, where it is not what is pushed.
+    #: What stages pushed or put on, by their numbers: the kind, "push", "lean" or "growth", the
+    #: name of the load and that of the opposite one; and the target whose displacement is counted,
+    #: where it is not what is pushed.
     loads: dict = _holding(dict, [])
-    #: How stages ended, by their numbers, and the number of the last stage then: a stage may consist of several.
+    #: How stages ended, by their numbers, and the number of the last stage then: a stage may
+    #: consist of several.
     ended: dict = _holding(dict, ["", 0])
     fall: str = ""  # what has fallen, as in Run.fall
     #: What acted beside a load and held the structure when its bound was found, by the load.
@@ -89,7 +94,8 @@ def otherVersion(why):
 
 
 def restored(example, values):
-    """A dataclass object with the values of a checkpoint. Raises Refused if these are not of the kind of the example's."""
+    """A dataclass object with the values of a checkpoint. Raises Refused if these are not of the
+    kind of the example's."""
     before = vars(example)
     fits = lambda name: name in before and alike(values[name], before[name])
     _refuseUnlike(name for name in values if not fits(name))
@@ -104,7 +110,8 @@ def _refuseUnlike(names):
 class Saved:
     """A checkpoint that a run left, read from the disk once.
 
-    - ``scene``: name of the scene; ``options``: those of the run; ``script``: what its script said, as data
+    - ``scene``: name of the scene; ``options``: those of the run; ``script``: what its script said,
+      as data
     - ``at``: how far the run had come, as in :class:`RunState`; ``rows`` of curve.csv
     - ``seconds`` of wall-clock time; ``host``: what it was made with, as in
       :func:`masonry.run.keeping.hostNow`

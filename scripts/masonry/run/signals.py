@@ -11,8 +11,8 @@ from ..basics import Interrupted
 class Signals:
     """What a run does when the user interrupts it.
 
-    In a script the run obeys signals from its beginning to its end; in a notebook only while one of its commands is carried
-    out, and what else a cell does is interrupted as usual.
+    In a script the run obeys signals from its beginning to its end; in a notebook only while one of
+    its commands is carried out, and what else a cell does is interrupted as usual.
     """
 
     def __init__(self):
@@ -35,8 +35,8 @@ class Signals:
 
     @contextlib.contextmanager
     def breakable(self):
-        """Let Ctrl-C and SIGTERM end a block at once, by Interrupted. It must change nothing that a checkpoint keeps; elsewhere
-        these are obeyed between steps."""
+        """Let Ctrl-C and SIGTERM end a block at once, by Interrupted. It must change nothing that a
+        checkpoint keeps; elsewhere these are obeyed between steps."""
         self._breaks = True
         try:
             if self.interrupted:

@@ -1,19 +1,23 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Files of ground accelerations: which formats are read, and whether a record drifts. This module needs no YADE.
+"""Files of ground accelerations: which formats are read, and whether a record drifts. This module
+needs no YADE.
 
 The format is found from the contents, not from the name of the file:
 
-- **PEER NGA** (``.AT2``): some lines of header, of which one has the number of samples and the time between them,
-  ``NPTS= 4000, DT= .0050 SEC`` or ``4000 .0050 NPTS, DT``, and one the unit, ``ACCELERATION TIME SERIES IN UNITS OF G``; then
-  the samples, any number of them a line.
-- **ESM**, the Engineering Strong-Motion database, and ITACA (DYNA, ``.ASC``): 64 lines of header, each a key, a colon and a
-  value, among them ``SAMPLING_INTERVAL_S``, ``NDATA``, ``UNITS`` (``cm/s^2``) and ``DATA_TYPE``. One sample a line follows.
-- **Text**: one column, accelerations, or two, time [s] and acceleration, with blanks or commas between them. Lines that
-  begin with # are comments, but for three that say what the numbers are: ``# unit: g``, ``# every: 0.005 s``, and
-  ``# components: x y z`` above three columns, two horizontal accelerations and the vertical one.
+- **PEER NGA** (``.AT2``): some lines of header, of which one has the number of samples and the time
+  between them, ``NPTS= 4000, DT= .0050 SEC`` or ``4000 .0050 NPTS, DT``, and one the unit,
+  ``ACCELERATION TIME SERIES IN UNITS OF G``; then the samples, any number of them a line.
+- **ESM**, the Engineering Strong-Motion database, and ITACA (DYNA, ``.ASC``): 64 lines of header,
+  each a key, a colon and a value, among them ``SAMPLING_INTERVAL_S``, ``NDATA``, ``UNITS``
+  (``cm/s^2``) and ``DATA_TYPE``. One sample a line follows.
+- **Text**: one column, accelerations, or two, time [s] and acceleration, with blanks or commas
+  between them. Lines that begin with # are comments, but for three that say what the numbers are:
+  ``# unit: g``, ``# every: 0.005 s``, and ``# components: x y z`` above three columns, two
+  horizontal accelerations and the vertical one.
 
-g is 9.81 m/s². What a file says of itself is compared with what is in it: another number of samples, times that are not evenly apart, and
-numbers that are not finite are refused with the file, the line and the value.
+g is 9.81 m/s². What a file says of itself is compared with what is in it: another number of
+samples, times that are not evenly apart, and numbers that are not finite are refused with the file,
+the line and the value.
 """
 
 import math
@@ -38,8 +42,8 @@ WRITTEN = {
 UNEVEN = 1e-3  # of the time between samples: how far a time of a file may be off
 HEADER = 12  # lines at the beginning of a PEER file among which NPTS must be
 
-#: Shares above which a record is said to drift: of its largest velocity at the end, and of its largest displacement that a
-#: straight line through its displacements rises by. See :func:`drift`.
+#: Shares above which a record is said to drift: of its largest velocity at the end, and of its
+#: largest displacement that a straight line through its displacements rises by. See :func:`drift`.
 ENDS, RISES = 0.05, 0.5
 
 
@@ -60,7 +64,8 @@ class Accelerogram:
 
 
 def read(path: FilePath) -> Accelerogram:
-    """Read a file of accelerations. Raises Refused with the file, the line and the value that is wrong."""
+    """Read a file of accelerations. Raises Refused with the file, the line and the value that is
+    wrong."""
     try:
         data = readWhole(path)
     except OSError as error:
@@ -255,7 +260,8 @@ def components(values: Any) -> Any:
 def written(values: Any, every: float, title: str) -> str:
     """A record as a text that :func:`read` gives back bit for bit.
 
-    :param values: samples [m/s²], or lists of three components; ``every``: the time between two of them [s]
+    :param values: samples [m/s²], or lists of three components; ``every``: the time between two of
+        them [s]
     :param title: one line of comment
     """
     head = f"# {title}\n# unit: m/s²\n# every: {float(every)!r} s\n"
@@ -268,10 +274,13 @@ def written(values: Any, every: float, title: str) -> str:
 class Drift:
     """How far a record is from a motion that ends at rest.
 
-    :param endVelocity: of the ground at the end of the record [m/s]; ``peakVelocity``: the largest amount [m/s]
-    :param rise: of a straight line of least squares through the displacements, over the whole record [m]
+    :param endVelocity: of the ground at the end of the record [m/s]; ``peakVelocity``: the largest
+        amount [m/s]
+    :param rise: of a straight line of least squares through the displacements, over the whole
+        record [m]
     :param peakDisplacement: the largest amount [m]
-    :param lean: the constant acceleration with which the ground would have this velocity at the end [m/s²]
+    :param lean: the constant acceleration with which the ground would have this velocity at the end
+        [m/s²]
     """
 
     endVelocity: float
@@ -303,15 +312,18 @@ class Drift:
 def drift(values: Numbers, every: float) -> Drift:
     """How far a record drifts: velocity and displacement, integrated from rest.
 
-    A motion of the ground ends at rest, so the velocity at its end is 0; the criterion is 5 % of the largest velocity. A motion
-    about one place has displacements to both sides, and a line of least squares through them hardly rises. An offset of the
-    accelerations or of the velocity gives displacements whose line rises by all of the largest one, so the criterion is half of
-    that. A record with a permanent displacement of the ground, near a fault, exceeds it rightly. Nothing is corrected:
-    processed records of both databases need none, and what is right for another one depends on why it drifts.
+    A motion of the ground ends at rest, so the velocity at its end is 0; the criterion is 5 % of
+    the largest velocity. A motion about one place has displacements to both sides, and a line of
+    least squares through them hardly rises. An offset of the accelerations or of the velocity gives
+    displacements whose line rises by all of the largest one, so the criterion is half of that. A
+    record with a permanent displacement of the ground, near a fault, exceeds it rightly. Nothing is
+    corrected: processed records of both databases need none, and what is right for another one
+    depends on why it drifts.
 
     The integrals are exact for accelerations that change evenly between samples.
 
-    :param values: samples, in m/s² for the units of the result; ``every``: the time between two of them [s]
+    :param values: samples, in m/s² for the units of the result; ``every``: the time between two of
+        them [s]
     """
     a = np.asarray(values, float)
     v = np.concatenate([[0.0], np.cumsum(0.5 * every * (a[:-1] + a[1:]))])

@@ -21,13 +21,16 @@ def bound(
     direction: Direction = (1, 0, 0),
     towards: Level | None = None,
 ) -> Any:
-    """Limit analysis of the scene as it stands, with a collapse without dilatancy: see :mod:`masonry.limit`.
+    """Limit analysis of the scene as it stands, with a collapse without dilatancy: see
+    :mod:`masonry.limit`.
 
-    Stages that push or lean find their bound by themselves, if there are at most 3000 joints; this is for other
-    loads, and for larger structures.
+    Stages that push or lean find their bound by themselves, if there are at most 3000 joints; this
+    is for other loads, and for larger structures.
 
-    :param target: what is pushed, or a pattern, as in :meth:`push`, along ``direction``; its factor is the force of the push [kN]
-    :param towards: horizontal direction of an acceleration, whose factor is in g; give this or ``target``
+    :param target: what is pushed, or a pattern, as in :meth:`push`, along ``direction``; its factor
+        is the force of the push [kN]
+    :param towards: horizontal direction of an acceleration, whose factor is in g; give this or
+        ``target``
     :returns: the entry of run.json: a dict with what :mod:`masonry.run.results` lists
     """
     if (target is None) == (towards is None):
@@ -55,17 +58,22 @@ def domain(
     normal: Annotated[Numbers, listOf(number("kN", 0, 1e9, above=True))],
     direction: Level = (1, 0, 0),
 ) -> list[dict[str, Any]]:
-    """The N-V domain of a pier: limit analysis of a push under several normal forces, as :meth:`bound` for one.
+    """The N-V domain of a pier: limit analysis of a push under several normal forces, as
+    :meth:`bound` for one.
 
-    The loads of the scene stay as they are; only for limit analysis the vertical force on the platen is replaced. So it says
-    nothing new where the platen is held along z. :func:`masonry.capacity.domain` reads what was found, and
-    ``/usr/bin/python3 -m masonry.capacity --domain`` draws it, with the peaks of runs as points.
+    The loads of the scene stay as they are; only for limit analysis the vertical force on the
+    platen is replaced. So it says nothing new where the platen is held along z.
+    :func:`masonry.capacity.domain` reads what was found, and ``/usr/bin/python3 -m masonry.capacity
+    --domain`` draws it, with the peaks of runs as points.
 
-    :param target: a platen that is pushed, with a :meth:`press` that says where the normal force acts
-    :param normal: forces with which the platen presses on what is below, its weight included: a list [kN]
+    :param target: a platen that is pushed, with a :meth:`press` that says where the normal force
+        acts
+    :param normal: forces with which the platen presses on what is below, its weight included: a
+        list [kN]
     :param direction: of the push, horizontal
-    :returns: the entries of run.json: a list of dicts as in :meth:`bound`, with ``pressed_kN``, the force that was given, and
-        ``normal_kN``, the force at the supports, with the weight of what is above them
+    :returns: the entries of run.json: a list of dicts as in :meth:`bound`, with ``pressed_kN``, the
+        force that was given, and ``normal_kN``, the force at the supports, with the weight of what
+        is above them
     :raises ValueError: if the platen is not pressed, or is held along z
     """
     if target.pressed is None:
@@ -93,7 +101,8 @@ def domain(
 
 
 def _inOrder(scene, find, command, *arguments):
-    """What a function finds of a scene that is built, noted as a command of the script; Ctrl-C ends the run in order."""
+    """What a function finds of a scene that is built, noted as a command of the script; Ctrl-C ends
+    the run in order."""
     try:
         with scene.noted(command, *arguments), scene.running.listening():
             scene.begin()

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Bounds beside a run: limit analysis of what the stages of a scene load.
 
-:class:`masonry.scene.scene.Scene` asks for them by itself when a stage pushes or leans the structure. :mod:`masonry.limit` says
-what they are.
+:class:`masonry.scene.scene.Scene` asks for them by itself when a stage pushes or leans the
+structure. :mod:`masonry.limit` says what they are.
 """
 
 import contextlib
@@ -25,24 +25,27 @@ from ..common.packages import Missing
 from ..common.folders import replaced
 from . import limit_loads
 
-#: Largest number of joints for which ``--preset bound`` and domains also look for a collapse without dilatancy, which takes many
-#: solutions of the programme.
+#: Largest number of joints for which ``--preset bound`` and domains also look for a collapse
+#: without dilatancy, which takes many solutions of the programme.
 SMALL = 500
 EVERY = math.inf  # the same limit where the user asks for that collapse: none
 #: Largest number of joints of a run that is bounded unasked: within seconds.
 JOINTS = 3000
-#: Time that limit analysis may take for a load, if nobody asked for it, if somebody did, and if it is done beside a run that
-#: still takes steps [s]. A run that has come to its end, or to a checkpoint, waits until the first of them is over.
+#: Time that limit analysis may take for a load, if nobody asked for it, if somebody did, and if it
+#: is done beside a run that still takes steps [s]. A run that has come to its end, or to a
+#: checkpoint, waits until the first of them is over.
 UNASKED, ASKED, IN_BACKGROUND = 10.0, 600.0, 120.0
-#: Of the search for a tilt at which both parts of gravity are those of the tilt: its rounds at most, the difference of two
-#: tilts at which it ends, and the largest tilt [rad].
+#: Of the search for a tilt at which both parts of gravity are those of the tilt: its rounds at
+#: most, the difference of two tilts at which it ends, and the largest tilt [rad].
 TILTS, SAME_TILT, STEEPEST = 20, 1e-6, math.radians(89.9)
 FIGURE = "mechanism.png"
-#: The note of a bound that was not found when the run was interrupted. One that goes on in the same stage looks for it again.
+#: The note of a bound that was not found when the run was interrupted. One that goes on in the same
+#: stage looks for it again.
 GIVEN_UP = "limit analysis: the run was interrupted before its end; scene.bound() finds it"
 #: The note of one that was not found when the run came to its end, or to a checkpoint.
 LATE = "limit analysis: it was not solved in time; scene.bound() takes its time"
-#: By how much a run may be above its bound [-]: joints of finite stiffness, and displacements that are not small.
+#: By how much a run may be above its bound [-]: joints of finite stiffness, and displacements that
+#: are not small.
 TOLERANCE = 0.02
 SILENT = 0.3  # so long something beside the run is waited for without a word [s]
 SOON = 1.0  # [s] in which a run that is interrupted waits for its bound
@@ -53,7 +56,8 @@ class Load:
     """A load whose largest factor is looked for.
 
     :param name: under which its bound is found, and ``unit`` of its factor
-    :param live: function of a :class:`masonry.limit.assembly.Assembly` that gives the forces at a factor of 1 [N]
+    :param live: function of a :class:`masonry.limit.assembly.Assembly` that gives the forces at a
+        factor of 1 [N]
     :param tilts: whether gravity turns with it
     :param pushed: target and direction of a push, whose own drive is no prop, or None
     :param gravity: acceleration that acts beside it [m/s²]; None: that of the scene
@@ -73,7 +77,8 @@ class Bounds:
     """The bounds of a scene that is built in YADE.
 
     :param model: :class:`masonry.assembly.structure.Structure`
-    :param place: :class:`masonry.run.run_state.RunState`: what was found is kept there, and so in checkpoints
+    :param place: :class:`masonry.run.run_state.RunState`: what was found is kept there, and so in
+        checkpoints
     """
 
     def __init__(self, model, place):
@@ -94,7 +99,8 @@ class Bounds:
         return self.place.bounds
 
     def push(self, target, direction, both=False, **how):
-        """Find the bound of a push [kN], without what acts beside it. Returns its entry of run.json, the last one if there are two.
+        """Find the bound of a push [kN], without what acts beside it. Returns its entry of
+        run.json, the last one if there are two.
 
         :param target: what is pushed, or a :class:`masonry.assembly.loading.Pattern`
         :param direction: unit vector of the push; ``both``: whether it goes back, too
@@ -125,7 +131,8 @@ class Bounds:
         """Find the bound of a horizontal acceleration [g]. Returns its entry of run.json.
 
         :param towards: unit vector
-        :param tilts: whether gravity turns, and does not grow; the factor is then the horizontal over the vertical part
+        :param tilts: whether gravity turns, and does not grow; the factor is then the horizontal
+            over the vertical part
         :param how: as in :meth:`find`
         """
         scaled = GRAVITY / self.model.args.density_scaling
@@ -151,8 +158,10 @@ class Bounds:
     def find(self, load, lowerUpTo=0, background=False):
         """Find the bound of a :class:`Load`. Returns its entry of run.json.
 
-        :param lowerUpTo: up to so many joints a collapse without dilatancy is looked for, too, if the bound is not exact
-        :param background: whether it is found beside the run, and the entry gets its numbers by :meth:`take`
+        :param lowerUpTo: up to so many joints a collapse without dilatancy is looked for, too, if
+            the bound is not exact
+        :param background: whether it is found beside the run, and the entry gets its numbers by
+            :meth:`take`
         """
         self.take(True)
         what, model, place = load.name, self.model, self.place
@@ -196,7 +205,8 @@ class Bounds:
         return entry
 
     def _found(self, load, lowerUpTo, seconds):
-        """Find a bound. Returns what its entry gets, lines to say, whether nothing gives way, and the :class:`limit.Bound`."""
+        """Find a bound. Returns what its entry gets, lines to say, whether nothing gives way, and
+        the :class:`limit.Bound`."""
         entry, lines = {}, []
         try:
             assembly = limit.read()
@@ -236,10 +246,11 @@ class Bounds:
         if bound:
             self.last = bound, self.entries[what]
 
-    # -- beside the run -------------------------------------------------------------------------------------------
+    # -- beside the run ----------------------------------------------------------------------------
 
     def _withFiles(self, what, work):
-        """In a copy of the process: what was found without the mechanism, then the files of the mechanism by their names."""
+        """In a copy of the process: what was found without the mechanism, then the files of the
+        mechanism by their names."""
         *found, bound = work()
         yield (*found, None)
         files, model = {}, self.model
@@ -259,8 +270,8 @@ class Bounds:
         yield files
 
     def take(self, wait, givesUp=lambda: False):
-        """Take the bound that is found beside the run, if it is there; ``wait`` says whether to wait for it, and ``givesUp`` while it is
-        waited for whether to do without it."""
+        """Take the bound that is found beside the run, if it is there; ``wait`` says whether to
+        wait for it, and ``givesUp`` while it is waited for whether to do without it."""
         task, what = self._task, self._looksFor
         if not what or not (wait or task.ready()):
             return
@@ -288,7 +299,7 @@ class Bounds:
         if task:
             task.end()
 
-    # -- files --------------------------------------------------------------------------------------------------
+    # -- files -------------------------------------------------------------------------------------
 
     def hold(self, what, factor):
         """Note a load factor under which the structure came to rest, by the name of its bound."""
@@ -297,7 +308,8 @@ class Bounds:
             self.place.held = {**held, what: factor}
 
     def write(self, directory, title, parts, views, draws=True):
-        """Write the mechanism that was found last: two files for ParaView and, if it is to be drawn, mechanism.png."""
+        """Write the mechanism that was found last: two files for ParaView and, if it is to be
+        drawn, mechanism.png."""
         if self._task:
             self._writeFound(directory, draws)
         elif self.last:
@@ -311,7 +323,8 @@ class Bounds:
                 bound.draw(os.path.join(directory, FIGURE), heading, parts, views)
 
     def _writeFound(self, directory, draws):
-        """Write the files that were made beside the run; if they are not to be drawn, those that are there."""
+        """Write the files that were made beside the run; if they are not to be drawn, those that
+        are there."""
         if not self._task.ready(1, SILENT * draws):
             if not draws:
                 return self.drop()
@@ -334,7 +347,8 @@ def _pushOf(target, direction):
 
 
 def _tilted(find, first):
-    """The bound of a tilt, at which weights have turned as far as its factor says, while other loads have not: secants find it.
+    """The bound of a tilt, at which weights have turned as far as its factor says, while other
+    loads have not: secants find it.
 
     :param find: function of the cosine of the tilt that gives the bound with weights of that share
     :param first: tilt with which the search begins [rad]
@@ -364,7 +378,8 @@ def findBy(scene, kind, *load, **how):
 
 
 def takeFound(scene, wait):
-    """Take the bound that is found beside the run; a run that is interrupted does not wait long for it."""
+    """Take the bound that is found beside the run; a run that is interrupted does not wait long for
+    it."""
     began, running = time.monotonic(), scene.running
     late = lambda: running.interrupted and time.monotonic() - began > SOON
     scene.bounds.take(wait, late)
@@ -405,7 +420,7 @@ def nameOf(direction):
     return "(" + ", ".join(f"{v:.3g}" for v in direction) + ")"
 
 
-# -- what a run says of its bounds ---------------------------------------------------------------------------------------
+# -- what a run says of its bounds -----------------------------------------------------------------
 
 
 def inRunJson(entries, pushes=()):

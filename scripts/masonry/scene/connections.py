@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Ties and springs, which connect bricks and platens beside the joints: words that describe a scene."""
+"""Ties and springs, which connect bricks and platens beside the joints: words that describe a
+scene."""
 
 from typing import Annotated, Any, Union
 
@@ -17,7 +18,8 @@ from .words import describes
 
 
 def _end(value, first):
-    """The kind of an end: a target of the scene, or a brick as in :func:`masonry.scene.targets.brick`."""
+    """The kind of an end: a target of the scene, or a brick as in
+    :func:`masonry.scene.targets.brick`."""
     if not isinstance(value, Target):
         return brick(value, first)
     if not isOwn(value, first):
@@ -51,22 +53,26 @@ def tie(
     anchor: Point | None = None,
     name: Name | None = None,
 ) -> Tie:
-    """A bar between a point of a brick and another one, or the ground: a tie rod, an anchor, a strut.
+    """A bar between a point of a brick and another one, or the ground: a tie rod, an anchor, a
+    strut.
 
-    It has no mass, does not bend, and pulls along the line between its ends, however far they move. Its columns in curve.csv
-    are its force [kN] and the elongation [mm]; when it yields or breaks, the terminal says so. Bricks at its ends are rigid
-    also with ``--blocks deformable``.
+    It has no mass, does not bend, and pulls along the line between its ends, however far they move.
+    Its columns in curve.csv are its force [kN] and the elongation [mm]; when it yields or breaks,
+    the terminal says so. Bricks at its ends are rigid also with ``--blocks deformable``.
 
-    :param one: a point (x, y, z) [m] in a brick or near it, at which the tie is fixed to it; the index of a brick, or the
-        block itself: its middle; or a platen, a handle, a brick that is held or watched: the point on which loads act
+    :param one: a point (x, y, z) [m] in a brick or near it, at which the tie is fixed to it; the
+        index of a brick, or the block itself: its middle; or a platen, a handle, a brick that is
+        held or watched: the point on which loads act
     :param other: the same for the other end; None: ``anchor`` says where
     :param anchor: (x, y, z) [m] of an end on the ground, which does not move
     :param stiffness: E A / L [N/m]
     :param strength: force at which it yields, and then keeps [N]; None: it does not yield
-    :param prestress: force by which it is tightened, with the other loads that grow in :meth:`settle` [N]: it is shortened by
-        prestress / stiffness, so what the masonry gives way reduces the force
+    :param prestress: force by which it is tightened, with the other loads that grow in
+        :meth:`settle` [N]: it is shortened by prestress / stiffness, so what the masonry gives way
+        reduces the force
     :param slack: elongation before it carries anything [m]
-    :param breaking: strain of the distance between its ends, its tightening included, at which it breaks [-]; None: it does not
+    :param breaking: strain of the distance between its ends, its tightening included, at which it
+        breaks [-]; None: it does not
     :param compression: whether it carries compression, too, as a strut, with the same strength
     :param name: of its columns; None: ``tie`` and a number
     :returns: a :class:`Tie`, whose ``force`` and ``elongation`` can be read between stages
@@ -92,7 +98,8 @@ def tie(
 
 
 def _springs(value, first=None):
-    """The kind of the stiffnesses of springs along or about three axes, of which none is negative."""
+    """The kind of the stiffnesses of springs along or about three axes, of which none is
+    negative."""
     found = numbers("", MOST)(value)
     if min(found) < 0:
         raise ValueError(f"{value!r} must be three numbers of at least 0")
@@ -113,11 +120,12 @@ def spring(
     rotation: Springs = (0.0, 0.0, 0.0),
     name: Name | None = None,
 ) -> Spring:
-    """Linear springs at a point, along and about x, y and z, between two bricks or platens, or one and the ground.
+    """Linear springs at a point, along and about x, y and z, between two bricks or platens, or one
+    and the ground.
 
-    They have no force as the scene is built, and neither yield nor break. Directions stay those of the global axes, so turns
-    are small. Columns of curve.csv are the forces [kN] and moments [kN m] of ``one`` on them. Bricks at their ends are rigid
-    also with ``--blocks deformable``.
+    They have no force as the scene is built, and neither yield nor break. Directions stay those of
+    the global axes, so turns are small. Columns of curve.csv are the forces [kN] and moments [kN m]
+    of ``one`` on them. Bricks at their ends are rigid also with ``--blocks deformable``.
 
     :param one: where they are fixed: a point in a brick, a brick or a target, as for :meth:`tie`
     :param other: the other brick or platen, at the same point; None: the ground
@@ -142,8 +150,8 @@ def spring(
     return _take(description, "spring", made, problems)
 
 
-#: Places of two bundles of fibres along the edge of a joint, which have the force and the moment of a layer whose strain is
-#: linear along it: those of Gauss.
+#: Places of two bundles of fibres along the edge of a joint, which have the force and the moment of
+#: a layer whose strain is linear along it: those of Gauss.
 BUNDLES = 0.5 - 0.5 / 3**0.5, 0.5 + 0.5 / 3**0.5
 #: Of the largest extent of the structure: corners so near to a face lie on it.
 NEAR = 1e-6
@@ -163,20 +171,23 @@ def overlay(
     part: Part | None = None,
     name: Name | None = None,
 ) -> Overlay:
-    """A fibre layer on a face: textile or steel in mortar. Its fibres cross every joint that ends at that face.
+    """A fibre layer on a face: textile or steel in mortar. Its fibres cross every joint that ends
+    at that face.
 
-    Fibres carry tension only. Two bundles over the edge of every joint are bars (:meth:`tie`) between both bricks, at right
-    angles to the joint. Mortar and bond of the layer are not modelled but by ``gauge``, the length over which fibres are free
-    on either side of a crack together.
+    Fibres carry tension only. Two bundles over the edge of every joint are bars (:meth:`tie`)
+    between both bricks, at right angles to the joint. Mortar and bond of the layer are not modelled
+    but by ``gauge``, the length over which fibres are free on either side of a crack together.
 
     :param side: outward direction of the face, for example (0, -1, 0)
     :param stiffness: E t of the fibres, a metre of width [N/m]
     :param strength: force a metre of width at which they slip or yield [N/m]
     :param gauge: length over which they stretch at a crack [m]
     :param strain: of that length, at which they break [-]; None: they do not
-    :param fibres: ``"vertical"``: over joints that are nearer to level; ``"horizontal"``: over the others; ``"both"``
+    :param fibres: ``"vertical"``: over joints that are nearer to level; ``"horizontal"``: over the
+        others; ``"both"``
     :param part: name of a part of the bricks; None: all
-    :param name: of its columns, the numbers of bundles that have yielded and broken; None: ``overlay`` and a number
+    :param name: of its columns, the numbers of bundles that have yielded and broken; None:
+        ``overlay`` and a number
     :returns: an :class:`Overlay`, whose ``ties`` are the bundles
     """
     if description.plane:
@@ -241,7 +252,8 @@ def _onOneBrick(one, other):
 
 
 def _take(description, word, made, problems):
-    """Take a tie, springs or a layer of fibres that has no problems, and whose name is its own. Raises Refused."""
+    """Take a tie, springs or a layer of fibres that has no problems, and whose name is its own.
+    Raises Refused."""
     refuse([f"{word}: {one}" for one in problems])
     connectors, overlays = description.connectors, description.overlays
     taken = {one.name for one in (*connectors, *overlays)}

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The contact of blocks that have lost their joints: its properties, and the ground on which they fall."""
+"""The contact of blocks that have lost their joints: its properties, and the ground on which they
+fall."""
 
 import itertools
 from typing import Any
@@ -82,8 +83,9 @@ def problems(description, args):
 @describes
 @validated
 def ground(description: Any, level: Coordinate, name: Name | None = None) -> Target:
-    """The ground on which blocks fall in a scene with ``collapse="follow"``: a block that is held and reaches far out, without
-    joints. A scene that does not say this has it just below everything else.
+    """The ground on which blocks fall in a scene with ``collapse="follow"``: a block that is held
+    and reaches far out, without joints. A scene that does not say this has it just below everything
+    else.
 
     :param level: z of its upper side [m], at or below the lowest of the bricks and of what is held
     :param name: in curve.csv; None: ground

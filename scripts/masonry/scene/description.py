@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What a scene describes before its first stage: its bricks, and what holds, loads and records them. Plain records.
+"""What a scene describes before its first stage: its bricks, and what holds, loads and records
+them. Plain records.
 
-The words that describe are functions of a :class:`Description`: :mod:`masonry.scene.supports`, :mod:`masonry.scene.loads`
-and :mod:`masonry.scene.records`. :class:`masonry.assembly.structure.Structure` builds what they say in YADE.
+The words that describe are functions of a :class:`Description`: :mod:`masonry.scene.supports`,
+:mod:`masonry.scene.loads` and :mod:`masonry.scene.records`.
+:class:`masonry.assembly.structure.Structure` builds what they say in YADE.
 """
 
 from numbers import Integral
@@ -68,7 +70,8 @@ class Description:
         return len({b.brick for b in self.bricks}) < len(self.bricks)
 
     def problems(self, materials):
-        """What does not go together, with the joints that the options choose: a list of sentences."""
+        """What does not go together, with the joints that the options choose: a list of
+        sentences."""
         found = []
         if self.halves and "crack" not in materials.joints:
             found.append(
@@ -92,14 +95,15 @@ class Description:
         return [one for one in self.connectors if type(one) is kind]
 
     def settable(self, copies=False):
-        """Ties, springs, fibre layers and the contact by name, which ``--set`` and ``--field`` can change, or copies of them."""
+        """Ties, springs, fibre layers and the contact by name, which ``--set`` and ``--field`` can
+        change, or copies of them."""
         own = [one for one in self.connectors if not one.overlay] + self.overlays
         own += [self.contact] * bool(self.contact)
         return {one.name: one.copied() if copies else one for one in own}
 
     def pointLoaded(self):
-        """Indices of the bricks on which ties, springs, loads and drives act: a point of a brick that deforms would give way without
-        bound where the mesh is fine."""
+        """Indices of the bricks on which ties, springs, loads and drives act: a point of a brick
+        that deforms would give way without bound where the mesh is fine."""
         ends = [end.brick for one in self.connectors for end in one.ends]
         handles = [t.brick for t in self.targets.values() if t.loaded]
         return {*ends, *handles} - {None}
@@ -109,8 +113,8 @@ class Description:
         return next((t for t in self.targets.values() if not t.joined), None)
 
     def followed(self, loaded=None):
-        """The target whose displacement is drawn under a load that grows: the first that is watched, else that with the load, else the first
-        that moves, or None."""
+        """The target whose displacement is drawn under a load that grows: the first that is
+        watched, else that with the load, else the first that moves, or None."""
         moving = [t for t in self.targets.values() if not t.fixed]
         watched = [t for t in moving if not t.loaded]
         return next(iter(watched + [loaded] * bool(loaded) + moving), None)
@@ -130,8 +134,8 @@ class Description:
         return target
 
     def replace(self, one, other):
-        """Let a record that a script holds stand for one that was made by the same word again, whose values it gets: a target, a recorded
-        joint, a section, a tie or springs."""
+        """Let a record that a script holds stand for one that was made by the same word again,
+        whose values it gets: a target, a recorded joint, a section, a tie or springs."""
         if not hasattr(one, "__dict__"):
             return
         vars(other).clear()
@@ -174,7 +178,8 @@ class Description:
         return chosen + [c for c in found if c.head in always]
 
     def find(self, where):
-        """Index of a brick, and the point by which it is named, or None. Raises ValueError with a sentence like a kind's."""
+        """Index of a brick, and the point by which it is named, or None. Raises ValueError with a
+        sentence like a kind's."""
         count = len(self.bricks)
         if isinstance(where, Integral) and not isinstance(where, bool):
             if not -count <= where < count:
@@ -206,7 +211,8 @@ class Description:
         return max(max(values) - min(values) for values in zip(*corners))
 
     def _nearest(self, point):
-        """The brick whose box is nearest to a point, and how far that is, with a little of the way to its middle to break ties [m]."""
+        """The brick whose box is nearest to a point, and how far that is, with a little of the way
+        to its middle to break ties [m]."""
         if self._boxes[0] is not self.bricks:
             corners = [np.asarray(block.corners, float) for block in self.bricks]
             boxes = [np.array([f(c, axis=0) for c in corners]) for f in (np.min, np.max, np.mean)]

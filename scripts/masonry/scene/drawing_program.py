@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The program beside a run that draws its figures and writes its report: :mod:`masonry.read.postprocess`."""
+"""The program beside a run that draws its figures and writes its report:
+:mod:`masonry.read.postprocess`."""
 
 import contextlib
 import os
@@ -18,8 +19,9 @@ class DrawingProgram:
         self._begun = False  # whether it knows the folder
 
     def draw(self, directory):
-        """Wait until the figures of a run that has ended are drawn and its report is written. Raises Unwritable if one fails; without
-        matplotlib a note says that the figures are left out."""
+        """Wait until the figures of a run that has ended are drawn and its report is written.
+        Raises Unwritable if one fails; without matplotlib a note says that the figures are left
+        out."""
         try:
             self.begin(directory)
             self._program.communicate()
@@ -33,8 +35,9 @@ class DrawingProgram:
             raise Unwritable("the figures are not drawn")
 
     def begin(self, directory):
-        """Name the folder to the program, which then begins; the report waits until :meth:`draw` is called, because figures that the run
-        itself writes stand in it. Raises OSError if there is no process."""
+        """Name the folder to the program, which then begins; the report waits until :meth:`draw` is
+        called, because figures that the run itself writes stand in it. Raises OSError if there is
+        no process."""
         if not self._begun:
             self.start()
             self._program.stdin.write(os.fsencode(directory) + postprocess.END)
@@ -42,9 +45,11 @@ class DrawingProgram:
             self._begun = True
 
     def start(self):
-        """Start the program, which loads its libraries while the run goes on. Raises OSError if there is no process."""
+        """Start the program, which loads its libraries while the run goes on. Raises OSError if
+        there is no process."""
         if not self._program:
-            # -P: nothing of the present folder is run; in a session of its own, since Ctrl-C is for the run
+            # -P: nothing of the present folder is run; in a session of its own, since Ctrl-C is for
+            # the run
             command = [sys.executable, "-P", "-m", "masonry.read.postprocess"]
             self._program = subprocess.Popen(command, stdin=subprocess.PIPE, start_new_session=True)
 

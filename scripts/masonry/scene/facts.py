@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What a scene is: what is built, held, loaded and watched, in words, which run.json has; whether it is a wall in running bond; and how
-it shows itself in a notebook."""
+"""What a scene is: what is built, held, loaded and watched, in words, which run.json has; whether
+it is a wall in running bond; and how it shows itself in a notebook."""
 
 import collections
 import statistics
@@ -56,7 +56,8 @@ def sizes(description):
 
 
 def properties(description, masonry):
-    """What decides whether a scene is like the walls on which a preset was measured: values by the names in
+    """What decides whether a scene is like the walls on which a preset was measured: values by the
+    names in
     :data:`masonry.run.presets.RANGE`; None for a scene in space."""
     if not description.plane:
         return None
@@ -83,7 +84,8 @@ def properties(description, masonry):
 
 
 def held(description):
-    """What is held, loaded and watched before the first stage: pairs of texts, its name and what is done to it."""
+    """What is held, loaded and watched before the first stage: pairs of texts, its name and what is
+    done to it."""
     for target in description.targets.values():
         where = "platen" if target.box else f"brick {target.brick}"
         where = where if target.joined else "the ground"
@@ -126,10 +128,11 @@ def noteCourse(description):
 
 
 def wallOf(description, loading):
-    """The entry ``wall`` of run.json, or None if the structure is no whole wall in running bond in the x-z plane, of which crack
-    patterns are measured, or if no platen pushes it.
+    """The entry ``wall`` of run.json, or None if the structure is no whole wall in running bond in
+    the x-z plane, of which crack patterns are measured, or if no platen pushes it.
 
-    :param loading: :class:`masonry.assembly.loading.Loading`, which knows what is pushed, and where to
+    :param loading: :class:`masonry.assembly.loading.Loading`, which knows what is pushed, and where
+        to
     """
     target, bricks = loading.target, description.bricks
     (left, front, bottom), (right, back, top) = description.low, description.high
@@ -166,12 +169,13 @@ def wallOf(description, loading):
     }
 
 
-# -- in a notebook ----------------------------------------------------------------------------------------------------
+# -- in a notebook ---------------------------------------------------------------------------------
 
 
 @validated
 def curve(scene):
-    """The columns of curve.csv so far: a :class:`masonry.read.shown.Curve`, arrays of numpy by name with their units.
+    """The columns of curve.csv so far: a :class:`masonry.read.shown.Curve`, arrays of numpy by name
+    with their units.
 
     :raises ValueError: before the first stage, since there is no row yet
     """

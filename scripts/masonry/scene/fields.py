@@ -1,12 +1,15 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Properties that vary from place to place, for :meth:`masonry.scene.materials.Masonry.vary`. This module needs no YADE.
+"""Properties that vary from place to place, for :meth:`masonry.scene.materials.Masonry.vary`. This
+module needs no YADE.
 
-Each function gives a function of x, y and z [m] that gives a factor on a property [-], 1 on the mean::
+Each function gives a function of x, y and z [m] that gives a factor on a property [-], 1 on the
+mean::
 
     masonry = materials.calciumSilicate().vary("bed.cohesion", fields.lognormal(cov=0.2, length=0.5, seed=1))
 
-A random field is the sum of :data:`WAVES` cosines with random directions, lengths and phases. Its values at two points a
-distance d apart have the correlation exp(-(d/length)²), as they stand before the exponential of a lognormal field.
+A random field is the sum of :data:`WAVES` cosines with random directions, lengths and phases. Its
+values at two points a distance d apart have the correlation exp(-(d/length)²), as they stand before
+the exponential of a lognormal field.
 """
 
 import math
@@ -67,7 +70,8 @@ def normal(
     seed: Seed = 0,
     least: Annotated[float, number("", 0, 1, above=True, below=True)] = LEAST,
 ) -> Factor:
-    """Factors that are normally distributed about the mean 1, but not below ``least``. Other parameters: :func:`lognormal`."""
+    """Factors that are normally distributed about the mean 1, but not below ``least``. Other
+    parameters: :func:`lognormal`."""
     field = _standard(length, seed)
     return lambda x, y, z: max(least, 1 + cov * field(x, y, z))
 
@@ -79,7 +83,8 @@ _TEXT = re.compile(
 
 
 def parts(text: str) -> tuple[Any, ...]:
-    """Names, kind, coefficient of variation, length [m] and seed of a field that is written as :func:`read` takes it."""
+    """Names, kind, coefficient of variation, length [m] and seed of a field that is written as
+    :func:`read` takes it."""
     found = _TEXT.fullmatch(text) if isinstance(text, str) else None
     names = found["names"].split("+") if found else []
     if not found or not all(re.fullmatch(r"[^.\s]+\.\w+", name) for name in names):
@@ -95,9 +100,11 @@ def parts(text: str) -> tuple[Any, ...]:
 
 
 def read(text: str) -> tuple[list[str], Factor]:
-    """The names of the properties and the function of a field that is written as the option ``--field`` takes it.
+    """The names of the properties and the function of a field that is written as the option
+    ``--field`` takes it.
 
-    :param text: for example ``bed.cohesion+bed.tensileStrength=lognormal(cov=0.3,length=0.5,seed=1)``
+    :param text: for example
+        ``bed.cohesion+bed.tensileStrength=lognormal(cov=0.3,length=0.5,seed=1)``
     :raises ValueError: if it is not one
     """
     names, kind, cov, length, seed = parts(text)
@@ -110,7 +117,8 @@ def written(kind: str, cov: float, length: float, seed: int) -> str:
 
 
 def ends(kind: str, cov: float, far: float) -> tuple[float, ...]:
-    """The factors of a field where its normal is so many standard deviations below and above its mean [-]."""
+    """The factors of a field where its normal is so many standard deviations below and above its
+    mean [-]."""
     if kind == "lognormal":
         spread = math.sqrt(math.log1p(cov * cov))
         return tuple(math.exp(s * far * spread - spread**2 / 2) for s in (-1, 1))

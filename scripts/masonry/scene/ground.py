@@ -22,7 +22,8 @@ def rayleigh(
     low: Frequency,
     high: Frequency,
 ) -> tuple[float, float]:
-    """Viscous damping for :meth:`masonry.scene.scene.Scene.shake`: mass damping [1/s] and stiffness damping [s].
+    """Viscous damping for :meth:`masonry.scene.scene.Scene.shake`: mass damping [1/s] and stiffness
+    damping [s].
 
     :param ratio: share of critical damping at two frequencies [-]; between them it is less
     :param low: lower frequency [Hz]; ``high``: upper one
@@ -35,7 +36,8 @@ def rayleigh(
 
 #: Peaks beyond these may be in g, or in cm/s² [m/s²].
 LOWEST_PEAK, HIGHEST_PEAK = 1.5, 30.0
-#: No record has a larger peak [m/s²], several times the largest that was measured; and none has its samples farther apart [s].
+#: No record has a larger peak [m/s²], several times the largest that was measured; and none has its
+#: samples farther apart [s].
 LARGEST_PEAK, COARSEST = 200.0, 0.5
 #: What stands for a sample that is missing, in any unit.
 MISSING = [-999.0, -9999.0, -99999.0]
@@ -48,7 +50,8 @@ def isThree(value: Any) -> bool:
 
 
 def record(value: Any, first: Any = None) -> Any:
-    """The kind of a record: a list of accelerations, the path of a file, or a list of three paths."""
+    """The kind of a record: a list of accelerations, the path of a file, or a list of three
+    paths."""
     if isinstance(value, (str, os.PathLike)):
         return path(value)
     if isThree(value):
@@ -66,8 +69,10 @@ def readRecord(
 
     :param accelerations: what :func:`record` takes
     :param scale: factor on the samples
-    :param unit: of the samples, a key of UNITS; None: m/s², if the peak does not look like another unit
-    :returns: the samples [m/s²], or lists of their three components, without the scale, and the time between two of them
+    :param unit: of the samples, a key of UNITS; None: m/s², if the peak does not look like another
+        unit
+    :returns: the samples [m/s²], or lists of their three components, without the scale, and the
+        time between two of them
     :raises Refused: with what is wrong
     """
     if unit not in (None, *UNITS):

@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Displacement histories: what ``--history`` may say, and the points that the drive goes to. This module needs no YADE.
+"""Displacement histories: what ``--history`` may say, and the points that the drive goes to. This
+module needs no YADE.
 
-A history is a dict that JSON can hold. ``text`` is what the user wrote, and ``points_mm`` are displacements [mm] that are
-reached in turn, from 0 on, in straight lines. Beside these there are
+A history is a dict that JSON can hold. ``text`` is what the user wrote, and ``points_mm`` are
+displacements [mm] that are reached in turn, from 0 on, in straight lines. Beside these there are
 
-- ``amplitudes_mm`` of a list of amplitudes: pairs of an amplitude [mm] and how often it is repeated; or
+- ``amplitudes_mm`` of a list of amplitudes: pairs of an amplitude [mm] and how often it is
+  repeated; or
 - ``file`` and ``sha256`` of a file: its path, and the fingerprint of its contents.
 """
 
@@ -17,20 +19,23 @@ from collections import namedtuple
 from ..basics import firstOf
 
 LEAST, MOST = 0.02, 1000.0  # [mm] bounds of an amplitude; a row of curve.csv is 0.01 mm
-AT_ZERO = 0.015  # [mm] within which a wall is at zero: more than a history misses, less than any amplitude
-NOISE = 0.01  # of the largest displacement of a file: smaller excursions may be noise of the measurement
+# [mm] within which a wall is at zero: more than a history misses, less than any amplitude
+AT_ZERO = 0.015
+# of the largest displacement of a file: smaller excursions may be noise of the measurement
+NOISE = 0.01
 CYCLES = 10000  # that a list of amplitudes may have
 COLUMN = "displacement_mm"  # of a file
 
-#: A point of a history: its displacement [mm]; the direction to it, 1 or -1; and the displacement at which the drive turns or
-#: stops next, for which it brakes, or None if it does not [mm].
+#: A point of a history: its displacement [mm]; the direction to it, 1 or -1; and the displacement
+#: at which the drive turns or stops next, for which it brakes, or None if it does not [mm].
 Target = namedtuple("Target", "displacement direction brake")
 
 
 def parse(text):
     """The history that a text stands for: amplitudes as in ``1,2x3,4``, or the path of a CSV file.
 
-    An amplitude A is one cycle 0 → +A → -A → 0, and ``Ax3`` is three of them. A file has a column ``displacement_mm``.
+    An amplitude A is one cycle 0 → +A → -A → 0, and ``Ax3`` is three of them. A file has a column
+    ``displacement_mm``.
 
     :raises ValueError: with all problems
     """
@@ -121,7 +126,8 @@ def _column(lines, path):
 
 
 def targets(points, stops=False, start=0.0):
-    """The points of a history as the drive sees them: a list of :class:`Target`. One that repeats the one before lies in the same direction.
+    """The points of a history as the drive sees them: a list of :class:`Target`. One that repeats
+    the one before lies in the same direction.
 
     :param points: displacements [mm]
     :param stops: whether the drive brakes for the last point
@@ -148,8 +154,8 @@ def pathLength(points, start=0.0):
 def aim(args, start=0.0):
     """The targets of a run: those of ``--history``, or one at ``--until``.
 
-    The drive stops at the end of a file. At the end of amplitudes and of a push it does not brake, because both go on in the same
-    direction if the run is resumed and extended.
+    The drive stops at the end of a file. At the end of amplitudes and of a push it does not brake,
+    because both go on in the same direction if the run is resumed and extended.
 
     :param args: the options of :func:`masonry.scene.options.parser`
     :param start: where the path begins [mm]
@@ -166,7 +172,8 @@ def turns(points):
 
 
 def noise(history):
-    """Displacement [mm] up to which an excursion does not count: the threshold of :mod:`masonry.read.loops` for the wall's curve."""
+    """Displacement [mm] up to which an excursion does not count: the threshold of
+    :mod:`masonry.read.loops` for the wall's curve."""
     if "file" not in history:
         return AT_ZERO
     return max(AT_ZERO, NOISE * max(map(abs, history["points_mm"])))
@@ -178,7 +185,8 @@ def extends(new, old):
 
 
 def describe(history):
-    """What run.json says of a history: the dict with number of points and length of the path in place of the points."""
+    """What run.json says of a history: the dict with number of points and length of the path in
+    place of the points."""
     points = history["points_mm"]
     found = {name: value for name, value in history.items() if name != "points_mm"}
     more = dict(points=len(points), turning_points=turns(points))

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The loads of a scene that stands in YADE, as limit analysis takes them.
 
-``model`` is a :class:`masonry.assembly.structure.Structure`, and ``assembly`` a :class:`masonry.limit.assembly.Assembly`.
+``model`` is a :class:`masonry.assembly.structure.Structure`, and ``assembly`` a
+:class:`masonry.limit.assembly.Assembly`.
 """
 
 import numpy as np
@@ -62,10 +63,12 @@ def sumOf(assembly, acting):
 
 
 def _placeOf(assembly, body, point):
-    """Where a point of a body is on blocks as the assembly has them [m]: ``point`` is its place in the structure as built."""
+    """Where a point of a body is on blocks as the assembly has them [m]: ``point`` is its place in
+    the structure as built."""
     return np.array(point if assembly.stood else placeOf(body, point))
 
 
 def carriedBy(assembly, dead):
-    """Vertical force of dead loads on all blocks that are free to move down: the supports carry it, compression is positive [kN]."""
+    """Vertical force of dead loads on all blocks that are free to move down: the supports carry it,
+    compression is positive [kN]."""
     return -1e-3 * float(dead[~assembly.held[:, 2], 2].sum())

@@ -78,7 +78,8 @@ def ofScene(name, arguments, sceneOptions):
     """The options of a scene. Raises Refused with all problems.
 
     :param arguments: what a parser found; a list of words; or None: those of the command line
-    :param sceneOptions: what the script says, which holds unless the command line gives the same option:
+    :param sceneOptions: what the script says, which holds unless the command line gives the same
+        option:
         :func:`masonry.scene.parsing.keep`
     """
     if arguments is None and (not sys.argv or notebook.isHere()):
@@ -98,7 +99,8 @@ def ofScene(name, arguments, sceneOptions):
 
 
 def check(args, masonry, connectors, more=()):
-    """Apply ``--set`` and ``--field`` to what is in a scene. Refuse options that do not go together, and materials that lack something.
+    """Apply ``--set`` and ``--field`` to what is in a scene. Refuse options that do not go
+    together, and materials that lack something.
 
     :param args: the parsed options
     :param masonry: :class:`masonry.scene.materials.Masonry` for these options

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What comes out of a scene: entries of run.json, what curve.png shows, and the lines at the end on the terminal."""
+"""What comes out of a scene: entries of run.json, what curve.png shows, and the lines at the end on
+the terminal."""
 
 import collections
 import functools
@@ -39,7 +40,8 @@ class Outcome:
         self.description, self.args = scene.description, scene.args
         self.results = scene.running.results
         self.drawing = DrawingProgram()
-        #: entries of run.json that say in words what is built and held, as it is before the first stage
+        #: entries of run.json that say in words what is built and held, as it is before the first
+        #: stage
         self._facts = {}
         if not self.args.lean:
             of = {"built": facts.sizes, "held_and_loaded": facts.held}
@@ -52,7 +54,8 @@ class Outcome:
 
     @property
     def loads(self):
-        """What stages loaded, in their order: pairs of the number of the stage and what :class:`RunState` keeps of it."""
+        """What stages loaded, in their order: pairs of the number of the stage and what
+        :class:`RunState` keeps of it."""
         loads = self.scene.running.at.loads
         return [(number, loads[str(number)]) for number in sorted(map(int, loads))]
 
@@ -63,8 +66,8 @@ class Outcome:
         return pushes[-1] if pushes else []
 
     def _freeVibration(self):
-        """The first period, the weight of the base in the shear force, and when the velocity of the drive had grown, of the first of the
-        pushes that count."""
+        """The first period, the weight of the base in the shear force, and when the velocity of the
+        drive had grown, of the first of the pushes that count."""
         at, rows = self.scene.running.at, self.data.rows
         for number in sorted(map(int, at.freeVibrations)):
             if rows and at.stages[number - 1][3] >= rows[0]:
@@ -88,7 +91,7 @@ class Outcome:
         zones = self.model.zones
         return len(zones.displacements) if zones else 0
 
-    # -- run.json -------------------------------------------------------------------------------------------------
+    # -- run.json ----------------------------------------------------------------------------------
 
     def describe(self):
         """Entries of run.json that say what is built, and how it is held and drawn."""
@@ -151,7 +154,8 @@ class Outcome:
         return [head for head in heads if head in self.results.columns]
 
     def _ground(self):
-        """Entries for the ground on which blocks fall and for their contact, if a collapse is followed."""
+        """Entries for the ground on which blocks fall and for their contact, if a collapse is
+        followed."""
         ground, engine = self.description.ground(), self.model.contacts
         if not (ground and engine):
             return {}
@@ -237,7 +241,8 @@ class Outcome:
         }
 
     def _addAccuracy(self, run):
-        """Add the entries for --accuracy, whose half-widths the answers of the last push get, too."""
+        """Add the entries for --accuracy, whose half-widths the answers of the last push get,
+        too."""
         at, asked = self.scene.running.at, self.scene.accuracy
         run.update(asked.report(run))
         number = str([n for n, load in self.loads if load[0] == "push"][-1])
@@ -248,7 +253,7 @@ class Outcome:
         at.answers = {**at.answers, number: [*({**stage, **one} for one in own), *others]}
         asked.over()
 
-    # -- files and terminal ---------------------------------------------------------------------------------------
+    # -- files and terminal ------------------------------------------------------------------------
 
     def figure(self):
         """The entries of run.json by which curve.png is drawn."""
@@ -256,7 +261,8 @@ class Outcome:
         return {**found, **self._wall()}
 
     def write(self, directory, draws=True):
-        """Write what the scene has beside rows and frames: the mechanism of limit analysis, with its picture if ``draws``."""
+        """Write what the scene has beside rows and frames: the mechanism of limit analysis, with
+        its picture if ``draws``."""
         title, views = self.description.title, self.description.views
         try:
             self.scene.bounds.write(directory, title, self.model.parts, views, draws)
@@ -292,7 +298,8 @@ class Outcome:
 
 
 def shortened(entry):
-    """What a script said; long lists, as a record of an earthquake, as a text that says how long they are."""
+    """What a script said; long lists, as a record of an earthquake, as a text that says how long
+    they are."""
     if isinstance(entry, dict):
         return {name: shortened(value) for name, value in entry.items()}
     if isinstance(entry, (list, tuple)):
@@ -302,7 +309,7 @@ def shortened(entry):
     return entry
 
 
-# -- curve.png --------------------------------------------------------------------------------------------------------
+# -- curve.png -------------------------------------------------------------------------------------
 
 
 def figureOf(outcome):
@@ -358,13 +365,15 @@ def _ofPush(outcome):
 
 
 def _rowsOf(outcome, rows):
-    """The entry of the figure that says which rows it shows, if these are not all in their order."""
+    """The entry of the figure that says which rows it shows, if these are not all in their
+    order."""
     every = list(range(len(outcome.results.rows)))
     return {} if list(rows) == every else {"rows": list(rows)}
 
 
 def _ofLoad(outcome, number, load):
-    """What is drawn of a load that grew, or was put on step by step: its factor over the displacement of what is watched."""
+    """What is drawn of a load that grew, or was put on step by step: its factor over the
+    displacement of what is watched."""
     kind, name, _ = load
     at, entry = outcome.scene.running.at, outcome.scene.bounds.entries.get(name, {})
     rows = range(at.stages[number - 1][3], len(outcome.results.rows))
@@ -389,7 +398,8 @@ def _ofLoad(outcome, number, load):
 
 
 def restsUnder(outcome, name):
-    """Rows at the ends of the stages that put on a load and came to rest, by its factor, after the row before them."""
+    """Rows at the ends of the stages that put on a load and came to rest, by its factor, after the
+    row before them."""
     at, results = outcome.scene.running.at, outcome.results
     ends = [stage[3] - 1 for stage in at.stages[1:]] + [len(results.rows) - 1]
     numbers = [n for n, load in outcome.loads if load[:2] == ["lean", name]]

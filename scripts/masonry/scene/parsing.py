@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""How the options of a scene are read: from the command line, from presets, from a run that is resumed, and from what a script gives
-to ``Scene`` as keywords, which holds unless the command line gives the same option."""
+"""How the options of a scene are read: from the command line, from presets, from a run that is
+resumed, and from what a script gives to ``Scene`` as keywords, which holds unless the command line
+gives the same option."""
 
 import argparse
 import difflib
@@ -26,9 +27,9 @@ BESIDE = "title plane gravity columns functors arguments allowGaps collapse".spl
 class Options(argparse.Namespace):
     """The options that a :class:`Parser` has read.
 
-    Beside the options there are, and no part of what ``vars`` gives: ``parser``, which has read them; ``given``, those of the
-    command line, or None in a run that is resumed; ``defaults``, those of the parser; ``replaced``, what :func:`keep` has
-    changed."""
+    Beside the options there are, and no part of what ``vars`` gives: ``parser``, which has read
+    them; ``given``, those of the command line, or None in a run that is resumed; ``defaults``,
+    those of the parser; ``replaced``, what :func:`keep` has changed."""
 
     __slots__ = ("parser", "given", "defaults", "replaced")
 
@@ -40,9 +41,10 @@ class Options(argparse.Namespace):
 class Parser(argparse.ArgumentParser):
     """A parser that tells all wrong options at once, and takes no part of a name for the whole.
 
-    Options that are not given are those of ``--preset``, or those of the run that is resumed. Options that would change
-    a resumed run are refused, but for those in ``free``. ``overrides`` of the parsed options lists those that were given
-    beside a preset and differ from it, or from the default.
+    Options that are not given are those of ``--preset``, or those of the run that is resumed.
+    Options that would change a resumed run are refused, but for those in ``free``. ``overrides`` of
+    the parsed options lists those that were given beside a preset and differ from it, or from the
+    default.
     """
 
     #: The parser that read the command line last, and what it found.
@@ -98,7 +100,8 @@ class Parser(argparse.ArgumentParser):
             self.raises = False
 
     def parse_args(self, args=None, namespace=None):
-        """The options of the command line, or, in a run of ``yade-batch``, those of a row of its table: masonry.run.batch."""
+        """The options of the command line, or, in a run of ``yade-batch``, those of a row of its
+        table: masonry.run.batch."""
         whole = args is None
         if whole:
             try:
@@ -186,11 +189,12 @@ def _overrides(given, expected):
     return [o for o, v in given.items() if o not in harmless and v != expected[o]]
 
 
-# -- keywords of a scene ----------------------------------------------------------------------------------------------
+# -- keywords of a scene ---------------------------------------------------------------------------
 
 
 def checked(parser, name, options):
-    """The values of keywords of a scene of this name, of the kind that the command line would give. Raises Refused with all problems.
+    """The values of keywords of a scene of this name, of the kind that the command line would give.
+    Raises Refused with all problems.
 
     :param parser: :class:`Parser` whose options they are; ``options``: values by option
     """
@@ -216,7 +220,8 @@ def checked(parser, name, options):
 
 
 def _value(action, value):
-    """The value of an option from that of a keyword. Raises ValueError or argparse.ArgumentTypeError."""
+    """The value of an option from that of a keyword. Raises ValueError or
+    argparse.ArgumentTypeError."""
     if value is None and (action.default is None or action.dest == "until"):
         return None
     if action.choices:
@@ -242,10 +247,12 @@ def _typed(action, value):
 
 
 def keep(args, name, options):
-    """Let options have the values that a script gives as keywords, but for those that the command line gives.
+    """Let options have the values that a script gives as keywords, but for those that the command
+    line gives.
 
-    A line on the terminal names the others. A preset wins over what the script says of the options that it chooses, and says so.
-    Options of a run that is resumed are those with which it began, and stay.
+    A line on the terminal names the others. A preset wins over what the script says of the options
+    that it chooses, and says so. Options of a run that is resumed are those with which it began,
+    and stay.
 
     :param args: :class:`Options`, which are changed
     :param name: of the scene; ``options``: values by option

@@ -28,7 +28,8 @@ class FaceForce(NamedTuple):
 
 
 def facesAgainst(description, towards, part, name, least=LOOKING):
-    """What joints leave free of the faces that look against a direction: :class:`masonry.bricks.checks.FreePart`.
+    """What joints leave free of the faces that look against a direction:
+    :class:`masonry.bricks.checks.FreePart`.
 
     :param least: cosine of the largest angle between both [-]
     :raises ValueError: if there are none, or the scene can have none
@@ -47,8 +48,9 @@ def facesAgainst(description, towards, part, name, least=LOOKING):
 
 
 def pressures(description, value, towards, part, normal):
-    """The forces of a pressure: on each face at its middle and at one more point, or at two more of a scene in space, which do not depend
-    on the pressure. Parameters as in :func:`masonry.scene.loads.pressure`. Raises ValueError.
+    """The forces of a pressure: on each face at its middle and at one more point, or at two more of
+    a scene in space, which do not depend on the pressure. Parameters as in
+    :func:`masonry.scene.loads.pressure`. Raises ValueError.
     """
     forces, along = [], np.array(towards, float) / np.linalg.norm(towards)
     for face in facesAgainst(description, towards, part, "pressure", GRAZING):
@@ -66,8 +68,8 @@ def pressures(description, value, towards, part, normal):
 
 
 def _corners():
-    """The middles of the sides of parts of a triangle, as shares of its corners, and the share of the area that each has: exact for
-    polynomials of degree two."""
+    """The middles of the sides of parts of a triangle, as shares of its corners, and the share of
+    the area that each has: exact for polynomials of degree two."""
     found = Counter()
     for i, j in itertools.product(range(PARTS), repeat=2):
         one = [(i, j), (i + 1, j), (i, j + 1)]
@@ -84,8 +86,8 @@ SHARES, WEIGHTS = _corners()
 
 
 def _integral(face, value, axes):
-    """Integrals of a pressure over the free part of a face [N]: of itself, and times the distance from the middle along each axis, over
-    the length of that axis."""
+    """Integrals of a pressure over the free part of a face [N]: of itself, and times the distance
+    from the middle along each axis, over the length of that axis."""
     at = lambda p: atPlace(value, p, MOST, "pressure") if callable(value) else value
     total = np.zeros(1 + len(axes))
     for sign, polygon in ((1, face.face), *((-1, cover) for cover in face.covers)):
@@ -101,7 +103,8 @@ def _integral(face, value, axes):
 
 
 def atPlace(value, place, kind, name):
-    """What a function of the place gives there, by its kind. Raises ValueError, whatever goes wrong in it."""
+    """What a function of the place gives there, by its kind. Raises ValueError, whatever goes wrong
+    in it."""
     try:
         return kind(value(*place))
     except Exception as error:  # of the user's own
@@ -110,8 +113,9 @@ def atPlace(value, place, kind, name):
 
 
 def placesBelow(description, points):
-    """Where loads stand that are let down from some points: pairs of the number of a brick, and the point on the highest of its faces
-    that look up [m]. Raises ValueError if nothing is below a point."""
+    """Where loads stand that are let down from some points: pairs of the number of a brick, and the
+    point on the highest of its faces that look up [m]. Raises ValueError if nothing is below a
+    point."""
     faces, found = Bricks(description.bricks).freeFaces((0, 0, 1), GRAZING), []
     near = 1e-6 * math.dist(description.low, description.high)
     for x, y, z in points:

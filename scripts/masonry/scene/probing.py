@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What a scene knows, for those who are about to run it many times: see :mod:`masonry.study`. There is no run."""
+"""What a scene knows, for those who are about to run it many times: see :mod:`masonry.study`. There
+is no run."""
 
 import json
 import math
@@ -19,22 +20,25 @@ from .parsing import Parser
 from .settings import valuesOf
 from ..assembly.blocks import properties
 
-#: How far a random field is looked at to either side, in standard deviations of its normal: beyond lies one joint in a
-#: million.
+#: How far a random field is looked at to either side, in standard deviations of its normal: beyond
+#: lies one joint in a million.
 FAR = 4.75
 MOST = 20  # problems that are named of rows
 PLAIN = bool, int, float, str  # values of properties that are written
 
 
 def probe(scene, stage, traits, arguments):
-    """Write what a scene that is built knows, as JSON, and end when the first stage begins after the loads have grown. Keys:
+    """Write what a scene that is built knows, as JSON, and end when the first stage begins after
+    the loads have grown. Keys:
 
     - ``heard``: whether the scene takes its options from the command line
     - ``options``: names of its options, without those that say where results go
-    - ``unused``: options that the scene does not use, with the reason; ``doubtful``: those that it may not use
-    - ``joints``: properties of every kind of joint; ``counts``: how many joints there are of each kind
-    - ``bounds``: of the properties of a joint: ``low``, ``high``, ``unit``; ``connectors``: of every tie, spring and fibre layer the
-      same by property
+    - ``unused``: options that the scene does not use, with the reason; ``doubtful``: those that it
+      may not use
+    - ``joints``: properties of every kind of joint; ``counts``: how many joints there are of each
+      kind
+    - ``bounds``: of the properties of a joint: ``low``, ``high``, ``unit``; ``connectors``: of
+      every tie, spring and fibre layer the same by property
     - ``room``: bytes that a run will probably write
     - ``problems``: sentences on rows of the table that cannot be run
 
@@ -110,7 +114,8 @@ def _rows(scene, parser):
 
 
 def _refused(scene, parser, words):
-    """Why a row is refused, a list of sentences. Its fields are looked at where they are far out."""
+    """Why a row is refused, a list of sentences. Its fields are looked at where they are far
+    out."""
     args, refusals = parser.refusals(words)
     if refusals:
         return refusals

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What a scene records beside its targets, and how its figures look: words that describe a scene."""
+"""What a scene records beside its targets, and how its figures look: words that describe a
+scene."""
 
 import itertools
 from typing import Annotated, Any, Callable
@@ -24,7 +25,8 @@ def _nameOrNothing(value, first=None):
 def drift(description: Any, lower: AnyTarget, upper: AnyTarget, name: Name | None = None) -> None:
     """Record how far a target moves horizontally against a lower one, for example two floors.
 
-    The columns of curve.csv are the difference [mm] and that over the height between both points [mrad].
+    The columns of curve.csv are the difference [mm] and that over the height between both points
+    [mrad].
 
     :param lower: a target, as :meth:`platen` or :meth:`watch` give it; ``upper``: one above it
     :param name: of the columns; None: that of ``upper`` with ``_drift``
@@ -67,10 +69,12 @@ def joint(
     two: BrickAt,
     name: Annotated[str, _nameOrNothing] | None = None,
 ) -> JointRecord:
-    """Record the means of a joint: opening, slide, normal and shear stress, as columns of curve.csv.
+    """Record the means of a joint: opening, slide, normal and shear stress, as columns of
+    curve.csv.
 
     :param one: a brick, as for :meth:`hold`; ``two``: the other one
-    :param name: before the names of the columns; None: ``joint`` and a number; an empty text: nothing before them
+    :param name: before the names of the columns; None: ``joint`` and a number; an empty text:
+        nothing before them
     :returns: a :class:`JointRecord`, which can be read between stages, too
     """
     pair = tuple(description.find(where)[0] for where in (one, two))
@@ -86,26 +90,33 @@ def joint(
 def section(
     description: Any, z: Coordinate, part: Part | None = None, name: Name | None = None
 ) -> Section:
-    """Record what a horizontal section transmits: normal force, shear force and moment, as columns of curve.csv.
+    """Record what a horizontal section transmits: normal force, shear force and moment, as columns
+    of curve.csv.
 
-    They are the resultant of the joints between the blocks, platens too, whose centroid is above ``z`` when the scene is
-    built, and those whose centroid is not: exact statics in any bond. All are of the structure above on the part below:
+    They are the resultant of the joints between the blocks, platens too, whose centroid is above
+    ``z`` when the scene is built, and those whose centroid is not: exact statics in any bond. All
+    are of the structure above on the part below:
 
     - ``N`` [kN]: normal force, positive in tension
     - ``V_x``, in space also ``V_y`` [kN]: shear force along x and y
-    - ``M_y``, in space also ``M_x`` [kN m]: moment about y and x through the middle of the section, by the right-hand
-      rule. A push along +x above the section gives a positive ``M_y``, one along +y a negative ``M_x``
+    - ``M_y``, in space also ``M_x`` [kN m]: moment about y and x through the middle of the section,
+      by the right-hand rule. A push along +x above the section gives a positive ``M_y``, one along
+      +y a negative ``M_x``
 
-    The middle is that of the box around the bricks that reach ``z``, at the height ``z``, as they are built; it stays in
-    space, while the forces act where the blocks are, so eccentric weight of a wall that leans counts.
+    The middle is that of the box around the bricks that reach ``z``, at the height ``z``, as they
+    are built; it stays in space, while the forces act where the blocks are, so eccentric weight of
+    a wall that leans counts.
 
-    Every run of a structure on platens at its bottom records that at its base, ``base``, unless the scene has one there.
+    Every run of a structure on platens at its bottom records that at its base, ``base``, unless the
+    scene has one there.
 
     :param z: height [m]
-    :param part: name of a part of the bricks: the joints whose upper brick is of it (under a platen, the lower one), so
-        that what several parts transmit adds up to the whole; None: all joints
+    :param part: name of a part of the bricks: the joints whose upper brick is of it (under a
+        platen, the lower one), so that what several parts transmit adds up to the whole; None: all
+        joints
     :param name: before the names of the columns; None: ``section`` and a number
-    :returns: a :class:`masonry.scene.sections.Section`, whose ``forces()`` can be read between stages, too
+    :returns: a :class:`masonry.scene.sections.Section`, whose ``forces()`` can be read between
+        stages, too
     """
     name = f"section{len(description.sections)}" if name is None else name
     found = Section(name, float(z), part, _middleAt(description, z, part, name))
@@ -133,7 +144,8 @@ def _middleAt(description, z, part, name):
 
 
 def recordBase(description: Any) -> None:
-    """Record the section at the base of a structure that stands on platens, unless the scene has one there."""
+    """Record the section at the base of a structure that stands on platens, unless the scene has
+    one there."""
     z, targets = float(description.low[2]), description.targets.values()
     near = 1e-6 * (1 + abs(z))
     own = (s.part is None and abs(s.z - z) < near for s in description.sections)
@@ -148,7 +160,8 @@ def recordBase(description: Any) -> None:
 
 
 def viewAlongY(description: Any) -> None:
-    """See parts that move in the x-z plane and are deeper than long from the front, unless the scene says from where."""
+    """See parts that move in the x-z plane and are deeper than long from the front, unless the
+    scene says from where."""
     if not description.plane:
         return
     for name in {block.part for block in description.bricks} - set(description.views):
@@ -161,8 +174,8 @@ def viewAlongY(description: Any) -> None:
 @describes
 @validated
 def view(description: Any, direction: Direction, part: Part | None = None) -> None:
-    """From where the crack figure sees the structure: the direction of sight, for example (1, 0, 0) for a panel that
-    bows out of its plane.
+    """From where the crack figure sees the structure: the direction of sight, for example (1, 0, 0)
+    for a panel that bows out of its plane.
 
     :param part: name of a part of the bricks; None: all
     """

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What a run that is resumed finds in place of the stages that were over.
 
-A script is read from its beginning again. Words that it said before the checkpoint are left out: a stage that was over gives
-what it returned then, with the rows of that time. The stage in which the checkpoint was made begins from the state of the
-scene in Python as it was when the stage began, and goes on from the state of the checkpoint with its first steps: see
+A script is read from its beginning again. Words that it said before the checkpoint are left out: a
+stage that was over gives what it returned then, with the rows of that time. The stage in which the
+checkpoint was made begins from the state of the scene in Python as it was when the stage began, and
+goes on from the state of the checkpoint with its first steps: see
 :mod:`masonry.run.run`. YADE keeps the rest of the state: :func:`masonry.saveCheckpoint`.
 """
 
@@ -18,7 +19,8 @@ from .words import PUSHES, asData
 
 
 def stateOf(scene):
-    """What stages have set of a scene, beside what YADE keeps: a dict of values that JSON can hold."""
+    """What stages have set of a scene, beside what YADE keeps: a dict of values that JSON can
+    hold."""
     of = ("until", "history", "rate") if scene.pushed else ()
     return {
         "model": scene.model.state(),
@@ -29,7 +31,8 @@ def stateOf(scene):
 
 
 def putState(scene, state):
-    """Give a scene a state of :func:`stateOf`. Raises Refused if it is not of the kind of the present one."""
+    """Give a scene a state of :func:`stateOf`. Raises Refused if it is not of the kind of the
+    present one."""
     like = stateOf(scene)
     like["model"]["said"] = []  # stands for any number of things that were said of ties
     if not (_alike(state, like) and _alike(state["model"], like["model"])):
@@ -66,17 +69,20 @@ class State:
         self.restored = True
 
     def takeRest(self, at):
-        """Take the last state at rest from a checkpoint: :class:`masonry.run.run_state.RunState`."""
+        """Take the last state at rest from a checkpoint:
+        :class:`masonry.run.run_state.RunState`."""
         if at.atRest:
             self._model.atRest = base64.b64decode(at.atRest)
         self._model.motion.places, self._model.motion.far = at.places, at.far
 
 
 def enter(scene, number, farther):
-    """Begin a stage. Returns how it ended if it was over before the run was resumed and is left out now, else None.
+    """Begin a stage. Returns how it ended if it was over before the run was resumed and is left out
+    now, else None.
 
     :param number: of the stage
-    :param farther: whether the script says now that it goes farther; the last stage is then gone on with
+    :param farther: whether the script says now that it goes farther; the last stage is then gone on
+        with
     """
     running, at = scene.running, scene.running.at
     if running.takesUp and not running.redoes:
@@ -95,14 +101,16 @@ def enter(scene, number, farther):
 
 
 def _optionsDiffer(scene):
-    """Whether the command line says something else about how far the push goes in which the checkpoint was made."""
+    """Whether the command line says something else about how far the push goes in which the
+    checkpoint was made."""
     was, now = scene.running.saved.options, asData(vars(scene.args))
     differs = any(was.get(name) != now[name] for name in ("until", "history"))
     return differs and scene.script.isFirst(PUSHES)
 
 
 def saidBefore(scene, word, **arguments):
-    """Note a command that is no stage. Returns whether the script of a run that is resumed said it before the checkpoint."""
+    """Note a command that is no stage. Returns whether the script of a run that is resumed said it
+    before the checkpoint."""
     scene.script.add(word, arguments)
     if not scene.running.takesUp:
         return False
@@ -111,11 +119,12 @@ def saidBefore(scene, word, **arguments):
 
 
 def resume(scene: Any) -> str:
-    """Go on with a run that was interrupted, as from a following cell of a notebook: the stage that was interrupted is carried
-    out to its end, from the checkpoint that the interruption left.
+    """Go on with a run that was interrupted, as from a following cell of a notebook: the stage that
+    was interrupted is carried out to its end, from the checkpoint that the interruption left.
 
-    Every word of the scene is said again, as ``--resume`` of a script does it, so the result is the same to the last bit.
-    Of a search that the script makes by itself or by :meth:`bracket`, this is the step that was interrupted.
+    Every word of the scene is said again, as ``--resume`` of a script does it, so the result is the
+    same to the last bit. Of a search that the script makes by itself or by :meth:`bracket`, this is
+    the step that was interrupted.
 
     :returns: how that stage ended
     :raises ValueError: if the scene was not interrupted, or left no checkpoint

@@ -13,11 +13,12 @@ A scene reads from top to bottom::
     scene.cycle(top, [2, 4, 8], repeats=2)    # [mm]
     scene.finish()
 
-What comes before the first stage describes: platens, supports, loads, what is recorded. Stages run in turn
-(:mod:`masonry.scene.stages`). Each returns how it ended: one of ``AT_REST``, ``MOVING``, ``DONE`` and ``COLLAPSED``. After a
-collapse the stages that follow are left out. ``finish`` writes what :mod:`masonry.run.results` lists. All options of the
-command line work, ``--help`` explains them: ``--preset``, ``--rate``, ``--set``, ``--out``, ``--resume`` and the others;
-``--until`` or ``--history`` replace what the first push or cycle of the scene says.
+What comes before the first stage describes: platens, supports, loads, what is recorded. Stages run
+in turn (:mod:`masonry.scene.stages`). Each returns how it ended: one of ``AT_REST``, ``MOVING``,
+``DONE`` and ``COLLAPSED``. After a collapse the stages that follow are left out. ``finish`` writes
+what :mod:`masonry.run.results` lists. All options of the command line work, ``--help`` explains
+them: ``--preset``, ``--rate``, ``--set``, ``--out``, ``--resume`` and the others; ``--until`` or
+``--history`` replace what the first push or cycle of the scene says.
 """
 
 from __future__ import annotations
@@ -73,34 +74,39 @@ def _blocksOf(value, first=None):
 
 
 class Scene:
-    """A structure of bricks, how it is held and loaded, and the stages of its test; the module shows how to write one.
+    """A structure of bricks, how it is held and loaded, and the stages of its test; the module
+    shows how to write one.
 
     It has a :class:`~masonry.scene.description.Description`; when its first stage begins it gets a
-    :class:`~masonry.assembly.structure.Structure`, its ``model`` in YADE; and a :class:`~masonry.run.run.Run`, ``running``,
-    takes the steps.
+    :class:`~masonry.assembly.structure.Structure`, its ``model`` in YADE; and a
+    :class:`~masonry.run.run.Run`, ``running``, takes the steps.
 
     :param name: of the folder of results, ``results/<name>``
-    :param bricks: blocks: :class:`masonry.bricks.Bricks`, or anything that gives blocks with ``corners``, ``brick``,
-        ``part`` and ``kind``
+    :param bricks: blocks: :class:`masonry.bricks.Bricks`, or anything that gives blocks with
+        ``corners``, ``brick``, ``part`` and ``kind``
     :param materials: :class:`masonry.scene.materials.Masonry`
     :param title: of the figures; None: the name
-    :param plane: whether blocks move in the x-z plane only, which is faster; None: if all bricks are one leaf in it
+    :param plane: whether blocks move in the x-z plane only, which is faster; None: if all bricks
+        are one leaf in it
     :param gravity: [m/s²], downwards
-    :param columns: names of the columns of curve.csv, beside the energies and the section at the base; None: all that there
-        are
+    :param columns: names of the columns of curve.csv, beside the energies and the section at the
+        base; None: all that there are
     :param functors: as in :func:`masonry.assembly.engines.engines`
-    :param arguments: options as :func:`masonry.scene.options.parser` gives them, or a list of words; None: those of the
-        command line
-    :param allowGaps: whether bricks that nearly share a face stand apart on purpose, and have no joint
-    :param collapse: what a run does when the structure falls: ``"end"``, there, or ``"follow"``. Then joints without bond whose
-        blocks have slid by 2 % of the joint or turned by 1° become contacts during the whole run, a stage that ends in a
-        collapse goes on until the rubble is at rest, and ``shake`` and ``run`` go on whatever falls. Rigid bricks only. The
-        contact has stiffness and residual friction of the bed joint; ``--set contact.friction=0.7`` and the like change it.
-        Blocks fall on the ground, a block that the scene adds below everything else
-    :param sceneOptions: options of this scene, for example ``rate=50`` [mm/s] or ``dt_fraction=0.4``. They hold unless the command
-        line, or the list of words, gives the same option; a note says so then
-    :raises Refused: if something is wrong, with all problems at once. A script that does not catch it ends with exit
-        status 2
+    :param arguments: options as :func:`masonry.scene.options.parser` gives them, or a list of
+        words; None: those of the command line
+    :param allowGaps: whether bricks that nearly share a face stand apart on purpose, and have no
+        joint
+    :param collapse: what a run does when the structure falls: ``"end"``, there, or ``"follow"``.
+        Then joints without bond whose blocks have slid by 2 % of the joint or turned by 1° become
+        contacts during the whole run, a stage that ends in a collapse goes on until the rubble is
+        at rest, and ``shake`` and ``run`` go on whatever falls. Rigid bricks only. The contact has
+        stiffness and residual friction of the bed joint; ``--set contact.friction=0.7`` and the
+        like change it. Blocks fall on the ground, a block that the scene adds below everything else
+    :param sceneOptions: options of this scene, for example ``rate=50`` [mm/s] or
+        ``dt_fraction=0.4``. They hold unless the command line, or the list of words, gives the same
+        option; a note says so then
+    :raises Refused: if something is wrong, with all problems at once. A script that does not catch
+        it ends with exit status 2
     """
 
     present: Scene | None = None  # the scene that stands in YADE
@@ -215,14 +221,16 @@ class Scene:
 
     @property
     def factor(self) -> float:
-        """The largest load factor under which the structure came to rest in the last stage that found one, for example the
-        horizontal over the vertical acceleration of :meth:`accelerate` [-]; not a number if no stage has found one.
+        """The largest load factor under which the structure came to rest in the last stage that
+        found one, for example the horizontal over the vertical acceleration of :meth:`accelerate`
+        [-]; not a number if no stage has found one.
         """
         found = [a["value"] for a in self.answers if a["name"] == "factor_held"]
         return next((value for value in reversed(found) if value is not None), math.nan)
 
     def checkOpen(self, name: str) -> None:
-        """Refuse a stage of a scene that is finished, or gone because another one was built. Raises ValueError."""
+        """Refuse a stage of a scene that is finished, or gone because another one was built. Raises
+        ValueError."""
         if self.finished:
             raise ValueError(f"{name}: the scene is finished")
         if self.model and self.isGone:
@@ -233,7 +241,8 @@ class Scene:
 
     @functools.cached_property
     def masonry(self) -> Masonry:
-        """The materials for the options of this run: :class:`masonry.scene.materials.Masonry`. Raises Refused."""
+        """The materials for the options of this run: :class:`masonry.scene.materials.Masonry`.
+        Raises Refused."""
         connectors = self.description.settable()
         masonry = self.description.materials.variant(self.args, [*connectors])
         problems = self.description.problems(masonry)
@@ -275,7 +284,8 @@ class Scene:
         atexit.register(self._remind)
 
     def finish(self) -> None:
-        """End the run: the last frame, run.json, the figures. A run that was not in order exits with its status."""
+        """End the run: the last frame, run.json, the figures. A run that was not in order exits
+        with its status."""
         if batch.PROBE in os.environ and self.model:
             self.probe("finish", None, {})
         if not (self.finished or self._entered):
@@ -306,7 +316,8 @@ class Scene:
 
     @contextlib.contextmanager
     def noted(self, word: Callable[..., Any], *args: Any, **settings: Any) -> Iterator[None]:
-        """Note a word that is carried out in a block, for :meth:`resume`: also one that is refused, but ends no run."""
+        """Note a word that is carried out in a block, for :meth:`resume`: also one that is refused,
+        but ends no run."""
         call = Call(word, args, settings)
         self.calls.append(call)
         try:

@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What a horizontal section of a structure transmits: normal force, shear force and moment, from its joints, ties and springs.
+"""What a horizontal section of a structure transmits: normal force, shear force and moment, from
+its joints, ties and springs.
 
-The free body is that of all blocks, platens too, whose centroid was above the height z when the scene was built. The joints,
-ties and springs between it and the other blocks and the ground transmit all that acts between both, so their resultant is
-exact statics in any bond, also where the section goes in steps. At rest it is the weight of these blocks and the loads on them.
+The free body is that of all blocks, platens too, whose centroid was above the height z when the
+scene was built. The joints, ties and springs between it and the other blocks and the ground
+transmit all that acts between both, so their resultant is exact statics in any bond, also where the
+section goes in steps. At rest it is the weight of these blocks and the loads on them.
 """
 
 from dataclasses import dataclass
@@ -22,7 +24,8 @@ LEVEL = 1e-9  # of the height of a structure: centroids so near to z do not lie 
 
 @dataclass
 class Section:
-    """A horizontal section whose forces are recorded. ``scene.section`` makes it; it can be read between stages.
+    """A horizontal section whose forces are recorded. ``scene.section`` makes it; it can be read
+    between stages.
 
     :param part: name of a part of the bricks; None: all
     :param middle: point about which moments are, fixed in space [m]
@@ -77,7 +80,8 @@ class Section:
         return self.part in (None, self._parts.get(upper, self._parts.get(lower)))
 
     def forces(self):
-        """Force [N] and moment about the middle [N m] of what is above on what is below, in global axes: two vectors."""
+        """Force [N] and moment about the middle [N m] of what is above on what is below, in global
+        axes: two vectors."""
         if not self.interactions:
             raise ValueError(f"section {self.name}: the scene is not built yet")
         force, moment = resultant(self.interactions, self.signs, self.middle)

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""``--set NAME.PROPERTY=VALUE``: from its text to the property of a joint, a beam, a tie, springs or a fibre layer."""
+"""``--set NAME.PROPERTY=VALUE``: from its text to the property of a joint, a beam, a tie, springs
+or a fibre layer."""
 
 import copy
 from typing import Any, Callable, NamedTuple
@@ -29,7 +30,8 @@ class Property(NamedTuple):
 
 
 class Settable:
-    """What ``--set`` and ``--field`` change beside joints; what can vary has ``place()``, where it is [m]."""
+    """What ``--set`` and ``--field`` change beside joints; what can vary has ``place()``, where it
+    is [m]."""
 
     WORD = "thing"  # what it is, in messages
     known: Any = {}  # its properties by name: Property
@@ -95,7 +97,8 @@ def valuesOf(thing):
 
 
 def scatterAll(connectors, names, factor):
-    """Let properties of ties, springs and fibre layers vary by a field. Raises ValueError with all problems.
+    """Let properties of ties, springs and fibre layers vary by a field. Raises ValueError with all
+    problems.
 
     :param connectors: ties, springs and fibre layers by name
     :param names: as ``"wire.strength"``; those of joints are left alone
@@ -136,7 +139,8 @@ def setting(text):
 
 
 def applySettings(joints, settings):
-    """Give joints, and what is settable beside them, the values of ``--set``. Raises Refused with all problems at once.
+    """Give joints, and what is settable beside them, the values of ``--set``. Raises Refused with
+    all problems at once.
 
     :param joints: MasonryJoint and :class:`Settable` by name
     :param settings: list of (joint, property, text of the value)
@@ -183,7 +187,8 @@ SWITCH = {"on": True, "true": True, "1": True, "off": False, "false": False, "0"
 
 
 def _value(text, example):
-    """The value that the text of a setting stands for, of the kind of ``example``. Raises ValueError if it is not one."""
+    """The value that the text of a setting stands for, of the kind of ``example``. Raises
+    ValueError if it is not one."""
     if isinstance(example, bool):
         if text.lower() not in SWITCH:
             raise ValueError(text)

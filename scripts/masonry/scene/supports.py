@@ -61,28 +61,30 @@ def platen(
 ) -> Target:
     """A stiff block over the whole lower or upper side of the structure.
 
-    The one at the bottom is fixed. The one at the top moves; loads act on it, and ``rotation`` says whether it can
-    turn. Its joint to the bricks is the ``support`` joint of the materials.
+    The one at the bottom is fixed. The one at the top moves; loads act on it, and ``rotation`` says
+    whether it can turn. Its joint to the bricks is the ``support`` joint of the materials.
 
     :param where: ``"bottom"`` or ``"top"``
     :param rotation: ``"free"`` or ``"held"``, of the platen at the top; None: held
     :param height: [m]
     :param name: in curve.csv; None: base and top
     :param point: (x, y, z) [m] on which loads act; None: the middle of the platen's outer side
-    :param guided: axes along which the middle of the one at the top cannot move: ``"x"``, ``"y"`` or ``"xy"``; its top
-        support then carries horizontal force
+    :param guided: axes along which the middle of the one at the top cannot move: ``"x"``, ``"y"``
+        or ``"xy"``; its top support then carries horizontal force
     :param part: name of a part of the bricks; the platen is over this part alone. None: over all
     :param upTo: z of its outer side [m], in place of ``height``: where a testing machine pushes
-    :param recorded: z of the point whose displacement is recorded [m], on the line through ``point``; None: that of
-        ``point``
-    :param drive: axes along which a drive holds the one at the top from the beginning: ``"x"``, or ``"xz"``; none of
-        them: it is free until it is pushed
-    :param springs: of the one at the bottom, a soil or a rig that gives way: a dict from axes, xyz along and XYZ about, to
-        stiffness [N/m], [N m/rad], at the middle of its outer side, for example ``{"x": 37e6}``; along and about the others it
-        is fixed, and where it is fixed along x or y it turns about its own middle. Its weight counts if it can move along
-        z. None: it is fixed along and about all
-    :param uplift: whether the soil carries no tension. Then ``z`` of ``springs`` is spread over the side of the platen, so that it also
-        turns on it, and each part of the soil has compression alone
+    :param recorded: z of the point whose displacement is recorded [m], on the line through
+        ``point``; None: that of ``point``
+    :param drive: axes along which a drive holds the one at the top from the beginning: ``"x"``, or
+        ``"xz"``; none of them: it is free until it is pushed
+    :param springs: of the one at the bottom, a soil or a rig that gives way: a dict from axes, xyz
+        along and XYZ about, to stiffness [N/m], [N m/rad], at the middle of its outer side, for
+        example ``{"x": 37e6}``; along and about the others it is fixed, and where it is fixed along
+        x or y it turns about its own middle. Its weight counts if it can move along z. None: it is
+        fixed along and about all
+    :param uplift: whether the soil carries no tension. Then ``z`` of ``springs`` is spread over the
+        side of the platen, so that it also turns on it, and each part of the soil has compression
+        alone
     """
     bottom, plane = where == "bottom", description.plane
     level = description.low[2] if bottom else description.high[2]
@@ -145,7 +147,8 @@ def _problems(plane, bottom, rotation, guided, drive, springs):
 
 
 def _sideAt(description, level, where, part):
-    """The opposite corners (x, y) of what the bricks of a part have at a level [m]. Raises ValueError."""
+    """The opposite corners (x, y) of what the bricks of a part have at a level [m]. Raises
+    ValueError."""
     near = 1e-6 * (1 + abs(level))
     blocks = [
         [p for p in block.corners if abs(p[2] - level) < near]
@@ -166,7 +169,8 @@ def _sideAt(description, level, where, part):
 
 
 def _standLoose(description, target, stiffness, low, high):
-    """Let a platen stand on a soil without tension: bars by which it hangs from points so high above that they stay upright.
+    """Let a platen stand on a soil without tension: bars by which it hangs from points so high
+    above that they stay upright.
 
     :param stiffness: of all together [N/m]
     :param low: and ``high``: opposite corners of its outer side [m]
@@ -187,7 +191,8 @@ def _standLoose(description, target, stiffness, low, high):
 
 
 def _spread(low, high, count):
-    """Places from end to end, and the share of each by Simpson's rule, so that a soil has its stiffness against rotation, too."""
+    """Places from end to end, and the share of each by Simpson's rule, so that a soil has its
+    stiffness against rotation, too."""
     if count == 1:
         return [((low + high) / 2, 1.0)]
     shares = [1, *([4, 2] * (count // 2))[:-1], 1]
@@ -207,8 +212,8 @@ def hold(
 
     :param where: a point [m] in it or near it, its index in the bricks, or the block itself
     :param name: in curve.csv; None: ``brick`` and its index
-    :param axes: along which it is held, xyz, and about which it cannot turn, XYZ; a prop against a wall that leans is
-        ``"y"``
+    :param axes: along which it is held, xyz, and about which it cannot turn, XYZ; a prop against a
+        wall that leans is ``"y"``
     """
     if description.plane and not set(axes) - set("yXZ"):
         raise ValueError(
@@ -223,15 +228,16 @@ def hold(
 @describes
 @validated
 def watch(description: Any, where: BrickAt, name: Name | None = None) -> Target:
-    """Record the motion of a brick. Parameters as in :meth:`hold`; a point is the one that is recorded."""
+    """Record the motion of a brick. Parameters as in :meth:`hold`; a point is the one that is
+    recorded."""
     return _brick(description, where, name, fixed=False, loaded=False)
 
 
 @describes
 @validated
 def handle(description: Any, where: BrickAt, name: Name | None = None) -> Target:
-    """A brick that loads act on, at its centre or at the point that is given. It is rigid, also where bricks are deformable. Parameters
-    as in :meth:`hold`."""
+    """A brick that loads act on, at its centre or at the point that is given. It is rigid, also
+    where bricks are deformable. Parameters as in :meth:`hold`."""
     return _brick(description, where, name, fixed=False, loaded=True)
 
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What a scene records: platens and bricks that are held, loaded or watched, and joints. Plain records with their columns,
-and the kinds of arguments that name them."""
+"""What a scene records: platens and bricks that are held, loaded or watched, and joints. Plain
+records with their columns, and the kinds of arguments that name them."""
 
 from dataclasses import dataclass
 from typing import Annotated, Any, Iterator, Sequence, Union
@@ -93,7 +93,8 @@ class Drift:
 
 @dataclass
 class JointRecord:
-    """A joint between two bricks whose means are recorded. ``scene.joint`` makes it; it can be read between stages."""
+    """A joint between two bricks whose means are recorded. ``scene.joint`` makes it; it can be read
+    between stages."""
 
     name: str
     bricks: tuple  # indices of the two bricks
@@ -130,7 +131,8 @@ class JointRecord:
         return self._mean(stress[1] for stress in self.interaction.phys.stress)
 
     def prefixed(self, name: str) -> str:
-        """A name of a column or of an entry of run.json, with that of the joint before it if it has one."""
+        """A name of a column or of an entry of run.json, with that of the joint before it if it has
+        one."""
         return f"{self.name}_{name}" if self.name else name
 
     def dissipated(self) -> dict[str, float]:

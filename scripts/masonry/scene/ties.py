@@ -43,7 +43,8 @@ class End:
     brick: int | None = None
 
     def bodyIn(self, ids):
-        """YADE's id of its body, -1 for the ground; ``ids`` are those of the bricks, in their order."""
+        """YADE's id of its body, -1 for the ground; ``ids`` are those of the bricks, in their
+        order."""
         if self.target:
             return self.target.body
         return GROUND if self.brick is None else ids[self.brick]
@@ -85,9 +86,8 @@ class Tie(Connector):
     compression: bool
     engine: Any = None  # YADE's, when the scene is built
     number: int = 0  # among the ties of the engine
-    overlay: str = (  # name of the overlay of which it is a fibre; then it has no columns of its own
-        ""
-    )
+    # name of the overlay of which it is a fibre; then it has no columns of its own
+    overlay: str = ""
 
     WORD, PLURAL = "tie", "ties"  # in messages, and in run.json
     isSupport = False  # whether its force on a platen is one of a support
@@ -324,7 +324,8 @@ class Spring(Connector):
 
 @dataclass
 class Overlay(Settable):
-    """Fibres over the joints of a face; ``scene.overlay`` makes them and says what the values mean."""
+    """Fibres over the joints of a face; ``scene.overlay`` makes them and says what the values
+    mean."""
 
     name: str
     ties: list[Tie]

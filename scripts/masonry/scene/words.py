@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The words of a script, noted as data: a run that is resumed can be compared with the script that began it."""
+"""The words of a script, noted as data: a run that is resumed can be compared with the script that
+began it."""
 
 import contextlib
 import functools
@@ -57,12 +58,12 @@ def describes(act: Callable[Concatenate[Any, P], R]) -> Callable[Concatenate[Any
 
 
 class Either(Protocol[P, S, Q]):
-    """What a script can call that takes one list of arguments before the first stage, and another one after it."""
+    """What a script can call that takes one list of arguments before the first stage, and another
+    one after it."""
 
     @overload
-    def __call__(  # type: ignore[misc]  # both may be called without arguments, as far as mypy knows
-        self, *args: P.args, **settings: P.kwargs
-    ) -> S:
+    # both may be called without arguments, as far as mypy knows
+    def __call__(self, *args: P.args, **settings: P.kwargs) -> S:  # type: ignore[misc]
         ...
 
     @overload
@@ -95,7 +96,8 @@ def either(
 
 
 def argumentsOf(act, first, args, settings):
-    """What the user says to a word, by the names of its parameters, with the defaults of those that are left out."""
+    """What the user says to a word, by the names of its parameters, with the defaults of those that
+    are left out."""
     bound = inspect.signature(act).bind(first, *args, **settings)
     bound.apply_defaults()
     return dict(list(bound.arguments.items())[1:])
@@ -124,7 +126,8 @@ def asData(value):
 class Script:
     """What a script has said so far.
 
-    ``words`` is a list of pairs: the name of a word, and its arguments as a dict of data. A checkpoint keeps it.
+    ``words`` is a list of pairs: the name of a word, and its arguments as a dict of data. A
+    checkpoint keeps it.
     """
 
     def __init__(self):
@@ -146,10 +149,11 @@ class Script:
         return last in words and not any(word in words for word, _ in before)
 
     def compare(self, before):
-        """Refuse a script that says something else than that of the run that is resumed. Returns whether it goes farther.
+        """Refuse a script that says something else than that of the run that is resumed. Returns
+        whether it goes farther.
 
-        :param before: ``words`` of that run, up to its checkpoint. The last of them, but for results, is the stage in which that was
-            made, which may go farther now
+        :param before: ``words`` of that run, up to its checkpoint. The last of them, but for
+            results, is the stage in which that was made, which may go farther now
         """
         last = max((n for n, (word, _) in enumerate(before) if word != RESULT), default=-1)
         farther = False

@@ -13,18 +13,21 @@ A study is a small Python file::
         vary={"bed.cohesion": lognormal(mean=0.11e6, cov=0.2), "bed.friction": lognormal(mean=0.43, cov=0.05)},
     )
 
-A study with ``design="ida"`` shakes its scene by records that grow until it falls, and gives its fragility.
+A study with ``design="ida"`` shakes its scene by records that grow until it falls, and gives its
+fragility.
 
-``/usr/bin/python3 -m masonry.study FILE --out DIR`` runs it, goes on with it, and gathers what came out in ``DIR/study.csv``.
-``scripts/STUDIES.md`` is its manual. Distributions, correlation and designs are those of OpenTURNS (Debian's
-python3-openturns); a grid of numbers and choices needs no more than Python.
+``/usr/bin/python3 -m masonry.study FILE --out DIR`` runs it, goes on with it, and gathers what came
+out in ``DIR/study.csv``. ``scripts/STUDIES.md`` is its manual. Distributions, correlation and
+designs are those of OpenTURNS (Debian's python3-openturns); a grid of numbers and choices needs no
+more than Python.
 """
 
 import importlib
 from typing import TYPE_CHECKING
 
 _VARIABLES = "Distribution", "Field", "choice", "field", "lognormal", "normal", "uniform"
-#: Public names with the module that has them. They are loaded when they are used first, because a row needs none of them.
+#: Public names with the module that has them. They are loaded when they are used first, because a
+#: row needs none of them.
 _NAMES = {
     "Study": "plan",
     "Sa": "incremental",

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Runs, resumes and gathers a study: ``/usr/bin/python3 -m masonry.study FILE --out DIR``. scripts/STUDIES.md is the manual."""
+"""Runs, resumes and gathers a study: ``/usr/bin/python3 -m masonry.study FILE --out DIR``.
+scripts/STUDIES.md is the manual."""
 
 import argparse
 import os
@@ -125,7 +126,8 @@ def main(words):
 
 
 def program(words):
-    """The program, with Ctrl-C as it was before this module was imported. Returns the exit status."""
+    """The program, with Ctrl-C as it was before this module was imported. Returns the exit
+    status."""
     try:
         interrupts.unblock()
         return main(words)

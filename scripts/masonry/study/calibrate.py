@@ -1,15 +1,19 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """From tests of specimens to the properties that they have: values with intervals and correlations.
 
-Rows of a study fill the ranges of what is unknown. A surrogate, kriging by OpenTURNS, stands for the scene between them, and a
-Metropolis-Hastings chain of OpenTURNS draws properties with the probability that the test gives them, all values within their
-ranges being alike beforehand. Errors are normal and independent: those of the test, and those of the surrogate, which is what
-it misses of each row if that is left out. While these are more than half of the others, another round of rows fills what the
-draws keep of the ranges. A run with the means of the draws is compared with the surrogate, and added to its rows while it differs.
+Rows of a study fill the ranges of what is unknown. A surrogate, kriging by OpenTURNS, stands for
+the scene between them, and a Metropolis-Hastings chain of OpenTURNS draws properties with the
+probability that the test gives them, all values within their ranges being alike beforehand. Errors
+are normal and independent: those of the test, and those of the surrogate, which is what it misses
+of each row if that is left out. While these are more than half of the others, another round of rows
+fills what the draws keep of the ranges. A run with the means of the draws is compared with the
+surrogate, and added to its rows while it differs.
 
-A few accurate runs say how far the scene as it is run is off: their mean difference is added, and its scatter is another error.
+A few accurate runs say how far the scene as it is run is off: their mean difference is added, and
+its scatter is another error.
 
-:mod:`masonry.study` runs a file with a calibration like one with a study. scripts/STUDIES.md is the manual.
+:mod:`masonry.study` runs a file with a calibration like one with a study. scripts/STUDIES.md is the
+    manual.
 """
 
 from __future__ import annotations
@@ -39,7 +43,9 @@ from .variables import uniform
 
 DRAWS, THINNING = 4000, 5  # of a chain
 BEGIN = 0.1  # steps of the first chain over the ranges [-]
-STEP = 2.38  # of a chain over the deviation of a draw, over the root of the dimension: Gelman, Roberts and Gilks (1996)
+# of a chain over the deviation of a draw, over the root of the dimension: Gelman, Roberts and Gilks
+# (1996)
+STEP = 2.38
 STARTS = 2000  # points of which the most likely one begins the first chain
 FINE = 0.5  # error of the surrogate over that of the test that needs no other round or check [-]
 CHECKS = 4  # runs with the means of the draws that may be added to the rows
@@ -58,11 +64,13 @@ class Specimen:
     """A specimen that was tested: the scene of its test, and what was measured.
 
     :param scene: as in :class:`masonry.study.Study`
-    :param measured: the curve as ``"FILE:X:Y"``, a table and two of its columns, FILE from the calibration's file on; or a dict of
-        columns of ``study.csv`` -> (value, standard deviation)
-    :param error: of a curve: standard deviation of Y, in its unit: of the measurement, or of the mean of several specimens
+    :param measured: the curve as ``"FILE:X:Y"``, a table and two of its columns, FILE from the
+        calibration's file on; or a dict of columns of ``study.csv`` -> (value, standard deviation)
+    :param error: of a curve: standard deviation of Y, in its unit: of the measurement, or of the
+        mean of several specimens
     :param columns: of ``curve.csv`` that X and Y are
-    :param count: at how many points, evenly spaced along X, the curve is compared. Their errors are taken as independent
+    :param count: at how many points, evenly spaced along X, the curve is compared. Their errors are
+        taken as independent
     :param options: of the scene, as in :class:`masonry.study.Study`
     :raises Refused: with all problems at once
     """
@@ -92,7 +100,8 @@ class Specimen:
         refuse(problems, "specimen: ")
 
     def read(self, near: FilePath) -> None:
-        """Read what was measured: ``names``, ``values`` and ``errors``, of a curve at ``grid``. Raises Refused."""
+        """Read what was measured: ``names``, ``values`` and ``errors``, of a curve at ``grid``.
+        Raises Refused."""
         if isinstance(self.measured, dict):
             self.names, self.grid = [*self.measured], None
             self.values, self.errors = np.array([*self.measured.values()], float).T
@@ -130,12 +139,13 @@ class Calibration:
     """Properties that shall be found from tests.
 
     :param specimens: a :class:`Specimen`, or a list of them that share the properties
-    :param unknown: dict of a name, or a tuple of names with one value, as in ``vary`` of :class:`masonry.study.Study`, to the two
-        ends of its range
+    :param unknown: dict of a name, or a tuple of names with one value, as in ``vary`` of
+        :class:`masonry.study.Study`, to the two ends of its range
     :param runs: rows of a round and a specimen
     :param rounds: how many rounds there may be
     :param seed: the same number gives the same rows and draws
-    :param accurate: options of accurate runs, such as ``{"preset": "accurate"}``; None: there are none
+    :param accurate: options of accurate runs, such as ``{"preset": "accurate"}``; None: there are
+        none
     :param few: how many accurate runs of a specimen
     :raises Refused: with all problems at once
     """
@@ -178,7 +188,8 @@ class Calibration:
         :param place: folder of the results; the same call goes on with them
         :param near: folder from which scenes and files are looked for
         :param jobs: runs at a time
-        :raises Refused: if something is wrong with a scene or a measured file, or too few rows have what is compared
+        :raises Refused: if something is wrong with a scene or a measured file, or too few rows have
+            what is compared
         """
         for one in self.specimens:
             one.read(near)
@@ -229,7 +240,8 @@ class Calibration:
         return model, sample
 
     def _checked(self, model, sample):
-        """Surrogate and draws after runs with the means of the draws, and what the last one of these says."""
+        """Surrogate and draws after runs with the means of the draws, and what the last one of
+        these says."""
         for turn in range(1, CHECKS + 2):
             x, run = self._best(f"check{turn}", sample)
             off = np.max(np.abs(run - model(x)) / self.errors, initial=0)
@@ -251,7 +263,8 @@ class Calibration:
         return self._rows(name, study, 0)
 
     def _rows(self, name, studyOf, least):
-        """Run a study of every specimen: the unknown properties of the rows, and what all specimens say of them.
+        """Run a study of every specimen: the unknown properties of the rows, and what all specimens
+        say of them.
 
         :param least: how many rows there must be
         """
@@ -279,12 +292,14 @@ class Calibration:
 
 
 class Surrogate:
-    """What a scene says as a function of the unknown properties within their ranges: kriging with a linear trend.
+    """What a scene says as a function of the unknown properties within their ranges: kriging with a
+    linear trend.
 
     :param x: of every row the unknown properties
     :param y: of every row what it says
     :param low: ends of the ranges, and ``high``
-    :param checks: how many rows at the end are where the properties are likely: the error is not below that of these
+    :param checks: how many rows at the end are where the properties are likely: the error is not
+        below that of these
     """
 
     def __init__(
@@ -316,7 +331,8 @@ class Surrogate:
 
 
 def _kriging(u, column):
-    """Slopes of the trend, lengths of the covariance, factors of the rows, and what is missed of each if it is left out."""
+    """Slopes of the trend, lengths of the covariance, factors of the rows, and what is missed of
+    each if it is left out."""
     ot, size = needed("openturns"), u.shape[1]
     if not column.any():  # the same in all rows
         return np.zeros(size + 1), np.ones(size), np.zeros(len(u)), np.zeros(len(u))
@@ -337,7 +353,8 @@ def _kriging(u, column):
 
 
 def posterior(model: Surrogate, values: np.ndarray, errors: np.ndarray, seed: int) -> np.ndarray:
-    """Draws of the unknown properties, with the probability that the measured values give them: a line each.
+    """Draws of the unknown properties, with the probability that the measured values give them: a
+    line each.
 
     :param values: what was measured
     :param errors: standard deviations of it
@@ -366,7 +383,8 @@ def posterior(model: Surrogate, values: np.ndarray, errors: np.ndarray, seed: in
 class Found:
     """What the tests say of the unknown properties.
 
-    :param calibration: :class:`Calibration`, which has what was measured as ``values``, and its standard deviations as ``errors``
+    :param calibration: :class:`Calibration`, which has what was measured as ``values``, and its
+        standard deviations as ``errors``
     :param sample: draws of the properties, a line each
     :param model: :class:`Surrogate`
     :param run: what a run with the means of the draws says, one line; none if it failed
@@ -384,7 +402,8 @@ class Found:
 
     @property
     def spread(self) -> np.ndarray:
-        """Standard deviations of the draws over those of the ranges [-]: 1 is what was known before."""
+        """Standard deviations of the draws over those of the ranges [-]: 1 is what was known
+        before."""
         ranges = self.calibration.high - self.calibration.low
         return math.sqrt(12) * self.sample.std(axis=0) / ranges
 
@@ -426,7 +445,8 @@ class Found:
 
     @property
     def properties(self) -> list[dict[str, Any]]:
-        """Of every property: ``name``, ``value``, ``low`` and ``high`` of its interval, and ``spread``."""
+        """Of every property: ``name``, ``value``, ``low`` and ``high`` of its interval, and
+        ``spread``."""
         columns = self.sample.mean(axis=0), *self.intervals, self.spread
         rows = zip(self.calibration.names, *(c.tolist() for c in columns))
         return [dict(zip("name value low high spread".split(), row)) for row in rows]
@@ -440,7 +460,8 @@ class Found:
         }
 
     def lines(self) -> Iterator[str]:
-        """What is printed: properties, what was measured, doubts, and the properties as a study takes them."""
+        """What is printed: properties, what was measured, doubts, and the properties as a study
+        takes them."""
         of = self.calibration
         wide = max(map(len, of.names))
         yield (

@@ -1,14 +1,17 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What came out of an incremental dynamic analysis: demands over intensity, and the intensities that a limit needs.
+"""What came out of an incremental dynamic analysis: demands over intensity, and the intensities
+that a limit needs.
 
-The demand of a row is the amount of one of its measures, for example the largest displacement of a point. Where the structure
-falls the demand is infinite, and it stays so at all higher levels, which are not run. Quantiles over the records at a level
-count infinite demands like others: where more than half of the records have fallen, the median is infinite. Between two levels
-of a record the demand changes evenly, from zero at zero on; between the highest level at which it stood and that at which it
-fell it counts as infinite, which is on the safe side and matters only where records have other levels than each other.
+The demand of a row is the amount of one of its measures, for example the largest displacement of a
+point. Where the structure falls the demand is infinite, and it stays so at all higher levels, which
+are not run. Quantiles over the records at a level count infinite demands like others: where more
+than half of the records have fallen, the median is infinite. Between two levels of a record the
+demand changes evenly, from zero at zero on; between the highest level at which it stood and that at
+which it fell it counts as infinite, which is on the safe side and matters only where records have
+other levels than each other.
 
-Rows that failed or are missing are left out, and at a level at which fewer than three records are known there is no quantile.
-This module needs no YADE.
+Rows that failed or are missing are left out, and at a level at which fewer than three records are
+known there is no quantile. This module needs no YADE.
 """
 
 import math
@@ -50,11 +53,13 @@ class Demands:
             found = abs(record.numbers(self.measure))
         found = np.where(stood, byRecord(found), np.where(fell | above, math.inf, np.nan))
         levels = byRecord([chains.intensity(n + 1) for n in range(len(record))])
-        #: of every record its rows, the lowest level first: intensity and demand, NaN where it is not known
+        #: of every record its rows, the lowest level first: intensity and demand, NaN where it is
+        #: not known
         self.rows = [*zip(levels.tolist(), found.tolist())]
         #: of every record the level at which the structure fell; infinite: it stood
         self.fell = np.where(fell, levels, math.inf).min(axis=1).tolist()
-        #: of every record the intensities at which the structure stood, also where nothing was watched
+        #: of every record the intensities at which the structure stood, also where nothing was
+        #: watched
         self.stood = [row[own].tolist() for row, own in zip(levels, stood)]
 
     @property
@@ -67,15 +72,16 @@ class Demands:
         return np.array([_between(*rows, intensity) for rows in self.rows])
 
     def quantiles(self, intensity, shares=QUANTILES):
-        """Quantiles of the demand over the records at an intensity; NaN where fewer than three records are known."""
+        """Quantiles of the demand over the records at an intensity; NaN where fewer than three
+        records are known."""
         values = self.at(intensity)
         values = np.sort(values[~np.isnan(values)])
         known = len(values) >= fragility.FEWEST
         return [_quantile(values, share) if known else math.nan for share in shares]
 
     def intervals(self, limit=None):
-        """Of every record that has a row: the highest intensity below the first at which a limit is reached (0: none), and
-        that first one (infinite: none).
+        """Of every record that has a row: the highest intensity below the first at which a limit is
+        reached (0: none), and that first one (infinite: none).
 
         :param limit: of the demand; None: the structure falls
         """
@@ -90,7 +96,8 @@ class Demands:
         return tuple(np.reshape(ends, (-1, 2)).T)
 
     def counts(self, limit=None):
-        """Of every level: the intensity, how many records have reached a limit at or below it, and of how many it is known."""
+        """Of every level: the intensity, how many records have reached a limit at or below it, and
+        of how many it is known."""
         low, high = self.intervals(limit)
         return [
             (level, int((high <= level).sum()), int(((high <= level) | (low >= level)).sum()))
@@ -98,15 +105,16 @@ class Demands:
         ]
 
     def fragility(self, limit=None):
-        """:class:`masonry.study.fragility.Fit` of reaching a limit of the demand; None: of collapse. Raises Refused."""
+        """:class:`masonry.study.fragility.Fit` of reaching a limit of the demand; None: of
+        collapse. Raises Refused."""
         if limit is not None and not self.measure:
             raise Refused("no fragility of a limit: no row has a demand; scene.watch() records one")
         return fragility.fit(*self.intervals(limit))
 
 
 def _usual(record):
-    """The largest displacement that the shake of a scene found, of the point and along the axis where it is largest; None if
-    nothing was watched."""
+    """The largest displacement that the shake of a scene found, of the point and along the axis
+    where it is largest; None if nothing was watched."""
     names = [m for m in record.measures if re.match(r"shake_\d+_largest_.*_mm$", m)]
     values = ((np.abs(record.numbers(name)), name) for name in names)
     sizes = [(v[np.isfinite(v)].max(initial=-1), name) for v, name in values]

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Which values the rows of a study have: points of the unit cube, then values of what varies.
 
-Points are those of OpenTURNS: independent random numbers, a Latin hypercube, or Sobol's sequence, moved by a random vector.
-Correlated numbers follow a normal copula with the given rank correlation (Spearman's).
+Points are those of OpenTURNS: independent random numbers, a Latin hypercube, or Sobol's sequence,
+moved by a random vector. Correlated numbers follow a normal copula with the given rank correlation
+(Spearman's).
 """
 
 import contextlib
@@ -18,7 +19,8 @@ DESIGNS = ("random", "latin", "sobol", "grid", "ida")
 
 @contextlib.contextmanager
 def seeded(ot, seed):
-    """Random numbers of OpenTURNS from a seed; those of the caller go on afterwards as if nothing had been."""
+    """Random numbers of OpenTURNS from a seed; those of the caller go on afterwards as if nothing
+    had been."""
     before = ot.RandomGenerator.GetState()
     ot.RandomGenerator.SetSeed(seed)
     try:
@@ -47,7 +49,8 @@ def points(design, count, dimension, seed):
 
 
 def root(names, correlation):
-    """The Cholesky factor of the normal copula of numbers with these rank correlations, or None if there are none.
+    """The Cholesky factor of the normal copula of numbers with these rank correlations, or None if
+    there are none.
 
     :raises Refused: if no numbers have all these correlations at once
     """
@@ -84,7 +87,8 @@ def values(design, count, seed, vary, correlation):
 
 
 def _tied(point, factor, normal):
-    """A point of the unit cube, whose first numbers get the dependence of a normal copula with this Cholesky factor."""
+    """A point of the unit cube, whose first numbers get the dependence of a normal copula with this
+    Cholesky factor."""
     size = range(factor.getNbRows())
     free = [normal.computeQuantile(point[i])[0] for i in size]
     tied = (sum(factor[i, j] * free[j] for j in size) for i in size)

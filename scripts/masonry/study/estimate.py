@@ -1,28 +1,32 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Mean, spread and quantiles from few expensive runs and many cheap ones. This module needs no YADE.
+"""Mean, spread and quantiles from few expensive runs and many cheap ones. This module needs no
+YADE.
 
-A preset is a fidelity: ``fast`` and ``bound`` miss the peak of ``accurate`` by a little, but they move with it when a
-strength moves. So a few rows are run with both, and many more with the cheap one alone. The shared rows tell how the
-expensive number follows from the cheap one, and the many cheap ones tell how that one scatters.
+A preset is a fidelity: ``fast`` and ``bound`` miss the peak of ``accurate`` by a little, but they
+move with it when a strength moves. So a few rows are run with both, and many more with the cheap
+one alone. The shared rows tell how the expensive number follows from the cheap one, and the many
+cheap ones tell how that one scatters.
 
-In the formulas y is the expensive and x the cheap number of a row, N rows are shared, and M rows, these among them, are
-cheap. The variance of every estimate here has two parts, A/N + B/M: what the shared rows leave open, and what the cheap
-ones do.
+In the formulas y is the expensive and x the cheap number of a row, N rows are shared, and M rows,
+these among them, are cheap. The variance of every estimate here has two parts, A/N + B/M: what the
+shared rows leave open, and what the cheap ones do.
 
-- **Mean**: ȳ + b (x̄ of M - x̄ of N), the control variate with the slope b of the regression of y on x. A is the
-  variance of the residuals, and B is b² times the variance of x.
-  Where y bends over x, it has a bias of the order of 1/N, which is small beside the interval.
-- **Standard deviation**: the variance of y is b² times that of x over all M rows, plus that of the residuals. A is what
-  the slope and r² leave open, and B the variance of b² (x - mean)².
-- **Quantile by a bridge**: y = a + b x + r, with a residual r that is independent of x. The distribution of y is that
-  of a + b x over all M rows plus r over all N. It uses every row for every quantile.
-- **Quantile by an indicator**: the control variate for "y is below q", whose mean is the probability, with the
-  probability that the bridge gives as the cheap number. It holds whether the bridge does or not, but a quantile of 5 %
-  needs a hundred shared rows.
+- **Mean**: ȳ + b (x̄ of M - x̄ of N), the control variate with the slope b of the regression of y
+  on x. A is the variance of the residuals, and B is b² times the variance of x. Where y bends over
+  x, it has a bias of the order of 1/N, which is small beside the interval.
+- **Standard deviation**: the variance of y is b² times that of x over all M rows, plus that of the
+  residuals. A is what the slope and r² leave open, and B the variance of b² (x - mean)².
+- **Quantile by a bridge**: y = a + b x + r, with a residual r that is independent of x. The
+  distribution of y is that of a + b x over all M rows plus r over all N. It uses every row for
+  every quantile.
+- **Quantile by an indicator**: the control variate for "y is below q", whose mean is the
+  probability, with the probability that the bridge gives as the cheap number. It holds whether the
+  bridge does or not, but a quantile of 5 % needs a hundred shared rows.
 
-How many runs of each kind reach an interval at the least cost follows from A and B and the prices of the runs. For the
-mean this is the rule of B. Peherstorfer, K. Willcox and M. Gunzburger, "Optimal model management for multifidelity
-Monte Carlo estimation", SIAM Journal on Scientific Computing 38 (2016), for two models.
+How many runs of each kind reach an interval at the least cost follows from A and B and the prices
+of the runs. For the mean this is the rule of B. Peherstorfer, K. Willcox and M. Gunzburger,
+"Optimal model management for multifidelity Monte Carlo estimation", SIAM Journal on Scientific
+Computing 38 (2016), for two models.
 
 Rows must be drawn independently, and shared ones must not be chosen by their results.
 """
@@ -36,23 +40,27 @@ from scipy import special, stats
 from ..basics import Refused, refuse
 from .statistics import CONFIDENCE, notFinite
 
-#: Fewest shared rows. With fewer, the slope, the residuals and their scatter are not known well enough for an interval.
+#: Fewest shared rows. With fewer, the slope, the residuals and their scatter are not known well
+#: enough for an interval.
 SHARED = 10
-SIDE = 5  # shared rows that must be expected on either side of a quantile that is found by an indicator
+# shared rows that must be expected on either side of a quantile that is found by an indicator
+SIDE = 5
 QUANTILES = (0.05, 0.5, 0.95)  # the quantiles that :func:`estimate` gives [-]
 DOUBT = 0.01  # a doubt about the bridge is reported if its p-value is below this
 ROUNDING = 1e-9  # a correlation that is as near to 1 leaves nothing to doubt [-]
-#: An estimate. ``name`` says of what, ``value``, ``low`` and ``high`` are in the unit of the numbers. ``expensive`` and
-#: ``cheap`` are A and B, and ``alone`` is the variance of one expensive row without any cheap ones; the three have one
-#: scale, which is that of probability for a quantile. ``shared`` and ``rows`` are N and M.
+#: An estimate. ``name`` says of what, ``value``, ``low`` and ``high`` are in the unit of the
+#: numbers. ``expensive`` and ``cheap`` are A and B, and ``alone`` is the variance of one expensive
+#: row without any cheap ones; the three have one scale, which is that of probability for a
+#: quantile. ``shared`` and ``rows`` are N and M.
 Estimate = namedtuple("Estimate", "name value low high expensive cheap alone shared rows")
 
-#: How many runs to make: ``shared`` rows with both, ``rows`` with the cheap one in all, and what they cost; ``alone``,
-#: how many expensive runs alone reach the same interval, and ``share``, the cost over the cost of those.
+#: How many runs to make: ``shared`` rows with both, ``rows`` with the cheap one in all, and what
+#: they cost; ``alone``, how many expensive runs alone reach the same interval, and ``share``, the
+#: cost over the cost of those.
 Allocation = namedtuple("Allocation", "shared rows cost alone share")
 
 
-# -- estimates --------------------------------------------------------------------------------------------------------
+# -- estimates -------------------------------------------------------------------------------------
 
 
 def mean(expensive, cheap):
@@ -74,7 +82,8 @@ def _estimate(name, found, ends, alone):
 
 
 def deviation(expensive, cheap):
-    """The standard deviation of the expensive number: an :class:`Estimate`. Its logarithm is taken as normal.
+    """The standard deviation of the expensive number: an :class:`Estimate`. Its logarithm is taken
+    as normal.
 
     Parameters and errors are those of :func:`mean`.
     """
@@ -96,14 +105,15 @@ def deviation(expensive, cheap):
 def quantile(expensive, cheap, share, method="bridge"):
     """The value below which a share of the expensive numbers lies: an :class:`Estimate`.
 
-    Its interval is that of R. S. Woodruff, "Confidence intervals for medians and other position measures", Journal of
-    the American Statistical Association 47 (1952): from the value where the estimated probability is the share less its
-    half width to that where it is the share plus its half width. An end that the rows cannot tell is infinite.
+    Its interval is that of R. S. Woodruff, "Confidence intervals for medians and other position
+    measures", Journal of the American Statistical Association 47 (1952): from the value where the
+    estimated probability is the share less its half width to that where it is the share plus its
+    half width. An end that the rows cannot tell is infinite.
 
     :param share: between 0 and 1
     :param method: ``"bridge"`` or ``"indicator"``, as above
-    :raises Refused: as :func:`mean`; or if the share is not between 0 and 1, or the method is another, or an indicator
-        would have fewer than SIDE shared rows to expect on one side
+    :raises Refused: as :func:`mean`; or if the share is not between 0 and 1, or the method is
+        another, or an indicator would have fewer than SIDE shared rows to expect on one side
     """
     problems = []
     if not 0 < share < 1:
@@ -142,9 +152,9 @@ def estimate(expensive, cheap, method="bridge"):
 def doubts(expensive, cheap):
     """What the shared rows say against the bridge: a list of sentences, empty if nothing does.
 
-    One test asks whether y bends over x, by the square of x in the regression. The other asks whether the residuals
-    grow along x, by the rank correlation of their size with x. Each tells in one of a hundred samples of which the
-    bridge holds that it does not.
+    One test asks whether y bends over x, by the square of x in the regression. The other asks
+    whether the residuals grow along x, by the rank correlation of their size with x. Each tells in
+    one of a hundred samples of which the bridge holds that it does not.
     """
     y, x = _rows(expensive, cheap)
     x = x[: len(y)]
@@ -166,22 +176,23 @@ def doubts(expensive, cheap):
     ]
 
 
-# -- how many runs ----------------------------------------------------------------------------------------------------
+# -- how many runs ---------------------------------------------------------------------------------
 
 
 def allocate(pilot, prices, variance=None, budget=None):
-    """The runs that reach a variance at the least cost, or the least variance for a budget: an :class:`Allocation`.
+    """The runs that reach a variance at the least cost, or the least variance for a budget: an
+    :class:`Allocation`.
 
-    N = sqrt(A/c) S/V and M = sqrt(B/d) S/V, with S = sqrt(A c) + sqrt(B d), cost S²/V; c is the price of an expensive run and
-    d that of a cheap one. M is never below N: if the rule has it so, the expensive runs are better alone, and all M are
-    shared.
+    N = sqrt(A/c) S/V and M = sqrt(B/d) S/V, with S = sqrt(A c) + sqrt(B d), cost S²/V; c is the
+    price of an expensive run and d that of a cheap one. M is never below N: if the rule has it so,
+    the expensive runs are better alone, and all M are shared.
 
     :param pilot: an :class:`Estimate` from a few shared rows
     :param prices: of an expensive and of a cheap run, in any one unit
     :param variance: that is wanted, on the scale of ``pilot.alone``
     :param budget: in the unit of the prices, in place of the variance
-    :raises Refused: if a price is not above 0, or neither or both of variance and budget are given, or the one is not
-        above 0, or the budget is below that of SHARED shared rows
+    :raises Refused: if a price is not above 0, or neither or both of variance and budget are given,
+        or the one is not above 0, or the budget is below that of SHARED shared rows
     """
     problems = []
     for price, of in zip(prices, ("expensive", "cheap")):
@@ -211,7 +222,8 @@ def allocate(pilot, prices, variance=None, budget=None):
 
 
 def saved(found, prices):
-    """What an estimate cost, and what expensive runs alone would have cost for the same variance: an :class:`Allocation`.
+    """What an estimate cost, and what expensive runs alone would have cost for the same variance:
+    an :class:`Allocation`.
 
     :param prices: of an expensive and of a cheap run, in any one unit
     """
@@ -253,9 +265,10 @@ def _time(seconds):
     return f"{seconds:.3g} s"
 
 
-# -- mathematics ------------------------------------------------------------------------------------------------------
+# -- mathematics -----------------------------------------------------------------------------------
 
-#: A number, A and B of its variance, and N and M. A has N - 2 degrees of freedom, and B one less than cheap rows.
+#: A number, A and B of its variance, and N and M. A has N - 2 degrees of freedom, and B one less
+#: than cheap rows.
 _Found = namedtuple("_Found", "value expensive cheap shared rows")
 
 
@@ -303,7 +316,8 @@ def _controlled(g, z):
 
 
 def _halfWidth(found):
-    """Half of an interval: Student's t, with the degrees of freedom of Welch and Satterthwaite, times the deviation."""
+    """Half of an interval: Student's t, with the degrees of freedom of Welch and Satterthwaite,
+    times the deviation."""
     a, b = found.expensive / found.shared, found.cheap / found.rows
     if a + b <= 0:
         return 0.0
@@ -327,7 +341,8 @@ class _Bridge:
         error = math.sqrt(self.residuals @ self.residuals / (n - 2) / self.squares)
         self.sortedLine = np.sort(self.line)
         self.sortedResiduals = np.sort(self.residuals)
-        #: with the slope as it is, one standard error less and one more, and the difference of the last two
+        #: with the slope as it is, one standard error less and one more, and the difference of the
+        #: last two
         self.sums, *self.turned = (
             np.sort(np.add.outer(self._residuals(line, grown), line), axis=None)
             for line in (self.line + sign * error * away for sign in (0, -1, 1))
@@ -363,7 +378,8 @@ class _Bridge:
 
 
 def _quantileAt(bridge, method, share):
-    """The value at which the probability of ``method`` reaches a share; infinite for a share of 0 or less, or 1 or more."""
+    """The value at which the probability of ``method`` reaches a share; infinite for a share of 0
+    or less, or 1 or more."""
     if not 0 < share < 1:
         return math.copysign(math.inf, share - 0.5)
     if method == "bridge":

@@ -1,25 +1,31 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Fragility of an incremental dynamic analysis: a lognormal distribution of the intensity at which a limit is first reached.
+"""Fragility of an incremental dynamic analysis: a lognormal distribution of the intensity at which
+a limit is first reached.
 
-Rows of one record are not independent: a record at which a structure falls makes it fall at higher levels, too. So each record
-is one observation, of which the levels tell an interval: the limit is not reached at ``low``, the highest level below the first
-that reaches it (0 if that is the lowest one), and it is reached at ``high`` (infinite if no level reaches it). With the median θ
-and the dispersion β, the standard deviation of the logarithm, the likelihood is
+Rows of one record are not independent: a record at which a structure falls makes it fall at higher
+levels, too. So each record is one observation, of which the levels tell an interval: the limit is
+not reached at ``low``, the highest level below the first that reaches it (0 if that is the lowest
+one), and it is reached at ``high`` (infinite if no level reaches it). With the median θ and the
+dispersion β, the standard deviation of the logarithm, the likelihood is
 
     L(θ, β) = Π [Φ(ln(high/θ)/β) - Φ(ln(low/θ)/β)].
 
-A row that failed or is missing makes its interval wider. The usual likelihood of counts, a binomial factor for every level,
-takes rows of one record for independent ones. Its estimate is nearly the same, but its intervals are too narrow.
+A row that failed or is missing makes its interval wider. The usual likelihood of counts, a binomial
+factor for every level, takes rows of one record for independent ones. Its estimate is nearly the
+same, but its intervals are too narrow.
 
-Intervals are those of the profile likelihood: all values of a number that it has anywhere where 2 ln L is at most c below its
-maximum. For a normal distribution whose n values are known exactly, c = n ln(1 + t²/(n-1)), with the quantile t of Student's
-distribution with n-1 degrees of freedom, gives the exact interval of the median; for many records it is the quantile of χ².
-This c is used here. In 1,000 samples of 5, 10 and 20 records each, with dispersions of 0.3 and 0.6 and eight levels, 94 to 99 %
-of the 95 % intervals of median, dispersion and probability held the truth; in 400 samples of 10 and 20 records those of counts
-did so in 79 % for the median and in 85 to 88 % for the dispersion.
+Intervals are those of the profile likelihood: all values of a number that it has anywhere where 2
+ln L is at most c below its maximum. For a normal distribution whose n values are known exactly, c =
+n ln(1 + t²/(n-1)), with the quantile t of Student's distribution with n-1 degrees of freedom, gives
+the exact interval of the median; for many records it is the quantile of χ². This c is used here. In
+1,000 samples of 5, 10 and 20 records each, with dispersions of 0.3 and 0.6 and eight levels, 94 to
+99 % of the 95 % intervals of median, dispersion and probability held the truth; in 400 samples of
+10 and 20 records those of counts did so in 79 % for the median and in 85 to 88 % for the
+dispersion.
 
-With a = 1/β and b = ln(θ)/β, ln L is concave, so it has one maximum, and the set of likely values is convex: its edge is found
-along rays. The probability Φ(a ln x - b) of reaching the limit at x has its band from the same edge.
+With a = 1/β and b = ln(θ)/β, ln L is concave, so it has one maximum, and the set of likely values
+is convex: its edge is found along rays. The probability Φ(a ln x - b) of reaching the limit at x
+has its band from the same edge.
 
 This module needs no YADE.
 """
@@ -68,7 +74,8 @@ class Fit:
 def fit(low: Numbers, high: Numbers) -> Fit:
     """The fragility with the largest likelihood.
 
-    :param low: of every record the highest level at which the limit is not reached, below the first that reaches it; 0: none
+    :param low: of every record the highest level at which the limit is not reached, below the first
+        that reaches it; 0: none
     :param high: of every record the first level at which it is reached; infinite: none
     :raises Refused: if the records cannot give it, with the reason
     """
@@ -114,7 +121,8 @@ def fit(low: Numbers, high: Numbers) -> Fit:
 
 
 def nrml(fits: dict[str, Fit], measure: str, state: str, what: str, highest: float) -> str:
-    """Fragilities as a model that OpenQuake reads, of NRML 0.5: GEM Foundation, OpenQuake engine manual, "Fragility Models".
+    """Fragilities as a model that OpenQuake reads, of NRML 0.5: GEM Foundation, OpenQuake engine
+    manual, "Fragility Models".
 
     Its mean and standard deviation are those of the intensity, not of its logarithm.
 
@@ -183,7 +191,8 @@ def _logOfDifference(low, high):
 
 
 def _edge(likelihood, a, b, drop):
-    """Points (a, b) of the edge of the set where 2 ln L is at most ``drop`` below its maximum, on rays from the maximum."""
+    """Points (a, b) of the edge of the set where 2 ln L is at most ``drop`` below its maximum, on
+    rays from the maximum."""
     best = float(likelihood(a, b))
     shape = _shape(likelihood, a, b)
     angles = np.linspace(0, 2 * math.pi, RAYS, endpoint=False)
@@ -210,7 +219,8 @@ def _edge(likelihood, a, b, drop):
 
 
 def _shape(likelihood, a, b):
-    """A matrix that makes the likely values of a and b about as wide to all sides: from the second derivatives of ln L."""
+    """A matrix that makes the likely values of a and b about as wide to all sides: from the second
+    derivatives of ln L."""
     sizes = np.array([a, max(abs(b), a)])
     step = 1e-4 * sizes
     value = lambda i, j: float(likelihood(a + i * step[0], b + j * step[1]))

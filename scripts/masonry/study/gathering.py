@@ -1,13 +1,16 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The folder of a study: which of its rows are done, whether they are those of the study, and the table of their numbers.
+"""The folder of a study: which of its rows are done, whether they are those of the study, and the
+table of their numbers.
 
-``study.csv`` has a row a run: ``run``, what varies (of a field its seed), ``status``, and the numbers of run.json. It is
-the same to the last digit whoever ran the rows. ``times.csv`` has what is not: host, seconds, what a failed row said.
+``study.csv`` has a row a run: ``run``, what varies (of a field its seed), ``status``, and the
+numbers of run.json. It is the same to the last digit whoever ran the rows. ``times.csv`` has what
+is not: host, seconds, what a failed row said.
 
-The folder may have been on other machines, and anybody may have written in it. So nothing in it is believed that can be
-compared: the table must be what the study draws, to the last digit; a row that has ended must have been run with the values
-that the table gives it; a row that goes on from a checkpoint is refused by the scene itself if the checkpoint has other values,
-and begins again. What a row has found cannot be compared with anything: whoever wants to be sure runs it again.
+The folder may have been on other machines, and anybody may have written in it. So nothing in it is
+believed that can be compared: the table must be what the study draws, to the last digit; a row that
+has ended must have been run with the values that the table gives it; a row that goes on from a
+checkpoint is refused by the scene itself if the checkpoint has other values, and begins again. What
+a row has found cannot be compared with anything: whoever wants to be sure runs it again.
 """
 
 import collections
@@ -61,7 +64,8 @@ class Folder:
         return self.row(number) + ".job"
 
     def check(self):
-        """Refuse a folder, or one of rows, that holds what is neither file nor folder; a row looks at its own."""
+        """Refuse a folder, or one of rows, that holds what is neither file nor folder; a row looks
+        at its own."""
         try:
             folders.check(self.path, self.of(batch.ROWS), self.of(FOLDER))
         except OSError as error:
@@ -78,7 +82,8 @@ class Folder:
         return record
 
     def lastJob(self, number):
-        """How the last attempt at a row ended: a dict with ``host``, ``status``, ``seconds``, ``told``; or an empty one."""
+        """How the last attempt at a row ended: a dict with ``host``, ``status``, ``seconds``,
+        ``told``; or an empty one."""
         try:
             record = folders.fromJson(readWhole(self.job(number)))
         except (OSError, ValueError):
@@ -165,7 +170,8 @@ _ERROR = re.compile(r"[\w.]*(Error|Exception|Exit|Interrupt)\b")
 
 
 def reason(log):
-    """What a scene said at last before it failed, of the text of its log: sentences, or an empty list."""
+    """What a scene said at last before it failed, of the text of its log: sentences, or an empty
+    list."""
     lines = [line.strip() for line in _USAGE.split(log, 1)[-1].splitlines()]
     lines = [line for line in lines if line and not line.startswith(_CHATTER)]
     if "Traceback (most recent call last):" in log:
@@ -186,7 +192,8 @@ def compareTable(folder, drawn):
 
 
 def rowsOf(folder):
-    """The rows of the table of a study, in turn, as dicts of texts: as many as it has runs, with its columns and names.
+    """The rows of the table of a study, in turn, as dicts of texts: as many as it has runs, with
+    its columns and names.
 
     :raises Refused: if the table is another one
     """
@@ -213,7 +220,8 @@ def rowsOf(folder):
 
 
 def checkedRows(folder):
-    """As :func:`rowsOf`. Refuses rows that have ended with other values than the table gives them, as far as run.json tells."""
+    """As :func:`rowsOf`. Refuses rows that have ended with other values than the table gives them,
+    as far as run.json tells."""
     rows, problems = rowsOf(folder), []
     for number, row in enumerate(rows, 1):
         run = batch.ended(folder.row(number))
@@ -259,7 +267,8 @@ def _same(was, now):
 
 
 def gather(folder):
-    """Write study.csv and times.csv. Returns how many rows have each status. Refuses what :func:`checkedRows` refuses."""
+    """Write study.csv and times.csv. Returns how many rows have each status. Refuses what
+    :func:`checkedRows` refuses."""
     record, chains = folder.description()["study"], folder.chains
     names, found, times, counts = list(record["vary"]), [], [], collections.Counter()
     strengths = ["record", "scale", chains.plan["measure"]] if chains.plan else []
@@ -295,7 +304,8 @@ def gather(folder):
 
 
 def _answerName(answer):
-    """The column of an answer: the stage and its number in the run, if a stage found it, what it is, and its unit."""
+    """The column of an answer: the stage and its number in the run, if a stage found it, what it
+    is, and its unit."""
     own = not answer["number"]
     name = answer["name"] if own else f"{answer['stage']}_{answer['number']}_{answer['name']}"
     return name if answer["unit"] == "-" else f"{name}_{answer['unit']}"

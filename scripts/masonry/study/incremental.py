@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Incremental dynamic analysis: a scene is shaken by records that grow in strength. Here is what is run; what is found is in
+"""Incremental dynamic analysis: a scene is shaken by records that grow in strength. Here is what is
+run; what is found is in
 :mod:`masonry.study.demands`.
 
-Rows are in the order of the records, those of a record with growing levels. A record is not run beyond the level at which
-the structure falls: rows above it are ``above collapse``. That is found from the rows that are done whenever it is asked, so
-it does not matter who ran which row, nor in which order.
+Rows are in the order of the records, those of a record with growing levels. A record is not run
+beyond the level at which the structure falls: rows above it are ``above collapse``. That is found
+from the rows that are done whenever it is asked, so it does not matter who ran which row, nor in
+which order.
 """
 
 import glob
@@ -31,7 +33,8 @@ LEVEL = number("", 0, 1000, above=True)
 
 @dataclass(frozen=True)
 class Measure:
-    """A measure of the intensity of a record: the peak ground acceleration, or a spectral acceleration, both in g.
+    """A measure of the intensity of a record: the peak ground acceleration, or a spectral
+    acceleration, both in g.
 
     :param period: of the oscillator [s]; None: peak ground acceleration
     :param damping: of the oscillator, a share of critical damping [-]
@@ -49,7 +52,8 @@ class Measure:
         return f"Sa_{self.period:g}s{ratio}_g"
 
     def of(self, values: Sequence[Any], every: float) -> float:
-        """The measure of a record [g]; of three components the geometric mean of both horizontal ones.
+        """The measure of a record [g]; of three components the geometric mean of both horizontal
+        ones.
 
         :param values: samples [m/s²]; ``every``: the time between them [s]
         """
@@ -59,13 +63,15 @@ class Measure:
         if self.period is None:
             return max(abs(a) for a in values) / GRAVITY
         found = spectralAcceleration(values, every, self.period, self.damping) / GRAVITY
-        # the exponential function of another machine may differ in its last digit, and rows must not
+        # the exponential function of another machine may differ in its last digit, and rows must
+        # not
         return float(f"{found:.12g}")
 
 
 @validated
 def Sa(period: Period, damping: Ratio = DAMPING) -> Measure:
-    """Spectral acceleration as the measure of intensity: see :func:`masonry.scene.spectrum.spectralAcceleration`.
+    """Spectral acceleration as the measure of intensity: see
+    :func:`masonry.scene.spectrum.spectralAcceleration`.
 
     :param period: of the oscillator [s]
     :param damping: share of critical damping [-]
@@ -212,7 +218,8 @@ class Incremental:
         return Motion(name, values, every, intensity)
 
     def rows(self) -> list[tuple[Motion, float]]:
-        """What every row is shaken by, in turn: a record and the factor on it [-]. The records must have been read."""
+        """What every row is shaken by, in turn: a record and the factor on it [-]. The records must
+        have been read."""
         motions = self._known()
         if self.scales is not None:
             return [(motion, s) for motion in motions for s in self.scales]
@@ -277,7 +284,8 @@ class Chains:
 
 
 def isPlan(plan: Any, runs: int) -> bool:
-    """Whether the entry ``ida`` of study.json is of the form that :meth:`Incremental.describe` gives it."""
+    """Whether the entry ``ida`` of study.json is of the form that :meth:`Incremental.describe`
+    gives it."""
     try:
         strengths, records = plan["levels"] or plan["scales"], plan["records"]
         numbers = [*strengths, *(one["intensity"] for one in records)]

@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Ctrl-C while OpenTURNS works: every call of it installs a handler of its own, which aborts the process.
+"""Ctrl-C while OpenTURNS works: every call of it installs a handler of its own, which aborts the
+process.
 
-So the signal is blocked while OpenTURNS can be at work, a thread takes it, and the process ends in order: nothing is written
-then that would have to be finished. A program that uses OpenTURNS calls :func:`block` before it imports NumPy, whose threads
-would else take the signal, and :func:`unblock` when it is over.
+So the signal is blocked while OpenTURNS can be at work, a thread takes it, and the process ends in
+order: nothing is written then that would have to be finished. A program that uses OpenTURNS calls
+:func:`block` before it imports NumPy, whose threads would else take the signal, and :func:`unblock`
+when it is over.
 """
 
 import contextlib
@@ -31,7 +33,8 @@ def unblock(handler=signal.default_int_handler):
 
 @contextlib.contextmanager
 def watched(text):
-    """End the process in order at Ctrl-C, with a text and exit status 130, although OpenTURNS is at work in the block.
+    """End the process in order at Ctrl-C, with a text and exit status 130, although OpenTURNS is at
+    work in the block.
 
     In another thread than the main one, which has no handlers, nothing is changed.
     """

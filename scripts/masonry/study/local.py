@@ -22,7 +22,8 @@ TRIES = 3  # starts of a row that was killed
 
 
 class Local:
-    """Runs the rows of a :class:`masonry.study.gathering.Folder`, ``jobs`` at a time, until each is ended or has failed."""
+    """Runs the rows of a :class:`masonry.study.gathering.Folder`, ``jobs`` at a time, until each is
+    ended or has failed."""
 
     def __init__(self, folder, runs, jobs):
         self.folder, self.runs, self.jobs = folder, runs, jobs
@@ -61,7 +62,8 @@ class Local:
             return background.Program(command, log, env, self.folder.path)
 
     def _ended(self, number, program):
-        """See how far the program of a row has come, which may have gone on with the levels above."""
+        """See how far the program of a row has come, which may have gone on with the levels
+        above."""
         rows = self.open.intersection([number, *self.folder.chains.higher(number)])
         self._look(rows)
         killed = not 0 <= program.returncode < 128

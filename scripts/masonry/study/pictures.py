@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Pictures of a study, for print. This module needs no YADE.
 
-Each function takes numbers and writes one PNG file of 6 to 7 inches at 200 dots an inch. ``inputs`` is a dict of the
-name of a varied property -> its values, one a row, and ``label`` says what the output is, with its unit in brackets.
+Each function takes numbers and writes one PNG file of 6 to 7 inches at 200 dots an inch. ``inputs``
+is a dict of the name of a varied property -> its values, one a row, and ``label`` says what the
+output is, with its unit in brackets.
 """
 
 import itertools
@@ -31,14 +32,14 @@ def _picture(path, width, height):
     return drawing.picture(path, width, height, DPI, SMALL)
 
 
-# -- one property against another -------------------------------------------------------------------------------------
+# -- one property against another ------------------------------------------------------------------
 
 
 def scatter(path, inputs, output, label):
     """Every varied property and the output against each other, with histograms on the diagonal.
 
-    The number in a panel is Spearman's correlation of ranks; k and M at a number stand for a thousand and a million.
-    Properties with one value throughout are left out.
+    The number in a panel is Spearman's correlation of ranks; k and M at a number stand for a
+    thousand and a million. Properties with one value throughout are left out.
 
     :raises Refused: if no property is left
     """
@@ -84,11 +85,12 @@ def scatter(path, inputs, output, label):
         figure.align_labels()
 
 
-# -- what decides -----------------------------------------------------------------------------------------------------
+# -- what decides ----------------------------------------------------------------------------------
 
 
 def tornado(path, effects, label):
-    """Change of the output by every property, largest on top, with its interval, and the correlations of ranks."""
+    """Change of the output by every property, largest on top, with its interval, and the
+    correlations of ranks."""
     effects = dict(reversed(effects.items()))
     with _picture(path, 6.8, 1.1 + 0.3 * len(effects)) as figure:
         left, right = figure.subplots(1, 2, sharey=True, width_ratios=[3, 2])
@@ -137,11 +139,12 @@ def _bars(axis, names, intervals, shift=0.0, cap=2.5, **settings):
     axis.grid(axis="x", alpha=0.3)
 
 
-# -- how it scatters --------------------------------------------------------------------------------------------------
+# -- how it scatters -------------------------------------------------------------------------------
 
 
 def histogram(path, values, label, modes=None):
-    """Histogram of the output with its quantiles of 5, 50 and 95 %, their intervals, and the fitted lognormal density.
+    """Histogram of the output with its quantiles of 5, 50 and 95 %, their intervals, and the fitted
+    lognormal density.
 
     :param modes: a word for every value, by which bars are divided into colours; None divides none
     """
@@ -174,7 +177,8 @@ def histogram(path, values, label, modes=None):
 
 
 def fragility(path, capacities, label):
-    """Probability that the capacity is not above a demand, with its band, and the fitted lognormal distribution."""
+    """Probability that the capacity is not above a demand, with its band, and the fitted lognormal
+    distribution."""
     capacities = np.asarray(capacities, float)
     reach = np.ptp(capacities) or abs(capacities[0]) or 1.0
     low, high = capacities.min() - 0.15 * reach, capacities.max() + 0.15 * reach
@@ -206,14 +210,14 @@ def _lognormal(axis, values, x, curve, **line):
         axis.plot(x, y, color="black", label=text, **line)
 
 
-# -- incremental dynamic analysis -------------------------------------------------------------------------------------
+# -- incremental dynamic analysis ------------------------------------------------------------------
 
 
 def ida(path, rows, fell, quantiles, xLabel, yLabel):
     """Demand and intensity of every record, with the quantiles of the demand over the records.
 
-    A curve ends at the last level at which the structure stood; a thin line leads from there to the right at the level at
-    which it fell. A quantile ends likewise where it is infinite.
+    A curve ends at the last level at which the structure stood; a thin line leads from there to the
+    right at the level at which it fell. A quantile ends likewise where it is infinite.
 
     :param rows: of every record its intensities and demands
     :param fell: of every record the intensity at which it fell; infinite: it stood
@@ -249,7 +253,8 @@ def ida(path, rows, fell, quantiles, xLabel, yLabel):
 
 
 def _standing(intensities, demands):
-    """Demands and intensities from zero to the last level at which the structure stood; unknown ones are left out."""
+    """Demands and intensities from zero to the last level at which the structure stood; unknown
+    ones are left out."""
     stood = itertools.takewhile(lambda one: not np.isinf(one[0]), zip(demands, intensities))
     found = [(0.0, 0.0), *(one for one in stood if not np.isnan(one[0]))]
     return tuple(map(list, zip(*found)))
@@ -289,15 +294,17 @@ def fitted(path, fit, counts, xLabel, yLabel):
         drawing.finish(axis, xLabel, yLabel, loc="lower right")
 
 
-# -- all curves -------------------------------------------------------------------------------------------------------
+# -- all curves ------------------------------------------------------------------------------------
 
 
 def fan(path, curves, xLabel, yLabel):
     """All curves over each other, with their median and the band that 90 % of them are in.
 
-    Where some have ended, the median and the band are those of the others; they end where half have.
+    Where some have ended, the median and the band are those of the others; they end where half
+    have.
 
-    :param curves: list of (x, y), of which the first is made increasing by leaving out what goes back
+    :param curves: list of (x, y), of which the first is made increasing by leaving out what goes
+        back
     """
     from matplotlib.collections import LineCollection
 
@@ -321,7 +328,8 @@ def fan(path, curves, xLabel, yLabel):
 
 
 def calibration(path, found):
-    """Measured curves with the band of what the draws of the properties say, and a run with their means."""
+    """Measured curves with the band of what the draws of the properties say, and a run with their
+    means."""
     of, (low, high), at = found.calibration.specimens, found.bands(), 0
     curves = [one for one in of if one.grid is not None]
     with _picture(path, 6.0, 3.2 * len(curves)) as figure:
@@ -365,7 +373,8 @@ def _bins(values):
 
 
 def _shown(name):
-    """A varied name for readers: kinds of joints that share their properties stand together, ``bed, head: cohesion``."""
+    """A varied name for readers: kinds of joints that share their properties stand together, ``bed,
+    head: cohesion``."""
     pairs = [part.partition(".")[::2] for part in name.split("+")]
     kinds, properties = map(dict.fromkeys, zip(*pairs))
     if not all(properties) or len(kinds) * len(properties) != len(pairs):

@@ -22,27 +22,32 @@ MOST = 100_000  # rows of a study
 class Study:
     """A scene, what varies in it, and how many runs there are.
 
-    :param scene: name of a scene that stands beside the study's file, in the present folder or in a folder ``scripts`` of
-        either or above it, or the path of a scene of your own, which ``masonry.Scene`` makes
-    :param options: options of the scene by their names, with underscores for dashes, the same in all rows; also properties
-        of joints, ``"bed.friction": 0.5``
+    :param scene: name of a scene that stands beside the study's file, in the present folder or in a
+        folder ``scripts`` of either or above it, or the path of a scene of your own, which
+        ``masonry.Scene`` makes
+    :param options: options of the scene by their names, with underscores for dashes, the same in
+        all rows; also properties of joints, ``"bed.friction": 0.5``
     :param runs: how many rows; of a grid None, or the number of its points
     :param seed: the same number gives the same rows
-    :param vary: dict of a name -> what it is in the rows. A name is an option, for example ``"rate"``, or a property of a
-        kind of joints, ``"bed.cohesion"``; a tuple of properties have the same value or field. What it is, is a number or a
-        text, a list of these, :func:`choice`, :func:`lognormal`, :func:`normal`, :func:`uniform` or :func:`field`
-    :param design: ``"random"``, ``"latin"`` (hypercube), ``"sobol"`` (Sobol's sequence), ``"grid"``: all combinations of
-        the lists, or ``"ida"``, incremental dynamic analysis: the scene is shaken by records that grow in strength until it
-        falls. What varies beside that is drawn once for every record
+    :param vary: dict of a name -> what it is in the rows. A name is an option, for example
+        ``"rate"``, or a property of a kind of joints, ``"bed.cohesion"``; a tuple of properties
+        have the same value or field. What it is, is a number or a text, a list of these,
+        :func:`choice`, :func:`lognormal`, :func:`normal`, :func:`uniform` or :func:`field`
+    :param design: ``"random"``, ``"latin"`` (hypercube), ``"sobol"`` (Sobol's sequence),
+        ``"grid"``: all combinations of the lists, or ``"ida"``, incremental dynamic analysis: the
+        scene is shaken by records that grow in strength until it falls. What varies beside that is
+        drawn once for every record
     :param correlation: dict of pairs of names -> rank correlation of two distributions [-]
-    :param records: of an ``"ida"``: files as in :mod:`masonry.scene.accelerograms`, with paths from the study's file on, or
-        patterns of files such as ``"records/*.AT2"``, or triples of files, of three components that act at once
-    :param levels: of an ``"ida"``: growing values of the measure of intensity [g] to which all records are scaled
+    :param records: of an ``"ida"``: files as in :mod:`masonry.scene.accelerograms`, with paths from
+        the study's file on, or patterns of files such as ``"records/*.AT2"``, or triples of files,
+        of three components that act at once
+    :param levels: of an ``"ida"``: growing values of the measure of intensity [g] to which all
+        records are scaled
     :param scales: in place of levels: growing factors on the records as they are [-]
     :param measure: of intensity: ``"PGA"``, the peak ground acceleration (None means that, too), or
         :func:`masonry.study.Sa`, a spectral acceleration
-    :param unit: of those records whose files do not say theirs: ``"m/s²"``, ``"g"`` or ``"cm/s²"``; None: m/s², and a
-        record whose peak looks like another unit is refused
+    :param unit: of those records whose files do not say theirs: ``"m/s²"``, ``"g"`` or ``"cm/s²"``;
+        None: m/s², and a record whose peak looks like another unit is refused
     :param every: time between the samples of those whose files do not say it [s]
     :raises Refused: with all problems at once
     """
@@ -165,7 +170,7 @@ class Study:
                 return f"{name} varies with others: name it by its key in vary, {names}"
         return f"{name} does not vary"
 
-    # -- what follows -------------------------------------------------------------------------------------------------
+    # -- what follows ------------------------------------------------------------------------------
 
     def describe(self) -> dict[str, Any]:
         """The study as JSON has it: two studies with the same description have the same rows.
@@ -184,7 +189,8 @@ class Study:
         }
 
     def read(self, near: FilePath) -> None:
-        """Read the records of an incremental analysis, which say how many rows there are. Raises Refused.
+        """Read the records of an incremental analysis, which say how many rows there are. Raises
+        Refused.
 
         :param near: folder of the study's file
         """

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The rows of a study, read from its folder as :mod:`masonry.study.gathering` leaves it. This module needs no YADE."""
+"""The rows of a study, read from its folder as :mod:`masonry.study.gathering` leaves it. This
+module needs no YADE."""
 
 import contextlib
 import csv
@@ -55,14 +56,16 @@ class Record:
         return len(self.cells["run"])
 
     def measure(self, default):
-        """The measure that is reported if none is named: the usual one, or else the first answer of a stage or script."""
+        """The measure that is reported if none is named: the usual one, or else the first answer of
+        a stage or script."""
         if default in self.cells:
             return default
         own = (m for m in self.measures if m not in IN_EVERY_RUN)
         return next((m for m in own if np.isfinite(self.numbers(m)).any()), default)
 
     def numbers(self, name):
-        """A column as numbers, NaN where a cell has none. Raises Refused if there is no such column."""
+        """A column as numbers, NaN where a cell has none. Raises Refused if there is no such
+        column."""
         if name not in self.cells:
             raise Refused(f"{self.directory}: no column {name}; there are {', '.join(self.cells)}")
         return np.array([_number(text) for text in self.cells[name]])
@@ -84,7 +87,8 @@ class Record:
         return rows, numbers, values[rows]
 
     def curves(self, rows, x, y):
-        """Columns x and y of the curves of rows: a list of pairs. Rows without a curve are left out."""
+        """Columns x and y of the curves of rows: a list of pairs. Rows without a curve are left
+        out."""
         folder, found = Folder(self.directory), []
         for row in rows:
             with contextlib.suppress(Refused, KeyError):
@@ -100,15 +104,18 @@ class Record:
 
 
 def paired(expensive, cheap, measure, other=None):
-    """A measure of two studies that share rows: that of the shared rows of ``expensive``, and that of all rows of ``cheap``.
+    """A measure of two studies that share rows: that of the shared rows of ``expensive``, and that
+    of all rows of ``cheap``.
 
-    Rows are shared if every varied property has the same text in both tables. Those of ``cheap`` that are shared come
-    first, in the order of ``expensive``.
+    Rows are shared if every varied property has the same text in both tables. Those of ``cheap``
+    that are shared come first, in the order of ``expensive``.
 
     :param expensive: :class:`Record`, and ``cheap`` one
     :param measure: column of ``expensive``; ``other`` is that of ``cheap``, None: the same
-    :returns: two arrays for :mod:`masonry.study.estimate`, and two lists: the rows of ``expensive`` and those of ``cheap``
-    :raises Refused: if their scenes or options differ in more than FIDELITY, if something else varies in both, or rows of one study are the same
+    :returns: two arrays for :mod:`masonry.study.estimate`, and two lists: the rows of ``expensive``
+        and those of ``cheap``
+    :raises Refused: if their scenes or options differ in more than FIDELITY, if something else
+        varies in both, or rows of one study are the same
     """
     rowsOf = lambda study: [*zip(*(study.cells.get(n, ()) for n in expensive.varied))]
     keys = {study: rowsOf(study) for study in (expensive, cheap)}
@@ -126,7 +133,8 @@ FIDELITY = {"preset", "density_scaling", "units", *presets.USUAL}
 
 
 def _unlike(one, two, keys):
-    """Why two studies share no rows. In what they differ beside FIDELITY their study.json tells, if there is one."""
+    """Why two studies share no rows. In what they differ beside FIDELITY their study.json tells, if
+    there is one."""
     with contextlib.suppress(Refused):
         studies = [Folder(s.directory).description()["study"] for s in (one, two)]
         first, second = ({"scene": s["scene"], **s["options"]} for s in studies)

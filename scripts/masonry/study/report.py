@@ -6,8 +6,8 @@
 /usr/bin/python3 -m masonry.study.report ACCURATE --cheap FAST
 /usr/bin/python3 -m masonry.study.report DIR --limit 20          of an incremental dynamic analysis
 
-The pictures go into the folder of the study. With ``--cheap`` its rows are the expensive ones and those of the other study
-the cheap ones; see :mod:`masonry.study.estimate`.
+The pictures go into the folder of the study. With ``--cheap`` its rows are the expensive ones and
+those of the other study the cheap ones; see :mod:`masonry.study.estimate`.
 """
 
 import argparse
@@ -158,8 +158,8 @@ def compare(expensive, cheap, measure, other, method, prices=None):
 
 
 def incremental(demands, limit, intensities):
-    """Lines of what an incremental dynamic analysis says: demands at every level, and the fragility of a limit of the demand
-    (None: collapse), with its probability at some intensities."""
+    """Lines of what an incremental dynamic analysis says: demands at every level, and the fragility
+    of a limit of the demand (None: collapse), with its probability at some intensities."""
     measure, reaches = label(demands.intensityName), reached(demands, limit)
     yield (
         f"incremental dynamic analysis of {len(demands.names)} records; the intensity is {measure}"
@@ -208,8 +208,8 @@ def _cell(value):
 
 
 def drawIncremental(demands, limit):
-    """Write the pictures of an incremental dynamic analysis and its fragility for OpenQuake, and yield a line for each, or why
-    there is none."""
+    """Write the pictures of an incremental dynamic analysis and its fragility for OpenQuake, and
+    yield a line for each, or why there is none."""
     measure = label(demands.intensityName)
 
     def curves(path):

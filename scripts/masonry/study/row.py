@@ -1,13 +1,15 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Runs rows of a study: ``/usr/bin/python3 -P -m masonry.study.row --scene FILE DIR NUMBER...``
 
-A row of an incremental analysis is followed by the higher levels of its record, until the structure falls. A row that was
-run is left out, one that was stopped goes on from its checkpoint, and one that somebody else is running is
-left alone. ``DIR/rows/NUMBER.log`` has what it says. This is what a study on this machine, a task of Slurm, or GNU parallel calls.
-The exit status is 0 if all rows are ended.
+A row of an incremental analysis is followed by the higher levels of its record, until the structure
+falls. A row that was run is left out, one that was stopped goes on from its checkpoint, and one
+that somebody else is running is left alone. ``DIR/rows/NUMBER.log`` has what it says. This is what
+a study on this machine, a task of Slurm, or GNU parallel calls. The exit status is 0 if all rows
+are ended.
 
-The scene is a program, and the folder of a study is data: that study.json names a scene is no reason to run it. So the user
-names it, unless it is in the folder itself, and it must be the file with which the study began. The first line says what runs.
+The scene is a program, and the folder of a study is data: that study.json names a scene is no
+reason to run it. So the user names it, unless it is in the folder itself, and it must be the file
+with which the study began. The first line says what runs.
 """
 
 import contextlib
@@ -36,7 +38,8 @@ TAIL = 4000  # bytes at the end of a log in which the reason of a failure stands
 class RowRunner:
     """Runs rows, and stops in order when it is asked to.
 
-    :param scene: its file, as the user has named it; None: that of study.json, if it is in the folder
+    :param scene: its file, as the user has named it; None: that of study.json, if it is in the
+        folder
     :raises Refused: if the folder is not as a study leaves it, or the scene is another one
     """
 
@@ -81,7 +84,8 @@ class RowRunner:
         return 0 if folder.isEnded(number) else status
 
     def _checkRecord(self, number):
-        """Refuse a record that is not the one with which the study began: a file that was cut off in a copy, for example."""
+        """Refuse a record that is not the one with which the study began: a file that was cut off
+        in a copy, for example."""
         chains = self.folder.chains
         if not chains.plan:
             return
@@ -94,7 +98,8 @@ class RowRunner:
             )
 
     def _attempts(self, number, log):
-        """Run it; once more from the beginning if its checkpoint is refused. Returns the exit status."""
+        """Run it; once more from the beginning if its checkpoint is refused. Returns the exit
+        status."""
         folder, checkpoint = self.folder, self.folder.checkpoint(number)
         for _ in range(ATTEMPTS):
             resumes = os.path.exists(checkpoint)
@@ -137,7 +142,8 @@ class RowRunner:
 
 
 def _sceneOf(folder, named):
-    """The path of the scene that rows run. Raises Refused if the user has not named it, or if it has changed."""
+    """The path of the scene that rows run. Raises Refused if the user has not named it, or if it
+    has changed."""
     record = folder.description()
     path = os.path.abspath(named or record["script"])
     within = os.path.join(os.path.realpath(folder.path), "")

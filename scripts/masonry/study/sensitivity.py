@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""How much every varied property decides: changes, rank correlations and Sobol indices. This module needs no YADE.
+"""How much every varied property decides: changes, rank correlations and Sobol indices. This module
+needs no YADE.
 
-Everything here is found from the rows that a study has, whatever their design, with varied properties that are drawn
-independently of each other. OpenTURNS fits the polynomials.
+Everything here is found from the rows that a study has, whatever their design, with varied
+properties that are drawn independently of each other. OpenTURNS fits the polynomials.
 """
 
 import itertools
@@ -16,16 +17,17 @@ from ..basics import Refused, refuse
 from ..common.packages import needed
 from .statistics import CONFIDENCE, Interval
 
-#: What a varied property does. ``change`` of the output, an :class:`Interval`, when the property goes from its 5 % to
-#: its 95 % quantile and the others stay, by the regression on all of them; ``rank``, Spearman's correlation of ranks,
-#: an interval, too.
+#: What a varied property does. ``change`` of the output, an :class:`Interval`, when the property
+#: goes from its 5 % to its 95 % quantile and the others stay, by the regression on all of them;
+#: ``rank``, Spearman's correlation of ranks, an interval, too.
 Effect = namedtuple("Effect", "change rank")
 
-#: Sobol indices of a varied property, each an :class:`Interval`: the share of the variance that it makes alone, and the
-#: share that it makes alone and together with others.
+#: Sobol indices of a varied property, each an :class:`Interval`: the share of the variance that it
+#: makes alone, and the share that it makes alone and together with others.
 Indices = namedtuple("Indices", "first total")
 
-#: The variance that :func:`sobol` could explain [-], by leaving out each row in turn, and the indices by name.
+#: The variance that :func:`sobol` could explain [-], by leaving out each row in turn, and the
+#: indices by name.
 Sobol = namedtuple("Sobol", "explained indices")
 
 SPAN = 0.05, 0.95  # quantiles of a property between which its change is given
@@ -40,9 +42,11 @@ DEPENDENT = (
 def effects(inputs, output):
     """What every varied property does: a dict of name -> :class:`Effect`, strongest change first.
 
-    :param inputs: dict of name -> values, one a row; a property that has one value throughout is left out
+    :param inputs: dict of name -> values, one a row; a property that has one value throughout is
+        left out
     :param output: of every row
-    :raises Refused: if there are fewer than three rows more than properties, or a number is not finite
+    :raises Refused: if there are fewer than three rows more than properties, or a number is not
+        finite
     """
     inputs, x, y = _numbers(inputs, output)
     n, k = x.shape
@@ -67,8 +71,8 @@ def effects(inputs, output):
         span = np.ptp(np.quantile(x[:, i], SPAN)) / scale[i]
         value, half = slopes[i + 1] * span, t * math.sqrt(scatter[i + 1]) * span
         rho = stats.spearmanr(x[:, i], y).statistic if np.ptp(y) else 0.0
-        # D. G. Bonett and T. A. Wright, "Sample size requirements for estimating Pearson, Kendall and Spearman
-        # correlations", Psychometrika 65 (2000): the variance of Fisher's transform
+        # D. G. Bonett and T. A. Wright, "Sample size requirements for estimating Pearson, Kendall
+        # and Spearman correlations", Psychometrika 65 (2000): the variance of Fisher's transform
         wide = z * math.sqrt((1 + rho**2 / 2) / (n - 3))
         inner = np.arctanh(np.clip(rho, -1 + 1e-12, 1 - 1e-12))
         found[name] = Effect(
@@ -79,17 +83,20 @@ def effects(inputs, output):
 
 
 def sobol(inputs, output, seed=1):
-    """First and total Sobol indices, from a polynomial chaos on the ranks of the varied properties: a :class:`Sobol`.
+    """First and total Sobol indices, from a polynomial chaos on the ranks of the varied properties:
+    a :class:`Sobol`.
 
-    Each property is replaced by its rank, which is uniform whatever its distribution; indices do not change by that.
-    OpenTURNS chooses the polynomials by least angle regression, and the indices are sums of squares of their
-    coefficients. The intervals are those of RESAMPLES samples of the rows, drawn with replacement and ranked again,
-    with the same polynomials; they do not tell what these leave out, which ``explained`` does.
+    Each property is replaced by its rank, which is uniform whatever its distribution; indices do
+    not change by that. OpenTURNS chooses the polynomials by least angle regression, and the indices
+    are sums of squares of their coefficients. The intervals are those of RESAMPLES samples of the
+    rows, drawn with replacement and ranked again, with the same polynomials; they do not tell what
+    these leave out, which ``explained`` does.
 
     :param inputs: as in :func:`effects`, drawn independently of each other
     :param output: of every row
     :param seed: of the samples
-    :raises Refused: if there are fewer than ten rows a property, or a number is not finite, or properties are dependent
+    :raises Refused: if there are fewer than ten rows a property, or a number is not finite, or
+        properties are dependent
     """
     inputs, x, y = _numbers(inputs, output)
     n = len(x)
@@ -133,7 +140,8 @@ def _unfit(names, x, y):
 
 
 def _polynomials(u, y):
-    """The Legendre polynomials that OpenTURNS chooses: their degrees, a line each, the first of which is the constant."""
+    """The Legendre polynomials that OpenTURNS chooses: their degrees, a line each, the first of
+    which is the constant."""
     ot, k = needed("openturns"), u.shape[1]
     count = ot.HyperbolicAnisotropicEnumerateFunction(k, HYPERBOLIC)
     basis = ot.OrthogonalProductPolynomialFactory([ot.LegendreFactory()] * k, count)
@@ -152,7 +160,8 @@ def _polynomials(u, y):
 
 
 def _terms(powers, u):
-    """Values of Legendre polynomials, of variance 1 over uniform properties: a line a row, a column a polynomial."""
+    """Values of Legendre polynomials, of variance 1 over uniform properties: a line a row, a column
+    a polynomial."""
     values = special.eval_legendre(powers[None], 2 * u[:, None, :] - 1)
     return (values * np.sqrt(2 * powers + 1)).prod(axis=2)
 
@@ -165,7 +174,8 @@ def _shares(powers, coefficients):
 
 
 def _numbers(inputs, output):
-    """The properties that vary, their values (rows, properties) and the output. Refuses what is no number."""
+    """The properties that vary, their values (rows, properties) and the output. Refuses what is no
+    number."""
     y = np.asarray(output, float)
     problems, kept = [], {}
     for name, values in inputs.items():

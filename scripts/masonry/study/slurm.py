@@ -48,7 +48,8 @@ def waiting(folder):
 
 
 def script(folder, rows, largest):
-    """The batch script of some rows. If they are more than an array may have tasks, a task has several, in turn."""
+    """The batch script of some rows. If they are more than an array may have tasks, a task has
+    several, in turn."""
     each = -(-len(rows) // largest)
     tasks = -(-len(rows) // each)
     scene = folder.description()["script"]

@@ -68,7 +68,8 @@ def _recordsOf(study):
 
 
 def _putRecords(folder, study):
-    """Write the records of a study into its folder. Those that are there must be what the study has read."""
+    """Write the records of a study into its folder. Those that are there must be what the study has
+    read."""
     if study.ida:
         os.makedirs(folder.of(FOLDER), exist_ok=True)
     for name, text in _recordsOf(study).items():
@@ -99,8 +100,8 @@ def _compare(folder, known, now):
 
 
 def _checkEmpty(folder, study):
-    """Refuse a folder of something else. A table or records without study.json are left by a study that was killed when it
-    began."""
+    """Refuse a folder of something else. A table or records without study.json are left by a study
+    that was killed when it began."""
     try:
         names = set(os.listdir(folder.path)) - {TABLE, TABLE + ".new", STUDY + ".new"}
         if batch.ROWS in names and not os.listdir(folder.of(batch.ROWS)):
@@ -134,7 +135,8 @@ def _checkSpace(folder, needed):
 
 
 def _look(study, script, table):
-    """Problems of the study that its scene tells when it is built, and the bytes that a row writes."""
+    """Problems of the study that its scene tells when it is built, and the bytes that a row
+    writes."""
     if not shutil.which("yade"):
         raise Refused("a study needs yade: apt-get install --no-install-recommends yade")
     with tempfile.TemporaryDirectory() as place:
@@ -159,7 +161,8 @@ def _look(study, script, table):
 def _probed(script, place, line=2):
     """What :mod:`masonry.scene.probing` writes, as a dict, or why there is none.
 
-    :param line: of the table: the options with which the scene is built; 1: it is built without options
+    :param line: of the table: the options with which the scene is built; 1: it is built without
+        options
     """
     path = place.of("probe.json")
     row = {batch.VARIABLE: f"{place.of(TABLE)}:{line}", batch.PROBE: path}
@@ -197,7 +200,8 @@ def _names(study, found):
 
 
 def _ignored(found, name):
-    """Why the scene ignores an option or a property, or nothing; wrong names of properties are for the rows to tell."""
+    """Why the scene ignores an option or a property, or nothing; wrong names of properties are for
+    the rows to tell."""
     kind, dot, attribute = name.partition(".")
     if not dot:
         if name not in found["options"]:

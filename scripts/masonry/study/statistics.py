@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Statistics of the rows of a study, each with its confidence interval. This module needs no YADE.
 
-All intervals are those of independent rows. Rows of a Latin hypercube or of a Sobol sequence cover the space more
-evenly than independent ones, so that a mean is then better known than its interval says. Values that are too few or
-not finite are refused.
+All intervals are those of independent rows. Rows of a Latin hypercube or of a Sobol sequence cover
+the space more evenly than independent ones, so that a mean is then better known than its interval
+says. Values that are too few or not finite are refused.
 """
 
 import math
@@ -16,11 +16,13 @@ from ..basics import Refused, refuse
 
 CONFIDENCE = 0.95  # of all intervals
 
-#: A number with its confidence interval. An end that the rows cannot tell is minus or plus infinity.
+#: A number with its confidence interval. An end that the rows cannot tell is minus or plus
+#: infinity.
 Interval = namedtuple("Interval", "value low high")
 
-#: ``median`` and ``dispersion`` of a lognormal distribution, the second is the standard deviation of the logarithm [-];
-#: ``fits`` is the p-value of the test of Shapiro and Wilk that the logarithms are normal.
+#: ``median`` and ``dispersion`` of a lognormal distribution, the second is the standard deviation
+#: of the logarithm [-]; ``fits`` is the p-value of the test of Shapiro and Wilk that the logarithms
+#: are normal.
 Lognormal = namedtuple("Lognormal", "median dispersion fits")
 
 
@@ -36,11 +38,13 @@ def mean(values):
 
 
 def deviation(values):
-    """The standard deviation, with an interval that holds for distributions that are not normal, too.
+    """The standard deviation, with an interval that holds for distributions that are not normal,
+    too.
 
-    The interval is that of D. G. Bonett, "Approximate confidence interval for standard deviation of nonnormal
-    distributions", Computational Statistics & Data Analysis 50 (2006): the logarithm of the variance is normal, with
-    the variance (kurtosis - (n - 3)/n)/(n - 1), where the kurtosis counts from a trimmed mean.
+    The interval is that of D. G. Bonett, "Approximate confidence interval for standard deviation of
+    nonnormal distributions", Computational Statistics & Data Analysis 50 (2006): the logarithm of
+    the variance is normal, with the variance (kurtosis - (n - 3)/n)/(n - 1), where the kurtosis
+    counts from a trimmed mean.
 
     :param values: ten numbers or more
     """
@@ -59,10 +63,12 @@ def deviation(values):
 
 
 def quantile(values, share):
-    """The value below which a share of all lies, with an interval that holds for every distribution.
+    """The value below which a share of all lies, with an interval that holds for every
+    distribution.
 
-    The ends of the interval are values of the sample, as the binomial distribution of how many lie below tells. With
-    too few of them an end is infinite: the 5 % quantile needs 72 rows for both ends of a 95 % interval.
+    The ends of the interval are values of the sample, as the binomial distribution of how many lie
+    below tells. With too few of them an end is infinite: the 5 % quantile needs 72 rows for both
+    ends of a 95 % interval.
 
     :param values: two numbers or more
     :param share: between 0 and 1
@@ -102,7 +108,8 @@ def isLognormal(values):
 
 
 def lognormal(values):
-    """The lognormal distribution with the mean and standard deviation of the logarithms: a :class:`Lognormal`.
+    """The lognormal distribution with the mean and standard deviation of the logarithms: a
+    :class:`Lognormal`.
 
     :param values: three numbers or more, all above 0
     """
@@ -119,9 +126,11 @@ def lognormal(values):
 
 
 def fragility(capacities, demands):
-    """Probability that the capacity is not above a demand, for every demand, with the exact interval of a share.
+    """Probability that the capacity is not above a demand, for every demand, with the exact
+    interval of a share.
 
-    The band is that of Clopper and Pearson, for one demand at a time; a whole curve leaves it more often.
+    The band is that of Clopper and Pearson, for one demand at a time; a whole curve leaves it more
+    often.
 
     :param capacities: one of every row
     :param demands: an increasing sequence in the same unit
@@ -148,6 +157,7 @@ def _numbers(values, least, what):
 
 
 def notFinite(values):
-    """A sentence on rows whose number is not finite, as a list, which is empty if there are none."""
+    """A sentence on rows whose number is not finite, as a list, which is empty if there are
+    none."""
     rows = [str(i) for i, value in enumerate(values, 1) if not math.isfinite(value)]
     return [f"rows {', '.join(rows[:10])} have no finite number"] if rows else []

@@ -13,7 +13,8 @@ from ..basics import Refused
 from ..common.packages import needed
 
 LEAST_COV = 1e-6  # coefficient of variation below which nothing varies [-]
-#: What a distribution may give beyond a bound of a property: less than once in a thousand million draws.
+#: What a distribution may give beyond a bound of a property: less than once in a thousand million
+#: draws.
 NEVER = 1e-9
 Finite = Annotated[float, number()]
 
@@ -108,7 +109,8 @@ def lognormal(
 def normal(
     mean: Finite, cov: Finite, low: Finite | None = None, high: Finite | None = None
 ) -> Distribution:
-    """A normal distribution. Parameters are those of :func:`lognormal`. Most properties need a ``low`` end."""
+    """A normal distribution. Parameters are those of :func:`lognormal`. Most properties need a
+    ``low`` end."""
     return _aboutMean("normal", mean, cov, low, high)
 
 
@@ -152,9 +154,11 @@ def choice(
     *values: Annotated[Any, _chosen],
     weights: Annotated[Sequence[float], listOf(number("", 0, 1e9, above=True))] | None = None,
 ) -> Choice:
-    """One of some values, for example ``choice("softening", "brittle")``. A list in ``vary`` means the same.
+    """One of some values, for example ``choice("softening", "brittle")``. A list in ``vary`` means
+    the same.
 
-    :param weights: how often each comes, relative to the others; None: all alike. A grid leaves them alone
+    :param weights: how often each comes, relative to the others; None: all alike. A grid leaves
+        them alone
     """
     if not values:
         raise Refused("choice: needs at least one value")
@@ -192,9 +196,10 @@ def field(
 ) -> Field:
     """A property that varies from joint to joint, with another field in every row.
 
-    :param distribution: :func:`lognormal` or :func:`normal` of the values; None: lognormal about the value that the scene
-        has, with ``cov``
-    :param length: correlation length [m], see :mod:`masonry.scene.fields`; 0: every joint has its own value
+    :param distribution: :func:`lognormal` or :func:`normal` of the values; None: lognormal about
+        the value that the scene has, with ``cov``
+    :param length: correlation length [m], see :mod:`masonry.scene.fields`; 0: every joint has its
+        own value
     :param cov: coefficient of variation [-], where there is no distribution
     """
     if distribution is None:

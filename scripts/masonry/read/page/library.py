@@ -27,7 +27,8 @@ or as yourself:
 
 
 def three():
-    """The files of the library, a list of texts, and its licences, as Debian's copyright file has them.
+    """The files of the library, a list of texts, and its licences, as Debian's copyright file has
+    them.
 
     :raises Refused: if it is not there, with the package that has it
     """

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The report of a run: one file, report.html, that any browser opens without a server or a network. No YADE is needed.
+"""The report of a run: one file, report.html, that any browser opens without a server or a network.
+No YADE is needed.
 
     /usr/bin/python3 -m masonry.read.report results/wall_comp4               # writes report.html there
     /usr/bin/python3 -m masonry.read.report results/wall_comp4 -o wall.html
@@ -10,9 +11,11 @@ A run writes it at its end, but with ``--lean`` and when it is interrupted. From
 
     report.write(report.read("results/wall_comp4"), "wall.html")
 
-What stands in it comes from curve.csv, run.json, the frames for ParaView, cracks.png and mechanism.png of the folder; every number
-has its unit, what it is, and its source. What the files do not have is said to be missing, with the reason. The turning picture is
-that of :mod:`masonry.read.page`, and needs the Debian package libjs-three; without it the report has a sentence in its place.
+What stands in it comes from curve.csv, run.json, the frames for ParaView, cracks.png and
+mechanism.png of the folder; every number has its unit, what it is, and its source. What the files
+do not have is said to be missing, with the reason. The turning picture is that of
+:mod:`masonry.read.page`, and needs the Debian package libjs-three; without it the report has a
+sentence in its place.
 """
 
 from ...common.arguments import FilePath, validated
@@ -26,7 +29,8 @@ from .record import Record
 
 NAME = "report.html"  # in the folder of a run
 
-#: The parts of a report in their order: the name of the place, the heading, and a function of the record.
+#: The parts of a report in their order: the name of the place, the heading, and a function of the
+#: record.
 PARTS = (
     ("built", "What was built", structure.built),
     ("loaded", "How it was held and loaded", structure.loaded),
@@ -71,7 +75,8 @@ def page(record: Record) -> str:
 
 
 def _library(record):
-    """What the 3-D picture needs in the page. Where it is missing, the record has no picture, and says why."""
+    """What the 3-D picture needs in the page. Where it is missing, the record has no picture, and
+    says why."""
     if record.picture:
         try:
             return three()

@@ -17,7 +17,8 @@ def isNumber(value):
 
 
 def written(value, digits=DIGITS):
-    """A number as a person writes it, with so many significant digits; what is no finite number is "not known"."""
+    """A number as a person writes it, with so many significant digits; what is no finite number is
+    "not known"."""
     if not isNumber(value):
         return UNKNOWN
     if isinstance(value, int) and abs(value) < 1e15:
@@ -51,7 +52,8 @@ class Badged(NamedTuple):
 
 
 class Piece(NamedTuple):
-    """What stands in a part of a report: ``form`` names a macro of ``report.html``, and ``about`` are its arguments."""
+    """What stands in a part of a report: ``form`` names a macro of ``report.html``, and ``about``
+    are its arguments."""
 
     form: str
     about: dict[str, Any]
@@ -70,8 +72,8 @@ def numbers(rows, caption):
 
 
 def table(heads, lines, caption, kind=""):
-    """A table with a caption; lines are sequences of cells, texts or :class:`Badged`, the first of which is the head of its
-    line."""
+    """A table with a caption; lines are sequences of cells, texts or :class:`Badged`, the first of
+    which is the head of its line."""
     return Piece(
         "table",
         {"heads": heads, "lines": list(map(tuple, lines)), "caption": caption, "kind": kind},
@@ -92,7 +94,8 @@ def missing(text):
 
 
 def figure(picture, caption, alt="", frames=""):
-    """A picture, SVG or the name of a figure of the folder, with its caption. If there is no such figure, the page has neither.
+    """A picture, SVG or the name of a figure of the folder, with its caption. If there is no such
+    figure, the page has neither.
 
     :param alt: what it shows, for those who do not see it
     :param frames: places of the frames of the 3-D picture on it, "x,y x,y"
@@ -103,11 +106,12 @@ def figure(picture, caption, alt="", frames=""):
 
 
 def folded(title, *inside, kind="", opened=False):
-    """What is seen after a click on its title, and on paper; of the kind ``screen`` not on paper. ``opened``: it is seen at once,
-    and a click hides it."""
+    """What is seen after a click on its title, and on paper; of the kind ``screen`` not on paper.
+    ``opened``: it is seen at once, and a click hides it."""
     return Piece("folded", {"title": title, "inside": inside, "kind": kind, "opened": opened})
 
 
 def listed(texts, title="", kind=""):
-    """A list with bullets below a title; of the kind ``script`` code without bullets, and ``warning``."""
+    """A list with bullets below a title; of the kind ``script`` code without bullets, and
+    ``warning``."""
     return Piece("listed", {"texts": list(texts), "title": title, "kind": kind})

@@ -39,7 +39,8 @@ class Record:
         self.problems = []
         #: arrays of curve.csv by name; what is no finite number there is NaN. Empty without rows
         self.columns = self._columns()
-        #: the entry ``figure`` of run.json as :func:`masonry.read.curve_figure.plan` completes it, or None, and the rows that it shows
+        #: the entry ``figure`` of run.json as :func:`masonry.read.curve_figure.plan` completes it,
+        #: or None, and the rows that it shows
         self.spec, self.rows = None, np.zeros(0, int)
         self._plan()
         self.picture = None  #: head and numbers of the 3-D picture, or None
@@ -143,7 +144,8 @@ class Record:
         return drawn, f"{about} (x × y × z)."
 
     def _whole(self, structure):
-        """A structure whose bricks are whole that the model has in halves: those on both sides of a crack surface."""
+        """A structure whose bricks are whole that the model has in halves: those on both sides of a
+        crack surface."""
         kinds = self.run.get("kinds") or []
         if CRACK_SURFACE in kinds:
             joints = readFrame(self.directory, "joints", 0, ["bodies", "kind"])
@@ -182,7 +184,8 @@ class Record:
 
     @functools.cached_property
     def data(self):
-        """What the numbers of the run are found from: rows whose forces are no finite numbers are left out."""
+        """What the numbers of the run are found from: rows whose forces are no finite numbers are
+        left out."""
         data = RunData(self.run, self.columns.get)
         known = [self.columns[h] for h in (MOVED, BASE, TOP) if h in self.columns]
         with filesOf(self.directory):
@@ -207,7 +210,8 @@ class Record:
 
     @functools.cached_property
     def ideals(self):
-        """The bilinear curve of the push by every rule of :mod:`masonry.read.bilinear`, or a text that says why there is none."""
+        """The bilinear curve of the push by every rule of :mod:`masonry.read.bilinear`, or a text
+        that says why there is none."""
         push, found = None, {}
         for rule in bilinear.RULES:
             try:

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Parts of a report on what the structure did: its curve, drifts, bound, energies, cycles and forces at the base."""
+"""Parts of a report on what the structure did: its curve, drifts, bound, energies, cycles and
+forces at the base."""
 
 import numpy as np
 
@@ -142,7 +143,8 @@ def _places(record, x, y):
 
 
 def found(record):
-    """Drifts and other numbers of a push, drifts that were recorded, and what the stages were run for."""
+    """Drifts and other numbers of a push, drifts that were recorded, and what the stages were run
+    for."""
     if record.isPush:
         yield from _states(record)
         yield numbers(
@@ -390,7 +392,8 @@ def cycles(record):
 
 
 def base(record):
-    """Normal force, shear force and moment: of the sections that were recorded, else forces on what is held."""
+    """Normal force, shear force and moment: of the sections that were recorded, else forces on what
+    is held."""
     sections = record.run.get("recorded_sections") or []
     names = [n for n in sections if n in record.columns]
     if names:

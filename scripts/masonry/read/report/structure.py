@@ -125,7 +125,8 @@ def valueOf(answer):
 
 
 def sought(run):
-    """The largest load that was held and the smallest that was not, as answers, of a run that looked for one load."""
+    """The largest load that was held and the smallest that was not, as answers, of a run that
+    looked for one load."""
     loads, found = quantities.loadsOf(run.get("stages") or []), []
     ones = [
         a
@@ -212,7 +213,8 @@ def _marked(text, isAssumed):
 
 
 def _namesOf(run):
-    """Names of the properties that were assumed; those of the support are those of the bed joint where it takes these."""
+    """Names of the properties that were assumed; those of the support are those of the bed joint
+    where it takes these."""
     names = {str(a.get("name")) for a in run.get("assumed") or []}
     if "support" in names:
         names |= {n.replace("bed.", "support.", 1) for n in names if n.startswith("bed.")}

@@ -47,7 +47,8 @@ def pictures(record):
 
 
 def trust(record):
-    """How far to trust it: errors that the run knows of itself, promises, warnings, and what is not known."""
+    """How far to trust it: errors that the run knows of itself, promises, warnings, and what is not
+    known."""
     run = record.run
     warnings = run.get("warnings")
     sentences = [str(w) for w in warnings or []] + record.problems

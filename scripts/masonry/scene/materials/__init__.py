@@ -5,7 +5,8 @@
 - :func:`masonry`: the same from what a data sheet and a test of the masonry say
 - :func:`en1996`, :func:`ntc2018`: arguments for it from classes of units and mortar, by a code
 - :func:`dry`: stones with dry joints that do not crush
-- :func:`calciumSilicate`, :func:`dryGranite`: published parameter sets. Each names its source, and what is assumed
+- :func:`calciumSilicate`, :func:`dryGranite`: published parameter sets. Each names its source, and
+  what is assumed
 
 What was assumed because it was not given is printed once, and stands in run.json under ``assumed``.
 

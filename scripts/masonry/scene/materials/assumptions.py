@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What of a masonry was assumed because it was not given, and what cannot be assumed.
 
-A MasonryJoint and a MasonryMat note themselves which of their properties nobody has given (``assumed``): what is given when an
-object is made, set as an attribute or with ``set`` or ``updateAttrs`` later, counts as given. ``brittleCoulomb`` and :func:`copied`
-keep the note. An object that YADE has loaded from a file has none: everything counts as given.
+A MasonryJoint and a MasonryMat note themselves which of their properties nobody has given
+(``assumed``): what is given when an object is made, set as an attribute or with ``set`` or
+``updateAttrs`` later, counts as given. ``brittleCoulomb`` and :func:`copied` keep the note. An
+object that YADE has loaded from a file has none: everything counts as given.
 """
 
 from typing import Annotated, Any
@@ -17,7 +18,8 @@ from ...assembly.engines import LAWS
 #: Descriptions of the properties by class and name.
 DESCRIBED = {cls: {p["name"]: p for p in properties(cls)} for cls in (MasonryJoint, MasonryMat)}
 
-#: Where the default of a property is from, by class and name; the paper is that of yade_plugin/law/README.md.
+#: Where the default of a property is from, by class and name; the paper is that of
+#: yade_plugin/law/README.md.
 DEFAULTS = {cls: cls().assumed() for cls in DESCRIBED}
 
 #: Properties without a default that fits any masonry.
@@ -55,8 +57,8 @@ TABLES = {"modeIFractureEnergy": "tensionTable", "modeIIFractureEnergy": "shearT
 
 
 def state(thing: Any, **sources: str) -> Any:
-    """Note of an object that these properties are assumed, with the source of each, and that all others are given. Returns the
-    object."""
+    """Note of an object that these properties are assumed, with the source of each, and that all
+    others are given. Returns the object."""
     thing.assume(sources)
     return thing
 
@@ -93,8 +95,9 @@ def _things(masonry):
 
 
 def entriesOf(masonry: Any) -> list[dict[str, Any]]:
-    """The entry ``assumed`` of run.json: a list of dicts with ``name``, as ``bed.residualFriction``, ``value``, ``unit`` and
-    ``source``. Properties without an effect are left out."""
+    """The entry ``assumed`` of run.json: a list of dicts with ``name``, as
+    ``bed.residualFriction``, ``value``, ``unit`` and ``source``. Properties without an effect are
+    left out."""
     found = []
     for name, thing in _things(masonry):
         sources = thing.assumed()

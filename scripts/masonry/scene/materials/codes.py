@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What building codes say of a masonry that they name: arguments for :func:`masonry`, each with its clause.
+"""What building codes say of a masonry that they name: arguments for :func:`masonry`, each with its
+clause.
 
 ::
 
@@ -7,7 +8,8 @@
         ft=0.1e6, unit_E=8e9, unit=(0.25, 0.12, 0.065), joint=0.010, density=1800)
     materials.masonry(**materials.ntc2018("squared stone", "LC2"), unit_E=40e9, unit=(0.5, 0.4, 0.25), joint=0.010)
 
-A value that is given in place of the code's loses its clause: ``{**materials.ntc2018("rubble", "LC1"), "E": 1e9}``.
+A value that is given in place of the code's loses its clause: ``{**materials.ntc2018("rubble",
+"LC1"), "E": 1e9}``.
 """
 
 import re
@@ -17,7 +19,8 @@ from ...common.arguments import number, oneOf, validated, whole
 from ...basics import refuse
 from ..settings import such
 
-#: Mean over characteristic compressive strength (EN 1052-1), characteristic over mean cohesion and friction (EN 1052-3) [-].
+#: Mean over characteristic compressive strength (EN 1052-1), characteristic over mean cohesion and
+#: friction (EN 1052-3) [-].
 MEAN, SHEAR = 1.2, 0.8
 
 #: K of EN 1996-1-1:2005, table 3.3 [-], by unit and mortar for groups 1, 2, ...
@@ -31,14 +34,16 @@ K: dict[str, dict[str, tuple[float, ...]]] = {
     "natural stone": {GENERAL: (0.45,)},
 }
 
-#: fvk0 of EN 1996-1-1:2005, table 3.4 [Pa]: in general purpose mortar from a strength [MPa] on, and in thin layer mortar.
+#: fvk0 of EN 1996-1-1:2005, table 3.4 [Pa]: in general purpose mortar from a strength [MPa] on, and
+#: in thin layer mortar.
 OTHERS = (10.0, 0.20e6), (2.5, 0.15e6), (0.0, 0.10e6)
 FVK0 = {
     "clay": (((10.0, 0.30e6), (2.5, 0.20e6), (0.0, 0.10e6)), 0.30e6),
     "calcium silicate": (OTHERS, 0.40e6),
 }
 
-#: Friction of bed joints, bound of fvk over fb, E over fk and G over E [-]: EN 1996-1-1:2005, 3.6.2 and 3.7.
+#: Friction of bed joints, bound of fvk over fb, E over fk and G over E [-]: EN 1996-1-1:2005, 3.6.2
+#: and 3.7.
 FRICTION, MOST_SHEAR, STIFFNESS, SHEARING = 0.4, 0.065, 1000, 0.4
 #: The strongest units that equations (3.2), and (3.3) and (3.4), are for [Pa].
 STRONGEST = {GENERAL: 75e6, THIN: 50e6}
@@ -57,7 +62,8 @@ GRAVITY = 9.81  # [m/s²]
 
 
 class Row(NamedTuple):
-    """A row of table C8.5.I of Circolare 7/2019: least and largest value [Pa], of the weight [N/m³]."""
+    """A row of table C8.5.I of Circolare 7/2019: least and largest value [Pa], of the weight
+    [N/m³]."""
 
     number: int
     fm: tuple[float, float]
@@ -102,20 +108,23 @@ def en1996(
     joints: Annotated[str, oneOf(GENERAL, THIN)] = GENERAL,
     value: Annotated[str, oneOf("mean", "characteristic")] = "mean",
 ) -> dict[str, Any]:
-    """Masonry of EN 1996-1-1:2005, with the values that the standard recommends; a national annex can have others.
+    """Masonry of EN 1996-1-1:2005, with the values that the standard recommends; a national annex
+    can have others.
 
-    E, G, fc, fv0 and friction. The factor 0.8 on K of a wall with a mortar joint along it, 3.6.1.2(6), is not applied. The
-    standard has no direct tensile strength of bed joints: give ``ft`` or ``bond_wrench``. Characteristic values give a
-    characteristic answer and not the most likely one.
+    E, G, fc, fv0 and friction. The factor 0.8 on K of a wall with a mortar joint along it,
+    3.6.1.2(6), is not applied. The standard has no direct tensile strength of bed joints: give
+    ``ft`` or ``bond_wrench``. Characteristic values give a characteristic answer and not the most
+    likely one.
 
     :param unit: what the bricks are of
     :param fb: their normalised mean compressive strength [Pa]
     :param mortar: its class, as ``"M5"``
     :param group: of the units, by their holes
     :param joints: the kind of mortar
-    :param value: ``"mean"``: fc = 1.2 fk as in EN 1052-1, fv0 = fvk0/0.8 and friction = 0.4/0.8 as in EN 1052-3;
-        ``"characteristic"``: fc = fk, fvk0 and 0.4. E and G are the same
-    :raises Refused: if the standard has no K for it, or the units or the mortar are too strong for its equations
+    :param value: ``"mean"``: fc = 1.2 fk as in EN 1052-1, fv0 = fvk0/0.8 and friction = 0.4/0.8 as
+        in EN 1052-3; ``"characteristic"``: fc = fk, fvk0 and 0.4. E and G are the same
+    :raises Refused: if the standard has no K for it, or the units or the mortar are too strong for
+        its equations
     """
     fm, code = float(mortar), "EN 1996-1-1:2005"
     factors, problems = K[unit].get(joints, ()), []
@@ -176,17 +185,21 @@ def ntc2018(
     knowledge: Annotated[str, _knowledge],
     confidence: Annotated[float, number("", 1, 2)] | None = None,
 ) -> dict[str, Any]:
-    """Existing masonry of table C8.5.I of Circolare 7/2019 to NTC 2018: E, G, fc, fv0, ft, friction and density.
+    """Existing masonry of table C8.5.I of Circolare 7/2019 to NTC 2018: E, G, fc, fv0, ft, friction
+    and density.
 
-    Strengths are over the confidence factor; coefficients of table C8.5.II are not applied, nor is the safety factor.
+    Strengths are over the confidence factor; coefficients of table C8.5.II are not applied, nor is
+    the safety factor.
 
     :param masonry: its row in the table
-    :param knowledge: ``"LC1"``: the least strengths; ``"LC2"``: those in the middle of the ranges; moduli are those in the middle
-        (C8.5.4.1). LC3 needs tests: give what they say to :func:`masonry`
-    :param confidence: the factor [-]; default 1.35 of LC1, 1.2 of LC2. 1 gives the most likely answer, with LC2
+    :param knowledge: ``"LC1"``: the least strengths; ``"LC2"``: those in the middle of the ranges;
+        moduli are those in the middle (C8.5.4.1). LC3 needs tests: give what they say to
+        :func:`masonry`
+    :param confidence: the factor [-]; default 1.35 of LC1, 1.2 of LC2. 1 gives the most likely
+        answer, with LC2
 
-    ft is 1.5 tau0, which the code means of diagonal cracks. Rubble, roughly cut and split stone and irregular soft stone have no
-    fv0 in the table: ft/0.7 of Lourenço and Rots (1997) stands for it.
+    ft is 1.5 tau0, which the code means of diagonal cracks. Rubble, roughly cut and split stone and
+    irregular soft stone have no fv0 in the table: ft/0.7 of Lourenço and Rots (1997) stands for it.
     """
     row, factor = TABLE[masonry], confidence or CONFIDENCE[knowledge]
     middle = lambda ends: (ends[0] + ends[1]) / 2

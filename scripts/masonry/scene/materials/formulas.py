@@ -13,13 +13,13 @@ from .assumptions import state
 from .codes import MEAN
 from .kinds import Masonry
 
-#: Flexural strength of a bond over its direct tensile strength [-]: van der Pluijm, Out-of-plane bending of masonry
-#: (Eindhoven, 1999) found about 1.5 in bond wrench tests.
+#: Flexural strength of a bond over its direct tensile strength [-]: van der Pluijm, Out-of-plane
+#: bending of masonry (Eindhoven, 1999) found about 1.5 in bond wrench tests.
 WRENCH = 1.5
 
-#: Fracture energy over strength [m] in tension and in shear without normal stress: the ductility indices that Lourenço,
-#: Structural masonry analysis: recent developments and prospects (14th Int. Brick and Block Masonry Conference, 2008),
-#: recommends.
+#: Fracture energy over strength [m] in tension and in shear without normal stress: the ductility
+#: indices that Lourenço, Structural masonry analysis: recent developments and prospects (14th Int.
+#: Brick and Block Masonry Conference, 2008), recommends.
 TENSION_INDEX, SHEAR_INDEX = 0.029e-3, 0.093e-3
 INDEX_SOURCE = "ductility index of Lourenço (2008)"
 #: Of tension and shear: fracture energy, strength, and their index.
@@ -28,7 +28,8 @@ MODES = (
     ("modeIIFractureEnergy", "cohesion", SHEAR_INDEX),
 )
 
-#: Range of the compressive fracture energy of Model Code 90 [Pa], and energy over strength below and above it [m].
+#: Range of the compressive fracture energy of Model Code 90 [Pa], and energy over strength below
+#: and above it [m].
 MODEL_CODE = 12e6, 80e6
 BELOW_RANGE, ABOVE_RANGE = 1.6e-3, 0.33e-3
 
@@ -68,8 +69,8 @@ def _ofMortar(value, first=None):
 def compressiveFractureEnergy(fc: Crushing) -> tuple[float, str]:
     """Compressive fracture energy of masonry [J/m²], and where it is from.
 
-    Gc = 15 + 0.43 fc - 0.0036 fc² with fc in MPa and Gc in N/mm, for fc from 12 to 80 MPa, after Model Code 90; below and
-    above that 1.6 mm and 0.33 mm times fc, as Lourenço (2008) recommends.
+    Gc = 15 + 0.43 fc - 0.0036 fc² with fc in MPa and Gc in N/mm, for fc from 12 to 80 MPa, after
+    Model Code 90; below and above that 1.6 mm and 0.33 mm times fc, as Lourenço (2008) recommends.
 
     :param fc: compressive strength [Pa]
     """
@@ -90,10 +91,10 @@ def leastEnergy(
 ) -> float:
     """The least fracture energy [J/m²] with which the law softens as it is asked to.
 
-    Below strength²/stiffness, twice the elastic energy at the peak, the law takes another energy; below half of that no
-    law could take it, since softening would snap back. Between rigid units, which have their elasticity lumped into the
-    joint, softening snaps back below strength² (lumped + 1/(2 stiffness)): yade_plugin/law/README.md, Softening and Rigid
-    units.
+    Below strength²/stiffness, twice the elastic energy at the peak, the law takes another energy;
+    below half of that no law could take it, since softening would snap back. Between rigid units,
+    which have their elasticity lumped into the joint, softening snaps back below strength² (lumped
+    + 1/(2 stiffness)): yade_plugin/law/README.md, Softening and Rigid units.
 
     :param strength: [Pa]
     :param stiffness: of the joint [Pa/m]
@@ -109,14 +110,16 @@ class _Joint:
         self.name, self.values, self.sources = name, values, {}
 
     def take(self, name, given, assumed, source):
-        """Take a property that the user gave; None: it is assumed by ``source``. Returns its value."""
+        """Take a property that the user gave; None: it is assumed by ``source``. Returns its
+        value."""
         self.values[name] = assumed if given is None else given
         if given is None:
             self.sources[name] = source
         return self.values[name]
 
     def energy(self, mode, strength, stiffness, lumped, given):
-        """Take a fracture energy. One that is assumed is large enough; of one that is given and too small a warning."""
+        """Take a fracture energy. One that is assumed is large enough; of one that is given and too
+        small a warning."""
         name, _, index = mode
         least = leastEnergy(strength, stiffness, lumped)
         if given is not None and given <= least:
@@ -175,7 +178,8 @@ def masonry(
     unit_GfII: EnergyOfBrick | None = None,
     clauses: Annotated[dict[str, Any], isA(dict)] | None = None,
 ) -> Masonry:
-    """Masonry of one's own, from what a data sheet and tests of the masonry say. Returns a :class:`Masonry`.
+    """Masonry of one's own, from what a data sheet and tests of the masonry say. Returns a
+    :class:`Masonry`.
 
     ::
 
@@ -183,61 +187,71 @@ def masonry(
             E=4e9, unit_E=9e9, fc=10e6, fv0=0.2e6, friction=0.6, bond_wrench=0.3e6,
             unit=(0.25, 0.12, 0.065), joint=0.010, density=1800)
 
-    What is not given is assumed by the formulas below; a scene prints it once, and run.json has it under ``assumed``.
-    These must be given, by hand or by a code (:func:`en1996`, :func:`ntc2018`):
+    What is not given is assumed by the formulas below; a scene prints it once, and run.json has it
+    under ``assumed``. These must be given, by hand or by a code (:func:`en1996`, :func:`ntc2018`):
 
     :param E: Young's modulus of the masonry under compression across its bed joints [Pa]
     :param unit_E: Young's modulus of the bricks [Pa], above E
     :param fc: mean compressive strength of the masonry [Pa]; give this or ``fk``
-    :param fk: characteristic compressive strength of the masonry [Pa]; fc is 1.2 fk, as in EN 1052-1
+    :param fk: characteristic compressive strength of the masonry [Pa]; fc is 1.2 fk, as in EN
+        1052-1
     :param fv0: initial shear strength of the bed joints (EN 1052-3) [Pa], the cohesion
     :param friction: coefficient of friction of the bed joints [-]
     :param ft: **direct** tensile strength of the bed joints [Pa]; give this or ``bond_wrench``
-    :param bond_wrench: strength of the bond in a bond wrench test (EN 1052-5) [Pa]. It is no direct tensile strength: the
-        test divides the moment by the elastic section modulus, as if stresses were linear when the bond fails, but by
-        then the bond has softened at its edge and the stresses behind it have grown, so that it overestimates. ft is
-        bond_wrench/bond_ratio
+    :param bond_wrench: strength of the bond in a bond wrench test (EN 1052-5) [Pa]. It is no direct
+        tensile strength: the test divides the moment by the elastic section modulus, as if stresses
+        were linear when the bond fails, but by then the bond has softened at its edge and the
+        stresses behind it have grown, so that it overestimates. ft is bond_wrench/bond_ratio
     :param unit: length, thickness and height of a brick without mortar [m]
     :param joint: thickness of the mortar [m]
-    :param density: of the masonry, bricks and mortar together [kg/m³], since blocks contain their mortar
+    :param density: of the masonry, bricks and mortar together [kg/m³], since blocks contain their
+        mortar
 
     These can be given:
 
     :param fm: never: in EN 1996 it is the strength of the mortar
-    :param bond_ratio: flexural over direct tensile strength of the bond [-]; default 1.5, after van der Pluijm (1999)
-    :param G: shear modulus of the masonry [Pa]: 1/ks = s (1/G - 1/Gu), where s = height + joint, Gu = unit_E/(2 (1 + nu)).
-        Default: ks = kn/(2 (1 + nu))
-    :param head_E: Young's modulus along the courses [Pa]. Default: head joints are of the same mortar and as thick as bed
-        joints, and have their stiffness
+    :param bond_ratio: flexural over direct tensile strength of the bond [-]; default 1.5, after van
+        der Pluijm (1999)
+    :param G: shear modulus of the masonry [Pa]: 1/ks = s (1/G - 1/Gu), where s = height + joint, Gu
+        = unit_E/(2 (1 + nu)). Default: ks = kn/(2 (1 + nu))
+    :param head_E: Young's modulus along the courses [Pa]. Default: head joints are of the same
+        mortar and as thick as bed joints, and have their stiffness
     :param poisson: nu of the bricks [-]; default 0.2, usual for masonry units
-    :param GfI: mode I fracture energy of bed joints [J/m²]; default 0.029 mm times ft, Lourenço (2008)
-    :param GfII: mode II fracture energy of bed joints without normal stress [J/m²]; default 0.093 mm times fv0, likewise
+    :param GfI: mode I fracture energy of bed joints [J/m²]; default 0.029 mm times ft, Lourenço
+        (2008)
+    :param GfII: mode II fracture energy of bed joints without normal stress [J/m²]; default 0.093
+        mm times fv0, likewise
     :param Gc: compressive fracture energy [J/m²]; default as in :func:`compressiveFractureEnergy`
-    :param peak_strain: strain of the masonry at fc [-]; default 2 fc/E, that of a parabola which begins with the modulus
-        E, the branch up to the peak of Kaushik, Rai and Jain (2007), J. Mater. Civ. Eng. 19(9)
+    :param peak_strain: strain of the masonry at fc [-]; default 2 fc/E, that of a parabola which
+        begins with the modulus E, the branch up to the peak of Kaushik, Rai and Jain (2007), J.
+        Mater. Civ. Eng. 19(9)
     :param residual_friction: [-]; default: the friction
     :param dilatancy: tan(psi) [-]; default 0
-    :param head_share: strengths and energies of tension and shear of head joints over those of bed joints [-]; default 1
+    :param head_share: strengths and energies of tension and shear of head joints over those of bed
+        joints [-]; default 1
     :param unit_ft: direct tensile strength of the bricks [Pa]. Default: bricks do not crack
     :param unit_GfI: mode I fracture energy of the bricks [J/m²]; default as GfI, of unit_ft
-    :param unit_fv0: cohesion of the bricks [Pa]; default 2 unit_ft, as in the crack joints of :func:`calciumSilicate`
+    :param unit_fv0: cohesion of the bricks [Pa]; default 2 unit_ft, as in the crack joints of
+        :func:`calciumSilicate`
     :param unit_friction: coefficient of friction of cracks in bricks [-]; default 0.75, as in these
     :param unit_GfII: mode II fracture energy of the bricks [J/m²]; default as GfII, of unit_fv0
     :param clauses: of a code: by the name of an argument its value and what says it
     :raises Refused: with all problems at once
 
-    Stiffness: bricks and joints in series have the modulus of the masonry, E of bed joints, head_E of head joints:
-    1/kn = s (1/E - 1/unit_E). For bed joints s = height + joint; for head joints s = length + joint, the distance from one
-    to the next, also of bricks that are two rigid halves, which together are as long. Their crack surface is so stiff that
-    it leaves 0.99 of the stiffness of a half. Blocks contain their mortar and have the modulus unit_E, rigid ones lumped
-    into their joints.
+    Stiffness: bricks and joints in series have the modulus of the masonry, E of bed joints, head_E
+    of head joints: 1/kn = s (1/E - 1/unit_E). For bed joints s = height + joint; for head joints s
+    = length + joint, the distance from one to the next, also of bricks that are two rigid halves,
+    which together are as long. Their crack surface is so stiff that it leaves 0.99 of the stiffness
+    of a half. Blocks contain their mortar and have the modulus unit_E, rigid ones lumped into their
+    joints.
 
-    Crushing: the closure of a joint at its strength is ucp = s (peak_strain - fc/unit_E), what the bricks leave of the
-    strain, and the law's peak ratio n = kn ucp/fc. Head joints have the same strength and Gc.
+    Crushing: the closure of a joint at its strength is ucp = s (peak_strain - fc/unit_E), what the
+    bricks leave of the strain, and the law's peak ratio n = kn ucp/fc. Head joints have the same
+    strength and Gc.
 
-    An assumed energy in tension or shear with which softening would snap back between rigid units is raised to 1.1 times
-    the least that does not, :func:`leastEnergy`, and its source says so; a given one that is too small is a warning with
-    that least. Joints to platens take the bed joint.
+    An assumed energy in tension or shear with which softening would snap back between rigid units
+    is raised to 1.1 times the least that does not, :func:`leastEnergy`, and its source says so; a
+    given one that is too small is a warning with that least. Joints to platens take the bed joint.
     """
     values = SimpleNamespace(**locals())
     given = {n: v for n, v in vars(values).items() if v is not None}

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Bricks and joints of a structure, which joint a pair of blocks gets, and what beams and floors are made of."""
+"""Bricks and joints of a structure, which joint a pair of blocks gets, and what beams and floors
+are made of."""
 
 from __future__ import annotations
 
@@ -37,7 +38,8 @@ _varied = such(
 def withResidual(
     names: Names, joints: Annotated[dict[str, MasonryJoint], dictOf(_slides)]
 ) -> list[str]:
-    """Names of properties that change alike, and with them the residual friction of joints that have one value of friction.
+    """Names of properties that change alike, and with them the residual friction of joints that
+    have one value of friction.
 
     :param names: as ``"bed.friction"``
     :param joints: dict of MasonryJoint by name
@@ -80,16 +82,17 @@ def withBeam(
     poisson: Poisson = 0.2,
     bearing: Annotated[float | str | None, _bearing] = None,
 ) -> Any:
-    """Say what a beam of :func:`masonry.bricks.Beam` is made of. It is elastic. Returns the same masonry.
+    """Say what a beam of :func:`masonry.bricks.Beam` is made of. It is elastic. Returns the same
+    masonry.
 
-    Its pieces are joined by the joint of its name, with the bending stiffness E I and the shear stiffness 5/6 G A of the
-    beam. Torsion has G (Iy + Iz), which is too stiff for flat sections.
+    Its pieces are joined by the joint of its name, with the bending stiffness E I and the shear
+    stiffness 5/6 G A of the beam. Torsion has G (Iy + Iz), which is too stiff for flat sections.
 
     :param beam: its pieces
     :param young: [Pa]; ``poisson``: [-]
     :param density: [kg/m³]
-    :param bearing: what is between it and masonry: None: a bed joint; a number: a dry joint of this friction [-];
-        ``"fixed"``: an elastic joint. The joint is called NAME_bearing
+    :param bearing: what is between it and masonry: None: a bed joint; a number: a dry joint of this
+        friction [-]; ``"fixed"``: an elastic joint. The joint is called NAME_bearing
     """
     name, pitch = _newKind(masonry, "withBeam", beam)
     shear = young / (2 * (1 + poisson))
@@ -113,19 +116,23 @@ def withFloor(
     across: InPlane | None = None,
     bearing: Annotated[float | str | None, _bearing] = 0.5,
 ) -> Any:
-    """Say what a floor of :func:`masonry.bricks.Floor` is. It shears elastically in its plane. Returns the same masonry.
+    """Say what a floor of :func:`masonry.bricks.Floor` is. It shears elastically in its plane.
+    Returns the same masonry.
 
     :param floor: its strips
-    :param shear: shear stiffness G t of its plane [N/m]: a square floor of which one edge is held moves by V / (G t) when a
-        force V acts along the other one
+    :param shear: shear stiffness G t of its plane [N/m]: a square floor of which one edge is held
+        moves by V / (G t) when a force V acts along the other one
     :param mass: with what lies on it [kg/m²]
-    :param across: stiffness E t across the strips [N/m]; None: ten times ``shear``, which is assumed
-    :param bearing: as in :meth:`withBeam`; the default, a friction of 0.5, is of joists that lie on masonry
+    :param across: stiffness E t across the strips [N/m]; None: ten times ``shear``, which is
+        assumed
+    :param bearing: as in :meth:`withBeam`; the default, a friction of 0.5, is of joists that lie on
+        masonry
     """
     name, pitch = _newKind(masonry, "withFloor", floor)
     low, high = floor[0].low, floor[0].high
     height = high[2] - low[2]
-    # strips are nearly rigid, so their joints have all of the stiffness: forces are G t / pitch times the slip
+    # strips are nearly rigid, so their joints have all of the stiffness: forces are G t / pitch
+    # times the slip
     area = pitch * height
     stiff = dict(normalStiffness=(across or 10 * shear) / area, shearStiffness=shear / area)
     glue = MasonryJoint(name=name, elastic=True, **stiff)
@@ -142,7 +149,8 @@ def withFloor(
 
 
 def _newKind(masonry, word, pieces):
-    """The kind of the pieces of a beam or a floor, and the distance of their middles [m]. Raises Refused."""
+    """The kind of the pieces of a beam or a floor, and the distance of their middles [m]. Raises
+    Refused."""
     kinds, problems = sorted({block.kind for block in pieces}), []
     name = kinds[0]
     if len(kinds) > 1:
@@ -208,25 +216,28 @@ class _OfBeam(Settable):
 class Masonry:
     """Bricks and joints of a structure, and which joint a pair of blocks gets.
 
-    A pair of blocks gets the joint ``support`` if one of them is a platen, ``crack`` if they are pieces of one brick, that of
-    a beam or floor (:meth:`withBeam`, :meth:`withFloor`) if they are pieces of one, and ``NAME_bearing`` if one of them is; else
-    ``bed`` or ``head``. It is a bed joint if its normal is less than 45 degrees off the vertical. Joints between two parts
-    of a structure, such as the wythes of a wall, get ``collar`` if there is one. Without ``head`` all are bed joints.
+    A pair of blocks gets the joint ``support`` if one of them is a platen, ``crack`` if they are
+    pieces of one brick, that of a beam or floor (:meth:`withBeam`, :meth:`withFloor`) if they are
+    pieces of one, and ``NAME_bearing`` if one of them is; else ``bed`` or ``head``. It is a bed
+    joint if its normal is less than 45 degrees off the vertical. Joints between two parts of a
+    structure, such as the wythes of a wall, get ``collar`` if there is one. Without ``head`` all
+    are bed joints.
 
-    Properties that were not given have the default of their class. A scene prints them once, and run.json has them under
-    ``assumed``; :mod:`masonry.scene.materials.assumptions` says what counts as given. These must be given: the density of
-    units, and strengths (tensileStrength, cohesion, friction, and compressiveStrength unless cap=False) of joints that are
-    not elastic.
+    Properties that were not given have the default of their class. A scene prints them once, and
+    run.json has them under ``assumed``; :mod:`masonry.scene.materials.assumptions` says what counts
+    as given. These must be given: the density of units, and strengths (tensileStrength, cohesion,
+    friction, and compressiveStrength unless cap=False) of joints that are not elastic.
 
     :param unit: MasonryMat of the bricks
-    :param joints: dict of MasonryJoint by these names; ``bed`` must be there. ``support`` takes the bed joint if it is
-        missing, with its strength and friction, and follows what ``--set`` says of it; a random field of the bed joint
-        leaves it as it is
-    :param units: dict of MasonryMat by the ``kind`` of a block, for example ``{"lintel": concrete}``; bricks, lintels,
-        voussoirs and blocks that are not in it are of the unit
-    :param choose: function (block1, block2, geom) of your own, of the records of two bricks or None for a platen; it
-        returns the name of a joint, or None for the rule above
-    :param brief: whether a scene prints only how many properties are assumed, as for a published set
+    :param joints: dict of MasonryJoint by these names; ``bed`` must be there. ``support`` takes the
+        bed joint if it is missing, with its strength and friction, and follows what ``--set`` says
+        of it; a random field of the bed joint leaves it as it is
+    :param units: dict of MasonryMat by the ``kind`` of a block, for example ``{"lintel":
+        concrete}``; bricks, lintels, voussoirs and blocks that are not in it are of the unit
+    :param choose: function (block1, block2, geom) of your own, of the records of two bricks or None
+        for a platen; it returns the name of a joint, or None for the rule above
+    :param brief: whether a scene prints only how many properties are assumed, as for a published
+        set
     """
 
     unit: Annotated[MasonryMat, isA(MasonryMat)]
@@ -259,7 +270,8 @@ class Masonry:
         state(support, **sources)
 
     def apply(self, settings: Iterable[tuple[str, str, str]], connectors: Any = None) -> None:
-        """Give joints, beams and connectors the values of ``--set``. Raises Refused with all problems at once.
+        """Give joints, beams and connectors the values of ``--set``. Raises Refused with all
+        problems at once.
 
         :param settings: list of (name, property, text of the value)
         :param connectors: ties, springs and fibre layers of the scene by name, or None
@@ -280,13 +292,17 @@ class Masonry:
     ) -> Masonry:
         """Let a property change from place to place. Returns the same masonry.
 
-        Values are rounded to steps of a share, so that many joints are of one kind and cost no more than uniform ones.
+        Values are rounded to steps of a share, so that many joints are of one kind and cost no more
+        than uniform ones.
 
-        :param name: joint and property, for example ``"bed.cohesion"``, or a list of these that change alike. Strengths are
-            tied to each other: the tensile strength must be at most cohesion over friction
-        :param value: function of the x, y and z [m] of a joint's middle that gives a factor on the property [-];
+        :param name: joint and property, for example ``"bed.cohesion"``, or a list of these that
+            change alike. Strengths are tied to each other: the tensile strength must be at most
+            cohesion over friction
+        :param value: function of the x, y and z [m] of a joint's middle that gives a factor on the
+            property [-];
             :mod:`masonry.scene.fields` has random ones
-        :param step: width of the steps, relative to the value; at most half of it is the error of rounding
+        :param step: width of the steps, relative to the value; at most half of it is the error of
+            rounding
         """
         found, problems = [], []
         for one in [name] if isinstance(name, str) else name:
@@ -319,7 +335,8 @@ class Masonry:
     def variant(self, args: Annotated[Any, _options], connectors: Any = None) -> Masonry:
         """A copy for the options ``--joints`` and ``--field``; this one stays as it is.
 
-        :param connectors: names of ties, springs and fibre layers of the scene, whose fields are none of the joints, or None
+        :param connectors: names of ties, springs and fibre layers of the scene, whose fields are
+            none of the joints, or None
         """
         joints = {name: copied(joint) for name, joint in self.joints.items()}
         if args.joints == "brittle":
@@ -347,7 +364,8 @@ class Masonry:
     def rule(self, blocks: dict[int, Any]) -> Callable[..., MasonryJoint | None]:
         """The rule of :func:`masonry.assembly.connecting.connect`.
 
-        A monolithic joint joins the two blocks of one brick. Others get the same joint that is not monolithic.
+        A monolithic joint joins the two blocks of one brick. Others get the same joint that is not
+        monolithic.
 
         :param blocks: records of the bricks by body id
         """
@@ -422,7 +440,8 @@ class Masonry:
 
 
 def byName(joints: Iterable[MasonryJoint], brittle: bool) -> dict[str, MasonryJoint]:
-    """Joints as a dict by name. If ``brittle``, those that are not elastic become brittle Coulomb slip joints."""
+    """Joints as a dict by name. If ``brittle``, those that are not elastic become brittle Coulomb
+    slip joints."""
     return {j.name: _brittle(j) if brittle else j for j in joints}
 
 

@@ -1,18 +1,23 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The stages of a test. Each is a function of the scene, in a file with those of its family, with its traits on it.
+"""The stages of a test. Each is a function of the scene, in a file with those of its family, with
+its traits on it.
 
-A new stage is such a function (:func:`masonry.scene.stages.stage.stage`) and its place in :data:`STAGES`.
+A new stage is such a function (:func:`masonry.scene.stages.stage.stage`) and its place in
+:data:`STAGES`.
 
 - :mod:`masonry.scene.stages.rest`: ``settle``
-- :mod:`masonry.scene.stages.push`: ``push``, ``cycle`` and ``follow``, whose drive is in :mod:`masonry.scene.stages.pushing`
+- :mod:`masonry.scene.stages.push`: ``push``, ``cycle`` and ``follow``, whose drive is in
+  :mod:`masonry.scene.stages.pushing`
 - :mod:`masonry.scene.stages.supports`: ``drive``, ``pressJoint``, ``release`` and ``move``
 - :mod:`masonry.scene.stages.gravity`: ``tilt``, ``accelerate``, ``lean`` and ``bracket``
-- :mod:`masonry.scene.stages.loading`: ``load``, ``wind``, ``press``, ``pressure`` and ``hold`` after the first stage, and ``grow``
-  with its simple cases ``growLoad``, ``growWind`` and ``growPress``; :mod:`masonry.scene.stages.travelling`: ``travel``
+- :mod:`masonry.scene.stages.loading`: ``load``, ``wind``, ``press``, ``pressure`` and ``hold``
+  after the first stage, and ``grow`` with its simple cases ``growLoad``, ``growWind`` and
+  ``growPress``; :mod:`masonry.scene.stages.travelling`: ``travel``
 - :mod:`masonry.scene.stages.growing`: how a load grows, and the search for the one that is held
 - :mod:`masonry.scene.stages.shake`: ``shake``, ``run``, ``period`` and ``shakeAgain``
 - :mod:`masonry.scene.stages.falling`: ``fall``, which follows a collapse where the scene says so
-- :mod:`masonry.scene.stages.answers`: how stages end, and what they answer; :mod:`masonry.scene.stages.stage`: what all share
+- :mod:`masonry.scene.stages.answers`: how stages end, and what they answer;
+  :mod:`masonry.scene.stages.stage`: what all share
 """
 
 from .gravity import accelerate, lean, tilt

@@ -27,8 +27,8 @@ class Answer:
     :param name: what it is, in one word or several joined by underscores
     :param unit: ``"-"`` if it has none
     :param value: None if the stage did not find it
-    :param uncertainty: half the width of the interval that the run itself found about the value, in its unit; None if the
-        run has no measure of it
+    :param uncertainty: half the width of the interval that the run itself found about the value, in
+        its unit; None if the run has no measure of it
     :param how: how the value and its uncertainty were found, a sentence
     """
 
@@ -40,7 +40,8 @@ class Answer:
 
 
 def answerText(answer, what=None):
-    """An entry of ``answers`` of run.json as a line to read; ``what``: what it is of, in place of its stage."""
+    """An entry of ``answers`` of run.json as a line to read; ``what``: what it is of, in place of
+    its stage."""
     head = f"{what or answer['stage']}: {answer['name'].replace('_', ' ')}"
     if answer["value"] is None:
         return f"{head}: not found: {answer['how']}"
@@ -51,8 +52,9 @@ def answerText(answer, what=None):
 
 
 def answersText(answers, stages=()):
-    """Entries of ``answers`` of run.json as lines to read. Stages of one kind that look for the load that is held and follow
-    each other, as the trials of a bracket, have one line. If they put on several loads, each load has a line.
+    """Entries of ``answers`` of run.json as lines to read. Stages of one kind that look for the
+    load that is held and follow each other, as the trials of a bracket, have one line. If they put
+    on several loads, each load has a line.
 
     :param stages: entries of ``stages`` of run.json, which say what the loads are
     """
@@ -104,7 +106,8 @@ def result(
     unit: str = "-",
     how: str = "the script found it",
 ) -> None:
-    """Keep a number of one's own with the answers of the stages: in run.json, on the terminal and as a column of study.csv.
+    """Keep a number of one's own with the answers of the stages: in run.json, on the terminal and
+    as a column of study.csv.
 
     :param name: letters, digits and underscores; another result of this name is replaced
     :param value: a number; None, or what is not a number, if it was not found

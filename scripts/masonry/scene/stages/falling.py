@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What a scene does when the structure falls and ``Scene(..., collapse="follow")`` asks for it: it goes on until the rubble is
-at rest, and says what fell, when and where it lies."""
+"""What a scene does when the structure falls and ``Scene(..., collapse="follow")`` asks for it: it
+goes on until the rubble is at rest, and says what fell, when and where it lies."""
 
 import csv
 import math
@@ -16,7 +16,9 @@ from .answers import FALL, FALLEN_AT_REST, FALLEN_MOVING, Answer
 
 LOOK = 0.05  # time between two looks and rows, over √(side/g) of the largest block [-]
 FRAME = 4  # looks from one frame to the next
-CALM = 0.1  # speed of the fastest block of rubble at rest, over that of one that falls [-]: see Motion.fastest()
+# speed of the fastest block of rubble at rest, over that of one that falls [-]: see
+# Motion.fastest()
+CALM = 0.1
 LOOKS = 40  # so many looks one after the other find the rubble at rest before it is said to be
 #: After which it is given up, over √(2h/g) of the height of what is built [-].
 LONGEST = 20.0
@@ -34,9 +36,10 @@ class Falling:
 
 
 def followFall(scene: Any, tilted: bool) -> str:
-    """Go on with what falls until it is at rest. Loads stay, but for a horizontal acceleration, which ends when the first block
-    has fallen; drives and supports stand still, and the numerical damping of the options acts on what stands, not on what no
-    joint holds. The gravity of a ground that is tilted stays. Returns how that ended.
+    """Go on with what falls until it is at rest. Loads stay, but for a horizontal acceleration,
+    which ends when the first block has fallen; drives and supports stand still, and the numerical
+    damping of the options acts on what stands, not on what no joint holds. The gravity of a ground
+    that is tilted stays. Returns how that ended.
     """
     model, running, box = scene.model, scene.running, scene.description
     at = running.stage(FALL, Falling())
@@ -44,7 +47,8 @@ def followFall(scene: Any, tilted: bool) -> str:
         at.begun = O.time
         if not running.takesUp:
             running.frame()  # whose cracks are drawn
-    model.scheme.dampByOptions()  # what stands comes to rest; blocks that are loose are not damped so
+    # what stands comes to rest; blocks that are loose are not damped so
+    model.scheme.dampByOptions()
     model.scheme.keepStable()
     model.letFall()
     gravity, height = abs(box.gravity) or GRAVITY, box.high[2] - box.low[2]
@@ -100,7 +104,8 @@ def volume(model: Any, index: int) -> float:
 
 
 def answers(scene: Any, ended: str, begun: float) -> list[Answer]:
-    """What fell, when, how fast, and where it lies, by how the fall ended and when the collapse was noticed [s]."""
+    """What fell, when, how fast, and where it lies, by how the fall ended and when the collapse was
+    noticed [s]."""
     model, box = scene.model, scene.description
     fallen, atRest = model.fallen(), ended == FALLEN_AT_REST
     masses = [O.bodies[body].state.mass for body in model.ids]

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Horizontal acceleration and a tilting ground: ``tilt``, ``accelerate`` and ``lean``, and the search with ``bracket``. What acts and can
-be changed is an :class:`Acting`."""
+"""Horizontal acceleration and a tilting ground: ``tilt``, ``accelerate`` and ``lean``, and the
+search with ``bracket``. What acts and can be changed is an :class:`Acting`."""
 
 import math
 from typing import Annotated, Any, Callable
@@ -22,8 +22,9 @@ LEAN_GROWS = 0.2  # [s] in which a lean grows
 class Acting:
     """What acts. A share of 1 is the whole growth, and its factor is ``most`` [-].
 
-    Its kinds have ``now()``, their present values as a list of numbers, ``put(values)``, and ``at(began, share)``, their values when a
-    share of the growth is over, 0 to 1 [-], from those when it began.
+    Its kinds have ``now()``, their present values as a list of numbers, ``put(values)``, and
+    ``at(began, share)``, their values when a share of the growth is over, 0 to 1 [-], from those
+    when it began.
 
     :param name: under which its bound is found
     :param unit: of the factor
@@ -64,7 +65,8 @@ class Acceleration(Acting):
 
 
 class Tilting(Acceleration):
-    """Gravity that turns to an angle [rad], as on a ground that is tilted. The factor is the horizontal over the vertical part."""
+    """Gravity that turns to an angle [rad], as on a ground that is tilted. The factor is the
+    horizontal over the vertical part."""
 
     def __init__(self, model, angle, towards, name):
         super().__init__(model, math.tan(angle), towards, name, "-")
@@ -110,15 +112,16 @@ def tilt(
     rate: Annotated[float, number("degrees/s", 1e-6, 1e6)] = 1.0,
     within: Width = WITHIN,
 ) -> str:
-    """Tilt the ground, and with it gravity, until the structure falls or the angle is reached; then search for the tilt that
-    it holds.
+    """Tilt the ground, and with it gravity, until the structure falls or the angle is reached; then
+    search for the tilt that it holds.
 
     :param towards: horizontal direction in which the structure leans
     :param rate: [degrees/s]
     :param within: width of the bracket that the search leaves, over its upper end [-]
-    :returns: ``COLLAPSED`` if the structure fell, else ``AT_REST`` if it came to rest under the whole load, else ``DONE``.
-        ``scene.factor`` is the largest horizontal over vertical acceleration that it held, by :mod:`masonry.scene.stages.growing`; the
-        scene stays as it was at the end of the growth
+    :returns: ``COLLAPSED`` if the structure fell, else ``AT_REST`` if it came to rest under the
+        whole load, else ``DONE``. ``scene.factor`` is the largest horizontal over vertical
+        acceleration that it held, by :mod:`masonry.scene.stages.growing`; the scene stays as it was
+        at the end of the growth
     """
     towards = sideways(scene, towards, "tilt")
     findBound(scene, "lean", towards, True)
@@ -135,8 +138,8 @@ def accelerate(
     rate: Annotated[float, number("g/s", 1e-6, 1e6)] = 0.5,
     within: Width = WITHIN,
 ) -> str:
-    """Let a horizontal acceleration grow evenly, until the structure falls or ``most`` is reached; then search for the one
-    that it holds.
+    """Let a horizontal acceleration grow evenly, until the structure falls or ``most`` is reached;
+    then search for the one that it holds.
 
     :param most: [g]
     :param towards: horizontal direction of the force on the blocks
@@ -167,11 +170,11 @@ def lean(
 
 
 def putOn(scene, name, load, longest, over=0.0):
-    """Let a load grow within a short time, and wait until the structure is at rest or falls. With ``--preset bound`` it stays if limit
-    analysis finds that it is carried.
+    """Let a load grow within a short time, and wait until the structure is at rest or falls. With
+    ``--preset bound`` it stays if limit analysis finds that it is carried.
 
-    :param longest: time in the scene after which it is given up [s]; None: :data:`masonry.scene.stages.growing.TRIAL`, and longer
-        on soft springs
+    :param longest: time in the scene after which it is given up [s]; None:
+        :data:`masonry.scene.stages.growing.TRIAL`, and longer on soft springs
     :param over: time in which it grows at least [s]
     """
     if scene.only:
@@ -211,10 +214,11 @@ def bracket(
     high: Annotated[float, number("", 0, above=True)],
     within: Width = 0.01,
 ) -> tuple[float, float]:
-    """Find the largest load that the structure carries, by halving: each trial starts from the last state at rest.
+    """Find the largest load that the structure carries, by halving: each trial starts from the last
+    state at rest.
 
-    :param carries: function of a load factor that sets loads and stages, and returns whether the structure is at
-        rest under it, for example ``lambda f: scene.lean(f) == AT_REST``
+    :param carries: function of a load factor that sets loads and stages, and returns whether the
+        structure is at rest under it, for example ``lambda f: scene.lean(f) == AT_REST``
     :param low: a factor that it carries, ``high`` one that it does not
     :param within: width of the bracket at the end, relative to ``high``
     :returns: the two ends of the bracket

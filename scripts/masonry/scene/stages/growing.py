@@ -1,14 +1,17 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Loads that grow until the structure falls, and the search for the load that it holds.
 
-A structure under a growing load falls late: it must first move. It also begins to move early, where joints give way little
-by little. So the run finds by trials what it carries. During the growth it keeps states to go back to. Then it takes such a state,
-leaves the load as it is, and waits: the load is held if the structure comes to rest under it. Between the largest load that was held
-and the smallest that was not it goes on in halves, from the state at rest under the first. At the end the load that was not held is
-tried once more from that state, in which nothing moves: so it does not matter how fast the load grew.
+A structure under a growing load falls late: it must first move. It also begins to move early, where
+joints give way little by little. So the run finds by trials what it carries. During the growth it
+keeps states to go back to. Then it takes such a state, leaves the load as it is, and waits: the
+load is held if the structure comes to rest under it. Between the largest load that was held and the
+smallest that was not it goes on in halves, from the state at rest under the first. At the end the
+load that was not held is tried once more from that state, in which nothing moves: so it does not
+matter how fast the load grew.
 
-A perfectly symmetric structure comes to rest under loads far above that at which it buckles. So the largest load that was held is
-looked at with a small push to the side (:func:`masonry.assembly.period.buckles`). If that grows, the load is not held, and every later
+A perfectly symmetric structure comes to rest under loads far above that at which it buckles. So the
+largest load that was held is looked at with a small push to the side
+(:func:`masonry.assembly.period.buckles`). If that grows, the load is not held, and every later
 trial is looked at so.
 """
 
@@ -29,16 +32,18 @@ from .answers import AT_REST, DONE, Answer
 from .stage import Timed, timed
 
 WITHIN = 0.005  # width of the bracket, over its upper end [-]
-LEAST = 0.05  # of the whole growth: the width of a bracket below this load is that of a bracket at it [-]
+# of the whole growth: the width of a bracket below this load is that of a bracket at it [-]
+LEAST = 0.05
 #: [s] in the scene after which a trial is given up, or later on soft springs
 TRIAL = 4.0
 MOST_KEPT, LEAST_KEPT = 128, 8  # states that are kept during a growth
 KEPT_BYTES = (
     100e6  # that they may have in all; a checkpoint during the growth or the search has them
 )
-#: A trial is not held as soon as a block has moved as far as one that has fallen, has at least this share of its speed [-], and is
-#: twice as fast as the fastest one in the first half of the trial (:meth:`masonry.assembly.motion.Motion.fastest`). Blocks at a crack that
-#: opens suddenly can be as fast, but have not moved so far.
+#: A trial is not held as soon as a block has moved as far as one that has fallen, has at least this
+#: share of its speed [-], and is twice as fast as the fastest one in the first half of the trial
+#: (:meth:`masonry.assembly.motion.Motion.fastest`). Blocks at a crack that opens suddenly can be as
+#: fast, but have not moved so far.
 SURE = 0.25
 #: How trials end that are not held.
 WHY = (
@@ -53,10 +58,12 @@ SETTING_OFF = 3.0  # the structure has left rest where its speed is so many time
 
 @dataclass
 class Growing(Timed):
-    """What a stage remembers in which a load grows. A trial is a pair: the factor, and 1 if it was held, else 0."""
+    """What a stage remembers in which a load grows. A trial is a pair: the factor, and 1 if it was
+    held, else 0."""
 
     begun: list | None = None  # the load when the stage began
-    #: Of every row so far: time [s], load factor [-], and how fast the fastest block was over one that has fallen [-].
+    #: Of every row so far: time [s], load factor [-], and how fast the fastest block was over one
+    #: that has fallen [-].
     rows: Sequence[Any] = ()
     kept: Sequence[Any] = ()  # pairs of load factor and state, as text
     spacing: int = 1  # rows from one kept state to the next
@@ -65,12 +72,14 @@ class Growing(Timed):
     lastState: str = ""  # the state then, as text
     # -- of the search
     over: int = 0  # 1 when it has ended, and only the last state at rest is kept
-    #: 1 when the largest load that was held was seen to buckle; from then on every trial is looked at so.
+    #: 1 when the largest load that was held was seen to buckle; from then on every trial is looked
+    #: at so.
     buckled: int = 0
     trials: Sequence[Any] = ()
     # factor and displacement [mm] of the largest load that was held
     held: list | None = None
-    #: Of the smallest that was not, 1 if that trial began at rest, else 0, and how it ended: a number of WHY.
+    #: Of the smallest that was not, 1 if that trial began at rest, else 0, and how it ended: a
+    #: number of WHY.
     lost: list | None = None
     #: Trials above a load that was not held when it grew, but is held from rest.
     climbs: int = 0
@@ -86,8 +95,8 @@ class Growing(Timed):
 
 
 def grow(scene, name, load, duration, within=WITHIN):
-    """Let a :class:`~masonry.scene.stages.gravity.Acting` grow evenly until the structure falls or it has its whole, then search for the one
-    that is held.
+    """Let a :class:`~masonry.scene.stages.gravity.Acting` grow evenly until the structure falls or
+    it has its whole, then search for the one that is held.
 
     :param duration: [s], with true masses; ``within``: width of the bracket, over its upper end [-]
     """
@@ -143,8 +152,8 @@ def _compare(scene, name, load, at):
 
 
 def follow(scene, name, load):
-    """From now on record the displacement of what is watched along a load, from where it was when that began, which the run keeps under a
-    name."""
+    """From now on record the displacement of what is watched along a load, from where it was when
+    that began, which the run keeps under a name."""
     target, origins = scene.description.followed(load.target), scene.running.at.origins
     origin = scene.model.loading.follow(target, load.towards, origins.get(name))
     if target and name not in origins:
@@ -152,7 +161,8 @@ def follow(scene, name, load):
 
 
 def found(scene, rows):
-    """What a stage answers in which a load grew: the largest load that was held, and the smallest that was not."""
+    """What a stage answers in which a load grew: the largest load that was held, and the smallest
+    that was not."""
     at = scene.running.memory
     if not isinstance(at, Growing):
         return []
@@ -176,7 +186,8 @@ def found(scene, rows):
 def ends(scene, held, whyHeld, lost, whyLost):
     """The answers of a stage that looks for the load that is held.
 
-    :param held: factor and displacement [mm] of a load that was held, or None, and how it was found or why not; ``lost``: likewise
+    :param held: factor and displacement [mm] of a load that was held, or None, and how it was found
+        or why not; ``lost``: likewise
     """
     target = scene.model.loading.followed
     for name, end, how, when in (
@@ -305,11 +316,12 @@ class _Search:
             raise Collapsed(at.fell)
         return AT_REST if stands else DONE
 
-    # -- which trial comes next -----------------------------------------------------------------------------------
+    # -- which trial comes next --------------------------------------------------------------------
 
     def _next(self):
-        """The next trial: factor of the state from which it begins, its own factor, that state as text, or None if it is the
-        present one, and 1 if it is at rest, else 0. None if there is nothing left to try.
+        """The next trial: factor of the state from which it begins, its own factor, that state as
+        text, or None if it is the present one, and 1 if it is at rest, else 0. None if there is
+        nothing left to try.
         """
         at = self.at
         fromRest = lambda goal: (at.held[0], goal, at.heldState, 1)
@@ -332,7 +344,8 @@ class _Search:
         return None if at.lost[2] else fromRest(at.lost[0])
 
     def _ofGrowth(self):
-        """The next trial from a state of the growth, or None if there is none between the ends of the bracket."""
+        """The next trial from a state of the growth, or None if there is none between the ends of
+        the bracket."""
         at = self.at
         factors, step = [factor for factor, _ in at.kept], 2 ** max(0, len(at.trials) - 1)
         # numbers of the last state up to what was held, and of the first from what was not
@@ -353,7 +366,8 @@ class _Search:
         return factor, factor, state, 0
 
     def _guess(self, factors):
-        """Number of the kept state with which the search begins: the last before the structure leaves rest."""
+        """Number of the kept state with which the search begins: the last before the structure
+        leaves rest."""
         speeds = [speed for _, _, speed in self.at.rows]
         n = len(speeds) - 1
         while n > 0 and speeds[n] > SETTING_OFF * statistics.median(speeds[:n]):
@@ -367,7 +381,7 @@ class _Search:
             _load(self.at.heldState)
         return buckles(self.scene)
 
-    # -- a trial --------------------------------------------------------------------------------------------------
+    # -- a trial -----------------------------------------------------------------------------------
 
     def _trial(self):
         """Hold a load, and wait. Returns whether the structure came to rest under it."""
@@ -399,7 +413,8 @@ class _Search:
                 return False
 
     def _accelerates(self, speed):
-        """Whether the fastest block is fast, and at least twice as fast as in the first half of the trial."""
+        """Whether the fastest block is fast, and at least twice as fast as in the first half of the
+        trial."""
         at = self.at
         looks = at.taken // EVERY
         if looks & (looks - 1) == 0:

@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Loads after the first stage: ``load``, ``wind``, ``press`` and ``pressure`` put them on, ``grow`` lets any of them grow together, as
-``growLoad``, ``growWind`` and ``growPress`` do one alone, and ``hold`` holds what was free.
+"""Loads after the first stage: ``load``, ``wind``, ``press`` and ``pressure`` put them on, ``grow``
+lets any of them grow together, as ``growLoad``, ``growWind`` and ``growPress`` do one alone, and
+``hold`` holds what was free.
 
-The first four give a load its new value, whatever it was before, and wait for rest, so that ``bracket`` can search for the
-largest that is held. The others add to what is there until the structure falls, and search by themselves.
+The first four give a load its new value, whatever it was before, and wait for rest, so that
+``bracket`` can search for the largest that is held. The others add to what is there until the
+structure falls, and search by themselves.
 """
 
 import math
@@ -81,8 +83,9 @@ def _forceOn(scene, target, force, name):
 def load(scene: Any, target: Loaded, force: Force, longest: Duration | None = None) -> str:
     """Give a target another dead load, and wait until the structure is at rest or falls.
 
-    The force replaces the dead load that the target has, described or put on; it changes within 0.02 s, and longer for tall structures. So
-    ``bracket(lambda f: scene.load(target, (0, 0, -f)) == AT_REST, 1e3, 9e3)`` finds the largest that is held.
+    The force replaces the dead load that the target has, described or put on; it changes within
+    0.02 s, and longer for tall structures. So ``bracket(lambda f: scene.load(target, (0, 0, -f)) ==
+    AT_REST, 1e3, 9e3)`` finds the largest that is held.
 
     :param force: three numbers [N]; zeros take the load away
     :param longest: time in the scene after which it is given up [s]; None: 4 s
@@ -148,10 +151,12 @@ def wind(
     part: Part | None = None,
     longest: Duration | None = None,
 ) -> str:
-    """Give the faces that look against a horizontal direction another pressure, and wait as :meth:`load` does. It is added to the wind that
-    grew in :meth:`settle`; another :meth:`wind` of the same direction and part after the first stage replaces it.
+    """Give the faces that look against a horizontal direction another pressure, and wait as
+    :meth:`load` does. It is added to the wind that grew in :meth:`settle`; another :meth:`wind` of
+    the same direction and part after the first stage replaces it.
 
-    :param pressure: [Pa]; 0 takes the wind away; ``towards`` and ``part``: as before the first stage
+    :param pressure: [Pa]; 0 takes the wind away; ``towards`` and ``part``: as before the first
+        stage
     """
     return _putOn(scene, "wind", _windOn(scene, pressure, towards, part, "wind"), longest)
 
@@ -182,10 +187,12 @@ def pressure(
     normal: bool = True,
     longest: Duration | None = None,
 ) -> str:
-    """Give faces another pressure, and wait as :meth:`load` does. It is added to those that grew in :meth:`settle`; another
+    """Give faces another pressure, and wait as :meth:`load` does. It is added to those that grew in
+    :meth:`settle`; another
     :meth:`pressure` of the same direction, part and ``normal`` after the first stage replaces it.
 
-    :param value: [Pa], or a function of the place; 0 takes it away; ``towards``, ``part`` and ``normal``: as before the first stage
+    :param value: [Pa], or a function of the place; 0 takes it away; ``towards``, ``part`` and
+        ``normal``: as before the first stage
     """
     made = _pressureOn(scene, value, towards, part, normal)
     return _putOn(scene, "pressure", made, longest)
@@ -205,9 +212,11 @@ def _pressOn(scene, platen, stress, name):
 
 @stage(bounded=True, answers=putOnAnswers)
 def press(scene: Any, platen: MovingPlaten, stress: Stress, longest: Duration | None = None) -> str:
-    """Press a platen with another mean stress on the bricks below it, which replaces that before, and wait as :meth:`load` does.
+    """Press a platen with another mean stress on the bricks below it, which replaces that before,
+    and wait as :meth:`load` does.
 
-    :param stress: mean vertical stress that the bricks feel [Pa]; the weight of the platen is part of it
+    :param stress: mean vertical stress that the bricks feel [Pa]; the weight of the platen is part
+        of it
     """
     made = _pressOn(scene, platen, stress, "press")
     made.beside = [0, 0, scene.model.supports.weightOf(platen)]
@@ -231,7 +240,8 @@ def growPress(
 
 
 def together(value, first):
-    """The kind of loads that grow together: a dict from targets to forces [N] or, of platens, stresses [Pa]."""
+    """The kind of loads that grow together: a dict from targets to forces [N] or, of platens,
+    stresses [Pa]."""
     if not isinstance(value, dict):
         raise ValueError(
             f"{shown(value)} must be a dict from targets to forces [N] or stresses [Pa]"
@@ -257,16 +267,19 @@ def grow(
     over: Duration = GROWS,
     within: Width = WITHIN,
 ) -> str:
-    """Let several loads grow evenly in a fixed proportion beside what is there, until the structure falls or ``most`` times of them
-    are reached; then search for the factor that is held.
+    """Let several loads grow evenly in a fixed proportion beside what is there, until the structure
+    falls or ``most`` times of them are reached; then search for the factor that is held.
 
-    ``scene.grow({top: 0.1e6, stone: (2e3, 0, 0)}, most=10)`` adds a stress to what presses a platen and a force to a brick.
+    ``scene.grow({top: 0.1e6, stone: (2e3, 0, 0)}, most=10)`` adds a stress to what presses a platen
+    and a force to a brick.
 
-    :param loads: a dict from targets to three numbers [N], or to a stress of a platen [Pa], at a factor of 1; it may be empty
+    :param loads: a dict from targets to three numbers [N], or to a stress of a platen [Pa], at a
+        factor of 1; it may be empty
     :param most: factor at the end [-]
-    :param dead: whether what acts already grows, too: at a factor of 1 dead loads, presses without the weight of their platens, and
-        pressures are twice what they were. Gravity stays
-    :param pressure: [Pa] at a factor of 1, or a function of the place; ``towards``, ``part`` and ``normal``: of it, as in
+    :param dead: whether what acts already grows, too: at a factor of 1 dead loads, presses without
+        the weight of their platens, and pressures are twice what they were. Gravity stays
+    :param pressure: [Pa] at a factor of 1, or a function of the place; ``towards``, ``part`` and
+        ``normal``: of it, as in
         :meth:`pressure`
     :param over: time in which they grow to that [s]
     :param within: as in :meth:`tilt`
@@ -321,10 +334,11 @@ def _findBound(scene, made):
 def hold(scene: Any, target: AnyTarget, axes: Freedoms = "xyzXYZ") -> str:
     """Hold a target where it is now. What follows is the next stage's.
 
-    A platen that is pressed and then held along z keeps its height, and one held about Y does not turn: so does the top of many
-    test rigs.
+    A platen that is pressed and then held along z keeps its height, and one held about Y does not
+    turn: so does the top of many test rigs.
 
-    :param target: a platen or a :meth:`handle`, or a brick that was held and released: what has columns for its reaction
+    :param target: a platen or a :meth:`handle`, or a brick that was held and released: what has
+        columns for its reaction
     :param axes: along which it is held, xyz, and about which it cannot turn, XYZ
     """
     if not (target.fixed or target.loaded):
@@ -360,7 +374,8 @@ def hold(scene: Any, target: AnyTarget, axes: Freedoms = "xyzXYZ") -> str:
 
 
 def prepare(scene, word, arguments):
-    """Make the engines of a load that the script puts on after the first stage, before a checkpoint is loaded that has them."""
+    """Make the engines of a load that the script puts on after the first stage, before a checkpoint
+    is loaded that has them."""
     loading, get = scene.model.loading, arguments.get
     target = get("target") or get("platen")
     if word in PUSHES and (isinstance(target, dict) or target not in scene.targets):

@@ -1,9 +1,12 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Slow pushes of a target, as the drive of a testing machine makes them: ``push``, ``cycle`` and ``follow``.
+"""Slow pushes of a target, as the drive of a testing machine makes them: ``push``, ``cycle`` and
+``follow``.
 
-In a pattern several blocks are pushed by forces in a fixed proportion, as floors in a triangle, a mode or masses take them. The drive moves
-the mean of all points, by the shares of their forces, at a constant velocity. That is the displacement on which the whole force does
-work, so the push follows the structure beyond its peak. Displacements of the push are those of one target, its control.
+In a pattern several blocks are pushed by forces in a fixed proportion, as floors in a triangle, a
+mode or masses take them. The drive moves the mean of all points, by the shares of their forces, at
+a constant velocity. That is the displacement on which the whole force does work, so the push
+follows the structure beyond its peak. Displacements of the push are those of one target, its
+control.
 """
 
 import zlib
@@ -48,7 +51,8 @@ FREE = 1e-12  # of the sum of all forces: what a block takes at least that is pa
 
 
 def pushed(value: Any, first: Any = None) -> Any:
-    """The kind of what is pushed: a target, a dict from targets to shares, the name of a pattern, or a function of the place."""
+    """The kind of what is pushed: a target, a dict from targets to shares, the name of a pattern,
+    or a function of the place."""
     if isinstance(value, dict) and value:
         for target, share in value.items():
             kindOfLoaded(target, first)
@@ -75,7 +79,8 @@ Pushed = Annotated[
 
 
 def patternOf(scene: Any, value: Any, direction: Any, args: Any) -> Any:
-    """What a push moves: a target as it is, anything else as a :class:`masonry.assembly.loading.Pattern`. Raises Refused."""
+    """What a push moves: a target as it is, anything else as a
+    :class:`masonry.assembly.loading.Pattern`. Raises Refused."""
     if isinstance(value, Target):
         return value
     if isinstance(value, dict):
@@ -107,7 +112,8 @@ def patternOf(scene: Any, value: Any, direction: Any, args: Any) -> Any:
 
 
 def _named(pattern):
-    """A pattern whose name tells it from others: what a mode or a function gives is known by its numbers alone."""
+    """A pattern whose name tells it from others: what a mode or a function gives is known by its
+    numbers alone."""
     if pattern.name in ("masses", "triangle"):
         return pattern
     numbers = [(body, f"{share:.6g}") for body, _, share in pattern.parts]
@@ -116,8 +122,9 @@ def _named(pattern):
 
 
 def _shapeOf(model, value, direction, args):
-    """The force on a block over its mass, as a function of its body, which raises Refused: of a uniform acceleration, with the height above
-    the lowest brick, in the first mode along the push in the present state, or as a function of the place of its centre [m].
+    """The force on a block over its mass, as a function of its body, which raises Refused: of a
+    uniform acceleration, with the height above the lowest brick, in the first mode along the push
+    in the present state, or as a function of the place of its centre [m].
     """
     if value == "mode":
         mode = firstMode(model, direction, LONGEST * rampTime(args))
@@ -148,8 +155,8 @@ def _shapeOf(model, value, direction, args):
 
 
 def controlOf(scene: Any, value: Any, control: Target | None) -> Target:
-    """The target whose displacement a push counts: the one that is given, else what is pushed, of a dict the highest target, else what
-    is watched or moves. Raises Refused."""
+    """The target whose displacement a push counts: the one that is given, else what is pushed, of a
+    dict the highest target, else what is watched or moves. Raises Refused."""
     if control or isinstance(value, Target):
         return control or value
     found = (
@@ -165,7 +172,8 @@ def controlOf(scene: Any, value: Any, control: Target | None) -> Target:
 
 
 def peaks(scene, rows):
-    """The largest force that both ends carried, on either side if the push goes there and back, with the displacement there."""
+    """The largest force that both ends carried, on either side if the push goes there and back,
+    with the displacement there."""
     looped, run = bool(scene.pushed.history), {"stages": [{"load": ["push"], "first_row": 0}]}
     if looped:
         run["history"] = {}
@@ -196,24 +204,27 @@ def push(
     continued: bool = False,
     control: AnyTarget | None = None,
 ) -> str:
-    """Push a target at a constant velocity, as the drive of a testing machine does, or several points in a pattern.
+    """Push a target at a constant velocity, as the drive of a testing machine does, or several
+    points in a pattern.
 
-    In a pattern the forces keep their proportion, whatever the structure does, and the mean displacement of the points, by their shares of
-    the force, grows at the rate. The shares are forces: a triangle over floors of other masses is mass times height. Loads of
+    In a pattern the forces keep their proportion, whatever the structure does, and the mean
+    displacement of the points, by their shares of the force, grows at the rate. The shares are
+    forces: a triangle over floors of other masses is mass times height. Loads of
     :meth:`load` and :meth:`press` are no masses; a :class:`masonry.bricks.Floor` has one.
 
-    :param target: a platen that moves, or a :meth:`handle`; or a dict from some of these to their shares of the force, ``{roof: 2, floor: 1}``;
-        or, for a force on every rigid block that is free, ``"masses"``, as of a uniform acceleration, ``"triangle"``, mass times height
-        above the lowest brick, ``"mode"``, mass times the first mode along the push in the present state; or a function of x, y
-        and z [m] that multiplies the masses
-    :param until: displacement from where the push begins [mm]; the drive then stops and holds. ``--until`` and
-        ``--history`` replace it; None: one of these must be given
+    :param target: a platen that moves, or a :meth:`handle`; or a dict from some of these to their
+        shares of the force, ``{roof: 2, floor: 1}``; or, for a force on every rigid block that is
+        free, ``"masses"``, as of a uniform acceleration, ``"triangle"``, mass times height above
+        the lowest brick, ``"mode"``, mass times the first mode along the push in the present state;
+        or a function of x, y and z [m] that multiplies the masses
+    :param until: displacement from where the push begins [mm]; the drive then stops and holds.
+        ``--until`` and ``--history`` replace it; None: one of these must be given
     :param direction: of the push
     :param rate: [mm/s]; None: ``--rate``
-    :param continued: whether displacements count on from where the push before began, of this target in this direction,
-        and not from where the target is now
-    :param control: the target whose displacement ``until`` and the curve count; None: what is pushed, of a dict the highest, else the first
-        that is watched or moves
+    :param continued: whether displacements count on from where the push before began, of this
+        target in this direction, and not from where the target is now
+    :param control: the target whose displacement ``until`` and the curve count; None: what is
+        pushed, of a dict the highest, else the first that is watched or moves
     """
     how = direction, rate, continued, control
     return _drive(scene, "push", target, *how, until=until and until * scene.share)
@@ -235,8 +246,9 @@ def cycle(
 
     :param amplitudes: a list of displacements [mm], or of drifts [%]
     :param repeats: how often each of them
-    :param unit: of the amplitudes; a drift is the displacement that the curve counts over the height of its point above the lowest brick,
-        and on a platen that cannot turn over the height of the bricks below it
+    :param unit: of the amplitudes; a drift is the displacement that the curve counts over the
+        height of its point above the lowest brick, and on a platen that cannot turn over the height
+        of the bricks below it
     :param continued: and other parameters: as in :meth:`push`
     """
     counted = controlOf(scene, target, control)
@@ -259,7 +271,8 @@ def follow(
     continued: bool = False,
     control: AnyTarget | None = None,
 ) -> str:
-    """Push a target through the displacements of a CSV file, which has a column ``displacement_mm``.
+    """Push a target through the displacements of a CSV file, which has a column
+    ``displacement_mm``.
 
     :param continued: and other parameters: as in :meth:`push`
     """
@@ -296,7 +309,8 @@ def _drive(scene, name, target, direction, rate, continued, control, **aim):
 
 
 def _argumentsOf(scene, name, until=None, history=None):
-    """The options of the run, with what this push goes to. ``--until`` or ``--history`` are for the first push alone."""
+    """The options of the run, with what this push goes to. ``--until`` or ``--history`` are for the
+    first push alone."""
     args = SimpleNamespace(**vars(scene.args))
     if (args.until or args.history) and scene.script.isFirst(PUSHES):
         args.until = args.until and args.until * scene.share

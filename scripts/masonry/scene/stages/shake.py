@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Real time: ``shake``, ``run``, and ``shakeAgain``, records one after the other with what is left after each: ``period``."""
+"""Real time: ``shake``, ``run``, and ``shakeAgain``, records one after the other with what is left
+after each: ``period``."""
 
 import csv
 import itertools
@@ -37,8 +38,8 @@ LONGEST = 4.0  # [s]: the longest first period that is looked for
 
 
 def displacements(scene, rows):
-    """The largest horizontal displacement of every target that moves, and what remains at the end, with the direction's
-    sign."""
+    """The largest horizontal displacement of every target that moves, and what remains at the end,
+    with the direction's sign."""
     for target in scene.description.targets.values():
         for axis in "xy" if not target.fixed else "":
             if values := rows(f"{target.name}_{axis}_mm"):
@@ -92,24 +93,29 @@ def shake(
 ) -> str:
     """Shake the ground by a record.
 
-    The scene moves with the ground: every block feels the negative ground acceleration, and all displacements are relative to the
-    ground. Time is real, so masses must not be scaled. Between the samples the acceleration changes evenly, and each step has that of
-    its middle: nothing is filtered, and the time step does not depend on the samples.
+    The scene moves with the ground: every block feels the negative ground acceleration, and all
+    displacements are relative to the ground. Time is real, so masses must not be scaled. Between
+    the samples the acceleration changes evenly, and each step has that of its middle: nothing is
+    filtered, and the time step does not depend on the samples.
 
-    Joints that slide, crack and crush take energy, and so do those without bond that close after they have been open, as
-    their ``restitution`` says. The default adds no other damping, since none is measured for masonry that rocks.
+    Joints that slide, crack and crush take energy, and so do those without bond that close after
+    they have been open, as their ``restitution`` says. The default adds no other damping, since
+    none is measured for masonry that rocks.
     :func:`rayleigh` gives the two viscous ones from a damping ratio. They end with the stage.
 
-    ``--record FILE`` replaces the record of the first shake of a scene, with the time between its samples, its factor and its
-    unit, and ``--scale S`` makes that shake S times as strong. A record that does not end at rest is named with its numbers; nothing is corrected.
+    ``--record FILE`` replaces the record of the first shake of a scene, with the time between its
+    samples, its factor and its unit, and ``--scale S`` makes that shake S times as strong. A record
+    that does not end at rest is named with its numbers; nothing is corrected.
 
-    :param accelerations: a list, or the path of a file as :mod:`masonry.scene.accelerograms` reads it; or three paths, of both horizontal
-        components and the vertical one, upwards, which act at once
+    :param accelerations: a list, or the path of a file as :mod:`masonry.scene.accelerograms` reads
+        it; or three paths, of both horizontal components and the vertical one, upwards, which act
+        at once
     :param every: time between two samples [s]; None: that of the file
-    :param direction: of the ground's motion, horizontal; the second of three components is at 90° to its left
+    :param direction: of the ground's motion, horizontal; the second of three components is at 90°
+        to its left
     :param scale: factor on the accelerations
-    :param unit: of the accelerations: ``"m/s²"``, ``"g"`` or ``"cm/s²"``; None: what the file says, or else m/s², and a
-        record whose peak looks like another unit is refused
+    :param unit: of the accelerations: ``"m/s²"``, ``"g"`` or ``"cm/s²"``; None: what the file says,
+        or else m/s², and a record whose peak looks like another unit is refused
     :param after: time that follows the record [s]
     :param damping: numerical damping constant of the options' kind [-]
     :param massDamping: viscous, of the motion relative to the ground [1/s]
@@ -162,7 +168,8 @@ def shake(
 def run(scene: Any, seconds: Duration, damping: Damping = 0.0) -> str:
     """Let time pass, as it is: nothing brakes but what joints and contacts lose.
 
-    A block hits a wall, as a car does, if a script gives it a velocity after ``settle()``, and says so to the energy balance::
+    A block hits a wall, as a car does, if a script gives it a velocity after ``settle()``, and says
+    so to the energy balance::
 
         from yade import O
         scene = Scene("car", wall + road + car, stones, collapse="follow", allowGaps=True)  # the car is apart from the wall
@@ -171,7 +178,8 @@ def run(scene: Any, seconds: Duration, damping: Damping = 0.0) -> str:
         scene.model.energy.given()
         scene.run(3)
 
-    The script would do this again in a run that ``--resume`` continues later, so start such a run anew.
+    The script would do this again in a run that ``--resume`` continues later, so start such a run
+    anew.
 
     :param seconds: time in the scene [s]
     :param damping: numerical damping constant of the options' kind [-]
@@ -195,8 +203,8 @@ def remains(scene, rows):
 
 @stage(answers=remains)
 def period(scene: Any, direction: Level = (1, 0, 0)) -> str:
-    """Measure the first period of the structure, which is at rest, by its free vibration after a small push (0.05 g), and what has
-    moved since it was built. The scene stays as it is.
+    """Measure the first period of the structure, which is at rest, by its free vibration after a
+    small push (0.05 g), and what has moved since it was built. The scene stays as it is.
 
     :param direction: horizontal
     """
@@ -217,9 +225,10 @@ def shakeAgain(
     longest: Duration = 4.0,
     **how: Any,
 ) -> list[str]:
-    """Shake a structure by one record after the other, as it was left by those before. After each it comes to rest, and its period
-    and what remains are measured: stages :meth:`shake`, :meth:`settle` and :meth:`period`. ``shakes.csv`` has a row for every
-    record. ``--resume`` goes on within a record as it does in :meth:`shake`.
+    """Shake a structure by one record after the other, as it was left by those before. After each
+    it comes to rest, and its period and what remains are measured: stages :meth:`shake`,
+    :meth:`settle` and :meth:`period`. ``shakes.csv`` has a row for every record. ``--resume`` goes
+    on within a record as it does in :meth:`shake`.
 
     :param records: of each what :meth:`shake` takes
     :param every: time between two samples [s], and ``direction``: as in :meth:`shake`

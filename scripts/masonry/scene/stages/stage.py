@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What stages of a scene share: how they begin and end, their traits, and how time passes in those that last for a given time."""
+"""What stages of a scene share: how they begin and end, their traits, and how time passes in those
+that last for a given time."""
 
 import functools
 import os
@@ -35,14 +36,18 @@ Stage = Callable[Concatenate[Any, P], str]
 class Traits:
     """What the rest of the package must know of a kind of stage.
 
-    :param bounded: whether ``--preset bound`` finds the bound of its load; other stages are left out then
-    :param farther: names of the arguments that say how far it goes: a run that is resumed in this stage may change them
+    :param bounded: whether ``--preset bound`` finds the bound of its load; other stages are left
+        out then
+    :param farther: names of the arguments that say how far it goes: a run that is resumed in this
+        stage may change them
     :param options: options of the command line that the stage uses, by the names of their values
     :param grows: whether presses, dead loads and wind grow in it
     :param real: whether it runs in real time, whatever falls, in a scene whose collapse is followed
-    :param check: function of the scene and what the user says, which raises Refused before the scene is built
-    :param answers: function of the scene, and of one that gives the values of a column in the rows of the stage, or an empty list, by its
-        head; it gives some :class:`~masonry.scene.stages.answers.Answer`
+    :param check: function of the scene and what the user says, which raises Refused before the
+        scene is built
+    :param answers: function of the scene, and of one that gives the values of a column in the rows
+        of the stage, or an empty list, by its head; it gives some
+        :class:`~masonry.scene.stages.answers.Answer`
     """
 
     bounded: bool = False
@@ -58,7 +63,8 @@ def stage(**traits: Any) -> Callable[[Stage[P]], Stage[P]]:
     """Make a stage of a function of the scene and what the user says, which is checked as by
     :func:`masonry.common.arguments.validated`; the keywords are those of :class:`Traits`.
 
-    The stage builds the scene if it is the first, is left out after a collapse, and ends the run in order on errors.
+    The stage builds the scene if it is the first, is left out after a collapse, and ends the run in
+    order on errors.
     """
 
     def made(said: Stage[P]) -> Stage[P]:
@@ -151,12 +157,14 @@ def _carryOut(scene, act, traits, args, settings):
         return _fall(scene, name, traits, before, str(collapse))
     except BaseException as error:
         if before is not None and running.entered == before:
-            scene.script.words.pop()  # it has done nothing, and a run that goes on need not say it again
+            # it has done nothing, and a run that goes on need not say it again
+            scene.script.words.pop()
         return scene.failed(error)
 
 
 def _fall(scene, name, traits, before, what):
-    """End a stage in which the structure has fallen, or go on with the fall; ``what`` has fallen, and how far."""
+    """End a stage in which the structure has fallen, or go on with the fall; ``what`` has fallen,
+    and how far."""
     running = scene.running
     scene.ended = COLLAPSED
     follows = scene.description.contact is not None and not scene.bracketing
@@ -176,7 +184,8 @@ def _fall(scene, name, traits, before, what):
 
 
 def _follow(scene, name):
-    """Go on with a structure that has fallen until it is at rest, in a stage or in a run that is resumed while it falls."""
+    """Go on with a structure that has fallen until it is at rest, in a stage or in a run that is
+    resumed while it falls."""
     running, begun = scene.running, scene.running.at.begun
     try:
         running.endsAtFall = False
@@ -203,8 +212,8 @@ def _noteEnd(running, before, ended):
 
 
 def _answer(scene, name, traits, before):
-    """Keep the answers of a stage that was carried out now, and not before the run was resumed; ``before``: how many stages the run had
-    entered before it."""
+    """Keep the answers of a stage that was carried out now, and not before the run was resumed;
+    ``before``: how many stages the run had entered before it."""
     running = scene.running
     if scene.only or before is None or running.entered == before:
         return
@@ -229,7 +238,8 @@ class Timed:
 def timed(scene, at, duration, before, after=None, each=None):
     """Steps for a duration [s], with rows and frames evenly in time.
 
-    :param before: function of the number of steps so far and after the next stretch, called before each stretch
+    :param before: function of the number of steps so far and after the next stretch, called before
+        each stretch
     :param after: called after each row
     :param each: steps of a stretch; None: 20, or fewer
     """

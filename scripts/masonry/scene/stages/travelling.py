@@ -31,7 +31,8 @@ class Travelling(Resting):
 
 
 def standings(scene, rows):
-    """What a load did that travelled: how many places held it, where the structure gave way most, and the least bound."""
+    """What a load did that travelled: how many places held it, where the structure gave way most,
+    and the least bound."""
     at = scene.running.memory
     if not isinstance(at, Travelling):
         return
@@ -78,18 +79,20 @@ def travel(
     along: Annotated[Sequence[Any], listOf(point("m", 1e6))],
     longest: Duration | None = None,
 ) -> str:
-    """Let a vertical load go over the structure, as an axle goes over an arch bridge: it stands at one place after the other until the
-    structure is at rest, and leaves behind the last one.
+    """Let a vertical load go over the structure, as an axle goes over an arch bridge: it stands at
+    one place after the other until the structure is at rest, and leaves behind the last one.
 
-    From place to place it grows on the next one as it leaves the one before. Every place has a row of curve.csv, in which
-    ``load_factor`` is the number of the place; the last row is without the load. Joints that have opened, slid or crushed remember
-    it. Of up to 500 joints, and with ``--preset bound``, limit analysis finds the largest load at each place [kN].
+    From place to place it grows on the next one as it leaves the one before. Every place has a row
+    of curve.csv, in which ``load_factor`` is the number of the place; the last row is without the
+    load. Joints that have opened, slid or crushed remember it. Of up to 500 joints, and with
+    ``--preset bound``, limit analysis finds the largest load at each place [kN].
 
     :param force: downwards [N]
-    :param along: points (x, y, z) [m]: the load stands on the highest face of a rigid brick below each of them
+    :param along: points (x, y, z) [m]: the load stands on the highest face of a rigid brick below
+        each of them
     :param longest: as in :meth:`load`, at each place
-    :returns: ``DONE``; ``MOVING`` if the structure did not come to rest with the load at a place, where the stage ends then;
-        ``COLLAPSED``
+    :returns: ``DONE``; ``MOVING`` if the structure did not come to rest with the load at a place,
+        where the stage ends then; ``COLLAPSED``
     """
     engines, loading = placed(scene, along), scene.model.loading
     down = Vector3(0, 0, -force)
