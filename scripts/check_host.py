@@ -2,9 +2,9 @@
 """Whether the plugin fits a YADE, read from its package; nothing of it is run or installed.
 
     /usr/bin/python3 scripts/check_host.py libyade_VERSION_amd64.deb
-    /usr/bin/python3 scripts/check_host.py FOLDER                  with the libraries of a YADE somewhere in it
-    /usr/bin/python3 scripts/check_host.py FOLDER --show [CLASS...]    prints its virtual functions
-    /usr/bin/python3 scripts/check_host.py FOLDER --write VERSION MODULE     writes its table for the built _masonry.so
+    /usr/bin/python3 scripts/check_host.py FOLDER  # with the libraries of a YADE somewhere in it
+    /usr/bin/python3 scripts/check_host.py FOLDER --show [CLASS...]  # prints its virtual functions
+    /usr/bin/python3 scripts/check_host.py FOLDER --write VERSION _masonry.so  # writes its table
 
 Compared are the virtual functions and the size of each class of Yade.hpp, and the functions that
 the plugin calls, with the tables of the YADE versions that the plugin knows. Needs binutils, which

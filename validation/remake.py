@@ -2,11 +2,11 @@
 """Keeps all results of this folder of one age: knows what makes each, finds what is stale, and
 makes it anew.
 
-/usr/bin/python3 validation/remake.py --list                 # what there is, how old it is, how long it takes
-/usr/bin/python3 validation/remake.py [NAME ...]             # makes what is stale, of these, or of all
-/usr/bin/python3 validation/remake.py --minutes 10           # of what is stale, what takes no longer than this
+/usr/bin/python3 validation/remake.py --list                 # what there is, its age and duration
+/usr/bin/python3 validation/remake.py [NAME ...]             # makes what is stale of these or all
+/usr/bin/python3 validation/remake.py --minutes 10           # what is stale and takes no longer
 /usr/bin/python3 validation/remake.py --force NAME           # makes it although it is not stale
-/usr/bin/python3 validation/remake.py --table                # writes the table of validation/README.md alone
+/usr/bin/python3 validation/remake.py --table                # only writes the table of README.md
 
 NAME may be a folder, as trade, or one of its results, as wall_comp4/rigid.
 

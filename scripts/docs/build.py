@@ -44,11 +44,13 @@ FIRST = "First steps"  # the notebooks of the tutorial come before its other pag
 SECTIONS = {
     FIRST: ["scripts/TASKS", "scripts/WALL", "gallery"],
     "Manual": (
-        "scripts/README commands options scripts/STUDIES scripts/FILES yade_plugin/FOR_YADE_USERS".split()
-    ),
+        "scripts/README commands options scripts/STUDIES scripts/FILES"
+        " yade_plugin/FOR_YADE_USERS"
+    ).split(),
     "Laws": (
-        "yade_plugin/law/README yade_plugin/law/cyclic_softening/README yade_plugin/contact/README".split()
-    ),
+        "yade_plugin/law/README yade_plugin/law/cyclic_softening/README"
+        " yade_plugin/contact/README"
+    ).split(),
     "Validation": ["validation/README"],
     "Reference": ["api/masonry", "classes"],
     "Project": "yade_plugin/README yade_plugin/host/README CONTRIBUTING CHANGELOG cite".split(),
@@ -187,8 +189,8 @@ def bundle(static):
 def pdf(page, target):
     """Print a page to a PDF with chromium, without a display and without a network."""
     words = """
-        chromium --headless=new --no-sandbox --disable-gpu --disable-background-networking --virtual-time-budget=300000
-        --generate-pdf-document-outline --no-pdf-header-footer
+        chromium --headless=new --no-sandbox --disable-gpu --disable-background-networking
+        --virtual-time-budget=300000 --generate-pdf-document-outline --no-pdf-header-footer
     """.split()
     words += ["--host-resolver-rules=MAP * ~NOTFOUND", f"--print-to-pdf={target}"]
     words.append("file://" + os.path.abspath(page))

@@ -2,7 +2,7 @@
 """How the sources are formatted, and imports that nobody uses.
 
     /usr/bin/python3 tests/gates/formatting.py          prints what is wrong
-    /usr/bin/python3 tests/gates/formatting.py --write  formats the tree and takes unused imports out
+    /usr/bin/python3 tests/gates/formatting.py --write  formats, and takes unused imports out
 
 C++ is formatted by clang-format 14 after ``.clang-format``, Python by black 23 after
 ``pyproject.toml``. Other versions break other lines, so the gate takes these alone, which are those

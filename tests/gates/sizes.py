@@ -112,8 +112,11 @@ def budget():
 
 
 SPLIT = "split it by what its parts are for."
-REDUCE = """Take out as much elsewhere: what is written twice (`duplicates --change`), defends against what nobody meets, or no longer
-has a user. If what came is worth it, raise the number in tests/gates/budget.json, and give the reason in the commit."""
+REDUCE = (
+    "Take out as much elsewhere: what is written twice, defends against what nobody meets, or no longer"
+    " has a user. If what came is worth it, raise the number in tests/gates/budget.json, and give the"
+    " reason in the commit."
+)
 
 
 def over(part, sizes, places, allowed):

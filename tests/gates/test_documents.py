@@ -24,7 +24,8 @@ def planted(tmp_path, text):
 def test_what_leads_somewhere_is_left_alone(tmp_path):
     good = """# Here
 
-[a](other.md) [b](other.md#a-heading-with-code) [c](#here) [d](https://example.org/x) [e](other.md#twice-1)
+[a](other.md) [b](other.md#a-heading-with-code) [c](#here) [d](https://example.org/x)
+[e](other.md#twice-1)
 
     bash scripts/run.sh wall
     yade -n -x scripts/wall.py --until 3

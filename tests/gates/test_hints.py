@@ -18,12 +18,13 @@ PUBLIC = """
     bricks.beams bricks.blocks bricks.files bricks.vaults bricks.walls
     capacity.domains capacity.figure capacity.n2 capacity.report capacity.spectra
     limit.assembly limit.bound limit.reading
-    read.bilinear read.comparison read.cracks read.curve_figure read.curves read.figures read.files read.frames read.loops read.measure
-    read.viewer
+    read.bilinear read.comparison read.cracks read.curve_figure read.curves read.figures
+    read.files read.frames read.loops read.measure read.viewer
     run.checkpoints
-    scene.accelerograms scene.connections scene.fields scene.ground scene.loads scene.records scene.scene scene.spectrum scene.supports
-    scene.targets
-    scene.materials.assumptions scene.materials.codes scene.materials.formulas scene.materials.kinds scene.materials.published
+    scene.accelerograms scene.connections scene.fields scene.ground scene.loads scene.records
+    scene.scene scene.spectrum scene.supports scene.targets
+    scene.materials.assumptions scene.materials.codes scene.materials.formulas
+    scene.materials.kinds scene.materials.published
     study.calibrate study.incremental study.plan study.variables
 """.split()
 #: Stages are words of a scene, in modules that hold more.

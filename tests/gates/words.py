@@ -75,7 +75,8 @@ ABOUT_WORDS = "tests/gates/"  # these files name the words
 
 _PARTS = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+")
 _CPP = re.compile(
-    r'(?P<comment>//[^\n]*|/\*.*?\*/)|(?P<text>R"\((?:.*?)\)"|"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])+\')'
+    r"(?P<comment>//[^\n]*|/\*.*?\*/)"
+    r'|(?P<text>R"\((?:.*?)\)"|"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])+\')'
     r"|(?P<name>[A-Za-z_]\w*)|(?P<number>\d[\w.']*)",
     re.DOTALL,
 )

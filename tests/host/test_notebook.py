@@ -15,7 +15,8 @@ pytest.importorskip("ipykernel", reason="python3-ipykernel is not installed")
 LARGEST = 150_000  # bytes of what a notebook keeps of one object
 SCENE = """
 from masonry import Scene, bricks, materials
-scene = Scene({name!r}, bricks.Wall(1.1, 0.81), materials.calciumSilicate(), rate={rate}, out={out!r})
+wall = bricks.Wall(1.1, 0.81)
+scene = Scene({name!r}, wall, materials.calciumSilicate(), rate={rate}, out={out!r})
 base, top = scene.platen("bottom"), scene.platen("top", rotation="held")
 scene.press(top, 0.3e6)
 """

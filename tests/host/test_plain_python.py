@@ -53,7 +53,8 @@ def test_a_scene_finds_yade_and_starts_it_as_it_must(tmp_path):
 import ctypes, gc, os, socketserver, threading
 assert sys.argv == before[0], sys.argv
 assert sys.path[:len(before[1])] == before[1], sys.path
-sockets = [f for f in os.listdir("/proc/self/fd") if os.path.exists(p := f"/proc/self/fd/{f}") and "socket" in os.readlink(p)]
+paths = [f"/proc/self/fd/{f}" for f in os.listdir("/proc/self/fd")]
+sockets = [p for p in paths if os.path.exists(p) and "socket" in os.readlink(p)]
 assert not sockets and threading.active_count() == 1, sockets
 assert not [o for o in gc.get_objects() if isinstance(o, socketserver.BaseServer)]
 assert "OMP_NUM_THREADS" not in os.environ
@@ -259,7 +260,8 @@ BANNER = (
 )
 #: Times of the clock, and what is as fast as the machine.
 TIMES = re.compile(
-    r'"(date|seconds|setup|steps|rows|frames|wall_clock_s|microseconds_per_step|nanoseconds_per_subcontact_step|out)": .*'
+    r'"(date|seconds|setup|steps|rows|frames|wall_clock_s|microseconds_per_step'
+    r'|nanoseconds_per_subcontact_step|out)": .*'
 )
 
 #: The same in a report: when the run ended, and how long it took; and numbers of its picture, whose

@@ -73,7 +73,7 @@ def write(interactions):
         joint.cohesion = joint.cohesion
 
 def end(beside=None):
-    '''The state after a run in the background, beside which another thread does something again and again.'''
+    '''The state after a run in the background, while another thread repeats something.'''
     interactions = panel(False, {blocks!r}, damping=0.3)
     done, goes = [0], [True]
     def again():
@@ -258,8 +258,9 @@ assert O.iter == STEPS and bits(interactions) == plain
 #: What is read -> whether it is state of a scene, and so an error once the scene is gone.
 STATE = """phys.stress phys.damage phys.slip phys.regime phys.dissipated geom.jumps
 zones.displacements zones.velocities zones.nodesOf(2)""".split()
-OTHER = """zones.masses zones.dict() phys.dict() geom.areas geom.centres energy.balance() load.displacement()
-load.reaction loop.dict() integrator.kinetic joint.cohesion joint.updateAttrs(dict(cohesion=2e4,tensileStrength=1e4))
+OTHER = """zones.masses zones.dict() phys.dict() geom.areas geom.centres
+energy.balance() load.displacement() load.reaction loop.dict() integrator.kinetic joint.cohesion
+joint.updateAttrs(dict(cohesion=2e4,tensileStrength=1e4))
 zones.setVelocity(0,Vector3(0,0,1))""".split()
 READ = {**dict.fromkeys(STATE, True), **dict.fromkeys(OTHER, False)}
 GONE = {
@@ -364,7 +365,8 @@ O.run({steps}, True) if {steps} else None
 O.bodies.erase({erased})
 for act in (
     lambda: O.step(), lambda: O.step(), lambda: [O.step() for _ in range(200)], lambda: energy(),
-    lambda: criticalTimeStep(), lambda: saveCheckpoint("/dev/null/x"), lambda: [i.phys.stress for i in interactions],
+    lambda: criticalTimeStep(), lambda: saveCheckpoint("/dev/null/x"),
+    lambda: [i.phys.stress for i in interactions],
     lambda: MasonryVtkRecorder(directory="/dev/null")(),
 ):
     try:

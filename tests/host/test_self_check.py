@@ -49,7 +49,8 @@ def differences():
 
 def words(address, count):
     page = address & ~4095
-    assert not libraries.mprotect(ctypes.c_void_p(page), ctypes.c_size_t(address + 8 * count - page), 3)
+    size = address + 8 * count - page
+    assert not libraries.mprotect(ctypes.c_void_p(page), ctypes.c_size_t(size), 3)
     return (ctypes.c_int64 * count).from_address(address)
 
 def changed(memory, values, expected):
@@ -60,10 +61,13 @@ def changed(memory, values, expected):
     assert len(found) == 1 and found[0].strip().startswith(expected), (expected, found)
 
 class Info(ctypes.Structure):
-    _fields_ = [("path", ctypes.c_char_p), ("base", ctypes.c_void_p), ("name", ctypes.c_char_p), ("at", ctypes.c_void_p)]
+    _fields_ = [
+        ("path", ctypes.c_char_p), ("base", ctypes.c_void_p),
+        ("name", ctypes.c_char_p), ("at", ctypes.c_void_p),
+    ]
 
 def table(name):
-    # Its words and the one behind it, and the number in the library's list of symbols that is its size.
+    # Its words and the one behind it, and the number in the list of symbols that is its size.
     address = ctypes.addressof(ctypes.c_byte.in_dll(libraries, f"_ZTVN4yade{len(name)}{name}E"))
     info, entry = Info(), ctypes.c_void_p()
     assert libraries.dladdr1(ctypes.c_void_p(address), ctypes.byref(info), ctypes.byref(entry), 1)
@@ -94,7 +98,8 @@ for name, member in MEMBERS:
     if not hasattr(yade.wrapper, name):
         continue  # Polyhedra in a YADE without CGAL
     place = offset(name, member)
-    changed(place, [place[0] + 8], f"{name}.{member}: expected offset {place[0]}, found offset {place[0] + 8}")
+    expected = f"{name}.{member}: expected offset {place[0]}, found offset {place[0] + 8}"
+    changed(place, [place[0] + 8], expected)
 for base, derived, first in SIZES:
     place = offset(derived, first)
     changed(place, [place[0] + 8], f"{base}: expected a size of {place[0]}")

@@ -45,7 +45,8 @@ b = O.bodies[top].state
 print("END", repr(tuple(b.pos)), repr(push.reaction))
 print("TAKEN", taken, window.drawingTime() - before if mode == "view" else 0.0)
 if mode == "view":
-    for n, (blocks, joints) in enumerate([("displacement", "damage"), ("material", "regime"), ("velocity", "opening"), ("own", None)]):
+    shown = dict(displacement="damage", material="regime", velocity="opening", own=None)
+    for n, (blocks, joints) in enumerate(shown.items()):
         window.show(blocks=blocks, joints=joints, scale=30)
         window.picture(os.path.join(folder, f"{n}.png"))
 sys.stdout.flush()

@@ -471,8 +471,10 @@ import matplotlib
 from yade import plot
 before = dict(matplotlib.rcParams), matplotlib.get_backend()
 masonry.read.figures.draw({folder!r})
-assert before == (dict(matplotlib.rcParams), matplotlib.get_backend()), "settings of matplotlib were changed"
-assert not [name for name in sys.modules if name.startswith(("vtk", "paraview"))], "VTK's Python was loaded"
+after = dict(matplotlib.rcParams), matplotlib.get_backend()
+assert before == after, "settings of matplotlib were changed"
+loaded = [name for name in sys.modules if name.startswith(("vtk", "paraview"))]
+assert not loaded, "VTK's Python was loaded"
 try:
     masonry.read.figures.draw("nowhere")
 except masonry.basics.Refused as error:

@@ -140,7 +140,8 @@ def test_keywords_are_checked_with_all_problems_at_once(form):
     with raises(Refused) as refused:
         made(form, [], **wrong)
     said = str(refused.value)
-    for part in """scene said: joints: 'britle' must be one of softening, cyclic, brittle, did you mean 'brittle'?
+    for part in """\
+scene said: joints: 'britle' must be one of softening, cyclic, brittle, did you mean 'brittle'?
 rate: -50.0 mm/s must be at least 0.001 and at most 1000
 no option rat; did you mean rate?
 lean: 1 must be True or False
@@ -174,7 +175,8 @@ from masonry.scene.options import parser
 import clay
 
 args = parser("own", until=1).parse_args()
-scene = Scene("resumed", bricks.stack(2, clay.SIZE), materials.dry(0.5), arguments=args, damping=0.7, plane=True)
+blocks, stone = bricks.stack(2, clay.SIZE), materials.dry(0.5)
+scene = Scene("resumed", blocks, stone, arguments=args, damping=0.7, plane=True)
 scene.platen("bottom")
 scene.settle()
 scene.run(0.01)

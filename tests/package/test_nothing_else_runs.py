@@ -47,7 +47,8 @@ def test_figures_are_drawn_with_nothing_of_the_present_folder(planted, monkeypat
 PORTS = """
 import os, sys
 def listens():
-    own = {os.readlink(f'/proc/self/fd/{n}')[8:-1] for n in os.listdir('/proc/self/fd') if os.path.lexists(f'/proc/self/fd/{n}')}
+    paths = [f'/proc/self/fd/{n}' for n in os.listdir('/proc/self/fd')]
+    own = {os.readlink(path)[8:-1] for path in paths if os.path.lexists(path)}
     lines = [l.split() for f in ('tcp', 'tcp6') for l in open(f'/proc/net/{f}').readlines()[1:]]
     return [l[1] for l in lines if l[3] == '0A' and l[9] in own]
 print('before', len(listens()))

@@ -42,11 +42,10 @@ def asCsv(path, rings):
 
 def asSvg(path, rings):
     # down is positive, in mm, in a group that is moved
-    paths = "".join(
-        f'<path id="s{n}" d="M'
-        f' {" ".join(f"{1e3 * x - 7!r},{5 - 1e3 * z!r}" for x, z in np.asarray(ring).tolist())} z"/>'
-        for n, ring in enumerate(rings)
-    )
+    paths = ""
+    for n, ring in enumerate(rings):
+        corners = (f"{1e3 * x - 7!r},{5 - 1e3 * z!r}" for x, z in np.asarray(ring).tolist())
+        paths += f'<path id="s{n}" d="M {" ".join(corners)} z"/>'
     path.write_text(
         '<svg xmlns="http://www.w3.org/2000/svg"><g transform="translate(7 -5)'
         f' scale(0.001)">{paths}</g></svg>'

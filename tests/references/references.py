@@ -3,7 +3,7 @@
 them.
 
     yade -n -x tests/references/references.py             # compares all runs with what is stored
-    yade -n -x tests/references/references.py --write     # makes the stored files anew, with the plugin that is imported
+    yade -n -x tests/references/references.py --write     # stores anew, from the imported plugin
     yade -n -x tests/references/references.py rigid ...   # only the runs whose names begin so
 
 A run is a scene and its stages. After each stage the state is read through the public Python

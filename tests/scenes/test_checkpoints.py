@@ -332,7 +332,8 @@ def test_links_or_pipes_are_not_taken_up(broken, tmp_path, capsys, name, kind, m
 def test_a_script_whose_last_word_was_refused_goes_on_when_mended(tmp_path):
     text = """
 from masonry import Scene, bricks, materials
-scene = Scene("s", bricks.Wall(0.44, 0.162), materials.calciumSilicate(), arguments=["--no-vtk", {!r}, {!r}])
+arguments = ["--no-vtk", {!r}, {!r}]
+scene = Scene("s", bricks.Wall(0.44, 0.162), materials.calciumSilicate(), arguments=arguments)
 base, top = scene.platen("bottom"), scene.platen("top")
 scene.press(top, 1e5)
 scene.settle()

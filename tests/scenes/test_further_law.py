@@ -13,7 +13,8 @@ from test_checkpoints import files
 WALL = os.path.join(ROOT, "tests", "studies", "small.py")
 STUDY = f"""
 from masonry.study import Study
-study = Study({WALL!r}, design="grid", options={{"rate": 20, "until": 0.3}}, vary={{"joints": ["softening", "coulomb"]}})
+vary = {{"joints": ["softening", "coulomb"]}}
+study = Study({WALL!r}, design="grid", options={{"rate": 20, "until": 0.3}}, vary=vary)
 """
 FUNCTORS = """
 from yade import *
@@ -26,13 +27,16 @@ def pair():
     mat = MasonryMat(young=4.8e9, poisson=0.16, density=1800)
     low, high = (addBlock(brick(z), mat, inPlane=True) for z in (0, 0.081))
     O.bodies[low].state.blockedDOFs = "xyzXYZ"
-    load = MasonryLoad(body=high, point=(0.11, 0.051, 0.162), force=(0, 0, -2e3), direction=(1, 0, 0), driven=True, velocity=0.01)
-    engines([MasonryJoint(law="coulomb", friction=0.5, tensileStrength=0)], loads=[load], functors=functors, damping=0.3)
+    load = MasonryLoad(body=high, point=(0.11, 0.051, 0.162), force=(0, 0, -2e3),
+        direction=(1, 0, 0), driven=True, velocity=0.01)
+    kinds = [MasonryJoint(law="coulomb", friction=0.5, tensileStrength=0)]
+    engines(kinds, loads=[load], functors=functors, damping=0.3)
     connect()
     O.dt = 0.5 * criticalTimeStep()[0]
     O.run(2000, True)
     joint = O.interactions.all()[0].phys
-    names = [type(f).__name__ for e in O.engines if hasattr(e, "lawDispatcher") for f in e.lawDispatcher.functors]
+    dispatchers = [e.lawDispatcher for e in O.engines if hasattr(e, "lawDispatcher")]
+    names = [type(f).__name__ for dispatcher in dispatchers for f in dispatcher.functors]
     return joint.stress, joint.slip, names
 for functors in (False, True):
     O.reset()

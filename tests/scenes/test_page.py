@@ -31,7 +31,8 @@ def opened(chromium, paper):
 
 
 #: Chooses what the joints show, as the user of the page does.
-CHOSEN = """(() => { const list = [...document.querySelectorAll('label')].find(l => l.textContent.startsWith('joints')).querySelector('select');
+CHOSEN = """(() => { const labels = [...document.querySelectorAll('label')];
+    const list = labels.find(l => l.textContent.startsWith('joints')).querySelector('select');
     list.value = 'slide'; list.dispatchEvent(new Event('change')); return 0 })()"""
 
 

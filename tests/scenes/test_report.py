@@ -110,9 +110,11 @@ class TestInABrowser:
         moved(opened, 0)
         opened.value("(document.querySelector('[data-frames]').scrollIntoView(), 0)")
         place = opened.value(
-            """(() => { const figure = document.querySelector('[data-frames]'), chart = figure.querySelector('svg');
+            """(() => { const figure = document.querySelector('[data-frames]');
+            const chart = figure.querySelector('svg');
             const [x, y] = figure.dataset.frames.split(' ')[4].split(',').map(Number);
-            const at = new DOMPoint(x + 2, y).matrixTransform(chart.getScreenCTM()); return [at.x, at.y] })()"""
+            const at = new DOMPoint(x + 2, y).matrixTransform(chart.getScreenCTM());
+            return [at.x, at.y] })()"""
         )
         opened.drag(place, place)
         assert opened.value("new Promise(done => setTimeout(() => done(view.frame), 100))") == 4

@@ -25,7 +25,8 @@ def slip(a):
 
 
 SCRIPT = f"""
-stone = materials.dry(friction={FRICTION}, normalStiffness=1e11, shearStiffness={STIFFNESS}, density={DENSITY})
+stone = materials.dry(friction={FRICTION}, normalStiffness=1e11, shearStiffness={STIFFNESS},
+    density={DENSITY})
 scene = Scene("slab", bricks.block((0, 0, 0), ({SIDE}, {SIDE}, {HIGH})), stone)
 scene.platen("bottom")
 scene.watch(0, name="slab")

@@ -200,8 +200,10 @@ FILE = f"""
 from masonry.study import Calibration, Specimen
 curve = Specimen({COUPLET!r}, "test.csv:slide:stress", 0.01, ("slide_mm", "shear_stress_MPa"), 6,
     options={{"normal_stress": -0.5, "until": 0.4, "rate": 30}})
-peak = Specimen({COUPLET!r}, {{"peak_shear_stress_MPa": (0.52, 0.01)}}, options={{"normal_stress": -1, "until": 0.1, "rate": 30}})
-calibration = Calibration([curve, peak], {{"bed.cohesion": (0.05e6, 0.2e6), ("bed.friction", "bed.residualFriction"): (0.3, 0.6)}}, 8)
+peak = Specimen({COUPLET!r}, {{"peak_shear_stress_MPa": (0.52, 0.01)}},
+    options={{"normal_stress": -1, "until": 0.1, "rate": 30}})
+calibration = Calibration([curve, peak], {{"bed.cohesion": (0.05e6, 0.2e6),
+    ("bed.friction", "bed.residualFriction"): (0.3, 0.6)}}, 8)
 """
 
 

@@ -13,7 +13,8 @@ pytest.importorskip("openturns", reason="python3-openturns is not installed")
 SMALL = os.path.join(HERE, "small.py")
 STUDY = f"""
 from masonry.study import Study, field, lognormal
-study = Study({SMALL!r}, runs=4, seed=1, options={{"rate": 5, "until": 1, "checkpoint_every": 0.002}},
+study = Study({SMALL!r}, runs=4, seed=1,
+    options={{"rate": 5, "until": 1, "checkpoint_every": 0.002}},
     vary={{"bed.friction": lognormal(mean=0.43, cov=0.05), "joints": ["softening", "cyclic"],
            ("bed.cohesion", "bed.tensileStrength"): field(cov=0.2, length=0.3)}})
 """
@@ -199,8 +200,8 @@ def test_what_the_scene_cannot_take_is_reported_at_once_and_nothing_runs(tmp_pat
 from masonry.study import *
 study = Study({SMALL!r}, runs=20, seed=1, options={{"until": 1, "dance": 3}}, vary={{
     "bed.friction": normal(mean=0.43, cov=0.5), "crack.cohesion": lognormal(mean=1e3, cov=0.1),
-    "bed.stickiness": uniform(0, 1), "wall.cohesion": uniform(1, 2), "support.cohesion": uniform(1e5, 2e5),
-    "rate": uniform(-30, 30), "color": ["red"],
+    "bed.stickiness": uniform(0, 1), "wall.cohesion": uniform(1, 2),
+    "support.cohesion": uniform(1e5, 2e5), "rate": uniform(-30, 30), "color": ["red"],
 }})
 """
     message = refused(tmp_path, text)

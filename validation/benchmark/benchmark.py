@@ -228,7 +228,8 @@ def compare():
     for name, r in results.items():
         ratio, each = (r[k] / base[k] for k in ("step_us", "contact_ns"))
         print(
-            f"{name:42}{r['step_us']:12.1f}{ratio:8.2f}{r['contacts']:10d}{r['contact_ns']:10.1f}{each:8.2f}"
+            f"{name:42}{r['step_us']:12.1f}{ratio:8.2f}{r['contacts']:10d}"
+            f"{r['contact_ns']:10.1f}{each:8.2f}"
         )
         for engine, us in r["engines_us"].items():
             print(f"    {engine:38}{us:12.1f}")

@@ -2,7 +2,7 @@
 """What a record takes: about 500 bricks are shaken by noise.
 
     yade -n -x validation/benchmark/shaken_facade.py --lean --preset fast --seconds 10 --peak 0.2
-    yade -n -x validation/benchmark/shaken_facade.py --lean --preset fast --seconds 2 --peak 0.2 --pier
+    yade -n -x validation/benchmark/shaken_facade.py --lean --preset fast --seconds 2 --pier
 
 A façade of two storeys, whose bricks can crack in half, moves in its plane; with ``--pier`` a pier
 of two wythes in English bond, 1.26 x 2.6 m, whose bricks do not crack, moves in space, across its

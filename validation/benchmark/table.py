@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Seconds and microseconds a step of whole runs, of one build or of several side by side.
 
-    /usr/bin/python3 validation/benchmark/table.py                            # the plugin that is installed
-    /usr/bin/python3 validation/benchmark/table.py SITE OLDER --rows fast wide    # two folders with a `masonry` package each, some rows
+    # the plugin that is installed
+    /usr/bin/python3 validation/benchmark/table.py
+    # two folders with a `masonry` package each, some rows
+    /usr/bin/python3 validation/benchmark/table.py SITE OLDER --rows fast wide
 
 The builds take turns, and of each the best of ``--repeat`` runs counts. Scenes are those of this
 repository. A row whose run fails, for example because an older build does not know one of its

@@ -79,7 +79,8 @@ def table(rounds):
         middle = min(results, key=lambda r: abs(r[1]["step"] - two))[1]
         print(
             (
-                f"{size:18}{one:10.1f}{two:10.1f}{one / two:8.2f}{quickest[0] / quickest[1]:8.2f}{100 * middle['many']:8.0f} %{middle['outside']:10.1f} µs,"
+                f"{size:18}{one:10.1f}{two:10.1f}{one / two:8.2f}{quickest[0] / quickest[1]:8.2f}"
+                f"{100 * middle['many']:8.0f} %{middle['outside']:10.1f} µs,"
                 f" {100 * middle['outside'] / one:.1f} %"
             ),
             flush=True,

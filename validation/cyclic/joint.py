@@ -2,7 +2,7 @@
 """One joint in cycles: tension, shear under three normal stresses, closure. The rows of every path
 go to a CSV file.
 
-yade -n -x validation/cyclic/joint.py                        # the paper's law and the cyclic law, into results/
+yade -n -x validation/cyclic/joint.py                        # both laws, into results/
 yade -n -x validation/cyclic/joint.py --laws softening       # one of them
 yade -n -x validation/cyclic/joint.py --set shearStiffnessLoss=0.5
 

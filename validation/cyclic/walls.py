@@ -2,7 +2,7 @@
 """The four calcium-silicate walls in cycles of growing amplitude, under both laws: walls.md and the
 figures.
 
-/usr/bin/python3 validation/cyclic/walls.py                                  # runs what is missing, then all of these
+/usr/bin/python3 validation/cyclic/walls.py  # runs what is missing, then all of these
 /usr/bin/python3 validation/cyclic/walls.py --walls comp4 --laws softening   # one wall, one law
 
 The runs stand in case.json: a monotonic push to each wall with the paper's law, which is the same

@@ -2,10 +2,11 @@
 """The ten dry-joint walls, each driven through its own measured history, against its measured
 loops.
 
-/usr/bin/python3 validation/dry_joint_walls/compare_loops.py                      # all walls, cyclic law
+/usr/bin/python3 validation/dry_joint_walls/compare_loops.py                      # all, cyclic law
 /usr/bin/python3 validation/dry_joint_walls/compare_loops.py --joints softening   # the paper's law
 /usr/bin/python3 validation/dry_joint_walls/compare_loops.py --walls WS1175       # one wall
-/usr/bin/python3 validation/dry_joint_walls/compare_loops.py --set shearStiffness=7.4e9 --results results/ks --out results/ks
+/usr/bin/python3 validation/dry_joint_walls/compare_loops.py --set shearStiffness=7.4e9 \\
+    --results results/ks --out results/ks
 
 Runs what has no results yet, and writes loops_JOINTS.md, the tables, and loops_JOINTS_LEVEL.png, a
 figure a level. The cyclic law gets the properties and the limits of blind.json, the paper's law

@@ -2,8 +2,8 @@
 """The measured loops of the ten dry-joint walls: reading, repairing, and the numbers of their
 cycles.
 
-/usr/bin/python3 validation/dry_joint_walls/measured.py            # a table of all cycles, in markdown
-/usr/bin/python3 validation/dry_joint_walls/measured.py --write    # writes reference/history_*.csv again
+/usr/bin/python3 validation/dry_joint_walls/measured.py          # a table of all cycles
+/usr/bin/python3 validation/dry_joint_walls/measured.py --write  # writes reference/history_*.csv
 
 The files of the database are kept as they are, in ``reference/FD_*.csv``. Each consists of pieces,
 separated by rows that are not numbers. A piece usually is a whole cycle, from a negative turning

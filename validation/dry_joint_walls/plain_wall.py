@@ -2,8 +2,8 @@
 """What decides the work of the dry-joint walls' cycles: variants of a plain model of the wall,
 against the test WS2.175.
 
-/usr/bin/python3 validation/dry_joint_walls/plain_wall.py          # all variants, a table in markdown
-/usr/bin/python3 validation/dry_joint_walls/plain_wall.py blind    # one of them
+/usr/bin/python3 validation/dry_joint_walls/plain_wall.py        # all variants, a table in markdown
+/usr/bin/python3 validation/dry_joint_walls/plain_wall.py blind  # one of them
 
 plain_wall.cpp is the model, and says what it is. Every variant is a run through the measured
 history.

@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Tables, figure and fragility model of the analyses of this folder.
 
-/usr/bin/python3 validation/records/results.py DIR          DIR has the folders of the studies: parapet, gable, facade, ...
+/usr/bin/python3 validation/records/results.py DIR
+
+DIR has the folders of the studies: parapet, gable, facade, ...
 """
 
 import os

@@ -43,7 +43,9 @@ PLATEN = 1800  # kg/m³, of the blocks that load a structure
 HELD = 1.01  # largest load that was held over its closed form
 PUSHED = 1.02  # largest force of a push over its closed form, beside the imbalance
 MISSING = 5e-3  # of the loads at the supports of a structure at rest
-STAGES = "push push push cycle lean accelerate tilt growLoad growWind wind load shake run move settle".split()
+STAGES = (
+    "push push push cycle lean accelerate tilt growLoad growWind wind load shake run move settle"
+).split()
 CALMING = 20000  # steps after which what was in motion has come to rest
 #: With one of these a run says that its force is above what statics allows.
 DOUBTS = "too fast", "above the upper bound"

@@ -279,8 +279,8 @@ def runAll(axes):
                 found.setdefault(axis, {}).setdefault(blocks, []).append(result)
                 print(
                     (
-                        f"{axis:32} {blocks:10} {shown(point.value):8} {result['verdict']:7} {result['seconds']:6.1f} s"
-                        f" {result['why']}"
+                        f"{axis:32} {blocks:10} {shown(point.value):8} {result['verdict']:7}"
+                        f" {result['seconds']:6.1f} s {result['why']}"
                     ),
                     flush=True,
                 )

@@ -1,8 +1,11 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Figures of the stone walls.
 
-/usr/bin/python3 validation/stone_walls/figures.py peaks STUDY CYCLES      # peaks.png: predicted over measured peaks
-/usr/bin/python3 validation/stone_walls/figures.py cracks RUN [RUN ...]    # cracks.png, of runs of wall.py with all files
+/usr/bin/python3 validation/stone_walls/figures.py peaks STUDY CYCLES
+/usr/bin/python3 validation/stone_walls/figures.py cracks RUN [RUN ...]
+
+The first writes peaks.png, predicted over measured peaks; the second cracks.png, of runs of wall.py
+with all files.
 """
 
 import os

@@ -2,8 +2,10 @@
 """What the runs of the stone walls say, and what was measured; README.md says how each number is
 defined.
 
-/usr/bin/python3 validation/stone_walls/results.py --choose results/stone_walls/choose     # the eight combinations of rules
-/usr/bin/python3 validation/stone_walls/results.py results/stone_walls/push results/stone_walls/cycles       # predictions.csv and table.md
+/usr/bin/python3 validation/stone_walls/results.py --choose results/stone_walls/choose
+/usr/bin/python3 validation/stone_walls/results.py results/stone_walls/{push,cycles}
+
+The first compares the eight combinations of rules; the second writes predictions.csv and table.md.
 """
 
 import argparse

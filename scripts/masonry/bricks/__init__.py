@@ -24,7 +24,8 @@ size, with the bricks and the place::
 
     from masonry.bricks import Arch, Lintel, Opening, Wall, block
 
-    wall = Wall(3.08, 2.43, openings=[Opening(0.99, 0.81, 0.99, 0.81, Lintel(bearing=0.22, height=0.162))])
+    lintel = Lintel(bearing=0.22, height=0.162)
+    wall = Wall(3.08, 2.43, openings=[Opening(0.99, 0.81, 0.99, 0.81, lintel)])
     scene = wall + block((0, 0, -0.2), (3.08, 0.102, 0)).named("base")
     assert not scene.problems()
 

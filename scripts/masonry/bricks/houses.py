@@ -43,8 +43,9 @@ class House(Bricks):
 
     ::
 
-        ground = bricks.Storey(2.4, front=[bricks.Opening(1.8, 0, 1.2, 1.8, bricks.Lintel(0.3, 0.3))])
-        house = bricks.House(4.8, 3.6, [ground, bricks.Storey(2.4, span="y", ring=0.3)], unit=(0.6, 0.3, 0.3))
+        door = bricks.Opening(1.8, 0, 1.2, 1.8, bricks.Lintel(0.3, 0.3))
+        storeys = [bricks.Storey(2.4, front=[door]), bricks.Storey(2.4, span="y", ring=0.3)]
+        house = bricks.House(4.8, 3.6, storeys, unit=(0.6, 0.3, 0.3))
         house.withFloors(stones, shear=1e6, mass=300)
 
     Storeys are counted from 1. Parts are ``front 1`` and so on. What stands between the openings of

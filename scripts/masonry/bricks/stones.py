@@ -58,7 +58,7 @@ def StoneWall(
 
     ::
 
-        StoneWall(1.0, 1.2, unit=(0.20, 0.20, 0.15), scatter=0.1)                         # ashlar, nearly a running bond
+        StoneWall(1.0, 1.2, unit=(0.20, 0.20, 0.15), scatter=0.1)  # ashlar, nearly a running bond
         StoneWall(1.6, 1.6, unit=(0.30, 0.40, 0.10), pattern="irregular", trace=1.1, seed=7)
 
     Stones contain their mortar: they meet in the middle of the joint. Squared stones lie in level

@@ -52,10 +52,10 @@ def Wall(
 
     ::
 
-        Wall(2.2, 1.62)                                          # 10 units long, 20 courses, one brick thick
+        Wall(2.2, 1.62)  # 10 units long, 20 courses, one brick thick
         Wall(3.08, 2.43, openings=[Opening(0.99, 0.81, 0.99, 0.81, Lintel(0.22, 0.162))])
         Wall(2.2, 1.62, bond="flemish", wythes=2)
-        Wall(2.6, 1.5, unit=(0.25, 0.12, 0.065), joint=0.010)    # bricks without their mortar, and its thickness
+        Wall(2.6, 1.5, unit=(0.25, 0.12, 0.065), joint=0.010)  # bricks without mortar, and joints
 
     Even courses, from 0, of a running bond start with a whole unit, odd ones with a half. English
     bond has courses of stretchers and courses of headers in turn, Flemish bond a header after every

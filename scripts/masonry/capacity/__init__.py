@@ -5,7 +5,8 @@ files of runs.
 On the command line::
 
     /usr/bin/python3 -m masonry.capacity results/wall_comp4
-    /usr/bin/python3 -m masonry.capacity results/wall_comp4 --mass 30e3 --gamma 1 --type 1 --ground B --ag 0.15g
+    /usr/bin/python3 -m masonry.capacity results/wall_comp4 --mass 30e3 --gamma 1 \\
+        --type 1 --ground B --ag 0.15g
     /usr/bin/python3 -m masonry.capacity --domain results/pier results/pier_100 results/pier_200
 
 and in Python, also where there is no YADE::

@@ -7,7 +7,7 @@ Type hints say what a parameter takes::
     Stress = Annotated[float, number("Pa", 0, 1e12)]
 
     @validated
-    def press(description: Any, platen: MovingPlaten, stress: Stress, riding: bool = True) -> None: ...
+    def press(description: Any, platen: MovingPlaten, stress: Stress, riding: bool = True): ...
 
 A hint is ``Annotated`` with a kind: a function of a value and of the first argument of the command,
 the scene or its description. It returns the value as the command uses it, or raises ValueError with

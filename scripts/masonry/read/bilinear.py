@@ -6,8 +6,9 @@
     from masonry.read import bilinear
 
     found = bilinear.ofRun("results/wall_comp4")
-    found.stiffness, found.yieldForce, found.yieldDisplacement, found.ultimateDisplacement, found.ductility
-    found.notes                                              # sentences on what the numbers do not say
+    found.stiffness, found.yieldForce, found.yieldDisplacement
+    found.ultimateDisplacement, found.ductility
+    found.notes  # sentences on what the numbers do not say
     bilinear.drifts("results/wall_comp4")
 
 A bilinear curve is elastic with the stiffness K up to the yield force Vy, and keeps that force up

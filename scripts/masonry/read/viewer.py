@@ -35,7 +35,8 @@ DISPLAY = "-screen 0 1600x1200x24 -nolisten tcp -noreset"  # that nobody sees
 
 MISSING = f"""ParaView's Python (pvpython) or a display that nobody sees is not there. As root:
   apt-get install --no-install-recommends paraview xvfb xauth
-and, since the package python3-paraview would remove python3-vtk9, on which other programs may depend, as yourself:
+and, since the package python3-paraview would remove python3-vtk9, on which other programs may \
+depend, as yourself:
   cd /tmp && apt-get download python3-paraview && dpkg -x python3-paraview_*.deb {UNPACKED}"""
 
 

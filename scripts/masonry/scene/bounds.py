@@ -314,7 +314,8 @@ class Bounds:
             self._writeFound(directory, draws)
         elif self.last:
             bound, entry = self.last
-            heading = f"{title}\nlimit analysis, {entry['load']}: {entry['factor']:.4g} {entry['unit']}".rstrip()
+            factor = f"{entry['factor']:.4g} {entry['unit']}".rstrip()
+            heading = f"{title}\nlimit analysis, {entry['load']}: {factor}"
             try:
                 bound.save(directory)
             except Missing as missing:

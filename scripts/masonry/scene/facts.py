@@ -281,7 +281,8 @@ def _counted(description):
     bricks = Bricks(description.bricks)
     if len(bricks) <= MOST_COUNTED:
         platens = any(target.box for target in description.targets.values())
-        yield "joints", f"{len(bricks.joints()):,} between blocks" + "; platens are not counted" * platens
+        count = f"{len(bricks.joints()):,} between blocks"
+        yield "joints", count + "; platens are not counted" * platens
 
 
 def _materials(scene):

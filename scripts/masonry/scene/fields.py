@@ -5,7 +5,8 @@ module needs no YADE.
 Each function gives a function of x, y and z [m] that gives a factor on a property [-], 1 on the
 mean::
 
-    masonry = materials.calciumSilicate().vary("bed.cohesion", fields.lognormal(cov=0.2, length=0.5, seed=1))
+    cohesion = fields.lognormal(cov=0.2, length=0.5, seed=1)
+    masonry = materials.calciumSilicate().vary("bed.cohesion", cohesion)
 
 A random field is the sum of :data:`WAVES` cosines with random directions, lengths and phases. Its
 values at two points a distance d apart have the correlation exp(-(d/length)²), as they stand before
@@ -78,7 +79,8 @@ def normal(
 
 KINDS: dict[str, Any] = {"lognormal": lognormal, "normal": normal}
 _TEXT = re.compile(
-    r"(?P<names>[^=]+)=(?P<kind>lognormal|normal)\(cov=(?P<cov>[^,]+),length=(?P<length>[^,]+),seed=(?P<seed>\d+)\)"
+    r"(?P<names>[^=]+)=(?P<kind>lognormal|normal)"
+    r"\(cov=(?P<cov>[^,]+),length=(?P<length>[^,]+),seed=(?P<seed>\d+)\)"
 )
 
 

@@ -103,7 +103,8 @@ def pressure(
     above the crown of an arch at z = 2 m::
 
         scene.pressure(lambda x, y, z: 9810 * max(0, 3 - z), towards=(1, 0, 0))
-        scene.pressure(lambda x, y, z: 18e3 * (2.4 - z), towards=(0, 0, -1), part="arch", normal=False)
+        fill = lambda x, y, z: 18e3 * (2.4 - z)
+        scene.pressure(fill, towards=(0, 0, -1), part="arch", normal=False)
 
     :param value: [Pa], or a function of the place (x, y, z) [m] that gives it
     :param towards: direction to which it presses

@@ -5,7 +5,8 @@ A scene reads from top to bottom::
 
     from masonry import Scene, bricks, materials
 
-    wall = bricks.Wall(length=3.08, height=2.43, openings=[bricks.Opening(x=1.1, z=0.81, width=0.88, height=0.972)])
+    window = bricks.Opening(x=1.1, z=0.81, width=0.88, height=0.972)
+    wall = bricks.Wall(length=3.08, height=2.43, openings=[window])
     scene = Scene("pier_with_window", wall, materials.calciumSilicate())
     base, top = scene.platen("bottom"), scene.platen("top", rotation="held")
     scene.press(top, 0.3e6)                   # [Pa]

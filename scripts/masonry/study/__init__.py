@@ -10,7 +10,10 @@ A study is a small Python file::
         options={"preset": "fast", "until": 6},
         runs=200,
         seed=1,
-        vary={"bed.cohesion": lognormal(mean=0.11e6, cov=0.2), "bed.friction": lognormal(mean=0.43, cov=0.05)},
+        vary={
+            "bed.cohesion": lognormal(mean=0.11e6, cov=0.2),
+            "bed.friction": lognormal(mean=0.43, cov=0.05),
+        },
     )
 
 A study with ``design="ida"`` shakes its scene by records that grow until it falls, and gives its

@@ -6,7 +6,7 @@ ParaView. No YADE is needed.
 
     from masonry.read import page
 
-    page.write("results/wall_comp4", "wall.html")  # a page of its own, as scripts/view.py --html does
+    page.write("results/wall_comp4", "wall.html")  # a page, as scripts/view.py --html writes it
     page.show("results/wall_comp4")                # in a notebook: the picture
 
 A page with more than this on it takes :func:`assets` once and :func:`fragment` for every picture.

@@ -2,7 +2,7 @@
 """The report of a run: one file, report.html, that any browser opens without a server or a network.
 No YADE is needed.
 
-    /usr/bin/python3 -m masonry.read.report results/wall_comp4               # writes report.html there
+    /usr/bin/python3 -m masonry.read.report results/wall_comp4  # writes report.html there
     /usr/bin/python3 -m masonry.read.report results/wall_comp4 -o wall.html
 
 A run writes it at its end, but with ``--lean`` and when it is interrupted. From a script::

@@ -78,7 +78,8 @@ def trust(record):
     if isinstance(preset, dict):
         promise = (
             run.get("preset_note")
-            or f"preset {preset.get('name')}: run.json of this older version does not say what it promises"
+            or f"preset {preset.get('name')}: run.json of this older version does not say what it"
+            " promises"
         )
         yield note(f"The {promise}. Source: run.json: preset_note.")
     elif "accuracy" not in run:

@@ -39,8 +39,8 @@ SUPPORT = (
 
 #: Properties that have no effect without the cap.
 OF_CAP = """
-    compressiveStrength elasticLimitRatio residualStrengthRatio peakRatio compressiveFractureEnergy capNormal capShear capLinear
-    compressionStiffnessLoss bondLossByCrushing
+    compressiveStrength elasticLimitRatio residualStrengthRatio peakRatio compressiveFractureEnergy
+    capNormal capShear capLinear compressionStiffnessLoss bondLossByCrushing
 """.split()
 
 #: Properties that have no effect while another one is zero.

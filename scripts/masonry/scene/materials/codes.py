@@ -6,7 +6,8 @@ clause.
 
     materials.masonry(**materials.en1996("clay", fb=15e6, mortar="M5"),
         ft=0.1e6, unit_E=8e9, unit=(0.25, 0.12, 0.065), joint=0.010, density=1800)
-    materials.masonry(**materials.ntc2018("squared stone", "LC2"), unit_E=40e9, unit=(0.5, 0.4, 0.25), joint=0.010)
+    materials.masonry(**materials.ntc2018("squared stone", "LC2"),
+        unit_E=40e9, unit=(0.5, 0.4, 0.25), joint=0.010)
 
 A value that is given in place of the code's loses its clause: ``{**materials.ntc2018("rubble",
 "LC1"), "E": 1e9}``.

@@ -172,7 +172,8 @@ def run(scene: Any, seconds: Duration, damping: Damping = 0.0) -> str:
     so to the energy balance::
 
         from yade import O
-        scene = Scene("car", wall + road + car, stones, collapse="follow", allowGaps=True)  # the car is apart from the wall
+        # allowGaps: the car is apart from the wall
+        scene = Scene("car", wall + road + car, stones, collapse="follow", allowGaps=True)
         ...
         O.bodies[target.body].state.vel = (5, 0, 0)  # [m/s]; target: watch() or handle() of the car
         scene.model.energy.given()
