@@ -192,8 +192,10 @@ class Bound:
         reasons = []
         if self.weaker is not None:
             reasons.append(f"open joints slip at {self.weaker:.4g} already")
-        reasons += ["joints slide"] * self.slides
-        reasons += ["joints lose strength"] * self._takes(*LOST)
+        if self.slides:
+            reasons.append("joints slide")
+        if self._takes(*LOST):
+            reasons.append("joints lose strength")
         return " and ".join(reasons) or "joints that are open may slip"
 
     def describe(self) -> dict[str, Any]:
