@@ -45,8 +45,8 @@ SLOW = ["sanitizers", "fuzz", "studies", "scenes"]  # rings of which every test 
 WITHOUT_YADE = ["common", "law", "motion", "blocks", "contact", "files", "gates"] + [
     f"package/test_{name}.py"
     for name in """
-    accelerograms bilinear bricks bricks_checks bricks_files bricks_vaults capacity compare_loops
-    cycles imports loops measure measured_loops plain_wall report_content stones
+    accelerograms bilinear bricks bricks_checks bricks_files bricks_vaults capacity compare_builds
+    compare_loops cycles imports loops measure measured_loops plain_wall report_content stones
     """.split()
 ]
 #: Fixtures that many tests share.

@@ -2,25 +2,27 @@
 """Runs the same work with two installed builds, and compares every file that comes out, byte for
 byte.
 
-    /usr/bin/python3 tests/references/compare_builds.py SITE SITE   # two folders with masonry/
-    ... --only "scene arch" study           # only works with one of these texts in their names
-    ... --scripts OLD/scripts NEW/scripts   # scenes and references of two trees
+    /usr/bin/python3 tests/references/compare_builds.py SITE SITE    # two folders with masonry/
+    ... --only study "scene wall"           # only works whose names have one of these texts
+    ... --scripts OLD/scripts NEW/scripts   # each build runs scenes and references of its own tree
 
 The works are every scene of ``scripts`` and ``scripts/gallery`` with ``--quick``; all runs of
-references.py, of which every number is compared; a push that is resumed after its end and one that
-is resumed after Ctrl-C; and a study of three rows. Each is a line: equal, differs (with the file
-and its first line that differs) or failed. The exit status is 1 if a work differs or fails.
+references.py, with every number that it reads; a push that is continued after its end, and a run
+that is resumed after Ctrl-C; and a study of three rows. A line a work says whether it is equal,
+differs (in which files, and the first line of each that does) or failed. The exit status is 1 if a
+work differs or failed.
 
 These differences are allowed:
 
-- files that say when and where something ran, and pages (``LEFT_OUT``): the figures of a page are
-  compared as .png files, and its data as curve.csv, frames and run.json
-- in JSON files the entries ``ALLOWED``, the folders of builds, scenes and results, and names of
+- files that say when and where something ran, and pages, whose figures are compared as .png files
+  and whose numbers as curve.csv, frames and run.json: ``EXCLUDED_FILES``
+- in JSON files the entries ``EXCLUDED_ENTRIES``, the folders of builds, scenes and results, and names of
   modules
-- in checkpoints names, and what the run notes beside its rows: compared are the bits of all numbers
-  of the state, and the rows
+- in checkpoints all names, and what a run notes beside its rows; compared are the bits of all
+  numbers of the state, in any order, and the rows
 
-Nothing else is normalised. Images are equal only if both builds use the same matplotlib.
+Nothing else is normalised. PNG files are compared as they are, so both builds need the same
+matplotlib.
 """
 
 import argparse
@@ -30,7 +32,6 @@ import os
 import re
 import signal
 import subprocess
-import sys
 import tempfile
 import time
 from concurrent.futures import ThreadPoolExecutor
@@ -43,10 +44,10 @@ import kept
 
 TREE = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 TIMEOUT = 3600  # of a process [s]
-LEFT_OUT = "*.html *.log *.py run.lock times.csv".split()
-ALLOWED = set(
-    "commit date host made\x20by masonry seconds wall_clock_s microseconds_per_step"
-    " nanoseconds_per_subcontact_step steps_by_threads resumed_at_s scene_sha256".split(" ")
+EXCLUDED_FILES = "*.html *.log *.py run.lock times.csv".split()
+EXCLUDED_ENTRIES = {"made by"} | set(
+    "commit date host masonry microseconds_per_step nanoseconds_per_subcontact_step resumed_at_s"
+    " scene_sha256 seconds steps_by_threads wall_clock_s".split()
 )
 MODULE = re.compile(r"\bmasonry(_\w+)?(\.\w+)+")
 
@@ -55,7 +56,7 @@ REFERENCES = """\
 import sys
 import masonry
 site, folder = {site!r}, {folder!r}
-assert masonry.__file__.startswith(site), f"{{masonry.__file__}} is imported, not {{site}}"
+assert masonry.__file__.startswith(site + "/"), f"{{masonry.__file__}} is imported, not {{site}}"
 sys.path.insert(0, folder)
 import references
 references.pathOf = "{{}}.json".format
@@ -67,8 +68,8 @@ from {package} import Study
 study = Study({scene!r}, runs=3, seed=1, options=dict(until=0.4),
     vary={{"bed.friction": [0.4, 0.5, 0.6], "joints": ["softening", "cyclic"]}})
 """
-PUSHED = "wall_comp0a"  # the scene that is resumed and studied
-ROWS = 4  # lines of curve.csv after which a run is interrupted
+PUSHED = "wall_comp0a"  # the scene that is continued and studied
+INTERRUPTED = "pulsed_wall"  # one without limit analysis, whose files depend on when it is stopped
 
 
 @dataclass(frozen=True)
@@ -86,28 +87,31 @@ class Build:
 
 @dataclass(frozen=True)
 class Attempt:
-    """A work of one build, in a folder of its own, into which it leaves its files."""
+    """A work of one build, and the folder in which its processes run and leave their files."""
 
     build: Build
     folder: str
 
     def run(self, *command, interrupted=False):
-        """Run a program in the folder, or raise RuntimeError."""
+        """Run a program. Raises RuntimeError if its exit status is not the one that is expected.
+
+        :param interrupted: whether it gets SIGINT once it has a few rows
+        """
         env = {**os.environ, "PYTHONPATH": self.build.site, "OMP_NUM_THREADS": "1"}
-        with open(os.path.join(self.folder, "process.log"), "a+") as log:
-            process = subprocess.Popen(
-                command, cwd=self.folder, env=env, stdout=log, stderr=subprocess.STDOUT
-            )
-            try:
-                if interrupted:
-                    self._interrupt(process)
-                status = process.wait(TIMEOUT)
-            finally:
-                process.kill()
-            log.seek(0)
-            last = (log.read().split("\n\n")[-1].strip().splitlines() or [""])[-1]
+        output = self.path("process.log")
+        with open(output, "a") as log:
+            process = subprocess.Popen(command, cwd=self.folder, env=env, stdout=log, stderr=log)
+        try:
+            while interrupted and process.poll() is None and not self._hasRows():
+                time.sleep(0.01)
+            if interrupted:
+                process.send_signal(signal.SIGINT)
+            status = process.wait(TIMEOUT)
+        finally:
+            process.kill()
         if status != (130 if interrupted else 0):
-            raise RuntimeError(f"{self.build.site}: exit status {status}: {last}")
+            end = open(output).read().strip()[-300:]
+            raise RuntimeError(f"{self.build.site}: exit status {status}: ...{end}")
 
     def runScene(self, name, *options, **how):
         scene = self.build.scenes().get(name)
@@ -115,19 +119,16 @@ class Attempt:
             raise RuntimeError(f"{self.build.scripts} has no scene {name}")
         self.run("yade", "-n", "-x", scene, *options, **how)
 
-    def _interrupt(self, process):
-        """Send SIGINT once there are some rows."""
-        curve = os.path.join(self.folder, "results", "curve.csv")
-        end = time.monotonic() + TIMEOUT
-        while process.poll() is None and time.monotonic() < end:
-            if os.path.exists(curve) and len(open(curve).readlines()) > ROWS:
-                process.send_signal(signal.SIGINT)
-                return
-            time.sleep(0.01)
+    def path(self, name):
+        return os.path.join(self.folder, name)
 
     def write(self, name, text):
-        with open(os.path.join(self.folder, name), "w") as file:
+        with open(self.path(name), "w") as file:
             file.write(text)
+
+    def _hasRows(self):
+        curve = self.path("results/curve.csv")
+        return os.path.exists(curve) and len(open(curve).readlines()) > 3
 
 
 # -- works -----------------------------------------------------------------------------------------
@@ -136,64 +137,61 @@ class Attempt:
 @dataclass(frozen=True)
 class Work:
     name: str
-    carryOut: Callable  # takes an Attempt and the words
-    words: tuple = ()
+    carryOut: Callable  # takes an Attempt
 
 
-def quickly(attempt, name):
-    attempt.runScene(name, "--quick", "--out", "results")
+def quickly(name):
+    return Work(f"scene {name}", lambda a: a.runScene(name, "--quick", "--out", "results"))
 
 
-def references(attempt):
+def runReferences(attempt):
     folder = os.path.join(os.path.dirname(attempt.build.scripts), "tests", "references")
     attempt.write("go.py", REFERENCES.format(site=attempt.build.site, folder=folder))
     attempt.run("yade", "-n", "-x", "go.py")
 
 
-def resumedAfterItsEnd(attempt):
-    attempt.runScene(PUSHED, "--until", "0.4", "--out", "results")
-    attempt.runScene(PUSHED, "--resume", "results", "--until", "0.8")
-
-
-def resumedAfterCtrlC(attempt):
-    attempt.runScene(PUSHED, "--until", "1", "--out", "results", interrupted=True)
-    attempt.runScene(PUSHED, "--resume", "results")
-
-
-def study(attempt):
-    own = os.path.isdir(os.path.join(attempt.build.site, "masonry_study"))
-    package = "masonry_study" if own else "masonry.study"
+def runStudy(attempt):
+    isSeparate = os.path.isdir(os.path.join(attempt.build.site, "masonry_study"))
+    package = "masonry_study" if isSeparate else "masonry.study"
     scene = attempt.build.scenes()[PUSHED]
     attempt.write("study.py", STUDY.format(package=package, scene=scene))
     command = "/usr/bin/python3", "-P", "-m", package, "study.py"
     attempt.run(*command, "--out", "results", "--jobs", "1")
 
 
+def resumeFinished(attempt):
+    attempt.runScene(PUSHED, "--until", "0.4", "--out", "results")
+    attempt.runScene(PUSHED, "--resume", "results", "--until", "0.8")
+
+
+def resumeInterrupted(attempt):
+    attempt.runScene(INTERRUPTED, "--quick", "--out", "results", interrupted=True)
+    attempt.runScene(INTERRUPTED, "--resume", "results")
+
+
 def works(builds):
     scenes = sorted({name for build in builds for name in build.scenes()})
-    return [
-        Work("references", references),
-        Work("study", study),
-        Work("resumed after its end", resumedAfterItsEnd),
-        Work("resumed after Ctrl-C", resumedAfterCtrlC),
-        *(Work(f"scene {name}", quickly, (name,)) for name in scenes),
-    ]
+    others = Work("references", runReferences), Work("study", runStudy)
+    resumed = Work("resumed after its end", resumeFinished), Work(
+        "resumed after Ctrl-C", resumeInterrupted
+    )
+    return [*others, *resumed, *map(quickly, scenes)]
 
 
 # -- comparison ------------------------------------------------------------------------------------
 
 
-def withoutAllowed(value):
+def withoutExcluded(value):
     """A value of JSON without the entries that may differ."""
     if isinstance(value, dict):
-        return {k: withoutAllowed(v) for k, v in value.items() if k not in ALLOWED}
-    return [*map(withoutAllowed, value)] if isinstance(value, list) else value
+        return {k: withoutExcluded(v) for k, v in value.items() if k not in EXCLUDED_ENTRIES}
+    return [*map(withoutExcluded, value)] if isinstance(value, list) else value
 
 
 def linesOf(path, places):
     """The lines of a file that are compared.
 
-    :param places: folders by what is written for them
+    :param places: folders whose names may differ
     """
     with open(path, "rb") as file:
         data = file.read()
@@ -204,103 +202,80 @@ def linesOf(path, places):
         return [*map(repr, rows), *sorted(numbers.hex() for numbers in found.values())]
     if not path.endswith((".json", ".job")):
         return data.decode("utf-8", "surrogateescape").split("\n")
-    text = json.dumps(withoutAllowed(json.loads(data)), indent=1, ensure_ascii=False)
-    for name, place in places.items():
-        text = text.replace(place, name)
+    text = json.dumps(withoutExcluded(json.loads(data)), indent=1, ensure_ascii=False)
+    for place in places:
+        text = text.replace(place, "FOLDER")
     return MODULE.sub("MODULE", text).split("\n")
 
 
 def filesIn(folder):
-    found = {
-        os.path.relpath(os.path.join(at, name), folder)
-        for at, _, names in os.walk(folder)
-        for name in names
-    }
-    return {f for f in found if not any(fnmatch(os.path.basename(f), p) for p in LEFT_OUT)}
+    """Names of the files that are compared."""
+    paths = [os.path.join(at, name) for at, _, names in os.walk(folder) for name in names]
+    isExcluded = lambda path: any(fnmatch(os.path.basename(path), p) for p in EXCLUDED_FILES)
+    return {os.path.relpath(path, folder) for path in paths if not isExcluded(path)}
 
 
-def shown(one, two):
-    """Two lines from shortly before the place where they differ."""
-    alike = len(os.path.commonprefix([one, two]))
-    return " | ".join(repr(line[max(0, alike - 30) : alike + 30]) for line in (one, two))
-
-
-def differences(attempts):
-    """For every file that differs, its name and its first line that does."""
-    one, two = (filesIn(attempt.folder) for attempt in attempts)
-    for name in sorted(one | two):
-        if name not in one & two:
-            yield f"{name}: only of build {1 if name in one else 2}"
-            continue
-        lines = (
-            linesOf(
-                os.path.join(a.folder, name),
-                {"RESULTS": a.folder, "SITE": a.build.site, "SCRIPTS": a.build.scripts},
-            )
-            for a in attempts
-        )
-        for number, (first, second) in enumerate(zip_longest(*lines, fillvalue=""), 1):
-            if first != second:
-                yield f"{name}: line {number}: {shown(first, second)}"
-                break
+def firstDifference(name, attempts):
+    """A sentence on the first line of a file that differs, or None."""
+    lines = []
+    for a in attempts:
+        if not os.path.exists(a.path(name)):
+            return f"{name}: not of {a.build.site}"
+        scripts = a.build.scripts
+        places = a.folder, a.build.site, os.path.join(scripts, "gallery"), scripts
+        lines.append(linesOf(a.path(name), places))
+    for number, pair in enumerate(zip_longest(*lines, fillvalue=""), 1):
+        if pair[0] != pair[1]:
+            begin = max(0, len(os.path.commonprefix(pair)) - 30)
+            texts = [repr(line[begin : begin + 60]) for line in pair]
+            return f"{name}: line {number}: {' | '.join(texts)}"
 
 
 def compare(work, builds, folder):
     """Carry out a work with both builds, one after the other, and print how they compare. Returns
     whether they are equal."""
-    attempts, seconds, failures = [], [], []
-    for number, build in enumerate(builds, 1):
-        attempts.append(Attempt(build, os.path.join(folder, str(number), work.name)))
-        os.makedirs(attempts[-1].folder)
-        began = time.monotonic()
-        try:
-            work.carryOut(attempts[-1], *work.words)
-        except (RuntimeError, OSError, subprocess.TimeoutExpired) as error:
-            failures.append(f"build {number}: {error}")
-        seconds.append(f"{time.monotonic() - began:.0f} s")
-    found = failures or [*differences(attempts)]
-    count = len(filesIn(attempts[0].folder))
-    if not failures and not count:
-        failures = found = ["no file"]
-    state = "failed" if failures else "differs" if found else "equal"
-    lines = [f"{state}: {work.name} ({count} files, {', '.join(seconds)})", *found]
-    print("\n    ".join(lines), flush=True)
-    return not found
+    places = [os.path.join(folder, str(number), work.name) for number in (1, 2)]
+    attempts = [*map(Attempt, builds, places)]
+    began, names, found, state = time.monotonic(), [], [], "differs"
+    try:
+        for attempt in attempts:
+            os.makedirs(attempt.folder)
+            work.carryOut(attempt)
+        names = sorted(filesIn(places[0]) | filesIn(places[1]))
+        found = [d for name in names if (d := firstDifference(name, attempts))]
+        state = "differs" if found or not names else "equal"
+    except (RuntimeError, OSError, LookupError, ValueError, subprocess.TimeoutExpired) as error:
+        found, state = [repr(error)], "failed"
+    seconds = time.monotonic() - began
+    first = f"{state}: {work.name} ({len(names)} files, {seconds:.0f} s)"
+    print("\n    ".join([first, *found]), flush=True)
+    return state == "equal"
 
 
-def main(words):
+def parsed():
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
-    parser.add_argument("sites", metavar="SITE", nargs=2, help="folder with a package masonry")
-    parser.add_argument(
-        "--scripts",
-        metavar="DIR",
-        nargs=2,
-        default=[os.path.join(TREE, "scripts")] * 2,
-        help="folders of the scenes",
-    )
-    parser.add_argument(
-        "--only", metavar="PATTERN", nargs="+", default=[""], help="texts in names of works"
-    )
-    parser.add_argument(
-        "--jobs",
-        metavar="N",
-        type=int,
-        default=len(os.sched_getaffinity(0)),
-        help="works at a time",
-    )
-    parser.add_argument("--out", metavar="DIR", help="a new folder that keeps all files")
-    args = parser.parse_args(words)
+    add = parser.add_argument
+    add("sites", metavar="SITE", nargs=2, help="folder of an installed build")
+    own = [os.path.join(TREE, "scripts")] * 2
+    add("--scripts", metavar="DIR", nargs=2, default=own, help="scenes of each build")
+    add("--only", metavar="TEXT", nargs="+", default=[""], help="texts in the names of works")
+    cores = len(os.sched_getaffinity(0))
+    add("--jobs", metavar="N", type=int, default=cores, help="works at a time")
+    add("--out", metavar="DIR", help="new folder in which all files are kept")
+    return parser.parse_args()
+
+
+def main():
+    args = parsed()
     builds = [Build(*map(os.path.abspath, pair)) for pair in zip(args.sites, args.scripts)]
-    for build in builds:
-        if not os.path.isdir(os.path.join(build.site, "masonry")):
-            parser.error(f"{build.site} has no package masonry")
     wanted = [w for w in works(builds) if any(text in w.name for text in args.only)]
+    began = time.monotonic()
     with tempfile.TemporaryDirectory() as folder, ThreadPoolExecutor(args.jobs) as pool:
-        began, folder = time.monotonic(), os.path.abspath(args.out or folder)
+        folder = os.path.abspath(args.out or folder)
         equal = [*pool.map(lambda work: compare(work, builds, folder), wanted)]
-    print(f"{sum(equal)} of {len(equal)} works are equal, in {time.monotonic() - began:.0f} s")
+    print(f"{sum(equal)} of {len(equal)} works are equal, after {time.monotonic() - began:.0f} s")
     return 0 if equal and all(equal) else 1
 
 
 if __name__ == "__main__":
-    raise SystemExit(main(sys.argv[1:]))
+    raise SystemExit(main())
