@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-2.0-or-later
 # Installs what is missing for runs, builds the plugin and installs it where plain `yade` finds it. Idempotent, quick when
-# done. No package is ever removed.
+# done. No package is ever removed. Exit status 100, as that of apt-get, says that packages cannot be had or installed.
 #
 #   bash scripts/setup.sh                        what a run needs, with its figures and bounds
 #   bash scripts/setup.sh --tests [PACKAGE...]   also what tests and studies need, further packages, and the C++ of tests
@@ -63,17 +63,17 @@ if ((${#missing[@]})); then
     export DEBIAN_FRONTEND=noninteractive
     install=(apt-get install --no-install-recommends)
     apt-get update >"$logs/install" 2>&1 && LC_ALL=C "${install[@]}" --simulate "${missing[@]}" >"$logs/plan" 2>>"$logs/install" ||
-        { tail -n 20 "$logs/install" >&2; exit 1; }
+        { tail -n 20 "$logs/install" >&2; exit 100; }
     removed=$(awk '$1 == "Remv" { print $2 }' "$logs/plan" | xargs)
     if [[ -n "$removed" ]]; then
         echo "To install ${missing[*]}, apt-get would remove ${removed}. Nothing was changed; remove these yourself if you" \
             "can do without them, or build in a chroot." >&2
-        exit 1
+        exit 100
     fi
     number=$(grep -c '^Inst ' "$logs/plan" || true)
     "${install[@]}" --yes --no-remove -o APT::Status-Fd=3 "${missing[@]}" 3>&1 >>"$logs/install" 2>&1 |
         progress "installing ${missing[*]}: $number packages with what they need" "$((5 + number / 5)) s" ||
-        { tail -n 20 "$logs/install" >&2; exit 1; }
+        { tail -n 20 "$logs/install" >&2; exit 100; }
 fi
 
 [[ "${1:-}" != --no-build ]] || exit 0
@@ -84,7 +84,7 @@ if ! compgen -G '/usr/include/vtk-9.*/vtkXMLUnstructuredGridWriter.h' >/dev/null
     (cd "$logs" && apt-get download libvtk9-dev && dpkg -x libvtk9-dev_*.deb vtk) >"$logs/vtk.log" 2>&1 || {
         tail -n 20 "$logs/vtk.log" >&2
         echo "The headers of VTK could not be fetched. As root: apt-get install --no-install-recommends libvtk9-dev" >&2
-        exit 1
+        exit 100
     }
     mkdir -p build && rm -rf build/vtk && mv "$logs/vtk" build/vtk
 fi

@@ -26,5 +26,7 @@ case "${1:-}" in
 esac
 bash scripts/setup.sh --tests "${packages[@]}"
 export OMP_NUM_THREADS=1 # so that workers do not take each other's cores; a test that needs threads asks for them
-exec /usr/bin/python3 -m pytest -q -p no:cacheprovider -W ignore::DeprecationWarning \
+# NumPy 2 multiplies no list or text by its bool; NumPy 1 warns, which is an error here and in programs that tests start
+export PYTHONWARNINGS="error:In future" # 'np.bool_' scalars will be no index
+exec /usr/bin/python3 -m pytest -q -p no:cacheprovider -W ignore::DeprecationWarning -W "$PYTHONWARNINGS" \
     --numprocesses "$workers" --dist loadgroup "${tests[@]}"

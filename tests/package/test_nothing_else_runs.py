@@ -95,7 +95,7 @@ def test_an_installation_that_would_remove_packages_is_refused(tmp_path, removed
     )
     setup = os.path.join(ROOT, "scripts", "setup.sh")
     done = ran(["bash", setup], env=env)
-    assert done.returncode == 1
+    assert done.returncode == 100  # tells "no packages" from a plugin that cannot be built
     asked = (tmp_path / "asked").read_text().splitlines()
     assert asked[0] == "update" and "--simulate" in asked[1]
     if removed:

@@ -4,6 +4,7 @@ of it needs YADE.
 
 - :mod:`masonry.common.folders`: what is written in folders that others may have packed, and how
 - :mod:`masonry.common.background`: tasks in other processes, and programs, several at a time
+- :mod:`masonry.common.auxiliary`: what is computed beside a run, which never ends it
 - :mod:`masonry.common.memory`: what numerical libraries take of the memory
 - :mod:`masonry.common.packages`: libraries that come when they are first needed, and the Debian
   packages that have them

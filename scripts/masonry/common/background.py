@@ -11,6 +11,7 @@ import contextlib
 import ctypes
 import math
 import os
+import pickle
 import signal
 import subprocess
 import sys
@@ -81,10 +82,10 @@ class Task:
         """A result; it is waited for. Raises what the work raised, or Failed if its process has
         ended without it."""
         self.ready(part, math.inf)
-        last = self._results[-1] if self._results else None
-        if isinstance(last, BaseException):
-            raise last
-        if len(self._results) <= part:
+        results = self._results[: part + 1]
+        if results and isinstance(results[-1], BaseException):
+            raise results[-1]
+        if len(results) <= part:
             raise Failed("its process has ended before its time")
         return self._results[part]
 
@@ -112,10 +113,14 @@ def _carryOut(work, parts, writes):
             for _, value in zip(range(parts), work()):
                 writes.send(value)
         except BaseException as error:
+            trace = traceback.format_exc()
             try:
-                writes.send(error)
-            except Exception:
-                writes.send(Failed(traceback.format_exception_only(error)[-1].strip()))
+                pickle.loads(pickle.dumps(error))
+            except Exception:  # a class that cannot be sent
+                error = Failed(traceback.format_exception_only(error)[-1].strip())
+            if not isinstance(error, Refused):
+                error.add_note(f"in a copy of the process:\n{trace}")
+            writes.send(error)
     finally:
         os._exit(0)
 

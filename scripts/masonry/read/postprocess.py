@@ -7,18 +7,21 @@ A run starts it early: it loads what it needs while the run goes on. Then it rea
 the standard input, up to a zero byte, when the files of the run are there. It draws curve.png and
 cracks.png in a copy of the process, and makes the report meanwhile, but for these figures. When the
 standard input ends, all figures that the run itself writes are there, too, and it writes
-report.html. It ends without a word if it is given no folder.
+report.html. It ends without a word if it is given no folder. Errors that nobody expects go to the
+standard output, as JSON: pairs of a note and a traceback.
 """
 
 import contextlib
 import gc
 import io
+import json
 import math
 import os
 import sys
 
 from ..common import memory
-from ..common.background import Failed, Task
+from ..common.auxiliary import Auxiliary, described
+from ..common.background import Task
 from ..basics import say
 from ..common.folders import check
 from ..common.packages import Missing, needed
@@ -28,14 +31,13 @@ from .files import onFolder, readWhole
 
 STDIN = 0
 END = b"\0"  # of the name of the folder
-#: Exit statuses beside 0 and those of figures: there is no report, and there are figures.
-NO_REPORT = 3
+#: Exit statuses beside 0: figures or the report cannot be written, since disk or memory is full.
+NO_FIGURES, NO_REPORT = 3, 4
 
 
 def _load():
     """Draw a figure that nobody sees: the first one of a process loads most of matplotlib."""
-    # what is missing is said when something is drawn
-    with contextlib.suppress(ImportError, Missing):
+    with contextlib.suppress(Exception):  # what is wrong is said when something is drawn
         with style():
             figure = empty(1, 1)
             figure.add_subplot().plot([0, 1], label="line")
@@ -57,16 +59,35 @@ def _folder():
 
 
 def _draw(folder):
-    """Draw the figures. Returns the exit status."""
+    """Draw the figures. Returns what :func:`_tried` does."""
     with contextlib.suppress(OSError):  # it is said when it is drawn
         if len(readWhole(os.path.join(folder, "curve.csv")).splitlines()) < 2:
-            return 0  # limit analysis alone has no curve
+            return 0, []  # limit analysis alone has no curve
     try:
         needed("matplotlib")
     except Missing as missing:
         say(f"the figures are left out: {missing}", sys.stderr)
-        return 0
-    return onFolder(figures.draw, [folder])
+        return 0, []
+    return _tried("the figures", figures.draw, folder)
+
+
+def _tried(what, act, *words):
+    """Let a function draw or write something.
+
+    :returns: its exit status if disk or memory is full, else 0; and the notes and tracebacks of
+        other errors
+    """
+    failures = []
+
+    def acting(word):
+        try:
+            act(word)
+        except (OSError, MemoryError):
+            raise
+        except Exception as error:
+            failures.append(described(what, error))
+
+    return onFolder(acting, words), failures
 
 
 def main():
@@ -76,7 +97,6 @@ def main():
     if not folder:
         return 0
     drawing = Task(lambda: [_draw(folder)])
-    written = NO_REPORT
 
     def ready():
         drawing.ready(seconds=math.inf)
@@ -90,14 +110,13 @@ def main():
         record.ready = ready
         report.write(record, os.path.join(directory, report.NAME))
 
-    try:
-        written = onFolder(write, [folder]) and NO_REPORT
-    except Exception as problem:  # the figures shall be there all the same
-        say(f"the report cannot be made: {type(problem).__name__}: {problem}", sys.stderr)
-    try:
-        return drawing.result() or written
-    except Failed:
-        return 1
+    written, failures = _tried("the report", write, folder)
+    drawn = 0
+    with Auxiliary("the figures", lambda *failure: failures.append(failure)):
+        drawn, lost = drawing.result()
+        failures += lost
+    json.dump(failures, sys.stdout)
+    return NO_FIGURES if drawn else NO_REPORT if written else 0
 
 
 if __name__ == "__main__":

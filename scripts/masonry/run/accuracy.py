@@ -25,6 +25,7 @@ import shutil
 import sys
 from ..common import background
 from ..basics import NotAccurate, Refused, say
+from ..common.auxiliary import Auxiliary, addToLog
 from ..common.folders import check, inside, replaced
 from ..read.files import readRun
 from . import batch
@@ -192,6 +193,11 @@ class AuxiliaryRuns:
         """A quantity of all runs that are over, by their names."""
         return {name: numbers[quantity] for name, numbers in self.numbers.items()}
 
+    def fail(self, note, trace):
+        """Keep why companions are of no use, as a run does."""
+        say(f"note: {note}")
+        addToLog(self.folder, f"{note}\n{trace}\n")
+
     def run(self, names):
         """Run companions that are not over yet, as many at a time as there are cores.
 
@@ -227,7 +233,8 @@ class AuxiliaryRuns:
             )
             with contextlib.suppress(OSError), open(log, errors="replace") as file:
                 last = [line.strip() for line in [last, *file] if line.strip()][-1]
-            raise Refused(f"--accuracy: the run {name} did not come to its end: {last}; see {log}")
+            failed = f"the run {name} did not come to its end: {last}; see {log}"
+            raise Refused(f"--accuracy: {failed}") if kind else background.Failed(failed)
         found = self.numbers[name]
         fell = ", collapsed" if found["collapsed"] else ""
         say(
@@ -241,6 +248,7 @@ class AuxiliaryRuns:
         :param percent: the half-width that is wanted [%]
         """
         for number, fidelity in enumerate(FIDELITIES):
+            self.percent, self.fidelity = percent, fidelity
             self.run(needed(number))
             widths = {}
             for quantity, _, _ in QUANTITIES:
@@ -253,7 +261,6 @@ class AuxiliaryRuns:
             say(f"accuracy: {fidelity.name}: {about} expected: {verdict}")
             if enough:
                 break
-        self.percent, self.fidelity = percent, fidelity
 
     def report(self, run):
         """The entries of run.json for the numbers of a run: ``accuracy`` and the half-widths beside
@@ -333,6 +340,7 @@ def ask(name, args, script, words):
     :param script: path of the script of the scene, if it takes its options from the command line;
         else None
     :returns: :class:`AuxiliaryRuns`; None for a companion, a probe, and runs without ``--accuracy``
+        or whose companions have failed
     :raises Refused: if it means nothing here
     """
     if not args.accuracy or _isCompanion or batch.PROBE in os.environ:
@@ -362,13 +370,14 @@ def ask(name, args, script, words):
     command = json.dumps([os.path.abspath(script), words, sorted(COMPANIONS)])
     text = pathlib.Path(script).read_bytes() + command.encode()
     companions.begin(hashlib.sha256(text).hexdigest())
-    try:
-        companions.choose(args.accuracy)
-    except Refused:
-        companions.clear()
-        raise
+    with Auxiliary("--accuracy: there will be no ±", companions.fail) as attempt:
+        try:
+            companions.choose(args.accuracy)
+        except Refused:
+            companions.clear()
+            raise
     vars(args).update({**CHOSEN, **companions.fidelity.options})
-    return companions
+    return None if attempt.note else companions
 
 
 def _resumed(args):

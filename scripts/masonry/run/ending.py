@@ -163,10 +163,10 @@ def _finish(run, scene):
 
 def _unlessInterrupted(run, draw, lacking):
     """Draw what a run that is interrupted leaves out, since it shall end at once; then a sentence
-    says what is lacking."""
+    says what is lacking. Returns what ``draw`` does."""
     try:
         with run.breakable():
-            draw(run.results.directory)
+            return draw(run.results.directory)
     except Interrupted:
         say(f"interrupted: {lacking}")
 
@@ -244,7 +244,9 @@ def _report(run, scene):
             f"the figures are not drawn; /usr/bin/python3 -m masonry.read.figures {directory} draws"
             f" them, and /usr/bin/python3 -m masonry.read.report {directory} writes the report"
         )
-        _unlessInterrupted(run, scene.outcome.drawing.draw, lacking)
+        with run.auxiliary("figures and report"):
+            for failure in _unlessInterrupted(run, scene.outcome.drawing.draw, lacking) or ():
+                run.fail(*failure)
     for sentence in entries["warnings"]:
         say(f"warning: {sentence}")
     if run.results.rows:

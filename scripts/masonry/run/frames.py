@@ -6,7 +6,7 @@ import time
 from yade import O
 from yade.wrapper import MasonryVtkRecorder
 
-from ..common.background import Failed, Task
+from ..common.background import Task
 from ..basics import Unwritable
 
 #: A frame that takes longer is written beside the run [s]; the copy of the process that does it
@@ -39,9 +39,8 @@ class Frames:
             self._recorder.collect()
 
     def add(self, final):
-        """Write a frame of the scene as it stands; the ``final`` one is whole when this returns.
-        Raises Unwritable."""
-        self.wait()
+        """Write a frame of the scene as it stands, after :meth:`wait`; the ``final`` one is whole
+        when this returns. Raises Unwritable."""
         self._recorder.times = self._at.frames
         if self._took > SLOW_FRAME and not final:
             self._task = Task(lambda: [self._write()])
@@ -59,14 +58,16 @@ class Frames:
             raise Unwritable(str(error)) from None
 
     def wait(self):
-        """Wait until the frame is whole that is written beside the run. Raises Unwritable if it
-        could not be written: then the run has gone on, and the frame is none of its frames."""
+        """Wait until the frame is whole that is written beside the run. Raises what has gone wrong,
+        as Unwritable: then the run has gone on, and the frame is none of its frames."""
         task, self._task = self._task, None
         try:
             if task:
                 task.result()
-        except (Failed, Unwritable) as failed:
+        except Exception as failed:
             *self._at.frames, lost = self._at.frames
+            if not isinstance(failed, Unwritable):
+                raise
             raise Unwritable(f"the frame at {lost:.6g} s is lost: {failed}") from None
 
     def end(self):

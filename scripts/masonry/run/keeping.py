@@ -58,7 +58,7 @@ class Checkpoints:
         run.flush()
         run.takeFound(True)
         if run.frames:
-            run.frames.wait()
+            run.awaitFrame()
             safe["frameCount"] = min(safe["frameCount"], len(run.at.frames))
         if len(run.results.rows) < safe["rows"] or run.results.earlier:
             return False

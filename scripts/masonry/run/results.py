@@ -150,6 +150,7 @@ import shutil
 import time
 
 from ..common import folders
+from ..common.auxiliary import addToLog
 from ..basics import Refused, say
 from ..read import quantities
 from ..read.files import readWhole
@@ -178,6 +179,7 @@ class Results:
         self._head = ",".join(self.columns) + "\r\n"
         self._line = ",".join(["%.9g"] * len(self.columns)) + "\r\n"
         self._file = None  # curve.csv
+        self._log = ""  # what errors.log gets when files are written
         self.started = time.perf_counter()
         self._lock, self._made = None, False
         try:
@@ -242,6 +244,7 @@ class Results:
             self._file = self._curve()
             self._write(self._head)
             os.fsync(self._file.fileno())
+        self.log("")
 
     def release(self):
         """Let other runs have the folder; one that was made for nothing goes."""
@@ -250,6 +253,19 @@ class Results:
         if self._made and not self.begun:
             with contextlib.suppress(OSError, ValueError):
                 os.rmdir(self.directory)
+
+    def log(self, text):
+        """Add a text to errors.log, now or when files are written."""
+        self._log += text
+        if self._log and self.begun:
+            addToLog(self.directory, self._log)
+            self._log = ""
+
+    def amend(self, **entries):
+        """Write run.json again, with other entries, if it was written before."""
+        if self._file and self._file.closed:
+            self.run.update(entries)
+            self._writeRecord()
 
     def path(self, name):
         return os.path.join(self.directory, name)
@@ -270,6 +286,7 @@ class Results:
                 os.remove(self.path(name))
         self._lock.ours = True
         self._file = curve
+        self.log("")
         self._file.truncate(0)
         self._write(self._head)
         self.rows.clear()
@@ -340,6 +357,9 @@ class Results:
         self.begin()
         self.run.update(wall_clock_s=round(self.seconds(), 3), files=FILES)
         self._file.close()
+        self._writeRecord()
+
+    def _writeRecord(self):
         path = self.path("run.json")
         with folders.writing(path), folders.replaced(path) as f:
             json.dump(self.run, f, indent=2)

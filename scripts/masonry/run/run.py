@@ -18,6 +18,7 @@ from yade import O
 
 
 from ..assembly.columns import CRACKS
+from ..common.auxiliary import Auxiliary
 from ..basics import Collapsed, Interrupted, NotResumed, Unwritable, listen, say
 from ..basics import stopListening
 from . import batch
@@ -152,6 +153,17 @@ class Run:
         first. A run that is resumed says again what it said."""
         # before the first stage, another scene may stand in YADE
         self.at.hear(text, self.entered, O.time if self.entered else 0.0)
+
+    def auxiliary(self, what):
+        """A block that computes something beside the run, which an unexpected error there does not
+        end; ``what`` names it in the note."""
+        return Auxiliary(what, self.fail)
+
+    def fail(self, note, trace):
+        """Keep the note and the traceback of what has failed beside the run."""
+        say(f"note: {note}")
+        self.results.log(f"{note}\n{trace}\n")
+        self.results.amend(notes=self.at.notes)
 
     def note(self, kind, name, opposite="", control=""):
         """Note what the next stage loads, as in :class:`masonry.run.run_state.RunState`."""
@@ -304,8 +316,15 @@ class Run:
         if self.frames:
             self.flush()
             self.results.begin()
-            with self.clock("frames"):
+            self.awaitFrame()
+            with self.clock("frames"), self.auxiliary("a frame for ParaView"):
                 self.frames.add(final)
+
+    def awaitFrame(self):
+        """Wait for a frame that is written beside the run. Raises Unwritable if the disk refused
+        it."""
+        with self.clock("frames"), self.auxiliary("a frame for ParaView"):
+            self.frames.wait()
 
     def show(self, fraction, detail, final=False):
         """Show on the terminal how far the present stage has come, if it is time to:

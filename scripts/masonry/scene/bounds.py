@@ -17,7 +17,7 @@ from typing import Callable
 import numpy as np
 
 from .. import limit
-from ..common.background import Failed, Task
+from ..common.background import Task
 from ..basics import GRAVITY, Interrupted, Refused, say
 from ..limit.assembly import Endless
 from ..common.memory import FULL
@@ -79,10 +79,11 @@ class Bounds:
     :param model: :class:`masonry.assembly.structure.Structure`
     :param place: :class:`masonry.run.run_state.RunState`: what was found is kept there, and so in
         checkpoints
+    :param auxiliary: :meth:`masonry.run.run.Run.auxiliary`
     """
 
-    def __init__(self, model, place):
-        self.model, self.place = model, place
+    def __init__(self, model, place, auxiliary):
+        self.model, self.place, self.auxiliary = model, place, auxiliary
         #: what was found last, in this process: limit.Bound and its entry
         self.last = None
         # beside the run: finds a bound, then the files of its mechanism
@@ -192,11 +193,10 @@ class Bounds:
         work = lambda: self._found(load, lowerUpTo, seconds)
         if background:
             self.drop()  # of two mechanisms the last one is kept
-            self._task = Task(lambda: self._withFiles(what, work), parts=2)
-            self._looksFor, self._since = what, time.monotonic()
+            self._attempt(what, lambda: self._begin(what, work))
             return entry
         try:
-            self._note(what, *work())
+            self._attempt(what, lambda: self._note(what, *work()))
         except Interrupted:
             del self.entries[what]
             if known:
@@ -236,6 +236,13 @@ class Bounds:
             note, endless = f"limit analysis: {FULL}", False
         return {**entry, "note": note}, [*lines, f"note: {note}"], endless, None
 
+    def _attempt(self, what, act):
+        """Do a part of the work for a bound; an unexpected error is the note of its entry."""
+        with self.auxiliary(f"limit analysis of {what}") as attempt:
+            act()
+        if attempt.note:
+            self._note(what, {"note": attempt.note}, [])
+
     def _note(self, what, found, lines, endless=False, bound=None):
         self.entries[what].update(found)
         for line in lines:
@@ -247,6 +254,10 @@ class Bounds:
             self.last = bound, self.entries[what]
 
     # -- beside the run ----------------------------------------------------------------------------
+
+    def _begin(self, what, work):
+        self._task = Task(lambda: self._withFiles(what, work), parts=2)
+        self._looksFor, self._since = what, time.monotonic()
 
     def _withFiles(self, what, work):
         """In a copy of the process: what was found without the mechanism, then the files of the
@@ -280,13 +291,10 @@ class Bounds:
             say("waiting for limit analysis")
         while not note and not task.ready(0, SILENT):
             note = LATE if since() > UNASKED else GIVEN_UP if givesUp() else ""
-        try:
-            if not note:
-                self._note(what, *task.result())
-        except Failed as failed:
-            note = f"limit analysis: {failed}"
         if note:
             self._note(what, {"note": note}, [f"note: {note}"])
+        else:
+            self._attempt(what, lambda: self._note(what, *task.result()))
         self._looksFor = ""
         if "factor" in self.entries[what]:
             self.last = None
@@ -330,11 +338,7 @@ class Bounds:
             if not draws:
                 return self.drop()
             say("waiting for the mechanism")
-        try:
-            files = self._task.result(1)
-        except Failed as failed:
-            return say(f"the mechanism is left out: {failed}", sys.stderr)
-        for name, data in files.items():
+        for name, data in self._task.result(1).items():
             if draws or name != FIGURE:
                 with replaced(os.path.join(directory, name), "wb") as file:
                     file.write(data)
@@ -395,7 +399,8 @@ def findBound(scene, kind, *load):
     missing = any(e.get("note") == GIVEN_UP for e in scene.bounds.entries.values())
     if scene.args.lean and not scene.only or resumed and not missing:
         return  # in a stage that goes on it was found when that began
-    findBy(scene, kind, *load, lowerUpTo=SMALL * scene.only, background=not scene.only)
+    with scene.running.auxiliary("limit analysis"):
+        findBy(scene, kind, *load, lowerUpTo=SMALL * scene.only, background=not scene.only)
 
 
 def nameInDomain(target, direction, normal):

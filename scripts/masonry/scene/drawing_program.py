@@ -3,11 +3,13 @@
 :mod:`masonry.read.postprocess`."""
 
 import contextlib
+import json
 import os
 import subprocess
 import sys
 
 from ..basics import Unwritable
+from ..common.background import Failed
 from ..read import postprocess
 
 
@@ -20,19 +22,26 @@ class DrawingProgram:
 
     def draw(self, directory):
         """Wait until the figures of a run that has ended are drawn and its report is written.
-        Raises Unwritable if one fails; without matplotlib a note says that the figures are left
-        out."""
+        Without matplotlib the program says that the figures are left out.
+
+        :returns: what has failed unexpectedly: pairs of a note and a traceback
+        :raises Unwritable: if disk or memory is full
+        :raises Failed: if the program has ended before its time
+        """
         try:
             self.begin(directory)
-            self._program.communicate()
+            failures, _ = self._program.communicate()
         except OSError as error:
             raise Unwritable(f"the figures are not drawn: {error.strerror}") from None
         finally:
             status, self._begun = self.end(), False
         if status == postprocess.NO_REPORT:
             raise Unwritable("the report is not written")
-        if status:
+        if status == postprocess.NO_FIGURES:
             raise Unwritable("the figures are not drawn")
+        if status:
+            raise Failed(f"the program that draws has ended with status {status}")
+        return json.loads(failures)
 
     def begin(self, directory):
         """Name the folder to the program, which then begins; the report waits until :meth:`draw` is
@@ -51,7 +60,9 @@ class DrawingProgram:
             # -P: nothing of the present folder is run; in a session of its own, since Ctrl-C is for
             # the run
             command = [sys.executable, "-P", "-m", "masonry.read.postprocess"]
-            self._program = subprocess.Popen(command, stdin=subprocess.PIPE, start_new_session=True)
+            self._program = subprocess.Popen(
+                command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, start_new_session=True
+            )
 
     def end(self):
         """End the program. Returns its exit status, or None if it was not started."""
@@ -63,4 +74,5 @@ class DrawingProgram:
         status = program.wait()
         with contextlib.suppress(OSError):
             program.stdin.close()
+        program.stdout.close()
         return status

@@ -123,7 +123,7 @@ class Outcome:
             joints_by_kind=dict(kinds),
             subcontacts=model.subcontacts,
             parts=model.parts,
-            figure=figureOf(self),
+            **self._figure(),
             held=sorted(t.name for t in targets if t.fixed),
             targets=[{"name": t.name, "body": t.body, "held": t.fixed} for t in targets],
             **self._ground(),
@@ -138,6 +138,11 @@ class Outcome:
         if description.views:
             entries["views"] = description.views
         return {**entries, **self._wall()}
+
+    def _figure(self):
+        with self.scene.running.auxiliary("what curve.png shows"):
+            return {"figure": figureOf(self)}
+        return {}
 
     def _wall(self):
         wall = self.pushed and facts.wallOf(self.description, self.model.loading)
@@ -195,7 +200,8 @@ class Outcome:
             run["cycles"] = data.cycles
         if self.pushed and scene.accuracy and not scene.running.interrupted:
             # a push that is not over is shorter than those of its companions
-            self._addAccuracy(run)
+            with scene.running.auxiliary("--accuracy"):
+                self._addAccuracy(run)
         run["answers"] = scene.answers
 
     def _ofPush(self, data):
@@ -257,20 +263,21 @@ class Outcome:
 
     def figure(self):
         """The entries of run.json by which curve.png is drawn."""
-        found = dict(title=self.description.title, figure=figureOf(self))
+        found = dict(title=self.description.title, **self._figure())
         return {**found, **self._wall()}
 
     def write(self, directory, draws=True):
         """Write what the scene has beside rows and frames: the mechanism of limit analysis, with
         its picture if ``draws``."""
         title, views = self.description.title, self.description.views
-        try:
-            self.scene.bounds.write(directory, title, self.model.parts, views, draws)
-        except Missing as missing:
-            say(f"mechanism.png is left out: {missing}", sys.stderr)
-        except (OSError, MemoryError, ImportError) as error:
-            why = getattr(error, "strerror", None) or FULL
-            say(f"the mechanism is not written to {directory}: {why}", sys.stderr)
+        with self.scene.running.auxiliary("the mechanism of limit analysis"):
+            try:
+                self.scene.bounds.write(directory, title, self.model.parts, views, draws)
+            except Missing as missing:
+                say(f"mechanism.png is left out: {missing}", sys.stderr)
+            except (OSError, MemoryError, ImportError) as error:
+                why = getattr(error, "strerror", None) or FULL
+                say(f"the mechanism is not written to {directory}: {why}", sys.stderr)
 
     def report(self, run):
         """Lines to print at the end, from the entries of run.json."""

@@ -267,7 +267,7 @@ class Scene:
         self.columns = description.columns(model, bool(args.history))
         self.model = model
         self.running.open(self.columns, facts.properties(description, self.masonry))
-        self.bounds = Bounds(model, self.running.at)
+        self.bounds = Bounds(model, self.running.at, self.running.auxiliary)
         self.running.takeFound = functools.partial(takeFound, self)
         self.outcome = Outcome(self)
         with self.running.clock("setup"), self.running.breakable(), withoutCollector():
