@@ -15,6 +15,7 @@ def checkpoint(force=1.5, name="damped"):
     return b"masonry checkpoint\n" + b"\0" * 8 + b"".join(parts) + b"\0" * 8
 
 
+BUILDS = [Build("/one", "/scripts"), Build("/two", "/scripts")]
 RUN = """{
  "peak": 1.25, "date": "2026-05-31", "stages": [{"steps": 5, "seconds": 0.1}],
  "source": "masonry.formulas", "out": "FOLDER"
@@ -24,8 +25,8 @@ FILES |= {"log.log": b"5 s", "cracks.png": b"\x89PNG\xff\0", "run.checkpoint": c
 
 
 def compared(tmp_path, changed):
-    """Whether two builds are equal, of which the second leaves some other files; None: not at
-    all."""
+    """Whether two builds are equal of which the second writes other files; None: it writes no such
+    file."""
 
     def writeFiles(attempt):
         isSecond = attempt.build.site == "/two"
@@ -34,11 +35,7 @@ def compared(tmp_path, changed):
                 data = data.replace(b"FOLDER", attempt.folder.encode())
                 (tmp_path / attempt.path(name)).write_bytes(data)
 
-    return compare(
-        Work("made", writeFiles),
-        [Build("/one", "/scripts"), Build("/two", "/scripts")],
-        str(tmp_path),
-    )
+    return compare(Work("made", writeFiles), BUILDS, str(tmp_path))
 
 
 def replaced(name, old, new):
@@ -82,12 +79,10 @@ def test_a_number_a_byte_or_a_file_may_not(tmp_path, capsys, changed, shown):
 
 
 def test_work_that_fails_or_leaves_nothing_is_not_equal(tmp_path, capsys):
-    builds = [Build("/one", "/scripts"), Build("/two", "/scripts")]
-
     def fails(attempt):
         attempt.run(sys.executable, "-c", "raise SystemExit('why')")
 
-    assert not compare(Work("fails", fails), builds, str(tmp_path))
-    assert not compare(Work("nothing", str), builds, str(tmp_path))
+    assert not compare(Work("fails", fails), BUILDS, str(tmp_path))
+    assert not compare(Work("nothing", str), BUILDS, str(tmp_path))
     message = capsys.readouterr().out
     assert re.search(r"failed: fails .*\n.*/one: exit status 1: \.\.\.why", message)

@@ -16,8 +16,8 @@ These differences are allowed:
 
 - files that say when and where something ran, and pages, whose figures are compared as .png files
   and whose numbers as curve.csv, frames and run.json: ``EXCLUDED_FILES``
-- in JSON files the entries ``EXCLUDED_ENTRIES``, the folders of builds, scenes and results, and names of
-  modules
+- in JSON files the entries ``EXCLUDED_ENTRIES``, the folders of builds, scenes and results, and
+  names of modules
 - in checkpoints all names, and what a run notes beside its rows; compared are the bits of all
   numbers of the state, in any order, and the rows
 
@@ -42,8 +42,7 @@ from typing import Callable
 
 import kept
 
-TREE = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
-TIMEOUT = 3600  # of a process [s]
+SCRIPTS = os.path.abspath(os.path.join(os.path.dirname(__file__), "..", "..", "scripts"))
 EXCLUDED_FILES = "*.html *.log *.py run.lock times.csv".split()
 EXCLUDED_ENTRIES = {"made by"} | set(
     "commit date host masonry microseconds_per_step nanoseconds_per_subcontact_step resumed_at_s"
@@ -53,12 +52,9 @@ MODULE = re.compile(r"\bmasonry(_\w+)?(\.\w+)+")
 
 #: Writes a file for every run of references.py.
 REFERENCES = """\
-import sys
 import masonry
-site, folder = {site!r}, {folder!r}
-assert masonry.__file__.startswith(site + "/"), f"{{masonry.__file__}} is imported, not {{site}}"
-sys.path.insert(0, folder)
 import references
+assert masonry.__file__.startswith({site!r}), masonry.__file__ + " is another build"
 references.pathOf = "{{}}.json".format
 for name in references.RUNS:
     references.write(name, references.go(name))
@@ -97,38 +93,31 @@ class Attempt:
 
         :param interrupted: whether it gets SIGINT once it has a few rows
         """
-        env = {**os.environ, "PYTHONPATH": self.build.site, "OMP_NUM_THREADS": "1"}
-        output = self.path("process.log")
+        references = os.path.join(self.build.scripts, "..", "tests", "references")
+        env = {**os.environ, "OMP_NUM_THREADS": "1"}
+        env["PYTHONPATH"] = f"{self.build.site}:{references}"
+        output, curve = self.path("process.log"), self.path("results/curve.csv")
         with open(output, "a") as log:
             process = subprocess.Popen(command, cwd=self.folder, env=env, stdout=log, stderr=log)
-        try:
-            while interrupted and process.poll() is None and not self._hasRows():
-                time.sleep(0.01)
-            if interrupted:
-                process.send_signal(signal.SIGINT)
-            status = process.wait(TIMEOUT)
-        finally:
-            process.kill()
-        if status != (130 if interrupted else 0):
+        hasRows = lambda: os.path.exists(curve) and len(open(curve).readlines()) > 3
+        while interrupted and process.poll() is None and not hasRows():
+            time.sleep(0.01)
+        if interrupted:
+            process.send_signal(signal.SIGINT)
+        if (status := process.wait()) != (130 if interrupted else 0):
             end = open(output).read().strip()[-300:]
             raise RuntimeError(f"{self.build.site}: exit status {status}: ...{end}")
 
     def runScene(self, name, *options, **how):
-        scene = self.build.scenes().get(name)
-        if not scene:
-            raise RuntimeError(f"{self.build.scripts} has no scene {name}")
+        scene = self.build.scenes().get(name, f"{self.build.scripts}/{name}.py")
         self.run("yade", "-n", "-x", scene, *options, **how)
 
     def path(self, name):
         return os.path.join(self.folder, name)
 
-    def write(self, name, text):
-        with open(self.path(name), "w") as file:
+    def write(self, text):
+        with open(self.path("program.py"), "w") as file:
             file.write(text)
-
-    def _hasRows(self):
-        curve = self.path("results/curve.csv")
-        return os.path.exists(curve) and len(open(curve).readlines()) > 3
 
 
 # -- works -----------------------------------------------------------------------------------------
@@ -140,22 +129,20 @@ class Work:
     carryOut: Callable  # takes an Attempt
 
 
-def quickly(name):
+def runQuickly(name):
     return Work(f"scene {name}", lambda a: a.runScene(name, "--quick", "--out", "results"))
 
 
 def runReferences(attempt):
-    folder = os.path.join(os.path.dirname(attempt.build.scripts), "tests", "references")
-    attempt.write("go.py", REFERENCES.format(site=attempt.build.site, folder=folder))
-    attempt.run("yade", "-n", "-x", "go.py")
+    attempt.write(REFERENCES.format(site=attempt.build.site + "/"))
+    attempt.run("yade", "-n", "-x", "program.py")
 
 
 def runStudy(attempt):
     isSeparate = os.path.isdir(os.path.join(attempt.build.site, "masonry_study"))
     package = "masonry_study" if isSeparate else "masonry.study"
-    scene = attempt.build.scenes()[PUSHED]
-    attempt.write("study.py", STUDY.format(package=package, scene=scene))
-    command = "/usr/bin/python3", "-P", "-m", package, "study.py"
+    attempt.write(STUDY.format(package=package, scene=attempt.build.scenes()[PUSHED]))
+    command = "/usr/bin/python3", "-P", "-m", package, "program.py"
     attempt.run(*command, "--out", "results", "--jobs", "1")
 
 
@@ -170,12 +157,13 @@ def resumeInterrupted(attempt):
 
 
 def works(builds):
-    scenes = sorted({name for build in builds for name in build.scenes()})
-    others = Work("references", runReferences), Work("study", runStudy)
-    resumed = Work("resumed after its end", resumeFinished), Work(
-        "resumed after Ctrl-C", resumeInterrupted
-    )
-    return [*others, *resumed, *map(quickly, scenes)]
+    return [
+        Work("references", runReferences),
+        Work("study", runStudy),
+        Work("resumed after its end", resumeFinished),
+        Work("resumed after Ctrl-C", resumeInterrupted),
+        *map(runQuickly, sorted({name for build in builds for name in build.scenes()})),
+    ]
 
 
 # -- comparison ------------------------------------------------------------------------------------
@@ -244,7 +232,7 @@ def compare(work, builds, folder):
         names = sorted(filesIn(places[0]) | filesIn(places[1]))
         found = [d for name in names if (d := firstDifference(name, attempts))]
         state = "differs" if found or not names else "equal"
-    except (RuntimeError, OSError, LookupError, ValueError, subprocess.TimeoutExpired) as error:
+    except (RuntimeError, OSError, LookupError, ValueError) as error:
         found, state = [repr(error)], "failed"
     seconds = time.monotonic() - began
     first = f"{state}: {work.name} ({len(names)} files, {seconds:.0f} s)"
@@ -252,24 +240,17 @@ def compare(work, builds, folder):
     return state == "equal"
 
 
-def parsed():
+def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
-    add = parser.add_argument
+    add, cores = parser.add_argument, len(os.sched_getaffinity(0))
     add("sites", metavar="SITE", nargs=2, help="folder of an installed build")
-    own = [os.path.join(TREE, "scripts")] * 2
-    add("--scripts", metavar="DIR", nargs=2, default=own, help="scenes of each build")
+    add("--scripts", metavar="DIR", nargs=2, default=[SCRIPTS] * 2, help="scenes of each build")
     add("--only", metavar="TEXT", nargs="+", default=[""], help="texts in the names of works")
-    cores = len(os.sched_getaffinity(0))
     add("--jobs", metavar="N", type=int, default=cores, help="works at a time")
     add("--out", metavar="DIR", help="new folder in which all files are kept")
-    return parser.parse_args()
-
-
-def main():
-    args = parsed()
+    args, began = parser.parse_args(), time.monotonic()
     builds = [Build(*map(os.path.abspath, pair)) for pair in zip(args.sites, args.scripts)]
     wanted = [w for w in works(builds) if any(text in w.name for text in args.only)]
-    began = time.monotonic()
     with tempfile.TemporaryDirectory() as folder, ThreadPoolExecutor(args.jobs) as pool:
         folder = os.path.abspath(args.out or folder)
         equal = [*pool.map(lambda work: compare(work, builds, folder), wanted)]
