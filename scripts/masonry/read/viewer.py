@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Runs in ParaView: in its window, or as a picture and a film without a display; and in a browser,
-or as a 3-D model, without ParaView. No YADE is needed.
+"""Runs in ParaView: in its window, or as a picture and a film without a display; and in a browser
+without ParaView. No YADE is needed.
 
 ``scripts/view.py`` is the program. In ParaView's own Python works
 :mod:`masonry.read.paraview_macro`.
@@ -20,7 +20,7 @@ import numpy as np
 from ..common import folders
 from ..common.arguments import FilePath
 from ..basics import Refused, say
-from . import gltf, page, painting
+from . import page, painting
 from .cracks import CRACK, DAMAGED
 from .elevation import whenOf
 from .files import filesOf, program, readCurve, readRun
@@ -219,32 +219,19 @@ def _drawn(path, isFilm):
 
 
 def _handOn(args):
-    """--html and --gltf: a file that needs no ParaView."""
+    """--html: a page that needs no ParaView."""
     if args.picture or args.film or len(args.result) > 1:
         raise Refused(
-            "--html and --gltf write one file of one run; start view.py again for other files or"
-            " runs"
+            "--html writes one page of one run; start view.py again for other files or runs"
         )
     if args.frame is not None and args.at is not None:
         raise Refused("--frame and --at both name a frame; give one of them")
     (directory,) = args.result
     number = args.frame if args.at is None else frameNear(directory, args.at)
     try:
-        if args.html is not False:
-            path = _writable(args.html, directory, "view.html", (".html", ".htm"))
-            page.write(directory, path, number, args.magnify)
-            say(f"{path}: {os.path.getsize(path) / 1e6:.2f} MB; any browser opens it")
-        if args.gltf is not None:
-            path = _writable(args.gltf, directory, None, (".glb",))
-            say(
-                gltf.write(
-                    directory,
-                    path,
-                    number,
-                    1.0 if args.magnify is None else args.magnify,
-                    args.rate,
-                )
-            )
+        path = _writable(args.html, directory, "view.html", (".html", ".htm"))
+        page.write(directory, path, number, args.magnify)
+        say(f"{path}: {os.path.getsize(path) / 1e6:.2f} MB; any browser opens it")
     except OSError as problem:
         raise Refused(f"cannot write {path}: {problem.strerror}") from None
 
@@ -255,7 +242,7 @@ def main(words: Sequence[str] | None = None) -> None:
     parser = argparse.ArgumentParser(
         description=(
             "Open runs in ParaView, draw them to a picture or a film without a display, or write"
-            " them for a browser or as a 3-D model."
+            " one for a browser."
         )
     )
     parser.add_argument("result", nargs="+", help="folder of results")
@@ -276,17 +263,7 @@ def main(words: Sequence[str] | None = None) -> None:
         ),
     )
     parser.add_argument(
-        "--gltf",
-        metavar="FILE.glb",
-        help=(
-            "a 3-D model: of the frame that --frame or --at names, else all frames as an animation"
-        ),
-    )
-    parser.add_argument(
-        "--frame",
-        metavar="N",
-        type=int,
-        help="frame to show first in --html, or to write with --gltf, from 0",
+        "--frame", metavar="N", type=int, help="frame to show first in --html, from 0"
     )
     parser.add_argument(
         "--at", metavar="PLACE", help="frame to show: 12, 12mm or 0.5s; else the last one"
@@ -294,7 +271,7 @@ def main(words: Sequence[str] | None = None) -> None:
     parser.add_argument(
         "--magnify",
         type=float,
-        help="magnification of displacements; else chosen for each run, with --gltf 1",
+        help="magnification of displacements; else chosen for each run",
     )
     parser.add_argument(
         "--size", default="1500x1000", help="of picture and film in pixels (default 1500x1000)"
@@ -303,7 +280,7 @@ def main(words: Sequence[str] | None = None) -> None:
         "--rate",
         type=int,
         default=10,
-        help="frames of the film or of the animation of --gltf a second (default 10)",
+        help="frames of the film a second (default 10)",
     )
     args = parser.parse_args(words)
     size = re.fullmatch(r"(\d+)x(\d+)", args.size)
@@ -316,10 +293,10 @@ def main(words: Sequence[str] | None = None) -> None:
     for directory in args.result:
         readRun(directory)
     with filesOf(", ".join(args.result)):
-        if args.html is not False or args.gltf:
+        if args.html is not False:
             return _handOn(args)
         if args.frame is not None:
-            raise Refused("--frame is for --html and --gltf; --at names a frame for ParaView")
+            raise Refused("--frame is for --html; --at names a frame for ParaView")
         pixels = tuple(map(int, size.groups()))
         for path, isFilm in ((args.picture, False), (args.film, True)):
             if path:
