@@ -13,8 +13,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 workers=$(nproc)
 packages=(python3-pytest-xdist clang-format black python3-pyflakes) # for the gates: formats of C++ and Python, unused imports
-# For gates, studies, YADE's 3-D view, pages in 3-D and notebooks. ParaView is not among them: it is 77 MB, and its thirteen
-# tests take two minutes; where it is installed as scripts/README.md says under "Pictures", they run.
+# For gates, studies, YADE's 3-D view, pages in 3-D and notebooks.
 whole=(mypy python3-yaml slurm-wlm munge xvfb xauth libjs-three jupyter-nbconvert python3-ipykernel python3-pandas)
 long=(clang libclang-rt-dev python3-sphinx python3-myst-parser furo libjs-mathjax)
 case "${1:-}" in

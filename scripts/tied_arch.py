@@ -19,5 +19,5 @@ area, length = 113e-6, 1.75  # [m²], [m]
 tie = scene.tie(0, 10, stiffness=200e9 * area / length, strength=20e6 * area, name="tie")
 scene.settle()
 print(f"tie under the weight alone: {tie.force:.0f} N")
-scene.growLoad(keystone, (0, 0, -10e3))
+scene.grow({keystone: (0, 0, -10e3)})
 scene.finish()

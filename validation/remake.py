@@ -480,14 +480,6 @@ def ofStudies():
             ("validation/calibration",),
             limits=True,
         ),
-        Result(
-            "multifidelity",
-            (program("multifidelity/multifidelity.py", "--jobs", "2"),),
-            ("multifidelity/multifidelity.png",),
-            (*own("multifidelity"), *RIGID, *DEFORMABLE),
-            120,
-            ("validation/multifidelity",),
-        ),
     ]
 
 

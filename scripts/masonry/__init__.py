@@ -19,7 +19,7 @@ A scene of one's own is bricks, materials and stages::
 - :mod:`masonry.bricks`: walls, openings, bonds, corners, arches, vaults, blocks from files
 - :mod:`masonry.study`: one scene, run many times with values that vary
 - :mod:`masonry.limit`: limit analysis, the bound beside every run
-- :mod:`masonry.read`: what reads the files of a run: numbers, figures, pictures by ParaView
+- :mod:`masonry.read`: what reads the files of a run: numbers, figures, the 3-D picture
 - :mod:`masonry.capacity`: bilinear curves, the demand of an earthquake, N-V domains
 - :mod:`masonry.run`: a run: checkpoints, results, presets, rows of a table
 - :mod:`masonry.assembly`: ``addBlock``, ``engines``, ``connect``, for scenes that are built body by

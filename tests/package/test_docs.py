@@ -178,7 +178,7 @@ def test_links_lead_to_pages(tmp_path):
     stage = staging.Stage(str(tmp_path / "source"))
     text = (
         "[a](scripts/README.md#gallery) [b](https://yade-dem.org) [c](validation/)"
-        " [d](scripts/masonry/limit/__init__.py) [`e`](scripts/masonry/study/estimate.py)"
+        " [d](scripts/masonry/limit/__init__.py) [`e`](scripts/masonry/study/statistics.py)"
         " [f](scripts/arch.py) [g](#start) `[h](scripts/README.md)`\n\n```math\nx\n```\n\n   "
         " [i](scripts/README.md)\n"
     )
@@ -188,7 +188,7 @@ def test_links_lead_to_pages(tmp_path):
         "[a](scripts/README.md#gallery) [b](https://yade-dem.org) [c](validation/README.md)"
         in written
     )
-    assert "{py:mod}`d <masonry.limit>` {py:mod}`e <masonry.study.estimate>`" in written
+    assert "{py:mod}`d <masonry.limit>` {py:mod}`e <masonry.study.statistics>`" in written
     assert "[f](scripts/arch.py.md) [g](#start) `[h](scripts/README.md)`" in written
     assert "```{math}\nx\n```" in written and "    [i](scripts/README.md)\n" in written
     assert stage.shown == {"scripts/arch.py"}

@@ -94,7 +94,7 @@ def test_a_history_takes_the_place_of_until(capsys):
 
 def test_a_preset_promises_nothing_for_a_history():
     args = parse("--preset", "fast", "--history", "2")
-    preset = presets.presetOf(args, "wall_comp4", None)
+    preset = presets.presetOf(args, None)
     assert preset["promise"] is None and preset["overrides"] == ["history"]
 
 

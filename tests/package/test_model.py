@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The model of the 3-D picture, and the pages and glTF files that are made of it."""
+"""The model of the 3-D picture, and the pages that are made of it."""
 
 from usual import *
 import base64
 import zlib
-from masonry.read import frames, gltf, page, viewer
+from masonry.read import frames, page, viewer
 
 from masonry.read.model import BRICK, FEWEST, MOST_PLACES, PLATEN, Model, chosenFrames, turned
 from masonry.read.page import data, library
@@ -183,16 +183,9 @@ def test_a_turn_of_any_size_moves_points_as_its_matrix_does():
         turns = np.tile(angle * axis, (50, 1))
         expected = arms @ (rotation(axis, angle) - np.eye(3)).T
         assert turned(turns, arms) == approx(expected, abs=1e-14)
-        x, y, z, w = gltf.quaternions(turns[:1])[0]
-        assert (x, y, z) == approx(math.sin(angle / 2) * axis, abs=1e-15)
-        assert w == approx(math.cos(angle / 2), abs=1e-15)
     # a small turn keeps all its digits
     small = turned(np.array([[0, 0, 1e-13]]), np.array([[1.0, 0, 0]]))
     assert small[0, 1] == approx(1e-13, rel=1e-12)
-    # from frame to frame it is the short one
-    turns = np.array([(0, 0, a) for a in np.linspace(0, 12, 60)])
-    found = gltf.quaternions(np.where(turns > math.pi, turns - 2 * math.pi, turns))
-    assert ((found[1:] * found[:-1]).sum(axis=1) > 0.9).all()
 
 
 def test_surfaces_look_outwards_and_are_closed_and_edges_are_drawn_where_they_bend(run):
@@ -315,88 +308,6 @@ def test_without_three_the_package_is_named(run, monkeypatch):
         page.page(run)
 
 
-# -- glTF ------------------------------------------------------------------------------------------
-
-#: Prints what VTK reads of a .glb file: its animations, and at some times the numbers of leaves and
-#: triangles, and bounds.
-READ = """
-import json, sys
-from vtkmodules.vtkIOGeometry import vtkGLTFReader
-
-def leaves(thing):
-    if hasattr(thing, "GetNumberOfBlocks"):
-        for n in range(thing.GetNumberOfBlocks()):
-            yield from leaves(thing.GetBlock(n))
-    elif thing is not None:
-        yield thing
-
-reader = vtkGLTFReader()
-reader.SetFileName(sys.argv[1])
-reader.SetApplyDeformationsToGeometry(True)
-reader.UpdateInformation()
-found = {"animations": reader.GetNumberOfAnimations(), "at": []}
-if found["animations"]:
-    found["duration"] = reader.GetAnimationDuration(0)
-    reader.EnableAnimation(0)
-for time in map(float, sys.argv[2:]):
-    reader.UpdateTimeStep(time)
-    parts = list(leaves(reader.GetOutput()))
-    bounds = [part.GetBounds() for part in parts]
-    low = [min(b[k] for b in bounds) for k in (0, 2, 4)]
-    high = [max(b[k] for b in bounds) for k in (1, 3, 5)]
-    found["at"].append([len(parts), sum(part.GetNumberOfCells() for part in parts), low, high])
-print(json.dumps(found))
-"""
-
-
-def readByVtk(path, *times):
-    """What VTK reads of a .glb file, in a process of its own: its libraries are not those of YADE's
-    process."""
-    command = ["/usr/bin/python3", "-c", READ, path, *map(str, times)]
-    return json.loads(subprocess.check_output(command, text=True))
-
-
-def bounds(points):
-    """Lowest and highest coordinates in a glTF file, in which y is up: x stays, z becomes y, y
-    becomes -z."""
-    turned = np.column_stack([points[:, 0], points[:, 2], -points[:, 1]])
-    return turned.min(axis=0).tolist(), turned.max(axis=0).tolist()
-
-
-def test_vtk_reads_the_animation_of_every_block(run, tmp_path):
-    path = str(tmp_path / "run.glb")
-    said = gltf.write(run, path, rate=2)
-    assert "2 blocks, an animation of 4 frames at 2 a second" in said
-    model = Model(run)
-    found = readByVtk(path, 0, 0.5, 1.0, 1.5)
-    assert found["animations"] == 1 and found["duration"] == approx(1.5)
-    for k, (parts, triangles, low, high) in enumerate(found["at"]):
-        assert (parts, triangles) == (2, 24)
-        expected = bounds(model.points + model.displacements(k))
-        assert low == approx(expected[0], abs=1e-6)
-        assert high == approx(expected[1], abs=1e-6)
-
-
-@mark.parametrize("number, magnification", [(1, 50.0), (2, 1.0)])
-def test_vtk_reads_the_deformed_shape_of_a_frame_and_its_cracks(
-    run, tmp_path, number, magnification
-):
-    path = str(tmp_path / "run.glb")
-    said = gltf.write(run, path, number, magnification)
-    model = Model(run, number)
-    joints = model.joints
-    assert (joints.kind[0] > 0).all() and "9 points of joints" in said
-    faces = len(joints.corners) - 2 * len(joints.between)
-    found = readByVtk(path, 0)
-    ((parts, triangles, low, high),) = found["at"]
-    assert found["animations"] == 0
-    # on the faces of both blocks; triangles whose corners lie in a line have no area
-    assert parts == 3 and 24 + 2 * faces - 4 <= triangles <= 24 + 2 * faces
-    expected = bounds(model.points + magnification * model.displacements(0))
-    assert low == approx(expected[0], abs=1e-6)
-    assert high == approx(expected[1], abs=1e-6)
-
-
 # -- what is refused -------------------------------------------------------------------------------
 
 
@@ -459,17 +370,17 @@ def test_damaged_and_foreign_files_are_refused_in_a_sentence(run, damage, words)
         (["RUN", "--html", "no/a.html"], "cannot write no/a.html: there is no folder no"),
         (["RUN", "--html", "RUN"], "is a folder; name a file that ends in .html or .htm"),
         (
-            ["RUN", "--gltf", "link.glb"],
-            "cannot write link.glb: it is a symbolic link or no regular file",
+            ["RUN", "--html", "link.html"],
+            "cannot write link.html: it is a symbolic link or no regular file",
         ),
-        (["RUN", "--gltf", "a.obj"], "a.obj must end in .glb"),
-        (["RUN", "--gltf", "a.glb", "--at", "9mm"], "never comes to 9 mm"),
+        (["RUN", "--html", "a.obj"], "a.obj must end in .html or .htm"),
+        (["RUN", "--html", "a.html", "--at", "9mm"], "never comes to 9 mm"),
         (
-            ["RUN", "--gltf", "a.glb", "--at", "0", "--frame", "1"],
+            ["RUN", "--html", "a.html", "--at", "0", "--frame", "1"],
             "--frame and --at both name a frame",
         ),
-        (["RUN", "RUN", "--html", "a.html"], "one file of one run"),
-        (["RUN", "--frame", "1"], "--frame is for --html and --gltf"),
+        (["RUN", "RUN", "--html", "a.html"], "one page of one run"),
+        (["RUN", "--frame", "1"], "--frame is for --html;"),
         (["RUN", "--html", "a.html", "--magnify", "-2"], "--magnify: -2 must be at least 0"),
     ],
 )
@@ -478,22 +389,21 @@ def test_what_cannot_be_written_is_refused_and_nothing_is(
 ):
     here = tmp_path_factory.mktemp("here")
     monkeypatch.chdir(here)
-    for name in ("link.html", "link.glb"):
-        (here / name).symlink_to("elsewhere")
+    (here / "link.html").symlink_to("elsewhere")
     assert viewer.main([str(run) if w == "RUN" else w for w in words]) == 2
     assert message in capsys.readouterr().err
-    assert sorted(os.listdir(here)) == ["link.glb", "link.html"]
+    assert sorted(os.listdir(here)) == ["link.html"]
 
 
 @needsThree
-def test_the_program_writes_a_page_into_the_folder_and_a_model_elsewhere(run, tmp_path, capsys):
+def test_the_program_writes_a_page_into_the_folder_or_elsewhere(run, tmp_path, capsys):
     assert viewer.main([str(run), "--html"]) == 0
     assert "view.html: 0." in capsys.readouterr().out
     first = json.loads(Page((run / "view.html").read_text()).of("script")[-2])
     assert first["first"] == 3
-    path = str(tmp_path / "a.glb")
-    assert viewer.main([str(run), "--gltf", path, "--at", "0.2mm"]) == 0
-    assert "2 blocks in frame 2" in capsys.readouterr().out
+    path = tmp_path / "a.html"
+    assert viewer.main([str(run), "--html", str(path), "--at", "0.2mm"]) == 0
+    assert json.loads(Page(path.read_text()).of("script")[-2])["first"] == 2
     # not into a folder that may lead elsewhere
     (run / "view.html").unlink()
     (run / "view.html").symlink_to("elsewhere")

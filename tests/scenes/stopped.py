@@ -66,7 +66,7 @@ STAGES = {
             f"scene.push(<'masses'|'mode'|lambda x, y, z: z>, <0.05~0.2>, {TOWARDS}, control=top)"
         ),
         "wind": f"scene.wind(<100~900>, {TOWARDS}, {LONGEST})",
-        "growWind": f"scene.growWind(<300~3000>, {TOWARDS}, {GROWS})",
+        "growWind": f"scene.grow({{}}, pressure=<300~3000>, towards={TOWARDS}, {GROWS})",
         "bracketWind": bracket("wind(1e3 * f, (1, 0, 0)"),
     },
     "moves": {
@@ -74,12 +74,12 @@ STAGES = {
         "cycle": "scene.cycle(top, <[<0.02~0.1>]|[<0.02~0.1>, <0.02~0.1>]>, DIRECTION)",
         "follow": "scene.follow(top, 'path.csv', DIRECTION)",
         "load": f"scene.load(top, {FORCE}, {LONGEST})",
-        "growLoad": f"scene.growLoad(top, {FORCE}, {GROWS})",
+        "growLoad": f"scene.grow({{top: {FORCE}}}, {GROWS})",
         "release": TRY.format("scene.release(top, '<x|z|xz>')"),
     },
     "platen": {
         "press": f"scene.press(top, <5e4~4e5>, {LONGEST})",
-        "growPress": f"scene.growPress(top, <1e5~4e6>, {GROWS})",
+        "growPress": f"scene.grow({{top: <1e5~4e6>}}, {GROWS})",
     },
     "handle": {"hold": "scene.hold(top, '<x|xz|xyzXYZ>')"},
     "drive": {"drive": "scene.drive(top, AXIS=<0.005~0.05>)"},

@@ -137,9 +137,9 @@ def test_a_fall_is_counted_from_the_state_to_which_the_scene_steps_back(tmp_path
     "grow, expected",
     [
         # the highest stone slides
-        (lambda s, t: s.growLoad(t, (3000, 0, 0)), 1e-3 * 0.7 * WEIGHT / 3),
+        (lambda s, t: s.grow({t: (3000, 0, 0)}), 1e-3 * 0.7 * WEIGHT / 3),
         # on all of its face
-        (lambda s, t: s.growWind(2e4, (1, 0, 0)), 1e-3 * WEIGHT * 0.15 / 0.3 / (0.3 * 0.6)),
+        (lambda s, t: s.grow({}, pressure=2e4), 1e-3 * WEIGHT * 0.15 / 0.3 / (0.3 * 0.6)),
     ],
 )
 def test_growing_loads_hold_what_statics_says(tmp_path, grow, expected):
@@ -332,11 +332,11 @@ def test_buckling_is_looked_for_in_the_state_that_was_held(monkeypatch):
     assert growing._Search(scene, at, None, 0.01)._buckles() and loaded == [b"held"]
 
 
-@pytest.mark.parametrize("stage", ["growLoad", "load"])
+@pytest.mark.parametrize("stage", ["grow", "load"])
 def test_a_perfect_column_holds_no_more_than_its_buckling_load(tmp_path, stage):
     """A chain of n rigid blocks on elastic joints with the rotational stiffness k buckles at 4 k/h
     sin²(π/(4 n + 2)), in space along y, where it is thinner."""
-    n, side, stiffness, plane = 10, 0.2, 5e8, stage == "growLoad"
+    n, side, stiffness, plane = 10, 0.2, 5e8, stage == "grow"
     wide = side if plane else 1.5 * side
     joint = MasonryJoint(elastic=True, normalStiffness=stiffness, shearStiffness=2e8)
     light = materials.Masonry(MasonryMat(young=2e10, poisson=0.2, density=200), {"bed": joint})
@@ -346,8 +346,8 @@ def test_a_perfect_column_holds_no_more_than_its_buckling_load(tmp_path, stage):
     scene.settle()
     turning = stiffness * wide * side**3 / 12
     euler = 4 * turning / side * np.sin(np.pi / (4 * n + 2)) ** 2
-    if stage == "growLoad":
-        scene.growLoad(head, (0, 0, -3 * euler), within=0.02)
+    if stage == "grow":
+        scene.grow({head: (0, 0, -3 * euler)}, within=0.02)
         held, lost = found(scene, "factor_held")[0], found(scene, "factor_not_held")[0]
         assert 0.97 * euler < 1e3 * held < euler < 1e3 * lost < 1.03 * euler
     else:

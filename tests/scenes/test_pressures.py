@@ -164,7 +164,7 @@ def test_an_axle_goes_over_an_arch_and_leaves_nothing(tmp_path):
 
 def test_the_bound_of_a_load_that_travels_is_that_of_one_that_stands_there(tmp_path):
     scene, crown = bridge(tmp_path, "--preset", "bound")
-    scene.growLoad(crown, (0, 0, -1e5))
+    scene.grow({crown: (0, 0, -1e5)})
     scene.finish()
     *travels, alone = [b["factor"] for b in readRun(tmp_path)["bounds"]]
     assert travels[2] == pytest.approx(alone, rel=1e-6)

@@ -37,7 +37,7 @@ scene.hold(top, "z")
 scene.run(0.02)
 scene.release(top, "z")
 scene.settle()
-scene.growLoad(top, (4000, 0, 0))
+scene.grow({top: (4000, 0, 0)})
 scene.finish()
 """,
     "together": """

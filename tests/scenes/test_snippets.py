@@ -39,7 +39,6 @@ REASONS = {
     r".*(view\.py|view_html)": "needs ParaView: tests/scenes/test_view.py",
     r".*apt-get": "installs packages",
     r".*--slurm|squeue|seq ": "needs a cluster: tests/studies/test_run.py has one of Slurm",
-    r".*ACCURATE --cheap FAST": "needs two studies of many runs: tests/studies/test_estimate.py",
     r".*tests/references/references\.py": "tests/host/test_references.py",
     r".*validation/\w+/?\w*\.py": (
         "minutes or hours; tests/scenes/test_validation.py and its like run parts of them"

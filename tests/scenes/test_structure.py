@@ -120,8 +120,8 @@ def test_wrong_words_before_the_first_stage_are_refused(tmp_path, act, message):
         (lambda s, t: s.bracket(lambda f: True, 0.3, 0.2), "below high 0.2"),
         (lambda s, t: s.push(t, 0.1, direction=(0, 1, 0)), "in the x-z plane"),
         (lambda s, t: s.watch(0), "must come before the first stage"),
-        (lambda s, t: s.growLoad(t, (0, 0, 0)), "force must not be zero"),
-        (lambda s, t: s.growWind(9, (0, 0, 1)), "must be a horizontal direction"),
+        (lambda s, t: s.grow({t: (0, 0, 0)}), "force must not be zero"),
+        (lambda s, t: s.wind(9, (0, 0, 1)), "must be a horizontal direction"),
     ],
 )
 def test_wrong_stages_are_refused(tmp_path, act, message):

@@ -211,101 +211,35 @@ def writeStudy(folder, rows, measures, curves=0):
     return str(folder)
 
 
+PEAKS15 = 100 + np.random.default_rng(10).uniform(-15, 25, 15)
+
+
 @pytest.fixture
-def studies(tmp_path):
-    """An expensive study with the first 15 rows of a cheap one of 120, whose peaks miss those of
-    the expensive one by a little."""
-    generator = np.random.default_rng(10)
-    rows = generator.uniform(0, 1, (120, 3)).tolist()
-    scatter = 0.3 * generator.standard_normal((2, 120))
-    expensive = 100 + np.array(rows) @ [20, -10, 0] + scatter[0]
-    cheap = 1.1 * expensive - 3 + scatter[1]
-    order = generator.permutation(120)
-    texts = lambda numbers: [repr(float(number)) for number in numbers]
+def study(tmp_path):
+    """A study of 15 rows."""
+    rows = np.random.default_rng(10).uniform(0, 1, (15, 3)).tolist()
     modes = ["slides"] * 5 + ["rocks"] * 10
-    few = {"failure_mode": modes, PEAKS: texts(expensive[:15])}
-    return (
-        writeStudy(tmp_path / "accurate", rows[:15], few, curves=15),
-        writeStudy(tmp_path / "fast", [rows[i] for i in order], {PEAKS: texts(cheap[order])}),
-        expensive,
-    )
+    texts = [repr(float(peak)) for peak in PEAKS15]
+    return writeStudy(tmp_path / "accurate", rows, {"failure_mode": modes, PEAKS: texts}, curves=15)
 
 
-def test_shared_rows_are_found_by_what_varied_in_them(studies):
-    expensive, cheap, peaks = studies
-    few, many = records.Record(expensive), records.Record(cheap)
-    y, x, shared, rows = records.paired(few, many, PEAKS)
-    assert y == pytest.approx(peaks[:15]) and shared == list(range(15))
-    assert len(x) == 120 and sorted(rows) == list(range(120))
-    assert x[:15] == pytest.approx(1.1 * y - 3, abs=1.5)
-
-
-def test_rows_without_a_number_in_either_study_are_not_shared(studies):
-    expensive, cheap, peaks = studies
-    few, many = records.Record(expensive), records.Record(cheap)
-    few.cells[PEAKS][2] = ""
-    keys = list(zip(*(many.cells[name] for name in NAMES)))
-    lost = keys.index(tuple(few.cells[name][4] for name in NAMES))
-    many.cells[PEAKS][lost] = ""
-    y, x, shared, rows = records.paired(few, many, PEAKS)
-    assert shared == [n for n in range(15) if n not in (2, 4)] and len(y) == 13
-    assert np.isfinite(y).all() and np.isfinite(x).all() and len(x) == 119
-    assert y == pytest.approx(peaks[shared])
-
-
-def test_studies_of_which_it_cannot_be_reported_what_they_share_are_refused(studies):
-    few, many = map(records.Record, studies[:2])
-    many.varied = many.varied[:2]
-    with pytest.raises(Refused, match=f"varies {', '.join(NAMES)}, and"):
-        records.paired(few, many, PEAKS)
-    few, many = map(records.Record, studies[:2])
-    for name in NAMES:
-        many.cells[name][1] = many.cells[name][0]
-    with pytest.raises(Refused, match="rows have the same properties"):
-        records.paired(few, many, PEAKS)
-
-
-def test_studies_of_other_walls_or_options_are_not_joined(studies):
-    def shared(scene="wall_comp4", **more):
-        """How many rows studies of a scene and another one share, of which the other has more
-        options."""
-        described = (("wall_comp4", {"preset": "accurate"}), (scene, {"preset": "fast", **more}))
-        for directory, (name, options) in zip(studies, described):
-            study = {"scene": name, "runs": 15, "options": options, "vary": {}}
-            text = json.dumps({"study": study, "script": name + ".py"})
-            (pathlib.Path(directory) / "study.json").write_text(text)
-        return len(records.paired(*map(records.Record, studies[:2]), PEAKS)[0])
-
-    with pytest.raises(Refused, match="has scene 'wall_comp4', and .* 'wall_comp1'"):
-        shared("wall_comp1")
-    with pytest.raises(Refused, match="has until None, and .* 6"):
-        shared(until=6)
-    with pytest.raises(Refused, match="has joints None, and .* 'cyclic'"):
-        shared(joints="cyclic", rate=20)
-    # rates and meshes may be others
-    assert shared() == shared(rate=20, points="4") == 15
-
-
-def test_the_seed_of_a_random_field_is_no_input(studies):
-    record = records.Record(studies[0])
+def test_the_seed_of_a_random_field_is_no_input(study):
+    record = records.Record(study)
     record.varied.append("field:bed.cohesion")
     record.cells["field:bed.cohesion"] = list(map(str, range(15)))
     assert list(record.complete(PEAKS)[1]) == list(NAMES)
 
 
-def test_the_report_tells_and_draws_all(studies, capsys):
-    expensive, cheap, peaks = studies
-    words = [expensive, "--cheap", cheap, "--demand", "100,120", "--prices", "60,3"]
-    assert report.main(words) == 0
+def test_the_report_tells_and_draws_all(study, capsys):
+    assert report.main([study, "--demand", "100,120"]) == 0
     said = capsys.readouterr().out
-    low, high = statistics.mean(peaks[:15])[1:]
+    low, high = statistics.mean(PEAKS15)[1:]
     assert f"{low:.5g} … {high:.5g}" in said
     assert "peak base shear [kN]: 15 of 15 rows" in said
     assert "rocks                    0.667" in said
     assert "unknown" in said  # 15 rows do not tell the ends of the 5 % quantile
-    assert "15 runs of accurate and 120 of fast in 21 min" in said
     for name in ("scatter", "tornado", "histogram", "fragility", "curves"):
-        path = os.path.join(expensive, name + ".png")
+        path = os.path.join(study, name + ".png")
         assert path in said and 5e3 < os.path.getsize(path) < 3e5
     assert "no sobol.png: Sobol indices of 3 properties need 30 rows" in said
 
@@ -319,16 +253,15 @@ def test_rows_that_failed_are_reported_and_left_out(tmp_path, capsys):
     assert "30 of 40 rows" in said and "rows that have not ended: 10 failed" in said
 
 
-def test_what_is_no_study_is_refused_with_its_name(tmp_path, studies, capsys):
+def test_what_is_no_study_is_refused_with_its_name(tmp_path, study, capsys):
     other = tmp_path / "other"
     other.mkdir()
     (other / "study.csv").write_text("a,b\n1,2\n")
     for words, message in (
         ([str(tmp_path / "nowhere")], "nowhere"),
         ([str(other)], "no table of a study"),
-        ([studies[0], "--measure", "peak"], "no column peak; there are run, bed.coh"),
-        ([studies[0], "--demand", "a"], "--demand a must be numbers"),
-        ([studies[0], "--prices", "1"], "--prices 1 must be two numbers"),
+        ([study, "--measure", "peak"], "no column peak; there are run, bed.coh"),
+        ([study, "--demand", "a"], "--demand a must be numbers"),
     ):
         assert report.main([*words, "--no-pictures"]) == 2
         assert message in capsys.readouterr().err

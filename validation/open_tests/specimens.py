@@ -123,7 +123,7 @@ def wallette(parallel, bound=False, masonry=None, unit=UNIT, most=0.6e6):
     scene.settle()
     arm = 3 * step
     share = step * arm * 6 / T**2  # stress over pressure, as M = pressure · step · arm
-    scene.growWind(most / share, (0, 1, 0), part="line", over=0.5, within=0.02)
+    scene.grow({}, pressure=most / share, towards=(0, 1, 0), part="line", over=0.5, within=0.02)
     if bound:
         scene.finish()
         return 1e-3 * share * boundOf(scene)

@@ -44,7 +44,7 @@ HELD = 1.01  # largest load that was held over its closed form
 PUSHED = 1.02  # largest force of a push over its closed form, beside the imbalance
 MISSING = 5e-3  # of the loads at the supports of a structure at rest
 STAGES = (
-    "push push push cycle lean accelerate tilt growLoad growWind wind load shake run move settle"
+    "push push push cycle lean accelerate tilt growForce growPressure wind load shake run move settle"
 ).split()
 CALMING = 20000  # steps after which what was in motion has come to rest
 #: With one of these a run says that its force is above what statics allows.
@@ -385,7 +385,7 @@ class Play:
         self.found.append(f"supports {found / need:.4f}")
 
     def _stage(self):
-        names = STAGES + (["press", "growPress"] if self.case.rotation else [])
+        names = STAGES + (["press", "growStress"] if self.case.rotation else [])
         names = names + ["drive"] * 4 if self.drive else names
         name = self.dice.choice(names + ["release"] * self.driven)
         self.stages.append(name)
@@ -493,11 +493,11 @@ class Play:
         size = min(self._about(most), 1e14)
         return most, tuple(size * v for v in self._towards())
 
-    def _growLoad(self):
+    def _growForce(self):
         most, force = self._force()
         over = min(self._duration(), 86400)
         return self._factor(
-            1e-3 * most, lambda: self.scene.growLoad(self.target, force, over=over, within=0.05)
+            1e-3 * most, lambda: self.scene.grow({self.target: force}, over=over, within=0.05)
         )
 
     def _load(self):
@@ -509,12 +509,14 @@ class Play:
             1e-3 * most, lambda: self.scene.load(self.target, force, longest=self.longest)
         )
 
-    def _growWind(self):
+    def _growPressure(self):
         most = self.case.mostWind()
         pressure, over = min(self._about(most), 1e8), min(self._duration(), 86400)
         return self._factor(
             1e-3 * most,
-            lambda: self.scene.growWind(pressure, self._towards(), over=over, within=0.05),
+            lambda: self.scene.grow(
+                {}, pressure=pressure, towards=self._towards(), over=over, within=0.05
+            ),
         )
 
     def _wind(self):
@@ -530,10 +532,10 @@ class Play:
             math.inf, lambda: self.scene.press(self.target, stress, longest=self.longest)
         )
 
-    def _growPress(self):
+    def _growStress(self):
         stress, over = self.case._stress(), min(self._duration(), 86400)
         return self._factor(
-            math.inf, lambda: self.scene.growPress(self.target, stress, over=over, within=0.05)
+            math.inf, lambda: self.scene.grow({self.target: stress}, over=over, within=0.05)
         )
 
     def _shake(self):

@@ -31,7 +31,7 @@ from masonry.assembly.columns import Reading
 from yade import O
 
 STAGES = (
-    "settle push cycle drive lean tilt accelerate load growLoad wind growWind press growPress move"
+    "settle push cycle drive lean tilt accelerate load growForce wind growPressure press growStress move"
     " release hold shake run"
 ).split()
 TARGETS = "free held guided driven handle brick".split()
@@ -46,7 +46,7 @@ DIRECTIONS = {
 MODELS = "rigid", "deformable"
 LAWS = "softening", "cyclic", "brittle"
 #: Stages for which a direction means nothing.
-WITHOUT_DIRECTION = {"settle", "press", "growPress", "hold", "run"}
+WITHOUT_DIRECTION = {"settle", "press", "growStress", "hold", "run"}
 ROUND_OFF = 1e-9  # of the largest force, or moment
 ALLOWED = 0.02  # of a bound, as in a run
 WORK = 0.03  # of the work of a push: rows are summed by the trapezium rule
@@ -120,16 +120,16 @@ def act(scene, cell, target, base):
         return scene.accelerate(0.3, towards=direction, rate=10)
     if stage == "load":
         return scene.load(target, vector(300))
-    if stage == "growLoad":
-        return scene.growLoad(target, vector(500), over=0.05)
+    if stage == "growForce":
+        return scene.grow({target: vector(500)}, over=0.05)
     if stage == "wind":
         return scene.wind(2e3, direction)
-    if stage == "growWind":
-        return scene.growWind(3e3, direction, over=0.05)
+    if stage == "growPressure":
+        return scene.grow({}, pressure=3e3, towards=direction, over=0.05)
     if stage == "press":
         return scene.press(target, 0.3e6)
-    if stage == "growPress":
-        return scene.growPress(target, 0.1e6, over=0.05)
+    if stage == "growStress":
+        return scene.grow({target: 0.1e6}, over=0.05)
     if stage == "move":
         return scene.move(target if target.fixed else base, **along, rate=5)
     if stage == "release":

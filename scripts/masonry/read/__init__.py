@@ -16,9 +16,8 @@
 - :mod:`masonry.read.comparison`: figures of several runs
 - :mod:`masonry.read.model`: the model of the 3-D picture, how blocks move and what joints do in all
   frames. Of it are made
-  :mod:`masonry.read.page`, a page that shows it in any browser and in a notebook;
-      :mod:`masonry.read.gltf`, a 3-D model; and
-  :mod:`masonry.read.viewer`, pictures and films by ParaView, in which
+  :mod:`masonry.read.page`, a page that shows it in any browser and in a notebook; and
+  :mod:`masonry.read.viewer`, the window of ParaView, in which
       :mod:`masonry.read.paraview_macro` works
 - :mod:`masonry.read.report`: all of a run on one page, as a program, too;
   :mod:`masonry.read.postprocess`: the program beside a run that draws its figures and writes this;

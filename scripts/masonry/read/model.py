@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The model of the 3-D picture of a run: its blocks, how they move, and what its joints do.
 
-The page (:mod:`masonry.read.page`), glTF files (:mod:`masonry.read.gltf`), the report and
-ParaView's pictures show this.
+The page (:mod:`masonry.read.page`), the report and ParaView's window show this.
 """
 
 import os

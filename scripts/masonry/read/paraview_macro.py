@@ -1,15 +1,14 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Shows runs in ParaView: a macro for its Python, which needs nothing of this project.
-scripts/view.py starts it, in ParaView's window or in pvpython without one, with the environment
-variable MASONRY_VIEW, the path of a JSON file:
+scripts/view.py starts it in ParaView's window with the environment variable MASONRY_VIEW, the path
+of a JSON file:
 
 - ``runs``: of each its ``folder``, ``title``, ``magnification`` of displacements, ``ground``: ids
   of the bodies of the ground, ``platens``: those of all other bodies that are no masonry,
   ``widest_mm``: opening at the end of the colours, ``crack`` [m] and ``damaged`` [-] as in
   masonry.read.cracks, ``colours`` by name, and the camera: ``middle``, ``towards`` the viewer and
   ``half_height`` [m]
-- ``time``: of the frame that is shown [s]; ``size`` [pixels]; ``rate``: frames of a film a second
-- ``picture``, ``film``: paths of the files to write, or null
+- ``time``: of the frame that is shown [s]; ``size``: of all views together [pixels]
 """
 
 import json
@@ -134,10 +133,6 @@ def main():
     animation.UpdateAnimationUsingDataTimeSteps()
     animation.AnimationTime = job["time"]
     pv.RenderAllViews()
-    if job["picture"]:
-        pv.SaveScreenshot(job["picture"], layout, ImageResolution=(wide, high))
-    if job["film"]:
-        pv.SaveAnimation(job["film"], layout, ImageResolution=(wide, high), FrameRate=job["rate"])
 
 
 main()

@@ -106,7 +106,7 @@ class Run:
             self.at = self.saved.place()
         self.signals.begin()
         listen(self.hear)
-        self.preset = presetOf(args, self.name, properties)
+        self.preset = presetOf(args, properties)
         if self.preset:
             say(presetNote(self.preset))
 

@@ -183,8 +183,7 @@ class Scene:
     push, cycle, follow = stages.push, stages.cycle, stages.follow
     drive, pressJoint = stages.drive, stages.pressJoint
     tilt, accelerate, lean = stages.tilt, stages.accelerate, stages.lean
-    growLoad, growWind = stages.growLoad, stages.growWind
-    growPress, grow, travel = stages.growPress, stages.grow, stages.travel
+    grow, travel = stages.grow, stages.travel
     shake, run, period = stages.shake, stages.run, stages.period
     shakeAgain = stages.shakeAgain
     bracket, stepBack, resume = gravity.bracket, rest.stepBack, resume

@@ -8,10 +8,10 @@ import os
 
 import numpy as np
 
-from ..run import batch, presets
-from ..basics import Refused, refuse
+from ..run import batch
+from ..basics import Refused
 from ..read.files import readCurve, readText
-from .gathering import CSV, TIMES, Folder
+from .gathering import CSV, Folder
 
 
 def _table(path):
@@ -95,67 +95,6 @@ class Record:
                 curve = readCurve(folder.row(int(self.cells["run"][row])))
                 found.append((curve[x], curve[y]))
         return found
-
-    def price(self, rows):
-        """Mean time of the jobs of rows [s], from times.csv; NaN if none tells."""
-        times = _table(os.path.join(self.directory, TIMES))["job_seconds"]
-        known = [t for t in (_number(times[row]) for row in rows) if t > 0]
-        return float(np.mean(known)) if known else np.nan
-
-
-def paired(expensive, cheap, measure, other=None):
-    """A measure of two studies that share rows: that of the shared rows of ``expensive``, and that
-    of all rows of ``cheap``.
-
-    Rows are shared if every varied property has the same text in both tables. Those of ``cheap``
-    that are shared come first, in the order of ``expensive``.
-
-    :param expensive: :class:`Record`, and ``cheap`` one
-    :param measure: column of ``expensive``; ``other`` is that of ``cheap``, None: the same
-    :returns: two arrays for :mod:`masonry.study.estimate`, and two lists: the rows of ``expensive``
-        and those of ``cheap``
-    :raises Refused: if their scenes or options differ in more than FIDELITY, if something else
-        varies in both, or rows of one study are the same
-    """
-    rowsOf = lambda study: [*zip(*(study.cells.get(n, ()) for n in expensive.varied))]
-    keys = {study: rowsOf(study) for study in (expensive, cheap)}
-    refuse([*_unlike(expensive, cheap, keys)])
-    y, x = expensive.numbers(measure), cheap.numbers(other or measure)
-    place = {key: row for row, key in enumerate(keys[cheap]) if np.isfinite(x[row])}
-    shared = [n for n, key in enumerate(keys[expensive]) if key in place and np.isfinite(y[n])]
-    first = [place[keys[expensive][row]] for row in shared]
-    others = sorted(set(place.values()) - set(first))
-    return y[shared], x[first + others], shared, first + others
-
-
-#: Options that decide how accurate and how dear a run is; studies of one wall may differ in them.
-FIDELITY = {"preset", "density_scaling", "units", *presets.USUAL}
-
-
-def _unlike(one, two, keys):
-    """Why two studies share no rows. In what they differ beside FIDELITY their study.json tells, if
-    there is one."""
-    with contextlib.suppress(Refused):
-        studies = [Folder(s.directory).description()["study"] for s in (one, two)]
-        first, second = ({"scene": s["scene"], **s["options"]} for s in studies)
-        for name in sorted({*first, *second} - FIDELITY):
-            if first.get(name) != second.get(name):
-                yield (
-                    f"{one.directory} has {name} {first.get(name)!r}, and"
-                    f" {two.directory} {second.get(name)!r}"
-                )
-    if sorted(one.varied) != sorted(two.varied):
-        yield (
-            f"{one.directory} varies {', '.join(one.varied)}, and"
-            f" {two.directory} {', '.join(two.varied)}"
-        )
-        return
-    for study, own in keys.items():
-        if len(set(own)) < len(own):
-            yield (
-                f"{study.directory}: rows have the same properties, so that it cannot be told which"
-                " are shared"
-            )
 
 
 def _number(text):

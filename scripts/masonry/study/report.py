@@ -3,11 +3,9 @@
 
 /usr/bin/python3 -m masonry.study.report DIR
 /usr/bin/python3 -m masonry.study.report DIR --measure base_shear_end_kN --demand 90,100,110
-/usr/bin/python3 -m masonry.study.report ACCURATE --cheap FAST
 /usr/bin/python3 -m masonry.study.report DIR --limit 20          of an incremental dynamic analysis
 
-The pictures go into the folder of the study. With ``--cheap`` its rows are the expensive ones and
-those of the other study the cheap ones; see :mod:`masonry.study.estimate`.
+The pictures go into the folder of the study.
 """
 
 import argparse
@@ -20,14 +18,15 @@ import numpy as np
 
 from ..basics import Refused, say
 from ..common.folders import check
-from . import estimate, pictures, sensitivity, statistics
+from . import pictures, sensitivity, statistics
 from .demands import QUANTILES, Demands
 from .fragility import nrml as nrmlOf
 from .gathering import Folder, written
-from .records import CURVE, Record, paired
+from .records import CURVE, Record
 
 MEASURE = "peak_base_shear_kN"
 MODE = "failure_mode"
+SHARES = 0.05, 0.5, 0.95  # of the rows, below the quantiles of the table
 
 
 def label(name):
@@ -49,7 +48,7 @@ def table(record, measure):
             " refused for their values, the numbers below are on the unsafe side"
         )
     finds = [("mean", statistics.mean), ("standard deviation", statistics.deviation)]
-    finds += [(f"{100 * q:g} % quantile", statistics.quantile, q) for q in estimate.QUANTILES]
+    finds += [(f"{100 * q:g} % quantile", statistics.quantile, q) for q in SHARES]
     for name, find, *share in finds:
         try:
             yield line(name, find(values, *share))
@@ -126,35 +125,6 @@ def _drawn(directory, makes):
             yield path
         except Refused as refused:
             yield f"no {name}: {refused}"
-
-
-def compare(expensive, cheap, measure, other, method, prices=None):
-    """Lines of what two studies of the same rows say together.
-
-    :param other: measure of the cheap study, None: the same
-    :param prices: of an expensive and of a cheap run [s]; None: the mean times of their runs
-    """
-    y, x, shared, rows = paired(expensive, cheap, measure, other)
-    found = estimate.estimate(y, x, method)
-    prices = prices or (expensive.price(shared), cheap.price(rows))
-    names = [os.path.basename(os.path.abspath(s.directory)) for s in (expensive, cheap)]
-    if not all(math.isfinite(price) and price > 0 for price in prices):
-        raise Refused("the prices of the runs are unknown, since times.csv has none: give --prices")
-    unit = label(measure).partition("[")[2].rstrip("]")
-    correlation = np.corrcoef(y, x[: len(y)])[0, 1]
-    yield (
-        f"{label(measure)} from {len(shared)} rows of both and {len(rows)} of {names[1]};"
-        f" correlation {correlation:.4f}, a run costs {prices[0]:.3g} and {prices[1]:.3g} s"
-    )
-    for one in found:
-        yield "  " + estimate.sentence(one, prices, unit, names)
-        same = (one.expensive / one.shared) + one.cheap / one.rows
-        best = estimate.allocate(one, prices, variance=same)
-        yield (
-            f"    cheapest for it: {best.shared} shared rows and {best.rows} cheap ones,"
-            f" {100 * best.share:.0f} % of the cost of {names[0]} alone"
-        )
-    yield from ("  note: " + doubt for doubt in estimate.doubts(y, x))
 
 
 def incremental(demands, limit, intensities):
@@ -251,17 +221,6 @@ OPTIONS = {
         "demands, with commas between them, for which the probability that the measure is not above"
         " them is told"
     ),
-    "--cheap": (
-        "folder of a study of the same rows and more whose runs are cheaper: another preset, rate,"
-        " time step or mesh"
-    ),
-    "--cheap-measure": (
-        "column of that study, if it is another one: bound_base_shear_kN of the preset bound"
-    ),
-    "--prices": (
-        "seconds of a run of the study and of one of --cheap, with a comma; the mean times of the"
-        " runs by default"
-    ),
     "--limit": (
         "of an incremental dynamic analysis: the demand whose fragility is found; without it that"
         " of collapse. --measure is the demand, and --demand has intensities at which the"
@@ -279,9 +238,6 @@ def parser():
     parser.add_argument("study", help="folder of a study, with its study.csv")
     for name, what in OPTIONS.items():
         parser.add_argument(name, help=what)
-    how = 'how --cheap finds quantiles; help("masonry.study.estimate") tells'
-    methods = ("bridge", "indicator")
-    parser.add_argument("--method", default=methods[0], choices=methods, help=how)
     parser.add_argument("--no-pictures", action="store_true", help="the table alone")
     return parser
 
@@ -291,14 +247,11 @@ def main(words=None):
     args = parser().parse_args(words)
     try:
         demands = sorted(_listed("--demand", args.demand))
-        prices = _listed("--prices", args.prices)
-        if prices and len(prices) != 2:
-            raise Refused(f"--prices {args.prices} must be two numbers, for example 60,4")
         check(args.study)
         record = Record(args.study)
         limit = _listed("--limit", args.limit)
         said = _ofIncremental if isIncremental(args.study) else _ofRows
-        for text in said(record, args, limit, demands, prices):
+        for text in said(record, args, limit, demands):
             say(text)
     except Refused as refused:
         say(refused, sys.stderr)
@@ -317,7 +270,7 @@ def isIncremental(directory):
         return False
 
 
-def _ofRows(record, args, limit, demands, prices):
+def _ofRows(record, args, limit, demands):
     """Lines of what independent rows say, which are also drawn."""
     if limit:
         raise Refused("--limit: this is no incremental dynamic analysis")
@@ -328,17 +281,12 @@ def _ofRows(record, args, limit, demands, prices):
         yield f"probability that {label(measure)} is not above"
         for demand, *found in zip(demands, *statistics.fragility(values, demands)):
             yield line(f"{demand:g}", statistics.Interval(*found), "{:.3f}")
-    if args.cheap:
-        how = measure, args.cheap_measure, args.method, prices
-        yield from compare(record, Record(args.cheap), *how)
     if not args.no_pictures:
         yield from draw(record, measure)
 
 
-def _ofIncremental(record, args, limit, intensities, prices):
+def _ofIncremental(record, args, limit, intensities):
     """Lines of what an incremental dynamic analysis says, which are also drawn."""
-    if args.cheap:
-        raise Refused("--cheap: rows of an incremental dynamic analysis are not independent")
     if len(limit) > 1 or limit and not limit[0] > 0:
         raise Refused(f"--limit {args.limit} must be one number above 0")
     if intensities and not intensities[0] > 0:

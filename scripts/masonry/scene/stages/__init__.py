@@ -11,8 +11,7 @@ A new stage is such a function (:func:`masonry.scene.stages.stage.stage`) and it
 - :mod:`masonry.scene.stages.supports`: ``drive``, ``pressJoint``, ``release`` and ``move``
 - :mod:`masonry.scene.stages.gravity`: ``tilt``, ``accelerate``, ``lean`` and ``bracket``
 - :mod:`masonry.scene.stages.loading`: ``load``, ``wind``, ``press``, ``pressure`` and ``hold``
-  after the first stage, and ``grow`` with its simple cases ``growLoad``, ``growWind`` and
-  ``growPress``; :mod:`masonry.scene.stages.travelling`: ``travel``
+  after the first stage, and ``grow``; :mod:`masonry.scene.stages.travelling`: ``travel``
 - :mod:`masonry.scene.stages.growing`: how a load grows, and the search for the one that is held
 - :mod:`masonry.scene.stages.shake`: ``shake``, ``run``, ``period`` and ``shakeAgain``
 - :mod:`masonry.scene.stages.falling`: ``fall``, which follows a collapse where the scene says so
@@ -22,7 +21,7 @@ A new stage is such a function (:func:`masonry.scene.stages.stage.stage`) and it
 
 from .gravity import accelerate, lean, tilt
 
-from .loading import grow, growLoad, growPress, growWind, hold, load, prepare, press, pressure, wind
+from .loading import grow, hold, load, prepare, press, pressure, wind
 from .push import cycle, follow, push
 from .rest import settle
 from .shake import period, run, shake, shakeAgain
@@ -32,7 +31,6 @@ from .travelling import travel
 
 #: All stages. Each is a method of :class:`masonry.scene.scene.Scene`.
 STAGES = [settle, push, cycle, follow, drive, pressJoint, release, move, tilt]
-STAGES += [accelerate, lean, shake, run, growLoad, growWind, growPress, grow, travel]
-STAGES += [period]
+STAGES += [accelerate, lean, shake, run, grow, travel, period]
 #: Stages whose names are those of words that describe: they are meant after the first stage.
 LATER = (load, wind, press, pressure, hold)

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Loads after the first stage: ``load``, ``wind``, ``press`` and ``pressure`` put them on, ``grow``
-lets any of them grow together, as ``growLoad``, ``growWind`` and ``growPress`` do one alone, and
-``hold`` holds what was free.
+lets any of them grow, alone or together, and ``hold`` holds what was free.
 
 The first four give a load its new value, whatever it was before, and wait for rest, so that
 ``bracket`` can search for the largest that is held. The others add to what is there until the
@@ -94,29 +93,13 @@ def load(scene: Any, target: Loaded, force: Force, longest: Duration | None = No
     return _putOn(scene, "load", _forceOn(scene, target, force, "load"), longest)
 
 
-@stage(bounded=True, answers=found)
-def growLoad(
-    scene: Any,
-    target: Loaded,
-    force: Force,
-    over: Duration = GROWS,
-    within: Width = WITHIN,
-) -> str:
-    """Let a dead load grow alone, as in :meth:`grow`; the unit of ``scene.factor`` is kN.
-
-    :param force: at the end, three numbers [N]
-    """
-    made = _forceOn(scene, target, force, "growLoad")
-    return _grow(scene, "growLoad", made, over, within)
-
-
-def _windOn(scene, pressure, towards, part, name):
+def _windOn(scene, pressure, towards, part):
     """The load of a wind, in kPa. Raises ValueError."""
     towards = Vector3(*towards)
-    if name == "growWind" or pressure:  # 0 takes a wind away
-        doubtWind(pressure, name)
+    if pressure:  # 0 takes a wind away
+        doubtWind(pressure, "wind")
     sign = math.copysign(1, pressure)
-    forces = windForces(scene.description, 1e3 * sign, towards, part, name)
+    forces = windForces(scene.description, 1e3 * sign, towards, part, "wind")
     # suction has the engines of a pressure on the same faces, so that one replaces the other
     made = _onFaces(scene, forces, "wind", towards, part, "kPa", 1e-3 * abs(pressure))
     made.towards *= sign
@@ -128,6 +111,15 @@ def _pressureOn(scene, value, towards, part, normal):
     forces = pressures(scene.description, value, towards, part, normal)
     kind = "pressure" if normal else "pressure in plan"
     return _onFaces(scene, forces, kind, Vector3(*towards), part, "-", 1.0)
+
+
+def _evenOn(scene, value, towards, part, normal):
+    """The load of a pressure that is the same everywhere and not 0, in kPa. Raises ValueError."""
+    sign = math.copysign(1, value)
+    made = _pressureOn(scene, 1e3 * sign, towards, part, normal)
+    made.unit, made.most = "kPa", 1e-3 * abs(value)
+    made.towards *= sign
+    return made
 
 
 def _onFaces(scene, forces, kind, towards, part, unit, most):
@@ -158,24 +150,7 @@ def wind(
     :param pressure: [Pa]; 0 takes the wind away; ``towards`` and ``part``: as before the first
         stage
     """
-    return _putOn(scene, "wind", _windOn(scene, pressure, towards, part, "wind"), longest)
-
-
-@stage(bounded=True, answers=found)
-def growWind(
-    scene: Any,
-    pressure: Pressure,
-    towards: Level,
-    part: Part | None = None,
-    over: Duration = GROWS,
-    within: Width = WITHIN,
-) -> str:
-    """Let a wind grow alone, as in :meth:`grow`; the unit of ``scene.factor`` is kPa.
-
-    :param pressure: at the end [Pa]; ``towards`` and ``part``: as in :meth:`wind`
-    """
-    made = _windOn(scene, pressure, towards, part, "growWind")
-    return _grow(scene, "growWind", made, over, within)
+    return _putOn(scene, "wind", _windOn(scene, pressure, towards, part), longest)
 
 
 @stage(bounded=True, answers=putOnAnswers)
@@ -223,22 +198,6 @@ def press(scene: Any, platen: MovingPlaten, stress: Stress, longest: Duration | 
     return _putOn(scene, "press", made, longest)
 
 
-@stage(bounded=True, answers=found)
-def growPress(
-    scene: Any,
-    platen: MovingPlaten,
-    stress: Stress,
-    over: Duration = GROWS,
-    within: Width = WITHIN,
-) -> str:
-    """Let a press grow alone, as in :meth:`grow`; the unit of ``scene.factor`` is MPa.
-
-    :param stress: what is added at the end [Pa]
-    """
-    made = _pressOn(scene, platen, stress, "growPress")
-    return _grow(scene, "growPress", made, over, within)
-
-
 def together(value, first):
     """The kind of loads that grow together: a dict from targets to forces [N] or, of platens,
     stresses [Pa]."""
@@ -267,15 +226,17 @@ def grow(
     over: Duration = GROWS,
     within: Width = WITHIN,
 ) -> str:
-    """Let several loads grow evenly in a fixed proportion beside what is there, until the structure
-    falls or ``most`` times of them are reached; then search for the factor that is held.
+    """Let a load, or several in a fixed proportion, grow evenly beside what is there, until the
+    structure falls or ``most`` times of them are reached; then search for the load that is held.
 
-    ``scene.grow({top: 0.1e6, stone: (2e3, 0, 0)}, most=10)`` adds a stress to what presses a platen
-    and a force to a brick.
+    ``scene.grow({stone: (2e3, 0, 0)})`` adds a force to a brick, ``scene.grow({top: 0.1e6})`` a
+    stress to what presses a platen, and ``scene.grow({}, pressure=2e3, towards=(1, 0, 0))`` an even
+    pressure, as of wind, to faces. ``scene.grow({top: 0.1e6, stone: (2e3, 0, 0)}, most=10)`` lets
+    two grow together.
 
     :param loads: a dict from targets to three numbers [N], or to a stress of a platen [Pa], at a
         factor of 1; it may be empty
-    :param most: factor at the end [-]
+    :param most: factor of all of them at the end [-]
     :param dead: whether what acts already grows, too: at a factor of 1 dead loads, presses without
         the weight of their platens, and pressures are twice what they were. Gravity stays
     :param pressure: [Pa] at a factor of 1, or a function of the place; ``towards``, ``part`` and
@@ -283,14 +244,20 @@ def grow(
         :meth:`pressure`
     :param over: time in which they grow to that [s]
     :param within: as in :meth:`tilt`
-    :returns: as in :meth:`tilt`; ``scene.factor`` has no unit
+    :returns: as in :meth:`tilt`. ``scene.factor`` of one load alone is its amount: of a force in kN,
+        of a stress in MPa, of an even pressure in kPa; otherwise it has no unit
     """
     made = [
         (_pressOn if isNumber(amount) else _forceOn)(scene, target, amount, "grow")
         for target, amount in loads.items()
     ]
     if pressure is not None:
-        made.append(_pressureOn(scene, pressure, towards, part, normal))
+        even = isNumber(pressure) and pressure != 0
+        make = _evenOn if even and not loads and not dead else _pressureOn
+        made.append(make(scene, pressure, towards, part, normal))
+    if len(made) == 1 and not dead:
+        made[0].most *= most
+        return _grow(scene, made[0], over, within)
     pairs = [(e, one.most * force) for one in made for e, force in one.pairs()]
     if dead:
         pairs += [(load, Vector3.Zero) for load, _ in scene.model.loading.deadLoads()]
@@ -306,7 +273,7 @@ def grow(
     whole = Forces(engines, [*forces.values()], what, "-", most, along)
     whole.dead = dead
     whole.target = next((one.target for one in made if one.target), None)
-    return _grow(scene, "grow", whole, over, within)
+    return _grow(scene, whole, over, within)
 
 
 def _putOn(scene, name, made, longest):
@@ -321,9 +288,9 @@ def _putOn(scene, name, made, longest):
     return ended
 
 
-def _grow(scene, name, made, over, within):
+def _grow(scene, made, over, within):
     _findBound(scene, made)
-    return growTo(scene, name, made, over, within)
+    return growTo(scene, "grow", made, over, within)
 
 
 def _findBound(scene, made):
@@ -381,14 +348,14 @@ def prepare(scene, word, arguments):
     if word in PUSHES and (isinstance(target, dict) or target not in scene.targets):
         loading.patternDrive()
         return
-    alone = {"load": None, "growLoad": None, "press": 0, "growPress": 0}
+    alone = {"load": None, "press": 0}
     loads = {target: alone[word]} if word in alone else get("loads", {})
     for name, amount in loads.items():
         if name in scene.targets:
             make = loading.pressOf if isNumber(amount) else loading.forceOf
             make(scene.targets[name])
-    if word in ("wind", "growWind"):
-        _windOn(scene, *(arguments[n] for n in ("pressure", "towards", "part")), word)
+    if word == "wind":
+        _windOn(scene, *(arguments[n] for n in ("pressure", "towards", "part")))
     elif word == "pressure" or get("pressure") is not None:
         # its value, which may be a function, has no part in where its engines are
         _pressureOn(scene, 0.0, *(arguments[n] for n in ("towards", "part", "normal")))
