@@ -94,7 +94,6 @@ CASE_MINUTES = {
     "wall_comp4/deformable*": 5,
     "wall_comp6/deformable*": 10,
     "dry_joint_walls/deformable*": 4,
-    "dry_joint_walls/points-32": 2,
 }
 #: Cases whose runs are made by programs of their own.
 OWN = {"cyclic", "trade", "convergence"}
@@ -358,28 +357,11 @@ def ofStudies():
             ("sensitivity/tornado.png",),
             (
                 "validation/sensitivity/tornado.py",
-                "validation/sensitivity/ranges.py",
                 *walls,
                 *RIGID,
             ),
             45,
             ("validation/sensitivity/COMP-*",),
-        ),
-        Result(
-            "sensitivity/comp4",
-            study("sensitivity/comp4"),
-            ("sensitivity/comp4_*.png",),
-            ("validation/sensitivity/comp4.py", "validation/sensitivity/ranges.py", *RIGID),
-            24,
-            ("validation/sensitivity/comp4",),
-        ),
-        Result(
-            "sensitivity/comp1",
-            study("sensitivity/comp1"),
-            ("sensitivity/comp1_*.png",),
-            ("validation/sensitivity/comp1.py", "validation/sensitivity/ranges.py", *RIGID),
-            16,
-            ("validation/sensitivity/comp1",),
         ),
         Result(
             "random_fields/one_metre",

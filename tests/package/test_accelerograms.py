@@ -204,7 +204,7 @@ def test_a_file_that_is_wrong_is_refused_with_file_line_and_value(tmp_path, text
 def test_what_is_no_file_is_refused(tmp_path):
     with raises(Refused, match="No such file"):
         read(str(tmp_path / "none.AT2"))
-    with raises(Refused, match="cannot read .*: it is no regular file"):
+    with raises(Refused, match="cannot read .*: Is a directory"):
         read(str(tmp_path))
 
 

@@ -371,7 +371,7 @@ def test_damaged_and_foreign_files_are_refused_in_a_sentence(run, damage, words)
         (["RUN", "--html", "RUN"], "is a folder; name a file that ends in .html or .htm"),
         (
             ["RUN", "--html", "link.html"],
-            "cannot write link.html: it is a symbolic link or no regular file",
+            "cannot write link.html: it is a symbolic link",
         ),
         (["RUN", "--html", "a.obj"], "a.obj must end in .html or .htm"),
         (["RUN", "--html", "a.html", "--at", "9mm"], "never comes to 9 mm"),

@@ -309,23 +309,15 @@ def test_options_that_would_change_the_run_are_refused(broken, capsys, words, me
     assert message in capsys.readouterr().err
 
 
-@pytest.mark.parametrize(
-    "name, kind, message",
-    [
-        ("curve.csv", os.symlink, "a symbolic link"),
-        ("joints_0007.vtp", lambda other, path: os.mkfifo(path), "no regular file"),
-        ("curve.csv", os.link, "a second name, a hard link"),
-    ],
-)
-def test_links_or_pipes_are_not_taken_up(broken, tmp_path, capsys, name, kind, message):
+def test_links_are_not_taken_up(broken, tmp_path, capsys):
     other = tmp_path / "other"
     other.write_text("of the user")
-    (broken / name).unlink(missing_ok=True)
-    kind(other, broken / name)
+    (broken / "curve.csv").unlink()
+    os.symlink(other, broken / "curve.csv")
     names = set(os.listdir(broken))
     assert run(broken, resume=True) == 2
     said = capsys.readouterr().err
-    assert name in said and message in said and len(said.splitlines()) == 1
+    assert "curve.csv" in said and "a symbolic link" in said and len(said.splitlines()) == 1
     assert set(os.listdir(broken)) == names and other.read_text() == "of the user"
 
 

@@ -1,18 +1,15 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Folders that others may have packed: what is written in them stays in them, and what is read from
-them is data.
+"""Folders that others may have packed, as results, studies and checkpoints are: what is written in
+them stays in them.
 
-Results, studies and checkpoints are handed on as folders, and an archive keeps symbolic links. A
-file in such a folder is opened by :func:`inside` or :func:`replaced` alone, which write through no
-link, and :func:`check` names all links of a folder before anything is written there.
-``scripts/README.md`` says what may be shared.
+An archive keeps symbolic links. So a file in such a folder is opened for writing by :func:`inside`
+or :func:`replaced` alone, which write through no link, and :func:`check` names all links of a folder
+before anything is written there. ``scripts/FILES.md`` says what may be shared.
 """
 
 import contextlib
 import errno
-import json
 import os
-import stat
 
 from ..basics import Unwritable, refuse
 
@@ -20,8 +17,7 @@ MOST = 5  # names that are listed
 
 
 def check(*folders):
-    """Refuse folders that hold symbolic links, pipes or devices, all at once. A folder that is
-    missing holds none.
+    """Refuse folders that hold symbolic links, all at once. A folder that is missing holds none.
 
     A folder itself may be reached through a link: its user has named it.
 
@@ -31,13 +27,9 @@ def check(*folders):
     for folder in folders:
         names = []
         with contextlib.suppress(FileNotFoundError), os.scandir(folder) as entries:
-            for entry in entries:
-                if entry.is_symlink():
-                    names.append(f"{entry.name}, a symbolic link")
-                elif not (entry.is_file() or entry.is_dir()):
-                    names.append(f"{entry.name}, no regular file")
+            names = sorted(f"{e.name}, a symbolic link" for e in entries if e.is_symlink())
         if names:
-            named = ", ".join(sorted(names)[:MOST]) + " and more" * (len(names) > MOST)
+            named = ", ".join(names[:MOST]) + " and more" * (len(names) > MOST)
             problems.append(
                 f"{folder} holds {named}: nothing is written where a name can lead elsewhere;"
                 " remove these, or name another folder"
@@ -46,37 +38,16 @@ def check(*folders):
 
 
 def inside(path, flags):
-    """The ``opener`` of Python's ``open`` for a file in such a folder: a regular one, because a
-    pipe or a device has no end.
+    """The ``opener`` of Python's ``open`` for a file that is written in such a folder.
 
-    What is written is reached through no symbolic link, and has no second name (a hard link): that
-    would change, too.
-
-    :raises OSError: with the reason
+    :raises OSError: with the reason; also if the path is a symbolic link
     """
-    writes = flags & (os.O_WRONLY | os.O_RDWR)
-    safe = os.O_NONBLOCK | os.O_CLOEXEC | (os.O_NOFOLLOW if writes else 0)
     try:
-        number = os.open(path, flags & ~os.O_TRUNC | safe, 0o666)
+        return os.open(path, flags | os.O_NOFOLLOW | os.O_CLOEXEC, 0o666)
     except OSError as error:
-        why = {errno.ELOOP: "it is a symbolic link", errno.ENXIO: "it is no regular file"}.get(
-            error.errno
-        )
-        if not why:
+        if error.errno != errno.ELOOP:
             raise
-        raise OSError(error.errno, why, path) from None
-    found = os.fstat(number)
-    wrong = ""
-    if writes and found.st_nlink > 1:
-        wrong = "it has a second name, a hard link"
-    if not stat.S_ISREG(found.st_mode):
-        wrong = "it is no regular file"
-    if wrong:
-        os.close(number)
-        raise OSError(errno.EINVAL, wrong, path)
-    if flags & os.O_TRUNC:
-        os.ftruncate(number, 0)
-    return number
+        raise OSError(error.errno, "it is a symbolic link", path) from None
 
 
 @contextlib.contextmanager
@@ -87,12 +58,12 @@ def replaced(path, mode="w", **settings):
     It is ``path + ".new"`` until then, and is removed after an error.
 
     :param mode: and ``settings``: as in Python's ``open``
-    :raises OSError: if it cannot be written, or if ``path`` is a symbolic link or no regular file
+    :raises OSError: if it cannot be written, or if ``path`` is a symbolic link
     """
     path = os.fspath(path)
     temporary = path + ".new"
-    if os.path.lexists(path) and not stat.S_ISREG(os.lstat(path).st_mode):
-        raise OSError(errno.EINVAL, "it is a symbolic link or no regular file", path)
+    if os.path.islink(path):
+        raise OSError(errno.ELOOP, "it is a symbolic link", path)
     with open(temporary, mode, opener=inside, **settings) as file:
         try:
             yield file
@@ -115,16 +86,3 @@ def writing(what):
         yield
     except OSError as error:
         raise Unwritable(f"cannot write {what}: {error.strerror}") from None
-
-
-def fromJson(data):
-    """The value that a JSON text or its bytes stand for.
-
-    :raises ValueError: if it is not one, also if it is nested too deeply or is no text
-    """
-    try:
-        return json.loads(data)
-    except RecursionError:
-        raise ValueError("its brackets are nested too deeply") from None
-    except MemoryError:
-        raise ValueError("it is too large for the memory") from None

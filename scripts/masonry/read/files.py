@@ -4,6 +4,7 @@
 import contextlib
 import csv
 import functools
+import json
 import math
 import os
 import sys
@@ -12,13 +13,11 @@ from typing import Any, Callable, Iterator, Sequence
 from ..common import memory
 from ..common.arguments import FilePath
 from ..basics import Refused, refuse, say
-from ..common.folders import fromJson, inside
 
 
 def readWhole(path: FilePath) -> bytes:
-    """The bytes of a file. Raises OSError for what is no file, too: a pipe never ends, and a device
-    has no end."""
-    with open(path, "rb", opener=inside) as file:
+    """The bytes of a file."""
+    with open(path, "rb") as file:
         return file.read()
 
 
@@ -59,7 +58,7 @@ def readRun(directory: FilePath) -> dict[str, Any]:
     path = os.path.join(directory, "run.json")
     text = readText(path)
     try:
-        run = fromJson(text)
+        run = json.loads(text)
     except ValueError as error:
         raise Refused(f"{path}: {error}") from None
     if not isinstance(run, dict):

@@ -13,7 +13,7 @@ from typing import Any
 
 from .._masonry import loadScene, saveScene, savedText
 from ..common.arguments import FilePath, shown, validated
-from ..common.folders import fromJson, replaced
+from ..common.folders import replaced
 from ..read.files import readWhole
 
 NAME = "run.checkpoint"  # in the folder of a run
@@ -79,7 +79,7 @@ def readState(path: FilePath) -> tuple[bytes, Any]:
     :func:`readCheckpoint`."""
     with _says(path):
         data = readWhole(path)
-        return data, fromJson(savedText(data))
+        return data, json.loads(savedText(data))
 
 
 @contextlib.contextmanager

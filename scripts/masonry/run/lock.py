@@ -153,7 +153,7 @@ def _isGone(record):
 def _object(data):
     """The JSON object in some bytes, or an empty one."""
     try:
-        record = folders.fromJson(data)
+        record = json.loads(data)
     except ValueError:
         record = None
     return record if isinstance(record, dict) else {}

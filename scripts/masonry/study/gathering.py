@@ -6,36 +6,28 @@ table of their numbers.
 numbers of run.json. It is the same to the last digit whoever ran the rows. ``times.csv`` has what
 is not: host, seconds, what a failed row said.
 
-The folder may have been on other machines, and anybody may have written in it. So nothing in it is
-believed that can be compared: the table must be what the study draws, to the last digit; a row that
-has ended must have been run with the values that the table gives it; a row that goes on from a
-checkpoint is refused by the scene itself if the checkpoint has other values, and begins again. What
-a row has found cannot be compared with anything: whoever wants to be sure runs it again.
+A study that goes on compares the table with what it draws. A row that goes on from a checkpoint
+begins again if the scene refuses that, because it has other values.
 """
 
 import collections
-import contextlib
 import csv
 import functools
 import io
+import json
 import os
 import re
-from itertools import zip_longest
 
-from ..run import batch, presets
+from ..run import batch
 from ..common import folders
-from ..basics import Refused, firstOf, refuse
-from ..read.files import filesOf, readText, readWhole
+from ..basics import Refused, refuse
+from ..read.files import filesOf, readWhole
 from ..read.quantities import measures
 from ..run.lock import held
 from .incremental import FOLDER, Chains, fell, isPlan, shaken
 
 TABLE, STUDY, CSV, TIMES = "table.txt", "study.json", "study.csv", "times.csv"
 SHOWN = 5  # differences that are named
-
-#: Options of which run.json has the value that the table gives.
-COMPARED = {*presets.USUAL, "until", "preset", "joints", "crack_surfaces"}
-COMPARED |= {"density_scaling", "quick", "record", "scale"}
 
 #: Why a run that has ended is no row of an incremental dynamic analysis.
 UNSHAKEN = "it was not shaken: the scene has no shake(), or fell before it"
@@ -64,8 +56,7 @@ class Folder:
         return self.row(number) + ".job"
 
     def check(self):
-        """Refuse a folder, or one of rows, that holds what is neither file nor folder; a row looks
-        at its own."""
+        """Refuse a folder, or one of rows, that holds symbolic links; a row looks at its own."""
         try:
             folders.check(self.path, self.of(batch.ROWS), self.of(FOLDER))
         except OSError as error:
@@ -74,7 +65,7 @@ class Folder:
     def description(self):
         """study.json. Raises Refused if there is none, or if it is no description of a study."""
         try:
-            record = folders.fromJson(readWhole(self.of(STUDY)))
+            record = json.loads(readWhole(self.of(STUDY)))
         except (OSError, ValueError):
             raise Refused(f"{self.path} is no folder of a study: it has no {STUDY}") from None
         if not _isStudy(record):
@@ -85,7 +76,7 @@ class Folder:
         """How the last attempt at a row ended: a dict with ``host``, ``status``, ``seconds``,
         ``told``; or an empty one."""
         try:
-            record = folders.fromJson(readWhole(self.job(number)))
+            record = json.loads(readWhole(self.job(number)))
         except (OSError, ValueError):
             return {}
         return record if _isJob(record) else {}
@@ -179,18 +170,6 @@ def reason(log):
     return lines
 
 
-def compareTable(folder, drawn):
-    """Refuse a table that is not ``drawn``, the text that the study draws."""
-    path = folder.of(TABLE)
-    texts = (text.split("\n") for text in (readText(path), drawn))
-    for number, (was, now) in enumerate(zip_longest(*texts, fillvalue="nothing"), 1):
-        if was != now:
-            raise Refused(
-                f"--out: {path} is not what the study draws; remove it, and it is drawn again. Line"
-                f" {number} is\n  {was}\nand the study draws\n  {now}"
-            )
-
-
 def rowsOf(folder):
     """The rows of the table of a study, in turn, as dicts of texts: as many as it has runs, with
     its columns and names.
@@ -219,60 +198,13 @@ def rowsOf(folder):
     return rows
 
 
-def checkedRows(folder):
-    """As :func:`rowsOf`. Refuses rows that have ended with other values than the table gives them,
-    as far as run.json tells."""
-    rows, problems = rowsOf(folder), []
-    for number, row in enumerate(rows, 1):
-        run = batch.ended(folder.row(number))
-        if run is not None:
-            problems += [
-                f"row {batch.named(number)} was run with {was}, and the table has {now}"
-                for was, now in _otherOptions(row, run.get("options"))
-            ]
-    if problems:
-        raise Refused(
-            f"{folder.of(batch.ROWS)}: remove the folders of these rows, and they are run"
-            " again:\n  " + "\n  ".join(firstOf(problems, SHOWN))
-        )
-    return rows
-
-
-def _otherOptions(row, options):
-    """What a row was run with and what the table says, pairs of texts, where they differ."""
-    if not isinstance(options, dict):
-        return [("options that run.json does not name", "its own")]
-    words = batch.optionWords(row)
-    pairs, settings = [], None
-    with contextlib.suppress(KeyError, TypeError, ValueError):
-        settings = [f"{joint}.{name}={value}" for joint, name, value in options["set"]]
-    for mark, was in (("--set=", settings), ("--field=", options.get("field"))):
-        now = [word[len(mark) :] for word in words if word.startswith(mark)]
-        if was != now:
-            pairs.append((f"{mark}{was}", now))
-    for name in COMPARED.intersection(row):
-        was, now = options.get(name), batch.value(row[name])
-        if now is not None and now is not False and now != "*" and not _same(was, now):
-            pairs.append((f"{name} {was}", now))
-    return pairs
-
-
-def _same(was, now):
-    if isinstance(was, bool) or isinstance(now, bool) or isinstance(was, str):
-        return str(was) == str(now)
-    try:
-        return float(was) == float(now)
-    except (TypeError, ValueError):
-        return False
-
-
 def gather(folder):
     """Write study.csv and times.csv. Returns how many rows have each status. Refuses what
-    :func:`checkedRows` refuses."""
+    :func:`rowsOf` refuses."""
     record, chains = folder.description()["study"], folder.chains
     names, found, times, counts = list(record["vary"]), [], [], collections.Counter()
     strengths = ["record", "scale", chains.plan["measure"]] if chains.plan else []
-    for number, row in enumerate(checkedRows(folder), 1):
+    for number, row in enumerate(rowsOf(folder), 1):
         run, status = batch.ended(folder.row(number)) or {}, folder.status(number)
         counts[status] += 1
         if status == "above collapse":

@@ -9,9 +9,8 @@ import tempfile
 
 from ..run import batch
 from ..basics import Refused, Unwritable, refuse, say
-from ..common.folders import fromJson
-from ..read.files import readWhole
-from .gathering import STUDY, TABLE, Folder, checkedRows, compareTable, reason, written
+from ..read.files import readText, readWhole
+from .gathering import STUDY, TABLE, Folder, reason, written
 from .incremental import FOLDER
 from .interrupts import watched
 from .plan import namesOf
@@ -49,13 +48,14 @@ def begin(study, path, near):
             os.makedirs(folder.of(batch.ROWS), exist_ok=True)
         except OSError as error:
             raise Refused(f"--out: cannot write to {path}: {error.strerror}") from None
-    if known and os.path.lexists(folder.of(TABLE)):
-        compareTable(folder, table)
-    else:
+    if not (known and os.path.lexists(folder.of(TABLE))):
         written(folder.of(TABLE), table)
+    elif readText(folder.of(TABLE)) != table:
+        raise Refused(
+            f"--out: {folder.of(TABLE)} is not what the study draws; remove it, and it is drawn"
+            " again"
+        )
     _putRecords(folder, study)
-    if known:
-        checkedRows(folder)
     now["script"] = script
     if known != now:
         written(folder.of(STUDY), json.dumps(now, indent=2) + "\n")
@@ -176,7 +176,7 @@ def _probed(script, place, line=2):
         return f"it is not built after {PROBING} s"
     try:
         with open(path) as f:
-            return fromJson(f.read())
+            return json.load(f)
     except (OSError, ValueError):
         lines = reason(done.stderr)
         if done.returncode == batch.UNWRITTEN:
