@@ -35,9 +35,10 @@ rm -rf "$out"
 mkdir -p "$root/DEBIAN" "$root/usr/share/doc/yade-masonry"
 cmake -S . -B build -DCMAKE_BUILD_TYPE=Release -DMASONRY_TESTS=OFF -DMASONRY_COMMIT="$commit" >"$out/log" 2>&1 &&
     cmake --build build --parallel "$(nproc)" --target masonry_module_fit >>"$out/log" 2>&1 || { tail -n 40 "$out/log" >&2; exit 1; }
-package=$root/usr/lib/python3/dist-packages/masonry
-mkdir -p "$package"
-(cd scripts/masonry && find . \( -name '*.py' -o -name '*.js' -o -name '*.css' -o -name '*.html' -o -name py.typed \) -print0 | tar -c --null --files-from=-) | tar -x --no-same-owner --no-same-permissions -C "$package"
+packages=$root/usr/lib/python3/dist-packages
+package=$packages/masonry
+mkdir -p "$packages"
+(cd scripts && find masonry masonry_* \( -name '*.py' -o -name '*.js' -o -name '*.css' -o -name '*.html' -o -name py.typed \) -print0 | tar -c --null --files-from=-) | tar -x --no-same-owner --no-same-permissions -C "$packages"
 install -m 644 build/_masonry.so "$package/"
 strip --strip-unneeded --remove-section=.comment --remove-section=.note "$package/_masonry.so"
 

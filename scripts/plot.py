@@ -6,7 +6,7 @@
 --label test /usr/bin/python3 scripts/plot.py results/shaken --x time_s --y top_mm
 """
 
-from masonry.read.comparison import main
+from masonry_view.comparison import main
 
 if __name__ == "__main__":
     raise SystemExit(main())

@@ -4,7 +4,9 @@
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 scene=${1:-wall_comp4}
-[[ -f "$here/$scene.py" ]] || { echo "no scene '$scene'; there are: $(cd "$here" && echo *.py | sed 's/\.py//g')" >&2; exit 2; }
+path=$here/$scene.py
+[[ -f $path ]] || path=$here/gallery/$scene.py
+[[ -f $path ]] || { echo "no scene '$scene'; there are: $(cd "$here" && basename -s .py -- *.py gallery/*.py | xargs)" >&2; exit 2; }
 bash "$here/setup.sh"
 export HOME=${HOME:-$(echo ~)}  # YADE ends without it
-exec yade -n -x "$here/$scene.py" "${@:2}"
+exec yade -n -x "$path" "${@:2}"

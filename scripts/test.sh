@@ -17,7 +17,7 @@ packages=(python3-pytest-xdist clang-format black python3-pyflakes) # for the ga
 whole=(mypy python3-yaml slurm-wlm munge xvfb xauth libjs-three jupyter-nbconvert python3-ipykernel python3-pandas)
 long=(clang libclang-rt-dev python3-sphinx python3-myst-parser furo libjs-mathjax)
 case "${1:-}" in
-    quick) tests=(tests/common tests/law tests/motion tests/blocks tests/contact tests/files tests/gates tests/host -m "not slow" "${@:2}") ;;
+    quick) tests=(tests/common tests/law tests/motion tests/blocks tests/contact tests/files tests/gates tests/host tests/limit tests/capacity -m "not slow" "${@:2}") ;;
     "") tests=(tests -m "not long") packages+=("${whole[@]}") ;;
     long) tests=(tests -m long) packages+=("${whole[@]}" "${long[@]}" chromium) ;;
     all) tests=(tests) packages+=("${whole[@]}" "${long[@]}" chromium) ;;

@@ -6,7 +6,7 @@
 /usr/bin/python3 scripts/view.py results/wall_comp4 --html wall.html
 """
 
-from masonry.read.viewer import main
+from masonry_view.viewer import main
 
 if __name__ == "__main__":
     raise SystemExit(main())

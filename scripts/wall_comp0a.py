@@ -3,7 +3,7 @@
 paper."""
 
 from masonry import Scene, bricks, materials
-from masonry.assembly import columns
+from masonry.numbers import columns
 
 scene = Scene(
     "wall_comp0a",

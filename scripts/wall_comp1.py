@@ -2,7 +2,7 @@
 """TUD-COMP-1: slender calcium-silicate wall, cantilever, 0.70 MPa. Tables 1 and 2 of the paper."""
 
 from masonry import Scene, bricks, materials
-from masonry.assembly import columns
+from masonry.numbers import columns
 
 scene = Scene(
     "wall_comp1",

@@ -5,7 +5,7 @@ The wall is 4.0 m long, 18.18 units; it is built of 18 units, 3.96 m.
 """
 
 from masonry import Scene, bricks, materials
-from masonry.assembly import columns
+from masonry.numbers import columns
 
 scene = Scene(
     "wall_comp6",

@@ -37,16 +37,21 @@ RINGS = [
     "package",
     "sanitizers",
     "fuzz",
-    "studies",
+    "limit",
+    "capacity",
+    "view",
+    "study",
     "scenes",
 ]
-SLOW = ["sanitizers", "fuzz", "studies", "scenes"]  # rings of which every test is slow
+SLOW = ["sanitizers", "fuzz", "view", "study", "scenes"]  # rings of which every test is slow
 #: Rings, and files of other rings, that need no YADE.
-WITHOUT_YADE = ["common", "law", "motion", "blocks", "contact", "files", "gates"] + [
+WITHOUT_YADE = ["common", "law", "motion", "blocks", "contact", "files", "gates", "capacity"]
+WITHOUT_YADE += ["view/test_measure.py", "view/test_report_content.py"]
+WITHOUT_YADE += [
     f"package/test_{name}.py"
     for name in """
-    accelerograms bilinear bricks bricks_checks bricks_files bricks_vaults capacity compare_builds
-    compare_loops cycles imports loops measure measured_loops plain_wall report_content stones
+    accelerograms bricks bricks_checks bricks_files bricks_vaults compare_builds compare_loops
+    cycles loops measured_loops plain_wall stones
     """.split()
 ]
 #: Fixtures that many tests share.
@@ -244,10 +249,16 @@ def scene():
     O.reset()
 
 
+def scenePath(name):
+    """The path of a program of scripts/ or of its gallery."""
+    folders = (os.path.join(ROOT, "scripts", *more) for more in ((), ("gallery",)))
+    return next(p for f in folders if os.path.exists(p := os.path.join(f, name + ".py")))
+
+
 def runProgram(name, *words, check=True, **settings):
     """Run a program of scripts/, or one at a path, in YADE as a user does: the finished process,
     whose output is text."""
-    path = name if name.endswith(".py") else os.path.join(ROOT, "scripts", name + ".py")
+    path = name if name.endswith(".py") else scenePath(name)
     process = subprocess.run(
         ["yade", "-n", "-x", path, *map(str, words)],
         **{"capture_output": True, "text": True, "timeout": 300, **settings},

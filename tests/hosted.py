@@ -10,7 +10,7 @@ from masonry import *
 from masonry import addBlock, engine  # noqa: F401
 from masonry._masonry import allowThreads  # noqa: F401
 from masonry.bricks import boxCorners as corners
-from masonry.read.files import readCurve, readRun  # noqa: F401
+from masonry.numbers.files import readCurve, readRun  # noqa: F401
 from yade import O, Quaternion, Vector3
 
 

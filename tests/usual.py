@@ -18,8 +18,8 @@ from types import SimpleNamespace  # noqa: F401
 
 import numpy as np  # noqa: F401
 import pytest  # noqa: F401
-from conftest import BUILD, ROOT, ran, runProgram  # noqa: F401
+from conftest import BUILD, ROOT, ran, runProgram, scenePath  # noqa: F401
 from hypothesis import assume, given, settings  # noqa: F401
 from hypothesis import strategies as some  # noqa: F401
-from masonry.basics import Refused  # noqa: F401
+from masonry.errors import Refused  # noqa: F401
 from pytest import approx, mark, raises  # noqa: F401

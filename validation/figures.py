@@ -14,7 +14,7 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
-from masonry.read.files import readCurve
+from masonry.numbers.files import readCurve
 from studies import HERE, RESULTS, readCase
 
 STYLES = {"rigid": "-", "deformable": "--"}

@@ -36,7 +36,7 @@ import time
 from dataclasses import dataclass, replace  # noqa: F401
 
 import studies
-from masonry.run.options import USUAL
+from masonry.run.option_table import USUAL
 from masonry.run.presets import PRESETS
 from studies import HERE, RESULTS, ROOT
 
@@ -48,7 +48,7 @@ YADE = ["yade", "-n", "-x"]
 
 #: What decides the numbers of every result, beside its own sources and the usual options; patterns
 #: below the root of the repository.
-COMMON = ["scripts/masonry/scene/materials/published.py"]
+COMMON = ["scripts/masonry/materials/sources.py"]
 #: Families of stored references: a result depends on some of them.
 RIGID = [
     "tests/references/rigid*.json",
@@ -126,7 +126,7 @@ def ofCases():
                 ((PYTHON, "validation/validate.py", case, run),),
                 sources=(
                     f"validation/{case}/case.json",
-                    f"scripts/{chosen['scene']}",
+                    studies.scenePath(chosen["scene"]),
                     *(DEFORMABLE if soft else RIGID),
                 ),
                 minutes=next((m for p, m in CASE_MINUTES.items() if fnmatch.fnmatch(name, p)), 0.3),
@@ -147,7 +147,7 @@ def ofCases():
                 f"{case}/figures",
                 ((PYTHON, f"validation/{case}/pattern.py"),),
                 (f"{case}/cracks.png",),
-                (f"validation/{case}/pattern.py", "scripts/wall_dry.py", *RIGID),
+                (f"validation/{case}/pattern.py", "scripts/gallery/wall_dry.py", *RIGID),
                 0.3,
             )
             continue
@@ -177,12 +177,12 @@ def ofStudies():
         (
             PYTHON,
             "-m",
-            "masonry.study",
+            "masonry_study",
             f"validation/{path}.py",
             "--out",
             f"results/validation/{path}",
         ),
-        (PYTHON, "-m", "masonry.study.report", f"results/validation/{path}"),
+        (PYTHON, "-m", "masonry_study.report", f"results/validation/{path}"),
     )
     loops = [
         (law, "softening" if law == "softening" else "cyclic") for law in ("cyclic", "softening")
@@ -276,7 +276,7 @@ def ofStudies():
                 (
                     "validation/dry_joint_walls/compare_loops.py",
                     "validation/dry_joint_walls/blind.json",
-                    "scripts/wall_dry.py",
+                    "scripts/gallery/wall_dry.py",
                     *RIGID,
                     *CYCLIC,
                 ),
@@ -396,7 +396,7 @@ def ofStudies():
                     (
                         PYTHON,
                         "-m",
-                        "masonry.study",
+                        "masonry_study",
                         f"validation/records/ida_{name}.py",
                         "--out",
                         f"results/validation/records/{name}",
@@ -454,8 +454,8 @@ def ofStudies():
             ("calibration/table.md", "calibration/case1.png"),
             (
                 *own("calibration"),
-                "scripts/couplet.py",
-                "scripts/masonry/study/calibrate.py",
+                "scripts/gallery/couplet.py",
+                "scripts/masonry_study/calibrate.py",
                 *RIGID,
             ),
             10,

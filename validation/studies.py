@@ -10,7 +10,7 @@ import os
 import subprocess
 from concurrent.futures import ThreadPoolExecutor
 
-from masonry.read.files import readRun
+from masonry.numbers.files import readRun
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 ROOT = os.path.dirname(HERE)
@@ -28,6 +28,13 @@ def readCase(case):
     return {**content["runs"], **quick}
 
 
+def scenePath(scene):
+    """The path of a scene of scripts/ or of its gallery, from the root of the repository."""
+    name = scene.removesuffix(".py") + ".py"
+    paths = (os.path.join("scripts", *folder, name) for folder in ((), ("gallery",)))
+    return next(path for path in paths if os.path.exists(os.path.join(ROOT, path)))
+
+
 def run(scene, options, out, threads=1, quiet=False):
     """Run a scene of scripts/ as a user would. Raises CalledProcessError if it fails.
 
@@ -35,7 +42,7 @@ def run(scene, options, out, threads=1, quiet=False):
     :param options: list of words
     :param out: folder of its results
     """
-    path = os.path.join(ROOT, "scripts", scene.removesuffix(".py") + ".py")
+    path = os.path.join(ROOT, scenePath(scene))
     command = ["yade", f"-j{threads}", "-n", "-x", path, "--out", out, *options]
     said = subprocess.DEVNULL if quiet else None
     subprocess.run(command, check=True, stdout=said)

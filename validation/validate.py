@@ -11,7 +11,7 @@ import math
 import os
 import sys
 
-from masonry.read.measure import measure
+from masonry_view.measure import measure
 from studies import HERE, RESULTS, readCase, run
 
 
@@ -27,7 +27,7 @@ def check(limits, numbers, other):
     """Compare numbers with limits, and print a line a limit. Returns whether all hold.
 
     :param limits: dict of name -> [low, high], null for none
-    :param numbers: what :func:`masonry.read.measure.measure` returns
+    :param numbers: what :func:`masonry_view.measure.measure` returns
     :param other: function of a case's name -> the numbers of its run
     """
     fine = True

@@ -181,7 +181,7 @@ static void registerAll() {
         "of the largest block. Gaps and sizes in m. With keepFaces the joints that are made next take the faces that "
         "were found, until dropFaces() is called.");
     py::def("allowThreads", &allowThreads, (py::arg("most"), py::arg("always") = false),
-            "Let steps use so many threads [-] where that is quicker, or always. For masonry.assembly.threads.");
+            "Let steps use so many threads [-] where that is quicker, or always. For masonry.model.threads.");
     py::def(
         "threads", &threads,
         "For every number of threads that steps may use: threads [-], steps taken on them, time in their loops [s].");
@@ -195,7 +195,7 @@ static void registerAll() {
         "the pair of bodies whose joint sets it (twice the same for a deformable unit). Ask again after changing "
         "joints, masses, blocked motions or damping.");
     py::def("timeStepLimit", &presentLimit,
-            "The first number of criticalTimeStep() [s], in half the time. For masonry.assembly.structure.");
+            "The first number of criticalTimeStep() [s], in half the time. For masonry.model.structure.");
     py::def("gather", &gather, "Move the joints that are there into their columns. For connect().");
     py::def(
         "connected", &connected,

@@ -10,7 +10,7 @@ sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import kinds
 import masonry
 from docutils import nodes
-from masonry.scene.stages import LATER
+from masonry.stages import LATER
 
 #: How what a word is after the first stage begins in its docstring.
 AFTER = "After the first stage:"

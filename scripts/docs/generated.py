@@ -15,9 +15,9 @@ import sys
 
 import masonry
 import yaml
-from masonry.scene import connections, loads, options, records, supports
+from masonry.scene import connections, loads, options, records, platens
 from masonry.scene.scene import Scene
-from masonry.scene.stages import LATER, STAGES
+from masonry.stages import LATER, STAGES
 
 from tree import ROOT, read
 
@@ -26,9 +26,9 @@ from tree import ROOT, read
 PROGRAMS = (
     ("python3 scripts/plot.py", ["scripts/plot.py"]),
     ("python3 scripts/view.py", ["scripts/view.py"]),
-    ("python3 -m masonry.capacity", ["-m", "masonry.capacity"]),
-    ("python3 -m masonry.study", ["-m", "masonry.study"]),
-    ("python3 -m masonry.study.report", ["-m", "masonry.study.report"]),
+    ("python3 -m masonry_capacity", ["-m", "masonry_capacity"]),
+    ("python3 -m masonry_study", ["-m", "masonry_study"]),
+    ("python3 -m masonry_study.report", ["-m", "masonry_study.report"]),
 )
 
 
@@ -65,7 +65,7 @@ FOR_STAGES = {"begin", "checkOpen", "failed", "masonry", "present", "probe"}
 def _commands():
     """The commands of a scene by what they are for: dict of a title to their names."""
     modules = {
-        supports: "What holds it",
+        platens: "What holds it",
         connections: "What connects it",
         loads: "What loads it",
         records: "What is recorded",
@@ -200,17 +200,21 @@ def classes():
 
 
 #: Packages with a page of their own beside those directly in ``masonry``: their modules are many.
-LARGE = ("masonry.scene.materials", "masonry.scene.stages")
+LARGE = ("masonry.materials", "masonry.stages")
+PACKAGES = "masonry masonry_view masonry_limit masonry_capacity masonry_study".split()
 
 
 def modules():
-    """The names of all modules of the package, packages before what is in them."""
-    found = ["masonry"]
-    for one in pkgutil.walk_packages(masonry.__path__, "masonry."):
-        name = one.name.rpartition(".")[2]
-        # ParaView alone imports its macro, in its own Python
-        if not name.startswith("_") and name != "paraview_macro":
-            found.append(one.name)
+    """The names of all modules of the packages, packages before what is in them."""
+    found = []
+    for package in PACKAGES:
+        found.append(package)
+        path = importlib.import_module(package).__path__
+        for one in pkgutil.walk_packages(path, package + "."):
+            name = one.name.rpartition(".")[2]
+            # ParaView alone imports its macro, in its own Python
+            if not name.startswith("_") and name != "paraview_macro":
+                found.append(one.name)
     return found
 
 
@@ -219,7 +223,8 @@ def pageOf(module):
     for large in LARGE:
         if module == large or module.startswith(large + "."):
             return large
-    return ".".join(module.split(".")[:2])
+    package, *inner = module.split(".")
+    return ".".join([package, *inner[:1]]) if package == "masonry" else package
 
 
 def api():
@@ -234,7 +239,7 @@ def api():
             if name != page:
                 text += heading(f"``{name}``", "-")
             text += f".. automodule:: {name}\n"
-            if name != "masonry":
+            if name not in PACKAGES:
                 text += "   :members:\n"
             if name != page and public:  # they stand at the top of the page
                 text += f"   :exclude-members: {', '.join(public)}\n"

@@ -3,7 +3,7 @@
 something that fits none.
 
 So the unit and the bounds that the site shows are those that the check has
-(:mod:`masonry.common.arguments`).
+(:mod:`masonry.arguments`).
 """
 
 import inspect

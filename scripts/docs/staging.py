@@ -16,7 +16,7 @@ import shutil
 
 from tree import ROOT, files, read
 
-PACKAGE = "scripts/masonry/"
+PACKAGES = "scripts/masonry"  # how the paths of all packages begin
 FIRST = "README.md"  # the first page of the site
 PICTURES = (".png", ".svg", ".jpg")
 SOURCES = {
@@ -44,7 +44,7 @@ def page(path):
 
 def moduleOf(path):
     """The dotted name of a module of the package, or None if a file is none."""
-    if not (path.startswith(PACKAGE) and path.endswith(".py")):
+    if not (path.startswith(PACKAGES) and path.endswith(".py")):
         return None
     parts = path.removeprefix("scripts/").removesuffix(".py").split("/")
     return ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
@@ -147,7 +147,7 @@ class Stage:
     def sources(self):
         """Make a page of each source to which a document leads, and of each scene of the
         gallery."""
-        scenes = {f"scripts/{name}.py": name for name in gallery()}
+        scenes = {sceneOf(name): name for name in gallery()}
         for path in sorted(self.shown | set(scenes)):
             file = posixpath.basename(path)
             language = SOURCES[os.path.splitext(path)[1]]
@@ -156,8 +156,9 @@ class Stage:
             if path in scenes:
                 name = scenes[path]
                 self.copy(f"scripts/gallery/{name}.png")
+                picture = posixpath.relpath(f"scripts/gallery/{name}.png", posixpath.dirname(path))
                 head = (
-                    f"# {name}\n\n{aboutScene(name)}\n\n![{name}](gallery/{name}.png)\n\n    yade"
+                    f"# {name}\n\n{aboutScene(name)}\n\n![{name}]({picture})\n\n    yade"
                     f" -n -x {path}\n\n"
                 )
             self.copy(path)
@@ -180,16 +181,22 @@ def gallery():
     ]
 
 
+def sceneOf(name):
+    """The path of a scene."""
+    path = f"scripts/{name}.py"
+    return path if os.path.exists(os.path.join(ROOT, path)) else f"scripts/gallery/{name}.py"
+
+
 def aboutScene(name):
     """What the docstring of a scene says, in Markdown."""
-    return ast.get_docstring(ast.parse(read(f"scripts/{name}.py"))).replace("``", "`")
+    return ast.get_docstring(ast.parse(read(sceneOf(name)))).replace("``", "`")
 
 
 def galleryPage():
     """The page of all scenes with their pictures, in Markdown."""
     cards = []
     for name in gallery():
-        about, page = aboutScene(name), f"scripts/{name}.py.md"
+        about, page = aboutScene(name), f"{sceneOf(name)}.md"
         picture = f"[![{name}](scripts/gallery/{name}.png)]({page})"
         first = about.partition("\n\n")[0]
         text = f"{picture}\n\n[{name}]({page})\n\n{first}"
@@ -198,5 +205,5 @@ def galleryPage():
         "# Gallery\n\nA picture leads to the scene that made it. Times are those of one"
         " core.\n\n:::::{container} gallery\n"
     )
-    scenes = "\n".join(f"scripts/{name}.py" for name in gallery())
+    scenes = "\n".join(map(sceneOf, gallery()))
     return f"{head}{chr(10).join(cards)}:::::\n\n```{{toctree}}\n:hidden:\n\n{scenes}\n```\n"

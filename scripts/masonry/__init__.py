@@ -14,31 +14,34 @@ A scene of one's own is bricks, materials and stages::
 
 ``help()`` of its rooms leads on, and each of them names its modules:
 
-- :mod:`masonry.scene`: ``Scene``, its platens, loads, records and stages; materials, random fields,
-  histories, options
 - :mod:`masonry.bricks`: walls, openings, bonds, corners, arches, vaults, blocks from files
-- :mod:`masonry.study`: one scene, run many times with values that vary
-- :mod:`masonry.limit`: limit analysis, the bound beside every run
-- :mod:`masonry.read`: what reads the files of a run: numbers, figures, the 3-D picture
-- :mod:`masonry.capacity`: bilinear curves, the demand of an earthquake, N-V domains
+- :mod:`masonry.materials`: masonry of one's own, published parameter sets, random fields
+- :mod:`masonry.scene`: ``Scene``, its platens, loads, records, options; :mod:`masonry.stages`: the
+  stages of a test
 - :mod:`masonry.run`: a run: checkpoints, results, presets, rows of a table
-- :mod:`masonry.assembly`: ``addBlock``, ``engines``, ``connect``, for scenes that are built body by
+- :mod:`masonry.numbers`: numbers of a run from its files
+- :mod:`masonry.model`: ``addBlock``, ``engines``, ``connect``, for scenes that are built body by
   body; the 3-D view
-- :mod:`masonry.common`: checks of arguments, and what the package needs of the machine
-- :mod:`masonry.basics`: gravity, how a run can end before its time, what is said on the terminal
 
-``masonry.read``, ``masonry.capacity``, ``masonry.study``, ``masonry.bricks`` and what they import
+Beside it lie four packages that read its results or run it, the wings (:mod:`masonry.wings`):
+
+- :mod:`masonry_view`: figures, report, the structure in 3-D, ParaView
+- :mod:`masonry_limit`: limit analysis, the bound beside every run
+- :mod:`masonry_capacity`: bilinear curves, the demand of an earthquake, N-V domains
+- :mod:`masonry_study`: one scene, run many times with values that vary
+
+``masonry.numbers``, ``masonry.bricks``, the wings but for ``masonry_limit``, and what they import
 work without YADE.
 
 Import it from a script of ``yade``, of plain Python or from a notebook: where YADE does not run
-yet, it starts when something is first used that needs it (:mod:`masonry.common.host`). The classes
+yet, it starts when something is first used that needs it (:mod:`masonry.host`). The classes
 that are then registered in YADE (``masonry.classes``) are also in ``yade.wrapper``; their manual is
 ``help(masonry.MasonryJoint)``, ``help(masonry.MasonryMat)`` and so on.
 """
 
 import sys
 
-# "python3 -m masonry.read.figures" searches the present folder first, and would run a file csv.py
+# "python3 -m masonry_view.figures" searches the present folder first, and would run a file csv.py
 # or token.py that lies there.
 if sys.argv[:1] == ["-m"] and not sys.flags.safe_path:
     del sys.path[0]
@@ -77,34 +80,35 @@ __version__ = "3.0.0"
 #: one is used first.
 _MODULES = {
     "bricks": "bricks",
-    "fields": "scene.fields",
-    "limit": "limit",
-    "materials": "scene.materials",
+    "fields": "materials.fields",
+    "materials": "materials",
     "options": "scene.options",
-    "study": "study",
-    "window": "assembly.window",
+    "window": "model.window",
 }
 _NAMES = {
-    "AT_REST": "scene.stages",
-    "COLLAPSED": "scene.stages",
-    "DONE": "scene.stages",
-    "MOVING": "scene.stages",
+    "AT_REST": "stages",
+    "COLLAPSED": "stages",
+    "DONE": "stages",
+    "MOVING": "stages",
     "Scene": "scene.scene",
-    "addBlock": "assembly.blocks",
-    "advance": "assembly.engines",
-    "connect": "assembly.connecting",
-    "engine": "assembly.engines",
-    "engines": "assembly.engines",
+    "addBlock": "model.bodies",
+    "advance": "model.engines",
+    "connect": "model.connecting",
+    "engine": "model.engines",
+    "engines": "model.engines",
     "loadCheckpoint": "run.checkpoints",
     "rayleigh": "scene.ground",
     "readCheckpoint": "run.checkpoints",
     "saveCheckpoint": "run.checkpoints",
-    "touchingPairs": "assembly.connecting",
+    "touchingPairs": "model.connecting",
 }
 #: What is there when the plugin is registered in YADE, beside the classes.
 _OF_PLUGIN = ["classes", "commit", "criticalTimeStep"]
 #: Rooms and modules of this package that work without YADE.
-_WITHOUT_YADE = ["basics", "bricks", "capacity", "common", "fields", "read", "study"]
+_WITHOUT_YADE = """
+    arguments background bricks errors fields folders host materials memory moved notebook numbers
+    packages terminal units wings
+""".split()
 
 
 if TYPE_CHECKING:  # what is loaded later, for those that check types
@@ -134,17 +138,19 @@ if TYPE_CHECKING:  # what is loaded later, for those that check types
         MasonryZones,
     )
 
-    from . import bricks, limit, study
+    from . import bricks
     from ._masonry import classes, commit, criticalTimeStep
-    from .assembly import window
-    from .assembly.blocks import addBlock
-    from .assembly.connecting import connect, touchingPairs
-    from .assembly.engines import advance, engine, engines
+    from . import materials
+    from .materials import fields
+    from .model import window
+    from .model.bodies import addBlock
+    from .model.connecting import connect, touchingPairs
+    from .model.engines import advance, engine, engines
     from .run.checkpoints import loadCheckpoint, readCheckpoint, saveCheckpoint
-    from .scene import fields, materials, options
+    from .scene import options
     from .scene.ground import rayleigh
     from .scene.scene import Scene
-    from .scene.stages import AT_REST, COLLAPSED, DONE, MOVING
+    from .stages import AT_REST, COLLAPSED, DONE, MOVING
 else:
 
     def __getattr__(name):
@@ -179,8 +185,8 @@ def _start():
 
 def _register():
     """Register the classes of the plugin in the YADE of this process. Raises ImportError."""
-    from .common import memory
-    from .basics import say
+    from . import memory
+    from .terminal import say
 
     def end(text):
         say(text, sys.stderr)
@@ -214,7 +220,7 @@ def _register():
         memory.reserve()
     except MemoryError as error:
         end(error)
-    from .assembly import ports, threads
+    from .model import ports, threads
 
     ports.close()
     threads.limit()
@@ -228,9 +234,12 @@ def _started():
         _register()
 
 
+from . import moved
+
+moved.install()
 if "yade" in sys.modules:
     _register()
 else:
-    from .common import host
+    from . import host
 
     host.install(_started)

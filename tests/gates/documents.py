@@ -16,7 +16,7 @@ import tree
 #: Files that a reader writes himself, or that a run makes.
 OF_THE_READER = {"my_scene.py", "my_wall.py", "scene.py", "script.py"}
 MADE = ("results/", "build/", "out/")
-MODULES = "scripts/masonry"
+MODULES = "scripts"
 FOLDERS = ("", "yade_plugin", "scripts", "scripts/masonry", "tests", "validation")
 
 _LINK = re.compile(r"\]\(([^)\s]+)\)")
@@ -24,10 +24,10 @@ _COMMANDS = (
     (re.compile(r"\bbash ((?:[\w.-]+/)*[\w.-]+\.sh)"), "script"),
     (re.compile(r"\byade (?:-\S+ )*?-n -x ([\w./-]+\.py)"), "scene"),
     (re.compile(r"\byade ([\w./-]+\.py)"), "scene"),
-    (re.compile(r"\bpython3 (?:-[A-Z] )?-m (masonry(?:\.\w+)*)"), "module"),
+    (re.compile(r"\bpython3 (?:-[A-Z] )?-m (masonry\w*(?:\.\w+)*)"), "module"),
     (re.compile(r"\bpython3 (?:-[A-Z] )?((?:[\w.-]+/)+[\w.-]+\.py)"), "script"),
 )
-_MODULE = re.compile(r"`(masonry(?:\.[a-z_]+)+)`")
+_MODULE = re.compile(r"`(masonry\w*(?:\.[a-z_]+)+)`")
 _PATH = re.compile(r"`((?:[\w.-]+/)+[\w.-]*)`")
 
 
@@ -60,7 +60,7 @@ def _exists(name, folder, root):
 
 
 def _isModule(name, root):
-    path = os.path.join(root, MODULES, *name.split(".")[1:])
+    path = os.path.join(root, MODULES, *name.split("."))
     if os.path.isfile(path + ".py") or os.path.isdir(path):
         return True
     package, member = os.path.split(path)  # a name in a module, `masonry.window.show`

@@ -11,25 +11,30 @@ import sys
 import pytest
 import tree
 
-PACKAGE = os.path.join(tree.ROOT, "scripts", "masonry")
+SCRIPTS = os.path.join(tree.ROOT, "scripts")
 #: What users call: all public functions, methods and classes of these modules.
 PUBLIC = """
-    assembly.blocks assembly.connecting assembly.engines assembly.window
-    bricks.beams bricks.blocks bricks.files bricks.vaults bricks.walls
-    capacity.domains capacity.figure capacity.n2 capacity.report capacity.spectra
-    limit.assembly limit.bound limit.reading
-    read.bilinear read.comparison read.cracks read.curve_figure read.curves read.figures
-    read.files read.frames read.loops read.measure read.viewer
-    run.checkpoints
-    scene.accelerograms scene.connections scene.fields scene.ground scene.loads scene.records
-    scene.scene scene.spectrum scene.supports scene.targets
-    scene.materials.assumptions scene.materials.codes scene.materials.formulas
-    scene.materials.kinds scene.materials.published
-    study.calibrate study.incremental study.plan study.variables
+    masonry.model.bodies masonry.model.connecting masonry.model.engines masonry.model.window
+    masonry.bricks.beams masonry.bricks.blocks masonry.bricks.block_files masonry.bricks.vaults
+    masonry.bricks.walls
+    masonry.numbers.cracks masonry.numbers.curves masonry.numbers.files masonry.numbers.frames
+    masonry.numbers.loops masonry.run.checkpoints
+    masonry.materials.assumptions masonry.materials.codes masonry.materials.fields
+    masonry.materials.formulas masonry.materials.kinds masonry.materials.sources
+    masonry.scene.accelerograms masonry.scene.connections masonry.scene.ground masonry.scene.loads
+    masonry.scene.platens masonry.scene.records masonry.scene.scene masonry.scene.targets
+    masonry_capacity.bilinear_curve masonry_capacity.domains masonry_capacity.figure
+    masonry_capacity.n2 masonry_capacity.report masonry_capacity.spectra
+    masonry_limit.assembly masonry_limit.bound masonry_limit.reading
+    masonry_study.calibrate masonry_study.incremental masonry_study.plan masonry_study.spectrum
+    masonry_study.variables
+    masonry_view.comparison masonry_view.curve_figure masonry_view.figures masonry_view.measure
+    masonry_view.viewer
 """.split()
 #: Stages are words of a scene, in modules that hold more.
-STAGES = "rest push supports gravity loading shake".split()
-STAGES = [f"scene.stages.{name}" for name in STAGES]
+STAGES = "rest push supports gravity forces shake".split()
+STAGES = [f"masonry.stages.{name}" for name in STAGES]
+PACKAGES = "masonry masonry_view masonry_limit masonry_capacity masonry_study".split()
 MYPY = [sys.executable, "-m", "mypy", "--config-file", os.path.join(tree.ROOT, "pyproject.toml")]
 needsMypy = pytest.mark.skipif(
     subprocess.run([*MYPY[:3], "--version"], capture_output=True).returncode != 0,
@@ -70,7 +75,7 @@ def test_what_users_call_has_hints(module):
     isStage = lambda node: any(
         re.match(r"validated|stage\(", ast.unparse(d)) for d in node.decorator_list
     )
-    every = functions(os.path.join(PACKAGE, *module.split(".")) + ".py")
+    every = functions(os.path.join(SCRIPTS, *module.split(".")) + ".py")
     every = [(n, node) for n, node in every if module in PUBLIC or isStage(node)]
     found = {name: withoutHint(node) for name, node in every}
     assert found
@@ -87,8 +92,9 @@ def mypy(tmp_path_factory, *words):
 
 @needsMypy
 @pytest.mark.slow
-def test_mypy_finds_no_error_in_the_package(tmp_path_factory):
-    said = mypy(tmp_path_factory, "-p", "masonry")
+def test_mypy_finds_no_error_in_the_packages(tmp_path_factory):
+    words = [word for package in PACKAGES for word in ("-p", package)]
+    said = mypy(tmp_path_factory, *words)
     assert "Success: no issues found" in said, said
 
 
@@ -98,7 +104,7 @@ def test_mypy_finds_no_error_in_a_scene_or_a_snippet(tmp_path_factory, tmp_path)
     paths = [
         os.path.join(tree.ROOT, p)
         for p in tree.files((".py",))
-        if re.fullmatch(r"scripts/\w+\.py", p)
+        if re.fullmatch(r"scripts/(gallery/)?\w+\.py", p)
     ]
     for document in tree.files((".md",)):
         for n, code in enumerate(
@@ -132,8 +138,8 @@ WRONG = {
     'materials.dry(friction="0.6")': 'has incompatible type "str"',
     "scene.watch((0.2, 0.15, 1.2)).fixd": 'has no attribute "fixd"',
     "from masonry import Arch": 'has no attribute "Arch"',
-    'from masonry import study; study.Study("s", runs="200")': 'has incompatible type "str"',
-    "from masonry import limit; limit.read().largest()": "Missing positional arguments",
+    'import masonry_study as study; study.Study("s", runs="200")': 'has incompatible type "str"',
+    "import masonry_limit as limit; limit.read().largest()": "Missing positional arguments",
     "from masonry import addBlock; addBlock()": "Missing positional arguments",
 }
 RIGHT = """
@@ -161,6 +167,7 @@ def test_mypy_finds_what_a_user_does_wrong_and_nothing_else(tmp_path_factory, tm
 
 
 def test_the_package_says_that_it_has_hints():
-    assert os.path.isfile(os.path.join(PACKAGE, "py.typed"))
+    for package in PACKAGES:
+        assert os.path.isfile(os.path.join(SCRIPTS, package, "py.typed"))
     assert 'PATTERN "py.typed"' in tree.read("CMakeLists.txt")
     assert "-name py.typed" in tree.read("scripts/package.sh")

@@ -2,9 +2,9 @@
 """Work that a copy of the process does beside a run."""
 
 from usual import *
-from masonry.common import background
-from masonry.common.background import Failed, Task
-from masonry.basics import Unwritable
+from masonry import background
+from masonry.background import Failed, Task
+from masonry.errors import Unwritable
 
 
 def children():

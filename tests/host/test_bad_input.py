@@ -10,8 +10,9 @@ import runpy
 
 from hosted import *
 from hosted import bricks as parts, unitMaterial as mat
-from masonry.read import files as reading, measure
-from masonry.read.frames import readFrame
+from masonry.numbers import files as reading
+from masonry_view import measure
+from masonry.numbers.frames import readFrame
 from masonry.run import results
 from yade import Body, utils
 
@@ -113,7 +114,7 @@ def script(name, *words):
     """Run a scene of scripts/ with its options in this process. What it prints before ending with
     status 2 is the error."""
     said, argv = io.StringIO(), sys.argv
-    sys.argv = [os.path.join(ROOT, "scripts", name + ".py"), *words]
+    sys.argv = [scenePath(name), *words]
     try:
         with contextlib.redirect_stderr(said):
             runpy.run_path(sys.argv[0])

@@ -3,8 +3,8 @@
 figure."""
 
 from hosted import *
-from masonry.read import cracks, curves, quantities
-from masonry.read.run_data import RunData
+from masonry.numbers import cracks, curves, quantities
+from masonry.numbers.run_data import RunData
 from masonry.scene.outcome import restsUnder
 
 WIDTH, HEIGHT, COURSE = 0.4, 0.6, 0.2  # [m] of a pile of three blocks

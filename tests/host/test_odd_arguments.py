@@ -14,12 +14,14 @@ from fractions import Fraction
 
 import masonry
 from hosted import *
-from masonry import capacity, fields
-from masonry.common import arguments
+import masonry_capacity as capacity
+from masonry import fields
+from masonry import arguments
 from masonry.scene import options
-from masonry.scene.spectrum import spectralAcceleration
-from masonry.read import frames, measure, report
-from masonry.study import Study, variables
+from masonry_study.spectrum import spectralAcceleration
+from masonry.numbers import frames
+from masonry_view import measure, report
+from masonry_study import Study, variables
 
 sys.path.insert(1, os.path.join(ROOT, "scripts", "docs"))
 import kinds
@@ -631,7 +633,7 @@ def test_every_function_that_scripts_call_has_an_example():
     ours = {n: getattr(masonry, n) for n in dir(masonry) if not n.startswith("_")}
     names = {n for n, t in ours.items() if inspect.isfunction(t) and argumentsOf(t)}
     for module in (materials, bricks, capacity):
-        short = module.__name__.rpartition(".")[2]
+        short = re.split("[._]", module.__name__)[-1]
         members = {n: getattr(module, n) for n in module.__all__}
         names |= {f"{short}.{n}" for n, t in members.items() if callable(t) and argumentsOf(t)}
     names |= {

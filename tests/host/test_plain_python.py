@@ -79,7 +79,7 @@ def test_threads_are_those_that_are_asked_for(tmp_path):
     script.write_text(
         """
 import ctypes
-from masonry.assembly import threads
+from masonry.model import threads
 print("steps", threads.allowed())
 for host in (False, True):
     threads.beginScene(host)
@@ -100,7 +100,7 @@ for host in (False, True):
 def test_fewer_threads_than_were_asked_for_are_remarked_upon(
     monkeypatch, asked, allowed, few, said
 ):
-    from masonry.assembly import threads
+    from masonry.model import threads
 
     taken = {1: (few, 1e-5), 4: (1000 - few, 2e-5)}
     records = [
@@ -133,17 +133,17 @@ def test_a_yade_that_was_imported_before_has_one_thread(tmp_path):
     [
         "import masonry, yade; from yade import O; yade.wrapper.MasonryMat",
         "from masonry import *; MasonryMat, Scene, engines, window",
-        "import masonry.assembly.blocks, masonry; masonry.MasonryJoint.set",
+        "import masonry.model.bodies, masonry; masonry.MasonryJoint.set",
         "from masonry import _masonry; import masonry; masonry.commit, masonry.Scene",
         (
-            "from masonry.scene.materials import dry;"
+            "from masonry.materials import dry;"
             " dry(friction=0.6).joints['bed'].set(friction=0.5, residualFriction=0.5)"
         ),
         (
             "from masonry.run.checkpoints import readCheckpoint; import masonry;"
             " masonry.MasonryJoint.set"
         ),
-        "from masonry.assembly import columns; from masonry import Scene",
+        "from masonry.model import columns; from masonry import Scene",
         FOUND + "import yade, masonry; masonry.Scene, masonry.scene, masonry.MasonryJoint.set",
         FOUND + "import masonry, yade; masonry.Scene, yade.wrapper.MasonryJoint.set",
     ],
@@ -155,7 +155,7 @@ def test_whatever_is_imported_first(code):
 @mark.slow
 def test_what_reads_results_does_not_start_yade():
     code = """
-import sys, masonry, masonry.read.measure, masonry.read.shown, masonry.study, masonry.run.batch
+import sys, masonry, masonry_view.measure, masonry_view.notebook, masonry_study, masonry.run.batch
 from masonry import bricks, fields, read
 assert not hasattr(masonry, "__wrapped__") and "Scene" in dir(masonry)
 bricks.Wall(1.1, 0.81).joints()
@@ -278,7 +278,7 @@ CLOCK = re.compile(
 def both(tmp_path, name, *words):
     """A scene of scripts/ in YADE and in plain Python, in folders of the same name: pairs of
     process and folder."""
-    scene = os.path.join(ROOT, "scripts", name + ".py")
+    scene = scenePath(name)
     for how in (["yade", "-n", "-x"], [sys.executable]):
         folder = tmp_path / how[0].rpartition("/")[2]
         folder.mkdir(exist_ok=True)

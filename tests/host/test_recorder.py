@@ -2,7 +2,7 @@
 """The files of MasonryVtkRecorder hold, column by column, what Python reads of the same instant."""
 
 from hosted import *
-from masonry.read.frames import asFrame, readFrame
+from masonry.numbers.frames import asFrame, readFrame
 from test_joint_loop import CASES, panel
 from vtkmodules.vtkCommonCore import vtkDataArray
 from vtkmodules.vtkIOXML import vtkXMLPolyDataReader, vtkXMLUnstructuredGridReader

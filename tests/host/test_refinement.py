@@ -3,7 +3,7 @@
 does not notice."""
 
 from hosted import *
-from masonry.assembly.engines import functorLoop
+from masonry.model.engines import functorLoop
 from test_checkpoint import bits
 from test_joint_loop import panel
 

@@ -5,11 +5,12 @@ that are known."""
 import base64
 
 from hosted import *
-from masonry.assembly.motion import REST
-from masonry.basics import GRAVITY, Collapsed
-from masonry.scene.stages import growing, loading
-from masonry.scene.stages.gravity import Acceleration, Tilting
-from masonry.scene.stages.rest import CALM, EVERY, LOOKS, rampTime
+from masonry.model.motion import REST
+from masonry.units import GRAVITY
+from masonry.errors import Collapsed
+from masonry.stages import growing, forces
+from masonry.stages.gravity import Acceleration, Tilting
+from masonry.stages.rest import CALM, EVERY, LOOKS, rampTime
 
 X = Vector3.UnitX
 
@@ -44,7 +45,7 @@ def test_a_tilt_turns_gravity_and_its_factor_is_the_tangent(share):
 
 def test_forces_add_to_what_is_there_or_replace_it_beside_one_that_stays():
     engines = [SimpleNamespace(force=Vector3(1, 2, 3)), SimpleNamespace(force=Vector3(4, 5, 6))]
-    load = loading.Forces(engines, [Vector3(10, 0, 0), Vector3(0, 0, -20)], "f", "N", 2)
+    load = forces.Forces(engines, [Vector3(10, 0, 0), Vector3(0, 0, -20)], "f", "N", 2)
     began = load.now()
     assert began == [1, 2, 3, 4, 5, 6]
     assert load.at(began, 0.5) == [11, 2, 3, 4, 5, -14]

@@ -5,8 +5,8 @@ the base."""
 from hosted import *
 
 from masonry._masonry import loadScene, resultant, saveScene
-from masonry.basics import GRAVITY
-from masonry.read.frames import asFrame
+from masonry.units import GRAVITY
+from masonry.numbers.frames import asFrame
 from motion_cases import oscillator
 
 #: [m]: foot, a bed joint, the middle of a course, and top.

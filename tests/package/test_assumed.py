@@ -4,8 +4,8 @@ refused."""
 
 from hosted import *
 import masonry
-from masonry.basics import GRAVITY
-from masonry.scene.materials.assumptions import DESCRIBED, copied
+from masonry.units import GRAVITY
+from masonry.materials.assumptions import DESCRIBED, copied
 
 #: Values that are no defaults, of every number of a joint that goes with the others.
 OTHER = dict(

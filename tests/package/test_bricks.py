@@ -11,7 +11,7 @@ import pickle
 from dataclasses import replace
 from itertools import product
 from masonry import bricks
-from masonry.bricks import *  # the words of a script
+from masonry.bricks import *
 
 L, T, H = bricks.walls.UNIT
 

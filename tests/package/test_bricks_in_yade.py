@@ -2,7 +2,7 @@
 """The plugin finds the same joints between blocks as the plain records do."""
 
 from hosted import *
-from masonry.bricks import *  # the words of a script
+from masonry.bricks import *
 
 HOLE = Opening(0.66, 0.405, 0.44, 0.405, Lintel(0.22, 0.162))
 

@@ -3,7 +3,7 @@
 
 from usual import *
 from masonry import materials
-from masonry.scene.materials.codes import K, TABLE
+from masonry.materials.codes import K, TABLE
 
 BRICK = dict(unit_E=40e9, unit=(0.24, 0.12, 0.065), joint=0.01)
 

@@ -15,7 +15,7 @@ import kinds
 import notebooks
 import staging
 import tree
-from masonry.common import arguments
+from masonry import arguments
 from pages import Page
 from yade import wrapper
 
@@ -111,7 +111,7 @@ def test_every_link_within_the_site_leads_somewhere(site, pages):
 
 @needsSite
 def test_the_page_of_commands_has_every_command_with_unit_and_bounds(pages):
-    from masonry.scene.stages import LATER, STAGES
+    from masonry.stages import LATER, STAGES
 
     page = pages["commands.html"]
     for stage in (*STAGES, *LATER):
@@ -140,8 +140,8 @@ def test_classes_options_and_gallery_are_those_of_the_code(pages):
         for option in action.option_strings:
             assert option in pages["options.html"].text
     for name in staging.gallery():
-        assert f"scripts/{name}.py.html" in pages["gallery.html"].links
-        shown = " ".join(pages[f"scripts/{name}.py.html"].text.split())
+        assert f"{staging.sceneOf(name)}.html" in pages["gallery.html"].links
+        shown = " ".join(pages[f"{staging.sceneOf(name)}.html"].text.split())
         assert "import" in shown and "It takes about" in shown.partition("import")[0]
 
 
@@ -178,7 +178,7 @@ def test_links_lead_to_pages(tmp_path):
     stage = staging.Stage(str(tmp_path / "source"))
     text = (
         "[a](scripts/README.md#gallery) [b](https://yade-dem.org) [c](validation/)"
-        " [d](scripts/masonry/limit/__init__.py) [`e`](scripts/masonry/study/statistics.py)"
+        " [d](scripts/masonry_limit/__init__.py) [`e`](scripts/masonry_study/statistics.py)"
         " [f](scripts/arch.py) [g](#start) `[h](scripts/README.md)`\n\n```math\nx\n```\n\n   "
         " [i](scripts/README.md)\n"
     )
@@ -188,7 +188,7 @@ def test_links_lead_to_pages(tmp_path):
         "[a](scripts/README.md#gallery) [b](https://yade-dem.org) [c](validation/README.md)"
         in written
     )
-    assert "{py:mod}`d <masonry.limit>` {py:mod}`e <masonry.study.statistics>`" in written
+    assert "{py:mod}`d <masonry_limit>` {py:mod}`e <masonry_study.statistics>`" in written
     assert "[f](scripts/arch.py.md) [g](#start) `[h](scripts/README.md)`" in written
     assert "```{math}\nx\n```" in written and "    [i](scripts/README.md)\n" in written
     assert stage.shown == {"scripts/arch.py"}

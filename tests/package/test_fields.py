@@ -3,7 +3,7 @@
 
 from usual import *
 from masonry import fields, materials
-from masonry.scene.materials import withResidual
+from masonry.materials import withResidual
 
 POINTS = np.random.default_rng(7).uniform(-50, 50, (2000, 3))
 

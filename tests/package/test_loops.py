@@ -3,7 +3,7 @@
 measurement."""
 
 from usual import *
-from masonry.read import loops
+from masonry.numbers import loops
 
 FINE = 20001  # rows of a cycle
 

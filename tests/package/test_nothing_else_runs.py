@@ -19,22 +19,22 @@ def planted(tmp_path):
 @mark.parametrize(
     "words",
     [
-        "read.measure nowhere",
-        "read.figures nowhere",
-        "read.report nowhere",
-        "study nowhere.py --out out",
+        "masonry_view.measure nowhere",
+        "masonry_view.figures nowhere",
+        "masonry_view.report nowhere",
+        "masonry_study nowhere.py --out out",
     ],
 )
 def test_programs_of_the_package_run_nothing_of_the_present_folder(planted, words):
     module, *more = words.split()
-    command = [sys.executable, "-m", f"masonry.{module}", *more]
+    command = [sys.executable, "-m", module, *more]
     done = ran(command, cwd=planted)
     assert done.returncode == 2 and "nowhere" in done.stderr
     assert not (planted / "ran").exists()
 
 
 def test_figures_are_drawn_with_nothing_of_the_present_folder(planted, monkeypatch):
-    from masonry.scene.drawing_program import DrawingProgram
+    from masonry.run.drawing_program import DrawingProgram
 
     monkeypatch.chdir(planted)
     failures = DrawingProgram().draw("nowhere")
@@ -56,7 +56,7 @@ print('after', len(listens()))
 import yade.remote
 yade.remote.runServers()
 print('again', len(listens()))
-masonry.assembly.ports.close()
+masonry.model.ports.close()
 print('closed', len(listens()), 'planted', os.path.exists('ran'))
 """
 

@@ -6,7 +6,7 @@ from collections import Counter
 
 from hosted import *
 from masonry import bricks, materials
-from masonry.bricks import polygons
+from masonry.bricks.stones import mortar, polygons
 import ezdxf
 
 
@@ -271,7 +271,7 @@ def test_solids_with_mortar_between_them_meet_in_its_middle(tmp_path, wall):
         faces = bricks.geometry.hull(block.corners)
         corners = np.array(block.corners)
         middle = corners.mean(axis=0)
-        small = bricks.mortar._grown(*_inset(corners, 0.005))
+        small = mortar._grown(*_inset(corners, 0.005))
         faces = bricks.geometry.hull(small)
         lines += [f"g {start}", *("v {!r} {!r} {!r}".format(*c) for c in small)]
         lines += ["f " + " ".join(str(start + k) for k in face) for face in faces]

@@ -4,13 +4,13 @@
 from usual import *
 import resource
 from masonry import materials
-from masonry.common.background import Task
-from masonry.assembly import columns
-from masonry.read import curves, files, run_data
+from masonry.background import Task
+from masonry.numbers import columns
+from masonry.numbers import curves, files, run_data
 from masonry.run import presets, results
 from masonry.scene import options, targets
-from masonry.scene.settings import applySettings, setting
-from masonry.basics import Unwritable
+from masonry.materials.settings import applySettings, setting
+from masonry.errors import Unwritable
 
 
 # -- materials -------------------------------------------------------------------------------------

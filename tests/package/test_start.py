@@ -11,7 +11,7 @@ NOT_NEEDED = [
     "openturns",
     "pandas",
     "scipy",
-    "masonry.study",
+    "masonry_study",
     "numpy.testing",
 ]
 SCRIPT = """
@@ -27,7 +27,7 @@ json.dump(sorted(set(sys.modules) - before), open("modules.json", "w"))
 
 @mark.parametrize("scene", ["wall_comp4", "parapet"])
 def test_a_lean_run_loads_no_library_that_it_does_not_need(tmp_path, scene):
-    path = os.path.join(ROOT, "scripts", scene + ".py")
+    path = scenePath(scene)
     (tmp_path / "counted.py").write_text(SCRIPT.format(scene=path))
     words = ["--until", "0.02"] if scene == "wall_comp4" else []
     runProgram("counted.py", "--quick", "--lean", "--out", "run", *words, cwd=tmp_path)

@@ -4,7 +4,11 @@ to."""
 
 from usual import *
 from masonry import bricks
-from masonry.bricks.stones import LEAST, SHORTEST, _joints
+from masonry.bricks.stones.stone_wall import (
+    LEAST,
+    SHORTEST,
+    _joints,
+)
 
 patterns = mark.parametrize("pattern", ["squared", "irregular"])
 lengths = some.floats(0.8, 2.5)

@@ -8,11 +8,11 @@ frames, the checkpoint at the end, and the numbers of run.json but for times.
 from hosted import *
 import io
 from kept import records
-from masonry import basics
+from masonry import terminal
 from masonry.run import checkpoints
 from masonry.run.run import Run
-from masonry.scene.drawing_program import DrawingProgram
-from masonry.scene.stages import growing
+from masonry.run.drawing_program import DrawingProgram
+from masonry.stages import growing
 
 BEGIN = """\
 from masonry import AT_REST, Scene, bricks, materials
@@ -214,8 +214,8 @@ def carryOut(script, *words, stop=None, most=math.inf):
     """
     folder, before, take = os.getcwd(), sys.argv, Run._take
     forget = lambda text: None  # notes of scenes that were refused before
-    basics.listen(forget)
-    basics.stopListening(forget)
+    terminal.listen(forget)
+    terminal.stopListening(forget)
     taken = [0]
 
     def counted(run, steps, one):

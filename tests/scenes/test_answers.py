@@ -2,11 +2,11 @@
 """What the stages of a scene answer, in run.json, on the terminal and in the table of a study."""
 
 from hosted import *
-from masonry.read.report.structure import sought
+from masonry_view.report.structure import sought
 from masonry.run import run
-from masonry.scene.stages.answers import answersText
-from masonry.study.gathering import _answerName
-from small import SMALL, carryOut, parsed
+from masonry.stages.answers import answersText
+from masonry_study.gathering import _answerName
+from small_wall import SMALL, carryOut, parsed
 
 STONE = dict(friction=0.7, normalStiffness=2e9)
 

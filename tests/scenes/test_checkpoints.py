@@ -4,10 +4,10 @@ that of a whole run."""
 
 from hosted import *
 from pathlib import Path
-from masonry.run import frames, readings
+from masonry.run import frame_writer, readings
 from masonry.run.results import Results
 from masonry.run.run import Run
-from small import SMALL, Wall, carryOut, parsed, scene as runScript
+from small_wall import SMALL, Wall, carryOut, parsed, scene as runScript
 
 
 def contents(folder):
@@ -176,7 +176,7 @@ def test_a_run_goes_on_after_a_full_disk(tmp_path, at, capsys, monkeypatch, whol
 
 @pytest.mark.parametrize("lost", ["curve.csv", "joints_0001.vtp", "run.json.new"])
 def test_results_wait_for_room(tmp_path, at, capsys, monkeypatch, lost, whole):
-    monkeypatch.setattr(frames, "SLOW_FRAME", math.inf)  # none is written beside
+    monkeypatch.setattr(frame_writer, "SLOW_FRAME", math.inf)  # none is written beside
     out = tmp_path / "full"
 
     def fill(run):
@@ -210,7 +210,7 @@ def test_results_wait_for_room(tmp_path, at, capsys, monkeypatch, lost, whole):
 
 def test_a_lost_frame_is_said_and_in_no_list(tmp_path, at, capsys, monkeypatch):
     out = tmp_path / "full"
-    monkeypatch.setattr(frames, "SLOW_FRAME", -1)  # all are written beside the run
+    monkeypatch.setattr(frame_writer, "SLOW_FRAME", -1)  # all are written beside the run
     at(32, lambda run: os.symlink("/dev/full", out / "joints_0001.vtp"))
     assert run(out, *PUSH) == 1
     said = capsys.readouterr().err

@@ -6,7 +6,7 @@ from hosted import *
 import closed_forms
 from arch_cases import oppenheim
 from cases import CASES, Case, between
-from masonry import limit
+import masonry_limit as limit
 from structures import arch, bound, rests, semicircle, unbalanced
 
 

@@ -4,9 +4,9 @@ refused."""
 
 from hosted import *
 from masonry.scene import resuming
-from masonry.basics import GRAVITY
-from masonry.read.frames import readFrame
-from masonry.read.page.data import dataOf
+from masonry.units import GRAVITY
+from masonry.numbers.frames import readFrame
+from masonry_view.page.data import dataOf
 
 WIDTH, DEPTH, HEIGHT = 0.4, 0.3, 1.6  # of a block [m]
 BLOCK = WIDTH, DEPTH, HEIGHT

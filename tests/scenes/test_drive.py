@@ -3,9 +3,9 @@
 
 from hosted import *
 from masonry._masonry import saveScene
-from masonry.assembly.period import firstPeriod
-from masonry.scene.stages import pushing
-from small import SMALL, carryOut, parsed
+from masonry.model.period import firstPeriod
+from masonry.stages import pushing
+from small_wall import SMALL, carryOut, parsed
 
 LEAN = ["--lean", "--checkpoint-every", "0"]
 

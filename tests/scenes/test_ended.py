@@ -5,13 +5,13 @@ system sets a limit."""
 from hosted import *
 import threading
 import yade
-from masonry.limit import solver
-from masonry.common.memory import FULL
+from masonry_limit import solver
+from masonry.memory import FULL
 from masonry.run.run import Run
 from masonry.scene import outcome
-from masonry.scene.bounds import GIVEN_UP
-from masonry.scene.drawing_program import DrawingProgram
-from small import SMALL, carryOut, parsed
+from masonry_limit.beside_run import NOTE_INTERRUPTED
+from masonry.run.drawing_program import DrawingProgram
+from small_wall import SMALL, carryOut, parsed
 
 PROMPT = 2.0  # [s] from a signal to the end
 SHORT = ["--until", "0.05", "--rate", "40", "--no-vtk"]
@@ -70,10 +70,10 @@ def test_a_signal_ends_a_bound(tmp_path, undrawn, monkeypatch, signalled, number
     time.sleep(0.2)  # a process that was killed with its parent needs a moment to end
     assert not os.path.exists(gone) or "(zombie)" in open(gone + "/status").read()
     run = readRun(tmp_path)
-    assert run["interrupted"] and run["bounds"][0]["note"] == GIVEN_UP
+    assert run["interrupted"] and run["bounds"][0]["note"] == NOTE_INTERRUPTED
     monkeypatch.setattr(solver, "_solved", solved)
     assert carryOut(SMALL, parsed("--resume", str(tmp_path))) == 0
-    assert readRun(tmp_path)["bounds"][0]["note"] == GIVEN_UP  # its stage was over
+    assert readRun(tmp_path)["bounds"][0]["note"] == NOTE_INTERRUPTED  # its stage was over
     assert started(tmp_path / "whole") == 0
     assert readCurve(tmp_path) == readCurve(tmp_path / "whole")
 
@@ -130,7 +130,7 @@ from masonry import limit
 """
 FIGURES = f"""
 import sys
-from masonry.read import figures, files
+from masonry.numbers import figures, files
 {LIMITED}
 sys.exit(files.onFolder(figures.draw, ["nowhere"]))
 """
@@ -162,7 +162,7 @@ def test_a_clock_that_jumps_changes_nothing(tmp_path, monkeypatch, undrawn):
 
 
 STUDY = """
-from masonry.study import Study, lognormal
+from masonry_study import Study, lognormal
 study = Study("s.py", runs=2, vary={"bed.friction": lognormal(mean=0.5, cov=0.1)})
 """
 STONES = """
@@ -175,7 +175,7 @@ scene.platen("bottom"); scene.settle(); scene.finish()
 def test_a_limit_of_the_size_of_files_is_no_fault_of_the_scene_of_a_study(tmp_path):
     (tmp_path / "study.py").write_text(STUDY)
     (tmp_path / "s.py").write_text(STONES)
-    command = f"ulimit -f 1; exec {sys.executable} -m masonry.study study.py --out out --prepare"
+    command = f"ulimit -f 1; exec {sys.executable} -m masonry_study study.py --out out --prepare"
     words = dict(cwd=tmp_path, capture_output=True, text=True, timeout=60)
     done = subprocess.run(["bash", "-c", command], **words)
     assert done.returncode == 1

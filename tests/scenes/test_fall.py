@@ -4,10 +4,10 @@ YADE, and how they go on."""
 
 from hosted import *
 import functools
-from masonry.basics import GRAVITY
-from masonry.read.elevation import frameOfCracks
-from masonry.read.frames import readFrame
-from masonry.scene.stages import falling
+from masonry.units import GRAVITY
+from masonry_view.elevation import frameOfCracks
+from masonry.numbers.frames import readFrame
+from masonry.stages import falling
 
 DENSITY = 2200
 SIDE = 0.3  # [m] of a cubic half stone

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from hosted import *
 from masonry.scene.ties import End, Tie
-from masonry.scene.words import describes
+from masonry.scene.script import describes
 from yade.wrapper import MasonryTies
 
 

@@ -7,12 +7,12 @@ The build makes a second module that holds it, which is used here in the place o
 
 from hosted import *
 import masonry
-from masonry.read.frames import readFrame
+from masonry.numbers.frames import readFrame
 from test_checkpoints import files
 
-WALL = os.path.join(ROOT, "tests", "studies", "small.py")
+WALL = os.path.join(ROOT, "tests", "study", "small.py")
 STUDY = f"""
-from masonry.study import Study
+from masonry_study import Study
 vary = {{"joints": ["softening", "coulomb"]}}
 study = Study({WALL!r}, design="grid", options={{"rate": 20, "until": 0.3}}, vary=vary)
 """
@@ -129,7 +129,7 @@ def test_a_wall_of_the_law_goes_on_from_a_checkpoint(environment, tmp_path):
 
 def test_the_law_runs_in_a_study(environment, tmp_path):
     (tmp_path / "study.py").write_text(STUDY)
-    command = [sys.executable, "-m", "masonry.study", "study.py", "--out", "study"]
+    command = [sys.executable, "-m", "masonry_study", "study.py", "--out", "study"]
     settings = dict(cwd=tmp_path, env=environment, capture_output=True, text=True)
     run = subprocess.run(command, **settings)
     assert run.returncode == 0, run.stdout + run.stderr

@@ -24,12 +24,14 @@ def test_the_gallery_has_as_many_scenes_as_the_readme_says():
 
 
 def test_every_scene_is_of_the_gallery_or_published_and_the_manual_has_it():
-    paths = glob.glob(os.path.join(ROOT, "scripts", "*.py"))
+    folders = os.path.join(ROOT, "scripts"), os.path.join(ROOT, "scripts", "gallery")
+    paths = [path for folder in folders for path in glob.glob(os.path.join(folder, "*.py"))]
     scenes = [os.path.basename(p)[:-3] for p in paths if "Scene(" in open(p).read()]
     assert sorted(scenes) == sorted(GALLERY + PUBLISHED)
     with open(os.path.join(ROOT, "scripts", "README.md")) as f:
         manual = f.read()
-    assert [name for name in scenes if f"[{name}]({name}.py)" not in manual] == []
+    links = [f"[{n}]({os.path.relpath(scenePath(n), folders[0])})" for n in scenes]
+    assert [link for link in links if link not in manual] == []
 
 
 @pytest.mark.parametrize(

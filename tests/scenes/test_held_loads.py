@@ -4,8 +4,8 @@ direction."""
 
 from hosted import *
 from masonry._masonry import saveScene
-from masonry.basics import Collapsed
-from masonry.scene.stages import gravity, growing
+from masonry.errors import Collapsed
+from masonry.stages import gravity, growing
 
 sys.path[:0] = [os.path.join(ROOT, "validation", *f) for f in (["held_loads"], [])]
 import held_loads  # noqa: E402

@@ -4,14 +4,14 @@
 from hosted import *
 import socket
 import threading
-from masonry.assembly.loading import Loading
-from masonry.assembly.structure import Structure
-from masonry.assembly.supports import Supports
+from masonry.model.loading import Loading
+from masonry.model.structure import Structure
+from masonry.model.restraints import Supports
 from masonry.run import keeping, lock, run as running
 from masonry.run.results import Results
 from masonry.run.run import Run
-from masonry.scene.drawing_program import DrawingProgram
-from small import Wall
+from masonry.run.drawing_program import DrawingProgram
+from small_wall import Wall
 from test_checkpoints import contents, noSpace, run as playWall
 
 SHORT = ["--until", "0.05", "--rate", "40", "--no-vtk"]

@@ -3,8 +3,8 @@
 was said."""
 
 from hosted import *
-from masonry import basics
-from masonry.read import report
+from masonry import terminal
+from masonry_view import report
 
 UNREST = "note: the structure is not at rest after"
 PRESSED = "warning: press: 0.3 Pa: is it in Pa, not MPa?"
@@ -40,7 +40,7 @@ def test_notes_stand_in_run_json_with_their_stage(tmp_path):
 
 
 def test_a_scene_does_not_have_the_notes_of_the_one_before(tmp_path):
-    basics.say("note: of nobody")
+    terminal.say("note: of nobody")
     texts = lambda: [one["text"] for one in carried(tmp_path)["notes"]]
     first = texts()
     first.remove("note: of nobody")

@@ -2,11 +2,11 @@
 """Pushes in a pattern: forces on several blocks in a fixed proportion."""
 
 from hosted import *
-from masonry.assembly.loading import pushTo
-from masonry.assembly.period import firstMode
-from masonry.read.bilinear import pushover
-from masonry.read.run_data import MOVED, RunData
-from masonry.scene.stages.push import patternOf
+from masonry.model.loading import pushTo
+from masonry.model.period import firstMode
+from masonry_capacity.bilinear_curve import pushover
+from masonry.numbers.run_data import MOVED, RunData
+from masonry.stages.push import patternOf
 
 #: A dry pier of stiff joints [m], that turns about its toe.
 WIDTH, HEIGHT = 0.6, 3.0

@@ -3,7 +3,7 @@
 what is refused."""
 
 from hosted import *
-from masonry.scene import fields
+from masonry.materials import fields
 
 WIDTH, DEPTH, HEIGHT = 0.4, 0.3, 1.6  # of a block [m]
 LEVEL = 1.2  # of the tie [m]
@@ -143,7 +143,7 @@ def test_what_has_no_effect_on_a_beam_is_refused(tmp_path, capsys, word, text):
 
 
 STUDY = """
-from masonry.study import Study, field, lognormal, normal
+from masonry_study import Study, field, lognormal, normal
 
 study = Study(scene="scene.py", runs=3, seed=1, vary={vary})
 """
@@ -165,7 +165,7 @@ def prepared(tmp_path, vary):
     (tmp_path / "scene.py").write_text(SCENE)
     (tmp_path / "study.py").write_text(STUDY.replace("{vary}", vary))
     out = str(tmp_path / "out")
-    command = [sys.executable, "-m", "masonry.study", "study.py", "--out", out]
+    command = [sys.executable, "-m", "masonry_study", "study.py", "--out", out]
     done = subprocess.run([*command, "--prepare"], cwd=tmp_path, capture_output=True, text=True)
     table = os.path.join(out, "table.txt")
     return done, open(table).read() if os.path.exists(table) else ""

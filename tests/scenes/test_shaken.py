@@ -3,9 +3,9 @@
 a record."""
 
 from hosted import *
-from masonry.assembly.scheme import Scheme
+from masonry.model.scheme import Scheme
 from masonry.scene import accelerograms
-from masonry.scene.stages.shake import displacements
+from masonry.stages.shake import displacements
 
 EVERY = 0.005
 RECORD = [3 * math.sin(0.6 * n) * math.sin(math.pi * n / 60) for n in range(61)]

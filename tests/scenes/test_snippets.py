@@ -36,9 +36,9 @@ REASONS = {
     r"bash scripts/run\.sh \w+$": (
         "installs packages; the scene itself is run by tests/scenes/test_walls.py"
     ),
-    r".*(view\.py|view_html)": "needs ParaView: tests/scenes/test_view.py",
+    r".*(view\.py|view_html)": "needs ParaView: tests/view/test_view.py",
     r".*apt-get": "installs packages",
-    r".*--slurm|squeue|seq ": "needs a cluster: tests/studies/test_run.py has one of Slurm",
+    r".*--slurm|squeue|seq ": "needs a cluster: tests/study/test_run.py has one of Slurm",
     r".*tests/references/references\.py": "tests/host/test_references.py",
     r".*validation/\w+/?\w*\.py": (
         "minutes or hours; tests/scenes/test_validation.py and its like run parts of them"
@@ -48,7 +48,7 @@ REASONS = {
     ),
     r".*wall_comp4\.py --accuracy": "minutes: tests/scenes/test_accuracy.py has a small wall",
     r".*check_host\.py (FOLDER|libyade)": "needs an unpacked YADE of another release",
-    r".*-m masonry\.capacity": "a tenth of a push has no peak: tests/package/test_capacity.py",
+    r".*-m masonry\.capacity": "a tenth of a push has no peak: tests/capacity/test_capacity.py",
     r"jupyter": "opens a browser",
     r"unshare": "needs namespaces of users, which containers may refuse",
 }

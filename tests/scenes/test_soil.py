@@ -3,7 +3,7 @@
 small the load is."""
 
 from hosted import *
-from masonry.scene.stages import growing, rest
+from masonry.stages import growing, rest
 
 SIDE, HEIGHT, DENSITY = 2.0, 20.0, 2000.0  # [m], [m], [kg/m³]
 #: Weight times the height of the middle [N m]: a soil that is less stiff per radian does not hold

@@ -4,7 +4,7 @@ refuse."""
 
 from hosted import *
 from masonry.run.results import Results
-from small import SMALL, carryOut, parsed
+from small_wall import SMALL, carryOut, parsed
 
 STONE = 2600 * 9.81  # [N/m³]
 

@@ -11,7 +11,7 @@ import stability
 import studies
 import validate
 from masonry.scene import options
-from masonry.scene.settings import applySettings
+from masonry.materials.settings import applySettings
 
 # There is also a package of the name tornado, which notebooks import.
 PATH = os.path.join(ROOT, "validation", "sensitivity", "tornado.py")
@@ -39,7 +39,7 @@ def test_a_missed_limit_is_said_and_counted(capsys):
 def test_every_limit_is_an_interval():
     for case in CASES:
         for name, run in studies.readCase(case).items():
-            assert os.path.exists(os.path.join(ROOT, "scripts", run["scene"]))
+            assert studies.scenePath(run["scene"])
             for limit, (low, high) in run["limits"].items():
                 assert (low, high) != (None, None), (case, name, limit)
                 if isinstance(low, (int, float)) and isinstance(high, (int, float)):

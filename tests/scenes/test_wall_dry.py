@@ -5,7 +5,7 @@ refuse."""
 from functools import partial
 
 from hosted import *
-from small import Wall, settled
+from small_wall import Wall, settled
 
 GRANITE = Wall(
     name="granite",

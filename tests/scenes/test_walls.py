@@ -5,11 +5,11 @@ end."""
 from hosted import *
 import glob
 import masonry
-from masonry.read.frames import readFrame
+from masonry.numbers.frames import readFrame
 from masonry.run import readings, results
 from masonry.scene import options
-from masonry.scene.stages import rest
-from small import SMALL, carryOut, parsed, settled
+from masonry.stages import rest
+from small_wall import SMALL, carryOut, parsed, settled
 
 ENERGY_IN = "external_J", "gravity_J", "refining_J"
 ENERGY_OUT = "kinetic_J", "damping_J", "impacts_J"

@@ -3,11 +3,12 @@
 are taken up again."""
 
 from hosted import *
-from masonry.read import drawing, figures, loops, measure
+from masonry.numbers import drawing, loops
+from masonry_view import figures, measure
 from masonry.run import results
 from masonry.scene import history
-from masonry.scene.stages import pushing, rest
-from small import SMALL, parsed
+from masonry.stages import pushing, rest
+from small_wall import SMALL, parsed
 from test_checkpoints import CANTILEVER, LOOPS, PUSH, files, interrupt, refused, run
 from test_checkpoints import at  # noqa: F401: a fixture
 

@@ -5,7 +5,7 @@ places."""
 import functools
 
 from hosted import *
-from masonry.read import quantities
+from masonry.numbers import quantities
 
 #: What is done to the bricks, and to a horizontal direction of a load.
 PLACES = {

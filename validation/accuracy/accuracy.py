@@ -17,8 +17,8 @@ import sys
 from concurrent.futures import ThreadPoolExecutor
 from queue import SimpleQueue
 
-from masonry.basics import Refused
-from masonry.read.files import readRun
+from masonry.errors import Refused
+from masonry.numbers.files import readRun
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.dirname(HERE))

@@ -27,8 +27,9 @@ import sys
 import time
 
 from masonry import Scene, addBlock, bricks, connect, engines, materials
-from masonry.assembly import columns, threads
-from masonry.read.files import readCurve, readRun
+from masonry.numbers import columns
+from masonry.model import threads
+from masonry.numbers.files import readCurve, readRun
 from yade import O, Vector3, timing, utils
 from yade.wrapper import *
 

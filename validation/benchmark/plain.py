@@ -21,7 +21,7 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.dirname(HERE))
 import studies  # noqa: E402
 import numpy as np  # noqa: E402
-from masonry.read.files import readCurve, readRun  # noqa: E402
+from masonry.numbers.files import readCurve, readRun  # noqa: E402
 from scipy.integrate import trapezoid  # noqa: E402
 
 OUT = os.path.join(studies.RESULTS, "benchmark", "plain")

@@ -65,10 +65,10 @@ ROWS = {
     "plain": (PLAIN, ofPlain),
     "plain plane": ([*PLAIN, "--plane", "--until", "1"], ofPlain),
     "accurate": ([*YADE, COMP4, "--preset", "accurate"], ofRun),
-    "facade": ([*ONE, "scripts/facade.py", "--lean"], ofSteps),
-    "house": ([*ONE, "scripts/house.py", "--lean"], ofSteps),
-    "panel": ([*ONE, "scripts/panel.py", "--lean"], ofSteps),
-    "gable": ([*ONE, "scripts/falling_gable.py", "--lean"], ofSteps),
+    "facade": ([*ONE, "scripts/gallery/facade.py", "--lean"], ofSteps),
+    "house": ([*ONE, "scripts/gallery/house.py", "--lean"], ofSteps),
+    "panel": ([*ONE, "scripts/gallery/panel.py", "--lean"], ofSteps),
+    "gable": ([*ONE, "scripts/gallery/falling_gable.py", "--lean"], ofSteps),
     "shaken": (
         [
             *ONE,

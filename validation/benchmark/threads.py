@@ -29,7 +29,7 @@ def child(halfUnits, courses):
     """Step a wall, in YADE. Prints a line: microseconds a step, those of them outside loops, half
     bricks, share on two."""
     from masonry import Scene, advance, bricks, materials
-    from masonry.assembly import threads
+    from masonry.model import threads
     from yade import O
 
     words = "--lean --checkpoint-every 0 --out results/benchmark/threads".split()

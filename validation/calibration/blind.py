@@ -14,14 +14,14 @@ import shutil
 import sys
 
 import numpy as np
-from masonry.read.files import readCurve
-from masonry.study import Calibration, Specimen, Study, uniform
-from masonry.study.calibrate import UNKNOWN
-from masonry.study.gathering import gather
-from masonry.study.local import Local
-from masonry.study.pictures import increasing
-from masonry.study.records import Record
-from masonry.study.start import begin
+from masonry.numbers.files import readCurve
+from masonry_study import Calibration, Specimen, Study, uniform
+from masonry_study.calibrate import UNKNOWN
+from masonry_study.gathering import gather
+from masonry_study.local import Local
+from masonry_study.pictures import increasing
+from masonry_study.records import Record
+from masonry_study.start import begin
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.dirname(HERE))

@@ -3,7 +3,8 @@
 supports."""
 
 from cases import between, case
-from masonry import AT_REST, bricks, limit
+from masonry import AT_REST, bricks
+import masonry_limit as limit
 from structures import (
     bound,
     holdFeet,
@@ -17,7 +18,7 @@ from structures import (
 from yade import O
 
 GROUP = "Arches"
-LIMIT = "limit analysis of these blocks (`masonry.limit`)"
+LIMIT = "limit analysis of these blocks (`masonry_limit`)"
 LONGEST = 4.0  # [s] in which an arch comes to rest or falls
 
 

@@ -4,7 +4,7 @@
 import numpy as np
 from cases import case
 from masonry import bricks, materials
-from masonry.basics import GRAVITY
+from masonry.units import GRAVITY
 from structures import rigidlike, sceneOf
 from yade import O
 

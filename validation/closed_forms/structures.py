@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Small structures in YADE that closed forms speak of, and whether they stand.
 
-Some are built body by body with :mod:`masonry.assembly`, for single blocks and joints; others are a
+Some are built body by body with :mod:`masonry.model`, for single blocks and joints; others are a
 :class:`masonry.Scene`.
 """
 
@@ -20,11 +20,11 @@ from masonry import (
     criticalTimeStep,
     engine,
     engines,
-    limit,
     materials,
 )
+import masonry_limit as limit
 from masonry.bricks import boxCorners as corners
-from masonry.basics import Refused
+from masonry.errors import Refused
 from yade import O, Vector3
 
 G = 9.81  # [m/s²]
@@ -177,7 +177,7 @@ def leans(scene, towards=(1, 0, 0)):
 
 
 def bound(towards=(1, 0, 0), assembly=None):
-    """:class:`masonry.limit.Bound` of the scene under a horizontal acceleration; its factor is in
+    """:class:`masonry_limit.Bound` of the scene under a horizontal acceleration; its factor is in
         g.
 
     :raises Refused: if the blocks do not stand under their weight, or if the forces that were found

@@ -3,7 +3,8 @@
 are pushed."""
 
 from cases import between, case
-from masonry import addBlock, bricks, connect, engines, limit
+from masonry import addBlock, bricks, connect, engines
+import masonry_limit as limit
 from structures import (
     DAMPING,
     G,
@@ -22,7 +23,7 @@ from yade import O, Vector3
 
 WALLS, BLOCKS = "Dry walls", "Blocks and stacks"
 PANELS, PIERS = "Panels out of their plane", "Piers pushed in their plane"
-LIMIT = "limit analysis of these blocks (`masonry.limit`)"
+LIMIT = "limit analysis of these blocks (`masonry_limit`)"
 ELEMENTARY = "elementary"
 
 

@@ -15,8 +15,8 @@ import matplotlib
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
-from masonry.read.measure import measure
-from masonry.read.files import readCurve
+from masonry_view.measure import measure
+from masonry.numbers.files import readCurve
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.dirname(HERE))

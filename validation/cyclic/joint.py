@@ -16,17 +16,9 @@ import csv
 import os
 import sys
 
-from masonry import (
-    MasonryJoint,
-    addBlock,
-    bricks,
-    connect,
-    criticalTimeStep,
-    engines,
-    materials,
-)
-from masonry.basics import Refused
-from masonry.scene.settings import applySettings
+from masonry import MasonryJoint, addBlock, bricks, connect, criticalTimeStep, engines, materials
+from masonry.errors import Refused
+from masonry.materials.settings import applySettings
 from yade import O, Vector3
 from yade.wrapper import MasonryLoad
 

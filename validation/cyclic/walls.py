@@ -6,7 +6,7 @@ figures.
 /usr/bin/python3 validation/cyclic/walls.py --walls comp4 --laws softening   # one wall, one law
 
 The runs stand in case.json: a monotonic push to each wall with the paper's law, which is the same
-for both laws as long as the load grows, and cycles, each amplitude twice. ``masonry.read.loops``
+for both laws as long as the load grows, and cycles, each amplitude twice. ``masonry.numbers.loops``
 defines the numbers of a cycle.
 
 - ``loops_WALL.png``: the loops of both laws, with the monotonic curve in both directions
@@ -25,8 +25,8 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
-from masonry.read import loops
-from masonry.read.files import readCurve
+from masonry.numbers import loops
+from masonry.numbers.files import readCurve
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.dirname(HERE))
@@ -52,7 +52,7 @@ NAMES = (
     "residual after +, − mm",
 )
 
-#: A cycle under a law: the numbers of :class:`masonry.read.loops.Cycle`; ``repeat``, 0 where the
+#: A cycle under a law: the numbers of :class:`masonry.numbers.loops.Cycle`; ``repeat``, 0 where the
 #: amplitude is new; the force at the largest and at the smallest displacement over the monotonic
 #: force there [-]; the stiffness over that of the first cycle [-].
 Numbers = namedtuple("Numbers", "cycle repeat positive negative stiffness")

@@ -10,8 +10,8 @@ loops.
 
 Runs what has no results yet, and writes loops_JOINTS.md, the tables, and loops_JOINTS_LEVEL.png, a
 figure a level. The cyclic law gets the properties and the limits of blind.json, the paper's law
-those of ``masonry.scene.materials``. Measured and calculated curves go through the same functions
-of ``masonry.read.loops``.
+those of ``masonry.materials``. Measured and calculated curves go through the same functions
+of ``masonry.numbers.loops``.
 """
 
 import argparse
@@ -25,8 +25,8 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
-from masonry.read import loops
-from masonry.read.files import readCurve
+from masonry.numbers import loops
+from masonry.numbers.files import readCurve
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.dirname(HERE))

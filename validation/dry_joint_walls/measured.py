@@ -21,7 +21,7 @@ import os
 from collections import namedtuple
 
 import numpy as np
-from masonry.read import loops
+from masonry.numbers import loops
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 REFERENCE = os.path.join(HERE, "reference")
@@ -118,7 +118,7 @@ DOUBTFUL = {
     ),
 }
 
-#: A cycle of a curve with its numbers: those of :class:`masonry.read.loops.Cycle`, and why it is
+#: A cycle of a curve with its numbers: those of :class:`masonry.numbers.loops.Cycle`, and why it is
 #: ``doubtful`` (None if not).
 Measured = namedtuple("Measured", "cycle doubtful")
 

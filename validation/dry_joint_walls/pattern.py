@@ -14,6 +14,6 @@ sys.path.insert(0, os.path.dirname(HERE))
 from studies import RESULTS, ROOT  # noqa: E402
 
 folder = os.path.join(RESULTS, "validation", "dry_joint_walls", "pattern")
-scene = os.path.join(ROOT, "scripts", "wall_dry.py")
+scene = os.path.join(ROOT, "scripts", "gallery", "wall_dry.py")
 subprocess.run(["yade", "-n", "-x", scene, "--until", "3", "--out", folder], check=True)
 shutil.copy(os.path.join(folder, "cracks.png"), os.path.join(HERE, "cracks.png"))

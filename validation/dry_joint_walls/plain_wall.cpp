@@ -6,8 +6,8 @@
 // Rigid blocks in running bond, small displacements, explicit steps. Joints have no tension and no cohesion; their
 // points are the middles of equal parts. Closed: the hyperbola kn0 c / (1 - c/cm) up to the tangent kn, straight from
 // there; the elasticity of the blocks is in series. Shear: spring and Coulomb friction. Loads as in
-// scripts/wall_dry.py: the vertical load keeps its line, the top is driven 1.325 m above the base, directly or through
-// a spring.
+// scripts/gallery/wall_dry.py: the vertical load keeps its line, the top is driven 1.325 m above the base, directly or
+// through a spring.
 //
 // For hypotheses on the loops (README.md, Loops): a cap, friction that wears off, shear stiffness by pressure, head
 // joints with a gap or without friction, soft joints at base and top, stones without elasticity, a load that rides,

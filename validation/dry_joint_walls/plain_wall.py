@@ -15,7 +15,7 @@ import subprocess
 import sys
 
 import numpy as np
-from masonry.read import loops
+from masonry.numbers import loops
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, HERE)

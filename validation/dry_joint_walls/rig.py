@@ -15,8 +15,8 @@ import sys
 
 import numpy as np
 from masonry import Scene, bricks, materials
-from masonry.assembly import columns
-from masonry.read import loops
+from masonry.numbers import columns
+from masonry.numbers import loops
 from masonry.scene import options
 
 HERE = os.path.dirname(os.path.abspath(sys.argv[0]))
@@ -25,7 +25,7 @@ import measured  # noqa: E402
 import compare_loops  # noqa: E402
 
 WALL = "WS2175"
-BLOCK, LOAD_HEIGHT = (0.200, 0.200, 0.150), 1.325  # [m], as of scripts/wall_dry.py
+BLOCK, LOAD_HEIGHT = (0.200, 0.200, 0.150), 1.325  # [m], as of scripts/gallery/wall_dry.py
 
 parser = options.parser(__doc__, until=30, rate=compare_loops.RATE)
 parser.add_argument(

@@ -20,7 +20,7 @@ from masonry import Scene, bricks, materials
 
 HERE = os.path.dirname(os.path.abspath(sys.argv[0]))
 sys.path[:0] = [os.path.dirname(HERE)]  # yade leaves it out
-from masonry.scene.bounds import SMALL  # noqa: E402
+from masonry_limit.beside_run import Bounds  # noqa: E402
 from studies import head, line  # noqa: E402
 
 LEAST, MOST = (
@@ -138,7 +138,7 @@ def limits(name):
     else:
         scene.platen("bottom")
     scene.settle()
-    lower = SMALL if scene.description.plane else 0
+    lower = Bounds.SMALL if scene.description.plane else 0
     entry = scene.bounds.lean(towardsOf(towards), tilts, lowerUpTo=lower)
     scene.finished = True
     scene.running.release()

@@ -12,7 +12,7 @@ import time
 
 import numpy as np
 
-from masonry.read.files import readCurve, readRun
+from masonry.numbers.files import readCurve, readRun
 
 sys.path[:0] = [os.path.dirname(os.path.dirname(os.path.abspath(__file__)))]
 from studies import head, line  # noqa: E402

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""COMP-4 with bond strengths that vary over one brick. A file for masonry.study; README.md says
+"""COMP-4 with bond strengths that vary over one brick. A file for masonry_study; README.md says
 how."""
 
 import os

@@ -2,7 +2,7 @@
 """Walls whose bond strengths vary from joint to joint. The studies beside this file differ in their
 correlation length."""
 
-from masonry.study import Study, field
+from masonry_study import Study, field
 
 #: Cohesion and tensile strength of bed and head joints, which are strong and weak together.
 BONDS = (

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The analysis of facade.py. A file for masonry.study; README.md says how."""
+"""The analysis of facade.py. A file for masonry_study; README.md says how."""
 
 import os
 import sys

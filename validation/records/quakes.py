@@ -5,7 +5,7 @@ import glob
 import itertools
 import os
 
-from masonry.study import Study
+from masonry_study import Study
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 EVERY = 0.005  # [s] between samples, as reference/README.md says

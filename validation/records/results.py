@@ -10,14 +10,14 @@ import os
 import sys
 
 import numpy as np
-from masonry.basics import Refused
-from masonry.read import drawing
+from masonry.errors import Refused
+from masonry.numbers import drawing
 from masonry.scene.ground import readRecord
-from masonry.study import Sa, fragility
-from masonry.study.demands import Demands
-from masonry.study.gathering import written
-from masonry.study.incremental import Measure
-from masonry.study.records import Record
+from masonry_study import Sa, fragility
+from masonry_study.demands import Demands
+from masonry_study.gathering import written
+from masonry_study.incremental import Measure
+from masonry_study.records import Record
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 #: Of every structure the point whose largest displacement out of the plane is the demand, and half

@@ -27,9 +27,10 @@ import traceback
 
 from masonry import AT_REST, COLLAPSED, MOVING, MasonryJoint, MasonryMat, Scene
 from masonry import bricks, materials
-from masonry.basics import GRAVITY, Refused
-from masonry.scene.drawing_program import DrawingProgram
-from masonry.scene.stages import growing, rest
+from masonry.units import GRAVITY
+from masonry.errors import Refused
+from masonry.run.drawing_program import DrawingProgram
+from masonry.stages import growing, rest
 from yade import O
 
 SCRIPT = sys.argv[0] if __name__ == "__main__" else __file__  # yade has its own there
@@ -44,7 +45,8 @@ HELD = 1.01  # largest load that was held over its closed form
 PUSHED = 1.02  # largest force of a push over its closed form, beside the imbalance
 MISSING = 5e-3  # of the loads at the supports of a structure at rest
 STAGES = (
-    "push push push cycle lean accelerate tilt growForce growPressure wind load shake run move settle"
+    "push push push cycle lean accelerate tilt growForce growPressure wind load"
+    " shake run move settle"
 ).split()
 CALMING = 20000  # steps after which what was in motion has come to rest
 #: With one of these a run says that its force is above what statics allows.

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 from masonry import Scene, bricks, materials
-from masonry.assembly import columns
+from masonry.numbers import columns
 from yade import O
 
 BLOCKS = ["rigid", "deformable"]

@@ -15,7 +15,7 @@ import tempfile
 import time
 
 import numpy as np
-from masonry.basics import Collapsed, Refused
+from masonry.errors import Collapsed, Refused
 from yade import O
 
 HERE = os.path.dirname(os.path.abspath(sys.argv[0]))

@@ -26,13 +26,13 @@ import tempfile
 
 import numpy as np
 from masonry import COLLAPSED, Scene, bricks, materials
-from masonry.basics import Refused
-from masonry.assembly.columns import Reading
+from masonry.errors import Refused
+from masonry.numbers.columns import Reading
 from yade import O
 
 STAGES = (
-    "settle push cycle drive lean tilt accelerate load growForce wind growPressure press growStress move"
-    " release hold shake run"
+    "settle push cycle drive lean tilt accelerate load growForce wind growPressure press growStress"
+    " move release hold shake run"
 ).split()
 TARGETS = "free held guided driven handle brick".split()
 DIRECTIONS = {

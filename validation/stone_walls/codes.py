@@ -20,8 +20,8 @@ import math
 import os
 from dataclasses import dataclass
 
-from masonry.scene.materials.codes import LOCAL_FRICTION, MOST_SHEAR
-from masonry.scene.materials.codes import TABLE as SAID
+from masonry.materials.codes import LOCAL_FRICTION, MOST_SHEAR
+from masonry.materials.codes import TABLE as SAID
 from rules import ROWS
 
 HERE = os.path.dirname(os.path.abspath(__file__))

@@ -21,7 +21,7 @@ sys.path.insert(0, HERE)
 import codes
 import results
 import rules
-from masonry.read.files import readRun
+from masonry.numbers.files import readRun
 
 COLOURS = {"E1": "tab:blue", "E": "tab:cyan", "C": "tab:orange", "D": "tab:red"}
 SHOWN = ("EN 1998-3:2005", "NTC 2018")

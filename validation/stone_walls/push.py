@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""All walls, each pushed as often as its interval needs. A file for masonry.study; README.md says
+"""All walls, each pushed as often as its interval needs. A file for masonry_study; README.md says
 how."""
 
 import os
@@ -7,7 +7,7 @@ import sys
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import rules
-from masonry.study import Study
+from masonry_study import Study
 
 study = Study(
     "wall.py",

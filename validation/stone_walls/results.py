@@ -21,8 +21,8 @@ sys.path.insert(0, HERE)
 import codes
 import numpy as np
 import rules
-from masonry.read import curves
-from masonry.read.files import readCurve, readRun
+from masonry.numbers import curves
+from masonry.numbers.files import readCurve, readRun
 
 FLEXURE = 0.8  # least peak over the strength in flexure of a wall that fails in flexure [-]
 LOST, COLLAPSED = (

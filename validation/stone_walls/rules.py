@@ -12,8 +12,8 @@ from dataclasses import dataclass, replace
 from random import Random
 from statistics import NormalDist
 
-from masonry.scene.materials.codes import BOND, FRICTION, LOCAL_FRICTION
-from masonry.scene.materials.codes import OTHERS, SHEAR, ntc2018
+from masonry.materials.codes import BOND, FRICTION, LOCAL_FRICTION
+from masonry.materials.codes import OTHERS, SHEAR, ntc2018
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 WALLS = os.path.join(HERE, "reference", "walls.csv")
@@ -248,7 +248,7 @@ class Guess:
     def masonry(self, materials):
         """Joints and stones.
 
-        :param materials: :mod:`masonry.scene.materials`
+        :param materials: :mod:`masonry.materials`
         """
         row = self.row
         soft = row.typology == "D"

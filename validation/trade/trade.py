@@ -21,12 +21,12 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
-from masonry.read.curves import dynamicImbalance
-from masonry.read.cracks import CRACK, layOut
-from masonry.read.frames import readFrame
-from masonry.run.options import USUAL, asOption
+from masonry.numbers.curves import dynamicImbalance
+from masonry.numbers.cracks import CRACK, layOut
+from masonry.numbers.frames import readFrame
+from masonry.run.option_table import USUAL, asOption
 from masonry.run.presets import PRESETS
-from masonry.read.files import readCurve, readRun
+from masonry.numbers.files import readCurve, readRun
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.dirname(HERE))

@@ -13,7 +13,7 @@ public:
         "Draws blocks in YADE's 3-D view: faces in the colour of a value, and edges. YADE makes the functor that draws "
         "when the first view opens, so the plugin must be imported before; all objects of this class have the same "
         "values, and setting one of them changes what the view shows. A deformable unit is drawn undeformed. "
-        "masonry.assembly.window.show() opens a view with all that is needed.";
+        "masonry.model.window.show() opens a view with all that is needed.";
 
     template <class Visit> static void attributes(Visit&& visit) {
         using G = Gl1_MasonryBlock;

@@ -13,7 +13,7 @@ public:
         "Draws joints in YADE's 3-D view, where Renderer().intrPhys is set: around every subcontact the part of the "
         "joint that is nearest to it, in the colour of a value, where the joint has moved to. All objects of this "
         "class have the same values, and setting one of them changes what the view shows. "
-        "masonry.assembly.window.show() opens "
+        "masonry.model.window.show() opens "
         "a view with all that is needed.";
 
     template <class Visit> static void attributes(Visit&& visit) {

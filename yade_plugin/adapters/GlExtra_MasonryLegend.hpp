@@ -11,7 +11,7 @@ public:
     static constexpr const char* baseName = "GlExtraDrawer";
     static constexpr const char* doc =
         "Says in YADE's 3-D view what the colours of blocks and joints mean. It works in "
-        "Renderer().extraDrawers; masonry.assembly.window.show() puts it there.";
+        "Renderer().extraDrawers; masonry.model.window.show() puts it there.";
 
     template <class Visit> static void attributes(Visit&&) {}
 

@@ -33,19 +33,19 @@ Lengths are in m and angles in degrees. Every length of a unit contains its join
 mortar between them; with ``joint``, the thickness of the mortar, ``unit`` is the brick without it.
 """
 
-from ..common.packages import promised
+from ..packages import promised
 
 promised("scipy")  # it is imported for convex solids that are no boxes
 
 from .beams import Beam, Floor
 from .blocks import Block, Bricks, summary
 from .checks import Joint
-from .files import fromFile
+from .block_files import fromFile
 from .geometry import boxCorners
 from .houses import House, Storey
 from .openings import Lintel, Opening
-from .outlines import fromOutlines
-from .stones import StoneWall, leastTrace
+from .stones.outlines import fromOutlines
+from .stones.stone_wall import StoneWall, leastTrace
 from .vaults import Arch, BarrelVault, Dome
 from .walls import Corner, Room, Tee, Wall, block, stack
 

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Beams and floors as rows of boxes. What they are made of is said by ``withBeam`` and
 ``withFloor`` of
-:class:`masonry.scene.materials.Masonry`."""
+:class:`masonry.materials.Masonry`."""
 
 from typing import Annotated
 
-from ..common.arguments import oneOf, validated, whole
+from ..arguments import oneOf, validated, whole
 from .blocks import Block, Bricks, Length, Point
 from .geometry import boxCorners
 

@@ -10,7 +10,7 @@ from collections import Counter, defaultdict
 from dataclasses import dataclass, replace
 from typing import Annotated, Any, Callable, Iterable, Iterator, get_args
 
-from ..common.arguments import (
+from ..arguments import (
     Direction,
     Numbers,
     isA,
@@ -24,8 +24,8 @@ from ..common.arguments import (
     vector,
     whole,
 )
-from .. import basics
-from ..basics import firstOf
+from .. import errors
+from ..errors import firstOf
 from . import checks
 from .geometry import COINCIDENT, Solids, cosSin, cutCorners, joinedCorners
 
@@ -435,4 +435,4 @@ def summary(bricks: Annotated[Bricks, isA(Bricks)]) -> dict[str, Any]:
 
 def refuse(what: str, problems: list[str]) -> None:
     """Raise ValueError with the first problems of a list, if there are any."""
-    basics.refuse(firstOf(problems), f"{what}: ", "; ")
+    errors.refuse(firstOf(problems), f"{what}: ", "; ")

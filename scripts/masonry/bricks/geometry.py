@@ -12,7 +12,7 @@ from math import dist
 
 import numpy as np
 
-from ..common.arguments import Numbers, items, shown
+from ..arguments import Numbers, items, shown
 
 #: Largest gap or overlap of two faces that still share a joint, as a share of the diagonal of the
 #: smaller block. It is the plugin's own bound (coincidentFaces in

@@ -4,8 +4,8 @@
 from dataclasses import dataclass, replace
 from typing import Annotated, Any, Sequence
 
-from ..common.arguments import isA, isNumber, items, listOf, number, oneOf, shown, validated, whole
-from ..basics import GRAVITY
+from ..arguments import isA, isNumber, items, listOf, number, oneOf, shown, validated, whole
+from ..units import GRAVITY
 from .beams import Beam, Floor
 from .blocks import Block, Bricks, Gap, Length, Sides, refuse
 from .geometry import boxCorners
@@ -171,7 +171,7 @@ class House(Bricks):
         """Say what floors and ring beams are made of, by ``withFloor`` and ``withBeam`` of the
         masonry. Returns it.
 
-        :param masonry: :class:`masonry.scene.materials.Masonry`
+        :param masonry: :class:`masonry.materials.Masonry`
         :param shear: shear stiffness G t of the floors [N/m]
         :param mass: with what lies on it [kg/m²], of every floor from below, the last one is the
             roof; or one for all

@@ -5,7 +5,7 @@ it."""
 from dataclasses import dataclass, replace
 from typing import Annotated
 
-from ..common.arguments import isA, validated
+from ..arguments import isA, validated
 from .blocks import Block, Bricks, Gap, Length, refuse
 from .checks import components, where
 from .geometry import boxCorners

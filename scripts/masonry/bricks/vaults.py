@@ -6,7 +6,7 @@ import math
 
 from typing import Annotated
 
-from ..common.arguments import number, validated, whole
+from ..arguments import number, validated, whole
 from .blocks import Block, Bricks, Length, refuse
 from .geometry import cosSin, prism
 

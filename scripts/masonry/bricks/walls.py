@@ -13,8 +13,8 @@ import math
 from dataclasses import replace
 from typing import Annotated, Iterable, Sequence
 
-from ..common.arguments import isA, listOf, number, oneOf, validated, whole
-from ..basics import withoutCollector
+from ..arguments import isA, listOf, number, oneOf, validated, whole
+from ..memory import withoutCollector
 from .blocks import FARTHEST, Block, Bricks, Gap, Length, Point, Sides, refuse
 from .bonds import layout
 from .geometry import FLAT, boxCorners

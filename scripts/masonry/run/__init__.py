@@ -8,11 +8,11 @@ format.
   :mod:`masonry.run.lock`: whose folder it is
 - :mod:`masonry.run.checkpoints`: the state of a scene on disk; :mod:`masonry.run.keeping`: when a
   run leaves one
-- :mod:`masonry.run.readings`: rows of curve.csv; :mod:`masonry.run.frames`: frames for ParaView;
+- :mod:`masonry.run.readings`: rows of curve.csv; :mod:`masonry.run.frame_writer`: frames for
+  ParaView; :mod:`masonry.run.drawing_program`: the program that draws figures;
   :mod:`masonry.run.signals`: Ctrl-C
-- :mod:`masonry.run.options`: the options that all scenes share; :mod:`masonry.run.presets`: those
-  that trade accuracy for time, and
-  :mod:`masonry.run.accuracy`: a push whose error is found
+- :mod:`masonry.run.option_table`: the options that all scenes share; :mod:`masonry.run.presets`:
+  those that trade accuracy for time; :mod:`masonry.run.accuracy`: a push whose error is found
 - :mod:`masonry.run.batch`: rows of a table for ``yade-batch``
 - :mod:`masonry.run.progress`, :mod:`masonry.run.plotting`: a run on the terminal, and in
   ``yade.plot``

@@ -23,13 +23,14 @@ import os
 import pathlib
 import shutil
 import sys
-from ..common import background
-from ..basics import NotAccurate, Refused, say
-from ..common.auxiliary import Auxiliary, addToLog
-from ..common.folders import check, inside, replaced
-from ..read.files import readRun
+from .. import background
+from ..errors import NotAccurate, Refused
+from ..terminal import say
+from ..auxiliary import Auxiliary, addToLog
+from ..folders import check, inside, replaced
+from ..numbers.files import readRun
 from . import batch
-from .options import asOption
+from .option_table import asOption
 from .presets import CHOSEN, COMPANIONS, FIDELITIES, MAIN, fidelityOf
 
 FOLDER = "accuracy"  # of the companions, in that of the results

@@ -27,9 +27,9 @@ import collections
 import os
 import re
 
-from ..basics import Refused
-from ..read.files import readRun, readText
-from .options import OPTIONS, asOption, those
+from ..errors import Refused
+from ..numbers.files import readRun, readText
+from .option_table import OPTIONS, asOption, those
 
 #: Options that a study itself gives, or that a row of it cannot have.
 OWN = {"help", *OPTIONS} - those("ofStudy")

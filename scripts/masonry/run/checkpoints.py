@@ -12,9 +12,9 @@ import os
 from typing import Any
 
 from .._masonry import loadScene, saveScene, savedText
-from ..common.arguments import FilePath, shown, validated
-from ..common.folders import replaced
-from ..read.files import readWhole
+from ..arguments import FilePath, shown, validated
+from ..folders import replaced
+from ..numbers.files import readWhole
 
 NAME = "run.checkpoint"  # in the folder of a run
 LARGEST = 1e100  # no number of a run is beyond; its square can be computed

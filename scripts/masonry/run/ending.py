@@ -10,11 +10,12 @@ import sys
 import yade.config
 
 from .._masonry import commit, version
-from ..assembly import threads
-from ..assembly.columns import meanings
-from ..common.background import reportRefusal
-from ..basics import Collapsed, Interrupted, Refused, Unwritable, say
-from ..common.memory import FULL
+from ..model import threads
+from ..numbers.columns import meanings
+from ..background import reportRefusal
+from ..errors import Collapsed, Interrupted, Refused, Unwritable
+from ..terminal import say
+from ..memory import FULL
 from .checkpoints import NAME
 from .presets import presetNote
 
@@ -150,14 +151,14 @@ def _finish(run, scene):
         finally:
             _describe(run, scene)
             run.results.close()
-        if not (run.args.lean or run.interrupted):
-            with contextlib.suppress(OSError):  # it is said when they are waited for
-                scene.outcome.drawing.begin(run.results.directory)
     finally:
         if run.interrupted:
-            scene.outcome.write(run.results.directory, draws=False)
+            scene.outcome.write(run.results.directory, wait=False)
         else:
-            _unlessInterrupted(run, scene.outcome.write, "the mechanism is not drawn")
+            _unlessInterrupted(run, scene.outcome.write, "the mechanism is left out")
+    if not (run.args.lean or run.interrupted):
+        with contextlib.suppress(OSError):  # it is said when they are waited for
+            scene.outcome.drawing.begin(run.results.directory)
     _report(run, scene)
 
 
@@ -241,8 +242,8 @@ def _report(run, scene):
     entries, directory = run.results.run, run.results.directory
     if not run.args.lean and (run.results.rows or not run.interrupted):
         lacking = (
-            f"the figures are not drawn; /usr/bin/python3 -m masonry.read.figures {directory} draws"
-            f" them, and /usr/bin/python3 -m masonry.read.report {directory} writes the report"
+            f"the figures are not drawn; /usr/bin/python3 -m masonry_view.figures {directory} draws"
+            f" them, and /usr/bin/python3 -m masonry_view.report {directory} writes the report"
         )
         with run.auxiliary("figures and report"):
             for failure in _unlessInterrupted(run, scene.outcome.drawing.draw, lacking) or ():

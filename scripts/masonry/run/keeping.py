@@ -8,8 +8,8 @@ import time
 import yade.config
 
 from .._masonry import commit, version
-from ..assembly import threads
-from ..basics import say
+from ..model import threads
+from ..terminal import say
 from .checkpoints import NAME, saveCheckpoint
 
 #: Options that say where results are, and are no part of what was run.

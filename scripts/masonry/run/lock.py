@@ -10,15 +10,15 @@ import os
 import re
 import socket
 
-from ..common import folders
-from ..basics import Held
-from ..read.files import readWhole
+from .. import folders
+from ..errors import Held
+from ..numbers.files import readWhole
 
 #: Files that a run writes, and those that are drawn of it; * is a number.
 FILES = (
     "curve.csv curve.png cracks.png run.json report.html run.checkpoint shakes.csv errors.log "
     "view.html capacity.json capacity.png domain.json domain.png blocks.pvd "
-    "joints.pvd connectors.pvd mechanism.png mechanism_blocks.vtu "
+    "joints.pvd connectors.pvd mechanism.json mechanism.png mechanism_blocks.vtu "
     "mechanism_joints.vtu blocks_*.vtu joints_*.vtp connectors_*.vtp"
 ).split()
 #: Those of them that show how far a run has come: they go when it goes on.

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Presets of options that trade accuracy for time, and what ``fast`` promises; and the fidelities from
-which ``--accuracy`` chooses. This module needs no YADE."""
+"""Presets of options that trade accuracy for time, and what ``fast`` promises; and the fidelities
+from which ``--accuracy`` chooses. This module needs no YADE."""
 
 from dataclasses import dataclass
 from typing import Any
 
-from .options import USUAL, asOption
+from .option_table import USUAL, asOption
 
 #: Options by preset, the same for all walls. A scene of one's own may take them from here.
 PRESETS: dict[str, dict[str, Any]] = {
@@ -15,11 +15,11 @@ PRESETS: dict[str, dict[str, Any]] = {
 for _preset in PRESETS.values():
     _preset.update(damping=0.8, damping_kind="combined", dt_fraction=0.8)
 
-BOUND = "bound"  # the preset of limit analysis alone, without a run: see masonry.limit
+BOUND = "bound"  # the preset of limit analysis alone, without a run: see masonry_limit
 
 #: What ``fast`` promises of a wall in its :data:`RANGE`: of the 44 walls of validation/trade and
-#: validation/accuracy all but ``missed`` had these errors of peak and work at most, against those of
-#: a fine and slow run [-].
+#: validation/accuracy all but ``missed`` had these errors of peak and work at most, against those
+#: of a fine and slow run [-].
 PROMISE = dict(peak_error=0.06, work_error=0.07, walls=44, missed=1)
 
 #: The walls on which ``fast`` was measured: the least and the largest value of each property that

@@ -5,7 +5,7 @@ import contextlib
 import sys
 import time
 
-from ..common import notebook
+from .. import notebook
 
 
 class Progress:

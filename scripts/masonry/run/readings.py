@@ -3,8 +3,8 @@
 
 import time
 
-from ..assembly.columns import Reading
-from ..basics import say
+from ..numbers.columns import Reading
+from ..terminal import say
 
 FLUSH_EVERY = 0.2  # [s] of wall-clock time: rows are on the disk after it
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The files that a run leaves in its folder, and how to read them again. This module needs no YADE.
 
-``curve.csv`` has a row a reading; :mod:`masonry.assembly.columns` says what is in each column.
+``curve.csv`` has a row a reading; :mod:`masonry.numbers.columns` says what is in each column.
 
 ``run.json`` has these keys, in every run:
 
@@ -24,7 +24,7 @@
 - ``versions``: of ``yade``, ``python`` and ``masonry``; ``commit``: of the plugin; ``threads``: how
   many steps may use; ``host``: its name; ``date``: when the run ended, in UTC, as
   2026-05-31T12:00:00Z
-- ``steps_by_threads``: what :func:`masonry.assembly.threads.used` says, of the process that ended
+- ``steps_by_threads``: what :func:`masonry.model.threads.used` says, of the process that ended
   the run
 - ``stages``: a list with the name of every ``stage``, its ``steps`` and their ``seconds`` of
   wall-clock time, the number ``first_row`` of its first row of curve.csv, from 0, and ``load``: its
@@ -63,7 +63,7 @@
 - ``parts``: a dict of name -> list of body ids, for cracks.png, which has a panel for every part;
   may be left out, and all blocks are one part then
 - ``views``: a dict of part -> direction of sight (x, y, z), for parts that shall not be seen as
-  :func:`masonry.read.views.viewOf` chooses; may be left out
+  :func:`masonry_view.views.viewOf` chooses; may be left out
 - ``reference_body``: id of a body whose displacement is taken off all others in cracks.png, as that
   of a ground that is shaken; may be left out
 
@@ -94,7 +94,7 @@
   that are held, loaded or watched, a list of dicts with ``name``, the id of its ``body`` and
   whether it is ``held``
 
-A run that pushes, leans or tilts has these, if limit analysis (:mod:`masonry.limit`) applies:
+A run that pushes, leans or tilts has these, if limit analysis (:mod:`masonry_limit`) applies:
 
 - ``bounds``: a list with what it found for every load: ``load`` and ``unit``; ``factor``, the
   largest one; ``exact``, whether rigid blocks carry just that, else it is an upper bound;
@@ -135,9 +135,9 @@ A run with a push has these, too:
   up to which an excursion is no half cycle; of a list ``amplitudes_mm``, pairs of an amplitude [mm]
   and its number of cycles; of a file its path ``file`` and the fingerprint ``sha256`` of its
   contents. Then also ``cycles``: a list with the numbers of every whole cycle, as
-  :func:`masonry.read.curves.cycleNumbers` finds them
+  :func:`masonry.numbers.curves.cycleNumbers` finds them
 
-Numbers, one a line with its source and unit, are those of :mod:`masonry.read.quantities`.
+Numbers, one a line with its source and unit, are those of :mod:`masonry.numbers.quantities`.
 """
 
 import contextlib
@@ -149,11 +149,12 @@ import re
 import shutil
 import time
 
-from ..common import folders
-from ..common.auxiliary import addToLog
-from ..basics import Refused, say
-from ..read import quantities
-from ..read.files import readWhole
+from .. import folders
+from ..auxiliary import addToLog
+from ..errors import Refused
+from ..terminal import say
+from ..numbers import quantities
+from ..numbers.files import readWhole
 from .lock import DRAWN, FILES, OURS, Lock, recorded
 
 __doc__ = f"{__doc__}{quantities.described()}"

@@ -17,13 +17,14 @@ from types import SimpleNamespace
 from yade import O
 
 
-from ..assembly.columns import CRACKS
-from ..common.auxiliary import Auxiliary
-from ..basics import Collapsed, Interrupted, NotResumed, Unwritable, listen, say
-from ..basics import stopListening
+from ..numbers.columns import CRACKS
+from ..auxiliary import Auxiliary
+from ..errors import Collapsed, Interrupted, NotResumed, Unwritable
+from ..terminal import listen, say
+from ..terminal import stopListening
 from . import batch
 from .keeping import Checkpoints, hostNow
-from .frames import Frames
+from .frame_writer import Frames
 from .run_state import RunState, Saved, otherVersion, restored
 from .plotting import live
 from .presets import presetNote, presetOf

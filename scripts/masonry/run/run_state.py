@@ -5,7 +5,8 @@ import os
 from dataclasses import dataclass, field, fields
 
 from .._masonry import loadScene
-from ..basics import NotResumed, say
+from ..errors import NotResumed
+from ..terminal import say
 from .checkpoints import NAME, alike, readState
 
 MOST_NOTES = 1000  # that a run keeps
@@ -58,7 +59,7 @@ class RunState:
     #: What acted beside a load and held the structure when its bound was found, by the load.
     beside: dict = field(default_factory=dict)
     atRest: str = ""  # the last state at rest, as text, for stepBack()
-    places: list = _holding(list, 0.0)  # of masonry.assembly.motion.Motion
+    places: list = _holding(list, 0.0)  # of masonry.model.motion.Motion
     far: float = 0.0  # likewise
     answers: dict = _holding(dict, [])  # of the stages, by their number
     notes: list = _holding(list, {})  # what the run said, as in run.json

@@ -4,8 +4,8 @@
 import contextlib
 import signal
 
-from ..common import notebook
-from ..basics import Interrupted
+from .. import notebook
+from ..errors import Interrupted
 
 
 class Signals:

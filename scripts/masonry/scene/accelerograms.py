@@ -28,10 +28,10 @@ from typing import Any
 
 import numpy as np
 
-from ..common.arguments import FilePath, Numbers, shown
-from ..basics import ACCELERATION_UNITS as UNITS
-from ..basics import Refused
-from ..read.files import readWhole
+from ..arguments import FilePath, Numbers, shown
+from ..units import ACCELERATION_UNITS as UNITS
+from ..errors import Refused
+from ..numbers.files import readWhole
 
 #: How files write these units, in small letters.
 WRITTEN = {

@@ -6,15 +6,15 @@ from typing import Annotated, Any, Union
 
 import numpy as np
 
-from ..common.arguments import Direction, Name, Numbers, number, oneOf, validated
-from ..common.arguments import vector as numbers
-from ..assembly.blocks import vector
-from ..basics import Refused, refuse
+from ..arguments import Direction, Name, Numbers, number, oneOf, validated
+from ..arguments import vector as numbers
+from ..model.bodies import vector
+from ..errors import Refused, refuse
 from ..bricks import Block, Bricks
-from .supports import Point
+from .platens import Point
 from .targets import Part, Target, brick, isOwn
 from .ties import MOST, OF_OVERLAY, OF_TIE, End, Overlay, Spring, Tie
-from .words import describes
+from .script import describes
 
 
 def _end(value, first):

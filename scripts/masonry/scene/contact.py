@@ -5,12 +5,12 @@ fall."""
 import itertools
 from typing import Any
 
-from ..common.arguments import Name, validated
-from .supports import Coordinate
-from ..basics import Refused
-from .settings import Property, Settable
+from ..arguments import Name, validated
+from .platens import Coordinate
+from ..errors import Refused
+from ..materials.settings import Property, Settable
 from .targets import Target
-from .words import describes
+from .script import describes
 
 #: Speed after over before a central impact of two faces, as in MasonryContacts [-].
 RESTITUTION = 0.5

@@ -2,18 +2,19 @@
 """What a scene describes before its first stage: its bricks, and what holds, loads and records
 them. Plain records.
 
-The words that describe are functions of a :class:`Description`: :mod:`masonry.scene.supports`,
+The words that describe are functions of a :class:`Description`: :mod:`masonry.scene.platens`,
 :mod:`masonry.scene.loads` and :mod:`masonry.scene.records`.
-:class:`masonry.assembly.structure.Structure` builds what they say in YADE.
+:class:`masonry.model.structure.Structure` builds what they say in YADE.
 """
 
 from numbers import Integral
 
 import numpy as np
 
-from ..common.arguments import shown, vector
-from ..assembly import columns
-from ..basics import GRAVITY, Refused
+from ..arguments import shown, vector
+from ..numbers import columns
+from ..units import GRAVITY
+from ..errors import Refused
 from ..bricks.blocks import KINDS
 from .contact import Contact
 
@@ -41,9 +42,9 @@ class Description:
         self.bricks = bricks
         self.name, self.title = name, title or name
         self.materials, self.gravity = materials, gravity  # [m/s²], downwards
-        self.functors = functors  # as in masonry.assembly.engines.engines
+        self.functors = functors  # as in masonry.model.engines.engines
         self.deformable = False  # whether bricks are
-        self.allowGaps = allowGaps  # as in masonry.assembly.connecting.connect
+        self.allowGaps = allowGaps  # as in masonry.model.connecting.connect
         #: Contact of blocks that have lost their joints, if a collapse is followed, else None.
         self.contact = Contact() if collapse == "follow" else None
         points = [p for block in self.bricks for p in block.corners]

@@ -1,37 +1,14 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What a scene is: what is built, held, loaded and watched, in words, which run.json has; whether
-it is a wall in running bond; and how it shows itself in a notebook."""
+"""What a scene is: what is built, held, loaded and watched, in words, which run.json has; and
+whether it is a wall in running bond."""
 
 import collections
 import statistics
-import tempfile
 
-import numpy as np
-from yade.wrapper import MasonryVtkRecorder
-
-from ..common import notebook
-from ..common.arguments import validated
-from ..assembly import columns
-from ..assembly.blocks import units
-from ..basics import Refused, say
-from ..bricks import Bricks, boxCorners, summary
-from ..read import drawing
-from ..read.elevation import Structure, figureOf
-from ..read.frames import readFrame
-from ..read.shown import DPI, RunFolder, Curve, cracksOf, curveOf, resultsOf
+from ..bricks import Bricks, summary
+from ..terminal import say
 
 MOST_SIZES = 4  # of blocks that are listed
-MOST_COUNTED = 20_000  # blocks whose joints are counted before the scene is built
-#: Properties of joints and units that the table shows.
-OF_JOINTS = (
-    "normalStiffness",
-    "shearStiffness",
-    "tensileStrength",
-    "cohesion",
-    "friction",
-    "compressiveStrength",
-)
-OF_UNITS = "density", "young", "poisson"
 
 
 def sizes(description):
@@ -131,7 +108,7 @@ def wallOf(description, loading):
     """The entry ``wall`` of run.json, or None if the structure is no whole wall in running bond in
     the x-z plane, of which crack patterns are measured, or if no platen pushes it.
 
-    :param loading: :class:`masonry.assembly.loading.Loading`, which knows what is pushed, and where
+    :param loading: :class:`masonry.model.loading.Loading`, which knows what is pushed, and where
         to
     """
     target, bricks = loading.target, description.bricks
@@ -167,140 +144,3 @@ def wallOf(description, loading):
         "pushed_towards": -1 if loading.direction[0] < 0 else 1,
         "load_line_fixed": not target.riding,
     }
-
-
-# -- in a notebook ---------------------------------------------------------------------------------
-
-
-@validated
-def curve(scene):
-    """The columns of curve.csv so far: a :class:`masonry.read.shown.Curve`, arrays of numpy by name
-    with their units.
-
-    :raises ValueError: before the first stage, since there is no row yet
-    """
-    if not scene.model:
-        raise ValueError(f"curve: scene {scene.name} has no rows before its first stage")
-    results = scene.results
-    run = results.run
-    if not scene.finished:
-        scene.running.flush()
-        run = {"columns": columns.meanings(scene.columns)}
-        if results.rows:
-            run.update(scene.outcome.figure())
-    values = {head: results.column(head) for head in results.columns}
-    if not results.rows or "figure" not in run:
-        return Curve(values, run["columns"])
-    return curveOf(values, run, results.directory)
-
-
-def asHtml(scene):
-    """A scene as HTML: what is built, or what has come out of it."""
-    if not scene.model:
-        return _built(scene)
-    if scene.finished and scene.results.begun and not scene.running.interrupted:
-        return RunFolder(scene.results.directory)._repr_html_()
-    if scene.finished or scene.isGone:
-        title = f"{scene.description.title}: {_state(scene)}"
-        parts = [curve(scene)._repr_html_()] if scene.results.rows else []
-        return notebook.titled(title, *parts)
-    return _standing(scene)
-
-
-def _state(scene):
-    if scene.running.interrupted and scene.finished:
-        return f"interrupted; its results so far are in {scene.results.directory}"
-    return scene.ended or "no stage has ended"
-
-
-def _standing(scene):
-    title, views, at = scene.description.title, scene.description.views, scene.running.at
-    run = {"parts": scene.model.parts, "views": views, "title": title, "answers": scene.answers}
-    with tempfile.TemporaryDirectory() as folder:
-        MasonryVtkRecorder(directory=folder)()
-        blocks, joints = (readFrame(folder, kind) for kind in ("blocks", "joints"))
-    when = f"after {at.stage}" if at.stage else "as built"
-    return notebook.titled(
-        f"{title}: {_state(scene)}",
-        cracksOf(run, blocks, joints, when, scene.name),
-        curve(scene).picture(),
-        notebook.table(resultsOf(run) + [("so far", _state(scene), "")]),
-    )
-
-
-def _built(scene):
-    description = scene.description
-    with drawing.style():
-        figure = figureOf(_structure(description), description.title, 0)
-        drawn = notebook.picture(figure, DPI)
-    return notebook.titled(
-        f"{description.title}: before its first stage",
-        drawn,
-        notebook.table([*_counted(description), *held(description)]),
-        notebook.folded("materials", _materials(scene)),
-    )
-
-
-def _structure(description):
-    """Whole bricks of every part, with blocks that are held, loaded or watched in their shades."""
-    targets, bricks = description.targets.values(), Bricks(description.bricks)
-    parts, shades, corners = {}, {}, []
-
-    def add(block, shade=None):
-        if shade:
-            shades[len(corners)] = shade
-        corners.append(np.array(list(map(tuple, block)), float))
-        return len(corners) - 1
-
-    for block in bricks.whole() if description.halves else bricks:
-        parts.setdefault(block.part, []).append(add(block.corners))
-    for target in targets:
-        if target.brick is not None:
-            block = bricks[target.brick]
-            parts[block.part].append(add(block.corners, _shade(target)))
-        elif target.box:
-            add(boxCorners(*target.box), _shade(target))
-    points = np.concatenate(corners)
-    cells = np.split(np.arange(len(points)), np.cumsum(list(map(len, corners)))[:-1])
-    blocks = {
-        "points": points,
-        "displacement": 0 * points,
-        "body": range(len(corners)),
-        "cells": cells,
-    }
-    return Structure(blocks, None, parts, shades, sights=description.views)
-
-
-def _shade(target):
-    return "held" if target.fixed else "loaded" if target.loaded else "watched"
-
-
-def _counted(description):
-    """Rows of the table: what is built, with the number of its joints."""
-    yield from sizes(description)
-    bricks = Bricks(description.bricks)
-    if len(bricks) <= MOST_COUNTED:
-        platens = any(target.box for target in description.targets.values())
-        count = f"{len(bricks.joints()):,} between blocks"
-        yield "joints", count + "; platens are not counted" * platens
-
-
-def _materials(scene):
-    connectors = scene.description.settable(copies=True)
-    masonry = scene.description.materials.variant(scene.args, [*connectors])
-    try:
-        masonry.apply(scene.args.set, connectors)
-    except Refused as refused:
-        return notebook.table([("refused", str(refused))])
-    joints, blocks = masonry.joints, {"brick": masonry.unit, **masonry.units}
-    return _properties("joint", joints, OF_JOINTS) + _properties("unit", blocks, OF_UNITS)
-
-
-def _properties(what, things, names):
-    """A table of properties: a row each, with its unit, and a column for every thing."""
-    known = {"density": "kg/m³", **units(type(next(iter(things.values()))))}
-    rows = [
-        (name, known.get(name, "-"), *(f"{getattr(t, name):.4g}" for t in things.values()))
-        for name in names
-    ]
-    return notebook.table(rows, (what, "unit", *things))

@@ -7,8 +7,8 @@ from typing import Annotated, Any
 
 import numpy as np
 
-from ..common.arguments import listOf, number, path, validated
-from ..basics import Refused
+from ..arguments import listOf, number, path, validated
+from ..errors import Refused
 from . import accelerograms
 from .accelerograms import UNEVEN, UNITS
 

@@ -16,7 +16,7 @@ import io
 import os
 from collections import namedtuple
 
-from ..basics import firstOf
+from ..errors import firstOf
 
 LEAST, MOST = 0.02, 1000.0  # [mm] bounds of an amplitude; a row of curve.csv is 0.01 mm
 # [mm] within which a wall is at zero: more than a history misses, less than any amplitude
@@ -173,7 +173,7 @@ def turns(points):
 
 def noise(history):
     """Displacement [mm] up to which an excursion does not count: the threshold of
-    :mod:`masonry.read.loops` for the wall's curve."""
+    :mod:`masonry.numbers.loops` for the wall's curve."""
     if "file" not in history:
         return AT_ZERO
     return max(AT_ZERO, NOISE * max(map(abs, history["points_mm"])))

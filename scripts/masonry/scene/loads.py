@@ -4,13 +4,14 @@
 import math
 from typing import Annotated, Any, Callable, Union
 
-from ..common.arguments import Direction, Level, Numbers, number, orFunction, validated
-from ..common.arguments import vector as numbers
-from ..assembly.blocks import vector
-from ..basics import checkPlane, say
+from ..arguments import Direction, Level, Numbers, number, orFunction, validated
+from ..arguments import vector as numbers
+from ..model.bodies import vector
+from ..errors import checkPlane
+from ..terminal import say
 from .pressures import LEAST, FaceForce, facesAgainst, pressures
 from .targets import Loaded, MovingPlaten, Part
-from .words import describes
+from .script import describes
 
 #: A mean stress, a force and the pressure of a wind. More than these would crush or throw over any
 #: masonry.

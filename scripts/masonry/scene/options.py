@@ -6,26 +6,28 @@ import os
 import sys
 from dataclasses import replace
 
-from ..common import notebook
+from .. import notebook
 from .._masonry import commit, version
-from ..common.arguments import oneOf, shown
-from ..assembly.engines import LAWS
-from ..common.background import reportRefusal
-from ..basics import Interrupted, Refused, refuse, say
-from ..run import accuracy, batch, options
-from ..run.options import USUAL, reading
+from ..arguments import oneOf, shown
+from ..model.engines import LAWS
+from ..background import reportRefusal
+from ..errors import Interrupted, Refused, refuse
+from ..terminal import say
+from ..run import accuracy, batch, option_table
+from ..run.option_table import USUAL, reading
 from ..run.presets import BOUND, PRESETS
-from . import fields, history
+from ..materials import fields
+from . import history
 from .ground import readRecord
 from .parsing import Parser, checked, keep
-from .settings import scatterAll, setting
+from ..materials.settings import scatterAll, setting
 
 #: The options of a scene: those of the table, with the laws of the plugin and the presets.
 OPTIONS = {
-    **options.OPTIONS,
-    "preset": replace(options.OPTIONS["preset"], kind=oneOf(BOUND, *PRESETS)),
+    **option_table.OPTIONS,
+    "preset": replace(option_table.OPTIONS["preset"], kind=oneOf(BOUND, *PRESETS)),
     "joints": replace(
-        options.OPTIONS["joints"],
+        option_table.OPTIONS["joints"],
         kind=oneOf(*LAWS, "brittle"),
         default=next(iter(LAWS)),
         meaning="; ".join([*(law["meaning"] for law in LAWS.values()), "brittle Coulomb slip"]),
@@ -103,7 +105,7 @@ def check(args, masonry, connectors, more=()):
     together, and materials that lack something.
 
     :param args: the parsed options
-    :param masonry: :class:`masonry.scene.materials.Masonry` for these options
+    :param masonry: :class:`masonry.materials.Masonry` for these options
     :param connectors: ties, springs and fibre layers by name
     :param more: problems that the caller has found, to be named with the others
     :raises Refused: with all problems at once

@@ -10,22 +10,22 @@ import sys
 from yade import O
 from yade.wrapper import MasonryVtkRecorder
 
-from ..common.arguments import isNumber
-from ..assembly import blocks, columns
-from ..assembly.engines import LAWS
-from ..basics import say, withoutCollector
-from ..common.memory import FULL
-from ..common.packages import Missing
-from ..read import cracks, curves, quantities
-from ..read.frames import asFrame
-from ..read.run_data import RunData
+from ..arguments import isNumber
+from ..model import bodies
+from ..numbers import columns
+from ..model.engines import LAWS
+from ..terminal import say
+from ..memory import withoutCollector
+from ..memory import FULL
+from ..numbers import cracks, curves, quantities
+from ..numbers.frames import asFrame
+from ..numbers.run_data import RunData
 from ..run import accuracy
-from ..run.options import UNITS
+from ..run.option_table import UNITS
 from . import facts, history
-from .bounds import inRunJson, linesOfGrowth, linesOfPush, over
-from .drawing_program import DrawingProgram
-from .stages import pushing
-from .stages.answers import answersText
+from ..run.drawing_program import DrawingProgram
+from ..stages import pushing
+from ..stages.answers import answersText
 
 FRAMES = 20  # for ParaView in a stage that is no push
 REPORT = 2e6  # [bytes] of report.html, of which three.js takes nearly half
@@ -100,7 +100,7 @@ class Outcome:
         joints = {name: joint.dict() for name, joint in model.joints.items()}
         for properties in joints.values():
             properties["direction"] = list(properties["direction"])
-        known = blocks.properties(type(next(iter(model.joints.values()))))
+        known = bodies.properties(type(next(iter(model.joints.values()))))
         targets = description.targets.values()
         entries = dict(
             title=description.title,
@@ -133,7 +133,7 @@ class Outcome:
             **self._connections(),
             script=shortened(scene.script.words),
             **self._facts,
-            **inRunJson(scene.bounds.entries, self.pushes),
+            **dict(scene.bounds.inRunJson(self.pushes)),
         )
         if description.views:
             entries["views"] = description.views
@@ -266,15 +266,14 @@ class Outcome:
         found = dict(title=self.description.title, **self._figure())
         return {**found, **self._wall()}
 
-    def write(self, directory, draws=True):
-        """Write what the scene has beside rows and frames: the mechanism of limit analysis, with
-        its picture if ``draws``."""
-        title, views = self.description.title, self.description.views
+    def write(self, directory, wait=True):
+        """Write what the scene has beside rows and frames: the mechanism of limit analysis.
+
+        :param wait: whether to wait for files that are made beside the run
+        """
         with self.scene.running.auxiliary("the mechanism of limit analysis"):
             try:
-                self.scene.bounds.write(directory, title, self.model.parts, views, draws)
-            except Missing as missing:
-                say(f"mechanism.png is left out: {missing}", sys.stderr)
+                self.scene.bounds.write(directory, wait)
             except (OSError, MemoryError, ImportError) as error:
                 why = getattr(error, "strerror", None) or FULL
                 say(f"the mechanism is not written to {directory}: {why}", sys.stderr)
@@ -292,8 +291,7 @@ class Outcome:
 
     def warnings(self, run):
         """Sentences on what the numbers of a run suffer from, from the entries of run.json."""
-        bounds = self.scene.bounds
-        yield from over(bounds.entries, bounds.place.held, run)
+        yield from self.scene.bounds.over(run)
         if not self.pushed:
             return
         if run.get("too_fast"):
@@ -366,7 +364,7 @@ def _ofPush(outcome):
         "force along the push [kN]",
         marks,
         looped,
-        bounds=[*linesOfPush(outcome.scene.bounds.entries, outcome.pushes)],
+        bounds=[*outcome.scene.bounds.linesOfPush(outcome.pushes)],
         **_rowsOf(outcome, data.rows),
     )
 
@@ -399,7 +397,7 @@ def _ofLoad(outcome, number, load):
         {"load_factor": "load"},
         f"load{' while it grows' * (kind == 'growth')} [{entry.get('unit') or '-'}]",
         marks,
-        bounds=[*linesOfGrowth(entry)],
+        bounds=[*outcome.scene.bounds.linesOfGrowth(name)],
         **_rowsOf(outcome, rows),
     )
 

@@ -8,13 +8,14 @@ import difflib
 import os
 import re
 
-from ..common.arguments import flag, isNumber, oneOf, shown
-from ..common.arguments import plain as plainNumber
-from ..common.background import reportRefusal
-from ..basics import NotResumed, Refused, plain, refuse, say
+from ..arguments import flag, isNumber, oneOf, shown
+from ..arguments import plain as plainNumber
+from ..background import reportRefusal
+from ..errors import NotResumed, Refused, refuse
+from ..terminal import plain, say
 from ..run import batch
 from ..run.run_state import Saved
-from ..run.options import OPTIONS, asOption, those
+from ..run.option_table import OPTIONS, asOption, those
 from ..run.presets import PRESETS
 from . import history
 

@@ -8,8 +8,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..common.arguments import number
-from ..basics import Refused, checkPlane
+from ..arguments import number
+from ..errors import Refused, checkPlane
 from ..bricks import Bricks
 from ..bricks.checks import LOOKING
 

@@ -5,14 +5,14 @@ scene."""
 import itertools
 from typing import Annotated, Any, Callable
 
-from ..common.arguments import Direction, Name, shown, validated
-from ..common.arguments import name as nameOf
-from ..assembly.blocks import vector
-from ..assembly.columns import Column
+from ..arguments import Direction, Name, shown, validated
+from ..arguments import name as nameOf
+from ..model.bodies import vector
+from ..numbers.columns import Column
 from .sections import BASE, ENDS, Section
-from .supports import Coordinate
+from .platens import Coordinate
 from .targets import AnyTarget, BrickAt, Drift, JointRecord, Part
-from .words import describes
+from .script import describes
 
 
 def _nameOrNothing(value, first=None):

@@ -15,7 +15,7 @@ from typing import Any
 
 from ..run.checkpoints import alike
 from ..run.run_state import otherVersion
-from .words import PUSHES, asData
+from .script import PUSHES, asData
 
 
 def stateOf(scene):

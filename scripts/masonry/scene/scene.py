@@ -15,7 +15,7 @@ A scene reads from top to bottom::
     scene.finish()
 
 What comes before the first stage describes: platens, supports, loads, what is recorded. Stages run
-in turn (:mod:`masonry.scene.stages`). Each returns how it ended: one of ``AT_REST``, ``MOVING``,
+in turn (:mod:`masonry.stages`). Each returns how it ended: one of ``AT_REST``, ``MOVING``,
 ``DONE`` and ``COLLAPSED``. After a collapse the stages that follow are left out. ``finish`` writes
 what :mod:`masonry.run.results` lists. All options of the command line work, ``--help`` explains
 them: ``--preset``, ``--rate``, ``--set``, ``--out``, ``--resume`` and the others; ``--until`` or
@@ -31,27 +31,29 @@ import math
 import os
 from typing import Annotated, Any, Callable, Iterable, Iterator, Sequence
 
-from ..common.arguments import LONGEST_NAME
-from ..common.arguments import isA, listOf, number, oneOf, shown, text, validated
-from ..common import notebook
-from ..assembly.structure import Structure
-from ..basics import GRAVITY, Interrupted, say, withoutCollector
+from ..arguments import LONGEST_NAME
+from ..arguments import isA, listOf, number, oneOf, shown, text, validated
+from .. import notebook, stages, wings
+from ..model.structure import Structure
+from ..units import GRAVITY
+from ..errors import Interrupted
+from ..terminal import say
+from ..memory import withoutCollector
 from ..bricks import Bricks
 from ..run import batch
 from ..run.ending import end
 from ..run.presets import BOUND
 from ..run.results import Results
 from ..run.run import Run
-from . import bounding, connections, contact, facts, loads, options, probing, records
-from . import stages, supports
-from .bounds import Bounds, takeFound
+from ..stages import STAGES, answers, bounding, gravity, prepare, rest
+from ..stages.bounds import boundsOf, takeFound
+from . import connections, contact, facts, loads, options, platens, records
 from .description import Description
-from .materials import Masonry, linesOf, loadingBlock
+from ..materials import Masonry, linesOf, loadingBlock
 from .outcome import Outcome
 from .resuming import State, resume
-from .stages import STAGES, answers, gravity, prepare, rest
 from .targets import Target
-from .words import SHAKES, Call, Script, either
+from .script import SHAKES, Call, Script, either
 
 
 def _ofFolder(value, first=None):
@@ -79,20 +81,20 @@ class Scene:
     shows how to write one.
 
     It has a :class:`~masonry.scene.description.Description`; when its first stage begins it gets a
-    :class:`~masonry.assembly.structure.Structure`, its ``model`` in YADE; and a
+    :class:`~masonry.model.structure.Structure`, its ``model`` in YADE; and a
     :class:`~masonry.run.run.Run`, ``running``, takes the steps.
 
     :param name: of the folder of results, ``results/<name>``
     :param bricks: blocks: :class:`masonry.bricks.Bricks`, or anything that gives blocks with
         ``corners``, ``brick``, ``part`` and ``kind``
-    :param materials: :class:`masonry.scene.materials.Masonry`
+    :param materials: :class:`masonry.materials.Masonry`
     :param title: of the figures; None: the name
     :param plane: whether blocks move in the x-z plane only, which is faster; None: if all bricks
         are one leaf in it
     :param gravity: [m/s²], downwards
     :param columns: names of the columns of curve.csv, beside the energies and the section at the
         base; None: all that there are
-    :param functors: as in :func:`masonry.assembly.engines.engines`
+    :param functors: as in :func:`masonry.model.engines.engines`
     :param arguments: options as :func:`masonry.scene.options.parser` gives them, or a list of
         words; None: those of the command line
     :param allowGaps: whether bricks that nearly share a face stand apart on purpose, and have no
@@ -162,13 +164,13 @@ class Scene:
         self.only = arguments.preset == BOUND
         self._entered = False  # whether a ``with`` block ends it
 
-    platen, watch, handle = supports.platen, supports.watch, supports.handle
+    platen, watch, handle = platens.platen, platens.watch, platens.handle
     drift, column = records.drift, records.column
     joint, section, view = records.joint, records.section, records.view
     tie, spring, overlay = connections.tie, connections.spring, connections.overlay
     ground = contact.ground
     # Their names are those of stages, too, which are meant after the first stage.
-    hold = either(supports.hold, stages.hold)
+    hold = either(platens.hold, stages.hold)
     press = either(loads.press, stages.press)
     load = either(loads.load, stages.load)
     wind = either(loads.wind, stages.wind)
@@ -188,7 +190,23 @@ class Scene:
     shakeAgain = stages.shakeAgain
     bracket, stepBack, resume = gravity.bracket, rest.stepBack, resume
     bound, domain, result = bounding.bound, bounding.domain, answers.result
-    curve, probe, _repr_html_ = facts.curve, probing.probe, facts.asHtml
+
+    def curve(self) -> Any:
+        """The columns of curve.csv so far: a :class:`masonry_view.notebook.Curve`, arrays of numpy
+        by name with their units.
+
+        :raises ValueError: before the first stage, since there is no row yet
+        """
+        return wings.find("curve")(self)
+
+    def _repr_html_(self):
+        """The scene in a notebook: what is built, or what has come out of it."""
+        return wings.find("_repr_html_")(self) if wings.isInstalled("_repr_html_") else None
+
+    def probe(self, stage: str, traits: Any, arguments: dict[str, Any]) -> Any:
+        """Write what a study must know of a scene that is built; see
+        :func:`masonry_study.probing.probe`."""
+        return wings.find("probe")(self, stage, traits, arguments)
 
     @property
     def isGone(self) -> bool:
@@ -213,7 +231,7 @@ class Scene:
     @property
     def answers(self) -> list[dict[str, Any]]:
         """What the stages were run for, in their order: a list of dicts, as in
-        :class:`masonry.scene.stages.answers.Answer`, with the ``stage`` and its ``number``.
+        :class:`masonry.stages.answers.Answer`, with the ``stage`` and its ``number``.
         """
         kept, entered = self.running.at.answers, self.running.entered
         numbers = [number for number in sorted(kept, key=int) if int(number) <= entered]
@@ -241,7 +259,7 @@ class Scene:
 
     @functools.cached_property
     def masonry(self) -> Masonry:
-        """The materials for the options of this run: :class:`masonry.scene.materials.Masonry`.
+        """The materials for the options of this run: :class:`masonry.materials.Masonry`.
         Raises Refused."""
         connectors = self.description.settable()
         masonry = self.description.materials.variant(self.args, [*connectors])
@@ -266,7 +284,7 @@ class Scene:
         self.columns = description.columns(model, bool(args.history))
         self.model = model
         self.running.open(self.columns, facts.properties(description, self.masonry))
-        self.bounds = Bounds(model, self.running.at, self.running.auxiliary)
+        self.bounds = boundsOf(self)
         self.running.takeFound = functools.partial(takeFound, self)
         self.outcome = Outcome(self)
         with self.running.clock("setup"), self.running.breakable(), withoutCollector():

@@ -13,8 +13,8 @@ from dataclasses import dataclass
 from yade import O, Vector3
 
 from .._masonry import resultant
-from ..assembly.columns import Column
-from ..basics import Refused
+from ..numbers.columns import Column
+from ..errors import Refused
 from .ties import GROUND
 
 BASE = "base"  # name of the section that every run on a platen records
@@ -43,7 +43,7 @@ class Section:
     def join(self, structure):
         """Find its joints in a structure that stands in YADE. Raises Refused if there are none.
 
-        :param structure: :class:`masonry.assembly.structure.Structure`
+        :param structure: :class:`masonry.model.structure.Structure`
         """
         description = structure.description
         size = description.high[2] - description.low[2]

@@ -5,8 +5,8 @@ records with their columns, and the kinds of arguments that name them."""
 from dataclasses import dataclass
 from typing import Annotated, Any, Iterator, Sequence, Union
 
-from ..common.arguments import Numbers, isListed, listOf, oneOf, shown
-from ..assembly.columns import Column
+from ..arguments import Numbers, isListed, listOf, oneOf, shown
+from ..numbers.columns import Column
 from ..bricks import Block
 
 
@@ -35,7 +35,7 @@ class Target:
 
     @property
     def parts(self) -> tuple[tuple[Any, Any, float]]:
-        """What a push of it moves, as in :class:`masonry.assembly.loading.Pattern`."""
+        """What a push of it moves, as in :class:`masonry.model.loading.Pattern`."""
         return ((self.body, self.point, 1.0),)
 
     def columns(self, plane: bool) -> Iterator[Column]:

@@ -7,8 +7,8 @@ from typing import Any
 from yade import Vector3
 from yade.wrapper import MasonrySprings, MasonryTies
 
-from ..assembly.columns import Column
-from .settings import Property, Settable
+from ..numbers.columns import Column
+from ..materials.settings import Property, Settable
 from .targets import Target
 
 MOST = 1e15  # of stiffness [N/m], [N m] and force [N]: more has no structure
@@ -173,7 +173,7 @@ class Tie(Connector):
     def on(self, end, connectors):
         """Force [N] and moment [N m] on one of its ends: two vectors.
 
-        :param connectors: :class:`masonry.assembly.connectors.Connectors`
+        :param connectors: :class:`masonry.model.connectors.Connectors`
         """
         other = self.ends[1] if end is self.ends[0] else self.ends[0]
         away = connectors.placeOf(other) - connectors.placeOf(end)

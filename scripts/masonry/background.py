@@ -1,0 +1,216 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Other processes: tasks that a copy of this one carries out, and programs, several at a time.
+
+A :class:`Task` begins with the scene as it is at that moment, so nothing need be packed for it, and
+what the run does then does not change what the copy sees. It takes no steps and ends without any
+clean-up. Where the system gives no process the work is done at once instead. :func:`carryOut` is
+the pool: it runs programs beside each other. Both end when this process does.
+"""
+
+import contextlib
+import ctypes
+import math
+import os
+import pickle
+import signal
+import subprocess
+import sys
+import time
+import traceback
+from multiprocessing.connection import Pipe
+from typing import Any, Callable, Iterable
+
+from .errors import Interrupted, Refused
+
+LONGEST = 60.0  # [s] that is waited for at once
+LOOK_EVERY = 0.05  # [s] between looks at programs
+PARENT_ENDS = 1  # PR_SET_PDEATHSIG of prctl
+#: Name in the environment of a :class:`Program`: number of the open file that takes why it refuses
+#: its input.
+REFUSAL = "MASONRY_REFUSAL"
+_refusal = int(os.environ.pop(REFUSAL, -1))  # programs that it starts have their own
+
+
+class Failed(Exception):
+    """A task has failed; the text says why."""
+
+
+class Task:
+    """Work that goes on in a copy of this process. What it gives can be had from :meth:`result`,
+    one after the other.
+
+    :param work: a function without arguments whose result can be iterated, as a generator
+    :param parts: how many results it gives
+    """
+
+    def __init__(self, work: Callable[[], Iterable[Any]], parts: int = 1) -> None:
+        self._results: list[Any] = []
+        self._parts, self._process = parts, 0
+        sys.stdout.flush(), sys.stderr.flush()
+        old = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT, signal.SIGTERM})
+        try:
+            self._reads, writes = Pipe(duplex=False)
+            self._process = os.fork()
+            if not self._process:
+                _carryOut(work, parts, writes)
+            writes.close()
+        except OSError:  # no process or no file is to be had
+            pass
+        finally:
+            signal.pthread_sigmask(signal.SIG_SETMASK, old)
+        if not self._process:
+            self._results = [*work()]
+
+    def ready(self, part: int = 0, seconds: float = 0.0) -> bool:
+        """Whether a result is there, or will never be, within some time [s]."""
+        until = time.monotonic() + seconds
+        while len(self._results) <= part and self._process:
+            rest = max(0.0, until - time.monotonic())
+            if not self._reads.poll(min(rest, LONGEST)):
+                if rest > LONGEST:
+                    continue
+                return False
+            try:
+                self._results.append(self._reads.recv())
+            except (EOFError, OSError):
+                self.end()
+            if len(self._results) == self._parts:
+                self.end()
+        return True
+
+    def result(self, part: int = 0) -> Any:
+        """A result; it is waited for. Raises what the work raised, or Failed if its process has
+        ended without it."""
+        self.ready(part, math.inf)
+        results = self._results[: part + 1]
+        if results and isinstance(results[-1], BaseException):
+            raise results[-1]
+        if len(results) <= part:
+            raise Failed("its process has ended before its time")
+        return self._results[part]
+
+    def end(self) -> None:
+        """End the process, if it is there."""
+        process, self._process = self._process, 0
+        if process:
+            self._reads.close()
+            if len(self._results) < self._parts:
+                with contextlib.suppress(ProcessLookupError):
+                    os.kill(process, signal.SIGKILL)
+            with contextlib.suppress(ChildProcessError):
+                os.waitpid(process, 0)
+
+
+def _carryOut(work, parts, writes):
+    """Do the work in the copy of the process, which ends here."""
+    try:
+        os.setsid()  # Ctrl-C is for the run
+        _endWithParent(signal.SIGKILL)
+        for number in (signal.SIGINT, signal.SIGTERM):
+            signal.signal(number, signal.SIG_DFL)
+        signal.pthread_sigmask(signal.SIG_SETMASK, ())
+        try:
+            for _, value in zip(range(parts), work()):
+                writes.send(value)
+        except BaseException as error:
+            trace = traceback.format_exc()
+            try:
+                pickle.loads(pickle.dumps(error))
+            except Exception:  # a class that cannot be sent
+                error = Failed(traceback.format_exception_only(error)[-1].strip())
+            if not isinstance(error, Refused):
+                error.add_note(f"in a copy of the process:\n{trace}")
+            writes.send(error)
+    finally:
+        os._exit(0)
+
+
+def _endWithParent(number):
+    """Let this process get a signal when the one that started it ends, however that ends."""
+    with contextlib.suppress(AttributeError, OSError):
+        ctypes.CDLL(None).prctl(PARENT_ENDS, number, 0, 0, 0)
+
+
+class Program(subprocess.Popen[bytes]):
+    """A program, which is asked to stop (SIGTERM) when this process ends, also if that is killed.
+
+    It is in a session of its own: Ctrl-C is for this process, which ends it in order.
+
+    :param log: file that takes what it says
+    :raises OSError: if it cannot be started
+    """
+
+    def __init__(
+        self, command: list[str], log: Any, env: dict[str, str], cwd: str | None = None
+    ) -> None:
+        self._refusal = open(os.memfd_create("refusal"), "rb")
+        number = self._refusal.fileno()
+        super().__init__(
+            command,
+            env={**env, REFUSAL: str(number)},
+            cwd=cwd,
+            stdin=subprocess.DEVNULL,
+            stdout=log,
+            stderr=log,
+            start_new_session=True,
+            preexec_fn=lambda: _endWithParent(signal.SIGTERM),
+            pass_fds=[number],
+        )
+
+    def refusal(self) -> tuple[str, str]:
+        """The class and the text of what the program has refused; two empty texts if it has refused
+        nothing."""
+        self._refusal.seek(0)
+        kind, _, reason = self._refusal.read().decode().partition("\n")
+        return kind, reason
+
+
+def reportRefusal(refused: Refused) -> None:
+    """Let the process that has started this one as a :class:`Program` know what is refused."""
+    if _refusal >= 0:
+        with contextlib.suppress(OSError):  # a limit on the size of files
+            os.pwrite(_refusal, f"{type(refused).__name__}\n{refused}".encode(), 0)
+
+
+def carryOut(
+    names: Iterable[Any],
+    begin: Callable[[Any], Program],
+    ended: Callable[[Any, Program], None],
+    most: int,
+    look: Callable[[], None] = lambda: None,
+) -> None:
+    """Run programs, so many at a time. An error that a function raises stops all of them.
+
+    :param begin: function that starts the program of a name
+    :param ended: function of the name and the program, which is over
+    :param most: programs at a time
+    :param look: function that is called about twenty times a second
+    :raises Interrupted: after Ctrl-C and SIGTERM. All programs have ended then
+    """
+    due, running = [*names], {}
+    stopped: list[int] = []
+    handlers = {
+        n: signal.signal(n, lambda number, frame: stopped.append(number))
+        for n in (signal.SIGINT, signal.SIGTERM)
+    }
+    try:
+        while (due or running) and not stopped:
+            while due and len(running) < most:
+                name = due.pop(0)
+                running[name] = begin(name)
+            time.sleep(LOOK_EVERY)
+            for name, process in list(running.items()):
+                if process.poll() is not None:
+                    del running[name]
+                    ended(name, process)
+            look()
+        if stopped:
+            raise Interrupted()
+    finally:
+        for process in running.values():
+            with contextlib.suppress(ProcessLookupError):
+                process.terminate()
+        for process in running.values():
+            process.wait()
+        for number, handler in handlers.items():
+            signal.signal(number, handler)

@@ -1,0 +1,53 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""How a run can end before its time. Each of these errors ends it in order, and what was computed
+is kept."""
+
+
+class Refused(ValueError):
+    """Input that cannot be run, with all problems at once. Nothing was changed."""
+
+
+#: What is said of anything that cannot be done in a scene in a plane.
+IN_PLANE = "the scene is in the x-z plane; Scene(..., plane=False) is in space"
+
+
+def checkPlane(description, along, name):
+    """Refuse what has a part along y in a scene in the x-z plane. Raises ValueError."""
+    if description.plane and along[1]:
+        raise ValueError(f"{name}: {IN_PLANE}")
+
+
+def refuse(problems, begin="", between="\n"):
+    """Raise :class:`Refused` with all problems, if there are any."""
+    if problems:
+        raise Refused(begin + between.join(problems))
+
+
+class Held(Refused):
+    """Another run is writing to the folder of the results."""
+
+
+class NotResumed(Refused):
+    """A checkpoint from which this run cannot go on."""
+
+
+class NotAccurate(Refused):
+    """A scene that cannot have ``--accuracy``."""
+
+
+class Interrupted(Exception):
+    """The user pressed Ctrl-C, or the system sent SIGTERM."""
+
+
+class Unwritable(Exception):
+    """A file of the results cannot be written, for example since the disk is full."""
+
+
+class Collapsed(Exception):
+    """The structure has fallen, as the message says; the run ends in order."""
+
+
+def firstOf(problems, most=10):
+    """The first sentences of a list, and how many more there are."""
+    more = [f"and {len(problems) - most} more"] if len(problems) > most else []
+    return [*problems[:most], *more]

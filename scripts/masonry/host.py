@@ -1,0 +1,207 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Finds the YADE of this machine in plain Python, and starts it when it is first needed.
+
+The program ``yade`` puts the folder of YADE's modules on ``sys.path`` before it runs a script;
+``/usr/bin/python3`` does not. After ``import masonry`` this module does it instead, as soon as
+anything imports ``yade``: a scene, a module of this package, or the script itself. Nothing is
+imported before that, so what reads results stays as quick as without YADE.
+
+YADE then starts without ports, without a change of ``sys.argv``, with one thread unless
+``OMP_NUM_THREADS`` says another number, and without its lines on the terminal. The classes of the
+plugin are registered at once.
+"""
+
+import contextlib
+import glob
+import importlib
+import importlib.machinery
+import importlib.metadata
+import io
+import os
+import re
+import shutil
+import sys
+import sysconfig
+import types
+import warnings
+
+from .terminal import say
+
+YADE = "yade"
+SHELL = "IPython"
+#: The plugin, which is linked to YADE, and the room whose modules registering it needs.
+PLUGIN, ASSEMBLY = "masonry._masonry", "masonry.model."
+THREADS = "OMP_NUM_THREADS"
+#: What every build of YADE has in the folder of its modules.
+MARK = os.path.join(YADE, "__init__.py")
+GREETING = f"Using python version: {sys.version}"  # which YADE prints
+INSTALLED = "on Debian, apt-get install yade installs it"
+
+
+class Finder:
+    """The place of YADE among those of all modules. It stands before the other finders, whose
+    answers it takes first."""
+
+    def __init__(self, started):
+        self._started = started  # called when YADE has been imported
+
+    def find_spec(self, name, path=None, target=None):
+        """As of :class:`importlib.abc.MetaPathFinder`. Raises ModuleNotFoundError with a sentence
+        if there is no YADE."""
+        if name == YADE:
+            found = self._byOthers() or _installed()
+            found.loader = Loader(YADE, found.origin)
+            found.loader.started = self._started
+            return found
+        needs = name == PLUGIN or name.startswith(ASSEMBLY)
+        if needs and YADE not in sys.modules:
+            importlib.import_module(YADE)
+            if name in sys.modules:  # registering the plugin imported it
+                return importlib.machinery.ModuleSpec(name, Imported())
+        return None
+
+    def _byOthers(self):
+        """YADE as the other finders see it, by sys.path; a folder of this name that is not YADE is
+        passed over."""
+        for finder in sys.meta_path:
+            find = getattr(finder, "find_spec", None)
+            found = find(YADE, None) if find and finder is not self else None
+            if found and found.origin and found.loader:
+                return found
+        return None
+
+
+class Loader(importlib.machinery.SourceFileLoader):
+    """Imports YADE quietly, with one thread unless the user wants more."""
+
+    def exec_module(self, module):
+        """Run the module. Raises ImportError with a sentence if this Python lacks what YADE
+        needs."""
+        printed, asked = io.StringIO(), THREADS in os.environ
+        os.environ.setdefault(THREADS, "1")  # OpenMP reads it when it is loaded
+        quietly = contextlib.redirect_stdout(printed)
+        try:
+            with warnings.catch_warnings(), quietly, _withoutShell():
+                warnings.simplefilter("ignore", DeprecationWarning)
+                super().exec_module(module)
+        except ModuleNotFoundError as error:
+            if not error.name or error.name.split(".")[0] == YADE:
+                raise
+            path = interpreter()[0] or "/usr/bin/python3"
+            raise ImportError(
+                (
+                    f"YADE needs the Python module {error.name!r}, which {sys.executable} does not"
+                    f" find: run the script with {path}, or make the virtual environment with"
+                    f" {path} -m venv --system-site-packages"
+                ),
+                name=error.name,
+            ) from error
+        finally:
+            if not asked:
+                os.environ.pop(THREADS, None)
+            found = printed.getvalue().replace(GREETING, "").strip()
+            if found:
+                say(found)
+        # YADE puts the folder of its own modules before the standard library, where its config.py,
+        # log.py or plot.py would hide modules of these names: it comes last.
+        own = os.path.realpath(os.path.dirname(module.__file__))
+        sys.path.sort(key=lambda folder: os.path.realpath(folder or ".") == own)
+        self.started()
+
+
+@contextlib.contextmanager
+def _withoutShell():
+    """Let YADE find the version of IPython without importing it, which is all that it does with it
+    in plain Python, and takes a third of its start."""
+    standIn = types.ModuleType(SHELL)
+    with contextlib.suppress(importlib.metadata.PackageNotFoundError):
+        standIn.__version__ = importlib.metadata.version(SHELL)
+        sys.modules.setdefault(SHELL, standIn)
+    try:
+        yield  # without IPython YADE says what it misses
+    finally:
+        if sys.modules.get(SHELL) is standIn:
+            del sys.modules[SHELL]
+
+
+class Imported:
+    """The loader of a module that was imported while it was looked for."""
+
+    def create_module(self, spec):
+        self._spec = sys.modules[spec.name].__spec__
+        return sys.modules[spec.name]
+
+    def exec_module(self, module):
+        """Leave the module as it is."""
+        module.__spec__ = self._spec
+
+
+def folders():
+    """Folders in which YADE's modules can lie on this machine, the likeliest first.
+
+    They are those that the program ``yade`` adds to ``sys.path``, and those of a library folder of
+    Debian.
+    """
+    text = _program()
+    named = re.findall(r"^sys\.path\.insert\(\d+, *'([^']+)'\)", text, re.MULTILINE)
+    prefix = os.environ.get("YADE_PREFIX", "/usr")
+    libraries = os.path.join(prefix, "lib", sysconfig.get_config_var("MULTIARCH") or "")
+    # a build of another precision is of no use to the plugin
+    beside = [os.path.join(libraries, one, "py") for one in ("yade", "yade-double")]
+    others = glob.glob(os.path.join(glob.escape(prefix), "lib", "*", "yade-double", "py"))
+    return list(dict.fromkeys([*named, *beside, *sorted(others)]))
+
+
+def _program():
+    """The text of the program ``yade``, or an empty one."""
+    with contextlib.suppress(OSError, UnicodeDecodeError, TypeError):
+        with open(shutil.which(YADE), encoding="utf-8") as file:
+            return file.read(1 << 20)
+    return ""
+
+
+def interpreter():
+    """The interpreter that the installed YADE was built for, as its program names it, and its
+    version as a pair of numbers. Both are None if that cannot be known."""
+    found = re.match(r"#! *(/\S*python\S*)", _program())
+    if not found:
+        return None, None
+    whole = os.path.basename(os.path.realpath(found[1]))
+    version = re.fullmatch(r"python(\d+)\.(\d+)", whole)
+    return found[1], tuple(map(int, version.groups())) if version else None
+
+
+def _installed():
+    """The spec of the YADE that is installed. Raises ImportError if there is none, or if it is of
+    another Python."""
+    path, version = interpreter()
+    if version and version != sys.version_info[:2]:
+        raise ImportError(
+            (
+                f"the YADE of this machine is built for Python {version[0]}.{version[1]}, and this"
+                f" is {sys.executable}, Python {sys.version_info[0]}.{sys.version_info[1]}: run the"
+                f" script with {path}"
+            ),
+            name=YADE,
+        )
+    places = folders()
+    for folder in places:
+        if os.path.isfile(os.path.join(folder, MARK)):
+            sys.path.append(folder)
+            return importlib.machinery.PathFinder.find_spec(YADE, [folder])
+    raise ModuleNotFoundError(
+        (
+            f"masonry runs in YADE, which is not installed: {INSTALLED} (looked for {MARK} in"
+            f" {', '.join(places)})"
+        ),
+        name=YADE,
+    )
+
+
+def install(started):
+    """Let YADE be found.
+
+    :param started: function without arguments, called each time that YADE has been imported
+    """
+    if not any(isinstance(finder, Finder) for finder in sys.meta_path):
+        sys.meta_path.insert(0, Finder(started))

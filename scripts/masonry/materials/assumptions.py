@@ -1,0 +1,164 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""What of a masonry was assumed because it was not given, and what cannot be assumed.
+
+A MasonryJoint and a MasonryMat note themselves which of their properties nobody has given
+(``assumed``): what is given when an object is made, set as an attribute or with ``set`` or
+``updateAttrs`` later, counts as given. ``brittleCoulomb`` and :func:`copied` keep the note. An
+object that YADE has loaded from a file has none: everything counts as given.
+"""
+
+from typing import Annotated, Any
+
+from yade.wrapper import MasonryJoint, MasonryMat
+
+from ..arguments import isA, listOf, validated
+from ..model.bodies import properties
+from ..model.engines import LAWS
+
+#: Descriptions of the properties by class and name.
+DESCRIBED = {cls: {p["name"]: p for p in properties(cls)} for cls in (MasonryJoint, MasonryMat)}
+
+#: Where the default of a property is from, by class and name; the paper is that of
+#: yade_plugin/law/README.md.
+DEFAULTS = {cls: cls().assumed() for cls in DESCRIBED}
+
+#: Properties without a default that fits any masonry.
+NEEDED = {
+    MasonryMat: ["density"],
+    MasonryJoint: ["tensileStrength", "cohesion", "friction", "compressiveStrength"],
+}
+
+#: Source of every property of a joint ``support`` that takes the bed joint.
+AS_BED = "as of the bed joint"
+
+#: What an entry of ``assumed`` says of such a joint.
+SUPPORT = (
+    "no joint 'support' was given: joints to platens take the bed joint, with its strength and"
+    " friction"
+)
+
+#: Properties that have no effect without the cap.
+OF_CAP = """
+    compressiveStrength elasticLimitRatio residualStrengthRatio peakRatio compressiveFractureEnergy
+    capNormal capShear capLinear compressionStiffnessLoss bondLossByCrushing
+""".split()
+
+#: Properties that have no effect while another one is zero.
+OF_STRENGTH = {
+    "modeIFractureEnergy": "tensileStrength",
+    "modeIIFractureEnergy": "cohesion",
+    "residualCohesion": "cohesion",
+    "residualFriction": "friction",
+    "dilatancyDecay": "dilatancy",
+}
+
+#: Properties in whose place a table may stand.
+TABLES = {"modeIFractureEnergy": "tensionTable", "modeIIFractureEnergy": "shearTable"}
+
+
+def state(thing: Any, **sources: str) -> Any:
+    """Note of an object that these properties are assumed, with the source of each, and that all
+    others are given. Returns the object."""
+    thing.assume(sources)
+    return thing
+
+
+def copied(thing: Any) -> Any:
+    """Another material or joint with the same attributes and the same note."""
+    made = type(thing)(**{k: v for k, v in thing.dict().items() if k != "id"})
+    return state(made, **thing.assumed())
+
+
+def isDefault(thing: Any, name: str) -> bool:
+    """Whether a property has the default of its class because nobody has given it."""
+    return thing.assumed().get(name) == DEFAULTS[type(thing)][name]
+
+
+def acts(joint: Any, name: str) -> bool:
+    """Whether a number among the properties of a joint has an effect on it."""
+    if name in ("normalStiffness", "shearStiffness"):
+        return True
+    number = isinstance(getattr(joint, name), float)
+    if joint.elastic or not number or name not in LAWS[joint.law]["properties"]:
+        return False
+    if name in OF_CAP:
+        return joint.cap
+    if name in TABLES and getattr(joint, TABLES[name]):
+        return False
+    return name not in OF_STRENGTH or getattr(joint, OF_STRENGTH[name]) > 0
+
+
+def _things(masonry):
+    yield from masonry.joints.items()
+    yield "unit", masonry.unit
+    yield from masonry.units.items()
+
+
+def entriesOf(masonry: Any) -> list[dict[str, Any]]:
+    """The entry ``assumed`` of run.json: a list of dicts with ``name``, as
+    ``bed.residualFriction``, ``value``, ``unit`` and ``source``. Properties without an effect are
+    left out."""
+    found = []
+    for name, thing in _things(masonry):
+        sources = thing.assumed()
+        if AS_BED in sources.values():
+            found.append({"name": name, "value": "bed", "unit": "", "source": SUPPORT})
+        for one, p in DESCRIBED[type(thing)].items():
+            source, value = sources.get(one, AS_BED), getattr(thing, one)
+            if source == AS_BED or isinstance(value, str):
+                continue
+            switched = isinstance(value, bool) and not isDefault(thing, one)
+            if switched or not isinstance(thing, MasonryJoint) or acts(thing, one):
+                entry = {"name": f"{name}.{one}", "value": value, "unit": p["unit"]}
+                found.append({**entry, "source": source})
+    return found
+
+
+def missing(masonry: Any) -> list[str]:
+    """Sentences on properties that must be given, and are not."""
+    problems = []
+    for name, thing in _things(masonry):
+        kind, joint = type(thing), isinstance(thing, MasonryJoint)
+        lacks = [n for n in NEEDED[kind] if isDefault(thing, n) and (not joint or acts(thing, n))]
+        if not lacks:
+            continue
+        what = f"{'joint' if joint else 'unit'} {name!r}"
+        names = ", ".join(f"{n} [{DESCRIBED[kind][n]['unit']}]" for n in lacks)
+        hint = (
+            "; elastic=True makes a joint that never gives way, cap=False one that does not crush"
+        )
+        problems.append(
+            f"masonry: {what}: {names} must be given, since no value fits any masonry"
+            + hint * joint
+        )
+    return problems
+
+
+@validated
+def linesOf(
+    entries: Annotated[list[dict[str, Any]], listOf(isA(dict), 0)], brief: bool
+) -> list[str]:
+    """What a scene prints of its entries ``assumed``: lines of text.
+
+    :param brief: whether their number is enough
+    """
+    if not entries:
+        return []
+    if brief:
+        return [
+            f"note: {len(entries)} properties of the materials are assumed; run.json lists them"
+            " (assumed)"
+        ]
+    kinds = {}
+    for entry in entries:
+        kind, _, what = entry["name"].rpartition(".")
+        if kind:
+            value, unit = entry["value"], entry["unit"].strip("-")
+            text = f"{value:.4g}" if isinstance(value, float) else str(value)
+            what = f"{what} {text} {unit}".rstrip()
+        kinds.setdefault((what, entry["source"]), []).append(kind)
+    lines = ["assumed, because it was not given (run.json: assumed):"]
+    for (what, source), joints in kinds.items():
+        of = f"{', '.join(joints)}: " if joints != [""] else ""
+        lines.append(f"  {of}{what}  ({source})")
+    return lines

@@ -1,0 +1,25 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Names of loads, under which their bounds and the factors that were held are kept."""
+
+
+def nameInDomain(target, direction, normal):
+    """The name of a push that is one of an N-V domain."""
+    return f"{nameOfPush(target, direction)} under {normal:g} kN"
+
+
+def nameOfPush(target, direction):
+    """The name of a push."""
+    return f"{target.name} along {nameOf(direction)}"
+
+
+def nameOfLean(towards, tilts=False):
+    """The name of an acceleration or a tilt."""
+    return f"{'tilt' if tilts else 'acceleration'} towards {nameOf(towards)}"
+
+
+def nameOf(direction):
+    """A direction as text."""
+    for axis, value in zip("xyz", direction):
+        if abs(value) > 1 - 1e-9:
+            return ("-" if value < 0 else "") + axis
+    return "(" + ", ".join(f"{v:.3g}" for v in direction) + ")"

@@ -1,0 +1,389 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The loads of a structure: what is driven, alone or with others in a fixed proportion, pressed and
+blown at, and whose displacement is followed."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from yade import O, Vector3
+from yade.wrapper import MasonryLoad
+
+from .._masonry import loadScene, saveScene
+from ..errors import checkPlane
+
+PATTERN = "_drive"  # label of the drive of a push in a pattern: that of no target
+
+
+def smooth(x):
+    """The share of a load that has grown when a share of the time in which it grows is over [-]."""
+    return x * x * (3 - 2 * x)
+
+
+class Loading:
+    """Loads and drives of a structure, from its description and from stages.
+
+    - ``loads``: MasonryLoad engines by label, in the order in which they act; ``push``: the one
+      that drives the pushed target, or None
+    - ``target``: what is pushed; from the beginning the target that a drive holds
+    - ``followed``: whose displacement is recorded along the load, or None; ``direction`` of the
+      present push or load, and ``origin``: that displacement when it began, along it and up, and
+      that of the bricks at the followed platen along it [m]
+    - ``pushing``: whether the present load is a push
+    - ``grown``: whether presses, dead loads and wind have their whole
+    - ``loadFactor`` of the load that a stage puts on or lets grow [-]
+    - ``goal``: point of a history that the drive is going to: its number, from 1, and its
+      displacement [mm]
+    """
+
+    def __init__(self, structure):
+        self.structure, self.description = structure, structure.description
+        self.ids = structure.ids
+        self.loads = {load.label: load for load in self._made()}
+        targets = self.description.targets.values()
+        self.target = next((target for target in targets if target.drives), None)
+        self.followed = self.target
+        self.push = self.target and self.driveOf(self.target, self.target.drives[0])
+        self.direction, self.origin = Vector3.UnitX, (0.0, 0.0, 0.0)
+        self.pushing = self.grown = False
+        self.loadFactor = 0.0
+        self.goal = 0, 0.0
+        # forces of presses, dead loads and wind that have grown, by label [N]
+        self._grown = {}
+        self._lines = {}  # points of the presses, as they were built [m]
+
+    def _made(self):
+        """A dead load for every target that has one, and a drive for every one that can be
+        pushed."""
+        for target in self.description.targets.values():
+            if not target.loaded:
+                continue
+            on = _on(target)
+            if target.pressed is not None or target.force is not None:
+                yield MasonryLoad(label=f"{target.name}_force", **on)
+            for axis in target.drives:
+                on["direction"] = Vector3(*(float(axis == a) for a in "xyz"))
+                label = f"{target.name}_drive_{axis}"
+                yield MasonryLoad(label=label, driven=True, **on)
+            if not target.drives:
+                yield MasonryLoad(label=f"{target.name}_drive", **on)
+        for n, (brick, _, point) in enumerate(self.description.winds):
+            on = dict(body=self.ids[brick], point=point)
+            yield MasonryLoad(label=f"wind_{n}", damped=True, **on)
+
+    def begin(self):
+        """Find what presses, dead loads and wind are when they have grown, when all joints are
+        there."""
+        self.supports = self.structure.supports
+        for target in self.description.targets.values():
+            if target.pressed is None and target.force is None:
+                continue
+            label, force = f"{target.name}_force", Vector3(*(target.force or (0, 0, 0)))
+            if target.pressed is not None:
+                load, own = self.loads[label], self.supports.weightOf(target)
+                force -= (target.pressed * self._centre(load, target) - own) * Vector3.UnitZ
+                self._lines[target.name] = Vector3(*load.point)
+            self._grown[label] = force
+        for n, (_, force, _) in enumerate(self.description.winds):
+            self._grown[f"wind_{n}"] = Vector3(*force)
+
+    def _centre(self, load, target):
+        """Let a resultant go through the middle of what a platen presses. Returns the area of that
+        [m²]."""
+        area, middle = self.supports.contactOf(target)
+        load.point = (middle[0], middle[1], target.point[2])
+        return area
+
+    def grow(self, x):
+        """Let presses and dead loads grow smoothly: 0 to 1 is from nothing to their whole."""
+        self.grown = x == 1
+        for label, force in self._grown.items():
+            self.loads[label].force = force * smooth(x)
+        self.structure.connectors.grow(smooth(x))
+
+    def deadLoads(self):
+        """Loads, each with its force, or that which it will have when presses, dead loads and wind
+        have grown: pairs of MasonryLoad and force [N]."""
+        for label, load in self.loads.items():
+            grown = load.force if self.grown else self._grown.get(label, load.force)
+            yield load, grown
+
+    def forceOf(self, target):
+        """The engine of the dead load on a target; it is made if it is missing."""
+        return self._loadsOf({f"{target.name}_force": _on(target)})[0]
+
+    def pressOf(self, target):
+        """The engine of a press, and the area of what the platen presses [m²]."""
+        known = f"{target.name}_force" in self.loads
+        load = self.forceOf(target)
+        return load, self.supports.contactOf(target)[0] if known else self._centre(load, target)
+
+    def onBricks(self, label, places):
+        """The engines of forces at pairs of the number of a brick and a point [m], by how their
+        labels begin; they are made if they are missing."""
+        made = {
+            f"{label}_{n}": dict(body=self.ids[brick], point=point, damped=True)
+            for n, (brick, point) in enumerate(places)
+        }
+        return self._loadsOf(made)
+
+    def patternDrive(self):
+        """The engine of a push in a pattern; it is made if it is missing."""
+        on = dict(body=self.ids[0], point=(0, 0, 0), damped=False)
+        return self._loadsOf({PATTERN: on})[0]
+
+    def _loadsOf(self, made):
+        """Loads by their labels; those that are missing get their attributes and are made all at
+        once, before the engine of the energy balance."""
+        new = {n: MasonryLoad(label=n, **of) for n, of in made.items() if n not in self.loads}
+        if new:
+            before = list(O.engines)
+            at = next(n for n, one in enumerate(before) if one.label == "energy")
+            engines = [*before[:at], *new.values(), *before[at:]]
+            # the state at rest gets the engines, too
+            if self.structure.atRest is not None:
+                now = saveScene("null")
+                loadScene(self.structure.atRest)
+                O.engines = engines
+                self.structure.atRest = saveScene("null")
+                O.engines = before
+                loadScene(now)
+            O.engines = engines
+            self.loads.update(new)
+        return [self.loads[label] for label in made]
+
+    def isDriven(self, target, axis):
+        """Whether a drive holds or moves a target along an axis."""
+        return any(isAlong(load, axis, target.body) for load in self.loads.values())
+
+    def driveOf(self, target, axis):
+        """The load that drives a target along an axis, or None."""
+        return self.loads.get(f"{target.name}_drive_{axis}")
+
+    def pushOf(self, target, axis):
+        """The drive that a push made, if it holds a target along an axis, alone or with others,
+        else None."""
+        made = map(self.loads.get, (f"{target.name}_drive", PATTERN))
+        return next((load for load in made if load and isAlong(load, axis, target.body)), None)
+
+    def stopDrives(self):
+        """Let drives hold what they have moved. Returns them."""
+        drives = [load for label, load in self.loads.items() if "_drive" in label]
+        for load in drives:
+            load.velocity = load.ramp = 0
+        return drives
+
+    def driveForce(self, target, axis):
+        """Force of the drive of a target along an axis [N], as a vector."""
+        return reactionOf(self.driveOf(target, axis))
+
+    def follow(self, target, direction, origin=None):
+        """From now on record the displacement of a target, or None, along a direction, from an
+        origin [m]; None: where it is now. Returns that."""
+        self.followed, self.direction, self.pushing = target, direction, False
+        self.origin = origin or (0, 0, 0)
+        if target and origin is None:
+            self.origin = self.topDisplacement()
+        return list(self.origin)
+
+    def topDisplacement(self):
+        """Displacement since the scene was built [m] of the followed point, along the push or load
+        and upwards, and of the bricks at the followed platen along it."""
+        moved = self.supports.moved(self.followed)[0]
+        masonry = self.supports.masonryMoved(self.followed, self.direction)
+        return moved.dot(self.direction), moved[2], masonry
+
+    def masonryAlong(self):
+        """Displacement of the bricks at the followed platen along the push or load since that began
+        [m]; 0 if none is followed."""
+        return self.topDisplacement()[2] - self.origin[2] if self.followed else 0.0
+
+    def alongNow(self):
+        """The same of the followed point."""
+        return self.topDisplacement()[0] - self.origin[0] if self.followed else 0.0
+
+    def hasSunk(self, down=None):
+        """Whether the pushed platen has come down by half the height of a brick; ``down``: how far,
+        if that is known [m]."""
+        down = -self.supports.moved(self.target)[0][2] if down is None else down
+        block = self.description.bricks[-1].corners
+        return down > 0.5 * (max(p[2] for p in block) - min(p[2] for p in block))
+
+    def keepLoadLine(self):
+        """Move the points of vertical loads that keep their line in space back to it."""
+        for target in self.description.targets.values():
+            if target.pressed is None or target.riding:
+                continue
+            load = self.loads[f"{target.name}_force"]
+            drive = self.push if target is self.target else load
+            along = (load if drive.others else drive).displacement()
+            away = (along[0], 0 if self.description.plane else along[1], 0)
+            load.point = self._lines[target.name] - Vector3(*away)
+
+    def besideThePush(self):
+        """What acts on the structure beside a push: weights, dead loads, and other drives [N].
+        Nothing if none is pushed."""
+        if not self.pushing:
+            return Vector3.Zero
+        beside = self.supports.applied()
+        for load in self.loads.values():
+            if load.driven and load is not self.push:
+                beside += reactionOf(load)
+        return beside
+
+    # -- what a checkpoint keeps beside the state in YADE ------------------------------------------
+
+    def state(self):
+        """What stages have set: a dict of values that JSON can hold."""
+        return {
+            "target": self.target.name if self.target else "",
+            "followed": self.followed.name if self.followed else "",
+            "push": self.push.label if self.push else "",
+            "direction": list(self.direction),
+            "pushing": self.pushing,
+            "grown": self.grown,
+            "origin": list(self.origin),
+            "goal": list(self.goal),
+            "loadFactor": self.loadFactor,
+        }
+
+    def putState(self, state):
+        """Give it a state of :meth:`state`. Raises KeyError if it names a target or a load that is
+        not there."""
+        targets = {"": None, **self.description.targets}
+        self.target, self.followed = targets[state["target"]], targets[state["followed"]]
+        self.push = {"": None, **self.loads}[state["push"]]
+        self.direction, self.origin = Vector3(*state["direction"]), tuple(state["origin"])
+        self.pushing, self.grown = state["pushing"], state["grown"]
+        self.goal, self.loadFactor = tuple(state["goal"]), state["loadFactor"]
+
+
+def _on(target):
+    """Where a load on a target acts. A brick keeps its numerical damping until it is driven."""
+    return dict(body=target.body, point=target.point, damped=target.brick is not None)
+
+
+# -- drives of pushes ------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Pattern:
+    """Blocks that a push moves with forces in a fixed proportion; what a push moves in place of a
+    target.
+
+    :param name: in bounds and messages
+    :param parts: of each block its body, the point on which its force acts in the structure as
+        built [m], and its share of the whole force [-]
+    :param damped: whether the blocks keep their numerical damping. Where all blocks are driven
+        nothing else would be damped
+    """
+
+    name: str
+    parts: tuple[tuple[int, Any, float], ...]
+    damped: bool = False
+
+
+def pushTo(loading, pushed, control, direction, name="push"):
+    """From now on ``push`` moves a target, or all of a :class:`Pattern`, in a direction, and the
+    displacement of a control is recorded. The other drives hold what they hold."""
+    checkPlane(loading.description, direction, name)
+    for body, *_ in pushed.parts:
+        blocked = O.bodies[body].state.blockedDOFs
+        if not any(v and a not in blocked for a, v in zip("xyz", direction)):
+            raise ValueError(
+                f"{name}: {pushed.name} is held along {tuple(direction)}, and cannot be pushed"
+                " there"
+            )
+    drive = _drivePattern if isinstance(pushed, Pattern) else _driveOf
+    load = drive(loading, pushed, direction, name)
+    loading.stopDrives()
+    load.direction, load.driven = direction, True
+    loading.target, loading.direction, loading.push = control, direction, load
+    loading.followed, loading.origin, loading.pushing = control, (0, 0, 0), True
+
+
+def _driveOf(loading, target, direction, name):
+    """The drive that pushes a target. Raises ValueError."""
+    load = loading.loads.get(f"{target.name}_drive")
+    pattern = loading.loads.get(PATTERN)
+    if pattern and pattern.driven and target.body in bodiesOf(pattern):
+        _refuseHeld(name, target, pattern)
+    if target.drives:
+        along = [a for a, v in zip("xyz", direction) if abs(v) > 1 - 1e-12]
+        load = loading.driveOf(target, along[0]) if along else None
+        if load is None:
+            raise ValueError(
+                f"{name}: {target.name} has drives along {', '.join(target.drives)} alone, not"
+                f" along {tuple(direction)}"
+            )
+    elif load.driven and load.direction.cross(direction).norm() > 1e-12:
+        raise ValueError(
+            f"{name}: the drive of {target.name} holds it along {tuple(load.direction)}, and would"
+            f" let go of it to push along {tuple(direction)}; drive='xz' and the like give it a"
+            " drive for every axis"
+        )
+    load.damped = False
+    return load
+
+
+def _drivePattern(loading, pattern, direction, name):
+    """The drive that pushes in a pattern. Raises ValueError."""
+    bodies, points, shares = zip(*pattern.parts)
+    for other in loading.loads.values():
+        if other.driven and set(bodies) & set(bodiesOf(other)):
+            same = bodiesOf(other) == bodies and np.allclose(other.shares or (1,), shares)
+            if not same or other.direction.cross(direction).norm() > 1e-12:
+                _refuseHeld(name, pattern, other)
+    load = loading.patternDrive()
+    load.updateAttrs(
+        dict(
+            body=bodies[0],
+            point=points[0],
+            others=bodies[1:],
+            otherPoints=points[1:],
+            shares=shares if bodies[1:] else (),
+            damped=pattern.damped,
+        )
+    )
+    return load
+
+
+def _refuseHeld(name, pushed, drive):
+    """Refuse to push what another drive holds. Raises ValueError."""
+    raise ValueError(
+        f"{name}: a drive holds {pushed.name} or some of it along {tuple(drive.direction)} already;"
+        " release() lets it go"
+    )
+
+
+def patternOfDrive(loading, name):
+    """The pattern that the drive of a push has, by its name."""
+    load = loading.patternDrive()
+    points, shares = (load.point, *load.otherPoints), load.shares or (1.0,)
+    return Pattern(name, tuple(zip(bodiesOf(load), points, shares)), load.damped)
+
+
+def bodiesOf(load):
+    """The bodies that a MasonryLoad loads."""
+    return load.body, *load.others
+
+
+def isAlong(load, axis, body):
+    """Whether a MasonryLoad is a drive that holds or moves a body along an axis, also across its
+    direction."""
+    along = axis in "xyz" and abs(load.direction["xyz".index(axis)]) > 1e-12
+    return load.driven and along and body in bodiesOf(load)
+
+
+def reactionOf(load):
+    """Force of the drive of a MasonryLoad [N]."""
+    return load.reaction * load.direction.normalized()
+
+
+def forceOn(load, body):
+    """Force of a MasonryLoad and its drive on a body [N]."""
+    if body not in bodiesOf(load):
+        return Vector3.Zero
+    share = load.shares[bodiesOf(load).index(body)] if load.others else 1.0
+    force = load.force if body == load.body else Vector3.Zero
+    return force + share * load.reaction * load.direction.normalized()

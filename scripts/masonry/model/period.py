@@ -1,0 +1,161 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The first period of a structure along a direction, and whether it buckles, measured on its
+present state.
+
+A uniform acceleration that begins at once and stays sets an elastic structure swinging about the
+place to which it moves. Of its modes n, with the angular frequencies ω_n and the shares c_n of the
+mass, the momentum is then proportional to Σ c_n/ω_n sin(ω_n t). The first mode has nearly all of
+that, and in a bar in shear between two ends that are held the others pass through zero at the same
+moment. So half a period is over when the momentum is first back at zero. It is the integral over
+time of all forces on what can move, so it is the same for rigid and deformable blocks, walls and
+arches.
+
+Near the load at which a structure buckles, the stiffness against a push sideways vanishes. The
+momentum does not come back to zero then: beyond that load it grows faster than that of a body that
+nothing holds, which is the force times the time.
+
+A structure that is said to be at rest still moves a little. So it is done to both sides, and the
+difference counts.
+"""
+
+import math
+
+from yade import O
+
+from .._masonry import loadScene, saveScene
+from ..units import GRAVITY
+
+SHARE = 0.05  # of gravity: the acceleration that acts in the measurement
+SAMPLE = 2e-5  # [s] between two readings of the forces, at true masses
+FEWEST = 10  # readings in half a period, else it is too short to be found within half a per cent
+#: How far the first side goes, over its own half period, so that the difference of both sides has
+#: its zero [-].
+BEYOND = 1.1, 2.0
+#: Of the search for buckling: acceleration over gravity [-], time between two readings, and that
+#: after which a push that has not come back counts as one that grows [s]; how many readings are
+#: looked at first; and how much faster than a body that nothing holds a structure moves that
+#: buckles [-].
+SMALL, LOOK, LONGEST, FIRST_LOOKS, FASTER = 1e-6, 5e-4, 5.0, 32, 1.1
+
+
+def firstPeriod(structure, direction, longest):
+    """The first period of a structure at rest along a direction [s], or None if none is found.
+
+    What drives hold stays where it is, and nothing is damped. Afterwards the scene is as before, to
+    the last bit. It takes the steps of a period or some more.
+
+    :param direction: unit vector
+    :param longest: the longest period that is looked for [s]
+    """
+    before = saveScene("null")
+    every = max(1, int(SAMPLE * structure.args.density_scaling**0.5 / O.dt))
+    most = int(0.5 * longest / (every * O.dt))
+    if most < FEWEST:
+        return None
+    try:
+        for beyond in BEYOND:
+            there, back, end = [], [], beyond * most
+            for momentum in _momenta(structure, direction, SHARE, every):
+                there.append(momentum)
+                if momentum <= 0:
+                    end = min(end, beyond * len(there))
+                if not math.isfinite(momentum) or len(there) >= end:
+                    break
+            loadScene(before)
+            for momentum in _momenta(structure, direction, -SHARE, every):
+                back.append(there[len(back)] - momentum)
+                if not back[-1] > 0 or len(back) >= min(most, len(there)):
+                    break
+            loadScene(before)
+            if back[-1] <= 0 or len(back) >= most:
+                break
+    except RuntimeError:  # it falls
+        return None
+    finally:
+        loadScene(before)
+    n = len(back) - 1
+    if not back[n] <= 0 or n < FEWEST:
+        return None
+    # The first velocity is that after a whole step, as if the acceleration had begun half a step
+    # before, and the sum of the forces begins at the first of them, half a step after that velocity
+    # would have been zero.
+    return 2 * O.dt * (1 + every * (n + back[n - 1] / (back[n - 1] - back[n])))
+
+
+def firstMode(structure, direction, longest):
+    """Displacements of all bodies along a direction in the first mode of a structure at rest, by
+    YADE's ids, the largest amount 1; None if no first period is found. Afterwards the scene is as
+    before.
+
+    They are those after half the first period under a uniform acceleration, of both sides. There
+    the first mode has its largest displacement, and all others have less than by the square of
+    their periods. Parameters as in :func:`firstPeriod`.
+    """
+    period = firstPeriod(structure, direction, longest)
+    if period is None:
+        return None
+    before, sides = saveScene("null"), []
+    steps = round(0.5 * period / O.dt)
+    try:
+        for share in (SHARE, -SHARE):
+            next(_momenta(structure, direction, share, steps))
+            sides.append([body.state.pos.dot(direction) for body in O.bodies])
+            loadScene(before)
+    finally:
+        loadScene(before)
+    shape = [there - back for there, back in zip(*sides)]
+    largest = max(map(abs, shape))
+    return [one / largest for one in shape]
+
+
+def buckles(structure, direction):
+    """Whether a small push along a direction grows, or does not come back within :data:`LONGEST`,
+    or within the longest period on springs if that is longer. Afterwards the scene is as before, to
+    the last bit. It takes the steps of some periods.
+
+    Seen are modes in which the structure moves to one side; the push is so small that no joint
+    notices it.
+    """
+    before = saveScene("null")
+    scaling = structure.args.density_scaling**0.5
+    every = max(1, round(LOOK * scaling / O.dt))
+    longest = max(LONGEST * scaling, structure.supports.slowest())
+    looks, most = FIRST_LOOKS, longest / (every * O.dt)
+    try:
+        while True:
+            sides = []
+            for share in (SMALL, -SMALL):
+                momenta = _momenta(structure, direction, share, every)
+                sides.append([next(momenta) for _ in range(looks)])
+                loadScene(before)
+            momentum = [there - back for there, back in zip(*sides)]
+            if min(momentum) <= 0:
+                return False
+            free = looks * momentum[0]  # of a body that nothing holds
+            if not momentum[-1] <= FASTER * free or looks >= most:
+                return True
+            looks *= 4
+    except RuntimeError:  # it falls
+        return True
+    finally:
+        loadScene(before)
+
+
+def _momenta(structure, direction, share, every):
+    """The momentum of a structure along a direction [N·s] after each ``every`` steps under a share
+    of gravity [-] along it."""
+    acceleration = share * GRAVITY / structure.args.density_scaling * direction
+    structure.scheme.damp(0.0, "local")
+    supports = structure.supports
+    force = lambda: (supports.applied() + supports.carried()).dot(direction)
+    rest, now = force(), structure.scheme.now
+    structure.scheme.setGravity(now + acceleration)
+    O.step()
+    before, momentum = force() - rest, 0.0
+    while True:
+        for _ in range(every):
+            O.step()
+        after = force() - rest
+        momentum += 0.5 * (before + after) * every * O.dt
+        before = after
+        yield momentum

@@ -1,0 +1,236 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""What holds a structure, and what its platens and held bricks feel: forces, displacements, and
+whether it is at rest."""
+
+import math
+
+from yade import O, Vector3
+
+from ..units import GRAVITY
+from .loading import forceOn, reactionOf
+from .motion import FALLEN
+
+#: Share of all loads above which the horizontal ones must be carried on their own at rest [-].
+HORIZONTAL = 1e-3
+LOST = (
+    0.5  # of its height [-]: a structure that would swing by more under its loads is not waited for
+)
+FILLED = 1e-9  # of a platen's side: what may be free of bricks if it is said to be full
+
+
+class _Point:
+    """A point of a body, at ``arm`` from its centre as it was built, and how far it has moved since
+    [m]."""
+
+    def __init__(self, body, at):
+        self.state = O.bodies[body].state
+        self.upright = self.state.refOri.conjugate()
+        self.arm = Vector3(*at) - self.state.refPos
+        self._own = self.upright * self.arm
+
+    def moved(self):
+        state = self.state
+        return state.pos + state.ori * self._own - state.refPos - self.arm
+
+
+class Supports:
+    """Platens, and bricks that are held, loaded or watched, of a structure that is built.
+
+    - ``held``: targets of which a direction is held
+    - ``freeMass``: of all other blocks [kg]
+    """
+
+    def __init__(self, structure):
+        self.structure, self.description = structure, structure.description
+        targets = self.description.targets.values()
+        self.held = [target for target in targets if target.freedom]
+        zones = structure.zones
+        self._deformable = set(zones.bodies) if zones else set()
+        # Rows are read at every few steps: what does not change is kept.
+        self._points = {t.name: _Point(t.body, t.recorded) for t in targets}
+        self._faces = {t.name: [*self._faceOf(t)] for t in targets if t.box and not t.fixed}
+        held = {target.body for target in self.held}
+        self.freeMass = sum(b.state.mass for b in O.bodies if b.id not in held)
+
+    def _jointsOf(self, target):
+        return [i for i in self.structure.interactions if target.body in (i.id1, i.id2)]
+
+    def _faceOf(self, target):
+        """The middles of a platen's joints, as points of the bricks there, each with its share of
+        the platen's area. Of a deformable brick its own middle stands for that."""
+        joints = self._jointsOf(target)
+        whole = sum(sum(one.geom.areas) for one in joints)
+        for one in joints:
+            brick = one.id2 if one.id1 == target.body else one.id1
+            areas, area = one.geom.areas, sum(one.geom.areas)
+            middle = sum((a * c for a, c in zip(areas, one.geom.centres)), Vector3.Zero) / area
+            middle = O.bodies[brick].state.refPos if brick in self._deformable else middle
+            yield area / whole, _Point(brick, middle)
+
+    def holdAlso(self, target, axes):
+        """Count a target as one that is held along more axes."""
+        if target not in self.held:
+            self.held.append(target)
+            self.freeMass -= O.bodies[target.body].state.mass
+        held = {*(target.freedom or ""), *axes}
+        target.freedom = "".join(a for a in "xyzXYZ" if a in held)
+
+    def forceOn(self, target):
+        """Force of the structure on a target [N]."""
+        return O.forces.f(target.body, True)
+
+    def supportedBy(self, target):
+        """Force of the structure on a target along the axes that are held now, 0 along the others
+        [N]."""
+        force, blocked = self.forceOn(target), O.bodies[target.body].state.blockedDOFs
+        return Vector3(*(f if a in blocked else 0.0 for a, f in zip("xyz", force)))
+
+    def forceFrom(self, target):
+        """Force of what loads, drives and holds a target on it [N]."""
+        return self._loadsOn(target) - self.supportedBy(target)
+
+    def _loadsOn(self, target):
+        """Force of what loads and drives a target on it [N]."""
+        loads = self.structure.loading.loads.values()
+        return sum((forceOn(load, target.body) for load in loads), Vector3.Zero)
+
+    def jointsOn(self, target):
+        """Force of the joints of a target on it [N]."""
+        return self.forceOn(target) - self._loadsOn(target)
+
+    def moved(self, target):
+        """Displacement of a target's recorded point since the scene was built [m], and its
+        rotation, about y in a plane, else its angle [rad]."""
+        point = self._points[target.name]
+        axis, angle = (point.state.ori * point.upright).toAxisAngle()
+        return point.moved(), angle * axis[1] if self.description.plane else angle
+
+    def masonryMoved(self, target, direction):
+        """Displacement of the bricks at a platen along a direction since the scene was built [m];
+        of a brick, that of its point."""
+        face = self._faces.get(target.name)
+        if not face:
+            return self.moved(target)[0].dot(direction)
+        return sum(share * point.moved().dot(direction) for share, point in face)
+
+    def driftHeight(self, target):
+        """Height of the points of which :meth:`masonryMoved` is [m]."""
+        face = self._faces.get(target.name)
+        if not face:
+            return target.recorded[2]
+        return sum(share * (p.state.refPos[2] + p.arm[2]) for share, p in face)
+
+    def applied(self):
+        """Sum of the weights of what is free to follow them, and of the loads without drives
+        [N]."""
+        gravity = self.structure.scheme.now
+        applied = self.freeMass * gravity
+        for target in self.held:
+            state = O.bodies[target.body].state
+            for i, axis in enumerate("xyz"):
+                if axis not in state.blockedDOFs:
+                    applied[i] += state.mass * gravity[i]
+        loads = self.structure.loading.loads.values()
+        return sum((load.force for load in loads), applied)
+
+    def carried(self):
+        """Sum of the forces of supports and drives on the structure [N]."""
+        carried = Vector3.Zero
+        for target in self.held:
+            carried -= self.supportedBy(target)
+        for load in self.structure.loading.loads.values():
+            carried += reactionOf(load)
+        return carried - self.structure.connectors.onGround()
+
+    def unrest(self):
+        """What of the loads is missing at the supports, of all or of the horizontal ones where that
+        is more, and kinetic over elastic energy [-]."""
+        energy = self.structure.energy.balance()
+        elastic = sum(
+            energy.get(f"elastic_{m}", 0.0)
+            for m in ("compression", "shear", "tension", "units", "connectors")
+        )
+        applied, carried = self.applied(), self.carried()
+        if self.description.plane:
+            applied[1] = carried[1] = 0
+        size = applied.norm()
+        loads = sum(one.force.norm() for one in self.structure.loading.loads.values())
+        if size < 1e-6 * loads:  # loads that balance each other
+            size = loads
+        rest = applied + carried
+        missing = rest.norm() / (size or 1.0)
+        across, flat = (Vector3(v[0], v[1], 0).norm() for v in (applied, rest))
+        if across > HORIZONTAL * size:  # else it is round-off of what is vertical
+            missing = max(missing, flat / across)
+        moving = abs(energy["kinetic"])
+        # without loads there is next to no energy, and motion is compared with the weight over a
+        # picometre
+        least = 1e-12 * GRAVITY * self.freeMass
+        return missing, moving / max(elastic, least) if moving else 0.0
+
+    def _sinkingPeriod(self):
+        """The vertical period of a structure that is so soft that it could be taken for one that
+        falls, while it only sinks under its loads and swings [s]; 0 of a stiffer one, and of one
+        that would lose more of its height than :data:`LOST` says. The structure counts as a column
+        of its height and volume that is everywhere as soft as at its softest joint.
+        """
+        structure, description = self.structure, self.description
+        load = structure.gravity * self.freeMass
+        load -= sum(force[2] for _, force in structure.loading.deadLoads())
+        height = description.high[2] - description.low[2]
+        bricks = (O.bodies[body] for body in structure.ids)
+        area = sum(b.state.mass / b.material.density for b in bricks) / height
+        sinking = max(0.0, load) * height / self._softest() / area
+        least = min(description.size(n) for n in range(len(structure.ids)))
+        if not FALLEN * least < 2 * sinking < LOST * height:
+            return 0.0
+        return 2 * math.pi * math.sqrt(sinking * structure.args.density_scaling / GRAVITY)
+
+    def _softest(self):
+        """The least modulus of the masonry across any of its joints [Pa]; deformable bricks add
+        their own compliance."""
+        moduli = [math.inf]
+        for one in self.structure.interactions:
+            thickness = one.geom.distance1 + one.geom.distance2
+            compliance = 1 / (one.phys.normalStiffness * thickness)
+            soft = self._deformable & {one.id1, one.id2}
+            compliance += max((1 / O.bodies[b].material.young for b in soft), default=0)
+            moduli.append(1 / compliance)
+        return min(moduli)
+
+    def slowest(self):
+        """The longest period of what is free [s]: as one rigid body on the springs of a platen, or
+        of a structure that sinks so far under its loads that a swing would look like a fall; 0
+        without either. Its weight makes a rotation slower; where that overturns it, there is no
+        period."""
+        held = {target.body for target in self.held}
+        found = [self._sinkingPeriod()]
+        free = [body.state for body in O.bodies if body.id not in held]
+        springs = [one for one in self.description.connectors if one.WORD == "spring"]
+        for one in [*springs, *self.description.soils]:
+            if not (one.ends[0].target and one.ends[0].target.box):
+                continue
+            arms = [(s.mass, s.pos - Vector3(*one.ends[0].point)) for s in free]
+            weight = self.structure.gravity * sum(m * r[2] for m, r in arms)  # lever
+            pairs = [(self.freeMass, one.stiffness[i]) for i in range(3)]
+            for i, k in enumerate(one.rotation[:2]):
+                if k:
+                    inertia = sum(m * (r.dot(r) - r[i] ** 2) for m, r in arms)
+                    pairs.append((inertia, k - weight))
+            found += [2 * math.pi * math.sqrt(m / k) for m, k in pairs if k > 0]
+        return max(found)
+
+    def contactOf(self, target):
+        """Area of a platen's joints [m²], and their middle [m]."""
+        geoms = [one.geom for one in self._jointsOf(target)]
+        points = [point for one in geoms for point in zip(one.areas, one.centres)]
+        area = sum(a for a, _ in points)
+        low, high = target.box
+        side = (high[0] - low[0]) * (high[1] - low[1])
+        if abs(area - side) < FILLED * side:
+            return side, [(a + b) / 2 for a, b in zip(low, high)]
+        return area, sum((a * c for a, c in points), Vector3.Zero) / area
+
+    def weightOf(self, target):
+        """Weight of the body of a target [N]."""
+        return O.bodies[target.body].state.mass * self.structure.gravity

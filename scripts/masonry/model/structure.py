@@ -1,0 +1,234 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""What a scene is in YADE: its bodies, joints, loads and engines."""
+
+from yade import O
+from yade.wrapper import MasonryContacts, MasonryJoint, MasonryZones
+
+from ..errors import Collapsed, Refused
+from ..terminal import say
+from ..bricks import boxCorners
+from . import threads
+from .bodies import placeBlock
+from .connecting import makeJoints
+from .connectors import Connectors
+from .engines import engine, engines
+from .loading import Loading
+from .motion import Motion
+from .scheme import Scheme
+from .restraints import Supports
+
+
+class Structure:
+    """What a scene is in YADE, and what acts on it.
+
+    ``__init__`` takes the description, so that what the user asks for can be refused before
+    anything changes. From :meth:`build` on it has
+
+    - ``ids``: body ids of the bricks, in their order; ``parts``: those of every part; ``bricks``:
+      number of the brick by body id, for all bodies that are bricks or parts of bricks
+    - ``widest``: width of the widest crack when it was looked for last [mm]
+    - ``interactions``: the joints between blocks; ``subcontacts``: how many points they have
+    - ``loading``, ``connectors``, ``supports``, ``scheme``, ``motion``: objects of the modules of
+      these names
+    - ``zones``, ``contacts``: the engines of deformable units and of contacts, or None; ``energy``:
+      that of the balance
+
+    :param masonry: the materials for these options: :class:`masonry.materials.Masonry`
+    """
+
+    def __init__(self, description, masonry, args):
+        self.description, self.masonry, self.args = description, masonry, args
+        kinds = {block.kind for block in description.bricks} - set(masonry.units)
+        self.unit, self.joints = masonry.unit, masonry.joints
+        self.units = {**masonry.units, **dict.fromkeys(kinds, masonry.unit)}
+        # Heavier blocks that are attracted less weigh the same; waves are slower and the time step
+        # is longer.
+        for unit in {id(u): u for u in (self.unit, *self.units.values())}.values():
+            unit.density *= args.density_scaling
+        # as it is built [m/s²]
+        self.gravity = description.gravity / args.density_scaling
+        self.axes = (0, 2) if description.plane else (0, 1, 2)
+        self.ids, self.parts, self.bricks = [], {}, {}
+        self.zones = self.contacts = None
+        self.atRest = None  # the last state at rest, as saveScene gave it
+
+    # -- building ----------------------------------------------------------------------------------
+
+    def build(self, loadingBlock):
+        """Build all of it in YADE, with a MasonryMat of the platens."""
+        threads.beginScene(host=self.description.functors)
+        O.reset()
+        loadingBlock.density *= self.args.density_scaling
+        self._addBodies(loadingBlock)
+        self.loading, self.connectors = Loading(self), Connectors(self)
+        if self.description.deformable:
+            self.zones = self._deformableUnits()
+        if self.description.contact:
+            contact = self.description.contact.of(self.joints["bed"])
+            self.contacts = MasonryContacts(takesJoints=True, label="contacts", **contact)
+        self._addEngines()
+        self.scheme = Scheme(self.args, self.zones)
+        blocks = dict(zip(self.ids, self.description.bricks))
+        rule, allowGaps = self.masonry.rule(blocks), self.description.allowGaps
+        self.interactions = makeJoints(rule, allowGaps=allowGaps)
+        self.widest = 0.0
+        self.subcontacts = sum(len(i.geom.areas) for i in self.interactions)
+        for target in self.description.targets.values():
+            if not target.joined:  # it is no neighbour of what it touches
+                self._addPlaten(target, loadingBlock)
+        self.scheme.begin()
+        self._joinRecords()
+        self.supports = Supports(self)
+        self.loading.begin()
+        self.motion = Motion(self)
+
+    def _addBodies(self, loadingBlock):
+        description = self.description
+        mats = {id(m): m for m in (*self.units.values(), self.unit, loadingBlock)}
+        O.materials.append(list(mats.values()))
+        targets = description.targets.values()
+        for target in targets:
+            if target.box and target.fixed and target.joined:
+                self._addPlaten(target, loadingBlock)
+        for block in description.bricks:
+            body = placeBlock(block.corners, self.units[block.kind], description.plane)
+            self.ids.append(body)
+            self.bricks[body] = block.brick
+            self.parts.setdefault(block.part, []).append(body)
+        for target in targets:
+            if target.box and not target.fixed:
+                self._addPlaten(target, loadingBlock)
+            elif not target.box:
+                target.body = self.ids[target.brick]
+                if target.fixed:
+                    O.bodies[target.body].state.blockedDOFs = target.freedom
+        if not any(target.fixed and target.joined for target in targets):
+            raise Refused("nothing is held: a scene needs a platen at the bottom, or hold()")
+
+    def _addPlaten(self, target, material):
+        corners = boxCorners(*target.box)
+        target.body = placeBlock(corners, material, self.description.plane)
+        O.bodies[target.body].state.blockedDOFs = target.freedom
+
+    def _deformableUnits(self):
+        args, description = self.args, self.description
+        blocks, loaded = enumerate(description.bricks), description.pointLoaded()
+        stiff = {n for n, block in blocks if block.kind in self.masonry.stiff}
+        held = {t.body for t in description.targets.values() if t.freedom}
+        for body in held.union(self.ids[n] for n in loaded | stiff):
+            self.bricks.pop(body, None)
+        if loaded - stiff:
+            say(
+                f"note: {len(loaded - stiff)} of {len(description.bricks)} bricks are rigid,"
+                " because ties, springs or fibre layers end at them"
+            )
+        if args.mass_scaling and "crack" in self.joints:
+            # the halves of a brick move as one, as far as masses are scaled, until their crack
+            # surface yields
+            self.joints["crack"].monolithic = True
+        # cells of a half brick along its length; a whole one has twice as many
+        n = args.divisions
+        return MasonryZones(
+            bodies=list(self.bricks),
+            divisions=[n if description.halves else 2 * n, 1, n],
+            damping=args.damping,
+            dampingKind=args.damping_kind,
+            blocked="y" if description.plane else "",
+            label="zones",
+        )
+
+    def _addEngines(self):
+        args, description = self.args, self.description
+        points = [int(n) for n in args.points.split(",")] if args.points else []
+        points, along = (*points, None, None)[:2]
+        engines(
+            # the rule chooses; YADE wants a joint that fits any pair before it asks
+            [MasonryJoint(name="any", elastic=True)],
+            damping=args.damping,
+            gravity=(0, 0, -self.gravity),
+            points=points,
+            subcontacts=along,
+            rows=None if description.plane else along,
+            inPlane=description.plane,
+            loads=list(self.loading.loads.values()),
+            connectors=list(self.connectors.engines.values()),
+            zones=self.zones,
+            contacts=self.contacts,
+            functors=description.functors,
+            dampingKind="local" if description.functors else args.damping_kind,
+        )
+        self.energy = engine("energy")
+
+    def _joinRecords(self):
+        """Find the joints whose means are recorded, and those of the sections."""
+        pairs = {frozenset((i.id1, i.id2)): i for i in self.interactions}
+        for joint in self.description.joints:
+            joint.interaction = pairs.get(frozenset(self.ids[b] for b in joint.bricks))
+            if joint.interaction is None:
+                one, two = joint.bricks
+                raise Refused(f"joint: bricks {one} and {two} share no face")
+        for section in self.description.sections:
+            section.join(self)
+
+    def widestCrack(self):
+        """The largest opening of a point of any joint now [mm], 0 if none is open."""
+        return 1e3 * max(0.0, *(max(one.phys.opening) for one in self.interactions))
+
+    def fallen(self):
+        """Blocks that have fallen, in a scene whose collapse is followed: a dict from the index of
+        the block to a dict with ``since``, when it had come loose [s], ``fell`` [s], ``most``, its
+        largest kinetic energy [J], and ``at``, when it had that [s]."""
+        if not self.contacts:
+            return {}
+        known = {b: one for b, one in self.contacts.fallen().items() if one["fell"] is not None}
+        return {n: known[body] for n, body in enumerate(self.ids) if body in known}
+
+    def checkFallen(self):
+        """Raise Collapsed if a block has fallen, in a scene whose collapse is followed."""
+        fallen = self.fallen()
+        if fallen:
+            first = min(fallen, key=lambda index: fallen[index]["fell"])
+            at = ", ".join(f"{v:.3g}" for v in self.description.middle(first))
+            others = f", and so have {len(fallen) - 1} others since" if len(fallen) > 1 else ""
+            raise Collapsed(
+                f"brick {first} at ({at}) m has fallen at {fallen[first]['fell']:.4g} s{others}"
+            )
+
+    def letFall(self):
+        """From now on no drive and no support moves, no numerical damping brakes blocks that have
+        come loose, and impacts of joints that close take energy."""
+        self.scheme.joints.impacts = True
+        for target in self.supports.held:  # one that was released moves on
+            state = O.bodies[target.body].state
+            for i, axis in enumerate("xyz"):
+                if axis in state.blockedDOFs:
+                    state.vel[i] = 0.0
+        for drive in self.loading.stopDrives():
+            if drive.others:  # forces in a pattern are loads, and end
+                drive.driven = False
+        self.contacts.dampsLoose = False
+
+    # -- what a checkpoint keeps beside the state in YADE ------------------------------------------
+
+    def state(self):
+        """What stages have set, beside what YADE keeps: a dict of values that JSON can hold."""
+        return {
+            **self.loading.state(),
+            "held": {target.name: target.freedom for target in self.supports.held},
+            "freeMass": self.supports.freeMass,
+            "limit": self.scheme.limit,
+            "saidUntil": self.connectors.saidUntil,
+            "said": sorted(map(list, self.connectors.reported)),
+        }
+
+    def putState(self, state):
+        """Give it a state of :meth:`state`. Raises KeyError if it names a target or a load that is
+        not there."""
+        targets = self.description.targets
+        self.loading.putState(state)
+        self.supports.held = [targets[name] for name in state["held"]]
+        for name, freedom in state["held"].items():
+            targets[name].freedom = freedom
+        self.supports.freeMass, self.scheme.limit = state["freeMass"], state["limit"]
+        self.connectors.saidUntil = state["saidUntil"]
+        self.connectors.reported = set(map(tuple, state["said"]))

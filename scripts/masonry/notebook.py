@@ -1,0 +1,69 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""What is different in a notebook: lines that are kept up to date, and how a run that ends is
+shown.
+
+This module loads nothing of Jupyter: it uses what the kernel of a notebook has loaded.
+"""
+
+import html
+import sys
+
+
+def isHere():
+    """Whether this process is the kernel of a notebook."""
+    shells = sys.modules.get("IPython.core.getipython")
+    shell = shells.get_ipython() if shells else None
+    return getattr(shell, "kernel", None) is not None
+
+
+class Line:
+    """A line in the output of a cell that can be written anew."""
+
+    def __init__(self):
+        self._handle = None
+
+    def show(self, text, fraction):
+        """Write the line.
+
+        :param fraction: how much is done, 0 to 1 [-], for the bar before the text
+        """
+        from IPython.display import display
+
+        done = min(max(fraction, 0.0), 1.0)
+        bar = f'<progress max="1" value="{done:.3f}"></progress> {html.escape(text)}'
+        page = f'<div style="font-family:monospace;white-space:pre">{bar}</div>'
+        data = {"text/plain": text, "text/html": page}
+        if self._handle:
+            self._handle.update(data, raw=True)
+        else:
+            self._handle = display(data, raw=True, display_id=True)
+
+
+class Stopped(KeyboardInterrupt):
+    """The kernel was interrupted, and a run ended in order. The cells that follow do not run."""
+
+    def _render_traceback_(self):
+        return [str(self)]
+
+
+class Failed(Exception):
+    """A run ended before its time, as was said above the error. The cells that follow do not
+    run."""
+
+    def _render_traceback_(self):
+        return [str(self)]
+
+
+def ended(name, status, folder, error):
+    """The error with which a run that was not in order ends a cell.
+
+    :param name: of the scene
+    :param status: exit status that a script would have
+    :param folder: of its results, or None
+    :param error: what ended it, or None
+    """
+    if status == 130:
+        kept = f"; scene.resume() goes on, and its results so far are in {folder}" if folder else ""
+        return Stopped(f"{name}: interrupted{kept}")
+    why = f": {error}" if error else ", as was said above"
+    return Failed(f"{name}: the run ended before its time{why}")

@@ -1,0 +1,211 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The columns of curve.csv: name, unit, meaning and value of each stand in one place.
+
+Adding a column is adding a line here, to :meth:`masonry.scene.targets.Target.columns` if every
+target shall have it, or to
+:data:`masonry.scene.targets.OF_JOINTS` if every recorded joint shall. ``scene.column`` adds one
+    from a script.
+"""
+
+from dataclasses import dataclass
+from typing import Callable
+
+from yade import O
+
+from .quantities import ENERGIES, OF_CONNECTORS, OF_CONTACTS
+
+
+@dataclass(frozen=True)
+class Column:
+    """A column of curve.csv.
+
+    :param name: without its unit
+    :param unit: ``"-"`` if it has none; None: name and meaning have it already
+    :param meaning: one line for run.json, without the unit
+    :param value: function of a :class:`Reading` that gives the number in that unit
+    """
+
+    name: str
+    unit: str
+    meaning: str
+    value: Callable
+
+    @property
+    def head(self):
+        """The name with its unit, as it stands in the first line of curve.csv."""
+        return self.name if self.unit in (None, "-") else f"{self.name}_{self.unit}"
+
+    @property
+    def explanation(self):
+        """The meaning with its unit, as it stands in run.json."""
+        return self.meaning if self.unit is None else f"{self.meaning} [{self.unit}]"
+
+
+class Reading:
+    """What a structure measures of itself at one moment, in SI units. The values of all columns are
+    taken from it at once.
+
+    - ``time`` since the scene was built [s]
+    - ``along``, ``up``: displacement of the followed point since the push or load began, along it
+      and upwards [m]
+    - ``sunk``: displacement of the pushed point downwards since the scene was built [m]
+    - ``rotation`` of the pushed block, about y in a plane, else its angle [rad]
+    - ``baseShear``: force of the structure on all that is held, along the push or load [N]
+    - ``topShear``: force that drives the pushed point [N]
+    - ``energy``: the energy balance [J]
+    - ``goal``: number of the point of a history that the drive is going to, from 1, and its
+      displacement [mm]
+    - ``forces``: force of the structure on what is held, along the axes that are held now or that
+      springs hold, by the name of the target [N]
+    """
+
+    def __init__(self, structure):
+        self.structure, self.time = structure, O.time
+        self._moved = {}
+        self.forces = {}
+        held = structure.connectors.onGround()
+        for target in structure.supports.held:
+            force = structure.supports.supportedBy(target)
+            self.forces[target.name] = force + structure.connectors.onSpringsOf(target)
+            for i in structure.axes:
+                held[i] += force[i]
+        self.along = self.up = self.topShear = self.rotation = 0.0
+        self.sunk = -0.0
+        loading = structure.loading
+        if loading.followed:
+            moved, self.rotation = self.moved(loading.followed)
+            self.along = moved.dot(loading.direction) - loading.origin[0]
+            self.up = moved[2] - loading.origin[1]
+        if loading.target:
+            self.sunk = -self.moved(loading.target)[0][2]
+            self.topShear = loading.push.reaction
+        along, beside = loading.direction, loading.besideThePush()
+        self.baseShear = held.dot(along) - beside.dot(along)
+        self.energy = structure.energy.balance()
+        self.goal = loading.goal
+
+    def moved(self, target):
+        """Displacement of a target's recorded point since the scene was built [m], and its rotation
+        [rad]."""
+        if target.name not in self._moved:
+            self._moved[target.name] = self.structure.supports.moved(target)
+        return self._moved[target.name]
+
+
+def _energies(names):
+    for name, (meaning, _) in names.items():
+        value = lambda r, name=name: r.energy[name]
+        yield Column(name, "J", f"{meaning} since the scene was built", value)
+
+
+CRACKS = Column(
+    "largest_crack",
+    "mm",
+    (
+        "largest opening of a point of any joint, without slide, 0 if none is open; looked for"
+        " every 300 steps or more"
+    ),
+    lambda r: r.structure.widest,
+)
+
+#: The energy balance, in every run, and what ties and springs add to it.
+BALANCE = [
+    *_energies(ENERGIES),
+    Column(
+        "balance_error",
+        "-",
+        "error of the energy balance, relative to the largest work done until then",
+        lambda r: r.energy["error"],
+    ),
+]
+CONNECTORS = [*_energies(OF_CONNECTORS)]
+#: Of a scene whose collapse is followed.
+CONTACTS = [
+    *_energies(OF_CONTACTS),
+    Column(
+        "handed_joints",
+        "-",
+        "joints whose place contacts have taken so far",
+        lambda r: r.structure.contacts.handed,
+    ),
+    Column(
+        "fallen_blocks",
+        "-",
+        "blocks that have fallen so far",
+        lambda r: len(r.structure.fallen()),
+    ),
+]
+
+#: Of a push.
+PUSH = [
+    Column("time", "s", "time since the scene was built", lambda r: r.time),
+    Column(
+        "displacement",
+        "mm",
+        (
+            "displacement of the pushed point along the push, or of the watched one along a load"
+            " that grows, since that began"
+        ),
+        lambda r: 1e3 * r.along,
+    ),
+    Column(
+        "base_shear",
+        "kN",
+        (
+            "force of the structure on all that is held, along the push or load; of a push without"
+            " dead weight and dead loads"
+        ),
+        lambda r: 1e-3 * r.baseShear,
+    ),
+    Column(
+        "top_shear",
+        "kN",
+        "force that drives the pushed point",
+        lambda r: 1e-3 * r.topShear,
+    ),
+    Column(
+        "vertical",
+        "mm",
+        "upward displacement of the pushed or watched point since then",
+        lambda r: 1e3 * r.up,
+    ),
+    Column(
+        "rotation",
+        "mrad",
+        "rotation of the pushed or watched block, about y in a plane, else its angle",
+        lambda r: 1e3 * r.rotation,
+    ),
+]
+
+#: Of a scene in which a platen moves.
+OF_PLATEN = [
+    Column(
+        "masonry_displacement",
+        "mm",
+        (
+            "displacement of the bricks at the pushed or watched platen along the push or load"
+            " since that began; elsewhere of that point"
+        ),
+        lambda r: 1e3 * r.structure.loading.masonryAlong(),
+    )
+]
+#: Of a push that follows a history.
+HISTORY = [
+    Column(
+        "point",
+        "-",
+        "number of the point of the history that the drive is going to, from 1",
+        lambda r: r.goal[0],
+    ),
+    Column("target", "mm", "displacement of this point", lambda r: r.goal[1]),
+]
+
+
+def heads(columns):
+    """The first line of curve.csv: names of columns with their units."""
+    return [column.head for column in columns]
+
+
+def meanings(columns):
+    """What each column means, by its head: the entry ``columns`` of run.json."""
+    return {column.head: column.explanation for column in columns}

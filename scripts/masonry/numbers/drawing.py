@@ -1,0 +1,84 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Pictures by matplotlib without a window, written whole or not at all."""
+
+import contextlib
+import io
+import os
+
+from ..folders import replaced
+from ..packages import needed
+
+
+def empty(width, height):
+    """An empty figure [inch]. It has no window, and pyplot, whose settings YADE changes, has no
+    part in it."""
+    needed("matplotlib")
+    from matplotlib.figure import Figure
+
+    return Figure(figsize=(width, height))
+
+
+def style(settings=()):
+    """The settings of matplotlib that all figures are drawn with, whatever the caller has set: a
+    context.
+
+    :param settings: more of them, a dict
+    """
+    needed("matplotlib")
+    import matplotlib.style
+
+    return matplotlib.style.context(["default", dict(settings)])
+
+
+@contextlib.contextmanager
+def picture(path, width, height, dpi, settings=()):
+    """A figure [inch] that is written at the end of its block; ``settings`` are those of
+    :func:`style`."""
+    with style(settings):
+        figure = empty(width, height)
+        yield figure
+        figure.tight_layout()
+        save(figure, path, dpi)
+
+
+def finish(axes, x, y, **legend):
+    """Labels, legend and grid of a diagram; ``legend`` are settings of its legend."""
+    axes.set_xlabel(x)
+    axes.set_ylabel(y)
+    axes.legend(**legend)
+    axes.grid(alpha=0.3)
+
+
+def save(figure, path, dpi):
+    """Write a picture, whole or not at all."""
+    kind = os.path.splitext(path)[1][1:]
+    with replaced(path, "wb") as file:
+        figure.savefig(file, dpi=dpi, format=kind)
+
+
+def svg(figure, name):
+    """A figure as an element ``svg`` of a page, always the same one of the same figure.
+
+    :param name: that no other figure of the page has
+    """
+    from markupsafe import Markup
+    from matplotlib import rc_context
+
+    text = io.StringIO()
+    with rc_context({"svg.hashsalt": name, "svg.fonttype": "none"}):
+        figure.savefig(text, format="svg", dpi=150, metadata={"Date": None})
+    found = text.getvalue()
+    return Markup(found[found.index("<svg") :])
+
+
+def placesOn(figure, points):
+    """Places in the first axes of a figure in the units of its :func:`svg`: a text "x,y x,y".
+
+    :param points: pairs of x and y
+    """
+    if not points:
+        return ""
+    axes = figure.axes[0]
+    share = figure.transFigure.inverted().transform(axes.transData.transform(points))
+    wide, high = 72 * figure.get_size_inches()
+    return " ".join(f"{wide * x:.1f},{high * (1 - y):.1f}" for x, y in share)

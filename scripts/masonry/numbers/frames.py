@@ -1,0 +1,230 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Frames for ParaView that MasonryVtkRecorder wrote, read again. This module needs no YADE and no
+VTK.
+
+VTK's own reader is not used: its Python modules come with python3-vtk9 or, in its place, with
+python3-paraview, and either can end a process in which YADE runs with a VTK of its own.
+MasonryVtkRecorder writes one kind of file, with all numbers appended in base64 and compressed by
+zlib, and that kind is read here.
+"""
+
+import base64
+import glob
+import os
+import re
+import struct
+import zlib
+from xml.etree import ElementTree
+from typing import Annotated, Any, Sequence
+
+import numpy as np
+
+from ..arguments import FilePath, Names, number, oneOf, validated, whole
+from ..errors import Refused
+
+#: A kind of files.
+Kind = Annotated[str, oneOf("blocks", "joints", "connectors")]
+#: Number of a frame.
+FrameNumber = Annotated[int, whole(-(10**9))]
+#: Types of numbers in the files.
+TYPES = {"Float64": "f8", "Float32": "f4", "Int64": "i8", "Int32": "i4", "UInt8": "u1"}
+
+
+@validated
+def framePaths(directory: FilePath, kind: Kind) -> list[str]:
+    """Paths of all frames of a run, in the order of time.
+
+    :param kind: ``blocks``, ``joints`` or ``connectors``
+    :raises Refused: if there is none
+    """
+    pattern = os.path.join(glob.escape(os.fspath(directory)), kind + "_*.vt[up]")
+    found = {path: re.search(r"_(\d+)\.vt[up]$", path) for path in glob.glob(pattern)}
+    numbers = {path: int(match[1]) for path, match in found.items() if match}
+    if not numbers:
+        raise Refused(f"no file {kind}_*.vt? in {directory}")
+    return sorted(numbers, key=lambda path: numbers[path])
+
+
+@validated
+def frameTimes(directory: FilePath) -> list[float]:
+    """Times of all frames of a run in the order of time, as joints.pvd has them [s]."""
+    path = os.path.join(directory, "joints.pvd")
+    try:
+        sets = ElementTree.parse(path).iter("DataSet")
+        return [float(s.get("timestep")) for s in sets]
+    except OSError as error:
+        raise Refused(f"cannot read {path}: {error.strerror}") from None
+    except (ElementTree.ParseError, TypeError, ValueError) as error:
+        raise Refused(f"cannot read {path}: {error}") from None
+
+
+@validated
+def frameAt(directory: FilePath, time: Annotated[float, number("s")]) -> int:
+    """Number of the frame nearest to a time [s], from 0."""
+    return int(np.argmin(np.abs(np.array(frameTimes(directory)) - time)))
+
+
+@validated
+def readFrame(
+    directory: FilePath, kind: Kind, number: FrameNumber = -1, names: Names | None = None
+) -> dict[str, Any]:
+    """A frame of blocks, joints or connectors as a dict: ``points`` [m], ``cells`` (arrays of point
+    numbers), and every data array.
+
+    :param kind: ``blocks``, ``joints`` or ``connectors``, the ties and springs
+    :param number: of the frame, from 0; negative numbers count from the end
+    :param names: of those arrays that are needed, ``points`` and ``cells`` among them; None: all
+    :raises Refused: if there is no such frame, or if its file is damaged
+    """
+    return _read(_pathOf(directory, kind, number), lambda root: _frame(root, names))
+
+
+@validated
+def readSurfaces(
+    directory: FilePath, number: FrameNumber = 0
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Triangles around the blocks of a frame, as :func:`readFrame` numbers points and cells.
+
+    :returns: the corners of triangles, an array (n, 3) of point numbers; the cell of each of them;
+        and whether cells are rigid blocks, else they are zones of deformable units, all of whose
+        sides are given, also those inside the unit
+    :raises Refused: as in :func:`readFrame`
+    """
+    return _read(_pathOf(directory, "blocks", number), _surfaces)
+
+
+def _pathOf(directory, kind, number):
+    paths = framePaths(directory, kind)
+    if not -len(paths) <= number < len(paths):
+        raise Refused(f"no frame {number} in {directory}: there are {len(paths)}")
+    return paths[number]
+
+
+def _read(path, parsed):
+    """What a function makes of a file of a frame. Raises Refused if it is damaged."""
+    try:
+        return parsed(ElementTree.parse(path).getroot())
+    except OSError as error:
+        raise Refused(f"cannot read {path}: {error.strerror}") from None
+    except Exception as error:  # whatever a damaged file leads to
+        raise Refused(
+            f"cannot read {path}: it holds no frame ({type(error).__name__}: {error})"
+        ) from None
+
+
+def asFrame(found: Any, names: Sequence[str] | None = None) -> dict[str, Any]:
+    """The same dict as :func:`readFrame` gives, of what ``MasonryVtkRecorder().joints()`` gives
+    without a file.
+
+    :param names: the arrays that are needed, beside the cells; None: all of them, which takes twice
+        as long
+    """
+    arrays = [name for name in names or found if name != "cells"]
+    cells = [np.array(cell) for cell in found["cells"]]
+    return {**{name: np.array(found[name]) for name in arrays}, "cells": cells}
+
+
+POLYHEDRON, TETRAHEDRON = 42, 10  # numbers of VTK for the cells of blocks
+
+
+def _surfaces(root):
+    """What :func:`readSurfaces` returns, of the parsed file."""
+    piece, read = _opened(root)
+    cells = {a.get("Name"): read(a) for a in piece.findall("Cells/DataArray")}
+    types, ends, corners = cells["types"], cells["offsets"], cells["connectivity"]
+    rigid = types == POLYHEDRON
+    if not (rigid | (types == TETRAHEDRON)).all():
+        raise ValueError("its cells are neither polyhedra nor tetrahedra")
+    sides = np.array([(0, 2, 1), (0, 1, 3), (1, 2, 3), (0, 3, 2)])
+    first = np.append(0, ends[:-1])
+    zones = np.flatnonzero(~rigid)
+    ofZones = corners[first[zones, None, None] + sides].reshape(-1, 3)
+    found = [(ofZones, np.repeat(zones, len(sides)))]
+    if "face_offsets" in cells:
+        found.append(_newFaces(cells))
+    else:
+        found += _oldFaces(cells, np.flatnonzero(rigid))
+    triangles, owners = map(np.concatenate, zip(*found))
+    triangles = triangles.astype(int)
+    if triangles.min() < 0 or triangles.max() >= int(piece.get("NumberOfPoints")):
+        raise ValueError("its faces have points that are not there")
+    return triangles, owners, rigid
+
+
+def _oldFaces(cells, polyhedra):
+    """Triangles of each polyhedron, and the cell of each of them, as VTK wrote them before 9.4: how
+    many faces the polyhedron has, then of each how many corners, and these."""
+    start = 0
+    for cell in polyhedra:
+        faces = cells["faces"][start : cells["faceoffsets"][cell]]
+        start = cells["faceoffsets"][cell]
+        found = faces[1:].reshape(-1, 4)
+        if len(found) != faces[0] or (found[:, 0] != 3).any():
+            raise ValueError(f"faces of cell {cell} are no triangles")
+        yield found[:, 1:], np.full(len(found), cell)
+
+
+def _newFaces(cells):
+    """The same of all polyhedra at once, as later versions write them: corners by face, and faces
+    by cell."""
+    if (np.diff(cells["face_offsets"], prepend=0) != 3).any():
+        raise ValueError("faces of its cells are no triangles")
+    faces = cells["face_connectivity"].reshape(-1, 3)[cells["polyhedron_to_faces"]]
+    ends = cells["polyhedron_offsets"]
+    return faces, np.repeat(np.arange(len(ends)), np.diff(ends, prepend=0))
+
+
+def _opened(root):
+    """The piece of a parsed file, and a function that reads its arrays."""
+    form = root.get("compressor"), root.get("byte_order")
+    if form != ("vtkZLibDataCompressor", "LittleEndian"):
+        raise ValueError("it was not written by MasonryVtkRecorder")
+    appended = root.find("AppendedData")
+    if appended.get("encoding") != "base64":
+        raise ValueError("its numbers are not in base64")
+    text = appended.text.strip()[1:]  # the first letter is an underscore
+    size = {"UInt32": "I", "UInt64": "Q"}[root.get("header_type")]
+    return root[0].find("Piece"), lambda array: _array(array, text, size)
+
+
+def _frame(root, names):
+    """What :func:`readFrame` returns, of the parsed file."""
+    piece, read = _opened(root)
+    data = piece.findall("PointData/DataArray") + piece.findall("CellData/DataArray")
+    found = {"points": piece.find("Points/DataArray"), **{a.get("Name"): a for a in data}}
+    frame = {n: read(a) for n, a in found.items() if names is None or n in names}
+    if names is not None and "cells" not in names:
+        return frame
+    frame["cells"] = []
+    for kind in ("Verts", "Lines", "Polys") if root.get("type") == "PolyData" else ("Cells",):
+        of = {a.get("Name"): a for a in piece.findall(f"{kind}/DataArray")}
+        ends, corners = read(of["offsets"]), read(of["connectivity"])
+        if not len(ends):
+            continue
+        if ends[-1] != len(corners) or corners.max() >= len(frame["points"]):
+            raise ValueError("its cells have points that are not there")
+        places = [0, *ends.tolist()]  # np.split does the same in ten times the time
+        frame["cells"] += [corners[a:b] for a, b in zip(places, places[1:])]
+    if not len(frame["points"]) or not frame["cells"]:
+        raise ValueError("it has no points or no cells")
+    return frame
+
+
+def _array(array, text, size):
+    """The numbers of a DataArray: a row a tuple if it has several components.
+
+    Its part of the text is a head and the data. The head has the number of blocks, the bytes of a
+    full block and of the last one before they were compressed, and the compressed bytes of each.
+    Head and data are encoded one by one.
+    """
+    start, width = int(array.get("offset")), struct.calcsize(size)
+    letters = lambda count: -(-count // 3) * 4  # of so many bytes in base64
+    decode = lambda at, count: base64.b64decode(text[at : at + letters(count)])
+    blocks = struct.unpack_from("<" + size, decode(start, width))[0]
+    head = width * (3 + blocks)
+    sizes = struct.unpack_from(f"<{3 + blocks}{size}", decode(start, head))[3:]
+    data, ends = decode(start + letters(head), sum(sizes)), np.cumsum(sizes)
+    parts = [zlib.decompress(data[b - n : b]) for n, b in zip(sizes, ends)]
+    numbers = np.frombuffer(b"".join(parts), "<" + TYPES[array.get("type")])
+    components = int(array.get("NumberOfComponents") or 1)
+    return numbers.reshape(-1, components) if components > 1 else numbers

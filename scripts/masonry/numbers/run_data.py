@@ -1,0 +1,286 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""What the numbers of a run are found from: its rows, its force, its peak, its drift and the states
+of its push."""
+
+import functools
+import math
+from typing import Any, Callable, Sequence
+
+import numpy as np
+
+from ..arguments import FilePath
+from ..errors import Refused
+from . import cracks, curves, loops
+from .files import readCurve, readRun
+
+# of the peak: a larger loss is a drop, a smaller one may be the scatter by single bricks at the toe
+LOST = 0.05
+# of the peak: where the force has fallen to it, a wall of masonry is said to have reached its
+# ultimate displacement
+FALL = 0.8
+MOVED, BASE, TOP = "displacement_mm", "base_shear_kN", "top_shear_kN"
+MASONRY = "masonry_displacement_mm"  # of the bricks at the pushed platen
+
+
+class RunData:
+    """What the numbers of a run are found from.
+
+    :param run: entries of run.json, those that are no numbers of this list at least
+    :param column: function of the name of a column of curve.csv that gives its values, or None if
+        there is no such column
+    :param joints: frame of the joints at the end, as in :mod:`masonry.numbers.cracks`; None: crack
+        patterns are not measured
+    :param height: of the recorded point above the base [m], in place of what run.json says
+    """
+
+    def __init__(self, run, column, joints=None, height=None):
+        self.run, self.column, self.joints, self._height = run, column, joints, height
+
+    @classmethod
+    def read(cls, directory: FilePath, moved: str | None = None) -> "RunData":
+        """That of a folder of results. Raises Refused.
+
+        :param moved: name of a column of curve.csv whose displacements are those of the push, from
+            where it began; None: those of the pushed point
+        """
+        curve = readCurve(directory)
+        data = cls(readRun(directory), curve.get)
+        if moved is None or not data.isPush:
+            return data
+        pushed = next(load[1] for load, *_ in reversed(data._stages) if load and load[0] == "push")
+        upright = "vertical_mm", *(("_z_mm",) if not pushed.endswith("z") else ())
+        fits = lambda name: name.endswith("_mm") and not name.endswith(upright)
+        if moved not in curve or not fits(moved):
+            names = ", ".join(filter(fits, curve))
+            raise Refused(
+                f"{directory}: column {moved!r} must be a displacement of curve.csv along the push:"
+                f" {names}"
+            )
+        values, usual = (
+            np.array(curve[name]) - curve[name][data.rows[0]] for name in (moved, MOVED)
+        )
+        along = math.copysign(1, values[data.rows] @ usual[data.rows])
+        unknown = {"drift_height_m": None, "recorded_height_m": None}  # of that point
+        columns: dict[str, Any] = {**curve, MOVED: along * values, MASONRY: None}
+        return cls({**data.run, **unknown}, columns.get)
+
+    @functools.cached_property
+    def _stages(self):
+        """Loads of the stages, and their rows: lists of the load, the first row and the row after
+        the last."""
+        found = self.run.get("stages") or []
+        columns = (self.column(name) for name in (MOVED, "time_s"))
+        count = len(next((values for values in columns if values is not None), ()))
+        ends = [*(one["first_row"] for one in found[1:]), count]
+        return [(one.get("load"), one["first_row"], end) for one, end in zip(found, ends)]
+
+    @functools.cached_property
+    def pushes(self) -> list[tuple[int, int]]:
+        """Rows of the pushes, the first one and the one after the last: of the last push, and of
+        those along its line since another one."""
+        pushed = [one for one in self._stages if one[0] and one[0][0] == "push"]
+        others = [first for load, first, _ in pushed if load != pushed[-1][0]]
+        since = max(others, default=-1)
+        return [
+            (first, end) for load, first, end in pushed if load == pushed[-1][0] and first > since
+        ]
+
+    @functools.cached_property
+    def rows(self) -> list[int]:
+        """Numbers of the rows of the push, from 0. If the run loads in no other way, what comes
+        before belongs to it, but not what comes after it, for example when the drive has let go."""
+        loads = [load for load, _, _ in self._stages if load]
+        if self.pushes and all(load == loads[-1] for load in loads):
+            return list(range(self.pushes[-1][1]))
+        return [n for first, end in self.pushes for n in range(first, end)]
+
+    def whole(self, name: str) -> Any:
+        """A column in all rows. Raises KeyError if curve.csv does not have it."""
+        values = self.column(name)
+        if values is None:
+            raise KeyError(name)
+        return values
+
+    def __getitem__(self, name: str) -> list[float]:
+        """A column in the rows of the push. Raises KeyError if curve.csv does not have it."""
+        values = self.whole(name)
+        return [values[n] for n in self.rows]
+
+    @property
+    def isPush(self) -> bool:
+        """Whether the run has a push with rows."""
+        return bool(self.rows)
+
+    @property
+    def isLooped(self) -> bool:
+        """Whether the push goes there and back."""
+        return "history" in self.run
+
+    def carried(self, side: int = 1) -> np.ndarray:
+        """The force of the push [kN]: what both ends carry at once, in every row the one that is
+        less along the side. A wave that passes through is felt at one of them.
+
+        :param side: 1, or -1 for the way back
+        """
+        return side * np.minimum(side * np.array(self[BASE]), side * np.array(self[TOP]))
+
+    def peak(self, side: int = 1) -> int:
+        """Where this force is largest, a number of a row among those of the push; in loops on its
+        side of the displacement."""
+        towards = side * self.carried(side)
+        if self.isLooped:
+            towards = np.where(side * np.array(self[MOVED]) >= 0, towards, -math.inf)
+        return int(towards.argmax())
+
+    def peakForce(self, side: int = 1) -> float:
+        """The force at the peak of a side [kN]."""
+        return float(self.carried(side)[self.peak(side)])
+
+    @property
+    def pulse(self) -> float:
+        """Displacement of the drive within the first period of the structure [mm]; 0 if that is not
+        known."""
+        period, times = self.run.get("first_period_s"), self.column("time_s")
+        if not period or times is None or len(self.rows) < 2:
+            return 0.0
+        lasted = np.ptp([times[n] for n in self.rows])
+        return float(period * np.ptp(self[MOVED]) / lasted) if lasted > 0 else 0.0
+
+    @property
+    def height(self) -> float | None:
+        """Height over which displacements of the push are drifts [m]; None if it is not known, or
+        if the push is not horizontal."""
+        known = [self._height, self.run.get("drift_height_m"), self.run.get("recorded_height_m")]
+        return next((h for h in known if isinstance(h, (int, float)) and 0 < h < math.inf), None)
+
+    @functools.cached_property
+    def ofDrift(self) -> list[float]:
+        """The displacements that are drifts over :attr:`height` [mm]: of the masonry where the
+        platen touches it, so that what the platen slips is no drift; of the pushed point where
+        there is no platen, or where another height is given.
+        """
+        own = self.column(MASONRY)
+        return self[MOVED] if own is None or self._height else self[MASONRY]
+
+    def at(self, values: Sequence[float], place: float | None) -> float | None:
+        """A value between rows, along a straight line. ``place``: a number of a row with a
+        fraction, or None."""
+        rows = np.arange(len(values))
+        return None if place is None else float(np.interp(place, rows, values))
+
+    def place(self, find: Callable[..., float | None]) -> float | None:
+        """Where a state is in the rows of the push, None if it is not reached or curve.csv does not
+        have its columns.
+
+        :param find: function that finds it
+        """
+        try:
+            return find(self) if self.rows else None
+        except LookupError:
+            return None
+
+    def drift(self, place: float | None) -> float | None:
+        """The drift at a place in the rows of the push [mrad]."""
+        moved = self.at(self.ofDrift, place)
+        return moved / self.height if moved is not None and self.height else None
+
+    @functools.cached_property
+    def firstCrack(self) -> int | None:
+        """Where the first crack of the push is seen."""
+        found = (curves.firstCrack(self.whole, slice(*push)) for push in self.pushes)
+        return next((self.rows.index(row) for row in found if row is not None), None)
+
+    def fallenTo(self, share: float) -> float | None:
+        """Where the force has fallen to a share of its peak, after it; in loops on the envelope of
+        the positive side."""
+        moved, force = np.array(self[MOVED]), self.carried(1)
+        rows = loops.envelope(moved)[0] if self.isLooped else np.arange(len(moved))
+        if not len(rows) or force[rows].max() <= 0:
+            return None
+        force, at = force[rows], int(force[rows].argmax())
+        pulse = 0.0 if self.isLooped else self.pulse
+        place = curves.fallen(
+            np.maximum.accumulate(moved[rows]), force, at, share * force[at], pulse
+        )
+        return None if place is None else float(np.interp(place, np.arange(len(rows)), rows))
+
+    @functools.cached_property
+    def collapse(self) -> int | None:
+        """The last row, if the push ended in a collapse."""
+        load = self._stages[-1][0] if self._stages else None
+        fell = self.run.get("collapsed") and load and load[0] == "push"
+        return len(self.rows) - 1 if fell else None
+
+    @functools.cached_property
+    def sudden(self) -> tuple[float, float]:
+        """As of :func:`masonry.numbers.curves.suddenLoss`: that of the push with the largest."""
+        columns = [self.whole(name) for name in (MOVED, TOP, BASE)]
+        return max(
+            curves.suddenLoss(*(values[slice(*push)] for values in columns)) for push in self.pushes
+        )
+
+    @property
+    def isOfControl(self) -> bool:
+        """Whether the displacements of the push are those of a control, on which its force does no
+        work."""
+        return bool(self.pushes) and any(
+            len(load) > 3 for load, *_ in self._stages if load and load[0] == "push"
+        )
+
+    def work(self, workOf: Callable[[Any, Any], float]) -> float:
+        """A work of the base shear over the displacements of the push [J]. Raises LookupError if it
+        does none on these.
+
+        :param workOf: function of displacements [mm] and forces [kN]
+        """
+        if self.isOfControl:
+            raise LookupError("the force of the push works on other displacements")
+        return workOf(self[MOVED], self[BASE])
+
+    @functools.cached_property
+    def stillGrows(self) -> bool:
+        """Whether nothing has given way at the end of the push."""
+        return not self.isLooped and curves.stillGrows(self[MOVED], self[BASE])
+
+    @functools.cached_property
+    def stiffness(self) -> float:
+        """As of :func:`masonry.numbers.curves.stiffness`, of the force without the inertia of the
+        structure's own mass."""
+        grown = self.run.get("velocity_grown_at_s") or 0.0
+        ramp = next((n for n, time in enumerate(self["time_s"]) if time >= grown), 0)
+        weight = self.run.get("base_weight") or curves.SHEAR
+        return curves.stiffness(
+            self[MOVED], curves.quasiStatic(self[TOP], self[BASE], weight), ramp
+        )
+
+    def dropped(self, side: int = 1) -> tuple[float, float | None]:
+        """Share of the peak that is lost at the end, and the first displacement after the peak with
+        less than 0.95 of it [mm], None if there is none; in loops along the envelope of a side,
+        positive outwards."""
+        moved, force = side * np.array(self[MOVED]), side * self.carried(side)
+        if self.isLooped:
+            rows = loops.envelope(self[MOVED])[0 if side > 0 else 1]
+            moved, force = moved[rows], force[rows]
+        if not len(force) or not force.max() > 0:
+            raise LookupError("the force is never to this side")
+        at = int(force.argmax())
+        after = np.flatnonzero(force[at:] < (1 - LOST) * force[at])
+        return 1 - float(force[-1] / force[at]), float(moved[at + after[0]]) if len(after) else None
+
+    @functools.cached_property
+    def cycles(self) -> list[dict[str, Any]]:
+        """As of :func:`masonry.numbers.curves.cycleNumbers`, with rows of curve.csv."""
+        found = curves.cycleNumbers(self.__getitem__, self.run["history"]["noise_mm"])
+        for one in found:
+            one["rows"] = [self.rows[n] for n in one["rows"]]
+            if self.isOfControl:
+                one.update(work_J=None, top_work_J=None, damping=None)
+        return found
+
+    @functools.cached_property
+    def pattern(self) -> dict[str, Any]:
+        """Numbers of the crack pattern of a wall, and how it failed."""
+        found = cracks.pattern(self.joints, self.run["wall"], self.isLooped)
+        lost = self.dropped()[0] > LOST
+        mode = cracks.failureMode(found, self.run["wall"], self.stillGrows, lost)
+        return {**found, "failure_mode": mode}

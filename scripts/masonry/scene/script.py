@@ -1,0 +1,176 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The words of a script, noted as data: a run that is resumed can be compared with the script that
+began it."""
+
+import contextlib
+import functools
+import inspect
+import math
+from dataclasses import dataclass
+from typing import Any, Callable, Concatenate, ParamSpec, Protocol, TypeVar, overload
+
+from ..errors import NotResumed
+
+P = ParamSpec("P")
+Q = ParamSpec("Q")
+R = TypeVar("R")
+S = TypeVar("S", covariant=True)
+
+RESULT = "result"  # the word that keeps a number of the script's own
+PUSHES = "push", "cycle", "follow"  # to the first of them --until and --history apply
+SHAKES = ("shake",)  # to the first of them --record and --scale apply
+
+
+@dataclass
+class Call:
+    """A word as the script said it, for a run that goes on in the same process.
+
+    :param word: function of the scene and of what the script says
+    :param found: what it returned, if it describes
+    :param refused: whether it was refused, and the script went on
+    """
+
+    word: Callable
+    args: tuple
+    settings: dict
+    found: Any = None
+    refused: bool = False
+
+
+def describes(act: Callable[Concatenate[Any, P], R]) -> Callable[Concatenate[Any, P], R]:
+    """A word that describes a scene: it comes before the first stage, and is noted.
+
+    :param act: function of a :class:`masonry.scene.description.Description` and what the user says
+    """
+
+    @functools.wraps(act)
+    def word(scene: Any, *args: P.args, **settings: P.kwargs) -> R:
+        if scene.model:
+            raise ValueError(
+                f"{act.__name__}() must come before the first stage: the scene is built already"
+            )
+        found = act(scene.description, *args, **settings)
+        scene.calls.append(Call(word, args, settings, found))
+        scene.script.note(act, scene, args, settings)
+        return found
+
+    return word
+
+
+class Either(Protocol[P, S, Q]):
+    """What a script can call that takes one list of arguments before the first stage, and another
+    one after it."""
+
+    @overload
+    # both may be called without arguments, as far as mypy knows
+    def __call__(self, *args: P.args, **settings: P.kwargs) -> S:  # type: ignore[misc]
+        ...
+
+    @overload
+    def __call__(self, *args: Q.args, **settings: Q.kwargs) -> str:
+        ...
+
+
+class EitherWord(Protocol[P, S, Q]):
+    """The same, of the class of a scene."""
+
+    def __get__(self, scene: Any, cls: Any = None) -> Either[P, S, Q]:
+        ...
+
+
+def either(
+    describes: Callable[Concatenate[Any, P], S],
+    stage: Callable[Concatenate[Any, Q], str],
+) -> EitherWord[P, S, Q]:
+    """A word that describes before the first stage, and is a stage after it."""
+
+    @functools.wraps(describes)
+    def command(scene: Any, *args: Any, **settings: Any) -> Any:
+        word: Any = stage if scene.model else describes
+        return word(scene, *args, **settings)
+
+    doc = f"{describes.__doc__}\n\n    After the first stage: {stage.__doc__}"
+    command.__doc__ = doc
+    said: Any = command
+    return said
+
+
+def argumentsOf(act, first, args, settings):
+    """What the user says to a word, by the names of its parameters, with the defaults of those that
+    are left out."""
+    bound = inspect.signature(act).bind(first, *args, **settings)
+    bound.apply_defaults()
+    return dict(list(bound.arguments.items())[1:])
+
+
+def asData(value):
+    """A value as JSON can hold it: targets and recorded joints by their names."""
+    if value is None or isinstance(value, (bool, str, int)):
+        return value
+    if isinstance(value, float):
+        return value if math.isfinite(value) else repr(value)
+    if callable(value):
+        return "a function"
+    if isinstance(value, dict):
+        return {str(asData(key)): asData(one) for key, one in value.items()}
+    if isinstance(getattr(value, "name", None), str):
+        return value.name
+    with contextlib.suppress(TypeError):
+        return [asData(one) for one in value]
+    try:
+        return asData(float(value))
+    except (TypeError, ValueError):
+        return repr(value)
+
+
+class Script:
+    """What a script has said so far.
+
+    ``words`` is a list of pairs: the name of a word, and its arguments as a dict of data. A
+    checkpoint keeps it.
+    """
+
+    def __init__(self):
+        self.words = []
+        self._farther = []  # arguments of each word that say how far it goes
+
+    def note(self, act, first, args, settings, farther=()):
+        """Note a word. ``farther`` names those of its arguments that say how far a stage goes."""
+        self.add(act.__name__, asData(argumentsOf(act, first, args, settings)), farther)
+
+    def add(self, word, arguments, farther=()):
+        """Add a word and its arguments as data."""
+        self.words.append([word, arguments])
+        self._farther.append(set(farther))
+
+    def isFirst(self, words):
+        """Whether the last word is the first of some kinds that the script says."""
+        *before, (last, _) = self.words
+        return last in words and not any(word in words for word, _ in before)
+
+    def compare(self, before):
+        """Refuse a script that says something else than that of the run that is resumed. Returns
+        whether it goes farther.
+
+        :param before: ``words`` of that run, up to its checkpoint. The last of them, but for
+            results, is the stage in which that was made, which may go farther now
+        """
+        last = max((n for n, (word, _) in enumerate(before) if word != RESULT), default=-1)
+        farther = False
+        for at, (was, now) in enumerate(zip(before, self.words)):
+            if was == now:
+                continue
+            (name, old), (other, new) = was, now
+            may = self._farther[at] if at == last else set()
+            changed = {n for n in {**old, **new} if old.get(n) != new.get(n)}
+            if name != other or not changed <= may:
+                raise NotResumed(
+                    f"--resume: a run goes on as it began: the script said {_spoken(*was)}, now it"
+                    f" says {_spoken(*now)}"
+                )
+            farther = True
+        return farther
+
+
+def _spoken(name, arguments):
+    return f"{name}({', '.join(f'{n}={v!r}' for n, v in arguments.items())})"

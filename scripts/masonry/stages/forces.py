@@ -1,0 +1,373 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Loads after the first stage: ``load``, ``wind``, ``press`` and ``pressure`` put them on, ``grow``
+lets any of them grow, alone or together, and ``hold`` holds what was free.
+
+The first four give a load its new value, whatever it was before, and wait for rest, so that
+``bracket`` can search for the largest that is held. The others add to what is there until the
+structure falls, and search by themselves.
+"""
+
+import math
+import re
+from types import SimpleNamespace
+from typing import Annotated, Any
+
+from yade import O, Vector3
+
+from ..arguments import Direction, Freedoms, Level, isNumber, kindOf, number, shown
+from ..errors import Refused
+from ..model.load_names import nameOf
+from .bounds import findBound
+
+from ..scene.loads import (
+    Field,
+    Force,
+    Pressure,
+    Stress,
+    checkedForce,
+    doubtPress,
+    doubtWind,
+    windForces,
+)
+from ..scene.pressures import pressures
+from ..scene.targets import AnyTarget, Loaded, MovingPlaten, Part
+from .gravity import Acting, Width, putOn, putOnAnswers
+from .growing import WITHIN, found
+from .growing import grow as growTo
+from .answers import AT_REST, DONE
+from .stage import Duration, stage
+from ..scene.script import PUSHES
+from .travelling import placed
+
+GROWS = 2.0  # [s] in which a load grows to its whole
+
+
+class Forces(Acting):
+    """Forces of MasonryLoad engines: of each the vector at a factor of 1 [N]."""
+
+    replaces = False  # whether the forces replace those that are there, and are not added to them
+    beside = 0, 0, 0  # a force that stays beside those that replace [N]
+    dead = False  # whether what was there grows by the factor, too
+
+    def __init__(self, loads, forces, name, unit, most, towards=None):
+        super().__init__(name, most, unit, towards)
+        self.loads, self.forces = loads, forces
+
+    def pairs(self):
+        """The engines and their forces at a factor of 1."""
+        pairs = zip(self.loads, self.forces)
+        return [(load, force + self.dead * load.force) for load, force in pairs]
+
+    def now(self):
+        return [value for load in self.loads for value in load.force]
+
+    def put(self, values):
+        for n, load in enumerate(self.loads):
+            load.force = Vector3(*values[3 * n : 3 * n + 3])
+
+    def at(self, began, share):
+        factor = self.factor(share)
+        whole = [factor * value for force in self.forces for value in force]
+        if self.replaces:
+            return [v + self.beside[n % 3] for n, v in enumerate(whole)]
+        return [was * (1 + factor * self.dead) + v for was, v in zip(began, whole)]
+
+
+def _forceOn(scene, target, force, name):
+    """The load of a force on a target, in kN along its direction. Raises ValueError."""
+    force = checkedForce(scene.description, force, name)
+    engine = scene.model.loading.forceOf(target)
+    if not force.norm() > 0 and name != "load":
+        raise ValueError(f"{name}: force must not be zero")
+    # a load that is taken away keeps its direction
+    along = force if force.norm() > 0 else engine.force
+    towards = along.normalized() if along.norm() > 0 else Vector3.UnitZ
+    what = f"load on {target.name} along {nameOf(towards)}"
+    made = Forces([engine], [1e3 * towards], what, "kN", 1e-3 * force.norm(), towards)
+    made.target = target
+    return made
+
+
+@stage(bounded=True, answers=putOnAnswers)
+def load(scene: Any, target: Loaded, force: Force, longest: Duration | None = None) -> str:
+    """Give a target another dead load, and wait until the structure is at rest or falls.
+
+    The force replaces the dead load that the target has, described or put on; it changes within
+    0.02 s, and longer for tall structures. So ``bracket(lambda f: scene.load(target, (0, 0, -f)) ==
+    AT_REST, 1e3, 9e3)`` finds the largest that is held.
+
+    :param force: three numbers [N]; zeros take the load away
+    :param longest: time in the scene after which it is given up [s]; None: 4 s
+    :returns: ``AT_REST``, ``MOVING`` or ``COLLAPSED``
+    """
+    return _putOn(scene, "load", _forceOn(scene, target, force, "load"), longest)
+
+
+def _windOn(scene, pressure, towards, part):
+    """The load of a wind, in kPa. Raises ValueError."""
+    towards = Vector3(*towards)
+    if pressure:  # 0 takes a wind away
+        doubtWind(pressure, "wind")
+    sign = math.copysign(1, pressure)
+    forces = windForces(scene.description, 1e3 * sign, towards, part, "wind")
+    # suction has the engines of a pressure on the same faces, so that one replaces the other
+    made = _onFaces(scene, forces, "wind", towards, part, "kPa", 1e-3 * abs(pressure))
+    made.towards *= sign
+    return made
+
+
+def _pressureOn(scene, value, towards, part, normal):
+    """The load of a pressure, of which 1 is the whole. Raises ValueError."""
+    forces = pressures(scene.description, value, towards, part, normal)
+    kind = "pressure" if normal else "pressure in plan"
+    return _onFaces(scene, forces, kind, Vector3(*towards), part, "-", 1.0)
+
+
+def _evenOn(scene, value, towards, part, normal):
+    """The load of a pressure that is the same everywhere and not 0, in kPa. Raises ValueError."""
+    sign = math.copysign(1, value)
+    made = _pressureOn(scene, 1e3 * sign, towards, part, normal)
+    made.unit, made.most = "kPa", 1e-3 * abs(value)
+    made.towards *= sign
+    return made
+
+
+def _onFaces(scene, forces, kind, towards, part, unit, most):
+    """The load of forces on faces, by what labels its engines and names it."""
+    along = towards.normalized()
+    axes = "_".join(f"{v + 0.0:.6g}".replace("-", "minus") for v in along)
+    # YADE makes names of labels
+    label = re.sub(r"\W", "_", f"{kind}_towards_{axes}_{part or 'all'}")
+    places = [(one.brick, one.point) for one in forces]
+    engines = scene.model.loading.onBricks(label, places)
+    what = f"{kind} towards {nameOf(towards)}" + (f" on {part}" if part else "")
+    whole = [Vector3(*one.force) for one in forces]
+    return Forces(engines, whole, what, unit, most, along)
+
+
+@stage(bounded=True, answers=putOnAnswers)
+def wind(
+    scene: Any,
+    pressure: Pressure,
+    towards: Level,
+    part: Part | None = None,
+    longest: Duration | None = None,
+) -> str:
+    """Give the faces that look against a horizontal direction another pressure, and wait as
+    :meth:`load` does. It is added to the wind that grew in :meth:`settle`; another :meth:`wind` of
+    the same direction and part after the first stage replaces it.
+
+    :param pressure: [Pa]; 0 takes the wind away; ``towards`` and ``part``: as before the first
+        stage
+    """
+    return _putOn(scene, "wind", _windOn(scene, pressure, towards, part), longest)
+
+
+@stage(bounded=True, answers=putOnAnswers)
+def pressure(
+    scene: Any,
+    value: Field,
+    towards: Direction,
+    part: Part | None = None,
+    normal: bool = True,
+    longest: Duration | None = None,
+) -> str:
+    """Give faces another pressure, and wait as :meth:`load` does. It is added to those that grew in
+    :meth:`settle`; another
+    :meth:`pressure` of the same direction, part and ``normal`` after the first stage replaces it.
+
+    :param value: [Pa], or a function of the place; 0 takes it away; ``towards``, ``part`` and
+        ``normal``: as before the first stage
+    """
+    made = _pressureOn(scene, value, towards, part, normal)
+    return _putOn(scene, "pressure", made, longest)
+
+
+def _pressOn(scene, platen, stress, name):
+    """The load of a press, in MPa. Raises ValueError."""
+    if not stress > 0:
+        raise ValueError(f"{name}: stress {stress!r} Pa must be above 0")
+    doubtPress(stress, name)
+    engine, area = scene.model.loading.pressOf(platen)
+    what, whole = f"press of {platen.name}", [-1e6 * area * Vector3.UnitZ]
+    made = Forces([engine], whole, what, "MPa", 1e-6 * stress, -Vector3.UnitZ)
+    made.target = platen
+    return made
+
+
+@stage(bounded=True, answers=putOnAnswers)
+def press(scene: Any, platen: MovingPlaten, stress: Stress, longest: Duration | None = None) -> str:
+    """Press a platen with another mean stress on the bricks below it, which replaces that before,
+    and wait as :meth:`load` does.
+
+    :param stress: mean vertical stress that the bricks feel [Pa]; the weight of the platen is part
+        of it
+    """
+    made = _pressOn(scene, platen, stress, "press")
+    made.beside = [0, 0, scene.model.supports.weightOf(platen)]
+    return _putOn(scene, "press", made, longest)
+
+
+def together(value, first):
+    """The kind of loads that grow together: a dict from targets to forces [N] or, of platens,
+    stresses [Pa]."""
+    if not isinstance(value, dict):
+        raise ValueError(
+            f"{shown(value)} must be a dict from targets to forces [N] or stresses [Pa]"
+        )
+    kinds = {True: (MovingPlaten, Stress), False: (Loaded, Force)}
+    return {
+        kindOf(target)(one, first): kindOf(load)(amount, first)  # type: ignore[misc]
+        for one, amount in value.items()
+        for target, load in [kinds[isNumber(amount)]]
+    }
+
+
+@stage(bounded=True, answers=found)
+def grow(
+    scene: Any,
+    loads: Annotated[dict[Any, Any], together],
+    most: Annotated[float, number("", 0, 1e6, above=True)] = 1.0,
+    dead: bool = False,
+    pressure: Field | None = None,
+    towards: Direction = (1, 0, 0),
+    part: Part | None = None,
+    normal: bool = True,
+    over: Duration = GROWS,
+    within: Width = WITHIN,
+) -> str:
+    """Let a load, or several in a fixed proportion, grow evenly beside what is there, until the
+    structure falls or ``most`` times of them are reached; then search for the load that is held.
+
+    ``scene.grow({stone: (2e3, 0, 0)})`` adds a force to a brick, ``scene.grow({top: 0.1e6})`` a
+    stress to what presses a platen, and ``scene.grow({}, pressure=2e3, towards=(1, 0, 0))`` an even
+    pressure, as of wind, to faces. ``scene.grow({top: 0.1e6, stone: (2e3, 0, 0)}, most=10)`` lets
+    two grow together.
+
+    :param loads: a dict from targets to three numbers [N], or to a stress of a platen [Pa], at a
+        factor of 1; it may be empty
+    :param most: factor of all of them at the end [-]
+    :param dead: whether what acts already grows, too: at a factor of 1 dead loads, presses without
+        the weight of their platens, and pressures are twice what they were. Gravity stays
+    :param pressure: [Pa] at a factor of 1, or a function of the place; ``towards``, ``part`` and
+        ``normal``: of it, as in
+        :meth:`pressure`
+    :param over: time in which they grow to that [s]
+    :param within: as in :meth:`tilt`
+    :returns: as in :meth:`tilt`. ``scene.factor`` of one load alone is its amount: of a force in
+        kN, of a stress in MPa, of an even pressure in kPa; otherwise it has no unit
+    """
+    made = [
+        (_pressOn if isNumber(amount) else _forceOn)(scene, target, amount, "grow")
+        for target, amount in loads.items()
+    ]
+    if pressure is not None:
+        even = isNumber(pressure) and pressure != 0
+        make = _evenOn if even and not loads and not dead else _pressureOn
+        made.append(make(scene, pressure, towards, part, normal))
+    if len(made) == 1 and not dead:
+        made[0].most *= most
+        return _grow(scene, made[0], over, within)
+    pairs = [(e, one.most * force) for one in made for e, force in one.pairs()]
+    if dead:
+        pairs += [(load, Vector3.Zero) for load, _ in scene.model.loading.deadLoads()]
+    if not pairs:
+        raise ValueError("grow: loads, pressure or dead must say what grows")
+    forces: dict[str, Any] = {}
+    for engine, force in pairs:
+        forces[engine.label] = forces.get(engine.label, Vector3.Zero) + force
+    engines = [scene.model.loading.loads[label] for label in forces]
+    what = " and ".join([one.name for one in made] + ["the dead loads"] * dead)
+    total = sum(forces.values(), Vector3.Zero)
+    along = total.normalized() if total.norm() > 0 else -Vector3.UnitZ
+    whole = Forces(engines, [*forces.values()], what, "-", most, along)
+    whole.dead = dead
+    whole.target = next((one.target for one in made if one.target), None)
+    return _grow(scene, whole, over, within)
+
+
+def _putOn(scene, name, made, longest):
+    made.replaces, before = True, made.now()
+    if scene.only:  # what it replaces is no load beside it
+        made.put(made.at(before, 0.0))
+    if scene.only or not any(before):
+        _findBound(scene, made)
+    ended = putOn(scene, name, made, longest)
+    if scene.only and ended != AT_REST:
+        made.put(before)
+    return ended
+
+
+def _grow(scene, made, over, within):
+    _findBound(scene, made)
+    return growTo(scene, "grow", made, over, within)
+
+
+def _findBound(scene, made):
+    findBound(scene, "forces", made.name, made.unit.strip("-"), made.pairs())
+
+
+@stage()
+def hold(scene: Any, target: AnyTarget, axes: Freedoms = "xyzXYZ") -> str:
+    """Hold a target where it is now. What follows is the next stage's.
+
+    A platen that is pressed and then held along z keeps its height, and one held about Y does not
+    turn: so does the top of many test rigs.
+
+    :param target: a platen or a :meth:`handle`, or a brick that was held and released: what has
+        columns for its reaction
+    :param axes: along which it is held, xyz, and about which it cannot turn, XYZ
+    """
+    if not (target.fixed or target.loaded):
+        raise ValueError(
+            "hold: only a platen, a handle(), or what was held and released, can be held after the"
+            f" first stage: curve.csv has no columns for the reaction of {target.name}"
+        )
+    across = [a for a in axes if a in "xy" and target.box and not target.fixed]
+    if across:
+        raise ValueError(
+            f"hold: {target.name} is a platen, which can be held along z and about X, Y and Z after"
+            f" the first stage: curve.csv has no column for its reaction along {', '.join(across)};"
+            " push() it and let the drive hold it there"
+        )
+    zones = scene.model.zones
+    if zones and target.body in zones.bodies:
+        raise Refused(
+            f"hold: {target.name} is a deformable brick, which can be held before the first stage"
+            " alone"
+        )
+    driven = [a for a in "xyz" if scene.model.loading.isDriven(target, a) and a in axes]
+    if driven:
+        raise ValueError(f"hold: a drive holds {target.name} along {', '.join(driven)} already")
+    scene.model.supports.holdAlso(target, axes)
+    state = O.bodies[target.body].state
+    blocked = {*state.blockedDOFs, *axes}
+    state.blockedDOFs = "".join(a for a in "xyzXYZ" if a in blocked)
+    for i, (axis, about) in enumerate(zip("xyz", "XYZ")):
+        state.vel[i] *= axis not in blocked
+        state.angVel[i] *= about not in blocked
+    scene.running.stage("hold", SimpleNamespace())
+    return DONE
+
+
+def prepare(scene, word, arguments):
+    """Make the engines of a load that the script puts on after the first stage, before a checkpoint
+    is loaded that has them."""
+    loading, get = scene.model.loading, arguments.get
+    target = get("target") or get("platen")
+    if word in PUSHES and (isinstance(target, dict) or target not in scene.targets):
+        loading.patternDrive()
+        return
+    alone = {"load": None, "press": 0}
+    loads = {target: alone[word]} if word in alone else get("loads", {})
+    for name, amount in loads.items():
+        if name in scene.targets:
+            make = loading.pressOf if isNumber(amount) else loading.forceOf
+            make(scene.targets[name])
+    if word == "wind":
+        _windOn(scene, *(arguments[n] for n in ("pressure", "towards", "part")))
+    elif word == "pressure" or get("pressure") is not None:
+        # its value, which may be a function, has no part in where its engines are
+        _pressureOn(scene, 0.0, *(arguments[n] for n in ("towards", "part", "normal")))
+    elif word == "travel":
+        placed(scene, arguments["along"])

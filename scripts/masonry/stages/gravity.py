@@ -1,0 +1,251 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Horizontal acceleration and a tilting ground: ``tilt``, ``accelerate`` and ``lean``, and the
+search with ``bracket``. What acts and can be changed is an :class:`Acting`."""
+
+import math
+from typing import Annotated, Any, Callable
+
+from yade import Vector3
+
+from ..arguments import Level, number, validated
+from ..model.loading import smooth
+from ..units import GRAVITY
+from ..errors import checkPlane
+from ..model.load_names import nameOfLean
+from .bounds import findBound
+from .growing import TRIAL, WITHIN, ends, follow, found, grow
+from .rest import WAITED, Resting, waitForRest
+from .answers import AT_REST, MOVING
+from .stage import Duration, stage
+
+LEAN_GROWS = 0.2  # [s] in which a lean grows
+
+
+class Acting:
+    """What acts. A share of 1 is the whole growth, and its factor is ``most`` [-].
+
+    Its kinds have ``now()``, their present values as a list of numbers, ``put(values)``, and
+    ``at(began, share)``, their values when a share of the growth is over, 0 to 1 [-], from those
+    when it began.
+
+    :param name: under which its bound is found
+    :param unit: of the factor
+    :param towards: direction along which displacements are counted
+    """
+
+    target = None  # the platen or brick on which it acts, if it is one
+
+    def __init__(self, name, most, unit, towards=None):
+        self.name, self.most, self.unit, self.towards = name, most, unit, towards
+
+    def factor(self, share):
+        """The load factor at a share [-]."""
+        return share * self.most
+
+    def shareOf(self, factor):
+        """The share at which it has a load factor [-]."""
+        return factor / self.most
+
+
+class Acceleration(Acting):
+    """Gravity, with a horizontal acceleration that grows beside it, to ``most`` [g]."""
+
+    def __init__(self, model, most, towards, name, unit="g"):
+        super().__init__(name, most, unit, towards)
+        self.model = model
+
+    def now(self):
+        return list(self.model.scheme.now)
+
+    def put(self, values):
+        self.model.scheme.setGravity(Vector3(*values))
+
+    def at(self, began, share):
+        down = self.model.description.gravity * Vector3.UnitZ
+        whole = self.factor(share) * GRAVITY * self.towards - down
+        return list(whole / self.model.args.density_scaling)
+
+
+class Tilting(Acceleration):
+    """Gravity that turns to an angle [rad], as on a ground that is tilted. The factor is the
+    horizontal over the vertical part."""
+
+    def __init__(self, model, angle, towards, name):
+        super().__init__(model, math.tan(angle), towards, name, "-")
+        self.angle = angle
+
+    def at(self, began, share):
+        down, angle = self.model.description.gravity, share * self.angle
+        turned = math.sin(angle) * self.towards - math.cos(angle) * Vector3.UnitZ
+        return list(down * turned / self.model.args.density_scaling)
+
+    def factor(self, share):
+        angle = share * self.angle
+        return math.tan(angle) if angle < math.pi / 2 else math.inf
+
+    def shareOf(self, factor):
+        return math.atan(factor) / self.angle
+
+
+def putOnAnswers(scene, rows):
+    """The load that was put on, as held or as not held."""
+    asked, unit = scene.running.memory.goal, scene.loadUnit
+    end, load = [asked, 1e3 * scene.model.loading.alongNow()], f"{asked:.4g} {unit}"
+    if scene.ended == AT_REST:
+        return ends(scene, end, "the structure came to rest under it", None, f"it held {load}")
+    why = f"the structure did not come to rest under {load}"
+    return ends(scene, None, why, end, why)
+
+
+def sideways(scene, towards, name):
+    """A horizontal direction as a unit vector. Raises ValueError."""
+    checkPlane(scene.description, towards, name)
+    return Vector3(*towards).normalized()
+
+
+Width = Annotated[float, number("", 1e-4, 1, below=True)]  # of a bracket
+
+
+@stage(bounded=True, answers=found)
+def tilt(
+    scene: Any,
+    degrees: Annotated[float, number("degrees", 0, 90, above=True, below=True)],
+    towards: Level = (1, 0, 0),
+    rate: Annotated[float, number("degrees/s", 1e-6, 1e6)] = 1.0,
+    within: Width = WITHIN,
+) -> str:
+    """Tilt the ground, and with it gravity, until the structure falls or the angle is reached; then
+    search for the tilt that it holds.
+
+    :param towards: horizontal direction in which the structure leans
+    :param rate: [degrees/s]
+    :param within: width of the bracket that the search leaves, over its upper end [-]
+    :returns: ``COLLAPSED`` if the structure fell, else ``AT_REST`` if it came to rest under the
+        whole load, else ``DONE``. ``scene.factor`` is the largest horizontal over vertical
+        acceleration that it held, by :mod:`masonry.stages.growing`; the scene stays as it was
+        at the end of the growth
+    """
+    towards = sideways(scene, towards, "tilt")
+    findBound(scene, "lean", towards, True)
+    name = nameOfLean(towards, tilts=True)
+    load = Tilting(scene.model, math.radians(degrees), towards, name)
+    return grow(scene, "tilt", load, degrees / rate, within)
+
+
+@stage(bounded=True, answers=found)
+def accelerate(
+    scene: Any,
+    most: Annotated[float, number("g", 0, 1e3, above=True)],
+    towards: Level = (1, 0, 0),
+    rate: Annotated[float, number("g/s", 1e-6, 1e6)] = 0.5,
+    within: Width = WITHIN,
+) -> str:
+    """Let a horizontal acceleration grow evenly, until the structure falls or ``most`` is reached;
+    then search for the one that it holds.
+
+    :param most: [g]
+    :param towards: horizontal direction of the force on the blocks
+    :param rate: [g/s]; the rest as in :meth:`tilt`
+    """
+    towards = sideways(scene, towards, "accelerate")
+    findBound(scene, "lean", towards)
+    load = Acceleration(scene.model, most, towards, nameOfLean(towards))
+    return grow(scene, "accelerate", load, most / rate, within)
+
+
+@stage(bounded=True, answers=putOnAnswers)
+def lean(
+    scene: Any,
+    factor: Annotated[float, number("g", 0, 1000)],
+    towards: Level = (1, 0, 0),
+    longest: Duration | None = None,
+) -> str:
+    """Put a horizontal acceleration on the structure, and wait until it is at rest or falls.
+
+    :param factor: [g]
+    :param longest: time in the scene after which it is given up [s]; None: 4 s
+    """
+    towards = sideways(scene, towards, "lean")
+    findBound(scene, "lean", towards)
+    load = Acceleration(scene.model, factor, towards, nameOfLean(towards))
+    return putOn(scene, "lean", load, longest, LEAN_GROWS)
+
+
+def putOn(scene, name, load, longest, over=0.0):
+    """Let a load grow within a short time, and wait until the structure is at rest or falls. With
+    ``--preset bound`` it stays if limit analysis finds that it is carried.
+
+    :param longest: time in the scene after which it is given up [s]; None:
+        :data:`masonry.stages.growing.TRIAL`, and longer on soft springs
+    :param over: time in which it grows at least [s]
+    """
+    if scene.only:
+        carried = scene.bounds.entries.get(load.name, {}).get("factor", 0.0)
+        if load.name not in scene.bounds.endless and load.most > carried:
+            return MOVING
+        load.put(load.at(load.now(), 1.0))
+        return AT_REST
+    running, model, scene.loadUnit = scene.running, scene.model, load.unit
+    running.note("lean", load.name)
+    on, towards = load.target.name if load.target else "", load.towards
+    follow(scene, f"{name} {on}{[round(v, 9) for v in towards]}", load)
+    at = running.stage(name, Resting())
+    at.goal = load.factor(1.0)
+    if at.begun is None:
+        at.begun = load.now()
+    first, ends = at.begun, load.at(at.begun, 1.0)
+
+    def growing(x):
+        share = smooth(x)
+        load.put([was + share * (end - was) for was, end in zip(first, ends)])
+        model.loading.loadFactor = share * at.goal
+
+    longest = longest or max(TRIAL, WAITED * model.supports.slowest())
+    vertical = abs(towards[2]) > 0.5
+    ended = waitForRest(scene, at, longest, growing, over=over, buckling=vertical)
+    if ended == AT_REST:
+        scene.bounds.hold(load.name, at.goal)
+    return ended
+
+
+@validated
+def bracket(
+    scene: Any,
+    carries: Callable[[float], bool],
+    low: Annotated[float, number("", 0)],
+    high: Annotated[float, number("", 0, above=True)],
+    within: Width = 0.01,
+) -> tuple[float, float]:
+    """Find the largest load that the structure carries, by halving: each trial starts from the last
+    state at rest.
+
+    :param carries: function of a load factor that sets loads and stages, and returns whether the
+        structure is at rest under it, for example ``lambda f: scene.lean(f) == AT_REST``
+    :param low: a factor that it carries, ``high`` one that it does not
+    :param within: width of the bracket at the end, relative to ``high``
+    :returns: the two ends of the bracket
+    :raises ValueError: if the structure does not carry ``low``, or carries ``high``
+    """
+    if not low < high:
+        raise ValueError(f"bracket: low {low} must be below high {high}")
+    if scene.collapsed:
+        scene.stepBack()
+    scene.bracketing = True
+    try:
+        if not carries(low):
+            scene.stepBack()
+            raise ValueError(f"bracket: the structure does not carry {low:g}, the lower end")
+        if carries(high):
+            raise ValueError(f"bracket: the structure carries {high:g}, the upper end")
+        scene.stepBack()
+        within = within if scene.share == 1 else max(within, 0.5)
+        while high - low > within * high:
+            middle = 0.5 * (low + high)
+            if carries(middle):
+                low = middle
+            else:
+                high = middle
+                scene.stepBack()
+        return low, high
+    finally:
+        scene.bracketing = False

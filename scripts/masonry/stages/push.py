@@ -1,0 +1,333 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Slow pushes of a target, as the drive of a testing machine makes them: ``push``, ``cycle`` and
+``follow``.
+
+In a pattern several blocks are pushed by forces in a fixed proportion, as floors in a triangle, a
+mode or masses take them. The drive moves the mean of all points, by the shares of their forces, at
+a constant velocity. That is the displacement on which the whole force does work, so the push
+follows the structure beyond its peak. Displacements of the push are those of one target, its
+control.
+"""
+
+import zlib
+from dataclasses import replace
+from types import SimpleNamespace
+from typing import Annotated, Any, Callable, Union
+
+from yade import O, Vector3
+
+from ..arguments import (
+    Direction,
+    FilePath,
+    Numbers,
+    isNumber,
+    listOf,
+    number,
+    oneOf,
+    plain,
+    shown,
+    whole,
+)
+from ..model.loading import Pattern, patternOfDrive, pushTo
+from ..model.period import firstMode
+from ..errors import NotAccurate, Refused
+from ..terminal import say
+from ..numbers import curves
+from ..numbers.run_data import BASE, MOVED, TOP, RunData
+from ..model.load_names import nameOfPush
+from .bounds import findBound
+from ..scene.history import CYCLES, MOST, parse
+from ..run.option_table import Rate
+from ..scene.targets import AnyTarget, Target, kindOfLoaded
+from ..scene.script import PUSHES
+from .pushing import SHORT, drivePush
+from .answers import DONE, Answer
+from .rest import rampTime
+from .stage import stage
+
+#: What the stages of this file take from the command line.
+OPTIONS = "until", "history", "rate"
+PATTERNS = "masses", "triangle", "mode"  # over all blocks
+LONGEST = 20  # the longest first period of which the shape is looked for, over rampTime() [-]
+FREE = 1e-12  # of the sum of all forces: what a block takes at least that is part of a pattern [-]
+
+
+def pushed(value: Any, first: Any = None) -> Any:
+    """The kind of what is pushed: a target, a dict from targets to shares, the name of a pattern,
+    or a function of the place."""
+    if isinstance(value, dict) and value:
+        for target, share in value.items():
+            kindOfLoaded(target, first)
+            if not isNumber(share) or not 0 < plain(share) < 1e9:
+                raise ValueError(
+                    f"{shown(share)}, the share of {target.name}, must be a number above 0"
+                )
+        return value
+    if isinstance(value, Target):
+        return kindOfLoaded(value, first)
+    if callable(value) or value in PATTERNS:
+        return value
+    names = ", ".join(map(repr, PATTERNS))
+    raise ValueError(
+        f"{shown(value)} must be a platen that moves or a handle() of this scene, a dict from these"
+        f" to their shares of the force, one of {names}, or a function of x, y and z"
+    )
+
+
+#: What a push moves.
+Pushed = Annotated[
+    Union[Target, dict[Target, float], str, Callable[[float, float, float], float]], pushed
+]
+
+
+def patternOf(scene: Any, value: Any, direction: Any, args: Any) -> Any:
+    """What a push moves: a target as it is, anything else as a
+    :class:`masonry.model.loading.Pattern`. Raises Refused."""
+    if isinstance(value, Target):
+        return value
+    if isinstance(value, dict):
+        whole = sum(map(plain, value.values()))
+        shares = {target: plain(share) / whole for target, share in value.items()}
+        name = " and ".join(f"{share:.4g} {target.name}" for target, share in shares.items())
+        return Pattern(name, tuple((t.body, t.point, s) for t, s in shares.items()))
+    name = value if isinstance(value, str) else "a pattern"
+    if scene.running.redoes and scene.running.takesUp:
+        # its drive has the pattern, which was found when the push began
+        return _named(patternOfDrive(scene.model.loading, name))
+    if scene.model.zones:
+        raise Refused(
+            "push: forces on all blocks act on rigid ones: name platens and handles with their"
+            " shares, or choose --blocks rigid"
+        )
+    of = _shapeOf(scene.model, value, direction, args)
+    isHeld = lambda body: any(v and a in body.state.blockedDOFs for a, v in zip("xyz", direction))
+    forces = {b: b.state.mass * of(b) for b in O.bodies if not isHeld(b)}
+    whole = sum(forces.values())
+    if not whole > 0:
+        raise Refused(f"push: the forces of {name} have the sum {whole:g}, and it must be above 0")
+    parts = [
+        (body.id, tuple(body.state.refPos), force / whole)
+        for body, force in forces.items()
+        if abs(force) > FREE * whole
+    ]
+    return _named(Pattern(name, tuple(parts), damped=True))
+
+
+def _named(pattern):
+    """A pattern whose name tells it from others: what a mode or a function gives is known by its
+    numbers alone."""
+    if pattern.name in ("masses", "triangle"):
+        return pattern
+    numbers = [(body, f"{share:.6g}") for body, _, share in pattern.parts]
+    number = zlib.crc32(repr(numbers).encode())
+    return replace(pattern, name=f"{pattern.name} {number:08x}")
+
+
+def _shapeOf(model, value, direction, args):
+    """The force on a block over its mass, as a function of its body, which raises Refused: of a
+    uniform acceleration, with the height above the lowest brick, in the first mode along the push
+    in the present state, or as a function of the place of its centre [m].
+    """
+    if value == "mode":
+        mode = firstMode(model, direction, LONGEST * rampTime(args))
+        if mode is None:
+            raise Refused(
+                'push: "mode": no first mode along the push is found; name the targets and their'
+                " shares"
+            )
+        return lambda body: mode[body.id]
+    if value == "masses":
+        return lambda body: 1.0
+    if value == "triangle":
+        return lambda body: max(0.0, body.state.refPos[2] - model.description.low[2])
+
+    def of(body):
+        try:
+            found = value(*body.state.refPos)
+        except Exception as error:  # of the user's own
+            found = f"{type(error).__name__}: {error}"
+        if not isNumber(found) or not abs(plain(found)) < 1e9:
+            raise Refused(
+                f"push: the pattern at {tuple(body.state.refPos)} m is {shown(found)}, and must be"
+                " a number"
+            )
+        return plain(found)
+
+    return of
+
+
+def controlOf(scene: Any, value: Any, control: Target | None) -> Target:
+    """The target whose displacement a push counts: the one that is given, else what is pushed, of a
+    dict the highest target, else what is watched or moves. Raises Refused."""
+    if control or isinstance(value, Target):
+        return control or value
+    found = (
+        max(value, key=lambda t: t.recorded[2])
+        if isinstance(value, dict)
+        else scene.description.followed()
+    )
+    if found is None:
+        raise Refused(
+            "push: control is missing: watch() a brick whose displacement counts, and give it"
+        )
+    return found
+
+
+def peaks(scene, rows):
+    """The largest force that both ends carried, on either side if the push goes there and back,
+    with the displacement there."""
+    looped, run = bool(scene.pushed.history), {"stages": [{"load": ["push"], "first_row": 0}]}
+    if looped:
+        run["history"] = {}
+    data = RunData(run, lambda name: rows(name) or None)
+    if not all(map(data.column, (BASE, TOP, MOVED))):
+        return
+    imbalance = curves.dynamicImbalance(data[TOP], data[BASE])
+    for name, side in (("peak", 1), ("negative_peak", -1))[: 1 + looped]:
+        at = data.peak(side)
+        how = (
+            "the largest force that supports and loaded point carried at once; the supports alone"
+            f" had {data[BASE][at]:.4g} kN then, and {100 * imbalance:.1f} % of the force did not"
+            " reach them on the way there or behind it. How far rate, mesh and points change it is"
+            " not known from one run"
+        )
+        yield Answer(name, "kN", data.peakForce(side), how)
+        how = "displacement of the pushed point at the peak"
+        yield Answer(f"displacement_at_{name}", "mm", data[MOVED][at], how)
+
+
+@stage(bounded=True, farther=("until",), options=OPTIONS, answers=peaks)
+def push(
+    scene: Any,
+    target: Pushed,
+    until: Annotated[float, number("mm", 0, MOST, above=True)] | None = None,
+    direction: Direction = (1, 0, 0),
+    rate: Rate | None = None,
+    continued: bool = False,
+    control: AnyTarget | None = None,
+) -> str:
+    """Push a target at a constant velocity, as the drive of a testing machine does, or several
+    points in a pattern.
+
+    In a pattern the forces keep their proportion, whatever the structure does, and the mean
+    displacement of the points, by their shares of the force, grows at the rate. The shares are
+    forces: a triangle over floors of other masses is mass times height. Loads of
+    :meth:`load` and :meth:`press` are no masses; a :class:`masonry.bricks.Floor` has one.
+
+    :param target: a platen that moves, or a :meth:`handle`; or a dict from some of these to their
+        shares of the force, ``{roof: 2, floor: 1}``; or, for a force on every rigid block that is
+        free, ``"masses"``, as of a uniform acceleration, ``"triangle"``, mass times height above
+        the lowest brick, ``"mode"``, mass times the first mode along the push in the present state;
+        or a function of x, y and z [m] that multiplies the masses
+    :param until: displacement from where the push begins [mm]; the drive then stops and holds.
+        ``--until`` and ``--history`` replace it; None: one of these must be given
+    :param direction: of the push
+    :param rate: [mm/s]; None: ``--rate``
+    :param continued: whether displacements count on from where the push before began, of this
+        target in this direction, and not from where the target is now
+    :param control: the target whose displacement ``until`` and the curve count; None: what is
+        pushed, of a dict the highest, else the first that is watched or moves
+    """
+    how = direction, rate, continued, control
+    return _drive(scene, "push", target, *how, until=until and until * scene.share)
+
+
+@stage(bounded=True, farther=("amplitudes", "repeats"), options=OPTIONS, answers=peaks)
+def cycle(
+    scene: Any,
+    target: Pushed,
+    amplitudes: Annotated[Numbers, listOf(number("mm or %", 1e-6, MOST))],
+    repeats: Annotated[int, whole(1, CYCLES)] = 1,
+    direction: Direction = (1, 0, 0),
+    rate: Rate | None = None,
+    continued: bool = False,
+    control: AnyTarget | None = None,
+    unit: Annotated[str, oneOf("mm", "%")] = "mm",
+) -> str:
+    """Push a target to and fro: each amplitude A is a cycle from 0 to +A, to -A and back to 0.
+
+    :param amplitudes: a list of displacements [mm], or of drifts [%]
+    :param repeats: how often each of them
+    :param unit: of the amplitudes; a drift is the displacement that the curve counts over the
+        height of its point above the lowest brick, and on a platen that cannot turn over the height
+        of the bricks below it
+    :param continued: and other parameters: as in :meth:`push`
+    """
+    counted = controlOf(scene, target, control)
+    turns = not counted.box or "Y" not in counted.freedom
+    height = counted.recorded[2] if turns else counted.box[0][2]
+    height -= scene.description.low[2]
+    share = scene.share * (10 * height if unit == "%" else 1)
+    text = ",".join(f"{share * a:g}x{repeats}" for a in amplitudes)
+    how = direction, rate, continued, control
+    return _drive(scene, "cycle", target, *how, history=text)
+
+
+@stage(bounded=True, farther=("path",), options=OPTIONS, answers=peaks)
+def follow(
+    scene: Any,
+    target: Pushed,
+    path: FilePath,
+    direction: Direction = (1, 0, 0),
+    rate: Rate | None = None,
+    continued: bool = False,
+    control: AnyTarget | None = None,
+) -> str:
+    """Push a target through the displacements of a CSV file, which has a column
+    ``displacement_mm``.
+
+    :param continued: and other parameters: as in :meth:`push`
+    """
+    how = direction, rate, continued, control
+    return _drive(scene, "follow", target, *how, history=str(path))
+
+
+def _drive(scene, name, target, direction, rate, continued, control, **aim):
+    args = _argumentsOf(scene, name, **aim)
+    if rate is not None and args.accuracy:
+        raise NotAccurate(
+            f"--accuracy: it chooses the rate, and {name}() has one of its own: rate={rate:g} mm/s"
+        )
+    args.rate = args.rate if rate is None else rate
+    direction, running = Vector3(*direction).normalized(), scene.running
+    control = controlOf(scene, target, control)
+    pushed, loading = patternOf(scene, target, direction, args), scene.model.loading
+    pushTo(loading, pushed, control, direction, name)
+    scene.pushed = args
+    counted = "" if pushed is control else control.name
+    began = f"{pushed.name} {[round(v, 9) for v in direction]}" + f" {counted}" * bool(counted)
+    if continued and began not in running.at.origins:
+        raise ValueError(
+            f"{name}: continued: {pushed.name} has not been pushed along {tuple(direction)} before,"
+            " with this control"
+        )
+    findBound(scene, "push", pushed, direction, bool(args.history))
+    names = [nameOfPush(pushed, sign * direction) for sign in (1, -1)]
+    running.note("push", *names, counted)
+    if not scene.only:
+        drivePush(scene, name, args, began, continued)
+        loading.stopDrives()
+    return DONE
+
+
+def _argumentsOf(scene, name, until=None, history=None):
+    """The options of the run, with what this push goes to. ``--until`` or ``--history`` are for the
+    first push alone."""
+    args = SimpleNamespace(**vars(scene.args))
+    if (args.until or args.history) and scene.script.isFirst(PUSHES):
+        args.until = args.until and args.until * scene.share
+        return args
+    args.until, args.history = until, None
+    if history is not None:
+        try:
+            args.history = parse(history)
+        except ValueError as error:
+            raise Refused(f"{name}: {error}") from None
+    elif until is None:
+        raise Refused(
+            f"{name}: until None must be above 0 and at most {MOST:g} mm; the direction says"
+            " where to"
+        )
+    elif until < SHORT * scene.share:
+        say(f"warning: {name}: until {until:g} mm: is it in mm, not m?")
+    return args

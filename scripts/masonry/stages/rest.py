@@ -1,0 +1,199 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Waiting for rest: the stage ``settle``, and what ``lean`` shares with it."""
+
+import math
+from dataclasses import dataclass
+from typing import Annotated, Any
+
+from yade import O, Vector3
+
+from .._masonry import loadScene, saveScene
+from ..arguments import oneOf
+from ..model import period
+from ..model.motion import FAR, REST
+from ..errors import Collapsed, Refused
+from ..terminal import say
+from ..scene.resuming import saidBefore
+from .answers import AT_REST, MOVING
+from .stage import Duration, stage
+
+# [s] in which loads and velocities grow: some ten periods of a wave through the height of a wall
+RAMP = 0.02
+CALM = 1e-5  # kinetic over elastic energy of a structure that is said to be at rest [-]
+LOOKS = 3  # so many looks one after the other find a structure at rest before it is said to be
+EVERY = 100  # steps between two looks
+#: If time steps are long: steps in which a part of the loads is put on, a third at most, and after
+#: which it is seen whether a block has fallen far.
+SHORTER = 1, 2, 5, 10, 20, 50, EVERY
+#: Periods of a structure on springs to the ground in which loads grow, so that it sinks slowly,
+#: however soft they are.
+PERIODS = 4.0
+#: Periods on springs for which a trial waits at least.
+WAITED = 10.0
+#: Height over the least width from which a structure that has settled is looked at for buckling
+#: [-].
+SLENDER = 8.0
+SWINGING = 4.0  # [s] in the scene: settle() waits at least so long after the release of a drive
+SETTLING = 0.5  # most local damping of deformable units in settle(): with more they creep to rest
+
+
+def rampTime(args: Any) -> float:
+    """Time in which loads and velocities grow [s]: waves in heavier blocks are slower."""
+    return RAMP * args.density_scaling**0.5
+
+
+def growthTime(scene: Any) -> float:
+    """Time in which a load is put on a structure [s]: longer for tall ones."""
+    box = scene.description
+    return rampTime(scene.args) * max(1.0, (box.high[2] - box.low[2]) / 3)
+
+
+@dataclass
+class Resting:
+    """What a stage remembers that waits for rest."""
+
+    done: int = 0  # steps so far
+    quiet: int = 0  # looks that found it at rest, one after the other
+    begun: list | None = None  # the load when it began to be put on
+    goal: float = 0.0  # factor of the load that is put on [-]
+
+
+def buckles(scene: Any) -> bool:
+    """Whether a small push sideways grows on a structure that is at rest."""
+    axes = "x" if scene.description.plane else "xy"
+    with scene.running.clock("setup"), scene.running.breakable():
+        return any(period.buckles(scene.model, Vector3(a == "x", a == "y", 0)) for a in axes)
+
+
+def isSlender(scene: Any) -> bool:
+    """Whether a structure is so high over its width that it may buckle under its own weight, or
+    stands on springs."""
+    box = scene.description
+    wide, deep, high = (b - a for a, b in zip(box.low, box.high))
+    least = wide if box.plane else min(wide, deep)
+    return high >= SLENDER * least or scene.model.supports.slowest() > 0
+
+
+@stage(bounded=True, grows=True)
+def settle(
+    scene: Any,
+    longest: Duration | None = None,
+    damping: Annotated[str, oneOf("local", "combined")] | None = None,
+    record: bool = True,
+) -> str:
+    """Let gravity, presses and dead loads act until the structure is at rest.
+
+    At rest the supports carry all loads but for half a per cent, and the horizontal ones alone but
+    for half a per cent, and hardly anything moves. Presses and dead loads grow when it is called
+    first; they stay when it is called again, for example after :meth:`release`. What then falls
+    slowly needs ``longest``.
+
+    :param longest: time in the scene after which it is given up [s]; None: 0.4 s, and longer for
+        tall structures, for soft springs under platens, and after the release of a drive
+    :param damping: kind of damping in this stage, ``"local"`` or ``"combined"``; None: that of the
+        options. Local damping, of 0.5 at most in deformable units, takes the vibrations out sooner,
+        and holds a mechanism back
+    :param record: whether its end is a row of curve.csv
+    :returns: ``AT_REST``; ``MOVING`` if it is not at rest by then, or buckles; ``COLLAPSED``
+    """
+    if scene.only:
+        scene.model.loading.grow(1.0)
+        scene.grown = True
+        return AT_REST
+    model = scene.model
+    grow, scene.grown = (lambda x: None) if scene.grown else model.loading.grow, True
+    at = scene.running.stage("settle", Resting())
+    if damping:
+        most = SETTLING if model.zones and damping == "local" else 1.0
+        model.scheme.damp(min(most, scene.args.damping), damping)
+    return waitForRest(scene, at, longest, grow, record=record, buckling=isSlender(scene))
+
+
+def waitForRest(scene, at, longest, grow, over=0.0, record=True, buckling=False):
+    """Let something grow, then wait until the structure is at rest. Returns how that ended.
+
+    :param longest: time after which it is given up [s]; None: 20 times that in which it grows
+    :param grow: function of how much of the time in which it grows is over, 0 to 1 [-]
+    :param over: time in which it grows at least [s]
+    :param record: whether the end is a row of curve.csv
+    :param buckling: whether a structure at rest must not buckle, else it is ``MOVING``
+    """
+    model, running = scene.model, scene.running
+    slowest = model.supports.slowest()
+    ramp = max(growthTime(scene), over, PERIODS * slowest)
+    growing = max(1, int(ramp / O.dt))
+    every = max(n for n in SHORTER if n == 1 or n <= growing / 3)
+    swinging = SWINGING * scene.args.density_scaling**0.5 * (model.motion.far == FAR)
+    longest = longest or max(20 * ramp, WAITED * slowest, swinging)
+    if math.isinf(O.dt):
+        raise Refused("every brick is held, so nothing can move")
+    most = int(longest / O.dt)
+    if most < 1:
+        raise Refused(
+            f"longest {longest:g} s, after which the wait for rest ends, must be above the time"
+            f" step, {O.dt:.3g} s"
+        )
+    while (at.done < most or at.done % EVERY) and at.quiet < LOOKS:
+        load = min(1.0, (at.done + every) / growing)
+        grow(load)
+        running.advance(every)
+        at.done += every
+        if at.done % EVERY:
+            model.motion.checkFall(FAR)
+            continue
+        missing, moving = model.supports.unrest()
+        grown = at.done > (1.2 if over else 1.1) * growing
+        rests = missing < REST and moving < CALM and grown
+        at.quiet = at.quiet + 1 if rests else 0
+        if load == 1:
+            model.motion.checkFall()
+            if model.loading.target and model.loading.hasSunk():
+                raise Collapsed("the platen has come down by half a course")
+        running.show(
+            at.done / most,
+            lambda: f"unbalanced {100 * missing:+.2f} %, kinetic/elastic {moving:.1e}",
+            at.quiet == LOOKS or at.done >= most,
+        )
+    if at.quiet < LOOKS:
+        missing, moving = model.supports.unrest()
+        say(
+            f"note: the structure is not at rest after {at.done * O.dt:.2f} s:"
+            f" {100 * missing:.2f} % of the load is missing at the supports, kinetic over elastic"
+            f" energy is {moving:.1e}; longest=... [s] waits longer"
+        )
+    ended = AT_REST if at.quiet == LOOKS else MOVING
+    if buckling and ended == AT_REST and buckles(scene):
+        say(
+            "note: the structure buckles under this load: a small push sideways grows, so it counts"
+            " as moving"
+        )
+        ended = MOVING
+    if record:
+        running.record()
+    running.flush()
+    if ended == AT_REST:
+        model.atRest = saveScene("null")  # for stepBack()
+        model.motion.restart()
+    return ended
+
+
+def stepBack(scene: Any) -> None:
+    """Take the scene back to its last state at rest, also after a collapse. The load that was held
+    then acts again, also the one that a growth or a bracket has found. Rows of curve.csv stay."""
+    with scene.noted(stepBack):
+        if scene.only:
+            return
+        running, model = scene.running, scene.model
+        known = model is not None and model.atRest is not None
+        before, at = running.scriptBefore, len(scene.script.words)
+        if running.takesUp and at < len(before):  # it had none yet
+            known = before[at][1].get("known", known)
+        isEarlier = saidBefore(scene, "stepBack", known=known)
+        if not known:
+            raise ValueError("stepBack: the scene has not been at rest in this run of the script")
+        running.collapsed, scene.ended = False, AT_REST
+        scene.results.run.pop("collapse", None)
+        if not isEarlier:
+            loadScene(model.atRest)
+            running.checkpoints.mark()
+            model.motion.restart()

@@ -1,0 +1,95 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Which values the rows of a study have: points of the unit cube, then values of what varies.
+
+Points are those of OpenTURNS: independent random numbers, a Latin hypercube, or Sobol's sequence,
+moved by a random vector. Correlated numbers follow a normal copula with the given rank correlation
+(Spearman's).
+"""
+
+import contextlib
+import itertools
+
+from masonry.errors import Refused
+from masonry.packages import needed
+from .variables import Distribution
+
+EDGE = 1e-12  # probabilities closer to 0 or 1 are moved here, where all quantiles are finite
+DESIGNS = ("random", "latin", "sobol", "grid", "ida")
+
+
+@contextlib.contextmanager
+def seeded(ot, seed):
+    """Random numbers of OpenTURNS from a seed; those of the caller go on afterwards as if nothing
+    had been."""
+    before = ot.RandomGenerator.GetState()
+    ot.RandomGenerator.SetSeed(seed)
+    try:
+        yield
+    finally:
+        ot.RandomGenerator.SetState(before)
+
+
+def points(design, count, dimension, seed):
+    """Points of the unit cube: a list of lists, the same for the same seed."""
+    if not dimension:
+        return [[] for _ in range(count)]
+    ot = needed("openturns")
+    cube = ot.IndependentCopula(dimension)
+    inside = lambda u: min(max(u, EDGE), 1 - EDGE)
+    with seeded(ot, seed):
+        if design == "random":
+            # one after the other, so that more rows begin with the same ones
+            return [[*map(inside, cube.getRealization())] for _ in range(count)]
+        if design == "latin":
+            made = ot.LHSExperiment(cube, count, True, True)
+        else:
+            made = ot.LowDiscrepancyExperiment(ot.SobolSequence(), cube, count, True)
+            made.setRandomize(True)
+        return [list(map(inside, point)) for point in made.generate()]
+
+
+def root(names, correlation):
+    """The Cholesky factor of the normal copula of numbers with these rank correlations, or None if
+    there are none.
+
+    :raises Refused: if no numbers have all these correlations at once
+    """
+    if not correlation:
+        return None
+    ot = needed("openturns")
+    matrix = ot.CorrelationMatrix(len(names))
+    for (one, two), value in correlation.items():
+        matrix[names.index(one), names.index(two)] = value
+    normal = ot.NormalCopula.GetCorrelationFromSpearmanCorrelation
+    try:
+        return normal(matrix).computeCholesky()
+    except (TypeError, RuntimeError):
+        message = "correlation: no numbers have all these correlations at once"
+        raise Refused(message) from None
+
+
+def values(design, count, seed, vary, correlation):
+    """What every row has: a list of dicts of name -> value, without fields.
+
+    :param vary: dict of name -> Distribution or Choice
+    """
+    if design == "grid":
+        rows = itertools.product(*(c.values for c in vary.values()))
+        return [dict(zip(vary, row)) for row in rows]
+    names = [n for n, v in vary.items() if isinstance(v, Distribution)]
+    chosen = [n for n in vary if n not in names]
+    cube, factor = points(design, count, len(vary), seed), root(names, correlation)
+    if factor is not None:
+        cube = [_tied(point, factor, needed("openturns").Normal()) for point in cube]
+    columns = zip([*names, *chosen], zip(*cube))
+    found = {name: vary[name].valuesAt(column) for name, column in columns}
+    return [{name: found[name][row] for name in vary} for row in range(count)]
+
+
+def _tied(point, factor, normal):
+    """A point of the unit cube, whose first numbers get the dependence of a normal copula with this
+    Cholesky factor."""
+    size = range(factor.getNbRows())
+    free = [normal.computeQuantile(point[i])[0] for i in size]
+    tied = (sum(factor[i, j] * free[j] for j in size) for i in size)
+    return [*map(normal.computeCDF, tied), *point[len(size) :]]

@@ -1,0 +1,96 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Runs the rows of a study on this machine, each by :mod:`masonry_study.row`."""
+
+import collections
+import os
+import shutil
+import sys
+import time
+
+from masonry import background
+from masonry.errors import Interrupted, Unwritable
+from masonry.terminal import say
+from masonry.folders import inside
+from masonry.run import batch
+from masonry.run.progress import Progress
+
+LOOK_EVERY = 0.5  # [s] between looks at rows that somebody else runs
+LOG = "study.log"  # in the study's folder: what the programs say that run its rows
+FREE_SPACE = (
+    5e6  # bytes that must be free on the disk for every run at a time: its results and a checkpoint
+)
+TRIES = 3  # starts of a row that was killed
+
+
+class Local:
+    """Runs the rows of a :class:`masonry_study.gathering.Folder`, ``jobs`` at a time, until each is
+    ended or has failed."""
+
+    def __init__(self, folder, runs, jobs):
+        self.folder, self.runs, self.jobs = folder, runs, jobs
+        self.scene = folder.description()["script"]
+        self.open = {n for n in range(1, runs + 1) if not folder.isDone(n)}
+        self.failed = {}
+        self.progress = Progress()
+        self._tries = collections.Counter()
+
+    def run(self):
+        """Run them. Raises Interrupted after Ctrl-C and SIGTERM."""
+        try:
+            while self.open:
+                # the program of a row goes on with the higher levels of its record
+                lowest = self.folder.chains.lowest(self.open)
+                mine = [n for n in sorted(lowest) if not self.folder.isHeld(n)]
+                if not mine:  # somebody else runs all that is left
+                    time.sleep(LOOK_EVERY)
+                    self._look(self.open)
+                background.carryOut(mine, self._begin, self._ended, self.jobs, self._show)
+        except KeyboardInterrupt:
+            raise Interrupted() from None
+
+    def _begin(self, number):
+        """Start the program of a row. Raises Unwritable if the disk is nearly full."""
+        free = shutil.disk_usage(self.folder.path).free
+        if free < FREE_SPACE * self.jobs:
+            raise Unwritable(
+                f"{self.folder.path} has {1e-6 * free:.1f} MB free, too little for {self.jobs} runs"
+                " at a time: stopped"
+            )
+        words = ["--scene", self.scene, self.folder.path, str(number)]
+        command = [sys.executable, "-P", "-m", "masonry_study.row", *words]
+        env = {name: v for name, v in os.environ.items() if name != batch.VARIABLE}
+        with open(self.folder.of(LOG), "ab", opener=inside) as log:
+            return background.Program(command, log, env, self.folder.path)
+
+    def _ended(self, number, program):
+        """See how far the program of a row has come, which may have gone on with the levels
+        above."""
+        rows = self.open.intersection([number, *self.folder.chains.higher(number)])
+        self._look(rows)
+        killed = not 0 <= program.returncode < 128
+        for one in sorted(rows & self.open):
+            if self.folder.isHeld(one):
+                continue  # somebody else has begun to run it
+            job = self.folder.lastJob(one)
+            if not killed and job.get("status", 0) > 0:
+                self._fail(one, job["told"] or f"exit status {job['status']}")
+        if number in self.open and not self.folder.isHeld(number):
+            self._tries[number] += 1
+            if self._tries[number] == TRIES:
+                self._fail(number, f"it did not come to its end in {TRIES} attempts")
+        self._show()
+
+    def _look(self, rows):
+        self.open -= {number for number in rows if self.folder.isDone(number)}
+
+    def _show(self):
+        done, failed = self.runs - len(self.open), len(self.failed)
+        more = f", {failed} failed" if failed else ""
+        text = lambda: f"{done - failed} of {self.runs} rows{more}"
+        self.progress.show("study", done / self.runs, text, None, not self.open)
+
+    def _fail(self, number, why):
+        self.failed[number] = why
+        self.open.remove(number)
+        log = self.folder.row(number) + ".log"
+        say(f"\nrow {batch.named(number)} failed: {why}; see {log}")

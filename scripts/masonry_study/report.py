@@ -1,0 +1,314 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""What a study says: a table of statistics, and pictures.
+
+/usr/bin/python3 -m masonry_study.report DIR
+/usr/bin/python3 -m masonry_study.report DIR --measure base_shear_end_kN --demand 90,100,110
+/usr/bin/python3 -m masonry_study.report DIR --limit 20          of an incremental dynamic analysis
+
+The pictures go into the folder of the study.
+"""
+
+import argparse
+import math
+import os
+import sys
+from collections import Counter
+
+import numpy as np
+
+from masonry.errors import Refused
+from masonry.terminal import say
+from masonry.folders import check
+from . import pictures, sensitivity, statistics
+from .demands import QUANTILES, Demands
+from .fragility import nrml as nrmlOf
+from .gathering import Folder, written
+from .records import CURVE, Record
+
+MEASURE = "peak_base_shear_kN"
+MODE = "failure_mode"
+SHARES = 0.05, 0.5, 0.95  # of the rows, below the quantiles of the table
+
+
+def label(name):
+    """A column as the label of an axis: its unit, at the end of the name, goes into brackets."""
+    *words, last = name.split("_")
+    if words and last in ("kN", "mm", "J", "s", "m", "mrad", "g"):
+        last = f"[{last}]"
+    return " ".join([*words, last])
+
+
+def table(record, measure):
+    """Lines of the table of statistics of a measure."""
+    rows, _, values = record.complete(measure)
+    yield f"{label(measure)}: {len(rows)} of {len(record)} rows"
+    ended = record.cells["status"].count("ended")
+    if ended > len(rows) or "failed" in record.cells["status"]:
+        yield (
+            f"  note: rows that have no {label(measure)} are left out. If they collapsed, or were"
+            " refused for their values, the numbers below are on the unsafe side"
+        )
+    finds = [("mean", statistics.mean), ("standard deviation", statistics.deviation)]
+    finds += [(f"{100 * q:g} % quantile", statistics.quantile, q) for q in SHARES]
+    for name, find, *share in finds:
+        try:
+            yield line(name, find(values, *share))
+        except Refused as refused:
+            yield f"  {name:20} {refused}"
+    if statistics.isLognormal(values):
+        fit = statistics.lognormal(values)
+        doubt = "" if not fit.fits < 0.05 else ", which does not fit"
+        yield (
+            f"  lognormal            median {fit.median:.5g}, dispersion {fit.dispersion:.3g} (p ="
+            f" {fit.fits:.2g}{doubt})"
+        )
+
+
+def line(name, interval, form="{:.5g}"):
+    """A number and its interval as a line of a table."""
+    end = lambda v: form.format(v) if math.isfinite(v) else "unknown"
+    value = form.format(interval.value)
+    return f"  {name:20} {value:>9}   {end(interval.low)} … {end(interval.high)}"
+
+
+def modes(record):
+    """Lines of the shares of failure modes, if the study has them."""
+    labels = [text for text in record.cells.get(MODE, []) if text]
+    if labels:
+        yield "share of the rows that fail by"
+        for mode, found in statistics.shares(labels).items():
+            yield line(mode, found, "{:.3f}")
+
+
+def statuses(record):
+    """A line about rows that have no results, if there are some."""
+    counts = Counter(text for text in record.cells["status"] if text != "ended")
+    if counts:
+        names = (f"{n} {status or 'not run'}" for status, n in sorted(counts.items()))
+        yield f"rows that have not ended: {', '.join(names)}"
+
+
+def draw(record, measure):
+    """Write the pictures that the rows allow, and yield a line for each, or why there is none."""
+    rows, inputs, values = record.complete(measure)
+    title = label(measure)
+    inputs = {name: column for name, column in inputs.items() if np.ptp(column) > 0}
+    curves = record.curves(rows, *CURVE)
+    modes = record.cells.get(MODE)
+    modes = modes and [modes[row] or "unknown" for row in rows]
+    effects, indices = sensitivity.effects, sensitivity.sobol
+
+    def fan(path):
+        if not curves:
+            raise Refused("no row has a curve of " + " and ".join(CURVE))
+        pictures.fan(path, curves, *map(label, CURVE))
+
+    makes = {
+        "scatter": lambda path: pictures.scatter(path, inputs, values, title),
+        "tornado": lambda path: pictures.tornado(path, effects(inputs, values), title),
+        "sobol": lambda path: pictures.sobol(path, indices(inputs, values), title),
+        "histogram": lambda path: pictures.histogram(path, values, title, modes),
+        "fragility": lambda path: pictures.fragility(path, values, title),
+        "curves": fan,
+    }
+    yield from _drawn(record.directory, {f"{n}.png": make for n, make in makes.items()})
+
+
+def _drawn(directory, makes):
+    """Write files, and yield a line for each, or why there is none.
+
+    :param makes: dict of a name of a file -> function of the path that writes it or raises Refused
+    """
+    for name, make in makes.items():
+        path = os.path.join(directory, name)
+        try:
+            make(path)
+            yield path
+        except Refused as refused:
+            yield f"no {name}: {refused}"
+
+
+def incremental(demands, limit, intensities):
+    """Lines of what an incremental dynamic analysis says: demands at every level, and the fragility
+    of a limit of the demand (None: collapse), with its probability at some intensities."""
+    measure, reaches = label(demands.intensityName), reached(demands, limit)
+    yield (
+        f"incremental dynamic analysis of {len(demands.names)} records; the intensity is {measure}"
+    )
+    if demands.measure:
+        yield (
+            f"the demand is the amount of {label(demands.measure)}; where the structure falls, and"
+            " above, it is infinite"
+        )
+    else:
+        yield "no row has a demand: scene.watch() records one"
+    row = lambda cells: "".join(f"{cell:>11}" for cell in cells)
+    heads = row(f"{100 * share:g} %" for share in QUANTILES)
+    yield f"  {measure:>12} {heads}   records: {reaches}"
+    for level, count, known in demands.counts(limit):
+        cells = row(map(_cell, demands.quantiles(level)))
+        yield f"  {level:12.4g} {cells}   {count} of {known}"
+    try:
+        fit = demands.fragility(limit)
+    except Refused as refused:
+        yield str(refused)
+        return
+    yield f"fragility, {reaches}: lognormal, of {fit.reached} of {fit.records} records"
+    yield line(f"median {measure.partition('[')[2] and '[g]'}", fit.median)
+    yield line("dispersion [-]", fit.dispersion)
+    yield (
+        "  maximum likelihood of the levels between which each record reaches the limit;"
+        f" {100 * statistics.CONFIDENCE:g} % intervals of the profile likelihood, records being"
+        " independent"
+    )
+    if intensities:
+        yield f"probability that {reaches}, at {measure}"
+        for one in intensities:
+            yield line(f"{one:g}", fit.probability(one), "{:.3f}")
+
+
+def reached(demands, limit):
+    """What a limit is, in words."""
+    if limit is None:
+        return "the structure falls"
+    return f"{label(demands.measure or 'demand')} reaches {limit:g}"
+
+
+def _cell(value):
+    return "-" if math.isnan(value) else "infinite" if math.isinf(value) else f"{value:.4g}"
+
+
+def drawIncremental(demands, limit):
+    """Write the pictures of an incremental dynamic analysis and its fragility for OpenQuake, and
+    yield a line for each, or why there is none."""
+    measure = label(demands.intensityName)
+
+    def curves(path):
+        if not demands.measure:
+            raise Refused("no row has a demand")
+        points = [(level, demands.quantiles(level)) for level in demands.levels]
+        quantiles = {
+            share: [(level, q[n]) for level, q in points if not math.isnan(q[n])]
+            for n, share in enumerate(QUANTILES)
+        }
+        pictures.ida(path, demands.rows, demands.fell, quantiles, label(demands.measure), measure)
+
+    def fragility(path):
+        fit, text = demands.fragility(limit), f"probability: {reached(demands, limit)}"
+        pictures.fitted(path, fit, demands.counts(limit), measure, text)
+
+    def nrml(path):
+        name = os.path.basename(os.path.abspath(demands.directory))
+        state = "collapse" if limit is None else "limit"
+        about = (
+            demands.intensityName,
+            state,
+            reached(demands, limit),
+            demands.levels[-1],
+        )
+        written(path, nrmlOf({name: demands.fragility(limit)}, *about))
+
+    makes = {"ida.png": curves, "fragility.png": fragility, "fragility.xml": nrml}
+    yield from _drawn(demands.directory, makes)
+
+
+#: Options beside the folder, and what ``--help`` says of them.
+OPTIONS = {
+    "--measure": (
+        f"column of study.csv; by default {MEASURE}, or the first answer of a stage if there is no"
+        " push"
+    ),
+    "--demand": (
+        "demands, with commas between them, for which the probability that the measure is not above"
+        " them is told"
+    ),
+    "--limit": (
+        "of an incremental dynamic analysis: the demand whose fragility is found; without it that"
+        " of collapse. --measure is the demand, and --demand has intensities at which the"
+        " probability is printed"
+    ),
+}
+
+
+def parser():
+    """What the program takes."""
+    parser = argparse.ArgumentParser(
+        prog="python3 -m masonry_study.report",
+        description="Statistics and pictures of a study.",
+    )
+    parser.add_argument("study", help="folder of a study, with its study.csv")
+    for name, what in OPTIONS.items():
+        parser.add_argument(name, help=what)
+    parser.add_argument("--no-pictures", action="store_true", help="the table alone")
+    return parser
+
+
+def main(words=None):
+    """The program. Returns its exit status."""
+    args = parser().parse_args(words)
+    try:
+        demands = sorted(_listed("--demand", args.demand))
+        check(args.study)
+        record = Record(args.study)
+        limit = _listed("--limit", args.limit)
+        said = _ofIncremental if isIncremental(args.study) else _ofRows
+        for text in said(record, args, limit, demands):
+            say(text)
+    except Refused as refused:
+        say(refused, sys.stderr)
+        return 2
+    except OSError as error:
+        say(f"cannot write to {args.study}: {error.strerror}", sys.stderr)
+        return 2
+    return 0
+
+
+def isIncremental(directory):
+    """Whether a folder holds a study with records; a study.csv alone is not one."""
+    try:
+        return Folder(directory).chains.plan is not None
+    except Refused:
+        return False
+
+
+def _ofRows(record, args, limit, demands):
+    """Lines of what independent rows say, which are also drawn."""
+    if limit:
+        raise Refused("--limit: this is no incremental dynamic analysis")
+    measure = args.measure or record.measure(MEASURE)
+    yield from (*table(record, measure), *modes(record), *statuses(record))
+    if demands:
+        values = record.complete(measure)[2]
+        yield f"probability that {label(measure)} is not above"
+        for demand, *found in zip(demands, *statistics.fragility(values, demands)):
+            yield line(f"{demand:g}", statistics.Interval(*found), "{:.3f}")
+    if not args.no_pictures:
+        yield from draw(record, measure)
+
+
+def _ofIncremental(record, args, limit, intensities):
+    """Lines of what an incremental dynamic analysis says, which are also drawn."""
+    if len(limit) > 1 or limit and not limit[0] > 0:
+        raise Refused(f"--limit {args.limit} must be one number above 0")
+    if intensities and not intensities[0] > 0:
+        raise Refused(f"--demand {args.demand}: intensities must be above 0")
+    limit = limit[0] if limit else None
+    found = Demands(record, args.measure)
+    yield from (*incremental(found, limit, intensities), *statuses(record))
+    if not args.no_pictures:
+        yield from drawIncremental(found, limit)
+
+
+def _listed(option, text):
+    """Numbers with commas between them."""
+    try:
+        numbers = list(map(float, text.split(","))) if text else []
+    except ValueError:
+        raise Refused(f"{option} {text} must be numbers with commas between them") from None
+    if not all(map(math.isfinite, numbers)):
+        raise Refused(f"{option} {text} must be finite numbers")
+    return numbers
+
+
+if __name__ == "__main__":
+    sys.exit(main())

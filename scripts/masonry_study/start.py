@@ -1,0 +1,245 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Begins a study: checks all of it before anything runs, and makes its folder."""
+
+import json
+import os
+import shutil
+import subprocess
+import tempfile
+
+from masonry.run import batch
+from masonry.errors import Refused, Unwritable, refuse
+from masonry.terminal import say
+from masonry.numbers.files import readText, readWhole
+from .gathering import STUDY, TABLE, Folder, reason, written
+from .incremental import FOLDER
+from .interrupts import watched
+from .plan import namesOf
+from .variables import NEVER, Distribution, Field
+
+NOTHING = "interrupted: nothing was run"  # while a study is looked at
+VERSION = 1  # of study.json
+SPARE = 20e6  # bytes that a study leaves free on the disk
+PROBING = 600  # [s] after which a scene that should only be built is given up
+
+
+def begin(study, path, near):
+    """The folder of a study: made if it is not there, else checked to be of the same study.
+
+    :param near: folder of the study's file, where its scene is looked for
+    :raises Refused: with all problems at once. Nothing is written then
+    """
+    folder = Folder(path)
+    folder.check()
+    study.read(near)
+    script, fingerprint = study.script(near)
+    now = {"version": VERSION, "study": study.describe(), "scene_sha256": fingerprint}
+    now, known = json.loads(json.dumps(now)), None
+    with watched(NOTHING):
+        table = study.table()
+    if os.path.lexists(folder.of(STUDY)):
+        known = folder.description()
+        _compare(folder, known, now)
+    else:
+        _checkEmpty(folder, study)
+        problems, needed = _look(study, script, table)
+        problems += _checkSpace(folder, study.runs * needed)
+        refuse(problems, "study: ", "\n  ")
+        try:
+            os.makedirs(folder.of(batch.ROWS), exist_ok=True)
+        except OSError as error:
+            raise Refused(f"--out: cannot write to {path}: {error.strerror}") from None
+    if not (known and os.path.lexists(folder.of(TABLE))):
+        written(folder.of(TABLE), table)
+    elif readText(folder.of(TABLE)) != table:
+        raise Refused(
+            f"--out: {folder.of(TABLE)} is not what the study draws; remove it, and it is drawn"
+            " again"
+        )
+    _putRecords(folder, study)
+    now["script"] = script
+    if known != now:
+        written(folder.of(STUDY), json.dumps(now, indent=2) + "\n")
+    return folder
+
+
+def _recordsOf(study):
+    """The names and texts of the files of the records that a study has, a dict."""
+    return {f"{m.name}.txt": m.text for m in study.ida.read("")} if study.ida else {}
+
+
+def _putRecords(folder, study):
+    """Write the records of a study into its folder. Those that are there must be what the study has
+    read."""
+    if study.ida:
+        os.makedirs(folder.of(FOLDER), exist_ok=True)
+    for name, text in _recordsOf(study).items():
+        path = folder.of(FOLDER, name)
+        if not os.path.lexists(path):
+            written(path, text)
+        elif readWhole(path) != text.encode():
+            raise Refused(
+                f"--out: {path} is not the record that the study reads; remove it, and it is"
+                " written again"
+            )
+
+
+def _compare(folder, known, now):
+    was, given = known["study"], now["study"]
+    other = [
+        f"{n} is {json.dumps(was.get(n))}, not {json.dumps(given.get(n))}"
+        for n in {**was, **given}
+        if was.get(n) != given.get(n)
+    ]
+    if not other and known.get("scene_sha256") != now["scene_sha256"]:
+        other = [f"the file of its scene {given['scene']} was another one"]
+    if other or known.get("version") != VERSION:
+        raise Refused(
+            f"--out: {folder.path} holds another study; name another folder. There\n  "
+            + "\n  ".join(other or ["it is of another version"])
+        )
+
+
+def _checkEmpty(folder, study):
+    """Refuse a folder of something else. A table or records without study.json are left by a study
+    that was killed when it began."""
+    try:
+        names = set(os.listdir(folder.path)) - {TABLE, TABLE + ".new", STUDY + ".new"}
+        if batch.ROWS in names and not os.listdir(folder.of(batch.ROWS)):
+            names.remove(batch.ROWS)
+        records = {n for name in _recordsOf(study) for n in (name, name + ".new")}
+        if FOLDER in names and records.issuperset(os.listdir(folder.of(FOLDER))):
+            names.remove(FOLDER)
+    except FileNotFoundError:
+        return
+    except OSError as error:
+        raise Refused(f"--out: {folder.path}: {error.strerror}") from None
+    if names:
+        some = ", ".join(sorted(names)[:3])
+        raise Refused(
+            f"--out: {folder.path} is not empty ({some}) and holds no study: name another folder"
+        )
+
+
+def _checkSpace(folder, needed):
+    at = folder.path
+    while not os.path.isdir(at):
+        at = os.path.dirname(at)
+    free = shutil.disk_usage(at).free
+    if not os.access(at, os.W_OK):
+        yield f"--out: {at} cannot be written"
+    elif free < needed + SPARE:
+        yield (
+            f"--out: {at} has {1e-6 * free:.0f} MB free, the study writes some"
+            f" {1e-6 * needed:.0f} MB and keeps {1e-6 * SPARE:.0f} MB free"
+        )
+
+
+def _look(study, script, table):
+    """Problems of the study that its scene tells when it is built, and the bytes that a row
+    writes."""
+    if not shutil.which("yade"):
+        raise Refused("a study needs yade: apt-get install --no-install-recommends yade")
+    with tempfile.TemporaryDirectory() as place:
+        place = Folder(place)
+        _putRecords(place, study)
+        written(place.of(TABLE), table)
+        found = _probed(script, place)
+        if isinstance(found, str):  # the first row may be to blame
+            found = _probed(script, place, line=1) or found
+    if isinstance(found, str):
+        return [f"its scene cannot be built: {found}"], 0
+    with watched(NOTHING):
+        problems = [*_names(study, found), *_ranges(study, found), *found["problems"]]
+    for name, why in found["doubtful"].items():
+        if name in study.vary or study.ida and name == "record":
+            say(f"warning: {name} varies, and the scene may not use it: {why}")
+    for doubt in study.ida.doubts() if study.ida else ():
+        say(doubt)
+    return problems, found["room"]
+
+
+def _probed(script, place, line=2):
+    """What :mod:`masonry_study.probing` writes, as a dict, or why there is none.
+
+    :param line: of the table: the options with which the scene is built; 1: it is built without
+        options
+    """
+    path = place.of("probe.json")
+    row = {batch.VARIABLE: f"{place.of(TABLE)}:{line}", batch.PROBE: path}
+    env = {**os.environ, **row, "OMP_NUM_THREADS": "1"}
+    where = dict(cwd=os.path.dirname(script), env=env, stdin=subprocess.DEVNULL)
+    said = dict(capture_output=True, text=True, errors="replace")
+    command = ["yade", "-n", "--threads=1", "-x", script]
+    try:
+        done = subprocess.run(command, **where, **said, timeout=PROBING)
+    except subprocess.TimeoutExpired:
+        return f"it is not built after {PROBING} s"
+    try:
+        with open(path) as f:
+            return json.load(f)
+    except (OSError, ValueError):
+        lines = reason(done.stderr)
+        if done.returncode == batch.UNWRITTEN:
+            raise Unwritable(lines[-1]) from None  # it is no fault of the scene
+        lines = lines or [f"no masonry.Scene began a stage in {script}"]
+        return "\n  ".join(lines[:10])
+
+
+def _names(study, found):
+    """Names that the scene ignores."""
+    if not found["heard"]:
+        yield (
+            "its scene takes no options from the command line (arguments=...), and would ignore all"
+            " that varies"
+        )
+        return
+    columns = [*study.options, *study.vary] + ["record", "scale"] * bool(study.ida)
+    for name in (name for column in columns for name in namesOf(column)):
+        if why := _ignored(found, name):
+            yield f"{name}: {why}"
+
+
+def _ignored(found, name):
+    """Why the scene ignores an option or a property, or nothing; wrong names of properties are for
+    the rows to tell."""
+    kind, dot, attribute = name.partition(".")
+    if not dot:
+        if name not in found["options"]:
+            return "the scene has no such option"
+        why = found["unused"].get(name)
+        return why and f"the scene ignores it: {why}"
+    joint = found["joints"].get(kind)
+    if joint is None or attribute not in found["bounds"]:
+        return None
+    if not found["counts"][kind]:
+        return f"the scene has no {kind} joint and would ignore it"
+    if joint.get("elastic") and "Stiffness" not in attribute:
+        return f"{kind} joints of the scene are linear elastic and ignore it"
+    if joint.get("cap") is False and attribute.startswith(("compressive", "peakRatio")):
+        return f"{kind} joints of the scene do not crush and ignore it"
+    return None
+
+
+def _ranges(study, found):
+    """Distributions that can give what a property cannot be."""
+    for column, what in study.vary.items():
+        if isinstance(what, Field):
+            if what.kind == "normal" and what.mean is not None and what.mean < 0:
+                yield f"{column}: mean {what.mean:g} must be above 0"
+        for name in namesOf(column) if isinstance(what, Distribution) else ():
+            of, _, attribute = name.partition(".")
+            bounds = found["connectors"].get(of, found["bounds"]).get(attribute)
+            bounds = bounds or {"low": None, "high": None}
+            ends = [
+                f"{word} {bounds[end]:g}"
+                for end, word in (("low", "at least"), ("high", "at most"))
+                if bounds[end] is not None
+            ]
+            share = what.beyond(bounds["low"], bounds["high"])
+            if share > NEVER:
+                unit = f" {bounds['unit']}" if bounds["unit"] not in ("", "-") else ""
+                yield (
+                    f"{name}: {what} gives impossible values in {100 * share:.2g} % of all rows: it"
+                    f" must be {' and '.join(ends)}{unit}; low=... or high=... cuts it off"
+                )

@@ -1,0 +1,233 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Curves of several runs and of measured CSV files over each other, in one picture."""
+
+import argparse
+import csv
+import math
+import os
+from typing import Any, Sequence
+
+import numpy as np
+
+from masonry.arguments import FilePath
+from masonry.errors import Refused
+from masonry.terminal import say
+from masonry.numbers import drawing
+from masonry.numbers.files import program, readCurve, readRun
+
+#: Colours that differ in print, also for those who do not tell red from green (Okabe and Ito,
+#: 2008), and dashes.
+COLOURS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#555555"]
+DASHES = ["-", (0, (6, 2)), (0, (4, 1.5, 1, 1.5)), (0, (1.2, 1.2))]
+
+
+def readMeasured(text: str) -> tuple[np.ndarray, np.ndarray, list[str]]:
+    """A measured curve of ``FILE:X:Y``: its two columns as arrays, and their names.
+
+    The file has a line of column names and then numbers, with commas, semicolons or tabs between
+    them. X and Y are names of columns, or their numbers from 1. Empty cells are left out.
+
+    :raises Refused: if the text, the file or a column is not as it must be
+    """
+    parts = text.rsplit(":", 2)
+    if len(parts) != 3 or not all(parts):
+        raise Refused(
+            f"--csv: '{text}' must be FILE:X:Y, with the names of two columns, or their numbers"
+            " from 1"
+        )
+    path, *wanted = parts
+    try:
+        with open(path, newline="", encoding="utf-8-sig") as f:
+            lines = f.read().splitlines()
+    except OSError as error:
+        raise Refused(f"cannot read {path}: {error.strerror}") from None
+    except UnicodeDecodeError:
+        raise Refused(f"cannot read {path}: it is no text") from None
+    lines = [line for line in lines if line.strip() and not line.startswith("#")]
+    if len(lines) < 3:
+        raise Refused(f"{path}: there must be a line of names and two of numbers")
+    mark = max(",;\t", key=lines[0].count)
+    names = [name.strip() for name in next(csv.reader(lines[:1], delimiter=mark))]
+    numbered = {str(n + 1): n for n in range(len(names))}
+    for name in wanted:
+        if name not in names and name not in numbered:
+            raise Refused(f"{path}: there is no column {name}, there are {', '.join(names)}")
+    places = [names.index(n) if n in names else numbered[n] for n in wanted]
+    rows = []
+    for number, row in enumerate(csv.reader(lines[1:], delimiter=mark), start=2):
+        cells = [row[p].strip() if p < len(row) else "" for p in places]
+        if not all(cells):
+            continue
+        try:
+            rows.append([float(cell) for cell in cells])
+            if not all(map(math.isfinite, rows[-1])):
+                raise ValueError("a number is not finite")
+        except ValueError as error:
+            raise Refused(f"{path}, row {number}: {error}") from None
+    if len(rows) < 2:
+        raise Refused(f"{path}: fewer than two rows have both columns")
+    x, y = np.array(rows).T
+    return x, y, [names[p] for p in places]
+
+
+def readRuns(
+    directories: Sequence[FilePath], x: str | None = None, y: str | None = None
+) -> tuple[list[Any], list[str] | None]:
+    """Curves of runs: a list of (x, y) arrays, and the labels of both axes.
+
+    :param directories: folders of runs
+    :param x: column of curve.csv; None: that of the entry ``figure`` in run.json of the first run
+    :param y: as ``x``; None: the first one of this entry
+    :raises Refused: if a column is not there, or if none is named
+    """
+    curves, labels = [], None
+    for directory in directories:
+        data = readCurve(directory)
+        try:
+            run = readRun(directory)
+        except Refused:
+            if not (x and y):
+                raise
+            run = {}
+        spec = run.get("figure")
+        if not spec and not (x and y):
+            raise Refused(
+                f'{directory}: run.json has no entry "figure": name the columns by --x and --y'
+            )
+        if labels is None:
+            x, y = x or spec["x"]["column"], y or spec["y"][0]["column"]
+            labels = [_label(name, spec) for name in (x, y)]
+        for name in (x, y):
+            if name not in data:
+                raise Refused(
+                    f"{directory}: curve.csv has no column {name}, it has {', '.join(data)}"
+                )
+        curves.append((np.array(data[x]), np.array(data[y])))
+    return curves, labels
+
+
+def _label(column, spec):
+    """Label of an axis: that of curve.png if it has the column, else what the column is called."""
+    if spec and spec["x"]["column"] == column:
+        return spec["x"]["label"]
+    if spec and spec["y"][0]["column"] == column and spec.get("y_label"):
+        return spec["y_label"]
+    words, _, unit = column.replace("_", " ").rpartition(" ")
+    return f"{words} [{unit}]" if words else column
+
+
+def compare(
+    directories: Sequence[FilePath],
+    measured: Sequence[str] = (),
+    x: str | None = None,
+    y: str | None = None,
+    labels: Sequence[str] = (),
+    out: FilePath = "plot.png",
+    title: str = "",
+) -> FilePath:
+    """Draw curves over each other. Measured ones are black and behind, runs are in colours. Returns
+    the path.
+
+    :param directories: folders of runs
+    :param measured: texts ``FILE:X:Y``, as in :func:`readMeasured`
+    :param x: column of curve.csv; None: as curve.png has it
+    :param y: as ``x``
+    :param labels: names for the legend, of all runs and then of all measured curves; what is
+        missing is named after its folder or file
+    :param out: path of the picture, .png, .pdf or .svg
+    :param title: of the picture
+    :raises Refused: if something cannot be read or drawn
+    """
+    if os.path.splitext(out)[1].lower() not in (".png", ".pdf", ".svg"):
+        raise Refused(f"--out: {out} must end in .png, .pdf or .svg")
+    count = len(directories) + len(measured)
+    if not count:
+        raise Refused("name one folder of results at least, or one --csv")
+    if len(labels) > count:
+        raise Refused(f"--label: {len(labels)} labels for {count} curves")
+    names = [*labels, *_names(directories, measured)[len(labels) :]]
+    curves, axesLabels = readRuns(directories, x, y)
+    tests = [readMeasured(text) for text in measured]
+    if axesLabels is None:
+        axesLabels = tests[0][2]
+    try:
+        _draw(out, tests, curves, names, axesLabels, title)
+    except OSError as error:
+        raise Refused(f"cannot write {out}: {error.strerror}") from None
+    return out
+
+
+def _draw(out, tests, curves, names, labels, title):
+    with drawing.picture(out, 7, 4.6, 150) as figure:
+        axes = figure.subplots()
+        for n, (a, b, _) in enumerate(tests):
+            look = dict(color="0.15", lw=1.0, ls=DASHES[n % 4], zorder=1.5)
+            axes.plot(a, b, **look, label=names[len(curves) + n])
+        for n, (a, b) in enumerate(curves):
+            colour = COLOURS[n % len(COLOURS)]
+            dash = DASHES[n // len(COLOURS) % len(DASHES)]
+            axes.plot(a, b, color=colour, lw=1.3, ls=dash, label=names[n], zorder=2)
+        for low, high, line in ((*axes.get_xlim(), axes.axvline), (*axes.get_ylim(), axes.axhline)):
+            if low < -0.05 * high < 0:  # both sides are more than a margin
+                line(0, color="0.4", lw=0.8, zorder=0)
+        axes.set_title(title)
+        drawing.finish(axes, *labels, fontsize=9, framealpha=0.9)
+
+
+def _names(directories, measured):
+    """Short names of runs and measured curves, as much of the ends of their paths as tells them
+    apart.
+
+    Measured curves of one file have the name of their second column, too.
+    """
+    files = [text.rsplit(":", 2) for text in measured]
+    paths = [*directories, *(f[0] for f in files)]
+    parts = [os.path.abspath(path).split(os.sep) for path in paths]
+    names = []
+    for own in parts:
+        depth = 1
+        while any(own[-depth:] == p[-depth:] for p in parts if p != own):
+            depth += 1
+        names.append("/".join(own[-depth:]))
+    for n, f in enumerate(files, len(directories)):
+        if paths.count(f[0]) > 1:
+            names[n] += ", " + f[-1]
+    return names
+
+
+@program
+def main(words: Sequence[str] | None = None) -> None:
+    """The program ``scripts/plot.py``."""
+    parser = argparse.ArgumentParser(
+        description="Draw curves of runs and of measured CSV files over each other."
+    )
+    parser.add_argument("result", nargs="*", help="folder of results")
+    parser.add_argument(
+        "--csv",
+        action="append",
+        default=[],
+        metavar="FILE:X:Y",
+        help=(
+            "a measured curve: a file and the names of its two columns, or their numbers from 1;"
+            " may be repeated"
+        ),
+    )
+    parser.add_argument("--x", metavar="COLUMN", help="column of curve.csv; else that of curve.png")
+    parser.add_argument(
+        "--y", metavar="COLUMN", help="column of curve.csv; else the first one of curve.png"
+    )
+    parser.add_argument(
+        "--label",
+        action="append",
+        default=[],
+        help=(
+            "name of a curve, in the order of the folders and then of the CSV files; may be"
+            " repeated"
+        ),
+    )
+    parser.add_argument("--title", default="", help="of the picture")
+    parser.add_argument(
+        "--out", default="plot.png", help=".png, .pdf or .svg file (default plot.png)"
+    )
+    args = parser.parse_args(words)
+    say(compare(args.result, args.csv, args.x, args.y, args.label, args.out, args.title))

@@ -1,0 +1,505 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Elevations of a structure: what is built, cracks.png, and the mechanism of limit analysis."""
+
+import copy
+import functools
+import os
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from masonry.errors import Refused
+from masonry.bricks.geometry import Alike, Solids, boxCorners
+from masonry.numbers import drawing
+from masonry.numbers.cracks import CRACK, CRACK_SURFACE, CRUSHED, crushed, widths
+from .curve_figure import plan, unitOf
+from masonry.numbers.files import readCurve, readRun
+from masonry.numbers.frames import frameAt, frameTimes, readFrame
+
+from .painting import MORTAR, NONE, SHADES, TIES, Painting, fromBackToFront, rgb
+from .views import FROM_ABOVE, IN_SPACE, REACH, courseOf, magnificationOf, scaleText
+from .views import spaceViewOf, viewOf
+
+#: A block of a part is in an elevation if it reaches into the depth of the façade by this share of
+#: its own depth or of the façade's; what belongs to no part, as a platen, if it touches this depth.
+INSIDE = 0.25
+
+#: Arrays of frames of blocks and of joints that are drawn.
+NEEDED = (
+    "area bodies body cells crushing damage_shear damage_tension displacement kind normal opening"
+    " points second_displacement slide".split()
+)
+
+LONGEST = 80  # of the scale on paper [1/72 inch]
+
+
+@dataclass
+class Structure:
+    """Blocks and joints at one moment."""
+
+    blocks: dict[str, Any]  #: as :func:`masonry.numbers.frames.readFrame` gives them
+    joints: dict[str, Any] | None  #: likewise; None where there are none to show
+    #: name -> ids of bodies, the façades first of all; all blocks are one part if it is empty
+    parts: dict[str, list[int]] = field(default_factory=dict)
+    #: key of :data:`SHADES` by the id of a body; others are bricks
+    shades: dict[int, str] = field(default_factory=dict)
+    names: dict[int, str] = field(default_factory=dict)  #: texts that stand on bodies
+    sights: dict[str, Any] = field(default_factory=dict)  #: directions by part
+    ground: int | None = None  #: on which blocks fall; it is drawn as far as needed
+    #: numbers of the kinds of joints inside units, which are not drawn unless they crack
+    seams: tuple[int, ...] = ()
+    still: Any = 0.0  #: displacement that is taken off all others [m]
+    ties: list[dict[str, Any]] = field(default_factory=list)  #: entries of run.json
+
+    def __post_init__(self):
+        cells = {}
+        for body, cell in zip(self.blocks["body"], self.blocks["cells"]):
+            cells.setdefault(int(body), set()).update(cell)
+        #: numbers of the points of every block, by the id of its body
+        self.corners = {body: np.array(sorted(own)) for body, own in cells.items()}
+        self._outer = {}  # by the shape of blocks
+        self.moved = self.blocks["displacement"] - self.still
+        if self.ground in self.corners:
+            self._lay()
+
+    def _lay(self):
+        """Let the ground be a slab that is as large as what stands and lies on it."""
+        points = self.blocks["points"]
+        level = (points + self.moved)[self.corners.pop(self.ground), 2].max()
+        nodes = self.points(self.corners)
+        both = np.concatenate([points[nodes], (points + self.moved)[nodes]])
+        (*low, _), (*high, _) = both.min(axis=0), both.max(axis=0)
+        margin = 0.05 * np.ptp(both, axis=0).max()
+        slab = boxCorners(
+            (*np.array(low) - margin, level - margin), (*np.array(high) + margin, level)
+        )
+        self.blocks = {**self.blocks, "points": np.concatenate([points, slab])}
+        self.moved = np.concatenate([self.moved, np.zeros((8, 3))])
+        self.corners[self.ground] = np.arange(len(points), len(points) + 8)
+        self.shades = {**self.shades, self.ground: "ground"}
+
+    def points(self, bodies):
+        """Numbers of the points of some blocks."""
+        return np.concatenate([self.corners[body] for body in bodies])
+
+    def outer(self, body):
+        """Numbers of the points of a block that are corners of it, of as many as a deformable unit
+        has."""
+        own = self.corners[body]
+        if len(own) <= 8:
+            return own
+        points = self.blocks["points"][own]
+        shape = np.rint((points - points[0]) / (1e-6 * np.ptp(points))).astype(int).tobytes()
+        if shape not in self._outer:  # those of blocks of one shape are the same
+            from scipy.spatial import ConvexHull
+
+            self._outer[shape] = np.sort(ConvexHull(points).vertices)
+        return own[self._outer[shape]]
+
+    @functools.cached_property
+    def cracks(self):
+        """Joints that are cracked, crushed or seams: a list with an entry for each side of all
+        joints that have the same number of corners. An entry has arrays: the bodies on this side;
+        the numbers of the joints; their kinds, as in
+        :mod:`masonry_view.painting`; their crushing, or 0 [m]; their corners as built [m]; and how
+            these move with the bodies [m].
+        """
+        j, found = self.joints, []
+        if not j:
+            return found
+        _, opened, cracked = widths(j)
+        spoilt = crushed(j)
+        seam = np.isin(j["kind"], self.seams) if self.seams else spoilt & False
+        kinds = np.select([cracked & opened, cracked, seam], range(NONE), NONE)
+        closures = np.where(spoilt, j["crushing"], 0)
+        chosen = np.flatnonzero((kinds < NONE) | spoilt)
+        sizes = np.array([len(j["cells"][n]) for n in chosen])
+        for size in np.unique(sizes):
+            here = chosen[sizes == size]
+            cells = np.array([j["cells"][n] for n in here])
+            for own, name in zip(j["bodies"][here].T, ("displacement", "second_displacement")):
+                found.append(
+                    (
+                        own,
+                        here,
+                        kinds[here],
+                        closures[here],
+                        j["points"][cells],
+                        j[name][cells] - self.still,
+                    )
+                )
+        return found
+
+
+class Elevation:
+    """What is seen of a structure from one side: a façade with all that stands in it, or all of it
+    in space."""
+
+    def __init__(self, structure, name, view, bodies, members=(), moment=""):
+        """
+        :param view: a :class:`masonry_view.views.View`; ``bodies``: ids of the blocks that are
+            drawn
+        :param members: of these, the ones of the façade, of which it is said whether they moved
+            across it
+        :param moment: what is said of it if it is not that of the other elevations
+        """
+        self.structure, self.name = structure, name
+        self.view, self.bodies = view, bodies
+        self.to = np.column_stack([view.right, view.up])
+        self.nodes = structure.points(bodies)
+        self.note, self.across = " ".join(t for t in (view.name, moment) if t), 0.0
+        if len(members):
+            moved = structure.moved[structure.points(members)]
+            across = moved @ view.towards
+            farthest = across[np.argmax(np.abs(across))]
+            if abs(farthest) > 0.5 * np.linalg.norm(moved @ self.to, axis=1).max():
+                self.across = abs(farthest)
+                sense = "towards" if farthest > 0 else "away from"
+                self.note += f"\n(moved up to {1e3 * self.across:.3g} mm {sense} the viewer)"
+
+    def flat(self, points):
+        return (points - self.view.start) @ self.to
+
+    def box(self, magnification):
+        """Two corners of what is drawn: all of it, but for what flew away, with room for the scale
+        below."""
+        flat = self.flat(self.structure.blocks["points"][self.nodes])
+        now = flat + magnification * self.structure.moved[self.nodes] @ self.to
+        low, high = flat.min(axis=0), flat.max(axis=0)
+        reach = REACH * (high - low).max()
+        low = np.maximum(np.minimum(low, now.min(axis=0)), low - reach)
+        high = np.minimum(np.maximum(high, now.max(axis=0)), high + reach)
+        return np.array([low, high]) + (high - low).max() * np.array(
+            [[-0.045, -0.12], [0.045, 0.045]]
+        )
+
+    def draw(self, axes, magnification, scale):
+        """Draw it.
+
+        :param magnification: of displacements; 0: as built
+        :param scale: length of a metre on paper [1/72 inch], by which lines are as thin as needed
+        """
+        from matplotlib.collections import LineCollection, PolyCollection
+
+        s, sight = self.structure, np.array([*self.to.T, self.view.towards])
+        nodes = [s.outer(body) for body in self.bodies]
+        corners = [s.blocks["points"][own] for own in nodes]
+        built, course = Solids(corners), scale * courseOf(corners)
+        thin, bold = np.clip(0.06 * course, 0.15, 0.5), np.clip(0.21 * course, 0.7, 1.8)
+        painting = Painting(self.view.towards, thin, bold)
+        now = copy.copy(built)
+        now.groups = [
+            Alike(
+                g.index,
+                g.corners + magnification * s.moved[np.array([nodes[n] for n in g.index])],
+                g.faces,
+            )
+            for g in built.groups
+        ]
+        for g in built.groups if magnification else ():
+            painting.blocks(np.full(len(g.index), -1), g)
+        colours = np.array([rgb(SHADES[s.shades.get(body, "brick")]) for body in self.bodies])
+        # the joints of a block come after it and before the next block
+        places = 10**9 * np.argsort(fromBackToFront(now, sight))
+        for g in now.groups:
+            painting.blocks(places[g.index], g, colours[g.index])
+        number = {body: n for n, body in enumerate(self.bodies)}
+        for own, *crack, moved in s.cracks:
+            block = np.array([number.get(body, -1) for body in own.tolist()])
+            crack = [v[block >= 0] for v in (block, *crack, crack[-1] + magnification * moved)]
+            painting.cracks(places, crack, built, now, colours)
+        painting.finish(axes, self.flat, s.joints is not None)
+        for shade in sorted({s.shades[b] for b in self.bodies if b in s.shades}):
+            axes.add_collection(
+                PolyCollection([], facecolor=SHADES[shade], edgecolor=MORTAR, label=shade)
+            )
+        for body in set(s.names) & set(self.bodies):
+            middle = self.flat(s.blocks["points"][s.corners[body]]).mean(axis=0)
+            axes.annotate(s.names[body], middle, ha="center", va="center", fontsize=8)
+        for state, (colour, dash) in TIES.items():
+            ends = [
+                self._tie(one, magnification)
+                for one in s.ties
+                if one["state"] == state and set(one["bodies"]) & set(self.bodies)
+            ]
+            if ends:
+                label = "tie" if state == "elastic" else f"tie, {state}"
+                axes.add_collection(
+                    LineCollection(
+                        ends, color=colour, lw=1.2 * bold, ls=dash, label=label, zorder=4
+                    )
+                )
+        self._frame(axes, magnification, scale)
+
+    def _frame(self, axes, magnification, scale):
+        """Axes, or none in space, and the scale below the structure."""
+        low, high = self.box(magnification)
+        axes.set_xlim(low[0], high[0])
+        axes.set_ylim(low[1], high[1])
+        axes.set_aspect("equal")
+        axes.spines[["top", "right"]].set_visible(False)
+        if self.view.name == IN_SPACE:
+            axes.set_axis_off()
+        axes.set_xlabel(self.view.labels[0])
+        axes.set_ylabel(self.view.labels[1])
+        most = LONGEST / scale
+        power = 10.0 ** np.floor(np.log10(most))
+        length = max(n * power for n in (1, 2, 5) if n * power <= most)
+        x, y = low + 8 / scale
+        axes.plot(
+            [x, x + length], [y, y], color="black", lw=2, solid_capstyle="butt", label="_scale"
+        )
+        axes.annotate(
+            f"{length:g} m",
+            (x + length, y),
+            xytext=(4, 0),
+            textcoords="offset points",
+            va="center",
+            fontsize=8,
+        )
+
+    def _tie(self, tie, magnification):
+        s, ends = self.structure, []
+        for body, end in zip(tie["bodies"], np.array(tie["ends_m"])):
+            moved = np.zeros(3)  # it is held by the ground, or moves with its corners
+            if body in s.corners:
+                nodes = s.corners[body]
+                arms = s.blocks["points"][nodes] - end
+                basis = np.column_stack([arms, np.ones(len(arms))])
+                moved = np.linalg.lstsq(basis, s.moved[nodes], None)[0][3]
+            ends.append(self.flat(end) + magnification * moved @ self.to)
+        return ends
+
+
+def elevationsOf(structure):
+    """One elevation for each façade: the largest parts first, and none for a part that is seen in
+    another one's or is held."""
+    stands = lambda part: any(structure.shades.get(body) != "held" for body in part)
+    parts = {n: part for n, part in structure.parts.items() if stands(part)} or {
+        "": list(structure.corners)
+    }
+    found, seen = {}, set()
+    for name, members in sorted(parts.items(), key=lambda part: -len(part[1])):
+        if len(seen.intersection(members)) <= 0.5 * len(members):
+            found[name] = _facade(structure, name, members)
+            seen.update(found[name].bodies)
+    return [found[name] for name in parts if name in found]
+
+
+def _facade(structure, name, members):
+    """The :class:`Elevation` of a part, with all that reaches into the depth of it."""
+    points, joints = structure.blocks["points"], structure.joints
+    normals, areas = np.zeros((0, 3)), np.zeros(0)
+    if joints:
+        own = np.isin(joints["bodies"], members).all(axis=1)
+        normals, areas = joints["normal"][own], joints["area"][own]
+    nodes = structure.points(members)
+    view = viewOf(points[nodes], normals, areas, structure.sights.get(name))
+    depth = points @ view.towards
+    near, far = depth[nodes].max(), depth[nodes].min()
+    parted = {body for part in structure.parts.values() for body in part}
+
+    def reaches(body, own):
+        high, low = depth[own].max(), depth[own].min()
+        inside = INSIDE if body in parted else -1e-6
+        return min(high, near) - max(low, far) >= inside * min(high - low, near - far)
+
+    bodies = [body for body, own in structure.corners.items() if reaches(body, own)]
+    return Elevation(structure, name, view, bodies, members)
+
+
+def figureOf(structure, title, magnification=None, later=None):
+    """A figure of all façades in one scale, to be drawn and saved in
+    :func:`masonry.numbers.drawing.style`: the deformed structure, magnified, over the undeformed
+    one, with its cracks. What moves across a façade, is seen from above or falls is seen in space,
+    too.
+
+    :param title: above it; ``{}`` in it is what is said of the magnification
+    :param magnification: of displacements; 0: the structure as it is built; None: as in
+        :func:`magnificationOf`
+    :param later: a moment, and the structure at that moment, which is drawn true to scale; or None
+    """
+    elevations = elevationsOf(structure)
+    if magnification is None:
+        nodes = structure.points(structure.corners)
+        blocks = [structure.blocks["points"][own] for own in structure.corners.values()]
+        magnification = magnificationOf(structure.joints, structure.moved[nodes], blocks)
+    scales = [magnification] * len(elevations)
+    front = max(elevations, key=lambda one: (one.across, len(one.bodies))).view.towards
+    names = {one.view.name for one in elevations}
+    across = FROM_ABOVE in names or any(one.across for one in elevations)
+    moments = [(*later, 1)] if later else []
+    if across and IN_SPACE not in names:
+        moments.insert(0, ("", structure, magnification))
+    for moment, one, m in moments:
+        nodes = one.points(one.corners)
+        view = spaceViewOf(front, one.blocks["points"][nodes], one.moved[nodes])
+        elevations.append(Elevation(one, "", view, list(one.corners), moment=moment))
+        scales.append(m)
+    boxes = [one.box(m) for one, m in zip(elevations, scales)]
+    sizes = np.array([high - low for low, high in boxes])
+    columns = max(range(1, len(sizes) + 1), key=lambda n: _scale(sizes, n))
+    scale = _scale(sizes, columns)
+    wides = [scale * max(sizes[c::columns, 0]) for c in range(columns)]
+    highs = [scale * max(sizes[n : n + columns, 1]) for n in range(0, len(sizes), columns)]
+    # inches for labels beside and below each, for the legend at the right, and for the title
+    above = 0.85 if title else 0.3
+    width, height = (
+        max(sum(wides) + 0.85 * columns + 1.6, 7.0),
+        sum(highs) + 0.75 * len(highs) + above,
+    )
+    figure, handles = drawing.empty(width, height), {}
+    for n, one in enumerate(elevations):
+        row, column = divmod(n, columns)
+        x = 0.7 + sum(wides[:column]) + 0.85 * column
+        y = height - above - sum(highs[: row + 1]) - 0.75 * row
+        w, h = scale * sizes[n]
+        axes = figure.add_axes([x / width, y / height, w / width, h / height])
+        one.draw(axes, scales[n], 72 * scale)
+        head = f"{one.name if len(sizes) > 1 else ''} {one.note}".strip()
+        axes.set_title(head, fontsize=9, pad=3)
+        handles.update((label, handle) for handle, label in zip(*axes.get_legend_handles_labels()))
+    if title:
+        if structure.joints is not None:  # else nothing has moved
+            title = title.replace("{}", scaleText(structure.joints, magnification))
+        figure.suptitle(title, fontsize=9, x=0.3 / width, y=1 - 0.1 / height, ha="left")
+    if handles:
+        figure.legend(
+            handles.values(),
+            handles,
+            loc="upper right",
+            fontsize=8,
+            bbox_to_anchor=(1 - 0.08 / width, 1 - above / height),
+        )
+    return figure
+
+
+def _scale(sizes, columns):
+    """The largest scale with which elevations of these sizes [m] stand on a page in so many columns
+    [inch/m]."""
+    wide = sum(max(sizes[c::columns, 0]) for c in range(columns))
+    high = sum(max(sizes[n : n + columns, 1]) for n in range(0, len(sizes), columns))
+    rows = -(-len(sizes) // columns)
+    return min(
+        (10.0 - 0.85 * columns) / wide,
+        (9.5 - 0.75 * rows) / high,
+        7.2 / wide if len(sizes) == 1 else np.inf,
+    )
+
+
+def structureOf(run, blocks, joints, directory):
+    """The blocks and joints of a frame with what run.json says of them. Raises Refused.
+
+    :param run: entries of run.json: ``parts``, ``views``, ``targets``, ``ties``, ``reference_body``
+        and ``ground_body``
+    :param directory: folder, for messages
+    """
+    bodies = set(map(int, blocks["body"]))
+    parts, reference = run.get("parts") or {}, run.get("reference_body")
+    members = {body for part in parts.values() for body in part}
+    wrong, ground = members - bodies, run.get("ground_body")
+    still = np.zeros(3)
+    if reference is not None:
+        nodes = [c for b, c in zip(blocks["body"], blocks["cells"]) if b == reference]
+        if nodes:
+            still = blocks["displacement"][np.concatenate(nodes)].mean(axis=0)
+        else:
+            wrong.add(reference)
+    if wrong:
+        raise Refused(
+            f"{directory}: run.json names bodies {sorted(wrong)[:10]}, which are not in the"
+            " ParaView files"
+        )
+    for name, part in parts.items():
+        if not part:
+            raise Refused(f"{directory}: parts: {name} has no bodies")
+    targets, kinds = run.get("targets") or [], run.get("kinds") or []
+    shades = {one["body"]: "held" for one in targets if one.get("held")}
+    shades.update(dict.fromkeys(bodies - (members or bodies) - {ground}, "platen"))
+    seams = tuple(n for n, kind in enumerate(kinds) if kind == CRACK_SURFACE)
+    more = dict(sights=run.get("views") or {}, ties=run.get("ties") or [], still=still)
+    return Structure(blocks, joints, parts, shades, ground=ground, seams=seams, **more)
+
+
+def cracksOf(run, blocks, joints, when, directory, later=None):
+    """The figure of cracks.png. Cracks are red, joints that slid are blue, and crushed spots are
+    black. Raises Refused.
+
+    :param when: text that names the moment of the frame; ``later`` is as in :func:`figureOf`; the
+        others are those of
+        :func:`structureOf`
+    """
+    limits = f"open or slid more than {1e3 * CRACK:g} mm, crushed more than {1e3 * CRUSHED:g} mm"
+    title = f"{run['title']}\n{when}\n{{}}; {limits}"
+    return figureOf(structureOf(run, blocks, joints, directory), title, later=later)
+
+
+def cracksOfFrame(run, directory, number=None):
+    """The figure of cracks.png of a frame that a run has left; of a run that followed a collapse,
+    with its end beside it.
+
+    :param run: entries of run.json
+    :param number: of the frame, from 0; negative numbers count from the end; None: as in
+        :func:`frameOfCracks`
+    """
+    last = len(frameTimes(directory)) - 1
+    chosen = frameOfCracks(run, directory) if number is None else number % (last + 1)
+    later, frames = None, lambda n: [
+        readFrame(directory, k, n, NEEDED) for k in ("blocks", "joints")
+    ]
+    if number is None and chosen != last:
+        end = structureOf(run, *frames(last), directory)
+        later = f"{whenOf(run, directory, last)}, true to scale", end
+    when = whenOf(run, directory, chosen)
+    return cracksOf(run, *frames(chosen), when, directory, later)
+
+
+def cracks(directory, number=None):
+    """Draw cracks.png; ``number`` is as in :func:`cracksOfFrame`."""
+    with drawing.style():
+        figure = cracksOfFrame(readRun(directory), directory, number)
+        drawing.save(figure, os.path.join(directory, "cracks.png"), 110)
+
+
+#: What is said of the moments that a run that followed a collapse names, by their names among its
+#: answers.
+MOMENTS = {
+    "noticed_at": "when the collapse was noticed",
+    "first_fall": "when the first block had fallen",
+}
+
+
+def _moments(run, directory):
+    """Numbers of the frames nearest to the moments of a collapse, and what they are, the first one
+    first."""
+    times = {a["name"]: a["value"] for a in run.get("answers") or [] if a["stage"] == "fall"}
+    found = sorted((times[name], text) for name, text in MOMENTS.items() if name in times)
+    return [(frameAt(directory, time), text) for time, text in found]
+
+
+def frameOfCracks(run, directory):
+    """Number of the frame whose cracks are drawn, from 0: the last one, or, of a run that followed
+    a collapse to the ground, that when the collapse was noticed or the first block had fallen.
+
+    :param run: entries of run.json
+    """
+    moments = _moments(run, directory)
+    return moments[0][0] if moments else len(frameTimes(directory)) - 1
+
+
+def whenOf(run, directory, number):
+    """Which moment a frame shows: what it is, its time, and the x of curve.png."""
+    times = frameTimes(directory)
+    names = {len(times) - 1: "at the end", **dict(reversed(_moments(run, directory)))}
+    texts = [f"t = {times[number]:.3g} s"]
+    data = readCurve(directory) if "figure" in run else {}
+    if "time_s" in data:
+        spec = plan(run, data, directory)["x"]
+        if spec["column"] != "time_s":
+            value, unit = np.interp(times[number], data["time_s"], data[spec["column"]]), unitOf(
+                spec
+            )
+            name = spec["label"].rsplit(" [", 1)[0]
+            texts.append(f"{name} = {value:{'.1f' if unit == 'mm' else '.3g'}} {unit}")
+    return f"{names.get(number, 'during the run')}: {', '.join(texts)}"

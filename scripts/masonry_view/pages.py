@@ -1,0 +1,51 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Pages from templates of jinja2. Texts of files of a run are text in them: none becomes a tag or a
+script."""
+
+import os
+
+from masonry.terminal import plain
+from masonry.folders import replaced
+from masonry.packages import needed
+
+#: What a whole page may do: run what stands in it. The browser refuses every request to a network.
+POLICY = "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data:"
+
+
+def rendered(path, **values):
+    """A page, or a part of one, from a template of this folder, with control characters of texts
+    written out.
+
+    :param path: of the template; texts of other files beside it are ``own("name")`` there
+    :param values: of its names; what is no ``markupsafe.Markup`` is escaped
+    """
+    jinja2 = needed("jinja2")
+    here = os.path.dirname(__file__)
+    environment = jinja2.Environment(
+        loader=jinja2.FileSystemLoader(here),
+        autoescape=True,
+        undefined=jinja2.StrictUndefined,
+        finalize=lambda value: plain(value) if type(value) is str else value,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+
+    def own(name):
+        return environment.loader.get_source(environment, name)[0]
+
+    environment.filters["script"] = asScript
+    return environment.get_template(path).render(own=own, policy=POLICY, **values)
+
+
+def write(path, text):
+    """Write a page, whole or not at all. Raises OSError, also if its name is that of a symbolic
+    link."""
+    with replaced(path, encoding="utf-8") as file:
+        file.write(text)
+
+
+def asScript(code):
+    """A text that can stand in a script element: nothing in it ends or comments out the element."""
+    from markupsafe import Markup  # jinja2 has it
+
+    return Markup(code.replace("</script", "<\\/script").replace("<!--", "<\\!--"))

@@ -1,0 +1,121 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The program beside a run that draws its figures and writes its report when the run is over.
+
+    python3 -P -m masonry_view.postprocess
+
+A run starts it early: it loads what it needs while the run goes on. Then it reads the folder from
+the standard input, up to a zero byte, when the files of the run are there. It draws figures in two
+copies of the process, curve.png and cracks.png in one and mechanism.png in the other, makes the
+report meanwhile, and writes report.html when the figures are there. It ends without a word if it is
+given no folder. Errors that nobody expects go to the standard output, as JSON: pairs of a note and
+a traceback.
+"""
+
+import contextlib
+import gc
+import io
+import json
+import math
+import os
+import sys
+
+from masonry import memory
+from masonry.auxiliary import Auxiliary, described
+from masonry.background import Task
+from masonry.folders import check
+from masonry.numbers.drawing import empty, style
+from masonry.numbers.files import onFolder
+from masonry.packages import Missing, needed
+from masonry.run.drawing_program import END, NO_FIGURES, NO_REPORT
+from masonry.terminal import say
+
+from . import figures, mechanism, report
+
+STDIN = 0
+
+
+def _load():
+    """Draw a figure that nobody sees: the first one of a process loads most of matplotlib."""
+    with contextlib.suppress(Exception):  # what is wrong is said when something is drawn
+        with style():
+            figure = empty(1, 1)
+            figure.add_subplot().plot([0, 1], label="line")
+            figure.axes[0].legend()
+            for kind in ("png", "svg"):
+                figure.savefig(io.BytesIO(), format=kind)
+        import jinja2, scipy.spatial  # noqa: F401, E401
+    gc.freeze()  # garbage is no longer looked for among what has been loaded
+
+
+def _folder():
+    """The folder from the standard input, or an empty text if it ends before."""
+    name = b""
+    for byte in iter(lambda: os.read(STDIN, 1), b""):
+        if byte == END:
+            return os.fsdecode(name)
+        name += byte
+    return ""
+
+
+def _tasks(folder):
+    """Begin to draw in copies of the process, whose results are those of :func:`_tried`."""
+    try:
+        needed("matplotlib")
+    except Missing as missing:
+        say(f"the figures are left out: {missing}", sys.stderr)
+        return []
+    draws = [figures.drawRun] + [mechanism.draw] * mechanism.isThere(folder)
+    return [Task(lambda draw=draw: [_tried("the figures", draw, folder)]) for draw in draws]
+
+
+def _tried(what, act, *words):
+    """Let a function draw or write something.
+
+    :returns: its exit status if disk or memory is full, else 0; and the notes and tracebacks of
+        other errors
+    """
+    failures = []
+
+    def acting(word):
+        try:
+            act(word)
+        except (OSError, MemoryError):
+            raise
+        except Exception as error:
+            failures.append(described(what, error))
+
+    return onFolder(acting, words), failures
+
+
+def main():
+    """The program. Returns its exit status."""
+    _load()
+    folder = _folder()
+    if not folder:
+        return 0
+    tasks = _tasks(folder)
+
+    def ready():
+        for task in tasks:
+            task.ready(seconds=math.inf)
+
+    def write(directory):
+        memory.reserve()
+        check(directory)
+        record = report.read(directory)
+        record.ready = ready
+        report.write(record, os.path.join(directory, report.NAME))
+
+    written, failures = _tried("the report", write, folder)
+    drawn = 0
+    for task in tasks:
+        with Auxiliary("the figures", lambda *failure: failures.append(failure)):
+            status, lost = task.result()
+            drawn = max(drawn, status)
+            failures += lost
+    json.dump(failures, sys.stdout)
+    return NO_FIGURES if drawn else NO_REPORT if written else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,437 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Parts of a report on what the structure did: its curve, drifts, bound, energies, cycles and
+forces at the base."""
+
+import numpy as np
+
+from masonry.errors import Refused
+from masonry_capacity import bilinear_curve
+from .. import curve_figure
+from masonry.numbers import drawing, quantities
+from ..curve_figure import energies, unitOf
+from ..notebook import bare
+
+from .pieces import (
+    Badged,
+    figure,
+    folded,
+    isNumber,
+    missing,
+    note,
+    numbers,
+    table,
+    withUnit,
+    written,
+)
+from .record import entriesOf
+from .structure import firstUpper, nameOf, sought, valueOf
+
+MOST_ANSWERS = 12  # in the table of what stages found; all are in a folded one
+NOISE = 1e-6  # of the largest force of a column: what is below is round-off
+
+
+def curve(record):
+    """The curve of the run with its marks and bounds."""
+    spec = record.spec
+    if spec is None or not len(record.rows):
+        why = "; ".join(p for p in record.problems if "curve" in p)
+        raise Refused(f"There is no curve: {why or 'the run has no rows'}.")
+    x = record.column(spec["x"]["column"])
+    data = {name: values[record.rows] for name, values in record.columns.items()}
+    ideal, line = record.ideals["masonry"], None
+    if not isinstance(ideal, str):
+        dy, du, force = ideal.yieldDisplacement, ideal.ultimateDisplacement, ideal.yieldForce
+        line = [0, dy, du], [0, force, force]
+    with drawing.style():
+        drawn = curve_figure.panelOf(spec, data, line)
+        y = data[spec["y"][0]["column"]]
+        about = _aboutCurve(spec, y)
+        frames = drawing.placesOn(drawn, _places(record, x, y))
+        svg = drawing.svg(drawn, "curve")
+    sources = ", ".join([spec["x"]["column"], *(axis["column"] for axis in spec["y"])])
+    text = f"{about} Source: curve.csv: {sources}."
+    if record.picture and frames:
+        text += (
+            " The ring is the frame that the turning picture shows; a click on the curve shows the"
+            " nearest one there."
+        )
+    yield figure(svg, text, about, frames)
+    yield from _ideal(record)
+    yield figure(
+        "capacity.png",
+        (
+            "Capacity curve and demand of a spectrum, as masonry_capacity drew them. Source:"
+            " capacity.png."
+        ),
+    )
+    loads = [stage.get("load") for stage in entriesOf(record.run, "stages")]
+    pushes = [
+        n for n, load in enumerate(loads, 1) if isinstance(load, list) and load[:1] == ["push"]
+    ]
+    if len(pushes) > 1:
+        numbered = ", ".join(map(str, pushes))
+        yield note(
+            f"The run has {len(pushes)} pushes, the stages {numbered}. The curve and the numbers of"
+            " the push are those of the last one, and of those before it along the same line."
+        )
+
+
+#: Numbers of a bilinear curve, by their names in :mod:`masonry_capacity.bilinear_curve`.
+OF_IDEAL = {
+    "bilinear_stiffness_kN_per_mm": "stiffness K",
+    "yield_force_kN": "yield force Vy",
+    "yield_displacement_mm": "yield displacement dy",
+    "ultimate_displacement_mm": "ultimate displacement du",
+    "displacement_ductility": "ductility µ = du/dy",
+    "peak_force_kN": "peak of this curve",
+    "peak_displacement_mm": "displacement at this peak",
+}
+
+
+def _ideal(record):
+    """The bilinear idealisation of a push, by every rule."""
+    if not record.isPush:
+        yield missing("The run has no push, so there is no bilinear curve.")
+        return
+    ideals = record.ideals
+    if all(isinstance(one, str) for one in ideals.values()):
+        yield missing(f"There is no bilinear curve: {ideals['masonry']}.")
+        return
+    good = {rule: one for rule, one in ideals.items() if not isinstance(one, str)}
+    known = {rule: {n.name: n for n in one.numbers()} for rule, one in good.items()}
+    lines = []
+    for name, what in OF_IDEAL.items():
+        values, meanings = dict.fromkeys(ideals, "none"), {}
+        for rule in known:
+            one = known[rule][name]
+            value = withUnit(one.value, one.unit)
+            # its curve ends before the force has fallen
+            values[rule] = Badged(value, "not reached") if one.note else value
+            meanings[one.meaning] = None
+        lines.append((what, *values.values(), " Or: ".join(meanings)))
+    heads = ("quantity", *(bilinear_curve.RULES[rule] for rule in ideals), "what it is")
+    caption = (
+        "Bilinear idealisation of the force that both ends carry at once. Source: curve.csv:"
+        " displacement_mm, base_shear_kN, top_shear_kN"
+    )
+    yield table(heads, lines, caption, "ideal")
+    notes = [n for one in good.values() for n in one.notes]
+    notes += [
+        f"{bilinear_curve.RULES[rule]}: none, because {ideals[rule]}"
+        for rule in ideals
+        if rule not in good
+    ]
+    for text in dict.fromkeys(notes):
+        yield note(f"{firstUpper(text)}.")
+
+
+def _aboutCurve(spec, y):
+    """What the curve shows, in a sentence for those who do not see it."""
+    label = str(spec["y_label"])
+    unit = unitOf({"label": label, "column": spec["y"][0]["column"]})
+    return (
+        f"{firstUpper(label)}, {spec['y'][0]['label']}, over {spec['x']['label']}: {len(y):,} rows,"
+        f" from {withUnit(float(y.min()), unit)} to {withUnit(float(y.max()), unit)}."
+    )
+
+
+def _places(record, x, y):
+    """Where the frames of the 3-D picture are on the curve."""
+    times = record.column("time_s")
+    if times is None or not record.picture:
+        return []
+    rows = [int(np.nanargmin(np.abs(times - t))) for t in record.frameTimes]
+    return [(float(x[n]), float(y[n])) for n in rows]
+
+
+def found(record):
+    """Drifts and other numbers of a push, drifts that were recorded, and what the stages were run
+    for."""
+    if record.isPush:
+        yield from _states(record)
+        yield numbers(
+            quantities.shown(record.numbers, "push", "loops", "one way"), "Numbers of the push"
+        )
+    else:
+        yield missing("The run has no push, so there are no drifts at a peak or at a first crack.")
+    yield from _drifts(record)
+    yield from _answers(record.run)
+
+
+def _states(record):
+    """First crack, peak, loss of force and collapse: displacement, drift and force."""
+    data, entries, lines = record.data, record.numbers, []
+    for state in quantities.STATES:
+        moved, meaning = entries.get(state.displacement), state.meaning
+        found = ["none"] * 3
+        if isNumber(moved):
+            carried = data.at(data.carried(), data.place(state.find))
+            found = [
+                withUnit(moved, "mm"),
+                withUnit(entries.get(state.drift), "mrad"),
+                withUnit(carried, "kN"),
+            ]
+        else:
+            meaning += f" Here: {state.missing}."
+        lines.append((state.name, *found, meaning, f"run.json: {state.displacement}"))
+    heads = ("state", "displacement", "drift", "force at both ends", "what it is", "source")
+    yield table(heads, lines, "Drifts of the push", "states")
+    if data.height:
+        yield note(
+            "The drift is the displacement of the masonry, without what a platen slips on it, over"
+            f" its height above the lowest brick, {written(data.height)} m; 1 mrad is 0.1 %. The"
+            " displacement is that of the pushed point."
+        )
+    else:
+        yield missing(
+            "The height of the recorded point is not known, or the push is not horizontal, so there"
+            " are no drifts."
+        )
+
+
+def _drifts(record):
+    meanings = record.run.get("columns") or {}
+    rows = []
+    for name in record.run.get("recorded_drifts") or []:
+        values = record.columns.get(name, np.zeros(0))
+        values = values[np.isfinite(values)]
+        if len(values):
+            largest = float(max(values, key=abs))
+            rows.append(
+                quantities.Number(
+                    f"largest {name.removesuffix('_mrad')}",
+                    largest,
+                    "mrad",
+                    f"Of all rows the one with the largest size: {bare(meanings.get(name))}.",
+                    f"curve.csv: {name}",
+                )
+            )
+    if rows:
+        yield numbers(rows, "Drifts that were recorded")
+
+
+def _answers(run):
+    answers = entriesOf(run, "answers")
+    if not answers:
+        yield note("No stage was run for a number. Source: run.json: answers.")
+        return
+    line = lambda a, what: (
+        f"{a.get('number')}, {a.get('stage')}: {what}",
+        valueOf(a),
+        str(a.get("how", "")),
+    )
+    heads = ("stage and number", "value", "how it was found")
+    caption = "What the stages were run for. Source: run.json: answers"
+    every = [line(a, nameOf(a)) for a in answers]
+    whole = table(heads, every, caption, "answers")
+    if len(every) <= MOST_ANSWERS:
+        yield whole
+        return
+    found = [line(a, what) for a, what in sought(run)]
+    if found:
+        yield table(heads, found, caption, "answers")
+    yield folded(f"All {len(every)} numbers of the stages", whole)
+
+
+WHAT_JOINTS_DO = {"opens": "open", "slides": "slide", "crushes": "crush"}
+
+
+def bound(record):
+    """The bound by limit analysis."""
+    entries = entriesOf(record.run, "bounds")
+    if not entries:
+        raise Refused(
+            "There is no bound: limit analysis is made where a structure is pushed, leans or tilts,"
+            " of up to 3,000 joints, and not with --lean. Source: run.json: bounds."
+        )
+    lines = []
+    for one in entries:
+        if not isNumber(one.get("factor")):
+            lines.append((one.get("load", "?"), "none", "", one.get("note", "not known")))
+            continue
+        unit = one.get("unit") or "-"
+        joints = ", ".join(
+            f"{count} {WHAT_JOINTS_DO.get(what, what)}"
+            for what, count in (one.get("joints") or {}).items()
+            if count
+        )
+        kind = (
+            "what rigid blocks carry exactly"
+            if one.get("exact")
+            else (
+                "an upper bound: joints that slide are taken to open as friction tells, and no"
+                " joint loses strength"
+            )
+        )
+        further = [
+            f"{what}: {withUnit(one[key], unit)}"
+            for key, what in (
+                ("open_joints_slip", "with open head joints that slip"),
+                ("without_dilatancy", "a collapse in which joints slip without opening"),
+            )
+            if isNumber(one.get(key))
+        ]
+        lines.append(
+            (
+                one.get("load", "?"),
+                withUnit(one["factor"], unit),
+                joints or "–",
+                "; ".join([kind, *further]),
+            )
+        )
+    heads = ("load", "factor", "joints of the mechanism", "what it is")
+    yield table(
+        heads,
+        lines,
+        (
+            "Limit analysis of the same blocks, rigid and with small displacements. Source:"
+            " run.json: bounds"
+        ),
+    )
+    run, rows = record.numbers, []
+    for side, what in (
+        ("", "peak over bound"),
+        ("negative_", "peak of the other side over its bound"),
+    ):
+        peak, limit = f"{side}peak_at_both_ends_kN", f"{side}bound_base_shear_kN"
+        if isNumber(run.get(peak)) and isNumber(run.get(limit)) and run[limit]:
+            rows.append(
+                quantities.Number(
+                    what,
+                    abs(run[peak] / run[limit]),
+                    "-",
+                    "Of an upper bound it cannot be much above 1; a run warns where it is.",
+                    f"run.json: {peak}, {limit}",
+                )
+            )
+    if rows:
+        yield numbers(rows, "The run beside its bound")
+    yield figure(
+        "mechanism.png", "How the structure gives way in limit analysis. Source: mechanism.png."
+    )
+
+
+def energy(record):
+    """Where the work went: a table, a bar and a chart."""
+    # a figure may show its rows in another order
+    rows = np.arange(record.rows.min(), record.rows.max() + 1) if len(record.rows) else record.rows
+    columns = {n: v[rows] for n, v in record.columns.items() if n.endswith("_J")}
+    if not columns or not len(record.rows):
+        raise Refused("There is no energy balance: curve.csv has no rows with energies.")
+    finite = np.isfinite(list(columns.values())).all(axis=0)
+    columns = {n: v[finite] for n, v in columns.items()}
+    if finite.sum() < 2:
+        raise Refused("There is no energy balance: less than two rows have all energies.")
+    stack, work = energies(columns)
+    change = lambda name: float(columns[name][-1] - columns[name][0])
+    known = {**quantities.ENERGIES, **quantities.OF_CONNECTORS, **quantities.OF_CONTACTS}
+    rare = ("refining_J", "handing_J")  # where joints get points, or turn into contacts
+    columns = {n: v for n, v in columns.items() if n not in rare or v.any()}
+    of = lambda kind: [f"{n}_J" for n in known if f"{n}_J" in columns and known[n][1] == kind]
+    inputs, elastic, spent = of("in"), of("stored"), of("spent")
+    total = sum(map(change, inputs))
+    part = lambda value: withUnit(100 * value / total if total > 0 else None, "%", 2)
+    line = lambda what, value, source: (what, withUnit(value, "J"), part(value), source)
+    own = lambda n: line(known[n[:-2]][0], change(n), f"curve.csv: {n}")
+    stored = sum(map(change, elastic))
+    lines = [*map(own, inputs)]
+    lines.append(line("all that was put in", total, "sum of these"))
+    lines.append(line("elastic energy of all parts", stored, f"curve.csv: {', '.join(elastic)}"))
+    lines += map(own, spent)
+    rest = total - stored - sum(map(change, spent))
+    lines.append(
+        ("what is missing in the balance", withUnit(rest, "J", 2), part(rest), "difference")
+    )
+    since = "from the first to the last row that the curve shows"
+    yield table(
+        ("energy", "change", "share of what was put in", "source"),
+        lines,
+        f"Where the work went, {since}",
+        "energy",
+    )
+    if record.spec and (np.diff(record.rows) > 0).all():
+        x, label = record.columns[record.spec["x"]["column"]][rows], str(record.spec["x"]["label"])
+    else:
+        x, label = rows, "number of the row"
+    x = x[finite]
+    if record.isLooped:
+        x = np.append(0, np.cumsum(np.abs(np.diff(x))))
+        label = "length of the path there and back [mm]"
+    with drawing.style():
+        svg = drawing.svg(curve_figure.energiesOf(x, label, stack, work), "energies")
+    about = (
+        "Energies since the first row that the curve shows. Work done is that of loads and gravity."
+    )
+    yield figure(svg, f"{about} Source: curve.csv.")
+
+
+ABOUT_CYCLES = (
+    "W is the integral of the base shear over the displacement, K the secant stiffness from peak to"
+    " peak, A half of the displacement from peak to peak, and ξ = W/(4π·½·K·A²), the ratio of the"
+    " viscous damping that takes as much work in a cycle (Jacobsen, 1930). W is a small difference"
+    " of large numbers, and inertia and damping of the run are in it: beside it stands what the"
+    " joints and the damping of the run took. A negative ξ means that the cycle has no W that can"
+    " be told from these."
+)
+
+
+def cycles(record):
+    """Equivalent damping of cycles."""
+    entries = record.run.get("cycles")
+    if not entries:
+        raise Refused("The run has no whole cycles, so there is no equivalent damping.")
+    columns = [one for one in quantities.OF_CYCLES if one[-1]]
+    heads = [f"{name} [{'%' if key == 'damping' else unit}]" for key, name, unit, *_ in columns]
+    lines = []
+    for n, one in enumerate(entries, start=1):
+        cells = [
+            100 * one[key] if key == "damping" and isNumber(one.get(key)) else one.get(key)
+            for key, *_ in columns
+        ]
+        lines.append((n, *(written(v) for v in cells)))
+    yield table(("cycle", *heads), lines, "Cycles. Source: run.json: cycles", "cycles")
+    yield note(ABOUT_CYCLES)
+
+
+def base(record):
+    """Normal force, shear force and moment: of the sections that were recorded, else forces on what
+    is held."""
+    sections = record.run.get("recorded_sections") or []
+    names = [n for n in sections if n in record.columns]
+    if names:
+        yield _forces(record, names, "Forces of the sections that were recorded")
+        return
+    held = record.run.get("held") or []
+    reactions = [
+        n for one in held for axis in "xyz" if (n := f"{one}_force_{axis}_kN") in record.columns
+    ]
+    yield missing(
+        "The moment at the base is not known: no section was recorded. scene.section(z) in the"
+        " script records the normal force, the shear force and the moment of a horizontal section."
+    )
+    if not reactions and "base_shear_kN" in record.columns and record.isPush:
+        reactions = ["base_shear_kN"]
+    if reactions:
+        yield _forces(record, reactions, "Forces of the structure on what is held")
+
+
+def _forces(record, names, caption):
+    meanings = record.run.get("columns") or {}
+    places = {"first row": record.rows[0]}
+    if record.isPush and record.data.rows:
+        places["at the peak"] = record.data.rows[record.data.peak()]
+    places["last row"] = record.rows[-1]
+    lines = []
+    for name in names:
+        values, unit = record.columns[name], name.rpartition("_")[2]
+        shown = values[record.rows]
+        finite = shown[np.isfinite(shown)]
+        ends = [finite.min(), finite.max()] if len(finite) else [np.nan] * 2
+        least = NOISE * max(map(abs, ends))
+        every = [*values[list(places.values())], *ends]
+        texts = ["≈ 0" if abs(v) < least else withUnit(float(v), unit) for v in every]
+        lines.append(
+            (name.removesuffix("_" + unit), *texts, bare(meanings.get(name)), f"curve.csv: {name}")
+        )
+    heads = ("force", *places, "smallest", "largest", "what it is", "source")
+    return table(heads, lines, caption, "forces")

@@ -1,0 +1,418 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Parts of a report on what was built, and how it was held and loaded."""
+
+from masonry.errors import Refused
+from masonry.numbers import quantities
+
+from .pieces import (
+    Badged,
+    figure,
+    folded,
+    isNumber,
+    listed,
+    missing,
+    note,
+    numbers,
+    table,
+    withUnit,
+    written,
+)
+from .record import entriesOf
+
+#: Units in which properties are shown, and the factor from SI units.
+SHOWN = {
+    "Pa": ("MPa", 1e-6),
+    "Pa/m": ("N/mm³", 1e-9),
+    "J/m²": ("N/mm", 1e-3),
+    "m": ("mm", 1e3),
+    "1/m": ("1/mm", 1e-3),
+}
+#: Properties that count where a joint can crush, and for no other joint.
+OF_CAP = {
+    "compressiveStrength",
+    "elasticLimitRatio",
+    "residualStrengthRatio",
+    "peakRatio",
+    "compressiveFractureEnergy",
+    "capNormal",
+    "capShear",
+    "capLinear",
+}
+#: Energies that count where there is the strength that they soften.
+SOFTENING = {"modeIFractureEnergy": "tensileStrength", "modeIIFractureEnergy": "cohesion"}
+#: Counts of a run, by their entries in run.json.
+COUNTS = {
+    "units": "blocks of the model, bricks or their halves",
+    "joint_count": "joints between blocks",
+    "subcontacts": "points of joints when the run began",
+    "refined_joints": "joints that got more points",
+    "nodes": "nodes of deformable units",
+}
+STIFFNESSES = {"normalStiffness", "shearStiffness"}
+MOST_WORDS = 12  # of a script that are shown at once
+MOST_LEADING = 3  # answers at the head of a report
+OLDER = "The run was made by an older version of the plugin, whose run.json does not say this."
+
+
+def facts(record):
+    """Name, value and source of what stands below the title."""
+    run = record.run
+    when, whence = record.date()
+    known = run.get("versions")
+    names = {"masonry": "masonry", "yade": "YADE", "python": "Python"}
+    made = [
+        f"{name} {known[key]}"
+        for key, name in names.items()
+        if isinstance(known, dict) and key in known
+    ]
+    return [
+        ("scene", str(run.get("scene", "not known")), "run.json: scene"),
+        ("run ended", when, whence),
+        ("versions", ", ".join(made) or "not known", "run.json: versions"),
+        ("commit", str(run.get("commit", "not known")), "run.json: commit"),
+    ]
+
+
+def head(record):
+    """How the run ended, and the numbers that it was run for."""
+    run = record.run
+    if run.get("error"):
+        yield note(run["error"], "warning", "The run ended by an error:")
+    elif run.get("interrupted"):
+        yield note(
+            "All numbers are those up to there; --resume goes on.",
+            "warning",
+            "The run was interrupted.",
+        )
+    elif run.get("collapsed"):
+        yield note(f"{run.get('collapse') or 'the structure has fallen'}.", "warning", "Collapsed:")
+    elif run.get("ended"):
+        yield note(f"The last stage ended: {run['ended']}.")
+    else:
+        yield note("The run has no rows: it took no time steps, or ended before there was one.")
+    lead = quantities.headline({**run, **record.numbers})
+    lead = lead or "; ".join(f"{what} {valueOf(one)}" for one, what in sought(run))
+    if not lead:
+        answers = [a for a in entriesOf(run, "answers") if isNumber(a.get("value"))]
+        lead = "; ".join(f"{nameOf(a)} {valueOf(a)}" for a in answers[-MOST_LEADING:])
+    if lead:
+        yield note(f"{firstUpper(lead)}.", "lead")
+    warnings = [str(w) for w in run.get("warnings") or []] + record.problems
+    if warnings:
+        more = f", and {len(warnings) - 1} more" if len(warnings) > 1 else ""
+        yield note(
+            f"{warnings[0]}{more}. The part “How far to trust it” has all.", "warning", "Warning:"
+        )
+
+
+def firstUpper(text):
+    return text[:1].upper() + text[1:]
+
+
+def nameOf(answer):
+    """The name of an answer in words."""
+    return str(answer.get("name")).replace("_", " ")
+
+
+def valueOf(answer):
+    """An answer with its uncertainty and unit."""
+    if not isNumber(answer.get("value")):
+        return "not found"
+    text, unit = written(answer["value"]), answer.get("unit", "-")
+    if isNumber(answer.get("uncertainty")):
+        text += f" ± {written(answer['uncertainty'], 2)}"
+    return text if unit == "-" else f"{text}\u00a0{unit}"
+
+
+def sought(run):
+    """The largest load that was held and the smallest that was not, as answers, of a run that
+    looked for one load."""
+    loads, found = quantities.loadsOf(run.get("stages") or []), []
+    ones = [
+        a
+        for a in entriesOf(run, "answers")
+        if a.get("name") in ("factor_held", "factor_not_held") and isNumber(a.get("value"))
+    ]
+    if len({(a.get("stage"), a.get("unit"), loads.get(a.get("number"))) for a in ones}) != 1:
+        return []
+    for name, choose, what in (
+        ("factor_held", max, "largest load that was held"),
+        ("factor_not_held", min, "smallest load that was not held"),
+    ):
+        alike = [a for a in ones if a["name"] == name]
+        if alike:
+            found.append((choose(alike, key=lambda a: a["value"]), what))
+    return found
+
+
+def built(record):
+    """What was built: a drawing, counts, and materials with what was assumed."""
+    run = record.run
+    if record.elevation:
+        yield figure(*record.elevation)
+    else:
+        yield missing(f"There is no drawing of what was built: {record.missing}")
+    built = run.get("built") or []
+    rows = [(name, text, "run.json: built") for name, text in built]
+    for key, what in COUNTS.items():
+        if run.get(key) and not (key == "units" and built):
+            rows.append((what, written(run[key]), f"run.json: {key}"))
+    kinds = run.get("joints_by_kind")
+    if kinds:
+        text = ", ".join(f"{written(count)} {name}" for name, count in kinds.items())
+        rows.append(("joints by kind", text, "run.json: joints_by_kind"))
+    yield table(("what", "how much", "source"), rows, "Counts and sizes")
+    yield from _units(run)
+    yield from _joints(run)
+    yield from _assumed(run)
+
+
+def _units(run):
+    unit = run.get("unit_material")
+    if not unit:
+        return
+    assumed = _namesOf(run)
+    rows = (
+        (
+            "Young's modulus of the units",
+            "young_Pa",
+            1e-6,
+            "MPa",
+            (
+                "Elastic modulus of the material of the bricks; rigid units have theirs in the"
+                " stiffness of their joints."
+            ),
+        ),
+        (
+            "Poisson's ratio of the units",
+            "poisson",
+            1,
+            "-",
+            "Lateral over longitudinal strain of the material of the bricks.",
+        ),
+        (
+            "density of the units",
+            "density_kg_per_m3",
+            1,
+            "kg/m³",
+            "Mass of a brick over its volume.",
+        ),
+    )
+    found = []
+    for what, key, factor, shown, meaning in rows:
+        value = factor * unit[key] if isNumber(unit.get(key)) else None
+        named = _marked(what, f"unit.{key.partition('_')[0]}" in assumed)
+        found.append(
+            quantities.Number(named, value, shown, meaning, f"run.json: unit_material.{key}")
+        )
+    yield numbers(found, "Units")
+
+
+def _marked(text, isAssumed):
+    return Badged(text, "assumed") if isAssumed else text
+
+
+def _namesOf(run):
+    """Names of the properties that were assumed; those of the support are those of the bed joint
+    where it takes these."""
+    names = {str(a.get("name")) for a in run.get("assumed") or []}
+    if "support" in names:
+        names |= {n.replace("bed.", "support.", 1) for n in names if n.startswith("bed.")}
+    return names
+
+
+def _joints(run):
+    joints = run.get("joints")
+    if not joints:
+        yield missing(OLDER)
+        return
+    units, meanings = run.get("joint_units") or {}, run.get("joint_meanings") or {}
+    counted = run.get("joints_by_kind") or joints  # kinds without joints do not count
+    joints = {kind: found for kind, found in joints.items() if kind in counted}
+    assumed, kinds = _namesOf(run), list(joints)
+    names = dict.fromkeys(n for p in joints.values() for n in p if n in units)
+    ofLaws = run.get("properties_of_laws") or {}
+    particular = {name for read in ofLaws.values() for name in read}
+    counts = lambda name, joint: name not in particular or name in ofLaws.get(joint.get("law"), ())
+    shown, others = [], []
+    for name in names:
+        meaning = str(meanings.get(name, "")).partition(". ")[0].rstrip(".")
+        unit, factor = SHOWN.get(units[name], (units[name], 1))
+        cells = [_cell(joints[kind], name, factor, f"{kind}.{name}" in assumed) for kind in kinds]
+        line = meaning or name, unit, *cells
+        used = any(joints[kind].get(name) and counts(name, joints[kind]) for kind in kinds)
+        used = used and set(cells) != {"–"}
+        (shown if used else others).append(line)
+    laws = [_lawOf(joints[kind]) for kind in kinds]
+    heads = ("property", "unit", *kinds)
+    caption = (
+        "Joints, by kind. A dash: the property does not count for this kind. Source: run.json:"
+        " joints"
+    )
+    yield table(heads, [("law", "", *laws), *shown], caption, "joints")
+    if others:
+        inside = table(heads, others, "Other properties of the joints", "joints")
+        yield folded(
+            "Properties that are zero, or of no meaning for these joints", inside, kind="screen"
+        )
+
+
+def _lawOf(joint):
+    if joint.get("elastic"):
+        return "elastic: no strength is reached"
+    return f"{joint.get('law', 'not known')}{'' if joint.get('cap', True) else ', cannot crush'}"
+
+
+def _cell(joint, name, factor, isAssumed):
+    isIgnored = (
+        joint.get("elastic")
+        and name not in STIFFNESSES
+        or name in OF_CAP
+        and not joint.get("cap", True)
+        or name in SOFTENING
+        and not joint.get(SOFTENING[name])
+    )
+    if isIgnored:
+        return "–"
+    value = joint.get(name)
+    text = written(factor * value) if isNumber(value) else written(None)
+    return _marked(text, isAssumed)
+
+
+def _assumed(run):
+    entries = run.get("assumed")
+    if entries is None:
+        raise Refused(OLDER)
+    if not entries:
+        yield note(
+            "Nothing was assumed: every property of the materials was given. Source: run.json:"
+            " assumed."
+        )
+        return
+    groups = {}
+    for one in entries:
+        kind, _, name = str(one.get("name", "?")).partition(".")
+        found = groups.setdefault((kind, str(one.get("source", "not known"))), [])
+        value = one.get("value")
+        if isNumber(value):
+            unit, factor = SHOWN.get(one.get("unit"), (one.get("unit", "-"), 1))
+            found.append(f"{name}\u00a0{withUnit(factor * value, unit)}")
+        else:
+            found.append(" ".join(filter(None, (name, str(value or "")))))
+    lines = [(kind, ", ".join(found), source) for (kind, source), found in groups.items()]
+    yield table(
+        ("of", "property and value", "where it is from"),
+        lines,
+        "What was not given, and is ASSUMED. Source: run.json: assumed",
+    )
+
+
+def loaded(record):
+    """How it was held and loaded: targets, stages, the words of the script, and the options."""
+    run = record.run
+    pairs = run.get("held_and_loaded")
+    if pairs:
+        yield table(
+            ("what", "how it is held and loaded before the first stage"),
+            pairs,
+            "Supports and dead loads. Source: run.json: held_and_loaded",
+        )
+    else:
+        held = ", ".join(map(str, run.get("held") or [])) or "nothing"
+        yield note(f"Held: {held}. Source: run.json: held.")
+    yield from _connections(run)
+    lines = []
+    answers = [a for a in entriesOf(run, "answers") if isNumber(a.get("value"))]
+    for number, stage in enumerate(entriesOf(run, "stages"), start=1):
+        load = [str(one) for one in (stage.get("load") or [])[1:2] if one]
+        found = [f"{nameOf(a)} {valueOf(a)}" for a in answers if a.get("number") == number]
+        lines.append(
+            (
+                number,
+                stage.get("stage", "?"),
+                ", ".join(load) or "–",
+                written(stage.get("steps")),
+                "; ".join(found) or "–",
+            )
+        )
+    if lines:
+        yield table(
+            ("number", "stage", "load", "time steps", "what it found"),
+            lines,
+            "Stages in their order. Source: run.json: stages, answers",
+            "stages",
+        )
+    words = [w for w in run.get("script") or [] if isinstance(w, list) and len(w) == 2]
+    if words:
+        script = listed((spoken(*word) for word in words), kind="script")
+        about = note(
+            "Stresses are in Pa, forces in N, lengths in m, and displacements of pushes and"
+            " supports in mm; help(masonry.Scene) describes the words. Source: run.json: script."
+        )
+        title, few = "The words of the script, in their order", len(words) <= MOST_WORDS
+        yield folded(title, script, about, opened=few)
+    options = run.get("options")
+    if isinstance(options, dict):
+        units = run.get("option_units") or {}
+        text = "; ".join(
+            f"{name} {_said(value)} {units.get(name, '')}".strip()
+            for name, value in options.items()
+        )
+        yield folded("All options of the run", note(f"{text}. Source: run.json: options."))
+
+
+#: Units at the end of names in entries of ties and springs, the longest first.
+ENDINGS = (("_N_per_m", "N/m"), ("_Nm", "N m"), ("_N", "N"), ("_m", "m"))
+
+
+def _connections(run):
+    """Ties, springs and layers of fibres, if run.json has some."""
+    for key in ("ties", "springs", "overlays"):
+        lines = [
+            (one.get("name", "?"), "; ".join(_named(n, v) for n, v in one.items() if n != "name"))
+            for one in entriesOf(run, key)
+        ]
+        if lines:
+            yield table(
+                ("name", "what it is, and its state at the end"),
+                lines,
+                f"{key.capitalize()}. Source: run.json: {key}",
+            )
+
+
+def _named(name, value):
+    """An entry with its unit, which ends its name."""
+    ends = ((ending, unit) for ending, unit in ENDINGS if name.endswith(ending))
+    ending, unit = next(ends, ("", ""))
+    words = name.removesuffix(ending).replace("_", " ")
+    return f"{words} {_values(value)} {unit}".strip()
+
+
+def _values(value):
+    if isinstance(value, list):
+        return "(" + ", ".join(map(_values, value)) + ")"
+    return _said(value)
+
+
+def _said(value):
+    if value is None or value == [] or value == "":
+        return "–"
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    return written(value, 6) if isNumber(value) else str(value)
+
+
+def spoken(word, arguments):
+    """A word of a script as it was said, without the arguments that are nothing."""
+    if not isinstance(arguments, dict):
+        return f"{word}({arguments})"
+    given = {n: v for n, v in arguments.items() if v not in (None, False, "", [], {})}
+    return f"{word}({', '.join(f'{n}={_short(v)}' for n, v in given.items())})"
+
+
+def _short(value):
+    if isinstance(value, float):
+        return f"{value:.6g}"
+    if isinstance(value, list):
+        return "[" + ", ".join(map(_short, value)) + "]"
+    return repr(value) if isinstance(value, str) else str(value)

@@ -1,0 +1,228 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Runs in the window of ParaView, and in a browser without ParaView. No YADE is needed.
+
+``scripts/view.py`` is the program. In ParaView's own Python works
+:mod:`masonry_view.paraview_macro`.
+"""
+
+import argparse
+import json
+import os
+import re
+import shutil
+import subprocess
+import tempfile
+from typing import Any, Sequence
+
+import numpy as np
+
+from masonry import folders
+from masonry.arguments import FilePath
+from masonry.errors import Refused
+from masonry.terminal import say
+from . import page, painting
+from masonry.numbers.cracks import CRACK, DAMAGED
+from masonry.numbers.files import filesOf, program, readCurve, readRun
+from masonry.numbers.frames import frameAt, frameTimes
+from .model import GROUND, OPEN, PLATEN, Model
+
+#: Folder into which python3-paraview can be unpacked where it cannot be installed beside
+#: python3-vtk9.
+UNPACKED = os.path.expanduser("~/.local/share/masonry/paraview")
+SIZE = 1500, 1000  # of ParaView's views [pixels]
+
+MISSING = f"""ParaView is not there. As root:
+  apt-get install --no-install-recommends paraview
+and, since the package python3-paraview would remove python3-vtk9, on which other programs may \
+depend, as yourself:
+  cd /tmp && apt-get download python3-paraview && dpkg -x python3-paraview_*.deb {UNPACKED}"""
+
+
+def frameNear(directory: FilePath, at: Any) -> int:
+    """Number of the frame next to a place in a run, from 0.
+
+    :param at: text: a number with ``s``, a time, or a number with or without the unit of x of
+        curve.png; None: the end
+    :raises Refused: if the text is no such place, or if the run never comes there
+    """
+    times = frameTimes(directory)
+    if at is None:
+        return len(times) - 1
+    found = re.fullmatch(r"\s*([-+]?[\d.]+(?:[eE][-+]?\d+)?)\s*([^\d\s]*)\s*", at)
+    if not found:
+        raise Refused(f"--at: '{at}' must be a number, with mm or s behind it")
+    value, unit = float(found[1]), found[2]
+    if unit != "s":
+        axis = readRun(directory).get("figure", {}).get("x")
+        if axis is None:
+            raise Refused(f"{directory}: its x is not known; give --at a time as 0.5s")
+        data = readCurve(directory)
+        x = np.array(data[axis["column"]])
+        own = axis["column"].rsplit("_", 1)[-1]
+        if unit not in ("", own):
+            raise Refused(f"--at: '{at}' must be in {own} or in s")
+        reached = np.flatnonzero(x >= value if value >= x[0] else x <= value)
+        if not len(reached):
+            raise Refused(
+                f"--at: {directory} never comes to {value:g} {own}; it goes from {x.min():g} to"
+                f" {x.max():g} {own}"
+            )
+        value = data["time_s"][reached[0]]
+    elif not min(times) * (1 - 1e-9) <= value <= max(times) * (1 + 1e-9):
+        raise Refused(
+            f"--at: {directory} has frames from {min(times):g} to {max(times):g} s, not at"
+            f" {value:g} s"
+        )
+    return frameAt(directory, value)
+
+
+def sceneOf(
+    directory: FilePath, number: int, magnification: float | None, shape: float
+) -> dict[str, Any]:
+    """What ParaView shall show of a run: an entry ``runs`` for :mod:`masonry_view.paraview_macro`.
+
+    :param number: of the frame after which camera, magnification and the range of colours are
+        chosen
+    :param shape: width of the view over its height
+    """
+    model = Model(directory, number)
+    sight = model.sight(magnification)
+    towards = sight.towards + (0, 0, 0.15)
+    towards /= np.linalg.norm(towards)
+    right = np.cross((0, 0, 1), towards) / np.hypot(*towards[:2])
+    axes = np.array([right, np.cross(towards, right)])
+    middle, extent = 0.5 * (sight.low + sight.high), sight.high - sight.low
+    wide, tall = np.abs(axes) @ extent
+    half = 0.5 * max(1.4 * tall, 1.5 * wide / shape)
+    middle = middle + 0.1 * half * shape * right  # the legend stands at the right
+    opening = model.joints.opening[0][(model.joints.kind[0] & OPEN) > 0]
+    widest = float(np.quantile(opening, 0.995)) if len(opening) else 0.0
+    bodies = lambda look: model.bodies[model.looks == look].tolist()
+    return {
+        "folder": os.path.abspath(directory),
+        "title": (
+            f"{model.title}\ndisplacements × {sight.magnification:g}, slid joints in blue,"
+            " scale in m"
+        ),
+        "magnification": sight.magnification,
+        "ground": bodies(GROUND),
+        "platens": bodies(PLATEN),
+        "widest_mm": page.data.nice(1e3 * max(widest, 4 * CRACK)),
+        "colours": {
+            n: (painting.rgb(c) / 255).tolist()
+            for n, c in {**painting.SHADES, **painting.CRACKS, "mortar": painting.MORTAR}.items()
+        },
+        "crack": CRACK,
+        "damaged": DAMAGED,
+        "bounds": np.column_stack([sight.low, sight.high]).ravel().tolist(),
+        "middle": middle.tolist(),
+        "towards": towards.tolist(),
+        "half_height": float(half),
+    }
+
+
+def inParaView(directories: Sequence[FilePath], at: Any, magnification: float | None) -> None:
+    """Show runs side by side in ParaView's window.
+
+    :param at: the frame, as in :func:`frameNear`
+    :param magnification: of displacements; None: chosen for each run
+    :raises Refused: if ParaView is missing
+    """
+    numbers = [frameNear(d, at) for d in directories]
+    shape = SIZE[0] / len(directories) / SIZE[1]
+    runs = [sceneOf(d, n, magnification, shape) for d, n in zip(directories, numbers)]
+    # one scale of colours for all
+    widest = max(run["widest_mm"] for run in runs)
+    for run in runs:
+        run["widest_mm"] = widest
+    job = {"runs": runs, "time": frameTimes(directories[0])[numbers[0]], "size": SIZE}
+    path = shutil.which("paraview")
+    if not path:
+        raise Refused(MISSING)
+    macro = os.path.join(os.path.dirname(__file__), "paraview_macro.py")
+    modules = os.path.join(UNPACKED, "usr", "lib", "python3", "dist-packages")
+    with tempfile.TemporaryDirectory() as folder:
+        viewFile = os.path.join(folder, "view.json")
+        with open(viewFile, "w") as file:
+            json.dump(job, file)
+        # PYTHONPATH and PYTHONHOME are of another Python
+        elsewhere = {k: v for k, v in os.environ.items() if k not in ("PYTHONPATH", "PYTHONHOME")}
+        if os.path.isdir(modules):
+            elsewhere["PYTHONPATH"] = modules
+        subprocess.run([path, "--script=" + macro], env={**elsewhere, "MASONRY_VIEW": viewFile})
+
+
+def _writable(path, directory):
+    """The path of a page to write: as it was given, or view.html in the folder of the run.
+
+    :raises Refused: if it has another ending, or if it is a folder or in a folder that is not there
+    """
+    if path is None:
+        folders.check(directory)
+        path = os.path.join(directory, "view.html")
+    if os.path.isdir(path):
+        raise Refused(f"{path} is a folder; name a file that ends in .html or .htm")
+    if not path.lower().endswith((".html", ".htm")):
+        raise Refused(f"{path} must end in .html or .htm")
+    if not os.path.isdir(os.path.dirname(path) or "."):
+        raise Refused(f"cannot write {path}: there is no folder {os.path.dirname(path)}")
+    return path
+
+
+def _handOn(args):
+    """--html: a page that needs no ParaView."""
+    if len(args.result) > 1:
+        raise Refused(
+            "--html writes one page of one run; start view.py again for other files or runs"
+        )
+    if args.frame is not None and args.at is not None:
+        raise Refused("--frame and --at both name a frame; give one of them")
+    (directory,) = args.result
+    number = args.frame if args.at is None else frameNear(directory, args.at)
+    try:
+        path = _writable(args.html, directory)
+        page.write(directory, path, number, args.magnify)
+        say(f"{path}: {os.path.getsize(path) / 1e6:.2f} MB; any browser opens it")
+    except OSError as problem:
+        raise Refused(f"cannot write {path}: {problem.strerror}") from None
+
+
+@program
+def main(words: Sequence[str] | None = None) -> None:
+    """The program ``scripts/view.py``."""
+    parser = argparse.ArgumentParser(
+        description="Open runs in ParaView, or write one for a browser."
+    )
+    parser.add_argument("result", nargs="+", help="folder of results")
+    parser.add_argument(
+        "--html",
+        metavar="FILE",
+        nargs="?",
+        default=False,
+        help=(
+            "a page that any browser shows in 3-D, without ParaView and without a network"
+            " (view.html in the folder of results)"
+        ),
+    )
+    parser.add_argument(
+        "--frame", metavar="N", type=int, help="frame to show first in --html, from 0"
+    )
+    parser.add_argument(
+        "--at", metavar="PLACE", help="frame to show: 12, 12mm or 0.5s; else the last one"
+    )
+    parser.add_argument(
+        "--magnify",
+        type=float,
+        help="magnification of displacements; else chosen for each run",
+    )
+    args = parser.parse_args(words)
+    if args.magnify is not None and not 0 <= args.magnify < float("inf"):
+        raise Refused(f"--magnify: {args.magnify:g} must be at least 0")
+    for directory in args.result:
+        readRun(directory)
+    with filesOf(", ".join(args.result)):
+        if args.html is not False:
+            return _handOn(args)
+        if args.frame is not None:
+            raise Refused("--frame is for --html; --at names a frame for ParaView")
+        inParaView(args.result, args.at, args.magnify)

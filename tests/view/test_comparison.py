@@ -1,0 +1,125 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Curves over each other, and rows for yade.plot."""
+
+from usual import *
+from masonry_view import comparison
+from masonry.numbers import drawing
+from made_runs import axis, writeRun
+
+FIGURE = {"x": axis("u_mm", "moved [mm]"), "y": [axis("f_kN")], "y_label": "force [kN]"}
+
+
+@pytest.fixture
+def drawn(monkeypatch):
+    found = []
+    monkeypatch.setattr(drawing, "save", lambda figure, *_: found.append(figure))
+    return found
+
+
+def lines(figure):
+    found = {line.get_label(): line for line in figure.axes[0].lines}
+    return {name: line.get_xydata() for name, line in found.items() if name[0] != "_"}
+
+
+def test_runs_and_measured_curves_lie_over_each_other(tmp_path, drawn):
+    loop = np.array([(0, 0), (2, 5), (-2, -5), (0, 0)])
+    writeRun(tmp_path / "one" / "out", ["u_mm", "f_kN"], loop, figure=FIGURE)
+    writeRun(tmp_path / "two" / "out", ["f_kN", "u_mm"], loop[:2, ::-1], figure=FIGURE)
+    test = tmp_path / "test.csv"
+    test.write_text("# a test\nstep;d;F\n1;0;0\n2;1.5;4\n3;;\n4;3;2\n")
+    folders = [str(tmp_path / name / "out") for name in ("one", "two")]
+    path = str(tmp_path / "p.png")
+    measured = [f"{test}:d:F", f"{test}:2:1"]
+    assert comparison.compare(folders, measured, labels=["first"], out=path) == path
+    (figure,) = drawn
+    shown = lines(figure)
+    assert set(shown) == {"first", "two/out", "test.csv, F", "test.csv, 1"}
+    assert shown["first"] == approx(loop)
+    assert shown["two/out"] == approx(loop[:2])
+    assert shown["test.csv, F"] == approx(np.array([(0, 0), (1.5, 4), (3, 2)]))
+    assert shown["test.csv, 1"][:, 1] == approx([1, 2, 4])
+    axes = figure.axes[0]
+    assert (axes.get_xlabel(), axes.get_ylabel()) == ("moved [mm]", "force [kN]")
+    assert axes.get_ylim()[0] < -5
+
+
+def test_columns_of_older_runs_can_be_named(tmp_path, drawn):
+    folder = writeRun(tmp_path, ["time_s", "top_mm"], [[0, 1], [1, -2]])
+    with raises(Refused, match="name the columns by --x and --y"):
+        comparison.compare([folder], out="p.png")
+    comparison.compare([folder], x="time_s", y="top_mm", out="p.png")
+    assert drawn[0].axes[0].get_ylabel() == "top [mm]"
+
+
+@mark.parametrize(
+    "words, message",
+    [
+        (["--csv", "t.csv"], "'t.csv' must be FILE:X:Y"),
+        (["--csv", "nowhere.csv:1:2"], "cannot read nowhere.csv: No such file"),
+        (["--csv", "t.csv:a:c"], "t.csv: there is no column c, there are a, b"),
+        (["--csv", "t.csv:1:3"], "t.csv: there is no column 3"),
+        (["--csv", "bad.csv:a:b"], "bad.csv, row 3: could not convert string to float"),
+        (["--csv", "nan.csv:a:b"], "nan.csv, row 3: a number is not finite"),
+        (["--csv", "t.csv:a:b", "--out", "p.bmp"], "p.bmp must end in .png"),
+        (["--csv", "t.csv:a:b", "--label", "1", "--label", "2"], "2 labels for 1 curves"),
+        (["--csv", "t.csv:a:b", "--out", "no/p.png"], "cannot write no/p.png: No such"),
+        (["nowhere"], "cannot read nowhere/curve.csv: No such file"),
+        ([], "name one folder of results at least"),
+        (["run", "--x", "v"], "curve.csv has no column v, it has u_mm, f_kN"),
+    ],
+)
+def test_what_cannot_be_drawn_is_refused(tmp_path, monkeypatch, capsys, words, message):
+    monkeypatch.chdir(tmp_path)
+    writeRun("run", ["u_mm", "f_kN"], [[0, 0], [1, 1]], figure=FIGURE)
+    for name, last in (("t", "2,3"), ("bad", "2,x"), ("nan", "2,nan")):
+        (tmp_path / f"{name}.csv").write_text(f"a,b\n1,2\n{last}\n")
+    assert comparison.main(words) == 2
+    assert message in capsys.readouterr().err
+
+
+def test_a_picture_is_written(tmp_path, capsys):
+    folder = writeRun(tmp_path, ["u_mm", "f_kN"], [[0, 0], [1, 1]], figure=FIGURE)
+    for name, start in (("p.png", b"\x89PNG"), ("p.pdf", b"%PDF")):
+        assert comparison.main([folder, "--out", str(tmp_path / name)]) == 0
+        assert (tmp_path / name).read_bytes().startswith(start)
+
+
+@pytest.fixture
+def plot():
+    from yade import plot
+
+    plot.reset()
+    yield plot
+    plot.reset()
+
+
+def test_yade_plot_is_filled_if_the_user_asks(plot, monkeypatch):
+    from masonry.run.plotting import live
+
+    columns = ["time_s", "u_mm", "f_kN"]
+    assert live(columns) is None
+    plot.plots = {"x": ("y",), "picture": None}
+    assert live(columns) is None
+    for plots in (
+        {"u_mm": None},
+        {"x": "f_kN"},
+        {"x": ("y", None, ("f_kN", "r-"))},
+        {" time_s ": ()},
+    ):
+        plot.plots = plots
+        assert live(columns)
+    add = live(columns)
+    add([0, 1, 2])
+    plot.addData(mine=7)  # what the user adds beside
+    add((1, 2, 3))
+    add((2, 3, 4))
+    nan = approx(float("nan"), nan_ok=True)
+    assert plot.data["u_mm"] == [1, nan, 2, 3] and plot.data["f_kN"] == [2, nan, 3, 4]
+    assert plot.data["mine"] == [nan, 7, nan, nan]
+    with raises(ValueError, match="a row of 2 numbers for 3 columns"):
+        add((1, 2))
+    plot.resetData()
+    add((5, 6, 7))
+    assert plot.data == {"time_s": [5], "u_mm": [6], "f_kN": [7]}
+    monkeypatch.delitem(sys.modules, "yade.plot")
+    assert live(columns) is None
