@@ -20,13 +20,13 @@
 #include "common/Memory.hpp"
 #include "common/Parallel.hpp"
 #include "common/Text.hpp"
+#include "engine/bodies/StepLock.hpp"
+#include "engine/checkpoint/SceneCheckpoint.hpp"
+#include "engine/joints/Neighbours.hpp"
+#include "engine/joints/Resultant.hpp"
+#include "engine/store/SceneStore.hpp"
+#include "engine/watch/CriticalTimeStep.hpp"
 #include "host/SelfCheck.hpp"
-#include "scene/bodies/StepLock.hpp"
-#include "scene/checks/CriticalTimeStep.hpp"
-#include "scene/checks/SceneCheckpoint.hpp"
-#include "scene/joints/Neighbours.hpp"
-#include "scene/joints/Resultant.hpp"
-#include "scene/store/SceneStore.hpp"
 
 namespace {
 

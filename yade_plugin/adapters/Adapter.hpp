@@ -16,9 +16,9 @@
 //     template <class PyClass> static void extras(PyClass&)    adds more properties and functions for Python
 #pragma once
 #include "Assumptions.hpp"
+#include "engine/bodies/Changes.hpp"
+#include "engine/bodies/StepLock.hpp"
 #include "host/Yade.hpp"
-#include "scene/bodies/Changes.hpp"
-#include "scene/bodies/StepLock.hpp"
 #include <boost/mpl/vector.hpp>
 #include <boost/python/raw_function.hpp>
 #include <boost/serialization/export.hpp>

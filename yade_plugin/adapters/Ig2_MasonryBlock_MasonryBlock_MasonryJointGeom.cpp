@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "Ig2_MasonryBlock_MasonryBlock_MasonryJointGeom.hpp"
-#include "scene/bodies/Blocks.hpp"
-#include "scene/bodies/BodyStep.hpp"
-#include "scene/checks/EngineScope.hpp"
-#include "scene/joints/Neighbours.hpp"
+#include "engine/bodies/Blocks.hpp"
+#include "engine/bodies/BodyStep.hpp"
+#include "engine/joints/Neighbours.hpp"
+#include "engine/watch/EngineScope.hpp"
 
 template class masonry::Adapter<masonry::Ig2_MasonryBlock_MasonryBlock_MasonryJointGeom, yade::IGeomFunctor>;
 BOOST_CLASS_EXPORT_IMPLEMENT(masonry::Ig2_MasonryBlock_MasonryBlock_MasonryJointGeom)

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 #include "Adapter.hpp"
-#include "scene/checks/SceneCheck.hpp"
-#include "scene/contacts/FallenBlocks.hpp"
-#include "scene/contacts/JointConversion.hpp"
+#include "engine/contacts/FallenBlocks.hpp"
+#include "engine/contacts/JointConversion.hpp"
+#include "engine/watch/SceneCheck.hpp"
 
 namespace masonry {
 

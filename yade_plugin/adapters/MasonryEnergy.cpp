@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "MasonryEnergy.hpp"
-#include "scene/bodies/BodyCheck.hpp"
-#include "scene/bodies/BodyStep.hpp"
-#include "scene/bodies/Integrator.hpp"
-#include "scene/bodies/Load.hpp"
-#include "scene/checks/CriticalTimeStep.hpp"
-#include "scene/checks/EngineScope.hpp"
-#include "scene/contacts/Connectors.hpp"
-#include "scene/contacts/Contacts.hpp"
-#include "scene/joints/Zones.hpp"
+#include "engine/bodies/BodyCheck.hpp"
+#include "engine/bodies/BodyStep.hpp"
+#include "engine/bodies/Integrator.hpp"
+#include "engine/bodies/Load.hpp"
+#include "engine/connectors/Connectors.hpp"
+#include "engine/contacts/Contacts.hpp"
+#include "engine/units/Zones.hpp"
+#include "engine/watch/CriticalTimeStep.hpp"
+#include "engine/watch/EngineScope.hpp"
 #include <iostream>
 
 template class masonry::Adapter<masonry::MasonryEnergy, yade::GlobalEngine>;
@@ -93,7 +93,7 @@ void MasonryEnergy::watchOver(SceneStore& store) {
     }
     if (!tenth) return;
     // The step is finished first, so that the energies belong to one instant.
-    if (scene->iter % SceneStore::collapseEvery == 0) store.endsWith = findCollapse(store);
+    if (scene->iter % collapseEvery == 0) store.endsWith = findCollapse(store);
     const auto all = inventory(store);
     const double motion = std::abs(all.moving);
     if (!std::isfinite(motion)) {
@@ -113,7 +113,7 @@ void MasonryEnergy::watchOver(SceneStore& store) {
 }
 
 std::string MasonryEnergy::findCollapse(SceneStore& store) {
-    const auto found = store.findCollapse({turnLimit, slideLimit, closureLimit, openingLimit});
+    const auto found = masonry::findCollapse(store, {turnLimit, slideLimit, closureLimit, openingLimit});
     collapsedBlock = found.block;
     collapse = found.what;
     return found.block < 0 ? "" : "collapsed: " + found.what;

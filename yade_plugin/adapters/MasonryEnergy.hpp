@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 #include "Adapter.hpp"
+#include "engine/bodies/GravityWork.hpp"
+#include "engine/bodies/Ledger.hpp"
+#include "engine/watch/Collapse.hpp"
+#include "engine/watch/SceneCheck.hpp"
 #include "law/common/JointState.hpp"
-#include "scene/bodies/GravityWork.hpp"
-#include "scene/bodies/Ledger.hpp"
-#include "scene/checks/SceneCheck.hpp"
-#include "scene/contacts/Collapse.hpp"
 
 namespace masonry {
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 #include "Adapter.hpp"
-#include "scene/bodies/Integrator.hpp"
-#include "scene/bodies/Ledger.hpp"
-#include "scene/checks/SceneCheck.hpp"
+#include "engine/bodies/Integrator.hpp"
+#include "engine/bodies/Ledger.hpp"
+#include "engine/watch/SceneCheck.hpp"
 
 namespace masonry {
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "MasonryJoint.hpp"
+#include "engine/joints/JointFunctor.hpp"
 #include "law/Laws.hpp"
 #include "law/piecewise_softening/PiecewiseLaw.hpp"
-#include "scene/joints/JointFunctor.hpp"
 
 template class masonry::Adapter<masonry::MasonryJoint, yade::Serializable>;
 BOOST_CLASS_EXPORT_IMPLEMENT(masonry::MasonryJoint)

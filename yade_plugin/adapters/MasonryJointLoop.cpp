@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "MasonryJointLoop.hpp"
-#include "scene/checks/EngineScope.hpp"
+#include "engine/watch/EngineScope.hpp"
 #include <algorithm>
 
 template class masonry::Adapter<masonry::MasonryJointLoop, yade::GlobalEngine>;

@@ -2,9 +2,9 @@
 #pragma once
 #include "Ig2_MasonryBlock_MasonryBlock_MasonryJointGeom.hpp"
 #include "Ip2_MasonryMat_MasonryMat_MasonryJointPhys.hpp"
-#include "scene/checks/SceneCheck.hpp"
-#include "scene/joints/JointPlan.hpp"
-#include "scene/joints/Refinement.hpp"
+#include "engine/joints/JointPlan.hpp"
+#include "engine/joints/Refinement.hpp"
+#include "engine/watch/SceneCheck.hpp"
 
 namespace masonry {
 

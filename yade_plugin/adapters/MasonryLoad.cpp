@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "MasonryLoad.hpp"
-#include "scene/bodies/Integrator.hpp"
-#include "scene/checks/EngineScope.hpp"
-#include "scene/joints/Zones.hpp"
+#include "engine/bodies/Integrator.hpp"
+#include "engine/units/Zones.hpp"
+#include "engine/watch/EngineScope.hpp"
 
 template class masonry::Adapter<masonry::MasonryLoad, yade::GlobalEngine>;
 BOOST_CLASS_EXPORT_IMPLEMENT(masonry::MasonryLoad)

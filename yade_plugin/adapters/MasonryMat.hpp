@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 #include "Adapter.hpp"
-#include "scene/bodies/UnitMaterial.hpp"
+#include "engine/bodies/UnitMaterial.hpp"
 
 namespace masonry {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "MasonryVtkRecorder.hpp"
+#include "engine/bodies/Blocks.hpp"
+#include "engine/connectors/Connectors.hpp"
+#include "engine/store/SceneStore.hpp"
+#include "engine/units/Zones.hpp"
 #include "law/Laws.hpp"
-#include "scene/bodies/Blocks.hpp"
-#include "scene/contacts/Connectors.hpp"
-#include "scene/joints/Zones.hpp"
-#include "scene/store/SceneStore.hpp"
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cerrno>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 #include "Adapter.hpp"
-#include "scene/checks/SceneCheck.hpp"
-#include "scene/joints/Zones.hpp"
+#include "engine/units/Zones.hpp"
+#include "engine/watch/SceneCheck.hpp"
 
 namespace masonry {
 
