@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // The Python module masonry._masonry. When it is imported it checks whether it fits the running YADE, and registers its
 // classes there.
+#include "adapters/Connecting.hpp"
 #include "adapters/FunctorOfLaw.hpp"
 #include "adapters/Gl1_MasonryBlock.hpp"
 #include "adapters/Gl1_MasonryJointPhys.hpp"
@@ -120,11 +121,6 @@ void allowThreads(int most, bool always) {
     Parallel::instance().allow(most, always);
 }
 
-void gather() {
-    const BetweenSteps still;
-    SceneStore::present().update();
-}
-
 void connected() {
     const BetweenSteps still;
     auto& store = SceneStore::present();
@@ -135,7 +131,32 @@ void connected() {
 
 } // namespace
 
+// Raises an error of Python that has these attributes.
+template <class... Named> void raise(PyObject* type, const char* message, const Named&... attributes) {
+    py::object error(py::handle<>(PyObject_CallFunction(type, "s", message)));
+    ((error.attr(attributes.first) = attributes.second), ...);
+    PyErr_SetObject(type, error.ptr());
+}
+
+void raiseEnded(const RunEnded& ended) {
+    raise(PyExc_RuntimeError, ended.what(), std::pair("code", ended.code), std::pair("block", ended.block));
+}
+
+void raiseWrong(const WrongProperties& wrong) {
+    py::list problems;
+    for (const auto& problem : wrong.problems) {
+        py::dict one;
+        one["property"] = problem.property;
+        one["code"] = problem.code;
+        one["text"] = problem.text;
+        problems.append(one);
+    }
+    raise(PyExc_ValueError, wrong.what(), std::pair("problems", problems));
+}
+
 static void registerAll() {
+    py::register_exception_translator<WrongProperties>(&raiseWrong);
+    py::register_exception_translator<RunEnded>(&raiseEnded);
     Sequence<TableRow, RowToPython, RowFromPython>::enroll();
     Sequence<shared_ptr<MasonryJoint>, JointToPython, JointFromPython>::enroll();
 
@@ -196,7 +217,10 @@ static void registerAll() {
         "joints, masses, blocked motions or damping.");
     py::def("timeStepLimit", &presentLimit,
             "The first number of criticalTimeStep() [s], in half the time. For masonry.assembly.structure.");
-    py::def("gather", &gather, "Move the joints that are there into their columns. For connect().");
+    py::def("connect", &connect, py::args("pairs", "geometry", "physics", "rule"),
+            "Make the joints of pairs of bodies. Returns the interactions, the MasonryJoint objects that they have, "
+            "and what is "
+            "wrong; then no joint is left. For masonry.connect().");
     py::def(
         "connected", &connected,
         "Tell the plugin that all blocks have their joints. A block that is added later and has no joint is then an "

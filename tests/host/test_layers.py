@@ -25,7 +25,7 @@ WITH_YADE = ("host", "engine", "adapters")
 ROOMS = "bodies units joints connectors contacts store watch checkpoint".split()  # of engine
 
 #: What registered classes share, so it is in adapters/ without being one.
-SHARED = "Adapter Assumptions Attribute Colours FunctorOfLaw".split()
+SHARED = "Adapter Assumptions Attribute Colours Connecting FunctorOfLaw".split()
 
 
 def sources(folder):
@@ -60,6 +60,15 @@ def test_a_room_of_the_engine_includes_only_those_before_it():
                 layer, _, rest = path.partition("/")
                 known = layer != "engine" or rest.split("/")[0] in ROOMS[:n]
                 assert known, f"{source} includes {path}"
+
+
+def test_nothing_in_engine_names_a_class_of_adapters():
+    names = [
+        os.path.basename(path)[:-4] for path in glob.glob(os.path.join(PLUGIN, "adapters", "*.hpp"))
+    ]
+    word = re.compile(r"\b(%s)\b" % "|".join(set(names) - set(SHARED)))
+    for path in sources(os.path.join(PLUGIN, "engine")):
+        assert not word.findall(open(path).read()), path
 
 
 def circle(folder):

@@ -15,7 +15,7 @@ using yade::State;
 // The host calls this before the interaction loop of every step. It brings the store up to date, so that all joints are
 // in their common groups and have the present properties.
 void Ig2_MasonryBlock_MasonryBlock_MasonryJointGeom::preStep() {
-    if (scene) const EngineScope turn(*scene);
+    if (scene) const EngineScope scope(*scene);
 }
 
 namespace {

@@ -8,9 +8,9 @@ BOOST_CLASS_EXPORT_IMPLEMENT(masonry::MasonryIntegrator)
 namespace masonry {
 
 void MasonryIntegrator::action() {
-    const EngineScope turn(*scene, *this);
-    advance(*scene, turn->bodies, turn->loads, turn->foreignForces);
-    turn.end();
+    const EngineScope scope(*scene, *this);
+    advance(*scene, scope->bodies, scope->loads, scope->foreignForces);
+    scope.end();
 }
 
 } // namespace masonry

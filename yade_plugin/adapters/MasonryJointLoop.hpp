@@ -4,7 +4,7 @@
 #include "Ip2_MasonryMat_MasonryMat_MasonryJointPhys.hpp"
 #include "engine/joints/JointPlan.hpp"
 #include "engine/joints/Refinement.hpp"
-#include "engine/watch/SceneCheck.hpp"
+#include "engine/watch/EngineOrder.hpp"
 
 namespace masonry {
 
@@ -12,6 +12,7 @@ class MasonryJointLoop : public Adapter<MasonryJointLoop, yade::GlobalEngine>, p
 public:
     static constexpr const char* className = "MasonryJointLoop";
     static constexpr const char* baseName = "GlobalEngine";
+    static constexpr ClassRole declares = ClassRole::Joints;
     static constexpr const char* doc =
         "A step of all masonry joints, in columns and on all threads. Stands in the place of InteractionLoop, which "
         "does the same with the functors of this plugin and remains as the reference. A run is the same, bit for bit, "

@@ -8,9 +8,9 @@ BOOST_CLASS_EXPORT_IMPLEMENT(masonry::MasonryTies)
 namespace masonry {
 
 void MasonryTies::action() {
-    const EngineScope turn(*scene, *this);
-    act(turn.store());
-    turn.end();
+    const EngineScope scope(*scene, *this);
+    act(scope.store());
+    scope.end();
 }
 
 double MasonryTies::forceOf(int tie) {

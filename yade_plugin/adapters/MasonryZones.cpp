@@ -15,11 +15,11 @@ void MasonryZones::postLoad() {
 }
 
 void MasonryZones::action() {
-    const EngineScope turn(*scene, *this);
-    if (!turn->loop) gatherFromFunctors(turn->joints, *this);
-    followMasses(newlyCracked(*this, turn->kinds));
-    advance(*scene, turn->bodies, turn->gravity(), turn->massDamping());
-    turn.end();
+    const EngineScope scope(*scene, *this);
+    if (!scope->loop) gatherFromFunctors(scope->joints, *this);
+    followMasses(newlyCracked(*this, scope->kinds));
+    advance(*scene, scope->bodies, scope->gravity(), scope->massDamping());
+    scope.end();
 }
 
 py::tuple MasonryZones::nodesOf(int body) {

@@ -5,11 +5,12 @@
 
 namespace masonry {
 
-const yade::Body& bodyAt(const yade::Scene& scene, int id, const std::string& what) {
+const yade::Body& bodyAt(const yade::Scene& scene, int id, const char* what, ClassRole role) {
     const auto& all = scene.bodies->body;
-    if (id < 0 || std::size_t(id) >= all.size() || !all[id])
-        throw std::invalid_argument(what + " " + std::to_string(id) + " does not exist");
-    if (!all[id]->state) throw std::invalid_argument(what + " " + std::to_string(id) + " has no State");
+    const bool exists = id >= 0 && std::size_t(id) < all.size() && all[id];
+    if (!exists || !all[id]->state)
+        throw std::invalid_argument(nameOf(role) + what + " " + std::to_string(id) +
+                                    (exists ? " has no State" : " does not exist"));
     return *all[id];
 }
 
@@ -18,7 +19,8 @@ std::vector<std::string> problemsOf(const yade::Body& body) {
     const auto fail = [&](const std::string& what) { wrong.push_back("body " + std::to_string(body.id) + " " + what); };
     const auto positive = [](double value) { return value > 0 && std::isfinite(value); };
     if (!dynamic_cast<const UnitMaterial*>(body.material.get()))
-        fail("has " + (body.material ? body.material->getClassName() : "no material") + ", must have a MasonryMat");
+        fail("has " + (body.material ? body.material->getClassName() : "no material") + ", must have a " +
+             nameOf(ClassRole::Material));
     if (!body.state) {
         fail("has no State");
         return wrong;

@@ -31,8 +31,7 @@ public:
 
     // Each of these takes a body from the host if its State has changed since it was last taken or given. detectMove()
     // compares position and orientation; detectChange() also velocities, mass, blocked axes and damping;
-    // detectAnyChange() also
-    // inertia and reference place, which hardly ever change.
+    // detectAnyChange() also inertia and reference place, which hardly ever change.
     void detectMove(int body) {
         if (!samePlace(body)) take(body);
     }

@@ -34,15 +34,16 @@ void Integrator::advance(yade::Scene& scene, BodyColumns& bodies, const std::vec
                          const std::vector<ForeignForce>& foreign) {
     const int count = bodies.size();
     if (std::size_t(count) < last_[0].size())
-        throw std::invalid_argument("MasonryIntegrator remembers forces of " + std::to_string(last_[0].size()) +
-                                    " bodies, the scene has " + std::to_string(count));
+        throw std::invalid_argument(nameOf(ClassRole::Integrator) + " remembers forces of " +
+                                    std::to_string(last_[0].size()) + " bodies, the scene has " +
+                                    std::to_string(count));
     const auto on = scene.forces().sums(count);
     combines_ = combined();
     for (auto& column : last_)
         if (combined()) column.resize(count, 0);
     const auto motionOf = [&](int body) -> const auto& { return bodies.state(body); };
     for (auto* load : loads) { // a script may have changed its body since the load acted
-        load->eachBody([&](int body) { bodyAt(scene, body, "MasonryLoad.body"); });
+        load->eachBody([&](int body) { bodyAt(scene, body, ".body", ClassRole::Load); });
         load->workBefore(scene.dt, motionOf);
     }
     const auto halfOfForeignWork = [&] {

@@ -8,8 +8,8 @@ namespace masonry {
 
 template <class Class, class Visit> void ledgerOfBodies(Visit&& visit) {
     visit("external", &Class::external,
-          number("J", "Work of prescribed motions and of YADE's own engines so far, without that of MasonryLoad; in "
-                      "MasonryEnergy also the kinetic energy present at the first step and at given()"),
+          number("J", "Work of prescribed motions and of YADE's own engines so far, without that of loads; in the "
+                      "energy balance also the kinetic energy present at the first step and at given()"),
           ReadOnly);
     visit("damped", &Class::damped, number("J", "Energy taken by damping so far"), ReadOnly);
     visit("kinetic", &Class::kinetic, number("J", "Kinetic energy"), ReadOnly);

@@ -39,7 +39,7 @@ void Load::act(yade::Scene& scene, const Vector3r& gravity) {
     double missing = aim, mobility = 0;
     for (std::size_t n = 0; n < parts_.size(); ++n) {
         auto& [id, force, arm] = parts_[n];
-        auto& state = *bodyAt(scene, id, "MasonryLoad.body").state;
+        auto& state = *bodyAt(scene, id, ".body", ClassRole::Load).state;
         if (!damped) state.isDamped = false;
         arm = state.ori * state.refOri.conjugate() * ((n ? otherPoints[n - 1] : point) - state.refPos);
         if (!driven) continue;
@@ -52,7 +52,7 @@ void Load::act(yade::Scene& scene, const Vector3r& gravity) {
         const Vector3r w = state.angVel + scene.dt * (perInertia * twist);
         const double own = d.dot(perMass.cwiseProduct(d)) + lever.dot(perInertia * lever);
         if (own <= 0)
-            throw std::invalid_argument("MasonryLoad: body " + std::to_string(id) +
+            throw std::invalid_argument(nameOf(ClassRole::Load) + ": body " + std::to_string(id) +
                                         " is blocked in the driven direction");
         missing = missing - share * d.dot(v) - share * lever.dot(w);
         mobility += share * share * own;
@@ -67,7 +67,7 @@ void Load::act(yade::Scene& scene, const Vector3r& gravity) {
 }
 
 Vector3r Load::displacementIn(const yade::Scene& scene) const {
-    const auto& state = *bodyAt(scene, body, "MasonryLoad.body").state;
+    const auto& state = *bodyAt(scene, body, ".body", ClassRole::Load).state;
     const Vector3r r = point - state.refPos;
     return state.pos + state.ori * state.refOri.conjugate() * r - point;
 }

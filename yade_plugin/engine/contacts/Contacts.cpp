@@ -43,21 +43,24 @@ std::vector<int> Contacts::idsOf(const SceneContents& contents) const {
 
 void Contacts::checkBodies(const SceneContents& contents) const {
     if (!(normalStiffness > 0))
-        throw std::invalid_argument("MasonryContacts.normalStiffness " + text(normalStiffness) +
+        throw std::invalid_argument(nameOf(ClassRole::Contacts) + ".normalStiffness " + text(normalStiffness) +
                                     " Pa/m must be given, above 0");
     if (!(friction >= 0))
-        throw std::invalid_argument("MasonryContacts.friction " + text(friction) + " must be given, at least 0");
+        throw std::invalid_argument(nameOf(ClassRole::Contacts) + ".friction " + text(friction) +
+                                    " must be given, at least 0");
     if (takesJoints && !contents.loop && !contents.joints.empty())
-        throw std::invalid_argument(
-            "MasonryContacts.takesJoints needs MasonryJointLoop: the functors go on with joints "
-            "that were handed over");
+        throw std::invalid_argument(nameOf(ClassRole::Contacts) + ".takesJoints needs " + nameOf(ClassRole::Joints) +
+                                    ": the functors go on with joints "
+                                    "that were handed over");
     for (int id : idsOf(contents)) {
-        const auto& body = bodyAt(contents.scene(), id, "MasonryContacts: body");
-        const auto name = "MasonryContacts: body " + std::to_string(id);
+        const auto& body = bodyAt(contents.scene(), id, ": body", ClassRole::Contacts);
+        const auto name = nameOf(ClassRole::Contacts) + ": body " + std::to_string(id);
         if (!isBlock(body.shape.get())) throw std::invalid_argument(name + " is no block");
         if (contents.bodies.isUnit[id])
-            throw std::invalid_argument(name + " is a deformable unit, which has no contacts: give the ids of rigid "
-                                               "blocks in MasonryContacts.bodies");
+            throw std::invalid_argument(name +
+                                        " is a deformable unit, which has no contacts: give the ids of rigid "
+                                        "blocks in " +
+                                        nameOf(ClassRole::Contacts) + ".bodies");
     }
 }
 
@@ -76,7 +79,8 @@ void Contacts::prepare(const SceneContents& contents) {
         try {
             block = contactBlock(surface.vertices, surface.triangles);
         } catch (const std::invalid_argument& error) {
-            throw std::invalid_argument("MasonryContacts: body " + std::to_string(id) + ": " + error.what());
+            throw std::invalid_argument(nameOf(ClassRole::Contacts) + ": body " + std::to_string(id) + ": " +
+                                        error.what());
         }
         if (!isHeld(contents, id)) thinnest = std::min(thinnest, block.thickness);
         finder.provideFor(block);

@@ -77,9 +77,9 @@ protected:
 private:
     struct Pair {
         int one = 0, other = 0;
-        int axis = 0; // that separated them when that was last looked for
-        // By which the other body stands farther away than it does, in the axes of the one [m]: what crushing and
-        // dilatancy left of a joint that was handed over, so that its force goes on.
+        int axis = 0; // number of the axis that separated them when it was last looked for
+        // Way by which the contact sees the other body farther away than it stands, in the axes of the first [m]: what
+        // crushing and dilatancy left of a joint that became this contact, so that its force goes on.
         Vector3r gap = Vector3r::Zero();
         PairMemory memory = {};
 

@@ -91,6 +91,13 @@ struct JointReference {
     void visitState(StateNumbers&);
 };
 
+// Mean of the rotations by which both bodies have carried a joint's axes along. The second becomes the nearer one of
+// two quaternions that are the same rotation.
+inline Quaternionr meanOf(const Quaternionr& one, Quaternionr& two) {
+    if (one.dot(two) < 0) two.coeffs() *= -1;
+    return Quaternionr((one.coeffs() + two.coeffs()).eval()).normalized();
+}
+
 // What Refinement has made of a joint: its number of points along a side, and the points that it was made with, which
 // copies of a joint have in common. 0 and null if it was not refined.
 struct RefinedJoint {
@@ -128,10 +135,13 @@ struct JointShapes : JointGroup {
     std::vector<double> jump[3]; // displacement jump since the reference state: opening and the two slides [m]
     // Stress of JointDamping in the last step [Pa], normal and the two shears; empty while there was no such damping.
     std::vector<double> viscous[3];
-    // Of impacts (JointImpact): their stress in the last step [Pa], normal and the two shears, and the largest speed at
-    // which a corner has closed since it was open [m/s]: 0 of one that is open, -1 of one that has come back since, was
-    // never open, or is no corner (`rim`). Empty while impacts take no energy.
-    std::vector<double> impact[3], closing;
+    // Stress of impacts (JointImpact) in the last step [Pa], normal and the two shears. Empty, as `closing`, while
+    // impacts take no energy.
+    std::vector<double> impact[3];
+    // Largest closing speed since the corner opened [m/s]; 0: it is open; `notAnImpact`: it closed again, was never
+    // open, or is no corner (`rim`).
+    std::vector<double> closing;
+    static constexpr double notAnImpact = -1;
     std::vector<double> area;      // of a subcontact [m²]
     std::vector<double> offset[3]; // from the centre of body 1 to the subcontact in the reference state [m]
 
@@ -142,11 +152,9 @@ struct JointShapes : JointGroup {
     // after one more step without a jump: from then on a step would change nothing.
     std::vector<unsigned char> converted;
 
-    // Intact joints (see JointPlan): a joint between rigid blocks that has always been elastic. Its jump is linear over
-    // its face and its stress is the stiffness times that, so a step only brings `linear` up to date. What stands in
-    // the columns of jumps, stresses of damping, openings and stresses of the law is then of an earlier step, until
-    // somebody reads them: synchronise() is called before that. All else that the law remembers of the points is always
-    // up to date.
+    // Intact joints (see BatchStep), of which a step only brings `linear` up to date. What stands in the columns of
+    // jumps, stresses of damping, openings and stresses of the law is then of an earlier step, until somebody reads
+    // them: synchronise() is called before that. All else that the law remembers of the points is always up to date.
     std::vector<unsigned char> pointwise; // of every joint, whether it is not intact; never becomes so again
     LinearField linear;                   // jumps of intact joints [m]
     LinearField damped; // of the stress of JointDamping, what is to be multiplied by the stiffnesses [m]; empty like
@@ -210,7 +218,7 @@ struct JointShapes : JointGroup {
     }
     struct Impact {
         Vector3r stress = Vector3r::Zero();
-        double closing = -1;
+        double closing = notAnImpact;
 
         template <class Visit> void visitState(Visit&& visit) { visit(stress, closing); }
     };
@@ -219,7 +227,7 @@ struct JointShapes : JointGroup {
         return closing.empty() ? Impact() : Impact{vectorAt(impact, i), closing[i]};
     }
     void setImpact(int point, int joint, const Impact& value) {
-        if (closing.empty() && value.closing == -1 && value.stress.isZero(0)) return;
+        if (closing.empty() && value.closing == notAnImpact && value.stress.isZero(0)) return;
         makeImpacts();
         setVector(impact, at(point, joint), value.stress);
         closing[at(point, joint)] = value.closing;
@@ -227,7 +235,7 @@ struct JointShapes : JointGroup {
     void makeImpacts() {
         for (auto& column : impact)
             column.resize(jump[0].size(), 0);
-        closing.resize(jump[0].size(), -1);
+        closing.resize(jump[0].size(), notAnImpact);
     }
     void dropImpacts() {
         for (auto* column : {&impact[0], &impact[1], &impact[2], &closing})

@@ -30,9 +30,8 @@ Vector3r impulseAgainst(const Vector3r& speed, const JointImpacts& by, const Joi
         changes += own * (by.jointedArea[body] / (part * shapes.faceArea[shapes.face(joint)]));
     }
     for (int d = 0; d < 3; ++d)
-        if (changes(d, d) == 0) changes(d, d) = 1;        // nothing moves along this axis
-    if (axes[0].dot(axes[1]) < 0) axes[1].coeffs() *= -1; // a quaternion and its negative are the same rotation
-    const Matrix3r turn = Quaternionr((axes[0].coeffs() + axes[1].coeffs()).eval()).normalized().toRotationMatrix();
+        if (changes(d, d) == 0) changes(d, d) = 1; // nothing moves along this axis
+    const Matrix3r turn = meanOf(axes[0], axes[1]).toRotationMatrix();
     const Vector3r impulse = turn.transpose() * changes.inverse() * (turn * speed);
     const double along = std::hypot(impulse[1], impulse[2]);
     const double friction = shapes.law->law().properties().friction;
@@ -58,7 +57,7 @@ double addImpacts(const JointImpacts& by, JointShapes& shapes, int corner, int f
         if (normal[i] >= 0 && !properties.elastic && !(damage && damage[i] < bondGone))
             closing = 0;
         else if (closing >= 0 && speed < 0)
-            closing = -1;
+            closing = JointShapes::notAnImpact;
         else if (closing >= 0) {
             const double beyond = properties.restitution * std::max(closing, speed);
             if (by.act && speed > beyond) {

@@ -5,9 +5,9 @@
 // Seismological Society of America 53, 1963) meets its base at an edge that does not come back, and the edge about
 // which it turned before has no impulse. On elastic points the impact lasts, all points share it, and what they have
 // stored comes back. So a corner of the face gets in every step of its closing, beside the stress of the law, the
-// impulse that ends its motion as an impact of two free rigid bodies does. Of the masses of a block every joint has the
-// part that its area has of all joints of the block, and the corners of a joint that meet at the same time have equal
-// parts. So the impulses of a step end a motion and hardly reverse it, and they take energy at any time step.
+// impulse that ends its motion as an impact of two free rigid bodies does. A block's mass is shared among its joints in
+// proportion to their areas, and the corners of a joint that meet at the same time have equal parts. So the impulses of
+// a step end a motion and hardly reverse it, and they take energy at any time step.
 #pragma once
 #include "JointGroup.hpp"
 #include "engine/bodies/BodyColumns.hpp"

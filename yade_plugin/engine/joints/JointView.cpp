@@ -65,25 +65,16 @@ std::vector<Polygon> JointGeometry::cells() const {
     return nearestCells(reference().polygon(), around);
 }
 
-// Each body carries the joint's axes along with it. The mean of the two rotations is the frame of the joint. The
-// rotation `half` leads from that frame to the axes carried by body 2, and its inverse to those carried by body 1. Let
-// d be the vector from centre to centre and a the offset of a subcontact from the centre of body 1, both in the
-// reference state, and `between` the present vector from centre to centre. In the joint's frame the jump at the
-// subcontact is
-//     between - half d + (half - half^T) a,
-// where half - half^T = 4 w [v ×] for the unit quaternion (w, v). Forces act at the middle of the jump, and the axes
-// turn with the mean rotation. Together this conserves the angular momentum, and the power of the forces is that of the
-// tractions on the jumps.
+// The equations stand in motion/JointFrames.hpp. As forces act at the middle of the jump, and the axes turn with the
+// mean rotation, the angular momentum is conserved, and the power of the forces is that of the tractions on the jumps.
 void JointGeometry::follow(const yade::State& state1, const yade::State& state2) {
     if (!step) step = std::make_unique<Step>();
     step->increments.resize(points());
     step->arms.resize(points());
     const auto& r = reference();
     if (r.attached) return followDeformable(state1, state2);
-    const Quaternionr by1 = state1.ori * r.frame(0);
     Quaternionr by2 = state2.ori * r.frame(1);
-    if (by1.dot(by2) < 0) by2.coeffs() *= -1; // a quaternion and its negative are the same rotation
-    const Quaternionr mean = Quaternionr((by1.coeffs() + by2.coeffs()).eval()).normalized();
+    const Quaternionr mean = meanOf(state1.ori * r.frame(0), by2);
     const Quaternionr half = mean.conjugate() * by2;
     step->axes = mean.toRotationMatrix();
     step->between = state2.pos - state1.pos;
@@ -106,10 +97,8 @@ void JointGeometry::follow(const yade::State& state1, const yade::State& state2)
 // nodes of a deformable side and from the body of a rigid one.
 void JointGeometry::followDeformable(const yade::State& state1, const yade::State& state2) {
     const auto& r = reference();
-    const Quaternionr by1 = state1.ori * r.frame(0);
     Quaternionr by2 = state2.ori * r.frame(1);
-    if (by1.dot(by2) < 0) by2.coeffs() *= -1;
-    step->axes = Quaternionr((by1.coeffs() + by2.coeffs()).eval()).normalized().toRotationMatrix();
+    step->axes = meanOf(state1.ori * r.frame(0), by2).toRotationMatrix();
     step->between = state2.pos - state1.pos;
     step->forces.resize(points());
     const yade::State* states[2] = {&state1, &state2};

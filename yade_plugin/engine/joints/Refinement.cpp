@@ -23,7 +23,7 @@ Points pointsOf(const JointGeometry& geom) {
     return all;
 }
 
-// Of the first joint of a kind. All of a kind are alike in whether their points stand in a row.
+// Points of the first joint of a kind. All joints of a kind are alike in whether their points stand in a row.
 Points pointsOf(const JointKind& kind) {
     Points all;
     for (int p = 0; p < kind.shapes->points; ++p)
@@ -106,11 +106,11 @@ std::vector<Share> sharesAt(const Vector3r& place, const Points& points) {
 }
 
 // Columns of one joint alone, with these points and without a state.
-struct Alone {
+struct SingleJointColumns {
     shared_ptr<JointShapes> shapes;
     shared_ptr<JointStates> states;
 
-    Alone(const JointView& joint, const Points& points)
+    SingleJointColumns(const JointView& joint, const Points& points)
         : shapes(new JointShapes(1, int(points.size()))),
           states(new JointStates(joint.phys->propertySet(), joint.phys->stiffness(), 1, int(points.size()))) {
         shapes->joints[0] = joint.geom->reference();
@@ -120,7 +120,7 @@ struct Alone {
             shapes->setShape(p, 0, points[p].offset, points[p].area);
     }
     LawColumns& columns() const { return *states->columns.unsynchronised(); }
-    void giveTo(const JointView& joint) const {
+    void attachTo(const JointView& joint) const {
         joint.geom->group = shapes;
         joint.phys->group = states;
         joint.geom->index = joint.phys->index = 0;
@@ -165,12 +165,12 @@ double refine(const JointView& joint, int count) {
     auto& shapes = *joint.geom->group;
     const int j = joint.geom->index;
     const auto old = pointsOf(*joint.geom);
-    Alone before(joint, old);
+    SingleJointColumns before(joint, old);
     before.shapes->take(0, shapes, j);
     before.states->take(0, *joint.phys->group, joint.phys->index);
     const auto& from = before.columns();
 
-    Alone after(joint, refinedPoints(joint.geom->reference(), old, count));
+    SingleJointColumns after(joint, refinedPoints(joint.geom->reference(), old, count));
     after.shapes->refined[0] = {count, std::make_shared<const Points>(old)};
     auto& to = after.columns();
     std::vector<std::vector<Share>> shares;
@@ -198,7 +198,7 @@ double refine(const JointView& joint, int count) {
         if (shares[p].size() == 1) after.shapes->setImpact(p, 0, before.shapes->impactAt(shares[p][0].point, 0));
         to.setDissipated(p, 0, lost);
     }
-    after.giveTo(joint);
+    after.attachTo(joint);
     return after.energy() - before.energy();
 }
 
@@ -376,9 +376,9 @@ bool Refinement::setPoints(SceneContents& store, const std::vector<int>& refined
     for (const auto& [joint, count] : change) {
         const auto& coarse = joint->geom->refined().coarse;
         const auto first = coarse ? coarse : std::make_shared<const Points>(pointsOf(*joint->geom));
-        const Alone fresh(*joint, count ? refinedPoints(joint->geom->reference(), *first, count) : *first);
+        const SingleJointColumns fresh(*joint, count ? refinedPoints(joint->geom->reference(), *first, count) : *first);
         fresh.shapes->refined[0] = {count, count ? first : nullptr};
-        fresh.giveTo(*joint);
+        fresh.attachTo(*joint);
     }
     return true;
 }

@@ -10,12 +10,13 @@ namespace masonry {
 class Refinement {
 public:
     static constexpr int every = 10; // steps between two looks
-    static constexpr double share =
-        0.9; // of the elastic limit of the cap, or of the strength, at which a joint gets its points
-    static constexpr double company = 0.75; // the same of joints that get theirs when another does: reading all joints
-                                            // of a scene again takes as long as some dozen steps
-    static constexpr int pointsOfRow =
-        8; // that a joint gets whose points stand in a row, unless JointLoop::points says
+    // Part of the elastic limit of the cap, or of the strength, at which a joint gets its points.
+    static constexpr double share = 0.9;
+    // The part at which joints get theirs when another does: reading all joints of a scene again takes as long as some
+    // dozen steps.
+    static constexpr double company = 0.75;
+    // Points that a joint gets whose points stand in a row, unless JointLoop::points says.
+    static constexpr int pointsOfRow = 8;
     static constexpr int pointsOfSide = 5; // the same along each side of a joint in space
     static constexpr int fewest = 3;       // points along a side that have the true rotational stiffness
     static constexpr int most = 100;       // points along a side

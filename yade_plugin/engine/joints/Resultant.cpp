@@ -20,10 +20,8 @@ Resultant resultantOf(const yade::Scene& scene, const yade::Interaction& interac
     const auto& r = geom->reference();
     const yade::State* states[2] = {bodyAt(scene, interaction.id1, "a joint holds body").state.get(),
                                     bodyAt(scene, interaction.id2, "a joint holds body").state.get()};
-    const Quaternionr by1 = states[0]->ori * r.frame(0);
     Quaternionr by2 = states[1]->ori * r.frame(1);
-    if (by1.dot(by2) < 0) by2.coeffs() *= -1; // a quaternion and its negative are the same rotation
-    const yade::Matrix3r axes = Quaternionr((by1.coeffs() + by2.coeffs()).eval()).normalized().toRotationMatrix();
+    const yade::Matrix3r axes = meanOf(states[0]->ori * r.frame(0), by2).toRotationMatrix();
     if (r.attached) r.attached->zones->units(); // they may still have to be divided
     const auto present = [&](int side, int p, const Vector3r& place) {
         if (!r.rigid(side)) return Vector3r(place + r.attached->zones->displacementAt(r.attached->sides[side][p]));

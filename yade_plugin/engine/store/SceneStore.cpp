@@ -2,6 +2,7 @@
 #include "SceneStore.hpp"
 #include "engine/bodies/Blocks.hpp"
 #include "engine/bodies/Changes.hpp"
+#include "engine/bodies/ClassRole.hpp"
 #include "engine/bodies/Integrator.hpp"
 #include "engine/connectors/Connectors.hpp"
 #include "engine/contacts/Contacts.hpp"
@@ -139,32 +140,33 @@ void SceneStore::readEngines() {
         if (engine->dead) continue;
         const auto note = [](auto*& place, auto* found) {
             if (!place) place = found;
-            return found != nullptr;
         };
-        const auto name = engine->getClassName();
-        const bool watch = name == "MasonryEnergy";
+        const auto role = roleOf(*engine);
+        const bool ours = isOurs(*engine);
         if (load) loads.push_back(load);
         if (connector) connectors.push_back(connector);
         if (touching) contacts.push_back(touching);
-        if (name == "NewtonIntegrator") hostIntegrator = static_cast<const yade::NewtonIntegrator*>(engine.get());
-        watched = watched || watch;
-        if (load || connector || touching || watch || note(loop, dynamic_cast<JointLoop*>(engine.get())) ||
-            note(zones, dynamic_cast<Zones*>(engine.get())) ||
-            note(integrator, dynamic_cast<Integrator*>(engine.get()))) {
+        if (role == ClassRole::Integrator && !ours)
+            hostIntegrator = static_cast<const yade::NewtonIntegrator*>(engine.get());
+        watched = watched || role == ClassRole::Watch;
+        note(loop, dynamic_cast<JointLoop*>(engine.get()));
+        note(zones, dynamic_cast<Zones*>(engine.get()));
+        note(integrator, dynamic_cast<Integrator*>(engine.get()));
+        if (ours && role != ClassRole::Recorder) {
             if (!first) first = engine.get();
             last = engine.get();
-        } else if (name != "ForceResetter") {
+        } else if (role != ClassRole::ForceResetter) {
             foreign = foreign || !first;
             const auto base = engine->getBaseClassName();
             if (base == "PartialEngine" || base == "KinematicEngine" || base == "TranslationEngine" ||
                 base == "RotationEngine")
-                (first ? uncounted : before) = name;
+                (first ? uncounted : before) = engine->getClassName();
         }
     }
     if (!loop && uncounted.empty()) uncounted = before;
 }
 
-// With functors the first engine of ours comes after the joints, whose forces are then no longer apart from others.
+// If joints run as functors, their forces are already summed with others when our first engine runs.
 void SceneStore::readForeignForces() {
     foreignForces.clear();
     if (!foreign || !loop || bodies.size() == 0) return;
@@ -228,6 +230,13 @@ void SceneStore::update(ScanScope scope) {
     seenInteractions_ = scene_.interactions->currSize;
 }
 
+void SceneStore::gather() {
+    const WithInterpreter python;
+    readJoints();
+    checked = false;
+    seenChanges_ = -1;
+}
+
 void SceneStore::pointsChanged() {
     const bool same = sameJoints();
     const long before = stiffnessRevision_;
@@ -266,7 +275,8 @@ void SceneStore::readJoints() {
         }
         const auto& attached = geom->reference().attached;
         if (attached && zonesOfJoints && zonesOfJoints != attached->zones.get())
-            throw std::invalid_argument("the joints of a scene can belong to one MasonryZones only");
+            throw std::invalid_argument("the joints of a scene can belong to one " + nameOf(ClassRole::Units) +
+                                        " only");
         if (attached) zonesOfJoints = attached->zones.get();
         const auto& k = phys->stiffness();
         auto& alike = byStiffness[{setNumber(phys->propertySet().get()), geom->points(), attached != nullptr}];

@@ -2,10 +2,12 @@
 // The view of a scene that all engines of this plugin share: its engines, bodies and joints. It is read again when they
 // have changed. It owns the columns in which the state of joints and rigid bodies lives.
 #pragma once
+#include "RunEnded.hpp"
 #include "engine/bodies/Load.hpp"
 #include "engine/joints/SceneContents.hpp"
 #include <map>
 #include <memory>
+#include <optional>
 #include <typeindex>
 
 namespace masonry {
@@ -30,6 +32,8 @@ public:
     void update(ScanScope scope = ScanScope::Everything);
     // Reads the joints again of which some were given other points: their stiffness stays in the time step.
     void pointsChanged();
+    // Moves the joints that are there into common groups, while masonry.connect() makes others.
+    void gather();
     // masonry.connect() calls this when all blocks have their joints. Blocks that are added later are then reported by
     // unjoinedBlocks().
     void connected();
@@ -48,7 +52,7 @@ public:
     bool foreign = false;                    // whether engines of others stand before the first, and may load bodies
     std::vector<ForeignForce> foreignForces; // theirs in the present step
     std::string uncounted;                   // an engine of others whose work is not counted; empty: there is none
-    std::string endsWith;                    // why the run ends after this step; empty: it goes on
+    std::optional<RunEnded> endsWith;        // why the run ends after this step
     bool watched = false;                    // whether an engine watches over the run: it looks for a collapse itself
     std::vector<Load*> allLoads;             // also those that are dead, whose work so far counts
     std::vector<Connectors*> allConnectors;  // likewise
@@ -67,7 +71,7 @@ public:
     void opened() {
         openedStep_ = scene_.iter;
         place_ = engines_.size();
-        endsWith.clear();
+        endsWith.reset();
         readForeignForces();
     }
 

@@ -3,6 +3,7 @@
 #include "common/Parallel.hpp"
 #include "engine/bodies/Blocks.hpp"
 #include "engine/bodies/Changes.hpp"
+#include "engine/bodies/ClassRole.hpp"
 #include "engine/bodies/UnitMaterial.hpp"
 #include <algorithm>
 #include <map>
@@ -43,7 +44,8 @@ void Zones::divideAnew() {
 
 void Zones::checkAlive() const {
     if (acted_ && scene_.expired())
-        throw std::runtime_error("these MasonryZones are gone: the scene that they belonged to has ended");
+        throw std::runtime_error("these " + nameOf(ClassRole::Units) +
+                                 " are gone: the scene that they belonged to has ended");
 }
 
 std::vector<Vector3r> Zones::listed(const std::vector<Row>& rows, const std::vector<Vector3r>& loaded) const {
@@ -112,7 +114,7 @@ void Zones::mesh() {
     int next = 0;
     for (int id : bodies) {
         const auto fail = [&](const std::string& what) {
-            wrong.push_back("MasonryZones: body " + std::to_string(id) + " " + what);
+            wrong.push_back(nameOf(ClassRole::Units) + ": body " + std::to_string(id) + " " + what);
         };
         if (id < 0 || std::size_t(id) >= all.size() || !all[id]) {
             fail("does not exist");
@@ -120,7 +122,7 @@ void Zones::mesh() {
         }
         const auto* mat = dynamic_cast<const UnitMaterial*>(all[id]->material.get());
         if (!isBlock(all[id]->shape.get()) || !mat) {
-            fail("is no block of MasonryMat");
+            fail("is no block of " + nameOf(ClassRole::Material));
             continue;
         }
         const auto& state = *all[id]->state;
@@ -155,12 +157,12 @@ void Zones::mesh() {
     }
     const auto known = loaded_.displacements.size();
     if (known != 0 && known != std::size_t(next))
-        wrong.push_back("MasonryZones: bodies of " + std::to_string(next) + " nodes do not fit the state of " +
-                        std::to_string(known) + " nodes");
+        wrong.push_back(nameOf(ClassRole::Units) + ": bodies of " + std::to_string(next) +
+                        " nodes do not fit the state of " + std::to_string(known) + " nodes");
     for (const auto* list : {&loaded_.velocities, &loaded_.lastForces})
         if (known != 0 && !list->empty() && list->size() != known)
-            wrong.push_back("MasonryZones: the state has " + std::to_string(known) + " displacements of nodes and " +
-                            std::to_string(list->size()) + " velocities or forces");
+            wrong.push_back(nameOf(ClassRole::Units) + ": the state has " + std::to_string(known) +
+                            " displacements of nodes and " + std::to_string(list->size()) + " velocities or forces");
     if (!wrong.empty()) {
         units_.clear();
         throw std::invalid_argument(firstOf(wrong));
@@ -197,7 +199,7 @@ bool Zones::isPair(const Brick& brick) {
 
 // Gives both units of every brick the same lane in two batches that are moved together.
 void Zones::pairUp() {
-    std::map<std::pair<const BlockElasticity*, const BlockElasticity*>, int> open; // the last team of two kinds
+    std::map<std::pair<const BlockElasticity*, const BlockElasticity*>, int> open; // the last group of two kinds
     for (std::size_t b = 0; b < bricks_.size(); ++b) {
         if (!isPair(bricks_[b])) continue;
         const auto *one = unitOf(bricks_[b].body1), *two = unitOf(bricks_[b].body2);
@@ -210,10 +212,10 @@ void Zones::pairUp() {
                 rows_ += 3 * int(unit->elasticity->masses().size());
             }
         }
-        auto& team = groups_[at->second];
-        team.bricks.push_back(int(b));
-        addUnit(unitOfBody_[bricks_[b].body1], team.first);
-        addUnit(unitOfBody_[bricks_[b].body2], team.second);
+        auto& group = groups_[at->second];
+        group.bricks.push_back(int(b));
+        addUnit(unitOfBody_[bricks_[b].body1], group.first);
+        addUnit(unitOfBody_[bricks_[b].body2], group.second);
     }
 }
 
@@ -383,17 +385,18 @@ void Zones::followGravity(const Vector3r& ofIntegrator) {
         return "(" + text(g[0]) + ", " + text(g[1]) + ", " + text(g[2]) + ")";
     };
     if (falling && gravity != lastGravity && gravity != ofIntegrator)
-        throw std::invalid_argument("MasonryZones.gravity " + asText(gravity) +
+        throw std::invalid_argument(nameOf(ClassRole::Units) + ".gravity " + asText(gravity) +
                                     " m/s² is not that of the integrator, " + asText(ofIntegrator) +
-                                    " m/s²: set the gravity of the integrator alone, MasonryZones follows it");
+                                    " m/s²: set the gravity of the integrator alone, " + nameOf(ClassRole::Units) +
+                                    " follows it");
     gravity = ofIntegrator;
 }
 
-// Forces and motion of one batch, or of the two of a team.
-void Zones::advanceGroup(const LaneGroup& team, const NodeMotion& motion, BodyColumns& columns,
+// Forces and motion of one batch, or of the two of a group.
+void Zones::advanceGroup(const LaneGroup& group, const NodeMotion& motion, BodyColumns& columns,
                          std::vector<NodeSums>& sums, std::vector<Row>& energies) {
     thread_local std::vector<Row> scratch;
-    const int members[2] = {team.first, team.second}, count = team.second < 0 ? 1 : 2;
+    const int members[2] = {group.first, group.second}, count = group.second < 0 ? 1 : 2;
     std::size_t nodes = 0;
     for (int k = 0; k < count; ++k)
         nodes += batches_[members[k]].elasticity->masses().size();
@@ -420,10 +423,10 @@ void Zones::advanceGroup(const LaneGroup& team, const NodeMotion& motion, BodyCo
     }
     if (massScaling > 0) {
         Row whole{};
-        for (std::size_t lane = 0; lane < team.bricks.size(); ++lane) {
-            whole.lane[lane] = bricks_[team.bricks[lane]].split ? 0 : 1;
-            const auto &one = units_[batches_[team.first].units[lane]],
-                       &two = units_[batches_[team.second].units[lane]];
+        for (std::size_t lane = 0; lane < group.bricks.size(); ++lane) {
+            whole.lane[lane] = bricks_[group.bricks[lane]].split ? 0 : 1;
+            const auto &one = units_[batches_[group.first].units[lane]],
+                       &two = units_[batches_[group.second].units[lane]];
             for (int d = 0; d < 3; ++d)
                 scaled[1].offset[d].lane[lane] = two.centre[d] - one.centre[d];
         }

@@ -89,9 +89,8 @@ public:
     //   ends of the diagonal between its triangles, with 1/6 of its area each, and the middles of its two edges along
     //   the joint, with 1/3 each. Along the joint these are the points of gaussLobatto(3).
     // - Where the unit is a plane unit, which is held in the same way: on every edge of a cell its two ends, with 1/6
-    // of
-    //   the area that belongs to it each, and its middle, with 4/6. The points lie in the middle plane. A joint across
-    //   the plane has no such points.
+    //   of the area that belongs to it each, and its middle, with 4/6. The points lie in the middle plane. A joint
+    //   across the plane has no such points.
     // - Elsewhere: the corners of every triangle, with 1/12 of its area each, and its centroid, with 3/4.
     // Displacements are linear on a triangle, so both rules give a joint its true elastic rotational stiffness, and
     // under a uniform stress every node gets a third of each of its triangles, as the zones need it. Points at the
@@ -105,7 +104,7 @@ public:
 
     // The rows in which the state of the nodes lives. The three components of a node are one row apart, the first at
     // the node's place: rows()[place + d * lanes]. Dependent points are subcontacts' sides without a node of their own,
-    // which move with a rigid body or between nodes. JointPlan adds rows for them, which follow those of the nodes.
+    // which move with a rigid body or between nodes. JointBatches adds rows for them, which follow those of the nodes.
     int placeOf(int node) const { return places_[node]; }
     int addDependentRows(); // returns the place of the first lane
     void dropDependentRows();

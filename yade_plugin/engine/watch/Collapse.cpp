@@ -77,6 +77,11 @@ void Sizes::measure(const yade::Scene& scene, const std::vector<JointKind>& kind
 
 } // namespace
 
+std::optional<RunEnded> Collapse::ended() const {
+    if (block < 0) return std::nullopt;
+    return RunEnded("collapsed", "collapsed: " + what, block);
+}
+
 Collapse findCollapse(SceneStore& store, const CollapseLimits& limits) {
     auto& columns = store.bodies;
     const auto& scene = store.scene();
@@ -91,7 +96,7 @@ Collapse findCollapse(SceneStore& store, const CollapseLimits& limits) {
     std::size_t where = 0;
     double size = 0, of = 0; // what was found, and the size it is compared with
     // |w| of the relative rotation falls from 1 as it grows
-    const double upright = std::cos(0.5 * std::min(limits.turn, M_PI));
+    const double upright = std::cos(0.5 * std::min(limits.turnLimit, M_PI));
     std::size_t n = 0; // number of the joint
     const auto note = [&](double share, auto kind, double found, double bound) {
         if (!(share > farthest)) return;
@@ -115,7 +120,7 @@ Collapse findCollapse(SceneStore& store, const CollapseLimits& limits) {
             const double w = std::abs((one.conjugate() * two * joint.back).w());
             if (w < upright) {
                 const double angle = 2 * std::acos(std::min(w, 1.0));
-                note(angle / limits.turn, Turn, angle, limits.turn);
+                note(angle / limits.turnLimit, Turn, angle, limits.turnLimit);
             }
             double least = HUGE_VAL, along = 0, across = 0;
             for (int p = 0; p < shapes.points; ++p) {
@@ -128,12 +133,12 @@ Collapse findCollapse(SceneStore& store, const CollapseLimits& limits) {
             const double slides[] = {std::abs(along) * each, std::abs(across) * each};
             const double extents[] = {joint.along, joint.across};
             for (int d = 0; d < 2; ++d)
-                if (slides[d] > limits.slide * extents[d])
-                    note(slides[d] / (limits.slide * extents[d]), Slide, slides[d], extents[d]);
-            if (-least > limits.closure * joint.depth)
-                note(-least / (limits.closure * joint.depth), Closure, -least, joint.depth);
-            if (least > limits.opening * joint.size)
-                note(least / (limits.opening * joint.size), Opening, least, joint.size);
+                if (slides[d] > limits.slideLimit * extents[d])
+                    note(slides[d] / (limits.slideLimit * extents[d]), Slide, slides[d], extents[d]);
+            if (-least > limits.closureLimit * joint.depth)
+                note(-least / (limits.closureLimit * joint.depth), Closure, -least, joint.depth);
+            if (least > limits.openingLimit * joint.size)
+                note(least / (limits.openingLimit * joint.size), Opening, least, joint.size);
         }
     }
     if (how == None) return {};

@@ -116,8 +116,8 @@ void Dynamics::addBodies(const JointView& joint) {
     const auto& r = joint.geom->reference();
     if (r.attached && r.attached->zones.get() != store_.zones)
         throw std::invalid_argument("the joint of bodies " + std::to_string(r.sides[0].body) + " and " +
-                                    std::to_string(r.sides[1].body) +
-                                    " needs its MasonryZones in O.engines, and not dead");
+                                    std::to_string(r.sides[1].body) + " needs its " + nameOf(ClassRole::Units) +
+                                    " in O.engines, and not dead");
     for (int side = 0; side < 2; ++side)
         if (r.rigid(side)) addBody(r.sides[side].body, "a joint holds body");
 }

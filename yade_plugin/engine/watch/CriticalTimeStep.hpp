@@ -28,7 +28,7 @@ class SceneStore;
 // of size 1 where (w dt/2)² + 2 d (w dt/2) = 1. The highest mode gives the least of these limits. It is taken as if all
 // of its stiffness were that of joints, which is on the safe side for deformable units.
 //
-// Where masses of deformable units are scaled (MasonryZones.massScaling), M stands for the scaled masses. Damping takes
+// Where masses of deformable units are scaled (Zones::massScaling), M stands for the scaled masses. Damping takes
 // no more from a component of w than with the true masses, which are at most the scaled ones, so E falls there, too.
 // All bricks that can crack count as cracked, because they do so during a run whose time step stays.
 //

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "EngineScope.hpp"
+#include "EngineOrder.hpp"
 #include "SceneCheck.hpp"
 #include "common/Parallel.hpp"
 #include "engine/bodies/StepLock.hpp"
@@ -40,8 +41,8 @@ EngineScope::EngineScope(yade::Scene& scene) : errors_(std::uncaught_exceptions(
 }
 
 void EngineScope::end() const {
-    if (engine_ == store_->last && !store_->endsWith.empty())
-        throw std::runtime_error(std::exchange(store_->endsWith, {}));
+    if (engine_ != store_->last) return;
+    if (const auto ended = std::exchange(store_->endsWith, std::nullopt)) throw *ended;
 }
 
 EngineScope::~EngineScope() {

@@ -18,7 +18,7 @@ public:
 
     SceneStore* operator->() const { return store_; }
     SceneStore& store() const { return *store_; }
-    // The last engine of a step ends the run here if one has found a reason to. Throws std::runtime_error then.
+    // The last engine of a step ends the run here if one has found a reason to. Throws RunEnded then.
     void end() const;
 
 private:

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "SceneCheck.hpp"
 #include "Collapse.hpp"
+#include "EngineOrder.hpp"
 #include "common/Text.hpp"
 #include "engine/bodies/Blocks.hpp"
 #include "engine/bodies/BodyCheck.hpp"
@@ -10,43 +11,8 @@
 #include "engine/store/SceneStore.hpp"
 #include "engine/units/Zones.hpp"
 #include <algorithm>
-#include <atomic>
-#include <iostream>
-#include <mutex>
-#include <omp.h>
-#include <utility>
 
 namespace masonry {
-
-namespace {
-
-std::atomic<bool> parallelMet{false}; // whether there is a sentence in `parallelEngine`
-std::mutex parallel;                  // guards what follows
-std::string parallelEngine;           // the sentence about an engine in a ParallelEngine, until it is thrown
-long parallelStep = -1;               // the step in which that engine should have acted
-
-long presentStep() { return Singleton<yade::Omega>::instance().getScene()->iter; }
-
-} // namespace
-
-void refuseParallelEngine() {
-    if (!parallelMet.exchange(false)) return;
-    const std::lock_guard<std::mutex> held(parallel);
-    const auto sentence = std::exchange(parallelEngine, {});
-    if (parallelStep == presentStep()) throw std::invalid_argument(sentence);
-}
-
-bool standsAlone(const yade::Engine& engine) {
-    if (omp_get_level() == 0) return true;
-    const std::lock_guard<std::mutex> held(parallel);
-    const bool first = parallelEngine.empty();
-    parallelEngine = engine.getClassName() +
-                     " stands in a ParallelEngine and does nothing: put it into O.engines itself, it uses all threads";
-    parallelStep = presentStep();
-    parallelMet = true;
-    if (first) std::cerr << "error: " + parallelEngine + "\n" << std::flush;
-    return false;
-}
 
 namespace {
 
@@ -56,50 +22,6 @@ struct LookForCollapse {
 
 void add(std::vector<std::string>& all, const std::vector<std::string>& more) {
     all.insert(all.end(), more.begin(), more.end());
-}
-
-// All that is wrong with O.engines, in one sentence; empty if nothing is.
-std::string problemOfEngines(const yade::Scene& scene, bool jointed) {
-    std::vector<std::string> wrong;
-    std::string loop, integrator;
-    bool reset = false, loaded = false;
-    const bool looped = std::any_of(scene.engines.begin(), scene.engines.end(), [](const auto& engine) {
-        const auto name = engine->getClassName();
-        return !engine->dead && (name == "MasonryJointLoop" || name == "InteractionLoop");
-    });
-    if (jointed && !looped) wrong.push_back("there is no MasonryJointLoop");
-    std::vector<const yade::Engine*> met;
-    for (const auto& engine : scene.engines) {
-        if (engine->dead) continue;
-        const std::string name = engine->getClassName();
-        const auto fail = [&](const std::string& what) { wrong.push_back(name + " " + what); };
-        if (std::find(met.begin(), met.end(), engine.get()) != met.end()) {
-            if (name.rfind("Masonry", 0) == 0) fail("\"" + engine->label + "\" stands there twice");
-            continue;
-        }
-        met.push_back(engine.get());
-        reset |= name == "ForceResetter";
-        if (name == "MasonryJointLoop" || name == "InteractionLoop") {
-            if (!loop.empty()) fail("stands beside " + loop);
-            if (!reset) fail("must stand after a ForceResetter");
-            loop = name;
-            continue;
-        }
-        const bool moves = name == "MasonryIntegrator" || name == "NewtonIntegrator";
-        const bool touches = dynamic_cast<const Contacts*>(engine.get()) != nullptr;
-        if (touches && !reset) fail("must stand after a ForceResetter");
-        const bool connects = touches || dynamic_cast<const Connectors*>(engine.get()) != nullptr;
-        loaded |= name == "MasonryLoad";
-        if (connects && loaded) fail("must stand before MasonryLoad");
-        const bool loads = connects || name == "MasonryLoad" || name == "MasonryEnergy";
-        if (looped && loop.empty() && (moves || loads || name == "MasonryZones"))
-            fail("must stand after the joints' loop");
-        if (loads && !integrator.empty()) fail("must stand before " + integrator);
-        if (moves && !integrator.empty()) fail("stands beside " + integrator);
-        if (moves) integrator = name;
-    }
-    if (integrator.empty()) wrong.push_back("there is no MasonryIntegrator");
-    return wrong.empty() ? "" : "O.engines: " + joined(wrong, "; ") + " (masonry.engines() puts them in order)";
 }
 
 } // namespace
@@ -113,7 +35,7 @@ void checkScene(const SceneStore& store) {
             if (!engine->dead) zones.push_back(one);
             for (int id : one->bodies)
                 try {
-                    bodyAt(scene, id, "MasonryZones: body");
+                    bodyAt(scene, id, ": body", ClassRole::Units);
                     owner[id] = one;
                 } catch (const std::invalid_argument& error) {
                     wrong.push_back(error.what());
@@ -151,10 +73,10 @@ void checkScene(const SceneStore& store) {
         const auto& attached = geom->reference().attached;
         const Zones* own = attached ? attached->zones.get() : nullptr;
         if (own && std::find(zones.begin(), zones.end(), own) == zones.end())
-            fail("needs its MasonryZones in O.engines, and not dead");
+            fail("needs its " + nameOf(ClassRole::Units) + " in O.engines, and not dead");
         for (int id : {interaction.id1, interaction.id2})
             if (owner[id] && own != owner[id])
-                fail("was made before MasonryZones had body " + std::to_string(id) +
+                fail("was made before " + nameOf(ClassRole::Units) + " had body " + std::to_string(id) +
                      ": give the zones to masonry.engines(), then connect()");
     }
     for (const auto* connectors : store.connectors)
@@ -206,8 +128,7 @@ void checkBeforeStep(SceneStore& store) {
     auto& seen = store.kept<LookForCollapse>();
     if (!store.watched && scene.iter % collapseEvery == 0 && scene.iter != seen.step) {
         seen.step = scene.iter;
-        if (const auto found = findCollapse(store, {}); found.block >= 0)
-            throw std::runtime_error("collapsed: " + found.what);
+        if (const auto ended = findCollapse(store, {}).ended()) throw *ended;
     }
 }
 
