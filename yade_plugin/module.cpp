@@ -121,6 +121,14 @@ void allowThreads(int most, bool always) {
     Parallel::instance().allow(most, always);
 }
 
+py::tuple presentNeighbours(double tolerance, bool keepFaces) {
+    return neighbours(tolerance, keepFaces ? &SceneStore::present().kept<SharedFaces>() : nullptr);
+}
+
+void dropFaces() { SceneStore::present().kept<SharedFaces>() = {}; }
+
+py::object touchingPairs(double tolerance) { return neighbours(tolerance, nullptr)[0]; }
+
 void connected() {
     const BetweenSteps still;
     auto& store = SceneStore::present();
@@ -196,7 +204,7 @@ static void registerAll() {
     py::scope().attr("commit") = MASONRY_COMMIT;
     py::scope().attr("version") = MASONRY_VERSION;
     py::def(
-        "neighbours", &neighbours, (py::arg("tolerance") = 1e-4, py::arg("keepFaces") = false),
+        "neighbours", &presentNeighbours, (py::arg("tolerance") = 1e-4, py::arg("keepFaces") = false),
         "Three lists for masonry.connect(): pairs (id1, id2) of bodies that share a face; pairs (id1, id2, gap, bound) "
         "that nearly share one or overlap, with the gap and the largest one accepted; (id, size) of the thinnest and "
         "of the largest block. Gaps and sizes in m. With keepFaces the joints that are made next take the faces that "

@@ -59,7 +59,8 @@ bool Ig2_MasonryBlock_MasonryBlock_MasonryJointGeom::go(const shared_ptr<yade::S
                                                         const shared_ptr<yade::Interaction>& interaction) {
     const bool fresh = !interaction->geom;
     if (fresh) {
-        auto face = takeFace(*scene, interaction->id1, interaction->id2, tolerance); // connect() has found it
+        auto& faces = SceneStore::of(*scene).kept<SharedFaces>(); // that connect() has found
+        auto face = faces.take(interaction->id1, interaction->id2, tolerance);
         if (!face)
             face = coincidentFaces(blockOf(*shape1, state1.pos, state1.ori), blockOf(*shape2, state2.pos, state2.ori),
                                    tolerance);
@@ -73,7 +74,7 @@ bool Ig2_MasonryBlock_MasonryBlock_MasonryJointGeom::go(const shared_ptr<yade::S
         const shared_ptr<MasonryJointGeom> geom(new MasonryJointGeom);
         geom->define(*face, grid.along, subcontacts, grid.rows, interaction->id1, interaction->id2, state1, state2);
         for (auto& side : geom->group->joints[0].sides)
-            side.shearShare = shearShareOf(*scene, side.body);
+            side.shearShare = faces.shearShareOf(side.body);
         if (zones) geom->attach(zones);
         interaction->geom = geom;
         fixed_.fix(*scene, {double(subcontacts), double(rows)});

@@ -5,7 +5,6 @@
 #include "engine/bodies/BodyCheck.hpp"
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 namespace masonry {
 
@@ -22,21 +21,7 @@ struct Candidate {
 };
 
 using Pair = std::pair<int, int>; // ids of two bodies, the lower one first
-
-struct SharedFace {
-    Pair ids;
-    FaceContact face; // from the body with the lower id to the other one
-    bool operator<(const SharedFace& other) const { return ids < other.ids; }
-};
-
-// What neighbours() has found for the joints that are made next.
-struct KeptFaces {
-    const yade::Scene* scene = nullptr;
-    double tolerance = 0;
-    std::vector<SharedFace> faces;     // in the order of their ids
-    std::map<int, double> shearShares; // by body
-};
-KeptFaces kept;
+using SharedFace = SharedFaces::Face;
 
 // All blocks of the present scene. Throws std::invalid_argument that names all problems of these blocks.
 std::vector<Candidate> candidates(double tolerance) {
@@ -120,7 +105,7 @@ std::map<int, double> shearShares(const yade::Scene& scene, const std::vector<Sh
 
 } // namespace
 
-py::tuple neighbours(double tolerance, bool keepFaces) {
+py::tuple neighbours(double tolerance, SharedFaces* faces) {
     auto all = candidates(tolerance);
     Vector3r low = Vector3r::Constant(HUGE_VAL), high = -low;
     for (const auto& c : all) {
@@ -171,30 +156,25 @@ py::tuple neighbours(double tolerance, bool keepFaces) {
         sizes.append(py::make_tuple(thin->id, thin->block.thickness));
         sizes.append(py::make_tuple(large->id, large->block.size()));
     }
-    if (keepFaces) {
-        const auto& scene = *Singleton<yade::Omega>::instance().getScene();
-        auto shares = shearShares(scene, shared);
-        kept = {&scene, tolerance, std::move(shared), std::move(shares)};
+    if (faces) {
+        auto shares = shearShares(*Singleton<yade::Omega>::instance().getScene(), shared);
+        *faces = {tolerance, std::move(shared), std::move(shares)};
     }
     return py::make_tuple(touching, missing, sizes);
 }
 
-py::list touchingPairs(double tolerance) { return py::extract<py::list>(neighbours(tolerance, false)[0]); }
-
-std::optional<FaceContact> takeFace(const yade::Scene& scene, int id1, int id2, double tolerance) {
-    if (kept.scene != &scene || kept.tolerance != tolerance) return std::nullopt;
+std::optional<FaceContact> SharedFaces::take(int id1, int id2, double wanted) {
+    if (tolerance != wanted) return std::nullopt;
     const Pair ids(id1, id2);
-    const auto found = std::lower_bound(kept.faces.begin(), kept.faces.end(), ids,
-                                        [](const SharedFace& face, const Pair& wanted) { return face.ids < wanted; });
-    if (found == kept.faces.end() || found->ids != ids || found->face.polygon.empty()) return std::nullopt;
-    return FaceContact{found->face.normal, std::move(found->face.polygon)};
+    const auto found = std::lower_bound(faces.begin(), faces.end(), ids,
+                                        [](const Face& face, const Pair& pair) { return face.ids < pair; });
+    if (found == faces.end() || found->ids != ids || found->contact.polygon.empty()) return std::nullopt;
+    return FaceContact{found->contact.normal, std::move(found->contact.polygon)};
 }
 
-double shearShareOf(const yade::Scene& scene, int id) {
-    const auto found = kept.shearShares.find(id);
-    return kept.scene == &scene && found != kept.shearShares.end() ? found->second : 1;
+double SharedFaces::shearShareOf(int body) const {
+    const auto found = shearShares.find(body);
+    return found != shearShares.end() ? found->second : 1;
 }
-
-void dropFaces() { kept = {}; }
 
 } // namespace masonry
