@@ -273,11 +273,10 @@ def masonry(
         try:
             joints[one.name] = one.made()
         except ValueError as error:
-            for line in str(error).splitlines():
-                small = "too small for peak ratio" in line
-                problems.append(
-                    f"{line}; Gc and peak_strain, and fc and E, decide" if small else line
-                )
+            for problem in error.problems:
+                isSmall = problem["code"] == "smallEnergy"
+                advice = "; Gc and peak_strain, and fc and E, decide" if isSmall else ""
+                problems.append(problem["text"] + advice)
     refuse([f"materials.masonry: {one}" for one in problems])
     if unit_ft is None:
         why = "unit_ft was not given: bricks do not crack"
