@@ -104,7 +104,7 @@ def test_too_little_memory(tmp_path, monkeypatch, undrawn, capsys, steps):
     take = Run._take
 
     def full(run, count, one):
-        if run.at.steps >= steps:
+        if run.state.steps >= steps:
             raise MemoryError
         take(run, count, one)
 

@@ -175,7 +175,7 @@ def test_a_lean_that_is_held_is_noted_with_its_factor_and_displacement(tmp_path)
     for factor in (0.3, 0.2):
         assert s.lean(factor) == AT_REST
         x.append(place())
-    assert s.running.at.held == {"acceleration towards x": 0.3}
+    assert s.running.state.held == {"acceleration towards x": 0.3}
     assert s.model.loading.loadFactor == last(s, "load_factor") == 0.2
     assert s.load(stone, (100, 0, 0)) == AT_REST
     s.finish()

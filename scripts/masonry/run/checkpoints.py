@@ -2,22 +2,36 @@
 """Checkpoints: the state of a scene on disk, from which a run goes on as if it had never stopped.
 
 :func:`saveCheckpoint` and :func:`loadCheckpoint` serve any scene. A run in stages leaves its
-    checkpoints by them;
-:mod:`masonry.run.run_state` is what such a checkpoint tells of the run.
+checkpoints by :class:`Checkpoints`; :class:`Saved` is one that is read back. They keep the state in
+YADE, :class:`SceneState`, the :class:`masonry.run.run_state.RunState` and the rows of curve.csv.
 """
 
+import base64
 import contextlib
 import json
 import os
+import sys
+import time
+from dataclasses import field, fields, is_dataclass
+from enum import Enum
+from types import SimpleNamespace
 from typing import Any
 
-from .._masonry import loadScene, saveScene, savedText
+import yade.config
+
+from .._masonry import commit, loadScene, savedText, saveScene, version
 from ..arguments import FilePath, shown, validated
+from ..errors import NotResumed
 from ..folders import replaced
+from ..model import threads
 from ..numbers.files import readWhole
+from ..terminal import say
+from .run_state import RunState
 
 NAME = "run.checkpoint"  # in the folder of a run
 LARGEST = 1e100  # no number of a run is beyond; its square can be computed
+#: Options that say where results are, and are no part of what was run.
+NO_OPTIONS = "resume", "out", "saved"
 
 
 @validated
@@ -98,7 +112,7 @@ def alike(value: Any, example: Any) -> bool:
 
     An int is a counter, from 0 on; a float is any number up to LARGEST; a list or tuple has as many
     values, each of the kind of its counterpart, and an empty one stands for any list; None stands
-    for None and for a list of finite numbers.
+    for None and for a list of finite numbers; a member of an enum for the values of all.
     """
     if example is None:
         listed = isinstance(value, list)
@@ -106,8 +120,242 @@ def alike(value: Any, example: Any) -> bool:
     if isinstance(example, (list, tuple)):
         fits = lambda: len(value) == len(example) and all(map(alike, value, example))
         return isinstance(value, list) and (not example or fits())
+    if isinstance(example, Enum):
+        return value in [*type(example)]
     if isinstance(example, (bool, str, dict)):
         return isinstance(value, type(example))
     if isinstance(example, int):
         return type(value) is int and 0 <= value < 2**63
     return type(value) in (int, float) and abs(value) <= LARGEST
+
+
+# -- what stages remember --------------------------------------------------------------------------
+
+
+def record(cls):
+    """A field of a memory that is None or a dataclass object, whose fields all have defaults."""
+    return field(default=None, metadata={"record": cls})
+
+
+def contentsOf(memory):
+    """The values of a memory by their names, as JSON can hold them, in a new dict."""
+    of = lambda value: contentsOf(value) if is_dataclass(value) else value
+    return {name: of(value) for name, value in vars(memory).items()}
+
+
+def restored(example, values):
+    """A dataclass object with the values of a checkpoint. Raises NotResumed if these are not of the
+    kind of the example's."""
+    before, values, wrong = vars(example), {**values}, []
+    described = fields(example) if is_dataclass(example) else ()
+    records = {one.name: one.metadata.get("record") for one in described}
+    for name, value in values.items():
+        if records.get(name) and isinstance(value, dict):
+            values[name] = restored(records[name](), value)
+        elif name not in before or not alike(value, before[name]):
+            wrong.append(name)
+    _refuse(wrong)
+    return type(example)(**{**before, **values})
+
+
+def otherVersion(why):
+    """The refusal of a checkpoint that this version of the plugin does not leave."""
+    return NotResumed(f"--resume: of another version of the plugin: {why}")
+
+
+def _refuse(wrong):
+    if wrong:
+        raise otherVersion(f"its {', '.join(wrong)}")
+
+
+# -- the state of a scene --------------------------------------------------------------------------
+
+
+def stateOf(scene):
+    """What stages have set of a scene, beside what YADE keeps: a dict of values that JSON can
+    hold."""
+    of = ("until", "history", "rate") if scene.pushed else ()
+    return {
+        "model": scene.model.state(),
+        "grown": scene.grown,
+        "loadUnit": scene.loadUnit,
+        "pushed": {name: getattr(scene.pushed, name) for name in of},
+    }
+
+
+def putState(scene, state):
+    """Give a scene a state of :func:`stateOf`. Raises NotResumed if it is not of the kind of the
+    present one."""
+    like = stateOf(scene)
+    like["model"]["said"] = []  # stands for any number of things that were said of ties
+    fits = lambda a, b: a.keys() == b.keys() and all(alike(a[n], b[n]) for n in b)
+    if not (fits(state, like) and fits(state["model"], like["model"])):
+        raise otherVersion("the state of the scene")
+    scene.model.putState(state["model"])
+    scene.grown, scene.loadUnit = state["grown"], state["loadUnit"]
+    pushed = state["pushed"]
+    scene.pushed = SimpleNamespace(**{**vars(scene.args), **pushed}) if pushed else None
+
+
+class SceneState:
+    """What a checkpoint keeps of a scene that is built, beside its state in YADE."""
+
+    def __init__(self, scene):
+        self._scene, self._model = scene, scene.model
+        self._rest = None, ""  # the last state at rest, and it as text
+        self.isRestored = False  # whether the scene has the state of a checkpoint again
+
+    def entries(self):
+        """Entries of :class:`RunState`."""
+        atRest, motion = self._model.atRest, self._model.motion
+        if atRest is not self._rest[0]:
+            self._rest = atRest, base64.b64encode(atRest).decode()
+        of = {"places": motion.places, "far": motion.far}
+        return {"now": stateOf(self._scene), "atRest": self._rest[1], **of}
+
+    def put(self, state):
+        """Give the scene the state of a checkpoint."""
+        putState(self._scene, state)
+        self.isRestored = True
+
+    def takeRest(self, state):
+        """Take the last state at rest from a :class:`RunState`."""
+        if state.atRest:
+            self._model.atRest = base64.b64decode(state.atRest)
+        self._model.motion.places, self._model.motion.far = state.places, state.far
+
+
+# -- the checkpoints of a run ----------------------------------------------------------------------
+
+
+def hostNow():
+    """What the last digits of a run can depend on."""
+    software = {"build": commit, "masonry": version, "YADE": yade.config.version}
+    return {**software, "threads": threads.ofYade()}
+
+
+class Checkpoints:
+    """The checkpoints that a run leaves: what they keep beside the scene, and when they are
+    written."""
+
+    def __init__(self, run):
+        self._run = run
+        self.saved = (
+            None  # entries of RunState at the last whole moment; None while steps are taken
+        )
+        self.since = time.perf_counter()  # when one was written last [s]
+
+    def save(self):
+        """Note what a checkpoint of this moment keeps, beside the scene."""
+        run, state = self._run, self._run.state
+        names = "begun", "before", "number", "stage", "steps", "left", "stages"
+        self.saved = {name: getattr(state, name) for name in names}
+        self.saved.update(memory=contentsOf(run.memory), frameCount=len(state.frames))
+        self.saved["rows"] = run.readings.count
+
+    def setRollbackPoint(self):
+        """:meth:`save` after a stage has put the scene into another state."""
+        self._run.state.left = 0
+        self.save()
+
+    def recordFall(self):
+        """:meth:`setRollbackPoint` of a structure that was seen to fall between two steps; what
+        fell within one has no checkpoint."""
+        if self.saved:
+            self.setRollbackPoint()
+
+    def write(self):
+        """Write what :meth:`save` has noted and the scene to the disk. Returns whether there is a
+        checkpoint; a disk that refuses it does not end the run."""
+        run, saved = self._run, self.saved
+        if not (run.args.checkpoint_every and saved):
+            return False
+        run.flush()
+        run.takeFound(True)
+        if run.frames:
+            run.awaitFrame()
+            saved["frameCount"] = min(saved["frameCount"], len(run.state.frames))
+        if len(run.results.rows) < saved["rows"] or run.results.earlier:
+            return False
+        run.results.begin()
+        ofScene = run.sceneState.entries()
+        if saved["begun"] != run.state.begun:  # the present stage has taken no steps
+            ofScene["now"] = run.state.before
+        contents = dict(
+            scene=run.name,
+            options={n: v for n, v in vars(run.args).items() if n not in NO_OPTIONS},
+            state={**vars(run.state), **ofScene, **saved},
+            rows=run.results.rows,
+            script=run.script,
+            seconds=run.results.seconds(),
+            host=hostNow(),
+        )
+        self.since, path = time.perf_counter(), run.results.path(NAME)
+        try:
+            saveCheckpoint(path, contents)
+            return True
+        except (OSError, ValueError, MemoryError) as error:
+            stays = "; an earlier one stays" if os.path.exists(path) else ""
+            why = f"no checkpoint could be written to {path}: {error}{stays}"
+            say(f"warning: {why}", sys.stderr)
+            return False
+
+
+class Saved:
+    """A checkpoint that a run left, read from the disk once. Its attributes are the ``contents`` of
+    :meth:`Checkpoints.write`.
+
+    :raises NotResumed: if no run can be resumed there
+    """
+
+    def __init__(self, directory):
+        self.directory = directory
+        try:
+            self._data, saved = readState(os.path.join(directory, NAME))
+        except FileNotFoundError:
+            raise NotResumed(
+                f"--resume: {directory} has no {NAME}, which a run leaves unless it is --lean and"
+                " has come to its end"
+            ) from None
+        except (OSError, ValueError) as error:
+            raise NotResumed(f"--resume: {error}") from None
+        like = dict(scene="", options={}, state={}, rows=[], script=[], host={}, seconds=0.0)
+        if (
+            not isinstance(saved, dict)
+            or not all(alike(saved.get(key), value) for key, value in like.items())
+            or not all(alike(row, [0.0] * len(row)) for row in saved["rows"])
+            or not all(alike(word, ["", {}]) for word in saved["script"])
+        ):
+            raise NotResumed(f"--resume: {directory}/{NAME} was not left by a run in stages")
+        vars(self).update({key: saved[key] for key in like})
+
+    def runState(self):
+        """How far the run had come: a :class:`RunState`. Raises NotResumed."""
+        state = restored(RunState(), self.state)
+        values = lambda held: held.values() if isinstance(held, dict) else held
+        _refuse(
+            [
+                one.name
+                for one in fields(state)
+                for example in one.metadata.values()
+                if not all(alike(v, example) for v in values(getattr(state, one.name)))
+            ]
+        )
+        return state
+
+    def load(self):
+        """Give the scene, built by the same script, the state of the checkpoint. Raises
+        NotResumed."""
+        try:
+            loadScene(self._data)
+        except (ValueError, TypeError) as error:
+            raise NotResumed(f"--resume: {self.directory}/{NAME} {error}") from None
+
+    def compareHost(self):
+        """Say what of the host is not as it was."""
+        for what, value in hostNow().items():
+            if self.host.get(what) != value:
+                say(
+                    f"note: the checkpoint was made with {what} {self.host.get(what)}, this run has"
+                    f" {value}: it may differ in last digits from one without a break"
+                )

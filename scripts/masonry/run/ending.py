@@ -47,7 +47,7 @@ def _end(run, scene, error):
         return False
     try:
         if not error and not run.advanced:
-            run.takeUp()
+            run.beginWriting()
     except Refused as refused:
         error = refused
     if isinstance(error, Refused):
@@ -55,7 +55,7 @@ def _end(run, scene, error):
     if isinstance(error, MemoryError):
         error = Unwritable(FULL)
     if isinstance(error, Interrupted) and scene.only and scene.bounds.entries:
-        run.takeUp()  # the bounds that were found are what was computed
+        run.beginWriting()  # the bounds that were found are what was computed
     if not run.advanced:
         return _beforeSteps(run, error)
     if error and not isinstance(error, Collapsed) and run.results.earlier:
@@ -96,7 +96,7 @@ def _end(run, scene, error):
         say(f"{text}; what was written before is kept", sys.stderr)
     if kept and (stopped or run.interrupted):
         say(f"--resume {run.results.directory} goes on from here")
-    fell = run.collapsed and run.loading
+    fell = run.collapsed and run.context.loadsGrow
     run.status = 1 if stopped or fell else 130 if run.interrupted else 0
     return True
 
@@ -174,7 +174,7 @@ def _unlessInterrupted(run, draw, lacking):
 
 def _describe(run, scene):
     """Fill run.json; the docstring of :mod:`masonry.run.results` lists its keys."""
-    at, entries = run.at, run.results.run
+    state, entries = run.state, run.results.run
     entries.update(
         scene=run.name,
         options=_options(run),
@@ -194,11 +194,11 @@ def _describe(run, scene):
         **scene.outcome.describe(),
         collapsed=run.collapsed,
         interrupted=run.interrupted,
-        resumed_at_s=at.resumed,
-        steps=at.steps,
-        stages=at.listed(),
+        resumed_at_s=state.resumed,
+        steps=state.steps,
+        stages=state.listed(),
         kinds=run.frames.kinds if run.frames else [],
-        seconds={part: round(s, 3) for part, s in at.seconds.items()},
+        seconds={part: round(s, 3) for part, s in state.seconds.items()},
     )
     if run.results.rows:
         energy = scene.model.energy
@@ -207,12 +207,12 @@ def _describe(run, scene):
         scene.outcome.summarise()
     if run.args.blocks == "rigid" and not scene.description.functors:
         entries["refined_joints"] = scene.model.scheme.joints.refinedJoints
-    if at.steps:
-        perStep = at.seconds["steps"] / at.steps
+    if state.steps:
+        perStep = state.seconds["steps"] / state.steps
         ofOne = 1e9 * perStep / scene.model.subcontacts
         entries["microseconds_per_step"] = 1e6 * perStep
         entries["nanoseconds_per_subcontact_step"] = ofOne
-    entries.update(notes=at.notes, warnings=list(_warnings(run, scene)))
+    entries.update(notes=state.notes, warnings=list(_warnings(run, scene)))
 
 
 def _options(run):

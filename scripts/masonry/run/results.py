@@ -167,7 +167,7 @@ class Results:
     them. Files of these names that no run has left are refused.
 
     :param directory: folder, made if it is missing
-    :param resumed: whether to leave everything as it is, until :meth:`takeUp`
+    :param resumed: whether to leave everything as it is, until :meth:`goOn`
     :param scene: name of the scene, for others that want the folder
     """
 
@@ -275,7 +275,7 @@ class Results:
         """curve.csv, open to add to it."""
         return open(self.path("curve.csv"), "ab", buffering=0, opener=folders.inside)
 
-    def takeUp(self, rows, frames, seconds):
+    def goOn(self, rows, frames, seconds):
         """Go on after these rows, so many ParaView frames and seconds of wall-clock time. What came
         later is removed."""
         # what is wrong with the rows or the file comes before anything is changed

@@ -14,7 +14,7 @@ from ..background import reportRefusal
 from ..errors import NotResumed, Refused, refuse
 from ..terminal import plain, say
 from ..run import batch
-from ..run.run_state import Saved
+from ..run.checkpoints import Saved
 from ..run.option_table import OPTIONS, asOption, those
 from ..run.presets import PRESETS
 from . import history

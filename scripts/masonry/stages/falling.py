@@ -20,8 +20,10 @@ LOOK = 0.05  # time between two looks and rows, over √(side/g) of the largest 
 FRAME = 4  # looks from one frame to the next
 # speed of the fastest block of rubble at rest, over that of one that falls [-]: see
 # Motion.fastest()
-CALM = 0.1
-LOOKS = 40  # so many looks one after the other find the rubble at rest before it is said to be
+REST_SPEED_RATIO = 0.1
+CONSECUTIVE_CHECKS = (
+    40  # so many looks one after the other find the rubble at rest before it is said to be
+)
 #: After which it is given up, over √(2h/g) of the height of what is built [-].
 LONGEST = 20.0
 TABLE = "fallen.csv"
@@ -47,7 +49,7 @@ def followFall(scene: Any, tilted: bool) -> str:
     at = running.stage(FALL, Falling())
     if at.begun < 0:
         at.begun = O.time
-        if not running.takesUp:
+        if not running.isResumed:
             running.frame()  # whose cracks are drawn
     # what stands comes to rest; blocks that are loose are not damped so
     model.scheme.dampByOptions()
@@ -57,13 +59,13 @@ def followFall(scene: Any, tilted: bool) -> str:
     small = math.sqrt(max(map(box.size, range(len(box.bricks)))) / gravity)
     every = max(1, round(LOOK * small / O.dt))
     longest = LONGEST * (math.sqrt(2 * height / gravity) + small)
-    most = max(LOOKS, int(longest / (every * O.dt)))
-    while at.looks < most and at.quiet < LOOKS:
+    most = max(CONSECUTIVE_CHECKS, int(longest / (every * O.dt)))
+    while at.looks < most and at.quiet < CONSECUTIVE_CHECKS:
         running.advance(every)
         at.looks += 1
         running.record()
         missing, _ = model.supports.unrest()
-        rests = missing < REST and model.motion.fastest() < CALM
+        rests = missing < REST and model.motion.fastest() < REST_SPEED_RATIO
         at.quiet = at.quiet + 1 if rests else 0
         if at.looks >= at.nextFrame:
             running.frame()
@@ -74,7 +76,7 @@ def followFall(scene: Any, tilted: bool) -> str:
         running.show(
             at.looks / most,
             lambda: f"{O.time - at.begun:.3f} s, {fallen} blocks have fallen",
-            at.quiet == LOOKS or at.looks == most,
+            at.quiet == CONSECUTIVE_CHECKS or at.looks == most,
         )
     running.flush()
     ground = box.ground().box[1][2]
@@ -84,13 +86,13 @@ def followFall(scene: Any, tilted: bool) -> str:
             f"warning: {past} blocks have gone past the edge of the ground and fall on, so the"
             " impact energy and the extent of the rubble mean nothing"
         )
-    if at.quiet < LOOKS:
+    if at.quiet < CONSECUTIVE_CHECKS:
         say(
             f"note: the rubble is not at rest after {O.time - at.begun:.2f} s:"
             f" {100 * missing:.2f} % of its weight is missing at the supports, and the fastest"
             f" block moves at {100 * model.motion.fastest():.2g} % of the speed of one that falls"
         )
-    return FALLEN_AT_REST if at.quiet == LOOKS else FALLEN_MOVING
+    return FALLEN_AT_REST if at.quiet == CONSECUTIVE_CHECKS else FALLEN_MOVING
 
 
 def cornersNow(model: Any, index: int) -> list[Any]:

@@ -13,7 +13,7 @@ from ..units import GRAVITY
 from ..errors import checkPlane
 from ..model.load_names import nameOfLean
 from .bounds import findBound
-from .growing import TRIAL, WITHIN, ends, follow, found, grow
+from .growing import TRIAL, WITHIN, Tried, ends, follow, found, grow
 from .rest import WAITED, Resting, waitForRest
 from .answers import AT_REST, MOVING
 from .stage import Duration, stage
@@ -90,7 +90,7 @@ class Tilting(Acceleration):
 def putOnAnswers(scene, rows):
     """The load that was put on, as held or as not held."""
     asked, unit = scene.running.memory.goal, scene.loadUnit
-    end, load = [asked, 1e3 * scene.model.loading.alongNow()], f"{asked:.4g} {unit}"
+    end, load = Tried(asked, 1e3 * scene.model.loading.alongNow()), f"{asked:.4g} {unit}"
     if scene.ended == AT_REST:
         return ends(scene, end, "the structure came to rest under it", None, f"it held {load}")
     why = f"the structure did not come to rest under {load}"

@@ -91,7 +91,7 @@ def patternOf(scene: Any, value: Any, direction: Any, args: Any) -> Any:
         name = " and ".join(f"{share:.4g} {target.name}" for target, share in shares.items())
         return Pattern(name, tuple((t.body, t.point, s) for t, s in shares.items()))
     name = value if isinstance(value, str) else "a pattern"
-    if scene.running.redoes and scene.running.takesUp:
+    if scene.running.resumedHere and scene.running.isResumed:
         # its drive has the pattern, which was found when the push began
         return _named(patternOfDrive(scene.model.loading, name))
     if scene.model.zones:
@@ -196,7 +196,7 @@ def peaks(scene, rows):
         yield Answer(f"displacement_at_{name}", "mm", data[MOVED][at], how)
 
 
-@stage(bounded=True, farther=("until",), options=OPTIONS, answers=peaks)
+@stage(bounded=True, extendable=("until",), options=OPTIONS, answers=peaks)
 def push(
     scene: Any,
     target: Pushed,
@@ -232,7 +232,7 @@ def push(
     return _drive(scene, "push", target, *how, until=until and until * scene.share)
 
 
-@stage(bounded=True, farther=("amplitudes", "repeats"), options=OPTIONS, answers=peaks)
+@stage(bounded=True, extendable=("amplitudes", "repeats"), options=OPTIONS, answers=peaks)
 def cycle(
     scene: Any,
     target: Pushed,
@@ -263,7 +263,7 @@ def cycle(
     return _drive(scene, "cycle", target, *how, history=text)
 
 
-@stage(bounded=True, farther=("path",), options=OPTIONS, answers=peaks)
+@stage(bounded=True, extendable=("path",), options=OPTIONS, answers=peaks)
 def follow(
     scene: Any,
     target: Pushed,
@@ -296,7 +296,7 @@ def _drive(scene, name, target, direction, rate, continued, control, **aim):
     scene.pushed = args
     counted = "" if pushed is control else control.name
     began = f"{pushed.name} {[round(v, 9) for v in direction]}" + f" {counted}" * bool(counted)
-    if continued and began not in running.at.origins:
+    if continued and began not in running.state.origins:
         raise ValueError(
             f"{name}: continued: {pushed.name} has not been pushed along {tuple(direction)} before,"
             " with this control"

@@ -173,7 +173,7 @@ def drivePush(scene, name, args, began, continued=False):
         drive.velocity = full * growth
         # A velocity that grew in stairs would make the pushed block swing in time with them.
         if start < growth:
-            drive.ramp = run.at.left or steps
+            drive.ramp = run.state.left or steps
             drive.acceleration = full * (growth - start) / (steps * O.dt)
         run.advance(steps)
         at.driven += 0.5 * args.rate * (abs(start) + abs(growth)) * steps * O.dt
@@ -210,7 +210,7 @@ def _entered(scene, name, args, at, began, continued):
     first, origin = at.origin is None, at.origin
     if first:
         here = list(model.loading.topDisplacement())
-        origin = run.at.origins[began] if continued else here
+        origin = run.state.origins[began] if continued else here
         at.moved = at.last = at.start = 1e3 * (here[0] - origin[0])
     if not args.history and not args.until > at.moved:
         raise Refused(
@@ -223,7 +223,7 @@ def _entered(scene, name, args, at, began, continued):
     model.loading.goal = at.passed + 1, goals[at.passed].displacement
     model.loading.origin = at.origin = origin
     if first:
-        run.at.origins = {**run.at.origins, began: origin}
+        run.state.origins = {**run.state.origins, began: origin}
         at.now = at.since = O.time
         at.moved = 1e3 * run.record().along
         run.frame()
@@ -277,7 +277,7 @@ def _measuredPeriod(scene, name, args, longest):
 def _keepVibration(run, *values):
     """Keep the period of a push, the weight of the base in its shear force when its velocity has
     grown, and the time then."""
-    run.at.freeVibrations = {**run.at.freeVibrations, str(run.entered): [*values]}
+    run.state.freeVibrations = {**run.state.freeVibrations, str(run.entered): [*values]}
 
 
 def _rampOf(at, args, every, turns):

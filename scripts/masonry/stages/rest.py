@@ -19,12 +19,16 @@ from .stage import Duration, stage
 
 # [s] in which loads and velocities grow: some ten periods of a wave through the height of a wall
 RAMP = 0.02
-CALM = 1e-5  # kinetic over elastic energy of a structure that is said to be at rest [-]
-LOOKS = 3  # so many looks one after the other find a structure at rest before it is said to be
+REST_ENERGY_RATIO = (
+    1e-5  # kinetic over elastic energy of a structure that is said to be at rest [-]
+)
+CONSECUTIVE_CHECKS = (
+    3  # so many looks one after the other find a structure at rest before it is said to be
+)
 EVERY = 100  # steps between two looks
 #: If time steps are long: steps in which a part of the loads is put on, a third at most, and after
 #: which it is seen whether a block has fallen far.
-SHORTER = 1, 2, 5, 10, 20, 50, EVERY
+CHECK_INTERVALS = 1, 2, 5, 10, 20, 50, EVERY
 #: Periods of a structure on springs to the ground in which loads grow, so that it sinks slowly,
 #: however soft they are.
 PERIODS = 4.0
@@ -122,7 +126,7 @@ def waitForRest(scene, at, longest, grow, over=0.0, record=True, buckling=False)
     slowest = model.supports.slowest()
     ramp = max(growthTime(scene), over, PERIODS * slowest)
     growing = max(1, int(ramp / O.dt))
-    every = max(n for n in SHORTER if n == 1 or n <= growing / 3)
+    every = max(n for n in CHECK_INTERVALS if n == 1 or n <= growing / 3)
     swinging = SWINGING * scene.args.density_scaling**0.5 * (model.motion.far == FAR)
     longest = longest or max(20 * ramp, WAITED * slowest, swinging)
     if math.isinf(O.dt):
@@ -133,7 +137,7 @@ def waitForRest(scene, at, longest, grow, over=0.0, record=True, buckling=False)
             f"longest {longest:g} s, after which the wait for rest ends, must be above the time"
             f" step, {O.dt:.3g} s"
         )
-    while (at.done < most or at.done % EVERY) and at.quiet < LOOKS:
+    while (at.done < most or at.done % EVERY) and at.quiet < CONSECUTIVE_CHECKS:
         load = min(1.0, (at.done + every) / growing)
         grow(load)
         running.advance(every)
@@ -143,7 +147,7 @@ def waitForRest(scene, at, longest, grow, over=0.0, record=True, buckling=False)
             continue
         missing, moving = model.supports.unrest()
         grown = at.done > (1.2 if over else 1.1) * growing
-        rests = missing < REST and moving < CALM and grown
+        rests = missing < REST and moving < REST_ENERGY_RATIO and grown
         at.quiet = at.quiet + 1 if rests else 0
         if load == 1:
             model.motion.checkFall()
@@ -152,16 +156,16 @@ def waitForRest(scene, at, longest, grow, over=0.0, record=True, buckling=False)
         running.show(
             at.done / most,
             lambda: f"unbalanced {100 * missing:+.2f} %, kinetic/elastic {moving:.1e}",
-            at.quiet == LOOKS or at.done >= most,
+            at.quiet == CONSECUTIVE_CHECKS or at.done >= most,
         )
-    if at.quiet < LOOKS:
+    if at.quiet < CONSECUTIVE_CHECKS:
         missing, moving = model.supports.unrest()
         say(
             f"note: the structure is not at rest after {at.done * O.dt:.2f} s:"
             f" {100 * missing:.2f} % of the load is missing at the supports, kinetic over elastic"
             f" energy is {moving:.1e}; longest=... [s] waits longer"
         )
-    ended = AT_REST if at.quiet == LOOKS else MOVING
+    ended = AT_REST if at.quiet == CONSECUTIVE_CHECKS else MOVING
     if buckling and ended == AT_REST and buckles(scene):
         say(
             "note: the structure buckles under this load: a small push sideways grows, so it counts"
@@ -186,7 +190,7 @@ def stepBack(scene: Any) -> None:
         running, model = scene.running, scene.model
         known = model is not None and model.atRest is not None
         before, at = running.scriptBefore, len(scene.script.words)
-        if running.takesUp and at < len(before):  # it had none yet
+        if running.isResumed and at < len(before):  # it had none yet
             known = before[at][1].get("known", known)
         isEarlier = saidBefore(scene, "stepBack", known=known)
         if not known:
@@ -195,5 +199,5 @@ def stepBack(scene: Any) -> None:
         scene.results.run.pop("collapse", None)
         if not isEarlier:
             loadScene(model.atRest)
-            running.checkpoints.mark()
+            running.checkpoints.setRollbackPoint()
             model.motion.restart()

@@ -71,7 +71,7 @@ def inRealTime(scene, name, damping, massDamping=0.0, stiffnessDamping=0.0):
     return at
 
 
-@stage(options=("record", "scale"), real=True, answers=displacements)
+@stage(options=("record", "scale"), dynamic=True, answers=displacements)
 def shake(
     scene: Any,
     accelerations: Annotated[Numbers | FilePath | Sequence[FilePath], record],
@@ -157,7 +157,7 @@ def shake(
     return DONE
 
 
-@stage(farther=("seconds",), real=True, answers=displacements)
+@stage(extendable=("seconds",), dynamic=True, answers=displacements)
 def run(scene: Any, seconds: Duration, damping: Damping = 0.0) -> str:
     """Let time pass, as it is: nothing brakes but what joints and contacts lose.
 

@@ -75,7 +75,7 @@ def displacement(scene, rows):
             yield Answer(f"displacement_of_{target.name}", "mm", squares**0.5, how)
 
 
-@stage(farther=("x", "y", "z"), options=("rate",), answers=displacement)
+@stage(extendable=("x", "y", "z"), options=("rate",), answers=displacement)
 def move(
     scene: Any,
     target: HeldTargets,
@@ -121,7 +121,7 @@ def move(
             state.vel = speed * (1e-3 / distance * path)
 
     timed(scene, at, duration, before)
-    scene.running.at.supportsMoved = True
+    scene.running.state.supportsMoved = True
     for state in states:
         state.vel = Vector3.Zero
     return DONE
