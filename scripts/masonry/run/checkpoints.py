@@ -13,7 +13,6 @@ import os
 import sys
 import time
 from dataclasses import field, fields, is_dataclass
-from enum import Enum
 from types import SimpleNamespace
 from typing import Any
 
@@ -29,7 +28,6 @@ from ..terminal import say
 from .run_state import RunState
 
 NAME = "run.checkpoint"  # in the folder of a run
-LARGEST = 1e100  # no number of a run is beyond; its square can be computed
 #: Options that say where results are, and are no part of what was run.
 NO_OPTIONS = "resume", "out", "saved"
 
@@ -107,28 +105,6 @@ def _says(path):
         raise ValueError(f"{path} {error}") from None
 
 
-def alike(value: Any, example: Any) -> bool:
-    """Whether a value that JSON gave is of the kind of another one.
-
-    An int is a counter, from 0 on; a float is any number up to LARGEST; a list or tuple has as many
-    values, each of the kind of its counterpart, and an empty one stands for any list; None stands
-    for None and for a list of finite numbers; a member of an enum for the values of all.
-    """
-    if example is None:
-        listed = isinstance(value, list)
-        return value is None or listed and alike(value, [0.0] * len(value))
-    if isinstance(example, (list, tuple)):
-        fits = lambda: len(value) == len(example) and all(map(alike, value, example))
-        return isinstance(value, list) and (not example or fits())
-    if isinstance(example, Enum):
-        return value in [*type(example)]
-    if isinstance(example, (bool, str, dict)):
-        return isinstance(value, type(example))
-    if isinstance(example, int):
-        return type(value) is int and 0 <= value < 2**63
-    return type(value) in (int, float) and abs(value) <= LARGEST
-
-
 # -- what stages remember --------------------------------------------------------------------------
 
 
@@ -144,28 +120,24 @@ def contentsOf(memory):
 
 
 def restored(example, values):
-    """A dataclass object with the values of a checkpoint. Raises NotResumed if these are not of the
-    kind of the example's."""
-    before, values, wrong = vars(example), {**values}, []
+    """A dataclass object like an example with the values of a checkpoint. Raises NotResumed if it
+    has other fields."""
+    compareNames(values, vars(example))
     described = fields(example) if is_dataclass(example) else ()
-    records = {one.name: one.metadata.get("record") for one in described}
-    for name, value in values.items():
-        if records.get(name) and isinstance(value, dict):
-            values[name] = restored(records[name](), value)
-        elif name not in before or not alike(value, before[name]):
-            wrong.append(name)
-    _refuse(wrong)
-    return type(example)(**{**before, **values})
+    records = {one.name: one.metadata["record"] for one in described if one.metadata}
+    of = lambda n, v: restored(records[n](), v) if n in records and v else v
+    return type(example)(**{name: of(name, value) for name, value in values.items()})
+
+
+def compareNames(values, example):
+    """Refuse entries of a checkpoint that have other names than in this version of the plugin."""
+    if unlike := values.keys() ^ example.keys():
+        raise otherVersion(f"its {', '.join(sorted(unlike))}")
 
 
 def otherVersion(why):
     """The refusal of a checkpoint that this version of the plugin does not leave."""
     return NotResumed(f"--resume: of another version of the plugin: {why}")
-
-
-def _refuse(wrong):
-    if wrong:
-        raise otherVersion(f"its {', '.join(wrong)}")
 
 
 # -- the state of a scene --------------------------------------------------------------------------
@@ -184,13 +156,7 @@ def stateOf(scene):
 
 
 def putState(scene, state):
-    """Give a scene a state of :func:`stateOf`. Raises NotResumed if it is not of the kind of the
-    present one."""
-    like = stateOf(scene)
-    like["model"]["said"] = []  # stands for any number of things that were said of ties
-    fits = lambda a, b: a.keys() == b.keys() and all(alike(a[n], b[n]) for n in b)
-    if not (fits(state, like) and fits(state["model"], like["model"])):
-        raise otherVersion("the state of the scene")
+    """Give a scene a state of :func:`stateOf`."""
     scene.model.putState(state["model"])
     scene.grown, scene.loadUnit = state["grown"], state["loadUnit"]
     pushed = state["pushed"]
@@ -319,29 +285,14 @@ class Saved:
             ) from None
         except (OSError, ValueError) as error:
             raise NotResumed(f"--resume: {error}") from None
-        like = dict(scene="", options={}, state={}, rows=[], script=[], host={}, seconds=0.0)
-        if (
-            not isinstance(saved, dict)
-            or not all(alike(saved.get(key), value) for key, value in like.items())
-            or not all(alike(row, [0.0] * len(row)) for row in saved["rows"])
-            or not all(alike(word, ["", {}]) for word in saved["script"])
-        ):
+        names = "scene options state rows script seconds host".split()
+        if not isinstance(saved, dict) or saved.keys() != {*names}:
             raise NotResumed(f"--resume: {directory}/{NAME} was not left by a run in stages")
-        vars(self).update({key: saved[key] for key in like})
+        vars(self).update(saved)
 
     def runState(self):
         """How far the run had come: a :class:`RunState`. Raises NotResumed."""
-        state = restored(RunState(), self.state)
-        values = lambda held: held.values() if isinstance(held, dict) else held
-        _refuse(
-            [
-                one.name
-                for one in fields(state)
-                for example in one.metadata.values()
-                if not all(alike(v, example) for v in values(getattr(state, one.name)))
-            ]
-        )
-        return state
+        return restored(RunState(), self.state)
 
     def load(self):
         """Give the scene, built by the same script, the state of the checkpoint. Raises

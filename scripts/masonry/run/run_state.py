@@ -7,12 +7,6 @@ MAX_NOTES = 1000  # that a run keeps
 PARTS = "setup", "steps", "rows", "frames"  # of a run's time
 
 
-def _holding(kind, example):
-    """A field that is a list or a dict, whose values are like an example: see
-    :func:`masonry.run.checkpoints.alike`."""
-    return field(default_factory=kind, metadata={"example": example})
-
-
 @dataclass
 class RunState:
     """How far a run has come, beside the state of the scene."""
@@ -31,37 +25,39 @@ class RunState:
     frameCount: int = 0  # ParaView frames then
     #: Of every stage so far: its name, and the steps, their seconds of wall-clock time and the rows
     #: before it.
-    stages: list = _holding(list, ["", 0, 0.0, 0])
-    seconds: dict = _holding(lambda: dict.fromkeys(PARTS, 0.0), 0.0)
-    frames: list = _holding(list, 0.0)  # times of the ParaView frames [s]
-    origins: dict = _holding(dict, None)  # where pushes began, by their name
+    stages: list = field(default_factory=list)
+    seconds: dict = field(default_factory=lambda: dict.fromkeys(PARTS, 0.0))
+    frames: list = field(default_factory=list)  # times of the ParaView frames [s]
+    origins: dict = field(default_factory=dict)  # where pushes began, by their name
     #: Of the pushes, by the numbers of their stages: the first period when it began [s], the weight
     #: of the base in its shear force [-], and the time at which its velocity had grown [s]; 0 where
     #: that was not found.
-    freeVibrations: dict = _holding(dict, [0.0] * 3)
-    bounds: dict = _holding(dict, {})  # what limit analysis found, by the load
+    freeVibrations: dict = field(default_factory=dict)
+    bounds: dict = field(default_factory=dict)  # what limit analysis found, by the load
     #: Load factors under which the structure came to rest, by the names of their bounds.
-    held: dict = _holding(dict, 0.0)
+    held: dict = field(default_factory=dict)
     #: What stages pushed or put on, by their numbers: the kind, "push", "lean" or "growth", the
     #: name of the load and that of the opposite one; and the target whose displacement is counted,
     #: where it is not what is pushed.
-    loads: dict = _holding(dict, [])
+    loads: dict = field(default_factory=dict)
     #: How stages ended, by their numbers, and the number of the last stage then: a stage may
     #: consist of several.
-    ended: dict = _holding(dict, ["", 0])
+    ended: dict = field(default_factory=dict)
     fall: str = ""  # what has fallen, as in Run.fall
     #: What acted in addition to a load, and held the structure when its bound was found, by the
     #: load.
     auxiliary: dict = field(default_factory=dict)
     atRest: str = ""  # the last state at rest, as text, for stepBack()
-    places: list = _holding(list, 0.0)  # masonry.model.motion.Motion.places
+    places: list = field(default_factory=list)  # masonry.model.motion.Motion.places
     far: float = 0.0  # masonry.model.motion.Motion.far
-    answers: dict = _holding(dict, [])  # of the stages, by their number
-    notes: list = _holding(list, {})  # what the run said, as in run.json
+    answers: dict = field(default_factory=dict)  # of the stages, by their number
+    notes: list = field(default_factory=list)  # what the run said, as in run.json
     supportsMoved: bool = False  # whether a stage has moved supports
     #: When the widest crack was looked for last, and its width: number of the time step, and [mm].
-    widest: list = _holding(list, 0.0)
-    resumed: list = _holding(list, 0.0)  # times in the scene at which the run was resumed [s]
+    widest: list = field(default_factory=list)
+    resumed: list = field(
+        default_factory=list
+    )  # times in the scene at which the run was resumed [s]
 
     def recordNote(self, text, number, time_s):
         """Keep what the run said in the stage of a number, unless it has said it before."""
