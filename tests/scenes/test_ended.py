@@ -130,7 +130,8 @@ from masonry import limit
 """
 FIGURES = f"""
 import sys
-from masonry.numbers import figures, files
+from masonry.numbers import files
+from masonry_view import figures
 {LIMITED}
 sys.exit(files.onFolder(figures.draw, ["nowhere"]))
 """

@@ -325,7 +325,7 @@ def test_states_of_a_growth_are_evenly_apart_and_not_too_many(monkeypatch):
 
 
 def test_buckling_is_looked_for_in_the_state_that_was_held(monkeypatch):
-    loaded, at = [], growing.Growing(heldState=growing._text(b"held"))
+    loaded, at = [], growing.Growing(heldState=base64.b64encode(b"held").decode())
     monkeypatch.setattr(growing, "loadScene", loaded.append)
     monkeypatch.setattr(growing, "buckles", lambda scene: len(loaded) == 1)
     scene = SimpleNamespace(model=None, running=None)

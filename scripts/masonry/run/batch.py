@@ -29,10 +29,10 @@ import re
 
 from ..errors import Refused
 from ..numbers.files import readRun, readText
-from .option_table import OPTIONS, asOption, those
+from .option_table import OPTIONS, asOption, optionsWith
 
 #: Options that a study itself gives, or that a row of it cannot have.
-OWN = {"help", *OPTIONS} - those("ofStudy")
+OWN = {"help", *OPTIONS} - optionsWith("ofStudy")
 VARIABLE = "YADE_BATCH"  # of the environment: path of the table and number of the line
 ROWS = "rows"  # folder of the results, beside the table
 FIELD = "field:"  # begins the name of a column

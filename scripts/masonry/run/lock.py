@@ -23,7 +23,9 @@ FILES = (
 ).split()
 #: Those of them that show how far a run has come: they go when it goes on.
 DRAWN = {"curve.png", "cracks.png", "report.html"}
-OURS = re.compile("(%s)(\\.new)?" % "|".join(re.escape(f).replace(r"\*", r"\d+") for f in FILES))
+OUR_FILES = re.compile(
+    "(%s)(\\.new)?" % "|".join(re.escape(f).replace(r"\*", r"\d+") for f in FILES)
+)
 LOCK = "run.lock"  # in the folder of a run while it goes on, and after it was killed
 NO_LOCKS = {errno.ENOLCK, errno.EOPNOTSUPP, errno.ENOSYS}  # of the file system
 
@@ -114,7 +116,7 @@ class Lock:
             return
         folder = os.path.dirname(self.path)
         with contextlib.suppress(OSError):
-            names = [name for name in os.listdir(folder) if OURS.fullmatch(name)]
+            names = [name for name in os.listdir(folder) if OUR_FILES.fullmatch(name)]
             if not (self.ours and names) or recorded(folder):
                 os.remove(self.path)
         self._file.close()

@@ -103,7 +103,7 @@ from ..errors import Refused
 from ..terminal import say
 from ..numbers import quantities
 from ..numbers.files import readWhole
-from .lock import DRAWN, FILES, OURS, Lock, recorded
+from .lock import DRAWN, FILES, OUR_FILES, Lock, recorded
 
 __doc__ = f"{__doc__}{quantities.described()}"
 
@@ -151,7 +151,7 @@ class Results:
             raise Refused(f"--out: cannot write to {self.directory}: {why}") from None
 
     def _earlier(self):
-        names = sorted(n for n in os.listdir(self.directory) if OURS.fullmatch(n))
+        names = sorted(n for n in os.listdir(self.directory) if OUR_FILES.fullmatch(n))
         if not names or self._lock.ours:
             return names
         record, strange = recorded(self.directory), names

@@ -43,8 +43,7 @@ class Run:
     """A run in stages; the module says how to use it. :func:`masonry.run.ending.end` ends it in
     order.
 
-    Results of an earlier run in the folder are replaced when there is a first row or frame, or at
-    the end. A run that is interrupted or fails before leaves them as they are.
+    Results of an earlier run stay until there is a first row or frame, or the end.
 
     :param name: name of the scene; its results go to ``results/<name>`` if the options do not say
         otherwise
@@ -79,7 +78,7 @@ class Run:
         """Open the folder, and read the checkpoint of a run that is resumed. No file is written
         yet.
 
-        :param properties: of the scene, as :func:`masonry.scene.facts.properties` gives them
+        :param properties: :func:`masonry.scene.facts.properties`
         """
         args, heads = self.args, [column.head for column in columns]
         folder = args.out or os.path.join("results", self.name)
@@ -143,14 +142,12 @@ class Run:
         return self.saved.script if self.saved else []
 
     def recordNote(self, text):
-        """Keep a note or a warning with the stage and the time in the scene in which it was said
-        first. A run that is resumed says again what it said."""
+        """Keep a note or a warning with the present stage and the time in the scene."""
         # before the first stage, another scene may stand in YADE
         self.state.recordNote(text, self.entered, O.time if self.entered else 0.0)
 
     def auxiliary(self, what):
-        """A block that computes something beside the run, which an unexpected error there does not
-        end; ``what`` names it in the note."""
+        """A block that computes something beside the run: :class:`masonry.auxiliary.Auxiliary`."""
         return Auxiliary(what, self.fail)
 
     def fail(self, note, trace):
@@ -183,8 +180,7 @@ class Run:
             self.readings.time = rows[-1][0]
 
     def beginWriting(self):
-        """From here on files are written; those of a run that is resumed are cut back to its
-        checkpoint."""
+        """Write files from here on; those of a resumed run are cut back to its checkpoint."""
         if self.saved:
             state, ofScene = self.state, self.sceneState
             # a stage acts before it advances: that was done before the steps of the checkpoint
@@ -208,9 +204,8 @@ class Run:
         checkpoint, and was over then.
 
         :param name: what it is called on the terminal
-        :param memory: what the stage must know to go on, as it is at the beginning: a dataclass of
-            values that JSON can hold, and of :func:`masonry.run.checkpoints.record`. Checkpoints
-            keep it.
+        :param memory: of the stage at its beginning: a dataclass of values that JSON can hold, and
+            of :func:`masonry.run.checkpoints.record`
         """
         self.entered += 1
         state, resumed = self.state, self.resumedHere and not self.advanced
@@ -228,16 +223,12 @@ class Run:
         return memory
 
     def advance(self, steps, one=None):
-        """Take time steps, and leave a checkpoint if one is due.
+        """Take time steps, and leave a checkpoint if one is due after the last of them, or between
+        slow ones (LOOK_EVERY).
 
-        Ctrl-C and SIGTERM are obeyed after the present step. A checkpoint is made after the last
-        step, and between steps only if they are slow, see LOOK_EVERY.
-
-        Raises Interrupted after Ctrl-C and SIGTERM, and Collapsed if a block has fallen
-        (help(masonry.MasonryEnergy)).
-
-        :param one: function that makes one step, of its number in this call, from 0; None: YADE
-            makes it
+        :param one: function that makes one step, of its number in this call, from 0; None: YADE's
+        :raises Interrupted: after the present step, if the user sent Ctrl-C or SIGTERM
+        :raises Collapsed: if a block has fallen (help(masonry.MasonryEnergy))
         """
         state = self.state
         self.model.loading.keepLoadLine()
@@ -262,7 +253,7 @@ class Run:
             self.model.checkFallen()
 
     def _take(self, steps, one):
-        """Take steps that are left of an advance, for some time, or until the user interrupts."""
+        """Take steps that are left of an advance, until LOOK_EVERY or an interruption."""
         state, step = self.state, O.step
         number, self.checkpoints.saved = steps - state.left, None
         now = began = time.perf_counter()
@@ -303,8 +294,7 @@ class Run:
             self.takeFound(False)
 
     def frame(self, final=False):
-        """Write a frame for ParaView, if the user wants any; the ``final`` one is whole when this
-        returns."""
+        """Write a frame for ParaView, if the user wants any; the final one is whole at once."""
         if self.frames:
             self.flush()
             self.results.begin()
@@ -313,14 +303,12 @@ class Run:
                 self.frames.add(final)
 
     def awaitFrame(self):
-        """Wait for a frame that is written beside the run. Raises Unwritable if the disk refused
-        it."""
+        """Wait for a frame that is written beside the run. Raises Unwritable."""
         with self.clock("frames"), self.auxiliary("a frame for ParaView"):
             self.frames.wait()
 
     def show(self, fraction, detail, final=False):
-        """Show on the terminal how far the present stage has come, if it is time to:
-        :meth:`masonry.run.progress.Progress.show`."""
+        """Show how far the stage has come: :meth:`masonry.run.progress.Progress.show`."""
         if final or self._now - self._shown > SHOW_EVERY:
             state = self.state
             rate = state.steps / state.seconds["steps"] if state.steps else 0.0

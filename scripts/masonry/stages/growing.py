@@ -121,7 +121,8 @@ def grow(scene, name, load, duration, within=WITHIN):
     """Let a :class:`~masonry.stages.gravity.Acting` grow evenly until the structure falls or
     it has its whole, then search for the one that is held.
 
-    :param duration: [s], with true masses; ``within``: width of the bracket, over its upper end [-]
+    :param duration: [s], with true masses
+    :param within: width of the bracket, over its upper end [-]
     """
     if scene.only:
         return DONE
@@ -163,7 +164,7 @@ def _noteDrives(scene, name):
 
 
 def _compare(scene, name, load, at):
-    """Say that much less is held than rigid blocks would carry."""
+    """Say if much less is held than rigid blocks would carry."""
     entry = scene.bounds.entries.get(load.name, {})
     if at.failure and entry.get("exact") and at.held.factor < BOUND_SHARE * entry["factor"]:
         less = 100 * (1 - at.held.factor / entry["factor"])
@@ -176,7 +177,7 @@ def _compare(scene, name, load, at):
 
 def follow(scene, name, load):
     """From now on record the displacement of what is watched along a load, from where it was when
-    that began, which the run keeps under a name."""
+    that began; the run keeps this under a name."""
     target, origins = scene.description.followed(load.target), scene.running.state.origins
     origin = scene.model.loading.follow(target, load.towards, origins.get(name))
     if target and name not in origins:
@@ -224,13 +225,9 @@ def ends(scene, held, whyHeld, failure, whyFailed):
             yield Answer(f"displacement_{name}", "mm", end.displacement, how)
 
 
-def _text(state):
-    return base64.b64encode(state).decode()
-
-
 def _present():
     """The present state as text."""
-    return _text(saveScene("null"))
+    return base64.b64encode(saveScene("null")).decode()
 
 
 def _load(text):

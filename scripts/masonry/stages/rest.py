@@ -17,26 +17,17 @@ from ..scene.resuming import saidBefore
 from .answers import AT_REST, MOVING
 from .stage import Duration, stage
 
-# [s] in which loads and velocities grow: some ten periods of a wave through the height of a wall
-RAMP = 0.02
-REST_ENERGY_RATIO = (
-    1e-5  # kinetic over elastic energy of a structure that is said to be at rest [-]
-)
-CONSECUTIVE_CHECKS = (
-    3  # so many looks one after the other find a structure at rest before it is said to be
-)
-EVERY = 100  # steps between two looks
-#: If time steps are long: steps in which a part of the loads is put on, a third at most, and after
-#: which it is seen whether a block has fallen far.
+RAMP = 0.02  # [s] in which loads and velocities grow: ten periods of a wave through a wall
+REST_ENERGY_RATIO = 1e-5  # largest kinetic over elastic energy of a structure at rest [-]
+CONSECUTIVE_CHECKS = 3  # that find a structure at rest, before it is said to be
+EVERY = 100  # steps between two checks
+#: Steps in which a part of the loads is put on, a third at most, and after which it is seen whether
+#: a block has fallen far: few if time steps are long.
 CHECK_INTERVALS = 1, 2, 5, 10, 20, 50, EVERY
-#: Periods of a structure on springs to the ground in which loads grow, so that it sinks slowly,
-#: however soft they are.
+#: Periods on springs to the ground in which loads grow, so that a structure sinks slowly.
 PERIODS = 4.0
-#: Periods on springs for which a trial waits at least.
-WAITED = 10.0
-#: Height over the least width from which a structure that has settled is looked at for buckling
-#: [-].
-SLENDER = 8.0
+WAITED = 10.0  # periods on springs for which a trial waits at least
+SLENDER = 8.0  # height over the least width from which a settled structure may buckle [-]
 SWINGING = 4.0  # [s] in the scene: settle() waits at least so long after the release of a drive
 SETTLING = 0.5  # most local damping of deformable units in settle(): with more they creep to rest
 
@@ -57,7 +48,7 @@ class Resting:
     """What a stage remembers that waits for rest."""
 
     done: int = 0  # steps so far
-    quiet: int = 0  # looks that found it at rest, one after the other
+    quiet: int = 0  # checks that found it at rest, one after the other
     begun: list | None = None  # the load when it began to be put on
     goal: float = 0.0  # factor of the load that is put on [-]
 
@@ -70,8 +61,7 @@ def buckles(scene: Any) -> bool:
 
 
 def isSlender(scene: Any) -> bool:
-    """Whether a structure is so high over its width that it may buckle under its own weight, or
-    stands on springs."""
+    """Whether a structure is so high over its width, or on springs, that it may buckle."""
     box = scene.description
     wide, deep, high = (b - a for a, b in zip(box.low, box.high))
     least = wide if box.plane else min(wide, deep)
@@ -87,10 +77,9 @@ def settle(
 ) -> str:
     """Let gravity, presses and dead loads act until the structure is at rest.
 
-    At rest the supports carry all loads but for half a per cent, and the horizontal ones alone but
-    for half a per cent, and hardly anything moves. Presses and dead loads grow when it is called
-    first; they stay when it is called again, for example after :meth:`release`. What then falls
-    slowly needs ``longest``.
+    At rest the supports carry all loads, and the horizontal ones alone, but for half a per cent,
+    and hardly anything moves. Presses and dead loads grow when it is called first; they stay when
+    it is called again, for example after :meth:`release`. What then falls slowly needs ``longest``.
 
     :param longest: time in the scene after which it is given up [s]; None: 0.4 s, and longer for
         tall structures, for soft springs under platens, and after the release of a drive
@@ -182,8 +171,8 @@ def waitForRest(scene, at, longest, grow, over=0.0, record=True, buckling=False)
 
 
 def stepBack(scene: Any) -> None:
-    """Take the scene back to its last state at rest, also after a collapse. The load that was held
-    then acts again, also the one that a growth or a bracket has found. Rows of curve.csv stay."""
+    """Take the scene back to its last state at rest, also after a collapse, with the load that was
+    held then, also by a growth or a bracket. Rows of curve.csv stay."""
     with scene.noted(stepBack):
         if scene.only:
             return
