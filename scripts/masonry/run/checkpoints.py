@@ -38,9 +38,8 @@ def saveCheckpoint(path: FilePath, extra: Any = None) -> None:
     bit.
 
     Saved are the time, the bodies, the joints, and the engines of this plugin. Other engines, for
-    example a PyRunner, stay as the script makes them. The new file is written beside the old one,
-    brought to the disk, and renamed: a kill or a full disk at any moment leaves one of the two,
-    whole.
+    example a PyRunner, stay as the script makes them. A kill or a full disk at any moment leaves
+    the old file or the new one, whole.
 
     :param path: file to write; ``path + ".new"`` is beside it for a moment
     :param extra: what your script must know to go on: anything that JSON can hold
@@ -73,7 +72,7 @@ def loadCheckpoint(path: FilePath) -> Any:
         it is
     :raises OSError: if it cannot be read
     """
-    data, extra = readState(path)  # first, so that a wrong one changes nothing
+    data, extra = readState(path)
     with _says(path):
         loadScene(data)
     return extra
@@ -144,8 +143,7 @@ def otherVersion(why):
 
 
 def stateOf(scene):
-    """What stages have set of a scene, beside what YADE keeps: a dict of values that JSON can
-    hold."""
+    """What stages have set of a scene in Python, as JSON can hold it."""
     of = ("until", "history", "rate") if scene.pushed else ()
     return {
         "model": scene.model.state(),
@@ -168,16 +166,13 @@ class SceneState:
 
     def __init__(self, scene):
         self._scene, self._model = scene, scene.model
-        self._rest = None, ""  # the last state at rest, and it as text
         self.isRestored = False  # whether the scene has the state of a checkpoint again
 
     def entries(self):
         """Entries of :class:`RunState`."""
-        atRest, motion = self._model.atRest, self._model.motion
-        if atRest is not self._rest[0]:
-            self._rest = atRest, base64.b64encode(atRest).decode()
-        of = {"places": motion.places, "far": motion.far}
-        return {"now": stateOf(self._scene), "atRest": self._rest[1], **of}
+        atRest = base64.b64encode(self._model.atRest or b"").decode()
+        of = {"places": self._model.motion.places, "far": self._model.motion.far}
+        return {"now": stateOf(self._scene), "atRest": atRest, **of}
 
     def put(self, state):
         """Give the scene the state of a checkpoint."""
@@ -225,8 +220,8 @@ class Checkpoints:
         self.save()
 
     def recordFall(self):
-        """:meth:`setRollbackPoint` of a structure that was seen to fall between two steps; what
-        fell within one has no checkpoint."""
+        """:meth:`setRollbackPoint` of a structure that was seen to fall between two steps; a fall
+        within a step has none."""
         if self.saved:
             self.setRollbackPoint()
 
@@ -290,8 +285,15 @@ class Saved:
             raise NotResumed(f"--resume: {directory}/{NAME} was not left by a run in stages")
         vars(self).update(saved)
 
-    def runState(self):
-        """How far the run had come: a :class:`RunState`. Raises NotResumed."""
+    def runState(self, name, width):
+        """How far the run of a scene had come, whose rows have so many columns: a
+        :class:`RunState`. Raises NotResumed."""
+        if self.scene != name:
+            raise NotResumed(
+                f"--resume: {self.directory} holds a run of {self.scene}, this is {name}"
+            )
+        if any(len(row) != width for row in self.rows):
+            raise NotResumed(f"--resume: its rows are not of {width} columns")
         return restored(RunState(), self.state)
 
     def load(self):

@@ -24,14 +24,12 @@ DATE = "%Y-%m-%dT%H:%M:%SZ"  # of the end of a run, in run.json
 
 
 def end(run, scene, error):
-    """Finish a run in order after an error, or after none. Returns whether the error is dealt with.
+    """Finish a run in order after an error, or after None. Returns whether the error is dealt with;
+    another one is for the caller when the results are finished.
 
     ``run.status`` is then the exit status of the scene: 0 at the end; 1 if a file cannot be
-    written, if the memory is too small, or if the structure has fallen while its dead loads grew,
-    before its test began; 2 for refused input; 130 after Ctrl-C or SIGTERM. Another error is for
-    the caller when the results are finished.
-
-    :param scene: gives ``model``, ``columns`` and ``outcome``
+    written, the memory is too small, or the structure has fallen while its dead loads grew; 2 for
+    refused input; 130 after Ctrl-C or SIGTERM.
     """
     try:
         return _end(run, scene, error)
@@ -103,8 +101,7 @@ def _end(run, scene, error):
 
 @contextlib.contextmanager
 def _noting(stopped):
-    """Let a file that cannot be written, or a memory that is full, end a block, and add it to a
-    list."""
+    """Let Unwritable or a full memory end a block, and add it to a list."""
     try:
         yield
     except Unwritable as unwritable:
@@ -128,7 +125,7 @@ def _beforeSteps(run, error):
 
 
 def _keepEarlier(run, error):
-    """End without results, so that those of an earlier run stay. Returns whether the error is dealt
+    """End without results: those of an earlier run stay. Returns whether the error is dealt
     with."""
     run.status = 130 if isinstance(error, Interrupted) else 1
     say(
@@ -141,8 +138,7 @@ def _keepEarlier(run, error):
 
 
 def _finish(run, scene):
-    """Write the last frame and run.json, which is written even if there is no room for the frame,
-    and report."""
+    """Write the last frame and run.json, also if there is no room for the frame, and report."""
     try:
         try:
             run.takeFound(True)
@@ -163,8 +159,8 @@ def _finish(run, scene):
 
 
 def _unlessInterrupted(run, draw, lacking):
-    """Draw what a run that is interrupted leaves out, since it shall end at once; then a sentence
-    says what is lacking. Returns what ``draw`` does."""
+    """Draw unless the user interrupts it; then a sentence says what is lacking. Returns what
+    ``draw`` does."""
     try:
         with run.breakable():
             return draw(run.results.directory)

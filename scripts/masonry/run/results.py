@@ -109,10 +109,9 @@ __doc__ = f"{__doc__}{quantities.described()}"
 
 
 class Results:
-    """The folder of a run, while it is written. A folder that cannot be written is refused at once.
-
-    Files of an earlier run stay until this one has something in their place: :meth:`begin` removes
-    them. Files of these names that no run has left are refused.
+    """The folder of a run, while it is written. A folder that cannot be written is refused at once,
+    and so is one with files of these names that no run has left. Files of an earlier run stay until
+    :meth:`begin`.
 
     :param directory: folder, made if it is missing
     :param resumed: whether to leave everything as it is, until :meth:`goOn`
@@ -178,14 +177,12 @@ class Results:
         return self._file is not None
 
     def begin(self):
-        """From now on files are written. Those of an earlier run go. Raises Unwritable if the disk
-        refuses."""
+        """Write files from now on, and remove those of an earlier run. Raises Unwritable."""
         if self.begun:
             return
         self._lock.ours = True
         with folders.writing(f"to {self.directory}"):
-            # files of an earlier run would be taken for those of this one; run.json says whose they
-            # are, and goes last
+            # run.json says whose the others are, and goes last
             for name in sorted(self.earlier, key="run.json".__eq__):
                 with contextlib.suppress(FileNotFoundError):
                     os.remove(self.path(name))
@@ -224,8 +221,8 @@ class Results:
         return open(self.path("curve.csv"), "ab", buffering=0, opener=folders.inside)
 
     def goOn(self, rows, frames, seconds):
-        """Go on after these rows, so many ParaView frames and seconds of wall-clock time. What came
-        later is removed."""
+        """Go on after these rows, number of ParaView frames and seconds of wall-clock time; later
+        ones are removed."""
         # what is wrong with the rows or the file comes before anything is changed
         "".join(self._line % tuple(row) for row in rows)
         curve = self._curve()
@@ -267,7 +264,7 @@ class Results:
             )
 
     def _write(self, text):
-        """Add lines to curve.csv. If the disk is full, those that fit stay, each of them whole."""
+        """Add lines to curve.csv; on a full disk the whole lines that fit stay."""
         data, written = text.encode(), 0
         start = self._file.seek(0, os.SEEK_END)
         try:
@@ -279,8 +276,7 @@ class Results:
             raise
 
     def checkSpace(self, least, likely):
-        """Refuse a folder without room for ``least`` bytes, and warn of one without room for
-        ``likely`` bytes."""
+        """Refuse a disk without room for ``least`` bytes, and warn without ``likely`` bytes."""
         free = shutil.disk_usage(self.directory).free
         for name in self.earlier:  # these make room
             with contextlib.suppress(OSError):
@@ -301,8 +297,7 @@ class Results:
         return time.perf_counter() - self.started
 
     def close(self):
-        """Close curve.csv and write run.json, whole or not at all. Raises Unwritable if the disk
-        refuses."""
+        """Close curve.csv and write run.json, whole or not at all. Raises Unwritable."""
         self.begin()
         self.run.update(wall_clock_s=round(self.seconds(), 3), files=FILES)
         self._file.close()

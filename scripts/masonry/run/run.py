@@ -92,12 +92,7 @@ class Run:
             raise SystemExit(0)
         if args.resume:
             self.saved = getattr(args, "saved", None) or Saved(args.resume)
-            if self.saved.scene != self.name:
-                raise NotResumed(
-                    f"--resume: {args.resume} holds a run of {self.saved.scene}, this is"
-                    f" {self.name}"
-                )
-            self.state = self.saved.runState()
+            self.state = self.saved.runState(self.name, len(heads))
         self.signals.begin()
         listen(self.recordNote)
         self.preset = presetOf(args, properties)
@@ -114,9 +109,6 @@ class Run:
         self.model, self.sceneState = model, sceneState
         self.results.checkSpace(*space)
         if self.saved:
-            width = len(self.results.columns)
-            if any(len(row) != width for row in self.saved.rows):
-                raise NotResumed(f"--resume: its rows are not of {width} columns")
             self.saved.load()
             sceneState.takeRest(self.state)
             self.state.resumed.append(O.time)

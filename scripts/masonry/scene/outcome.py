@@ -257,7 +257,7 @@ class Outcome:
         stage = {"stage": "push", "number": int(number)}
         others = [a for a in at.answers.get(number, []) if a["name"] not in names]
         at.answers = {**at.answers, number: [*({**stage, **one} for one in own), *others]}
-        asked.over()
+        asked.onRunEnded()
 
     # -- files and terminal ------------------------------------------------------------------------
 
