@@ -1,9 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What is computed beside a run (limit analysis, frames, figures, report, accuracy) never ends it.
-
-An unexpected error there is a note of the run, and its traceback stands in ``errors.log`` in the
-folder of its results. This module needs no YADE.
-"""
+"""What is computed beside a run (limit analysis, frames, figures, report, accuracy) never ends it:
+an unexpected error there is a note of the run, with its traceback in ``errors.log``. This module
+needs no YADE."""
 
 import contextlib
 import os
@@ -18,8 +16,7 @@ EXPECTED = (Refused, Interrupted, Unwritable, Collapsed, MemoryError)
 
 
 class Auxiliary:
-    """A block that computes something beside a run, for ``with``: an unexpected error ends the
-    block, and not the run.
+    """A ``with`` block beside a run: an unexpected error ends the block, and not the run.
 
     :param what: is computed, in a few words
     :param fail: function that keeps the note and the traceback of an error, both as text

@@ -1,11 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Other processes: tasks that a copy of this one carries out, and programs, several at a time.
-
-A :class:`Task` begins with the scene as it is at that moment, so nothing need be packed for it, and
-what the run does then does not change what the copy sees. It takes no steps and ends without any
-clean-up. Where the system gives no process the work is done at once instead. :func:`carryOut` is
-the pool: it runs programs beside each other. Both end when this process does.
-"""
+"""Other processes: a :class:`Task` that a copy of this one carries out, and programs, several at a
+time (:func:`carryOut`). All end when this process does."""
 
 import contextlib
 import ctypes
@@ -22,11 +17,10 @@ from typing import Any, Callable, Iterable
 
 from .errors import Interrupted, Refused
 
-LONGEST = 60.0  # [s] that is waited for at once
+LONGEST_POLL = 60.0  # [s]
 LOOK_EVERY = 0.05  # [s] between looks at programs
 PARENT_ENDS = 1  # PR_SET_PDEATHSIG of prctl
-#: Name in the environment of a :class:`Program`: number of the open file that takes why it refuses
-#: its input.
+#: Variable of a :class:`Program`: number of the open file that takes why it refuses its input.
 REFUSAL = "MASONRY_REFUSAL"
 _refusal = int(os.environ.pop(REFUSAL, -1))  # programs that it starts have their own
 
@@ -36,11 +30,11 @@ class Failed(Exception):
 
 
 class Task:
-    """Work that goes on in a copy of this process. What it gives can be had from :meth:`result`,
-    one after the other.
+    """Work in a copy of this process, which sees the scene as it is at that moment, takes no steps
+    and ends without any clean-up. Where the system gives no process the work is done at once.
 
     :param work: a function without arguments whose result can be iterated, as a generator
-    :param parts: how many results it gives
+    :param parts: number of its results, each for :meth:`result`
     """
 
     def __init__(self, work: Callable[[], Iterable[Any]], parts: int = 1) -> None:
@@ -62,12 +56,12 @@ class Task:
             self._results = [*work()]
 
     def ready(self, part: int = 0, seconds: float = 0.0) -> bool:
-        """Whether a result is there, or will never be, within some time [s]."""
+        """Whether a result is there, or will never be, after some time at most [s]."""
         until = time.monotonic() + seconds
         while len(self._results) <= part and self._process:
             rest = max(0.0, until - time.monotonic())
-            if not self._reads.poll(min(rest, LONGEST)):
-                if rest > LONGEST:
+            if not self._reads.poll(min(rest, LONGEST_POLL)):
+                if rest > LONGEST_POLL:
                     continue
                 return False
             try:
@@ -79,8 +73,7 @@ class Task:
         return True
 
     def result(self, part: int = 0) -> Any:
-        """A result; it is waited for. Raises what the work raised, or Failed if its process has
-        ended without it."""
+        """Wait for a result. Raises what the work raised, or Failed if its process has ended."""
         self.ready(part, math.inf)
         results = self._results[: part + 1]
         if results and isinstance(results[-1], BaseException):
@@ -126,15 +119,14 @@ def _carryOut(work, parts, writes):
 
 
 def _endWithParent(number):
-    """Let this process get a signal when the one that started it ends, however that ends."""
+    """Let this process get a signal when the one that started it ends in any way."""
     with contextlib.suppress(AttributeError, OSError):
         ctypes.CDLL(None).prctl(PARENT_ENDS, number, 0, 0, 0)
 
 
 class Program(subprocess.Popen[bytes]):
-    """A program, which is asked to stop (SIGTERM) when this process ends, also if that is killed.
-
-    It is in a session of its own: Ctrl-C is for this process, which ends it in order.
+    """A program, which gets SIGTERM when this process ends or is killed. Ctrl-C is for this process
+    alone, which ends the program in order.
 
     :param log: file that takes what it says
     :raises OSError: if it cannot be started
@@ -158,15 +150,14 @@ class Program(subprocess.Popen[bytes]):
         )
 
     def refusal(self) -> tuple[str, str]:
-        """The class and the text of what the program has refused; two empty texts if it has refused
-        nothing."""
+        """The class and the text of what the program has refused, or two empty texts."""
         self._refusal.seek(0)
         kind, _, reason = self._refusal.read().decode().partition("\n")
         return kind, reason
 
 
 def reportRefusal(refused: Refused) -> None:
-    """Let the process that has started this one as a :class:`Program` know what is refused."""
+    """Tell the process that has started this one as a :class:`Program` what is refused."""
     if _refusal >= 0:
         with contextlib.suppress(OSError):  # a limit on the size of files
             os.pwrite(_refusal, f"{type(refused).__name__}\n{refused}".encode(), 0)

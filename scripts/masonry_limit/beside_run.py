@@ -130,8 +130,8 @@ class Bounds(Answers):
         what, model, state = load.name, self.model, self.state
         known = self.entries.get(what)
         acting = arrays.beside(model, load.gravity or model.scheme.now)
-        same = state.beside.get(what, acting) == acting
-        state.beside = {**state.beside, what: acting}
+        same = state.auxiliary.get(what, acting) == acting
+        state.auxiliary = {**state.auxiliary, what: acting}
         if known and same and not lowerUpTo and known.get("note") != NOTE_INTERRUPTED:
             return known
         if not same:  # the factor that was held before was found with other loads: forget it

@@ -70,7 +70,7 @@ def _state(scene):
 
 
 def _standing(scene):
-    title, views, at = scene.description.title, scene.description.views, scene.running.at
+    title, views, at = scene.description.title, scene.description.views, scene.running.state
     run = {"parts": scene.model.parts, "views": views, "title": title, "answers": scene.answers}
     with tempfile.TemporaryDirectory() as folder:
         MasonryVtkRecorder(directory=folder)()

@@ -10,7 +10,8 @@ from masonry.units import GRAVITY
 from masonry.errors import Collapsed
 from masonry.stages import growing, forces
 from masonry.stages.gravity import Acceleration, Tilting
-from masonry.stages.rest import CALM, EVERY, LOOKS, rampTime
+from masonry.stages.growing import Reason, Tried
+from masonry.stages.rest import CONSECUTIVE_CHECKS, EVERY, REST_ENERGY_RATIO, rampTime
 
 X = Vector3.UnitX
 
@@ -115,54 +116,53 @@ def test_a_growth_takes_longer_with_scaled_masses_and_has_the_load_of_the_middle
 # -- a trial ---------------------------------------------------------------------------------------
 
 
-def trial(looks, source=0.2, goal=0.5, scaling=1.0, speeds=None):
-    """A trial in which the looks find the structure at rest or not, as a function of their number
-    says. Returns whether it was held, its memory and the load at each look."""
+def trial(rests, source=0.2, goal=0.5, scaling=1.0, speeds=None):
+    """A trial in which the checks find the structure at rest or not, as a function of their number
+    says. Returns why it was not held, the trial and the load at each check."""
     O.dt = 1e-4
     scene, load, number = standing(scaling), Load(), iter(range(10**6))
-    at = growing.Growing(goal=goal, source=source, marks=[])
+    going = growing.Trial(source, goal)
     scene.model.supports.unrest = lambda: (
-        (0.0, 0.0) if looks(next(number)) else (2 * REST, 2 * CALM)
+        (0.0, 0.0) if rests(next(number)) else (2 * REST, 2 * REST_ENERGY_RATIO)
     )
     scene.model.supports.slowest = lambda: 0.0
     if speeds:
-        scene.model.motion.fastest = lambda far: speeds(at.taken)
-    held = growing._Search(scene, at, load, 0.01)._trial()
-    return held, at, load.values, scene
+        scene.model.motion.fastest = lambda far: speeds(going.steps)
+    reason = growing._Search(scene, growing.Growing(trial=going), load, 0.01)._wait()
+    return reason, going, load.values, scene
 
 
 @mark.parametrize("source, goal", [(0.2, 0.5), (0.5, 0.2), (0.3, 0.3)])
-def test_a_trial_leads_smoothly_to_its_load_and_looks_for_rest_there(source, goal):
-    held, at, values, made = trial(lambda n: True, source, goal)
-    assert held and made.model.loading.loadFactor == approx(goal)
+def test_a_trial_leads_smoothly_to_its_load_and_waits_for_rest_there(source, goal):
+    reason, going, values, made = trial(lambda n: True, source, goal)
+    assert reason is None and made.model.loading.loadFactor == approx(goal)
     ramp = int(rampTime(made.args) / O.dt)
-    assert at.taken == math.ceil(ramp / EVERY) * EVERY + (LOOKS - 1) * EVERY
+    assert going.steps == (math.ceil(ramp / EVERY) + CONSECUTIVE_CHECKS - 1) * EVERY
     low, high = sorted((source, goal))
     assert all(low - 1e-12 <= v <= high + 1e-12 for v in values)
     steps = [(b - a) * (goal - source) for a, b in zip([source, *values], values)]
-    assert min(steps) >= 0 and values[-LOOKS:] == [approx(goal)] * LOOKS
+    assert min(steps) >= 0 and values[-CONSECUTIVE_CHECKS:] == [approx(goal)] * CONSECUTIVE_CHECKS
 
 
 @mark.parametrize("scaling", [1.0, 4.0])
-def test_a_trial_without_looks_at_rest_in_a_row_is_given_up_in_its_time(scaling):
-    held, at, _, _ = trial(lambda n: n % LOOKS, scaling=scaling)
-    assert not held and growing.WHY[at.ended].startswith("it was still moving")
-    assert at.taken * O.dt == approx(
+def test_a_trial_without_checks_at_rest_in_a_row_is_given_up_in_its_time(scaling):
+    reason, going, _, _ = trial(lambda n: n % CONSECUTIVE_CHECKS, scaling=scaling)
+    assert reason is Reason.MOVING
+    assert going.steps * O.dt == approx(
         growing.TRIAL * math.sqrt(scaling), rel=EVERY * O.dt / growing.TRIAL
     )
 
 
 def test_a_trial_ends_when_the_structure_moves_faster_and_faster():
-    faster = lambda steps: 2 * growing.SURE * steps / 3000  # SURE after 15 looks
-    held, at, _, _ = trial(lambda n: False, speeds=faster)
-    assert not held and growing.WHY[at.ended].startswith("it moved faster")
-    assert 1500 < at.taken < 3500  # at once when it is fast, and faster than twice
+    faster = lambda steps: 2 * growing.SURE * steps / 3000  # SURE after 15 checks
+    reason, going, _, _ = trial(lambda n: False, speeds=faster)
+    assert reason is Reason.ACCELERATED
+    assert 1500 < going.steps < 3500  # at once when it is fast, and faster than twice
     slower = lambda steps: 4 * growing.SURE if steps < 900 else 2 * growing.SURE
-    held, at, _, _ = trial(lambda n: False, speeds=slower)
-    assert growing.WHY[at.ended].startswith("it was still moving")
-    # blocks that the load itself moves, in the eight looks in which it is put on, have not fallen
+    assert trial(lambda n: False, speeds=slower)[0] is Reason.MOVING
+    # blocks that the load itself moves, in the eight checks in which it is put on, have not fallen
     swing = lambda steps: growing.SURE * 2 ** (steps / EVERY) if steps < 8 * EVERY else 0
-    assert trial(lambda n: n > 8, speeds=swing)[0]
+    assert trial(lambda n: n > 8, speeds=swing)[0] is None
 
 
 # -- the search ------------------------------------------------------------------------------------
@@ -190,15 +190,15 @@ def search(patch, capacity, moving, fell, setsOff, growth, buckling=math.inf):
     )
 
     class Known(growing._Search):
-        def _trial(self):
-            held = at.goal < (capacity if at.calm else moving)
-            trials.append((at.goal, at.calm, here["state"], held))
-            here["factor"], here["state"] = at.goal, repr(at.goal).encode()
-            at.ended = 0
-            return held
+        def _wait(self):
+            goal, fromRest = at.trial.factor, at.trial.fromRest
+            held = goal < (capacity if fromRest else moving)
+            trials.append((goal, fromRest, here["state"], held))
+            here["factor"], here["state"] = goal, repr(goal).encode()
+            return None if held else Reason.FELL
 
         def _buckles(self):
-            return (at.goal if at.goal >= 0 else at.held[0]) >= buckling
+            return (at.trial or at.held).factor >= buckling
 
     back = lambda state: here.update(state=state, factor=float(state))
     patch.setattr(growing, "loadScene", back)
@@ -224,16 +224,16 @@ def test_a_search_brackets_what_is_held(capacity, moves, setsOff, growth):
         fell = rest <= last or moves * rest <= last
         at, made, trials, found = search(patch, rest, moves * rest, fell, setsOff, growth)
         assert len(trials) < 60 and at.held
-        held, lost = at.held[0], at.lost and at.lost[0]
-        assert held < rest and at.held[1] == approx(held)
-        for factor, calm, state, _ in trials:
-            assert not calm or factor >= float(state)  # from what was held
+        held, lost = at.held.factor, at.failure and at.failure.factor
+        assert held < rest and at.held.displacement == approx(held)
+        for factor, fromRest, state, _ in trials:
+            assert not fromRest or factor >= float(state)  # from what was held
         if lost is None:
             assert held == approx(last if not fell else 1.2 * last)
         else:
-            assert lost >= rest and at.lost[1] == approx(lost)
+            assert lost >= rest and at.failure.displacement == approx(lost)
             assert lost - held <= within * max(lost, growing.LEAST * last) * (1 + 1e-9)
-            assert at.lost[2] == 1  # it was tried from rest
+            assert at.failure.fromRest
         if fell:
             with raises(Collapsed, match="it fell"):
                 found.end()
@@ -250,12 +250,12 @@ def test_a_search_brackets_a_load_that_buckles(buckles, growth):
     with pytest.MonkeyPatch.context() as patch:
         buckling = buckles * last
         at, _, trials, _ = search(patch, 9 * last, 9 * last, False, 1, growth, buckling)
-        held, lost = at.held[0], at.lost and at.lost[0]
+        held, lost = at.held.factor, at.failure and at.failure.factor
         assert len(trials) < 60 and held < buckling
         if lost is None:
             assert held == approx(last)
         else:
-            assert lost >= buckling and growing.WHY[at.lost[3]].startswith("it buckles")
+            assert lost >= buckling and at.failure.reason is Reason.BUCKLES
             assert lost - held <= within * max(lost, growing.LEAST * last) * (1 + 1e-9)
 
 
@@ -263,7 +263,7 @@ def test_a_structure_that_never_rests_is_tried_down_to_no_load_and_has_no_number
     with pytest.MonkeyPatch.context() as patch:
         growth = dict(last=1.0, within=0.005, states=20)
         at, made, trials, found = search(patch, 0.0, 0.0, True, 0.5, growth)
-        assert at.held is None and at.lost[0] == 0
+        assert at.held is None and at.failure.factor == 0
         with raises(Collapsed):
             found.end()
         assert made.model.atRest is None
@@ -275,7 +275,7 @@ def test_a_structure_that_never_rests_is_tried_down_to_no_load_and_has_no_number
 def test_a_note_says_that_much_less_is_held_than_rigid_blocks_carry(capsys, held, exact, noted):
     entries = {"a": {"exact": exact, "factor": 1.0}}
     made = SimpleNamespace(bounds=SimpleNamespace(entries=entries))
-    at = growing.Growing(held=[held, 0.0], lost=[0.99, 0.0, 1, 0])
+    at = growing.Growing(held=Tried(held), failure=growing.Failure(0.99))
     growing._compare(made, "tilt", SimpleNamespace(name="a"), at)
     said = "and the run held 6 % less" in " ".join(capsys.readouterr().out.split())
     assert said == noted

@@ -402,10 +402,10 @@ def test_a_bound_is_found_anew_beside_another_load_and_where_the_structure_went(
     tips = lambda down: approx((1 + down / weight) * 0.5, rel=1e-6)
     assert bound() == tips(100)
     s.bounds.hold("acceleration towards x", 0.5)
-    assert bound() == tips(100) and s.running.at.held
+    assert bound() == tips(100) and s.running.state.held
     s.model.loading.forceOf(highest).force = Vector3(0, 0, -400)
     assert bound() == tips(400)
-    assert not s.running.at.held  # that was beside the other load
+    assert not s.running.state.held  # that was beside the other load
     for body in O.bodies:  # all goes by half a stone, with the loads on it
         body.state.pos += Vector3(0.15, 0, 0)
     assert s.bounds.lean((1, 0, 0), lowerUpTo=1)["factor"] == tips(400)
@@ -474,7 +474,7 @@ def test_a_peak_above_its_bound_is_a_warning_with_both_numbers(tmp_path, capsys)
     s.push(top, 0.3)
     peak = max(s.results.column("base_shear_kN"))
     s.bounds.take(True)
-    s.running.at.bounds["top along x"]["factor"] = 0.9 * peak
+    s.running.state.bounds["top along x"]["factor"] = 0.9 * peak
     s.finish()
     said = capsys.readouterr().out
     more = f"warning: the largest force of the push, {peak:.4g} kN, is 11.1 % above"

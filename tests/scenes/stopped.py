@@ -290,9 +290,9 @@ def left(folder):
         return found  # what fell within a step has no state that can be kept
     data, kept = checkpoints.readState(os.path.join(folder, checkpoints.NAME))
     for name in ("resumed", "seconds"):
-        kept["at"].pop(name)
-    kept["at"]["stages"] = [(n, s, r) for n, s, _, r in kept["at"]["stages"]]
-    for name in ("scene", "at", "rows", "script"):
+        kept["state"].pop(name)
+    kept["state"]["stages"] = [(n, s, r) for n, s, _, r in kept["state"]["stages"]]
+    for name in ("scene", "state", "rows", "script"):
         found[f"checkpoint: {name}"] = json.dumps(kept[name])
     for name, value in records(data).items():
         if name != "extra":

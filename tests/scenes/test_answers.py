@@ -104,6 +104,6 @@ def test_a_resumed_run_of_what_fell_says_so_as_before(tmp_path):
 def test_steps_are_counted_once_although_a_run_looks_up(tmp_path, monkeypatch):
     scene = stack("--out", tmp_path)
     monkeypatch.setattr(run, "LOOK_EVERY", 0.0)  # after every step
-    before, first = scene.running.at.steps, O.iter
+    before, first = scene.running.state.steps, O.iter
     scene.running.advance(10)
-    assert scene.running.at.steps - before == O.iter - first == 10
+    assert scene.running.state.steps - before == O.iter - first == 10

@@ -57,7 +57,7 @@ def at(monkeypatch):
 
 
 def interrupt(run):
-    os.kill(os.getpid(), signal.SIGINT if run.at.steps % 2 else signal.SIGTERM)
+    os.kill(os.getpid(), signal.SIGINT if run.state.steps % 2 else signal.SIGTERM)
 
 
 CANTILEVER = Wall(loadHeight=0.6, riding=False)  # under rollers
@@ -73,7 +73,7 @@ def interrupted(at, start, out, every, first=None):
         if status == 0:
             return kept
         assert status == 130
-        kept.append(readCheckpoint(str(out / "run.checkpoint"))["at"])
+        kept.append(readCheckpoint(str(out / "run.checkpoint"))["state"])
 
 
 @pytest.fixture(scope="module")
@@ -171,7 +171,7 @@ def test_a_run_goes_on_after_a_full_disk(tmp_path, at, capsys, monkeypatch, whol
     assert said in capsys.readouterr().err
     assert files(tmp_path) == whole
     # The disk has room again.
-    assert readCheckpoint(str(kept))["at"]["memory"]["moved"] > 0.25
+    assert readCheckpoint(str(kept))["state"]["memory"]["moved"] > 0.25
 
 
 @pytest.mark.parametrize("lost", ["curve.csv", "joints_0001.vtp", "run.json.new"])
@@ -358,7 +358,7 @@ def test_what_cannot_be_taken_up_is_refused(broken, capsys):
         (dict(stage="dance"), "of another version of the plugin: stage 'dance'"),
         (dict(luck=1), "of another version of the plugin"),
     ):
-        saveCheckpoint(str(kept), dict(text, at=dict(text["at"], **change)))
+        saveCheckpoint(str(kept), dict(text, state=dict(text["state"], **change)))
         says(message)
     kept.write_bytes(data)
     says("holds a run of small, this is other", Wall(name="other"))

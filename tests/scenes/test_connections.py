@@ -3,7 +3,7 @@
 refused."""
 
 from hosted import *
-from masonry.scene import resuming
+from masonry.run import checkpoints
 from masonry.units import GRAVITY
 from masonry.numbers.frames import readFrame
 from masonry_view.page.data import dataOf
@@ -94,11 +94,11 @@ def test_a_checkpoint_may_know_more_ties_that_yielded_than_have_so_far(tmp_path)
     states = []
     for event in ("yields", "breaks"):
         said.add((event, "tie0"))
-        states.append(resuming.stateOf(scene))
+        states.append(checkpoints.stateOf(scene))
     said.clear()
     for state in states:
-        resuming.putState(scene, state)
-        assert resuming.stateOf(scene) == state
+        checkpoints.putState(scene, state)
+        assert checkpoints.stateOf(scene) == state
 
 
 def test_prestress_grows_in_settle_and_its_work_is_counted(tmp_path):

@@ -104,7 +104,7 @@ def test_too_little_memory(tmp_path, monkeypatch, undrawn, capsys, steps):
     take = Run._take
 
     def full(run, count, one):
-        if run.at.steps >= steps:
+        if run.state.steps >= steps:
             raise MemoryError
         take(run, count, one)
 
@@ -130,7 +130,8 @@ from masonry import limit
 """
 FIGURES = f"""
 import sys
-from masonry.numbers import figures, files
+from masonry.numbers import files
+from masonry_view import figures
 {LIMITED}
 sys.exit(files.onFolder(figures.draw, ["nowhere"]))
 """

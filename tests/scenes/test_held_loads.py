@@ -175,7 +175,7 @@ def test_a_lean_that_is_held_is_noted_with_its_factor_and_displacement(tmp_path)
     for factor in (0.3, 0.2):
         assert s.lean(factor) == AT_REST
         x.append(place())
-    assert s.running.at.held == {"acceleration towards x": 0.3}
+    assert s.running.state.held == {"acceleration towards x": 0.3}
     assert s.model.loading.loadFactor == last(s, "load_factor") == 0.2
     assert s.load(stone, (100, 0, 0)) == AT_REST
     s.finish()
@@ -325,7 +325,7 @@ def test_states_of_a_growth_are_evenly_apart_and_not_too_many(monkeypatch):
 
 
 def test_buckling_is_looked_for_in_the_state_that_was_held(monkeypatch):
-    loaded, at = [], growing.Growing(heldState=growing._text(b"held"))
+    loaded, at = [], growing.Growing(heldState=base64.b64encode(b"held").decode())
     monkeypatch.setattr(growing, "loadScene", loaded.append)
     monkeypatch.setattr(growing, "buckles", lambda scene: len(loaded) == 1)
     scene = SimpleNamespace(model=None, running=None)

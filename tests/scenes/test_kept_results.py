@@ -7,7 +7,7 @@ import threading
 from masonry.model.loading import Loading
 from masonry.model.structure import Structure
 from masonry.model.restraints import Supports
-from masonry.run import keeping, lock, run as running
+from masonry.run import checkpoints, lock, run as running
 from masonry.run.results import Results
 from masonry.run.run import Run
 from masonry.run.drawing_program import DrawingProgram
@@ -149,7 +149,7 @@ def test_files_of_a_run_that_was_killed_are_replaced(tmp_path):
 def test_a_slow_push_obeys_at_once_and_keeps_checkpoints(tmp_path, monkeypatch):
     monkeypatch.setattr(running, "LOOK_EVERY", 0.1)
     ends = []
-    left = lambda: readCheckpoint(str(tmp_path / "run.checkpoint"))["at"]["left"]
+    left = lambda: readCheckpoint(str(tmp_path / "run.checkpoint"))["state"]["left"]
 
     def end():
         ends.extend((time.perf_counter(), left()))
@@ -206,6 +206,6 @@ def test_a_wall_that_moves_against_its_push_has_collapsed(tmp_path, capsys):
 
 
 def test_no_earlier_checkpoint_is_promised(tmp_path, monkeypatch, capsys):
-    monkeypatch.setattr(keeping, "saveCheckpoint", lambda *words: noSpace(None))
+    monkeypatch.setattr(checkpoints, "saveCheckpoint", lambda *words: noSpace(None))
     assert run(tmp_path / "r", *SHORT) == 0
     assert capsys.readouterr().err.endswith("No space left on device\n")

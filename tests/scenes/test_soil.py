@@ -65,9 +65,10 @@ def test_a_trial_puts_its_load_on_in_a_slow_period_and_waits_for_ten(soil, secon
     load = SimpleNamespace(
         put=loads.append, at=lambda began, share: share, shareOf=lambda factor: factor
     )
-    at = growing.Growing(source=0.0, goal=1.0)
-    assert not growing._Search(scene, at, load, 0.01)._trial()
-    assert at.taken * O.dt == pytest.approx(seconds)
+    trial = growing.Trial(0.0, 1.0)
+    search = growing._Search(scene, growing.Growing(trial=trial), load, 0.01)
+    assert search._wait() is growing.Reason.MOVING
+    assert trial.steps * O.dt == pytest.approx(seconds)
     assert loads.index(1.0) + 1 == max(1, soil / (O.dt * rest.EVERY))
 
 

@@ -217,7 +217,7 @@ def test_a_push_goes_on_from_where_the_one_before_began(tmp_path):
     scene, top = small(tmp_path)
     scene.push(top, 0.08, continued=True)
     assert last(scene, "displacement_mm") == pytest.approx(0.08, abs=0.01)
-    assert len(scene.running.at.stages) == 3
+    assert len(scene.running.state.stages) == 3
     assert last(scene, "top_x_mm") == pytest.approx(0.08, abs=0.01)
     scene.push(top, 0.03)
     assert last(scene, "top_x_mm") == pytest.approx(0.11, abs=0.01)

@@ -86,7 +86,7 @@ def plugin(words="", until=0.2, functors=False):
         if e.execCount
     }
     rows = len(run.results.rows)
-    engines["a row of curve.csv"] = 1e6 * run.running.at.seconds["rows"] / rows
+    engines["a row of curve.csv"] = 1e6 * run.running.state.seconds["rows"] / rows
     return seconds, model.subcontacts, engines
 
 

@@ -157,13 +157,13 @@ def row(name, slow=True):
     most, least = limits(name)
     scene, at, seconds = grown(name)
     scene.finish()
-    held, lost = at.held[0], at.lost[0]
-    search = scene.running.at.steps - scene.running.at.stages[-1][1] - at.done
+    held, lost = at.held.factor, at.failure.factor
+    search = scene.running.state.steps - scene.running.state.stages[-1][1] - at.done
     moved = 0.0
     if slow:
         slower, again, _ = grown(name, slower=3.0)
         slower.finish()
-        moved = again.held[0] / held - 1
+        moved = again.held.factor / held - 1
     met = (
         lost - held <= 0.0101 * lost and LEAST * least <= held <= MOST * most and abs(moved) < 0.01
     )

@@ -35,7 +35,7 @@ def undampedSteps(observed, ratio):
     """
     if ratio >= (1 + observed.args.damping) ** 0.5:
         return 0
-    swings = observed.running.at.swings.values()
+    swings = observed.running.state.freeVibrations.values()
     return max((swing[0] or 0 for swing in swings), default=0) / O.dt
 
 

@@ -339,7 +339,7 @@ def checkAnswers(scene):
             where = next(a["value"] for a in scene.answers if a["name"] == "displacement_at_peak")
             if column("displacement_mm")[at] != where:
                 raise Wrong(f"the peak is not at {where} mm in the curve")
-    for what, factor in scene.running.at.held.items():
+    for what, factor in scene.running.state.held.items():
         entry = scene.bounds.entries.get(what, {})
         if "factor" in entry and factor > (1 + ALLOWED) * entry["factor"]:
             raise Wrong(f"{what}: {factor} was held, the bound is {entry['factor']}")

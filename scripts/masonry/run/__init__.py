@@ -6,8 +6,7 @@ format.
   :mod:`masonry.run.ending`: how it ends
 - :mod:`masonry.run.results`: the files that a run leaves, and the keys of run.json;
   :mod:`masonry.run.lock`: whose folder it is
-- :mod:`masonry.run.checkpoints`: the state of a scene on disk; :mod:`masonry.run.keeping`: when a
-  run leaves one
+- :mod:`masonry.run.checkpoints`: the state of a scene and of a run on disk
 - :mod:`masonry.run.readings`: rows of curve.csv; :mod:`masonry.run.frame_writer`: frames for
   ParaView; :mod:`masonry.run.drawing_program`: the program that draws figures;
   :mod:`masonry.run.signals`: Ctrl-C

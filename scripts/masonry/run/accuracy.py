@@ -2,13 +2,11 @@
 """``--accuracy P``: a push whose peak and work are known within P percent, by the cheapest runs
 that show it.
 
-The error of a run is not known from the run. But cheaper runs of the same scene show how much its
-numbers depend on rate, mesh, points, block model and chance, and they cost little. So the scene is
-run several times, in processes of their own, side by side on all cores: the companions of the
-cheapest fidelity of :data:`masonry.run.presets.FIDELITIES`. What they differ by, and what
+Cheaper runs of the same scene show how much its numbers depend on rate, mesh, points, block model
+and chance. So these companions of the cheapest fidelity of :data:`masonry.run.presets.FIDELITIES`
+are run first, in processes of their own, on all cores. Their differences, and what
 validation/accuracy has measured of that fidelity, add up to a half-width. If it is too large, the
-next fidelity follows. The scene then goes on with the options of the one that was chosen, as any
-run.
+next fidelity follows. The scene then goes on with the options of the one that was chosen.
 
 Companions are in the folder ``accuracy`` of the results, one a folder. A run that was interrupted
 and is started again with the same words takes those that are over.
@@ -35,8 +33,7 @@ from .presets import CHOSEN, COMPANIONS, FIDELITIES, MAIN, fidelityOf
 
 FOLDER = "accuracy"  # of the companions, in that of the results
 PLAN = "plan.json"  # there: what was run, while it goes on
-#: Name in the environment of a companion. Its scene looks at no other runs.
-COMPANION = "MASONRY_COMPANION"
+COMPANION = "MASONRY_COMPANION"  # variable of the environment of a companion
 #: Whether this process is a companion of another run; what it starts itself is not.
 _isCompanion = bool(os.environ.pop(COMPANION, ""))
 #: Half the width of a 95 % interval over the range of three runs, for the difference from another
@@ -47,9 +44,8 @@ BY_CHANCE = 2.9
 #: 0.6 to 2.6.
 BEHAVES = 1.5, 6.0
 
-#: The quantities: their name, the entry of run.json, and its unit. The peak is that of supports and
-#: loaded point at once: a pulse that the supports alone feel when a crack tears is no strength, and
-#: it grows with the rate.
+#: The quantities: name, entry of run.json, and unit. The peak is that of supports and loaded point
+#: at once: a pulse in the supports alone, when a crack tears, grows with the rate.
 QUANTITIES = (("peak", "peak_at_both_ends_kN", "kN"), ("work", "push_work_J", "J"))
 #: What an interval does not say, in every report.
 NOT_COVERED = (
@@ -111,8 +107,9 @@ def needed(number):
 
 
 class AuxiliaryRuns:
-    """Runs of a scene beside the run itself, in the folder ``accuracy`` of its results.
+    """The companions of a run.
 
+    :param folder: of the results of the run
     :param command: words that run the scene with the options of the user
     """
 
@@ -128,7 +125,7 @@ class AuxiliaryRuns:
         return os.path.join(self.folder, plain.replace("__", "_"))
 
     def begin(self, key):
-        """Make the folder, or take up what an interrupted run with this key left there. Raises
+        """Make the folder, or take what an interrupted run with this key left there. Raises
         Refused."""
         try:
             check(os.path.dirname(self.folder), self.folder)
@@ -157,16 +154,15 @@ class AuxiliaryRuns:
             raise Refused(f"--out: cannot write to {self.folder}: {error.strerror}") from None
 
     def clear(self):
-        """Remove the folder of a scene of which nothing can be said, but not the log of a run that
-        failed."""
+        """Remove the folder, unless it has the numbers or the log of a companion."""
         if self.numbers or self.failed:
             return
         shutil.rmtree(self.folder, ignore_errors=True)
         with contextlib.suppress(OSError):
             os.rmdir(os.path.dirname(self.folder))
 
-    def over(self):
-        """The run itself has come to its end: the next one makes its companions anew."""
+    def onRunEnded(self):
+        """Let the next run make its companions anew."""
         with contextlib.suppress(OSError):
             os.remove(os.path.join(self.folder, PLAN))
 
@@ -244,10 +240,7 @@ class AuxiliaryRuns:
         )
 
     def choose(self, percent):
-        """Run companions until a fidelity is good enough, or until there is no better one.
-
-        :param percent: the half-width that is wanted [%]
-        """
+        """Run companions until a fidelity has a half-width [%], or there is no better one."""
         for number, fidelity in enumerate(FIDELITIES):
             self.percent, self.fidelity = percent, fidelity
             self.run(needed(number))
@@ -338,10 +331,9 @@ def ask(name, args, script, words):
     that was chosen.
 
     :param args: the options of the run, which are changed
-    :param script: path of the script of the scene, if it takes its options from the command line;
-        else None
-    :returns: :class:`AuxiliaryRuns`; None for a companion, a probe, and runs without ``--accuracy``
-        or whose companions have failed
+    :param script: path of the script of the scene, or None if it has other options than those of
+        the command line
+    :returns: :class:`AuxiliaryRuns`, or None if there are no companions or they have failed
     :raises Refused: if it means nothing here
     """
     if not args.accuracy or _isCompanion or batch.PROBE in os.environ:
@@ -382,7 +374,7 @@ def ask(name, args, script, words):
 
 
 def _resumed(args):
-    """As :func:`ask`, of a run that is resumed: its companions are those of its beginning."""
+    """:func:`ask` of a resumed run, which has the companions of its beginning."""
     companions, fidelity = AuxiliaryRuns(args.resume, []), fidelityOf(args)
     companions.percent, companions.fidelity = args.accuracy, fidelity
     companions.read()

@@ -12,14 +12,12 @@ in Python, without blanks::
 - an option: its value, or True for one that has none; ``*`` is the default, ``=`` the value of the
   row before
 - ``record``: a path that is not absolute begins at the folder of the table
-- ``JOINT.PROPERTY``: as ``--set``; several of them that have the same value are joined by ``+``
-- ``field:JOINT.PROPERTY``: as ``--field``; several of them that vary alike are joined by ``+``
-- ``description``: names the row; its results are in the folder ``rows/DESCRIPTION`` beside the
-  table
+- ``JOINT.PROPERTY``: as ``--set``; those that have one value are joined by ``+``
+- ``field:JOINT.PROPERTY``: as ``--field``; those that vary alike are joined by ``+``
+- ``description``: of the results, in the folder ``rows/DESCRIPTION`` beside the table
 
-A row that was run to its end is not run again, and one that was stopped goes on from its
-checkpoint, if that has the values of the table, and is refused if not. So a row with other values
-needs another description.
+A row that was run to its end is not run again. One that was stopped goes on from its checkpoint,
+and is refused if that has other values than the table: these need another description.
 """
 
 import ast
@@ -29,22 +27,21 @@ import re
 
 from ..errors import Refused
 from ..numbers.files import readRun, readText
-from .option_table import OPTIONS, asOption, those
+from .option_table import OPTIONS, asOption, optionsWith
 
 #: Options that a study itself gives, or that a row of it cannot have.
-OWN = {"help", *OPTIONS} - those("ofStudy")
+OWN = {"help", *OPTIONS} - optionsWith("ofStudy")
 VARIABLE = "YADE_BATCH"  # of the environment: path of the table and number of the line
 ROWS = "rows"  # folder of the results, beside the table
 FIELD = "field:"  # begins the name of a column
-#: Name in the environment of a file: the scene is built, and what it knows is written there. There
-#: is no run. The line of the heads then stands for a scene without options.
+#: Variable of the environment: a file to which a scene that is built writes what it knows, without
+#: a run. The line of the heads then stands for a scene without options.
 PROBE = "MASONRY_PROBE"
 UNWRITTEN = os.EX_IOERR  # exit status if that file cannot be written
 
 
 def readTable(path):
-    """The rows of a table by the number of their line, from 1: dicts of texts. Raises Refused if it
-    is not one."""
+    """The rows of a table by the number of their line, from 1: dicts of texts. Raises Refused."""
     lines = (re.sub(r"\s*#.*", "", line).split() for line in readText(path).split("\n"))
     used = [(number, words) for number, words in enumerate(lines, 1) if words]
     if not used:
@@ -67,8 +64,7 @@ def readTable(path):
 
 
 def value(text):
-    """The value that a text of a table stands for; what is no value of Python is the text
-    itself."""
+    """The value of a text of a table; what is no value of Python is the text itself."""
     try:
         return ast.literal_eval(text)
     except (ValueError, SyntaxError, TypeError, MemoryError, RecursionError):
@@ -95,18 +91,14 @@ def optionWords(row):
 
 def isColumn(name):
     """Whether a column of a study can have this name: an option, or properties of joints with one
-    value or field.
-
-    Columns that begin with ``!`` are orders to yade-batch: ``!EXEC`` is a program that it runs.
-    """
+    value or field. ``!EXEC`` and the like are commands of yade-batch."""
     names = name.removeprefix(FIELD).split("+")
     fits = lambda one: re.fullmatch(r"[A-Za-z_]\w*(\.\w+)?", one, re.ASCII)
     return all(map(fits, names)) and not OWN.intersection(names)
 
 
 def place(text):
-    """Path of the table and number of the line of what stands in the environment. Raises
-    Refused."""
+    """Path of the table and number of the line of :data:`VARIABLE`. Raises Refused."""
     path, _, line = text.rpartition(":")
     if not path or not line.isdecimal():
         raise Refused(f"{VARIABLE}={text}: must read TABLE:LINE")
@@ -114,8 +106,7 @@ def place(text):
 
 
 def beside(path):
-    """The path of a file that a row names: beside its table, if it is not absolute. In no row it is
-    the path itself."""
+    """The path of a file that a row names: beside its table, if it is not absolute."""
     text = os.environ.get(VARIABLE)
     if not text or os.path.isabs(path):
         return path
@@ -148,8 +139,7 @@ def ended(directory):
 
 
 def present():
-    """The words of the command line of the row that ``yade-batch`` runs in this process. None: it
-    runs none.
+    """The words of the command line of the row that ``yade-batch`` runs in this process, or None.
 
     :raises Done: if the row was run to its end
     :raises Refused: if there is no such row

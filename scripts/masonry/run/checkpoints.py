@@ -2,22 +2,34 @@
 """Checkpoints: the state of a scene on disk, from which a run goes on as if it had never stopped.
 
 :func:`saveCheckpoint` and :func:`loadCheckpoint` serve any scene. A run in stages leaves its
-    checkpoints by them;
-:mod:`masonry.run.run_state` is what such a checkpoint tells of the run.
+checkpoints by :class:`Checkpoints`; :class:`Saved` is one that is read back. They keep the state in
+YADE, :class:`SceneState`, the :class:`masonry.run.run_state.RunState` and the rows of curve.csv.
 """
 
+import base64
 import contextlib
 import json
 import os
+import sys
+import time
+from dataclasses import field, fields, is_dataclass
+from types import SimpleNamespace
 from typing import Any
 
-from .._masonry import loadScene, saveScene, savedText
+import yade.config
+
+from .._masonry import commit, loadScene, savedText, saveScene, version
 from ..arguments import FilePath, shown, validated
+from ..errors import NotResumed
 from ..folders import replaced
+from ..model import threads
 from ..numbers.files import readWhole
+from ..terminal import say
+from .run_state import RunState
 
 NAME = "run.checkpoint"  # in the folder of a run
-LARGEST = 1e100  # no number of a run is beyond; its square can be computed
+#: Options that say where results are, and are no part of what was run.
+NO_OPTIONS = "resume", "out", "saved"
 
 
 @validated
@@ -26,9 +38,8 @@ def saveCheckpoint(path: FilePath, extra: Any = None) -> None:
     bit.
 
     Saved are the time, the bodies, the joints, and the engines of this plugin. Other engines, for
-    example a PyRunner, stay as the script makes them. The new file is written beside the old one,
-    brought to the disk, and renamed: a kill or a full disk at any moment leaves one of the two,
-    whole.
+    example a PyRunner, stay as the script makes them. A kill or a full disk at any moment leaves
+    the old file or the new one, whole.
 
     :param path: file to write; ``path + ".new"`` is beside it for a moment
     :param extra: what your script must know to go on: anything that JSON can hold
@@ -61,7 +72,7 @@ def loadCheckpoint(path: FilePath) -> Any:
         it is
     :raises OSError: if it cannot be read
     """
-    data, extra = readState(path)  # first, so that a wrong one changes nothing
+    data, extra = readState(path)
     with _says(path):
         loadScene(data)
     return extra
@@ -93,21 +104,211 @@ def _says(path):
         raise ValueError(f"{path} {error}") from None
 
 
-def alike(value: Any, example: Any) -> bool:
-    """Whether a value that JSON gave is of the kind of another one.
+# -- what stages remember --------------------------------------------------------------------------
 
-    An int is a counter, from 0 on; a float is any number up to LARGEST; a list or tuple has as many
-    values, each of the kind of its counterpart, and an empty one stands for any list; None stands
-    for None and for a list of finite numbers.
+
+def record(cls):
+    """A field of a memory that is None or a dataclass object, whose fields all have defaults."""
+    return field(default=None, metadata={"record": cls})
+
+
+def contentsOf(memory):
+    """The values of a memory by their names, as JSON can hold them, in a new dict."""
+    of = lambda value: contentsOf(value) if is_dataclass(value) else value
+    return {name: of(value) for name, value in vars(memory).items()}
+
+
+def restored(example, values):
+    """A dataclass object like an example with the values of a checkpoint. Raises NotResumed if it
+    has other fields."""
+    compareNames(values, vars(example))
+    described = fields(example) if is_dataclass(example) else ()
+    records = {one.name: one.metadata["record"] for one in described if one.metadata}
+    of = lambda n, v: restored(records[n](), v) if n in records and v else v
+    return type(example)(**{name: of(name, value) for name, value in values.items()})
+
+
+def compareNames(values, example):
+    """Refuse entries of a checkpoint that have other names than in this version of the plugin."""
+    if unlike := values.keys() ^ example.keys():
+        raise otherVersion(f"its {', '.join(sorted(unlike))}")
+
+
+def otherVersion(why):
+    """The refusal of a checkpoint that this version of the plugin does not leave."""
+    return NotResumed(f"--resume: of another version of the plugin: {why}")
+
+
+# -- the state of a scene --------------------------------------------------------------------------
+
+
+def stateOf(scene):
+    """What stages have set of a scene in Python, as JSON can hold it."""
+    of = ("until", "history", "rate") if scene.pushed else ()
+    return {
+        "model": scene.model.state(),
+        "grown": scene.grown,
+        "loadUnit": scene.loadUnit,
+        "pushed": {name: getattr(scene.pushed, name) for name in of},
+    }
+
+
+def putState(scene, state):
+    """Give a scene a state of :func:`stateOf`."""
+    scene.model.putState(state["model"])
+    scene.grown, scene.loadUnit = state["grown"], state["loadUnit"]
+    pushed = state["pushed"]
+    scene.pushed = SimpleNamespace(**{**vars(scene.args), **pushed}) if pushed else None
+
+
+class SceneState:
+    """What a checkpoint keeps of a scene that is built, beside its state in YADE."""
+
+    def __init__(self, scene):
+        self._scene, self._model = scene, scene.model
+        self.isRestored = False  # whether the scene has the state of a checkpoint again
+
+    def entries(self):
+        """Entries of :class:`RunState`."""
+        atRest = base64.b64encode(self._model.atRest or b"").decode()
+        of = {"places": self._model.motion.places, "far": self._model.motion.far}
+        return {"now": stateOf(self._scene), "atRest": atRest, **of}
+
+    def put(self, state):
+        """Give the scene the state of a checkpoint."""
+        putState(self._scene, state)
+        self.isRestored = True
+
+    def takeRest(self, state):
+        """Take the last state at rest from a :class:`RunState`."""
+        if state.atRest:
+            self._model.atRest = base64.b64decode(state.atRest)
+        self._model.motion.places, self._model.motion.far = state.places, state.far
+
+
+# -- the checkpoints of a run ----------------------------------------------------------------------
+
+
+def hostNow():
+    """What the last digits of a run can depend on."""
+    software = {"build": commit, "masonry": version, "YADE": yade.config.version}
+    return {**software, "threads": threads.ofYade()}
+
+
+class Checkpoints:
+    """The checkpoints that a run leaves: what they keep beside the scene, and when they are
+    written."""
+
+    def __init__(self, run):
+        self._run = run
+        self.saved = (
+            None  # entries of RunState at the last whole moment; None while steps are taken
+        )
+        self.since = time.perf_counter()  # when one was written last [s]
+
+    def save(self):
+        """Note what a checkpoint of this moment keeps, beside the scene."""
+        run, state = self._run, self._run.state
+        names = "begun", "before", "number", "stage", "steps", "left", "stages"
+        self.saved = {name: getattr(state, name) for name in names}
+        self.saved.update(memory=contentsOf(run.memory), frameCount=len(state.frames))
+        self.saved["rows"] = run.readings.count
+
+    def setRollbackPoint(self):
+        """:meth:`save` after a stage has put the scene into another state."""
+        self._run.state.left = 0
+        self.save()
+
+    def recordFall(self):
+        """:meth:`setRollbackPoint` of a structure that was seen to fall between two steps; a fall
+        within a step has none."""
+        if self.saved:
+            self.setRollbackPoint()
+
+    def write(self):
+        """Write what :meth:`save` has noted and the scene to the disk. Returns whether there is a
+        checkpoint; a disk that refuses it does not end the run."""
+        run, saved = self._run, self.saved
+        if not (run.args.checkpoint_every and saved):
+            return False
+        run.flush()
+        run.takeFound(True)
+        if run.frames:
+            run.awaitFrame()
+            saved["frameCount"] = min(saved["frameCount"], len(run.state.frames))
+        if len(run.results.rows) < saved["rows"] or run.results.earlier:
+            return False
+        run.results.begin()
+        ofScene = run.sceneState.entries()
+        if saved["begun"] != run.state.begun:  # the present stage has taken no steps
+            ofScene["now"] = run.state.before
+        contents = dict(
+            scene=run.name,
+            options={n: v for n, v in vars(run.args).items() if n not in NO_OPTIONS},
+            state={**vars(run.state), **ofScene, **saved},
+            rows=run.results.rows,
+            script=run.script,
+            seconds=run.results.seconds(),
+            host=hostNow(),
+        )
+        self.since, path = time.perf_counter(), run.results.path(NAME)
+        try:
+            saveCheckpoint(path, contents)
+            return True
+        except (OSError, ValueError, MemoryError) as error:
+            stays = "; an earlier one stays" if os.path.exists(path) else ""
+            why = f"no checkpoint could be written to {path}: {error}{stays}"
+            say(f"warning: {why}", sys.stderr)
+            return False
+
+
+class Saved:
+    """A checkpoint that a run left, read from the disk once. Its attributes are the ``contents`` of
+    :meth:`Checkpoints.write`.
+
+    :raises NotResumed: if no run can be resumed there
     """
-    if example is None:
-        listed = isinstance(value, list)
-        return value is None or listed and alike(value, [0.0] * len(value))
-    if isinstance(example, (list, tuple)):
-        fits = lambda: len(value) == len(example) and all(map(alike, value, example))
-        return isinstance(value, list) and (not example or fits())
-    if isinstance(example, (bool, str, dict)):
-        return isinstance(value, type(example))
-    if isinstance(example, int):
-        return type(value) is int and 0 <= value < 2**63
-    return type(value) in (int, float) and abs(value) <= LARGEST
+
+    def __init__(self, directory):
+        self.directory = directory
+        try:
+            self._data, saved = readState(os.path.join(directory, NAME))
+        except FileNotFoundError:
+            raise NotResumed(
+                f"--resume: {directory} has no {NAME}, which a run leaves unless it is --lean and"
+                " has come to its end"
+            ) from None
+        except (OSError, ValueError) as error:
+            raise NotResumed(f"--resume: {error}") from None
+        names = "scene options state rows script seconds host".split()
+        if not isinstance(saved, dict) or saved.keys() != {*names}:
+            raise NotResumed(f"--resume: {directory}/{NAME} was not left by a run in stages")
+        vars(self).update(saved)
+
+    def runState(self, name, width):
+        """How far the run of a scene had come, whose rows have so many columns: a
+        :class:`RunState`. Raises NotResumed."""
+        if self.scene != name:
+            raise NotResumed(
+                f"--resume: {self.directory} holds a run of {self.scene}, this is {name}"
+            )
+        if any(len(row) != width for row in self.rows):
+            raise NotResumed(f"--resume: its rows are not of {width} columns")
+        return restored(RunState(), self.state)
+
+    def load(self):
+        """Give the scene, built by the same script, the state of the checkpoint. Raises
+        NotResumed."""
+        try:
+            loadScene(self._data)
+        except (ValueError, TypeError) as error:
+            raise NotResumed(f"--resume: {self.directory}/{NAME} {error}") from None
+
+    def compareHost(self):
+        """Say what of the host is not as it was."""
+        for what, value in hostNow().items():
+            if self.host.get(what) != value:
+                say(
+                    f"note: the checkpoint was made with {what} {self.host.get(what)}, this run has"
+                    f" {value}: it may differ in last digits from one without a break"
+                )

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The program beside a run that draws its figures and writes its report, of the wing masonry_view:
-:mod:`masonry_view.postprocess`. Without this wing nothing is drawn."""
+"""The program beside a run that draws its figures and writes its report
+(:mod:`masonry_view.postprocess`), if the wing masonry_view is there."""
 
 import contextlib
 import json
@@ -13,8 +13,7 @@ from ..background import Failed
 from ..errors import Unwritable
 
 END = b"\0"  # of the name of the folder that the program is given
-#: Exit statuses of the program beside 0: figures or the report cannot be written, since disk or
-#: memory is full.
+#: Exit statuses of the program if figures or report cannot be written: disk or memory is full.
 NO_FIGURES, NO_REPORT = 3, 4
 
 
@@ -27,7 +26,6 @@ class DrawingProgram:
 
     def draw(self, directory):
         """Wait until the figures of a run that has ended are drawn and its report is written.
-        Without matplotlib the program says that the figures are left out.
 
         :returns: what has failed unexpectedly: pairs of a note and a traceback
         :raises Unwritable: if disk or memory is full
@@ -49,8 +47,8 @@ class DrawingProgram:
         return json.loads(failures)
 
     def begin(self, directory):
-        """Name the folder to the program, which then begins: all files of the run are there.
-        Raises OSError if there is no process."""
+        """Name the folder of a run that has ended to the program, which then begins. Raises
+        OSError."""
         self.start()
         if self._program and not self._begun:
             self._program.stdin.write(os.fsencode(directory) + END)
@@ -58,11 +56,9 @@ class DrawingProgram:
             self._begun = True
 
     def start(self):
-        """Start the program, which loads its libraries while the run goes on. Raises OSError if
-        there is no process."""
+        """Start the program, which loads its libraries while the run goes on. Raises OSError."""
         if not self._program and wings.isInstalled("figures and report"):
-            # -P: nothing of the present folder is run; in a session of its own, since Ctrl-C is for
-            # the run
+            # -P: nothing of the present folder is run; Ctrl-C is for the run alone
             command = [sys.executable, "-P", "-m", wings.programOf("figures and report")]
             self._program = subprocess.Popen(
                 command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, start_new_session=True

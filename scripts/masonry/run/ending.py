@@ -24,14 +24,12 @@ DATE = "%Y-%m-%dT%H:%M:%SZ"  # of the end of a run, in run.json
 
 
 def end(run, scene, error):
-    """Finish a run in order after an error, or after none. Returns whether the error is dealt with.
+    """Finish a run in order after an error, or after None. Returns whether the error is dealt with;
+    another one is for the caller when the results are finished.
 
     ``run.status`` is then the exit status of the scene: 0 at the end; 1 if a file cannot be
-    written, if the memory is too small, or if the structure has fallen while its dead loads grew,
-    before its test began; 2 for refused input; 130 after Ctrl-C or SIGTERM. Another error is for
-    the caller when the results are finished.
-
-    :param scene: gives ``model``, ``columns`` and ``outcome``
+    written, the memory is too small, or the structure has fallen while its dead loads grew; 2 for
+    refused input; 130 after Ctrl-C or SIGTERM.
     """
     try:
         return _end(run, scene, error)
@@ -47,7 +45,7 @@ def _end(run, scene, error):
         return False
     try:
         if not error and not run.advanced:
-            run.takeUp()
+            run.beginWriting()
     except Refused as refused:
         error = refused
     if isinstance(error, Refused):
@@ -55,7 +53,7 @@ def _end(run, scene, error):
     if isinstance(error, MemoryError):
         error = Unwritable(FULL)
     if isinstance(error, Interrupted) and scene.only and scene.bounds.entries:
-        run.takeUp()  # the bounds that were found are what was computed
+        run.beginWriting()  # the bounds that were found are what was computed
     if not run.advanced:
         return _beforeSteps(run, error)
     if error and not isinstance(error, Collapsed) and run.results.earlier:
@@ -96,15 +94,14 @@ def _end(run, scene, error):
         say(f"{text}; what was written before is kept", sys.stderr)
     if kept and (stopped or run.interrupted):
         say(f"--resume {run.results.directory} goes on from here")
-    fell = run.collapsed and run.loading
+    fell = run.collapsed and run.context.loadsGrow
     run.status = 1 if stopped or fell else 130 if run.interrupted else 0
     return True
 
 
 @contextlib.contextmanager
 def _noting(stopped):
-    """Let a file that cannot be written, or a memory that is full, end a block, and add it to a
-    list."""
+    """Let Unwritable or a full memory end a block, and add it to a list."""
     try:
         yield
     except Unwritable as unwritable:
@@ -128,7 +125,7 @@ def _beforeSteps(run, error):
 
 
 def _keepEarlier(run, error):
-    """End without results, so that those of an earlier run stay. Returns whether the error is dealt
+    """End without results: those of an earlier run stay. Returns whether the error is dealt
     with."""
     run.status = 130 if isinstance(error, Interrupted) else 1
     say(
@@ -141,8 +138,7 @@ def _keepEarlier(run, error):
 
 
 def _finish(run, scene):
-    """Write the last frame and run.json, which is written even if there is no room for the frame,
-    and report."""
+    """Write the last frame and run.json, also if there is no room for the frame, and report."""
     try:
         try:
             run.takeFound(True)
@@ -163,8 +159,8 @@ def _finish(run, scene):
 
 
 def _unlessInterrupted(run, draw, lacking):
-    """Draw what a run that is interrupted leaves out, since it shall end at once; then a sentence
-    says what is lacking. Returns what ``draw`` does."""
+    """Draw unless the user interrupts it; then a sentence says what is lacking. Returns what
+    ``draw`` does."""
     try:
         with run.breakable():
             return draw(run.results.directory)
@@ -174,7 +170,7 @@ def _unlessInterrupted(run, draw, lacking):
 
 def _describe(run, scene):
     """Fill run.json; the docstring of :mod:`masonry.run.results` lists its keys."""
-    at, entries = run.at, run.results.run
+    state, entries = run.state, run.results.run
     entries.update(
         scene=run.name,
         options=_options(run),
@@ -194,11 +190,11 @@ def _describe(run, scene):
         **scene.outcome.describe(),
         collapsed=run.collapsed,
         interrupted=run.interrupted,
-        resumed_at_s=at.resumed,
-        steps=at.steps,
-        stages=at.listed(),
+        resumed_at_s=state.resumed,
+        steps=state.steps,
+        stages=state.listed(),
         kinds=run.frames.kinds if run.frames else [],
-        seconds={part: round(s, 3) for part, s in at.seconds.items()},
+        seconds={part: round(s, 3) for part, s in state.seconds.items()},
     )
     if run.results.rows:
         energy = scene.model.energy
@@ -207,12 +203,12 @@ def _describe(run, scene):
         scene.outcome.summarise()
     if run.args.blocks == "rigid" and not scene.description.functors:
         entries["refined_joints"] = scene.model.scheme.joints.refinedJoints
-    if at.steps:
-        perStep = at.seconds["steps"] / at.steps
+    if state.steps:
+        perStep = state.seconds["steps"] / state.steps
         ofOne = 1e9 * perStep / scene.model.subcontacts
         entries["microseconds_per_step"] = 1e6 * perStep
         entries["nanoseconds_per_subcontact_step"] = ofOne
-    entries.update(notes=at.notes, warnings=list(_warnings(run, scene)))
+    entries.update(notes=state.notes, warnings=list(_warnings(run, scene)))
 
 
 def _options(run):

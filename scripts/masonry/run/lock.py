@@ -23,17 +23,18 @@ FILES = (
 ).split()
 #: Those of them that show how far a run has come: they go when it goes on.
 DRAWN = {"curve.png", "cracks.png", "report.html"}
-OURS = re.compile("(%s)(\\.new)?" % "|".join(re.escape(f).replace(r"\*", r"\d+") for f in FILES))
+OUR_FILES = re.compile(
+    "(%s)(\\.new)?" % "|".join(re.escape(f).replace(r"\*", r"\d+") for f in FILES)
+)
 LOCK = "run.lock"  # in the folder of a run while it goes on, and after it was killed
 NO_LOCKS = {errno.ENOLCK, errno.EOPNOTSUPP, errno.ENOSYS}  # of the file system
 
 
 class Lock:
-    """Keeps a folder for one run. The system takes the lock from a process that ends, however it
-    ends.
+    """Keeps a folder for one run. The system takes the lock from a process that ends in any way.
 
-    The file ``run.lock`` says who holds it. It stays after a kill, and then says that the files
-    beside it are those of a run. Where the file system has no locks, its text alone counts.
+    The file ``run.lock`` says who holds it. After a kill it stays, and says that the files beside
+    it are those of a run. Where the file system has no locks, its text alone counts.
 
     :raises Held: if another run holds the folder; the message names its host and process
     :raises OSError: if the folder cannot be written
@@ -61,8 +62,7 @@ class Lock:
         Lock._held[self.path] = self
 
     def _open(self):
-        """The file, locked. Another run may remove it between two of our calls; then there is a new
-        one."""
+        """The file, locked; a new one, if another run has removed it between two of our calls."""
         while True:
             how = os.O_RDWR | os.O_CREAT
             file = open(folders.inside(self.path, how), "r+b", buffering=0)
@@ -99,22 +99,20 @@ class Lock:
 
     @classmethod
     def forget(cls):
-        """Let go of all locks in a copy of the process; the process itself keeps them, and others
-        may have its folder when it ends."""
+        """Let go of all locks in a copy of the process; the process itself keeps them."""
         for lock in cls._held.values():
             lock._file.close()
         cls._held.clear()
 
     def release(self):
-        """Let others have the folder. The file goes, unless it must say whose files the others
-        are."""
+        """Let others have the folder. The file goes, unless it must say whose the others are."""
         if Lock._held.get(self.path) is self:
             del Lock._held[self.path]
         if self._file.closed:
             return
         folder = os.path.dirname(self.path)
         with contextlib.suppress(OSError):
-            names = [name for name in os.listdir(folder) if OURS.fullmatch(name)]
+            names = [name for name in os.listdir(folder) if OUR_FILES.fullmatch(name)]
             if not (self.ours and names) or recorded(folder):
                 os.remove(self.path)
         self._file.close()

@@ -1,10 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The options that all scenes share: one row an option. The command line, ``--help``, the manual,
 keywords of ``Scene``, presets, the check of a run that is resumed, studies and run.json read these
-rows. This module needs no YADE.
-
-An option is added by its row, and by the code that uses it.
-"""
+rows. This module needs no YADE."""
 
 import argparse
 import contextlib
@@ -245,7 +242,7 @@ _ROWS = (
 OPTIONS = {one.name: one for one in _ROWS}  # all options by their names
 
 
-def those(trait: str) -> set[str]:
+def optionsWith(trait: str) -> set[str]:
     """Names of the options that have a trait of :class:`Option`, such as ``"harmless"``."""
     return {name for name, one in OPTIONS.items() if getattr(one, trait)}
 

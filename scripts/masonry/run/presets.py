@@ -17,13 +17,13 @@ for _preset in PRESETS.values():
 
 BOUND = "bound"  # the preset of limit analysis alone, without a run: see masonry_limit
 
-#: What ``fast`` promises of a wall in its :data:`RANGE`: of the 44 walls of validation/trade and
-#: validation/accuracy all but ``missed`` had these errors of peak and work at most, against those
-#: of a fine and slow run [-].
+#: What ``fast`` promises of a wall in its :data:`RANGE`: of so many walls of validation/trade and
+#: validation/accuracy all but ``missed`` had these errors of peak and work at most, against a fine
+#: and slow run [-].
 PROMISE = dict(peak_error=0.06, work_error=0.07, walls=44, missed=1)
 
-#: The walls on which ``fast`` was measured: the least and the largest value of each property that
-#: :func:`masonry.scene.facts.properties` finds. All were pushed once, in their plane.
+#: The walls on which ``fast`` was measured, pushed once in their plane: least and largest value of
+#: each property of :func:`masonry.scene.facts.properties`.
 RANGE: dict[str, tuple[float, float]] = {
     "length over height": (0.27, 3.4),
     "courses": (6, 34),
@@ -39,18 +39,14 @@ RANGE: dict[str, tuple[float, float]] = {
 
 @dataclass(frozen=True)
 class Source:
-    """A source of error of a fidelity, and the runs that show how large it is.
-
-    The difference of the last two runs counts. Of three, each with half the step of the one before,
-    it counts less if their differences shrink as those of a method of an order do (Richardson).
-    """
+    """A source of error of a fidelity, and the runs that show how large it is: by the difference of
+    the last two, or less if of three, each with half the step of the one before, the differences
+    shrink as those of a method of an order do (Richardson)."""
 
     name: str
     runs: tuple  # names in COMPANIONS, from the coarsest to the finest, or MAIN, the run itself
     share: float = 1.0  # what counts of the difference of two [-]
-    chance: bool = (
-        False  # whether they differ in nothing that matters, so that their spread is chance
-    )
+    chance: bool = False  # whether the spread of the runs is chance
 
 
 @dataclass(frozen=True)
@@ -76,8 +72,7 @@ _ONE, _TWO, _THREE = (
     dict(blocks="deformable", divisions=n, mass_scaling="auto") for n in (1, 2, 3)
 )
 
-#: Runs beside a run, by name: options that replace those without options. They are cheap beside the
-#: run that they judge.
+#: Runs beside a run, by name: their options. They are cheap beside the run that they judge.
 COMPANIONS: dict[str, dict[str, Any]] = {
     "rigid, 200 mm/s": {"rate": 200.0},
     "rigid, 100 mm/s": {"rate": 100.0},

@@ -9,8 +9,8 @@ from .. import notebook
 
 
 class Progress:
-    """How far a stage has come: on a terminal and in a notebook one line that is kept up to date,
-    elsewhere a line every tenth."""
+    """How far a stage has come: on a terminal and in a notebook one line, elsewhere a line every
+    tenth."""
 
     def __init__(self, stream=None):
         self.line = None  # of the present stage, in a notebook
@@ -24,10 +24,8 @@ class Progress:
         """Show a stage, if it is time to.
 
         :param fraction: how much of the stage is done, 0 to 1 [-]
-        :param detail: function without arguments that gives the text to show; it is called only if
-            the text is shown
-        :param stepsPerSecond: time steps in a second of wall-clock time; None: what is shown takes
-            no steps
+        :param detail: function without arguments that gives the text, if it is shown
+        :param stepsPerSecond: time steps in a second of wall-clock time; None: there are none
         :param final: whether the stage ends here; this is always shown
         """
         now = time.perf_counter()

@@ -10,9 +10,8 @@ FLUSH_EVERY = 0.2  # [s] of wall-clock time: rows are on the disk after it
 
 
 class Readings:
-    """Readings that are not in curve.csv yet. They wait for 0.2 s of wall-clock time at most, and
-    not beyond a checkpoint or the end, so only a kill can lose them, and a run that is resumed
-    after a kill makes them again.
+    """Readings that are not in curve.csv yet, for FLUSH_EVERY or up to a checkpoint or the end. A
+    run that is resumed after a kill makes those again that were lost.
 
     :param live: function that adds a row to yade.plot, or None
     """
@@ -39,8 +38,7 @@ class Readings:
         return reading
 
     def isDue(self):
-        """Whether the rows should be written, after one was added: the next one is expected as long
-        after it as it came after the last."""
+        """Whether the rows should be written, if the next one takes as long as the last."""
         before, self._read = self._read, time.perf_counter()
         return 2 * self._read - self._written - before > FLUSH_EVERY
 

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""A run in stages, in a folder of results, with checkpoints from which it can be taken up again.
+"""A run in stages, in a folder of results, with checkpoints from which it can be resumed.
 
-A stage steps by :meth:`Run.advance` alone. What it must know to go on after a checkpoint is a
-dataclass that it gives to :meth:`Run.stage`. In a run that is resumed, stages that were over are
-left out (:mod:`masonry.scene.resuming`). The stage in which the checkpoint was made is entered with
-the scene and its memory as they were right after the steps of an ``advance``, and its first
-``advance`` takes the steps that were left, or none. So a stage changes its memory after it has
-advanced, and what it does before it advances may be done twice.
+A stage steps by :meth:`Run.advance` alone. What it must know to go on after a checkpoint is its
+memory, a dataclass that it gives to :meth:`Run.stage`. A resumed run leaves out the stages that were
+over. A checkpoint is always made at the end of an ``advance`` or between its steps. The resumed
+stage starts from its beginning with the stored memory; its first ``advance`` does the remaining
+steps (perhaps none). So a stage changes its memory after it has advanced, and what it does before
+it advances may be done twice.
 """
 
 import contextlib
@@ -16,16 +16,15 @@ from types import SimpleNamespace
 
 from yade import O
 
-
 from ..numbers.columns import CRACKS
 from ..auxiliary import Auxiliary
 from ..errors import Collapsed, Interrupted, NotResumed, Unwritable
 from ..terminal import listen, say
 from ..terminal import stopListening
 from . import batch
-from .keeping import Checkpoints, hostNow
+from .checkpoints import Checkpoints, Saved, otherVersion, restored
 from .frame_writer import Frames
-from .run_state import RunState, Saved, otherVersion, restored
+from .run_state import RunState, StageContext
 from .plotting import live
 from .presets import presetNote, presetOf
 from .progress import Progress
@@ -33,21 +32,18 @@ from .readings import Readings
 from .results import Results
 from .signals import Signals
 
-SHOW_EVERY = 0.05  # [s] of wall-clock time: what is shown on the terminal is not older
-LOOK_EVERY = (
-    0.5  # [s] of wall-clock time: within slow steps a checkpoint that is due is made no later
-)
-# steps after which the widest crack is looked for again: a hundredth of the time of steps in which
-# joints yield
-LOOKED = 300
+SHOW_EVERY = 0.05  # [s] of wall-clock time between two lines on the terminal
+LOOK_EVERY = 0.5  # [s] of wall-clock time, after which a checkpoint may come between slow steps
+#: Steps between two searches for the widest crack, which then take a hundredth of the time of steps
+#: in which joints yield.
+CRACKS_EVERY = 300
 
 
 class Run:
     """A run in stages; the module says how to use it. :func:`masonry.run.ending.end` ends it in
     order.
 
-    Results of an earlier run in the folder are replaced when there is a first row or frame, or at
-    the end. A run that is interrupted or fails before leaves them as they are.
+    Results of an earlier run stay until there is a first row or frame, or the end.
 
     :param name: name of the scene; its results go to ``results/<name>`` if the options do not say
         otherwise
@@ -58,7 +54,7 @@ class Run:
     def __init__(self, name, args, script=()):
         self.name, self.args, self.script = name, args, script
         self.status = 0  # exit status of the scene
-        self.at, self.saved = RunState(), None
+        self.state, self.saved = RunState(), None
         self.results = self.readings = self.frames = self.preset = None
         self.collapsed = False
         self.signals = Signals()
@@ -66,14 +62,11 @@ class Run:
         self.kept = False  # whether it was interrupted and left a checkpoint at its end
         self.progress = Progress()
         self.advanced = False  # whether this process has taken steps of it
-        # of the stage that was entered last: its number, and what it remembers
+        # the stage that was entered last: its number, and what it remembers
         self.entered, self.memory = 0, SimpleNamespace()
-        self.redoes = False  # whether the checkpoint of a resumed run was made in it
-        self.endsAtFall = (
-            False  # whether it ends when a block has fallen, where a collapse is followed
-        )
-        self.loading = False  # whether it lets the dead loads grow, and is no test yet
-        #: function that takes what is found beside the run: with True it waits for that
+        self.resumedHere = False  # whether the run was resumed from a checkpoint inside this stage
+        self.context = StageContext()
+        #: function that takes the results of a task beside the run; True waits for them
         self.takeFound = lambda wait: None
         self.checkpoints = Checkpoints(self)
         self._now = time.perf_counter()  # at the end of the last steps [s]
@@ -85,7 +78,7 @@ class Run:
         """Open the folder, and read the checkpoint of a run that is resumed. No file is written
         yet.
 
-        :param properties: of the scene, as :func:`masonry.scene.facts.properties` gives them
+        :param properties: :func:`masonry.scene.facts.properties`
         """
         args, heads = self.args, [column.head for column in columns]
         folder = args.out or os.path.join("results", self.name)
@@ -99,45 +92,36 @@ class Run:
             raise SystemExit(0)
         if args.resume:
             self.saved = getattr(args, "saved", None) or Saved(args.resume)
-            if self.saved.scene != self.name:
-                raise NotResumed(
-                    f"--resume: {args.resume} holds a run of {self.saved.scene}, this is"
-                    f" {self.name}"
-                )
-            self.at = self.saved.place()
+            self.state = self.saved.runState(self.name, len(heads))
         self.signals.begin()
-        listen(self.hear)
+        listen(self.recordNote)
         self.preset = presetOf(args, properties)
         if self.preset:
             say(presetNote(self.preset))
 
-    def start(self, model, space, state):
-        """Take up the model that now stands in YADE, in the state of the checkpoint if the run is
+    def start(self, model, space, sceneState):
+        """Take the model that now stands in YADE, in the state of the checkpoint if the run is
         resumed.
 
         :param space: bytes that the run writes at least, and those that it will probably write
-        :param state: what a checkpoint keeps of the scene beside its state in YADE:
-            :class:`masonry.scene.resuming.State`
+        :param sceneState: :class:`masonry.run.checkpoints.SceneState`
         """
-        self.model, self.state = model, state
+        self.model, self.sceneState = model, sceneState
         self.results.checkSpace(*space)
         if self.saved:
-            width = len(self.results.columns)
-            if any(len(row) != width for row in self.saved.rows):
-                raise NotResumed(f"--resume: its rows are not of {width} columns")
             self.saved.load()
-            self.state.takeRest(self.at)
-            self.at.resumed.append(O.time)
-            self.saved.compareHost(hostNow())
+            sceneState.takeRest(self.state)
+            self.state.resumed.append(O.time)
+            self.saved.compareHost()
         if not (self.args.no_vtk or self.args.lean):
-            self.frames = Frames(self.results.directory, self.at)
+            self.frames = Frames(self.results.directory, self.state)
 
     @contextlib.contextmanager
     def clock(self, part):
         """Count the wall-clock time of a block as that of a part of the run."""
         began = time.perf_counter()
         yield
-        self.at.seconds[part] += time.perf_counter() - began
+        self.state.seconds[part] += time.perf_counter() - began
 
     @property
     def interrupted(self):
@@ -149,62 +133,56 @@ class Run:
         """What the script said up to the checkpoint of a run that is resumed, as data."""
         return self.saved.script if self.saved else []
 
-    def hear(self, text):
-        """Keep a note or a warning with the stage and the time in the scene in which it was said
-        first. A run that is resumed says again what it said."""
+    def recordNote(self, text):
+        """Keep a note or a warning with the present stage and the time in the scene."""
         # before the first stage, another scene may stand in YADE
-        self.at.hear(text, self.entered, O.time if self.entered else 0.0)
+        self.state.recordNote(text, self.entered, O.time if self.entered else 0.0)
 
     def auxiliary(self, what):
-        """A block that computes something beside the run, which an unexpected error there does not
-        end; ``what`` names it in the note."""
+        """A block that computes something beside the run: :class:`masonry.auxiliary.Auxiliary`."""
         return Auxiliary(what, self.fail)
 
     def fail(self, note, trace):
         """Keep the note and the traceback of what has failed beside the run."""
         say(f"note: {note}")
         self.results.log(f"{note}\n{trace}\n")
-        self.results.amend(notes=self.at.notes)
+        self.results.amend(notes=self.state.notes)
 
     def note(self, kind, name, opposite="", control=""):
         """Note what the next stage loads, as in :class:`masonry.run.run_state.RunState`."""
         load = [kind, name, opposite] + [control] * bool(control)
-        self.at.loads = {**self.at.loads, str(self.entered + 1): load}
+        self.state.loads = {**self.state.loads, str(self.entered + 1): load}
 
     @property
-    def takesUp(self):
+    def isResumed(self):
         """Whether the run is resumed, and has taken no steps since."""
         return self.saved is not None and not self.advanced
 
-    def continueFrom(self, number, redoes):
-        """In a run that is resumed and has taken no steps yet, let rows and frames be those of the
-        beginning of the stage of a number; of the stage of the checkpoint, which ``redoes`` says,
-        those of the checkpoint.
-        """
-        at, rows = self.at, self.saved.rows
-        self.redoes = redoes
-        if redoes:
-            rows, at.frames = rows[: at.rows], at.frames[: at.frameCount]
-        elif number <= len(at.stages):
-            rows = rows[: at.stages[number - 1][3]]
+    def cutBackTo(self, number, resumedHere):
+        """In a resumed run, let rows and frames be those of the beginning of the stage of a number,
+        or of the checkpoint if the run was resumed inside this stage."""
+        state, rows = self.state, self.saved.rows
+        self.resumedHere = resumedHere
+        if resumedHere:
+            rows, state.frames = rows[: state.rows], state.frames[: state.frameCount]
+        elif number <= len(state.stages):
+            rows = rows[: state.stages[number - 1][3]]
         self.results.rows[:] = rows
         if rows and self.results.columns[0] == "time_s":
             self.readings.time = rows[-1][0]
 
-    def takeUp(self):
-        """From here on files are written; those of a run that is resumed are cut back to its
-        checkpoint."""
+    def beginWriting(self):
+        """Write files from here on; those of a resumed run are cut back to its checkpoint."""
         if self.saved:
-            at = self.at
+            state, ofScene = self.state, self.sceneState
             # a stage acts before it advances: that was done before the steps of the checkpoint
-            again = self.redoes and str(at.begun) not in at.ended
+            again = self.resumedHere and str(state.begun) not in state.ended
             if again:
                 self.saved.load()
-            if again or not self.state.restored:
-                self.state.put(at.now)
+            if again or not ofScene.isRestored:
+                ofScene.put(state.now)
             try:
-                rows = [*self.results.rows]
-                self.results.takeUp(rows, len(at.frames), self.saved.seconds)
+                self.results.goOn([*self.results.rows], len(state.frames), self.saved.seconds)
                 if self.frames:
                     self.frames.collect()
             except (OSError, RuntimeError, Unwritable) as error:
@@ -218,62 +196,58 @@ class Run:
         checkpoint, and was over then.
 
         :param name: what it is called on the terminal
-        :param memory: what the stage must know to go on, as it is at the beginning: a dataclass of
-            values that JSON can hold. Checkpoints keep it.
+        :param memory: of the stage at its beginning: a dataclass of values that JSON can hold, and
+            of :func:`masonry.run.checkpoints.record`
         """
         self.entered += 1
-        resumed = self.redoes and not self.advanced
-        if resumed and self.entered < self.at.number:
+        state, resumed = self.state, self.resumedHere and not self.advanced
+        if resumed and self.entered < state.number:
             return None
         if resumed:
-            if self.at.stage != name:
-                raise otherVersion(f"stage '{self.at.stage}'")
-            memory = restored(memory, self.at.memory)
+            if state.stage != name:
+                raise otherVersion(f"stage '{state.stage}'")
+            memory = restored(memory, state.memory)
         else:
-            at, rows = self.at, self.readings.count
-            at.number, at.stage = self.entered, name
-            at.stages = [*at.stages, [name, at.steps, at.seconds["steps"], rows]]
+            state.number, state.stage = self.entered, name
+            begun = [name, state.steps, state.seconds["steps"], self.readings.count]
+            state.stages = [*state.stages, begun]
         self.memory = memory
         return memory
 
     def advance(self, steps, one=None):
-        """Take time steps, and leave a checkpoint if one is due.
+        """Take time steps, and leave a checkpoint if one is due after the last of them, or between
+        slow ones (LOOK_EVERY).
 
-        Ctrl-C and SIGTERM are obeyed after the present step. A checkpoint is made after the last
-        step, and between steps only if they are slow, see LOOK_EVERY.
-
-        Raises Interrupted after Ctrl-C and SIGTERM, and Collapsed if a block has fallen
-        (help(masonry.MasonryEnergy)).
-
-        :param one: function that makes one step, of its number in this call, from 0; None: YADE
-            makes it
+        :param one: function that makes one step, of its number in this call, from 0; None: YADE's
+        :raises Interrupted: after the present step, if the user sent Ctrl-C or SIGTERM
+        :raises Collapsed: if a block has fallen (help(masonry.MasonryEnergy))
         """
-        at = self.at
+        state = self.state
         self.model.loading.keepLoadLine()
-        takesUp = self.takesUp
         # the scene of a checkpoint is that after some of the steps or all
-        if takesUp and self.redoes and at.left > steps:
-            raise otherVersion(f"{at.left} of {steps} steps are left")
-        if takesUp:
-            self.takeUp()
-        if not (takesUp and self.redoes):
-            self.advanced, at.left = True, steps
+        isRest = self.isResumed and self.resumedHere
+        if isRest and state.left > steps:
+            raise otherVersion(f"{state.left} of {steps} steps are left")
+        if self.isResumed:
+            self.beginWriting()
+        if not isRest:
+            self.advanced, state.left = True, steps
         while True:
             self._take(steps, one)
-            self.checkpoints.keep()
+            self.checkpoints.save()
             if self._now - self.checkpoints.since > 60 * self.args.checkpoint_every:
                 self.checkpoints.write()
             if self.interrupted:
                 raise Interrupted()
-            if not at.left:
+            if not state.left:
                 break
-        if self.endsAtFall:
+        if self.context.endsAtFall:
             self.model.checkFallen()
 
     def _take(self, steps, one):
-        """Take steps that are left of an advance, for some time, or until the user interrupts."""
-        at, step = self.at, O.step
-        number, self.checkpoints.safe = steps - at.left, None
+        """Take steps that are left of an advance, until LOOK_EVERY or an interruption."""
+        state, step = self.state, O.step
+        number, self.checkpoints.saved = steps - state.left, None
         now = began = time.perf_counter()
         try:
             while number < steps and not self.interrupted:
@@ -288,18 +262,18 @@ class Run:
             raise Collapsed(self.model.energy.collapse) from None
         finally:
             self._now = now
-            at.seconds["steps"] += now - began
-            at.steps += number - (steps - at.left)
-            at.left = steps - number
+            state.seconds["steps"] += now - began
+            state.steps += number - (steps - state.left)
+            state.left = steps - number
 
     def record(self):
         """Read the model for a row of curve.csv. Returns the reading."""
-        at, head = self.at, CRACKS.head
+        state, head = self.state, CRACKS.head
         with self.clock("rows"):
-            due = not at.widest or abs(O.iter - at.widest[0]) >= LOOKED
+            due = not state.widest or abs(O.iter - state.widest[0]) >= CRACKS_EVERY
             if due and head in self.results.columns:
-                at.widest = [O.iter, self.model.widestCrack()]
-            self.model.widest = at.widest[-1] if at.widest else 0.0
+                state.widest = [O.iter, self.model.widestCrack()]
+            self.model.widest = state.widest[-1] if state.widest else 0.0
             reading = self.readings.add(self.model)
         if self.readings.isDue():
             self.flush()
@@ -312,8 +286,7 @@ class Run:
             self.takeFound(False)
 
     def frame(self, final=False):
-        """Write a frame for ParaView, if the user wants any; the ``final`` one is whole when this
-        returns."""
+        """Write a frame for ParaView, if the user wants any; the final one is whole at once."""
         if self.frames:
             self.flush()
             self.results.begin()
@@ -322,18 +295,16 @@ class Run:
                 self.frames.add(final)
 
     def awaitFrame(self):
-        """Wait for a frame that is written beside the run. Raises Unwritable if the disk refused
-        it."""
+        """Wait for a frame that is written beside the run. Raises Unwritable."""
         with self.clock("frames"), self.auxiliary("a frame for ParaView"):
             self.frames.wait()
 
     def show(self, fraction, detail, final=False):
-        """Show on the terminal how far the present stage has come, if it is time to:
-        :meth:`masonry.run.progress.Progress.show`."""
+        """Show how far the stage has come: :meth:`masonry.run.progress.Progress.show`."""
         if final or self._now - self._shown > SHOW_EVERY:
-            at = self.at
-            rate = at.steps / at.seconds["steps"] if at.steps else 0.0
-            self.progress.show(at.stage, fraction, detail, rate, final)
+            state = self.state
+            rate = state.steps / state.seconds["steps"] if state.steps else 0.0
+            self.progress.show(state.stage, fraction, detail, rate, final)
             self._shown = self._now
 
     # -- the end -----------------------------------------------------------------------------------
@@ -341,12 +312,12 @@ class Run:
     def fall(self, what):
         """Note that the structure has fallen."""
         self.collapsed = True
-        self.results.run["collapse"] = self.at.fall = what
+        self.results.run["collapse"] = self.state.fall = what
         say(f"collapsed: {what}")
 
     def release(self):
         """Let other runs have the folder, and others the signals."""
-        stopListening(self.hear)
+        stopListening(self.recordNote)
         if self.frames:
             self.frames.end()
         if self.results:

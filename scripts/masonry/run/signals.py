@@ -9,11 +9,8 @@ from ..errors import Interrupted
 
 
 class Signals:
-    """What a run does when the user interrupts it.
-
-    In a script the run obeys signals from its beginning to its end; in a notebook only while one of
-    its commands is carried out, and what else a cell does is interrupted as usual.
-    """
+    """What a run does when the user interrupts it: in a script from its beginning to its end, in a
+    notebook while one of its commands is carried out."""
 
     def __init__(self):
         self.interrupted = False  # whether the user has interrupted the run
@@ -36,7 +33,7 @@ class Signals:
     @contextlib.contextmanager
     def breakable(self):
         """Let Ctrl-C and SIGTERM end a block at once, by Interrupted. It must change nothing that a
-        checkpoint keeps; elsewhere these are obeyed between steps."""
+        checkpoint keeps."""
         self._breaks = True
         try:
             if self.interrupted:

@@ -56,7 +56,7 @@ class Outcome:
     def loads(self):
         """What stages loaded, in their order: pairs of the number of the stage and what
         :class:`RunState` keeps of it."""
-        loads = self.scene.running.at.loads
+        loads = self.scene.running.state.loads
         return [(number, loads[str(number)]) for number in sorted(map(int, loads))]
 
     @property
@@ -68,7 +68,7 @@ class Outcome:
     def _freeVibration(self):
         """The first period, the weight of the base in the shear force, and when the velocity of the
         drive had grown, of the first of the pushes that count."""
-        at, rows = self.scene.running.at, self.data.rows
+        at, rows = self.scene.running.state, self.data.rows
         for number in sorted(map(int, at.freeVibrations)):
             if rows and at.stages[number - 1][3] >= rows[0]:
                 return at.freeVibrations[str(number)]
@@ -170,7 +170,7 @@ class Outcome:
     @property
     def data(self):
         """What the numbers of the run are found from, as it stands now."""
-        at, results = self.scene.running.at, self.results
+        at, results = self.scene.running.state, self.results
         column = functools.cache(
             lambda name: results.column(name) if name in results.columns else None
         )
@@ -249,7 +249,7 @@ class Outcome:
     def _addAccuracy(self, run):
         """Add the entries for --accuracy, whose half-widths the answers of the last push get,
         too."""
-        at, asked = self.scene.running.at, self.scene.accuracy
+        at, asked = self.scene.running.state, self.scene.accuracy
         run.update(asked.report(run))
         number = str([n for n, load in self.loads if load[0] == "push"][-1])
         own = accuracy.answers(run["accuracy"])
@@ -257,7 +257,7 @@ class Outcome:
         stage = {"stage": "push", "number": int(number)}
         others = [a for a in at.answers.get(number, []) if a["name"] not in names]
         at.answers = {**at.answers, number: [*({**stage, **one} for one in own), *others]}
-        asked.over()
+        asked.onRunEnded()
 
     # -- files and terminal ------------------------------------------------------------------------
 
@@ -380,7 +380,7 @@ def _ofLoad(outcome, number, load):
     """What is drawn of a load that grew, or was put on step by step: its factor over the
     displacement of what is watched."""
     kind, name, _ = load
-    at, entry = outcome.scene.running.at, outcome.scene.bounds.entries.get(name, {})
+    at, entry = outcome.scene.running.state, outcome.scene.bounds.entries.get(name, {})
     rows = range(at.stages[number - 1][3], len(outcome.results.rows))
     if kind == "lean":
         rows = restsUnder(outcome, name)
@@ -405,7 +405,7 @@ def _ofLoad(outcome, number, load):
 def restsUnder(outcome, name):
     """Rows at the ends of the stages that put on a load and came to rest, by its factor, after the
     row before them."""
-    at, results = outcome.scene.running.at, outcome.results
+    at, results = outcome.scene.running.state, outcome.results
     ends = [stage[3] - 1 for stage in at.stages[1:]] + [len(results.rows) - 1]
     numbers = [n for n, load in outcome.loads if load[:2] == ["lean", name]]
     answers = {n: at.answers.get(str(n), []) for n in numbers}

@@ -14,13 +14,13 @@ from ..background import reportRefusal
 from ..errors import NotResumed, Refused, refuse
 from ..terminal import plain, say
 from ..run import batch
-from ..run.run_state import Saved
-from ..run.option_table import OPTIONS, asOption, those
+from ..run.checkpoints import Saved
+from ..run.option_table import OPTIONS, asOption, optionsWith
 from ..run.presets import PRESETS
 from . import history
 
 #: What a script cannot say: it is about the run at hand.
-OF_THE_RUN = {"help", *OPTIONS} - those("ofScript")
+OF_THE_RUN = {"help", *OPTIONS} - optionsWith("ofScript")
 #: Names that a scene takes beside its options.
 BESIDE = "title plane gravity columns functors arguments allowGaps collapse".split()
 
@@ -55,7 +55,7 @@ class Parser(argparse.ArgumentParser):
         super().__init__(allow_abbrev=False, **settings)
         self.problems = []
         self.raises = False  # whether wrong options raise Refused, and end no program
-        self.free = those("free")
+        self.free = optionsWith("free")
         # argparse knows no exponents and no lists: -5e-1 and -1,2x3 would be options
         self._negative_number_matcher = re.compile(
             r"-(\d+\.?\d*|\.\d+)(e[+-]?\d+)?([x,].*)?$|-(inf|nan)$", re.IGNORECASE
@@ -186,7 +186,7 @@ class Parser(argparse.ArgumentParser):
 
 def _overrides(given, expected):
     """Names of the options that were given and drop the promise of a preset."""
-    harmless = those("harmless")
+    harmless = optionsWith("harmless")
     return [o for o, v in given.items() if o not in harmless and v != expected[o]]
 
 

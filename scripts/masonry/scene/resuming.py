@@ -1,118 +1,16 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What a run that is resumed finds in place of the stages that were over.
+"""How a script goes on that was interrupted. It is read from its beginning again: commands that it
+gave before the checkpoint are left out, and stages as :mod:`masonry.stages.stage` says."""
 
-A script is read from its beginning again. Words that it said before the checkpoint are left out: a
-stage that was over gives what it returned then, with the rows of that time. The stage in which the
-checkpoint was made begins from the state of the scene in Python as it was when the stage began, and
-goes on from the state of the checkpoint with its first steps: see
-:mod:`masonry.run.run`. YADE keeps the rest of the state: :func:`masonry.saveCheckpoint`.
-"""
-
-import base64
 import contextlib
-from types import SimpleNamespace
 from typing import Any
-
-from ..run.checkpoints import alike
-from ..run.run_state import otherVersion
-from .script import PUSHES, asData
-
-
-def stateOf(scene):
-    """What stages have set of a scene, beside what YADE keeps: a dict of values that JSON can
-    hold."""
-    of = ("until", "history", "rate") if scene.pushed else ()
-    return {
-        "model": scene.model.state(),
-        "grown": scene.grown,
-        "loadUnit": scene.loadUnit,
-        "pushed": {name: getattr(scene.pushed, name) for name in of},
-    }
-
-
-def putState(scene, state):
-    """Give a scene a state of :func:`stateOf`. Raises Refused if it is not of the kind of the
-    present one."""
-    like = stateOf(scene)
-    like["model"]["said"] = []  # stands for any number of things that were said of ties
-    if not (_alike(state, like) and _alike(state["model"], like["model"])):
-        raise otherVersion("the state of the scene")
-    scene.model.putState(state["model"])
-    scene.grown, scene.loadUnit = state["grown"], state["loadUnit"]
-    pushed = state["pushed"]
-    scene.pushed = SimpleNamespace(**{**vars(scene.args), **pushed}) if pushed else None
-
-
-def _alike(state, like):
-    return state.keys() == like.keys() and all(alike(state[n], like[n]) for n in like)
-
-
-class State:
-    """What a checkpoint keeps of a scene that is built, beside its state in YADE."""
-
-    def __init__(self, scene):
-        self._scene, self._model = scene, scene.model
-        self._rest = None, ""  # the last state at rest, and it as text
-        self.restored = False  # whether the scene has the state of a checkpoint again
-
-    def kept(self):
-        """Entries of :class:`masonry.run.run_state.RunState`."""
-        atRest, motion = self._model.atRest, self._model.motion
-        if atRest is not self._rest[0]:
-            self._rest = atRest, base64.b64encode(atRest).decode()
-        of = {"places": motion.places, "far": motion.far}
-        return {"now": stateOf(self._scene), "atRest": self._rest[1], **of}
-
-    def put(self, state):
-        """Give the scene the state of a checkpoint."""
-        putState(self._scene, state)
-        self.restored = True
-
-    def takeRest(self, at):
-        """Take the last state at rest from a checkpoint:
-        :class:`masonry.run.run_state.RunState`."""
-        if at.atRest:
-            self._model.atRest = base64.b64decode(at.atRest)
-        self._model.motion.places, self._model.motion.far = at.places, at.far
-
-
-def enter(scene, number, farther):
-    """Begin a stage. Returns how it ended if it was over before the run was resumed and is left out
-    now, else None.
-
-    :param number: of the stage
-    :param farther: whether the script says now that it goes farther; the last stage is then gone on
-        with
-    """
-    running, at = scene.running, scene.running.at
-    if running.takesUp and not running.redoes:
-        ended, last = at.ended.get(str(number), (None, 0))
-        farther = number == at.begun and (farther or _optionsDiffer(scene))
-        if ended and not farther:
-            running.entered = last
-            running.continueFrom(last + 1, False)
-            return ended
-        redoes = number == at.begun
-        running.continueFrom(number, redoes)
-        if not running.state.restored:
-            running.state.put(at.before if redoes else at.now)
-    at.begun, at.before = number, stateOf(scene)
-    return None
-
-
-def _optionsDiffer(scene):
-    """Whether the command line says something else about how far the push goes in which the
-    checkpoint was made."""
-    was, now = scene.running.saved.options, asData(vars(scene.args))
-    differs = any(was.get(name) != now[name] for name in ("until", "history"))
-    return differs and scene.script.isFirst(PUSHES)
 
 
 def saidBefore(scene, word, **arguments):
     """Note a command that is no stage. Returns whether the script of a run that is resumed said it
     before the checkpoint."""
     scene.script.add(word, arguments)
-    if not scene.running.takesUp:
+    if not scene.running.isResumed:
         return False
     scene.script.compare(scene.running.scriptBefore)
     return len(scene.script.words) <= len(scene.running.scriptBefore)

@@ -41,6 +41,7 @@ from ..terminal import say
 from ..memory import withoutCollector
 from ..bricks import Bricks
 from ..run import batch
+from ..run.checkpoints import SceneState
 from ..run.ending import end
 from ..run.presets import BOUND
 from ..run.results import Results
@@ -51,7 +52,7 @@ from . import connections, contact, facts, loads, options, platens, records
 from .description import Description
 from ..materials import Masonry, linesOf, loadingBlock
 from .outcome import Outcome
-from .resuming import State, resume
+from .resuming import resume
 from .targets import Target
 from .script import SHAKES, Call, Script, either
 
@@ -143,7 +144,6 @@ class Scene:
         self.description.deformable = arguments.blocks == "deformable"
         self.script = Script()
         self.calls = []  # every word that was said
-        self.staging = False  # whether a stage is being carried out
         # whether bracket() looks for a load, so that no collapse is followed
         self.bracketing = False
         self.running = Run(name, arguments, self.script.words)
@@ -233,7 +233,7 @@ class Scene:
         """What the stages were run for, in their order: a list of dicts, as in
         :class:`masonry.stages.answers.Answer`, with the ``stage`` and its ``number``.
         """
-        kept, entered = self.running.at.answers, self.running.entered
+        kept, entered = self.running.state.answers, self.running.entered
         numbers = [number for number in sorted(kept, key=int) if int(number) <= entered]
         return [one for number in numbers for one in kept[number]]
 
@@ -296,7 +296,7 @@ class Scene:
                 if begun:
                     prepare(self, word, arguments)
         facts.noteCourse(description)
-        self.running.start(model, self.outcome.space(), State(self))
+        self.running.start(model, self.outcome.space(), SceneState(self))
         Scene.present = self
         atexit.unregister(self._remind)  # of a run that goes on
         atexit.register(self._remind)

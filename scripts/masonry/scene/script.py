@@ -132,16 +132,16 @@ class Script:
 
     def __init__(self):
         self.words = []
-        self._farther = []  # arguments of each word that say how far it goes
+        self._extendable = []  # for each command, the arguments that set its end
 
-    def note(self, act, first, args, settings, farther=()):
-        """Note a word. ``farther`` names those of its arguments that say how far a stage goes."""
-        self.add(act.__name__, asData(argumentsOf(act, first, args, settings)), farther)
+    def note(self, act, first, args, settings):
+        """Note a word."""
+        self.add(act.__name__, asData(argumentsOf(act, first, args, settings)))
 
-    def add(self, word, arguments, farther=()):
-        """Add a word and its arguments as data."""
+    def add(self, word, arguments, extendable=()):
+        """Add a word and its arguments as data; ``extendable`` names those that set its end."""
         self.words.append([word, arguments])
-        self._farther.append(set(farther))
+        self._extendable.append(set(extendable))
 
     def isFirst(self, words):
         """Whether the last word is the first of some kinds that the script says."""
@@ -150,26 +150,26 @@ class Script:
 
     def compare(self, before):
         """Refuse a script that says something else than that of the run that is resumed. Returns
-        whether it goes farther.
+        whether it goes on beyond the end of that.
 
         :param before: ``words`` of that run, up to its checkpoint. The last of them, but for
-            results, is the stage in which that was made, which may go farther now
+            results, is the stage in which that was made, whose end may be another now
         """
         last = max((n for n, (word, _) in enumerate(before) if word != RESULT), default=-1)
-        farther = False
+        extended = False
         for at, (was, now) in enumerate(zip(before, self.words)):
             if was == now:
                 continue
             (name, old), (other, new) = was, now
-            may = self._farther[at] if at == last else set()
+            may = self._extendable[at] if at == last else set()
             changed = {n for n in {**old, **new} if old.get(n) != new.get(n)}
             if name != other or not changed <= may:
                 raise NotResumed(
                     f"--resume: a run goes on as it began: the script said {_spoken(*was)}, now it"
                     f" says {_spoken(*now)}"
                 )
-            farther = True
-        return farther
+            extended = True
+        return extended
 
 
 def _spoken(name, arguments):

@@ -40,8 +40,7 @@ class Answer:
 
 
 def answerText(answer, what=None):
-    """An entry of ``answers`` of run.json as a line to read; ``what``: what it is of, in place of
-    its stage."""
+    """An entry of ``answers`` of run.json as a line; ``what``: what it is of, if not its stage."""
     head = f"{what or answer['stage']}: {answer['name'].replace('_', ' ')}"
     if answer["value"] is None:
         return f"{head}: not found: {answer['how']}"
@@ -52,9 +51,8 @@ def answerText(answer, what=None):
 
 
 def answersText(answers, stages=()):
-    """Entries of ``answers`` of run.json as lines to read. Stages of one kind that look for the
-    load that is held and follow each other, as the trials of a bracket, have one line. If they put
-    on several loads, each load has a line.
+    """Entries of ``answers`` of run.json as lines. Stages of one kind that follow each other and
+    look for the load that is held, as the trials of a bracket, have a line for each load.
 
     :param stages: entries of ``stages`` of run.json, which say what the loads are
     """
@@ -93,7 +91,7 @@ def _searchText(answers, what):
 
 
 def finding(value: Any, first: Any = None) -> Any:
-    """The kind of a number that was found, or None or what is not a number if it was not."""
+    """The kind of a number, or of None or NaN if it was not found."""
     missing = value is None or isinstance(value, float) and math.isnan(value)
     return None if missing else float(number()(value))
 
@@ -106,8 +104,7 @@ def result(
     unit: str = "-",
     how: str = "the script found it",
 ) -> None:
-    """Keep a number of one's own with the answers of the stages: in run.json, on the terminal and
-    as a column of study.csv.
+    """Keep a number with the answers of the stages: in run.json, on the terminal and in study.csv.
 
     :param name: letters, digits and underscores; another result of this name is replaced
     :param value: a number; None, or what is not a number, if it was not found
@@ -118,7 +115,7 @@ def result(
     if not scene.model:
         raise ValueError(f"result {name}: it comes after the first stage")
     scene.calls.append(Call(result, (name, value, unit, how), {}))
-    at, before = scene.running.at, scene.running.scriptBefore
+    at, before = scene.running.state, scene.running.scriptBefore
     later = [word for word, _ in before[len(scene.script.words) + 1 :]]
     if saidBefore(scene, RESULT, name=name) and any(w != RESULT for w in later):
         return  # it was found in the state of that time

@@ -24,10 +24,8 @@ def bound(
     towards: Level | None = None,
 ) -> Any:
     """Limit analysis of the scene as it stands, with a collapse without dilatancy: see
-    :mod:`masonry_limit`.
-
-    Stages that push or lean find their bound by themselves, if there are at most 3000 joints; this
-    is for other loads, and for larger structures.
+    :mod:`masonry_limit`. Stages that push or lean find their bound by themselves, if there are at
+    most 3000 joints; this is for other loads, and for larger structures.
 
     :param target: what is pushed, or a pattern, as in :meth:`push`, along ``direction``; its factor
         is the force of the push [kN]
@@ -61,13 +59,9 @@ def domain(
     normal: Annotated[Numbers, listOf(number("kN", 0, 1e9, above=True))],
     direction: Level = (1, 0, 0),
 ) -> list[dict[str, Any]]:
-    """The N-V domain of a pier: limit analysis of a push under several normal forces, as
-    :meth:`bound` for one.
-
-    The loads of the scene stay as they are; only for limit analysis the vertical force on the
-    platen is replaced. So it says nothing new where the platen is held along z.
-    :func:`masonry_capacity.domain` reads what was found, and ``/usr/bin/python3 -m masonry_capacity
-    --domain`` draws it, with the peaks of runs as points.
+    """The N-V domain of a pier: limit analysis of a push under several normal forces, which replace
+    the vertical force on the platen there alone. :func:`masonry_capacity.domain` reads it, and
+    ``/usr/bin/python3 -m masonry_capacity --domain`` draws it, with the peaks of runs as points.
 
     :param target: a platen that is pushed, with a :meth:`press` that says where the normal force
         acts
@@ -105,8 +99,7 @@ def domain(
 
 
 def _inOrder(scene, find, command, *arguments):
-    """What a function finds of a scene that is built, noted as a command of the script; Ctrl-C ends
-    the run in order."""
+    """What a function finds of a scene that is built, noted as a command of the script."""
     try:
         with scene.noted(command, *arguments), scene.running.listening():
             scene.begin()

@@ -15,7 +15,7 @@ def boundsOf(scene):
     is missing."""
     if scene.only or wings.isInstalled("--preset bound"):
         bounds, running = wings.find("--preset bound"), scene.running
-        return bounds(scene.model, running.at, running.auxiliary)
+        return bounds(scene.model, running.state, running.auxiliary)
     return wings.Absent()
 
 
@@ -39,7 +39,7 @@ def takeFound(scene, wait):
 def findBound(scene, kind, *load):
     """Find the bound of a stage, which pushes or leans."""
     bounds = scene.bounds
-    resumed = scene.running.redoes and scene.running.takesUp
+    resumed = scene.running.resumedHere and scene.running.isResumed
     if scene.args.lean and not scene.only or resumed and not bounds.isGivenUp():
         return  # in a stage that goes on it was found when that began
     lowerUpTo = bounds.SMALL * scene.only

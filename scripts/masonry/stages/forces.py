@@ -1,11 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Loads after the first stage: ``load``, ``wind``, ``press`` and ``pressure`` put them on, ``grow``
-lets any of them grow, alone or together, and ``hold`` holds what was free.
-
-The first four give a load its new value, whatever it was before, and wait for rest, so that
-``bracket`` can search for the largest that is held. The others add to what is there until the
-structure falls, and search by themselves.
-"""
+"""Loads after the first stage. ``load``, ``wind``, ``press`` and ``pressure`` give a load its new
+value and wait for rest, so that ``bracket`` can search for the largest that is held. ``grow`` adds
+loads to what is there until the structure falls, and searches by itself. ``hold`` holds what was
+free."""
 
 import math
 import re
@@ -18,17 +15,8 @@ from ..arguments import Direction, Freedoms, Level, isNumber, kindOf, number, sh
 from ..errors import Refused
 from ..model.load_names import nameOf
 from .bounds import findBound
-
-from ..scene.loads import (
-    Field,
-    Force,
-    Pressure,
-    Stress,
-    checkedForce,
-    doubtPress,
-    doubtWind,
-    windForces,
-)
+from ..scene.loads import Field, Force, Pressure, Stress
+from ..scene.loads import checkedForce, doubtPress, doubtWind, windForces
 from ..scene.pressures import pressures
 from ..scene.targets import AnyTarget, Loaded, MovingPlaten, Part
 from .gravity import Acting, Width, putOn, putOnAnswers
@@ -45,9 +33,9 @@ GROWS = 2.0  # [s] in which a load grows to its whole
 class Forces(Acting):
     """Forces of MasonryLoad engines: of each the vector at a factor of 1 [N]."""
 
-    replaces = False  # whether the forces replace those that are there, and are not added to them
+    replaces = False  # the forces replace those that are there, and are not added to them
     beside = 0, 0, 0  # a force that stays beside those that replace [N]
-    dead = False  # whether what was there grows by the factor, too
+    dead = False  # what was there grows by the factor, too
 
     def __init__(self, loads, forces, name, unit, most, towards=None):
         super().__init__(name, most, unit, towards)
@@ -90,11 +78,11 @@ def _forceOn(scene, target, force, name):
 
 @stage(bounded=True, answers=putOnAnswers)
 def load(scene: Any, target: Loaded, force: Force, longest: Duration | None = None) -> str:
-    """Give a target another dead load, and wait until the structure is at rest or falls.
+    """Give a target another dead load, which replaces the one that it has, and wait until the
+    structure is at rest or falls.
 
-    The force replaces the dead load that the target has, described or put on; it changes within
-    0.02 s, and longer for tall structures. So ``bracket(lambda f: scene.load(target, (0, 0, -f)) ==
-    AT_REST, 1e3, 9e3)`` finds the largest that is held.
+    The load changes within 0.02 s, and longer for tall structures. ``bracket(lambda f:
+    scene.load(target, (0, 0, -f)) == AT_REST, 1e3, 9e3)`` finds the largest that is held.
 
     :param force: three numbers [N]; zeros take the load away
     :param longest: time in the scene after which it is given up [s]; None: 4 s
@@ -105,36 +93,36 @@ def load(scene: Any, target: Loaded, force: Force, longest: Duration | None = No
 
 def _windOn(scene, pressure, towards, part):
     """The load of a wind, in kPa. Raises ValueError."""
-    towards = Vector3(*towards)
     if pressure:  # 0 takes a wind away
         doubtWind(pressure, "wind")
     sign = math.copysign(1, pressure)
-    forces = windForces(scene.description, 1e3 * sign, towards, part, "wind")
+    forces = windForces(scene.description, 1e3 * sign, Vector3(*towards), part, "wind")
     # suction has the engines of a pressure on the same faces, so that one replaces the other
-    made = _onFaces(scene, forces, "wind", towards, part, "kPa", 1e-3 * abs(pressure))
-    made.towards *= sign
-    return made
+    return _inkPa(_onFaces(scene, forces, "wind", towards, part), pressure)
 
 
 def _pressureOn(scene, value, towards, part, normal):
     """The load of a pressure, of which 1 is the whole. Raises ValueError."""
     forces = pressures(scene.description, value, towards, part, normal)
     kind = "pressure" if normal else "pressure in plan"
-    return _onFaces(scene, forces, kind, Vector3(*towards), part, "-", 1.0)
+    return _onFaces(scene, forces, kind, towards, part)
 
 
-def _evenOn(scene, value, towards, part, normal):
+def _evenOn(scene, value, *on):
     """The load of a pressure that is the same everywhere and not 0, in kPa. Raises ValueError."""
-    sign = math.copysign(1, value)
-    made = _pressureOn(scene, 1e3 * sign, towards, part, normal)
-    made.unit, made.most = "kPa", 1e-3 * abs(value)
-    made.towards *= sign
-    return made
+    return _inkPa(_pressureOn(scene, math.copysign(1e3, value), *on), value)
 
 
-def _onFaces(scene, forces, kind, towards, part, unit, most):
+def _inkPa(load, value):
+    """A load of 1 kPa, of which a pressure [Pa] is the whole."""
+    load.unit, load.most = "kPa", 1e-3 * abs(value)
+    load.towards *= math.copysign(1, value)
+    return load
+
+
+def _onFaces(scene, forces, kind, towards, part):
     """The load of forces on faces, by what labels its engines and names it."""
-    along = towards.normalized()
+    along = Vector3(*towards).normalized()
     axes = "_".join(f"{v + 0.0:.6g}".replace("-", "minus") for v in along)
     # YADE makes names of labels
     label = re.sub(r"\W", "_", f"{kind}_towards_{axes}_{part or 'all'}")
@@ -142,7 +130,7 @@ def _onFaces(scene, forces, kind, towards, part, unit, most):
     engines = scene.model.loading.onBricks(label, places)
     what = f"{kind} towards {nameOf(towards)}" + (f" on {part}" if part else "")
     whole = [Vector3(*one.force) for one in forces]
-    return Forces(engines, whole, what, unit, most, along)
+    return Forces(engines, whole, what, "-", 1.0, along)
 
 
 @stage(bounded=True, answers=putOnAnswers)
@@ -154,8 +142,8 @@ def wind(
     longest: Duration | None = None,
 ) -> str:
     """Give the faces that look against a horizontal direction another pressure, and wait as
-    :meth:`load` does. It is added to the wind that grew in :meth:`settle`; another :meth:`wind` of
-    the same direction and part after the first stage replaces it.
+    :meth:`load` does. The wind that grew in :meth:`settle` stays; a later :meth:`wind` of the same
+    direction and part replaces this one.
 
     :param pressure: [Pa]; 0 takes the wind away; ``towards`` and ``part``: as before the first
         stage
@@ -172,9 +160,9 @@ def pressure(
     normal: bool = True,
     longest: Duration | None = None,
 ) -> str:
-    """Give faces another pressure, and wait as :meth:`load` does. It is added to those that grew in
-    :meth:`settle`; another
-    :meth:`pressure` of the same direction, part and ``normal`` after the first stage replaces it.
+    """Give faces another pressure, and wait as :meth:`load` does. Pressures that grew in
+    :meth:`settle` stay; a later :meth:`pressure` of the same direction, part and ``normal``
+    replaces this one.
 
     :param value: [Pa], or a function of the place; 0 takes it away; ``towards``, ``part`` and
         ``normal``: as before the first stage
@@ -197,8 +185,7 @@ def _pressOn(scene, platen, stress, name):
 
 @stage(bounded=True, answers=putOnAnswers)
 def press(scene: Any, platen: MovingPlaten, stress: Stress, longest: Duration | None = None) -> str:
-    """Press a platen with another mean stress on the bricks below it, which replaces that before,
-    and wait as :meth:`load` does.
+    """Press a platen with another mean stress on the bricks below it, and wait as :meth:`load`.
 
     :param stress: mean vertical stress that the bricks feel [Pa]; the weight of the platen is part
         of it
@@ -237,7 +224,7 @@ def grow(
     within: Width = WITHIN,
 ) -> str:
     """Let a load, or several in a fixed proportion, grow evenly beside what is there, until the
-    structure falls or ``most`` times of them are reached; then search for the load that is held.
+    structure falls or they are ``most`` times as large; then search for the load that is held.
 
     ``scene.grow({stone: (2e3, 0, 0)})`` adds a force to a brick, ``scene.grow({top: 0.1e6})`` a
     stress to what presses a platen, and ``scene.grow({}, pressure=2e3, towards=(1, 0, 0))`` an even
@@ -249,9 +236,8 @@ def grow(
     :param most: factor of all of them at the end [-]
     :param dead: whether what acts already grows, too: at a factor of 1 dead loads, presses without
         the weight of their platens, and pressures are twice what they were. Gravity stays
-    :param pressure: [Pa] at a factor of 1, or a function of the place; ``towards``, ``part`` and
-        ``normal``: of it, as in
-        :meth:`pressure`
+    :param pressure: [Pa] at a factor of 1, or a function of the place, with ``towards``, ``part``
+        and ``normal`` as in :meth:`pressure`
     :param over: time in which they grow to that [s]
     :param within: as in :meth:`tilt`
     :returns: as in :meth:`tilt`. ``scene.factor`` of one load alone is its amount: of a force in
@@ -311,8 +297,8 @@ def _findBound(scene, made):
 def hold(scene: Any, target: AnyTarget, axes: Freedoms = "xyzXYZ") -> str:
     """Hold a target where it is now. What follows is the next stage's.
 
-    A platen that is pressed and then held along z keeps its height, and one held about Y does not
-    turn: so does the top of many test rigs.
+    The top of many test rigs is pressed, then held along z and about Y: it keeps its height and
+    does not turn.
 
     :param target: a platen or a :meth:`handle`, or a brick that was held and released: what has
         columns for its reaction
@@ -351,8 +337,8 @@ def hold(scene: Any, target: AnyTarget, axes: Freedoms = "xyzXYZ") -> str:
 
 
 def prepare(scene, word, arguments):
-    """Make the engines of a load that the script puts on after the first stage, before a checkpoint
-    is loaded that has them."""
+    """Make the engines of a load after the first stage, before a checkpoint is loaded that has
+    them."""
     loading, get = scene.model.loading, arguments.get
     target = get("target") or get("platen")
     if word in PUSHES and (isinstance(target, dict) or target not in scene.targets):

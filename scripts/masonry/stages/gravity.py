@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Horizontal acceleration and a tilting ground: ``tilt``, ``accelerate`` and ``lean``, and the
-search with ``bracket``. What acts and can be changed is an :class:`Acting`."""
+search with ``bracket``."""
 
 import math
 from typing import Annotated, Any, Callable
@@ -13,7 +13,7 @@ from ..units import GRAVITY
 from ..errors import checkPlane
 from ..model.load_names import nameOfLean
 from .bounds import findBound
-from .growing import TRIAL, WITHIN, ends, follow, found, grow
+from .growing import TRIAL, WITHIN, Tried, ends, follow, found, grow
 from .rest import WAITED, Resting, waitForRest
 from .answers import AT_REST, MOVING
 from .stage import Duration, stage
@@ -22,11 +22,10 @@ LEAN_GROWS = 0.2  # [s] in which a lean grows
 
 
 class Acting:
-    """What acts. A share of 1 is the whole growth, and its factor is ``most`` [-].
+    """A load that can grow, from a share of 0 to 1, where its factor is ``most``.
 
     Its kinds have ``now()``, their present values as a list of numbers, ``put(values)``, and
-    ``at(began, share)``, their values when a share of the growth is over, 0 to 1 [-], from those
-    when it began.
+    ``at(began, share)``, their values at a share [-], from those at the beginning.
 
     :param name: under which its bound is found
     :param unit: of the factor
@@ -90,7 +89,7 @@ class Tilting(Acceleration):
 def putOnAnswers(scene, rows):
     """The load that was put on, as held or as not held."""
     asked, unit = scene.running.memory.goal, scene.loadUnit
-    end, load = [asked, 1e3 * scene.model.loading.alongNow()], f"{asked:.4g} {unit}"
+    end, load = Tried(asked, 1e3 * scene.model.loading.alongNow()), f"{asked:.4g} {unit}"
     if scene.ended == AT_REST:
         return ends(scene, end, "the structure came to rest under it", None, f"it held {load}")
     why = f"the structure did not come to rest under {load}"
@@ -114,8 +113,8 @@ def tilt(
     rate: Annotated[float, number("degrees/s", 1e-6, 1e6)] = 1.0,
     within: Width = WITHIN,
 ) -> str:
-    """Tilt the ground, and with it gravity, until the structure falls or the angle is reached; then
-    search for the tilt that it holds.
+    """Tilt the ground, until the structure falls or the angle is reached; then search for the tilt
+    that it holds.
 
     :param towards: horizontal direction in which the structure leans
     :param rate: [degrees/s]
@@ -141,7 +140,7 @@ def accelerate(
     within: Width = WITHIN,
 ) -> str:
     """Let a horizontal acceleration grow evenly, until the structure falls or ``most`` is reached;
-    then search for the one that it holds.
+    then search for that which it holds.
 
     :param most: [g]
     :param towards: horizontal direction of the force on the blocks
@@ -175,8 +174,7 @@ def putOn(scene, name, load, longest, over=0.0):
     """Let a load grow within a short time, and wait until the structure is at rest or falls. With
     ``--preset bound`` it stays if limit analysis finds that it is carried.
 
-    :param longest: time in the scene after which it is given up [s]; None:
-        :data:`masonry.stages.growing.TRIAL`, and longer on soft springs
+    :param longest: [s]; None: :data:`masonry.stages.growing.TRIAL`, and longer on soft springs
     :param over: time in which it grows at least [s]
     """
     if scene.only:

@@ -2,11 +2,10 @@
 """Slow pushes of a target, as the drive of a testing machine makes them: ``push``, ``cycle`` and
 ``follow``.
 
-In a pattern several blocks are pushed by forces in a fixed proportion, as floors in a triangle, a
-mode or masses take them. The drive moves the mean of all points, by the shares of their forces, at
-a constant velocity. That is the displacement on which the whole force does work, so the push
-follows the structure beyond its peak. Displacements of the push are those of one target, its
-control.
+In a pattern several blocks are pushed by forces in a fixed proportion. The drive moves the mean of
+their points, weighted by the shares of the forces, at a constant velocity: the whole force does
+work on this displacement, so the push follows the structure beyond its peak. Displacements of the
+push are those of one target, its control.
 """
 
 import zlib
@@ -45,11 +44,10 @@ from .answers import DONE, Answer
 from .rest import rampTime
 from .stage import stage
 
-#: What the stages of this file take from the command line.
-OPTIONS = "until", "history", "rate"
+OPTIONS = "until", "history", "rate"  # of the command line, for the stages of this file
 PATTERNS = "masses", "triangle", "mode"  # over all blocks
 LONGEST = 20  # the longest first period of which the shape is looked for, over rampTime() [-]
-FREE = 1e-12  # of the sum of all forces: what a block takes at least that is part of a pattern [-]
+FREE = 1e-12  # least share of a block in a pattern [-]
 
 
 def pushed(value: Any, first: Any = None) -> Any:
@@ -91,7 +89,7 @@ def patternOf(scene: Any, value: Any, direction: Any, args: Any) -> Any:
         name = " and ".join(f"{share:.4g} {target.name}" for target, share in shares.items())
         return Pattern(name, tuple((t.body, t.point, s) for t, s in shares.items()))
     name = value if isinstance(value, str) else "a pattern"
-    if scene.running.redoes and scene.running.takesUp:
+    if scene.running.resumedHere and scene.running.isResumed:
         # its drive has the pattern, which was found when the push began
         return _named(patternOfDrive(scene.model.loading, name))
     if scene.model.zones:
@@ -114,8 +112,7 @@ def patternOf(scene: Any, value: Any, direction: Any, args: Any) -> Any:
 
 
 def _named(pattern):
-    """A pattern whose name tells it from others: what a mode or a function gives is known by its
-    numbers alone."""
+    """A pattern whose name has a number of its own, if it is a mode or a function."""
     if pattern.name in ("masses", "triangle"):
         return pattern
     numbers = [(body, f"{share:.6g}") for body, _, share in pattern.parts]
@@ -124,10 +121,8 @@ def _named(pattern):
 
 
 def _shapeOf(model, value, direction, args):
-    """The force on a block over its mass, as a function of its body, which raises Refused: of a
-    uniform acceleration, with the height above the lowest brick, in the first mode along the push
-    in the present state, or as a function of the place of its centre [m].
-    """
+    """The force on a block over its mass, as a function of its body, which raises Refused.
+    Parameters as in :func:`push`."""
     if value == "mode":
         mode = firstMode(model, direction, LONGEST * rampTime(args))
         if mode is None:
@@ -157,8 +152,7 @@ def _shapeOf(model, value, direction, args):
 
 
 def controlOf(scene: Any, value: Any, control: Target | None) -> Target:
-    """The target whose displacement a push counts: the one that is given, else what is pushed, of a
-    dict the highest target, else what is watched or moves. Raises Refused."""
+    """The target whose displacement a push counts, as in :func:`push`. Raises Refused."""
     if control or isinstance(value, Target):
         return control or value
     found = (
@@ -174,8 +168,7 @@ def controlOf(scene: Any, value: Any, control: Target | None) -> Target:
 
 
 def peaks(scene, rows):
-    """The largest force that both ends carried, on either side if the push goes there and back,
-    with the displacement there."""
+    """The largest force that both ends carried, on each side of a loop, with the displacement."""
     looped, run = bool(scene.pushed.history), {"stages": [{"load": ["push"], "first_row": 0}]}
     if looped:
         run["history"] = {}
@@ -196,7 +189,7 @@ def peaks(scene, rows):
         yield Answer(f"displacement_at_{name}", "mm", data[MOVED][at], how)
 
 
-@stage(bounded=True, farther=("until",), options=OPTIONS, answers=peaks)
+@stage(bounded=True, extendable=("until",), options=OPTIONS, answers=peaks)
 def push(
     scene: Any,
     target: Pushed,
@@ -209,10 +202,9 @@ def push(
     """Push a target at a constant velocity, as the drive of a testing machine does, or several
     points in a pattern.
 
-    In a pattern the forces keep their proportion, whatever the structure does, and the mean
-    displacement of the points, by their shares of the force, grows at the rate. The shares are
-    forces: a triangle over floors of other masses is mass times height. Loads of
-    :meth:`load` and :meth:`press` are no masses; a :class:`masonry.bricks.Floor` has one.
+    In a pattern the forces keep their proportion, and the mean displacement of the points, weighted
+    by their shares of the force, grows at the rate. Loads of :meth:`load` and :meth:`press` are no
+    masses; a :class:`masonry.bricks.Floor` has one.
 
     :param target: a platen that moves, or a :meth:`handle`; or a dict from some of these to their
         shares of the force, ``{roof: 2, floor: 1}``; or, for a force on every rigid block that is
@@ -232,7 +224,7 @@ def push(
     return _drive(scene, "push", target, *how, until=until and until * scene.share)
 
 
-@stage(bounded=True, farther=("amplitudes", "repeats"), options=OPTIONS, answers=peaks)
+@stage(bounded=True, extendable=("amplitudes", "repeats"), options=OPTIONS, answers=peaks)
 def cycle(
     scene: Any,
     target: Pushed,
@@ -263,7 +255,7 @@ def cycle(
     return _drive(scene, "cycle", target, *how, history=text)
 
 
-@stage(bounded=True, farther=("path",), options=OPTIONS, answers=peaks)
+@stage(bounded=True, extendable=("path",), options=OPTIONS, answers=peaks)
 def follow(
     scene: Any,
     target: Pushed,
@@ -273,8 +265,7 @@ def follow(
     continued: bool = False,
     control: AnyTarget | None = None,
 ) -> str:
-    """Push a target through the displacements of a CSV file, which has a column
-    ``displacement_mm``.
+    """Push a target through the displacements of a CSV file with a column ``displacement_mm``.
 
     :param continued: and other parameters: as in :meth:`push`
     """
@@ -296,7 +287,7 @@ def _drive(scene, name, target, direction, rate, continued, control, **aim):
     scene.pushed = args
     counted = "" if pushed is control else control.name
     began = f"{pushed.name} {[round(v, 9) for v in direction]}" + f" {counted}" * bool(counted)
-    if continued and began not in running.at.origins:
+    if continued and began not in running.state.origins:
         raise ValueError(
             f"{name}: continued: {pushed.name} has not been pushed along {tuple(direction)} before,"
             " with this control"
@@ -311,7 +302,7 @@ def _drive(scene, name, target, direction, rate, continued, control, **aim):
 
 
 def _argumentsOf(scene, name, until=None, history=None):
-    """The options of the run, with what this push goes to. ``--until`` or ``--history`` are for the
+    """The options of the run, with the aim of this push. ``--until`` and ``--history`` are for the
     first push alone."""
     args = SimpleNamespace(**vars(scene.args))
     if (args.until or args.history) and scene.script.isFirst(PUSHES):

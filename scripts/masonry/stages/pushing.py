@@ -18,28 +18,22 @@ from .rest import rampTime
 
 ROW_EVERY = 0.01  # [mm] of a push between rows of curve.csv
 SHORT = 0.05  # [mm]: a shorter push has rows that are closer together
-# [mm] from a turning point of a history at which the drive turns: what remains of the path takes it
-# there
-ARRIVED = 2e-3
+ARRIVED = 2e-3  # [mm] before a turning point: the drive turns there, since it brakes on the way
 GROWING = 20  # rows at least while the velocity of the drive grows
 LONGEST = 20  # the longest first period that is looked for, over rampTime() [-]
 FRAMES = 200  # for ParaView along a history, beside those at its turning points and zeros
-#: A push has collapsed by the mean of its force over so much of it [mm], and over its first period
-#: at least. If no period was found, it is over the longest that was looked for.
+#: [mm] over which the force is averaged that decides on a collapse, but at least over the first
+#: period, or over the longest that was looked for if none was found.
 AVERAGED = 1.0
-#: A push is over where the drive has gone so many times the path of the target whose displacement
-#: counts [-].
+#: Path of the drive over that of the target whose displacement counts, at which a push is over [-].
 UNFOLLOWED = 10
-# of the peak: a larger fall within a tenth of a millimetre is few bricks that give way at once
-SUDDEN = 0.1
-# of what loops lose: a larger share of damping is a warning, because the loops are too fat by it
-DAMPED = 0.1
+SUDDEN = 0.1  # loss of force over the peak, within 0.1 mm, that few bricks cause at once [-]
+DAMPED = 0.1  # share of damping in what loops lose, above which it is a warning [-]
 
 
 @dataclass
 class Pushing:
-    """What a push remembers. Pairs are of the negative and of the positive side, and positive
-    outwards."""
+    """What a push remembers. Pairs are of the negative and the positive side, positive outwards."""
 
     origin: list | None = None  # Loading.topDisplacement() when the push began [m]
     now: float = 0.0  # time of the last row [s]
@@ -55,8 +49,7 @@ class Pushing:
     turned: bool = False  # whether the drive has turned since the push began
     since: float = 0.0  # time from which the velocity grows [s]
     growth: float = 0.0  # velocity then, in the present direction, over the full one [-]
-    #: Of the last rows, as far as AVERAGED says: time [s] and base shear [kN]; their mean decides
-    #: whether it has collapsed.
+    #: Time [s] and base shear [kN] of the last rows, over which AVERAGED takes the mean.
     recent: Sequence[Sequence[float]] = ()
     peaks: Sequence[float] = (0.0, 0.0)  # largest mean so far [kN]
     peaksAt: Sequence[float] = (0.0, 0.0)  # displacement there [mm]
@@ -69,9 +62,8 @@ class Pushing:
 
     def note(self, shear, span):
         """Keep the peaks, with the base shear of the last row [kN]. Returns its mean over a time
-        [s], or None when that is not over: what vibrates dips below any share of its peak, and a
-        spike when the drive begins is no strength.
-        """
+        [s], or None before that is over: a vibration dips below any share of its peak, and a spike
+        when the drive begins is no strength."""
         over = [one for one in self.recent if one[0] <= self.now - span]
         self.recent = [*over[-1:], *self.recent[len(over) :], [self.now, shear]]
         if not over:
@@ -90,18 +82,17 @@ class Pushing:
         return self.path - self.travelled(direction) > max(1.0, 0.1 * whole)
 
     def hasLost(self, direction, shear, top):
-        """Whether the wall is farther out than ever before, a millimetre beyond the peak, and less
-        than a fifth of that is left: in a mean at its base, and in what it holds the drive with now
-        [kN]. A slow wave can take the base alone below any share of a peak.
-        """
+        """Whether the wall is farther out than ever before, a millimetre beyond the peak, and both
+        the mean base shear and the present force of the drive [kN] are below a fifth of it. A slow
+        wave can take the base alone below any share of a peak."""
         side, out = direction > 0, direction * self.moved
         if shear is None or out <= max(self.reach[side], self.peaksAt[side] + 1):
             return False
         return max(direction * shear, direction * top) < 0.2 * self.peaks[side]
 
     def passOn(self, goals):
-        """Go on to the first point that is not reached yet. Returns whether there is one, and
-        whether the drive turns."""
+        """Go on to the next point of the path. Returns whether there is one, and whether the drive
+        turns."""
         turned = False
         while True:
             goal = goals[self.passed]
@@ -121,32 +112,28 @@ class Pushing:
 
 
 def _exchanged(pair, side, value):
-    """A pair with another value on one side. A checkpoint may hold the old pair, which stays as it
-    is."""
+    """A pair with another value on one side; a checkpoint may hold the old pair."""
     return [pair[0], value] if side else [value, pair[1]]
 
 
 def drivePush(scene, name, args, began, continued=False):
     """Drive the pushed target to ``--until`` or along ``--history``, with rows and frames.
 
-    When the drive begins, its velocity grows evenly in time, from rest to ``--rate`` within one
-    first period of the structure, which is measured then: a motion that begins so leaves no swing
-    of that period. If not all blocks are driven, nothing is damped while it grows: numerical
-    damping would act as more mass. Where the history turns, the velocity changes within whole
-    periods, together
-    :func:`rampTime` at least, because open joints make periods longer. Where no period is found
-    both take :func:`rampTime`. The drive brakes by the displacement that curve.csv has, so the wall
-    turns within 0.01 mm of the history's turning points. Other points are passed at full speed, and
-    so is the end, unless it is that of a file.
+    The velocity grows evenly from rest to ``--rate`` within one first period of the structure,
+    which is measured then, so that no swing of that period is left. If not all blocks are driven,
+    nothing is damped while it grows: numerical damping would act as more mass. Where the history
+    turns, the velocity changes within whole periods, :func:`rampTime` at least, because open joints
+    make periods longer. Where no period is found both take :func:`rampTime`. The drive brakes by
+    the displacement of curve.csv, so the wall turns within 0.01 mm of the turning points. Other
+    points are passed at full speed, and so is the end, unless it is that of a file.
 
-    Where the drive is slower than at full speed, the time between rows is the same or less. Frames
-    of a history are also at its turning points and where it passes through zero, unless the frame
-    before is less than half of their spacing away. A wall has collapsed as :func:`_lost` says, and
-    a loop that unloads is no collapse.
+    Where the drive is slower, the time between rows is the same or less. Frames of a history are
+    also at its turning points and zeros, unless the frame before is less than half of their spacing
+    away. A wall has collapsed as :func:`_lost` says.
 
     :param args: the options of the run, with the ``until``, ``history`` and ``rate`` of this push
-    :param began: under this name the run keeps where the push began; ``continued``: displacements
-        count from there
+    :param began: name under which the run keeps where the push began
+    :param continued: whether displacements count from there
     """
     run, model = scene.running, scene.model
     drive = model.loading.push
@@ -173,7 +160,7 @@ def drivePush(scene, name, args, began, continued=False):
         drive.velocity = full * growth
         # A velocity that grew in stairs would make the pushed block swing in time with them.
         if start < growth:
-            drive.ramp = run.at.left or steps
+            drive.ramp = run.state.left or steps
             drive.acceleration = full * (growth - start) / (steps * O.dt)
         run.advance(steps)
         at.driven += 0.5 * args.rate * (abs(start) + abs(growth)) * steps * O.dt
@@ -204,13 +191,13 @@ def drivePush(scene, name, args, began, continued=False):
 
 
 def _entered(scene, name, args, at, began, continued):
-    """Begin a push, with its first row and frame and the first period of the structure along it, or
-    go on with it. Returns the points of its path. Parameters as in :func:`drivePush`."""
+    """Begin a push, with its first row, frame and period, or go on with it. Returns the points of
+    its path. Parameters as in :func:`drivePush`."""
     run, model = scene.running, scene.model
     first, origin = at.origin is None, at.origin
     if first:
         here = list(model.loading.topDisplacement())
-        origin = run.at.origins[began] if continued else here
+        origin = run.state.origins[began] if continued else here
         at.moved = at.last = at.start = 1e3 * (here[0] - origin[0])
     if not args.history and not args.until > at.moved:
         raise Refused(
@@ -223,7 +210,7 @@ def _entered(scene, name, args, at, began, continued):
     model.loading.goal = at.passed + 1, goals[at.passed].displacement
     model.loading.origin = at.origin = origin
     if first:
-        run.at.origins = {**run.at.origins, began: origin}
+        run.state.origins = {**run.state.origins, began: origin}
         at.now = at.since = O.time
         at.moved = 1e3 * run.record().along
         run.frame()
@@ -254,8 +241,7 @@ def _lost(model, at, reading, direction, mean, whole):
 
 
 def _measuredPeriod(scene, name, args, longest):
-    """The first period along a push that begins [s], or 0 with a note if none is found up to the
-    longest [s]."""
+    """The first period along a push [s]; 0 with a note if none up to the longest is found [s]."""
     run, loading = scene.running, scene.model.loading
     # a drive of all blocks would hold the momentum by which the period is found
     loading.push.driven = not loading.push.damped
@@ -275,16 +261,15 @@ def _measuredPeriod(scene, name, args, longest):
 
 
 def _keepVibration(run, *values):
-    """Keep the period of a push, the weight of the base in its shear force when its velocity has
-    grown, and the time then."""
-    run.at.freeVibrations = {**run.at.freeVibrations, str(run.entered): [*values]}
+    """Keep the values of RunState.freeVibrations."""
+    run.state.freeVibrations = {**run.state.freeVibrations, str(run.entered): [*values]}
 
 
 def _rampOf(at, args, every, turns):
-    """Time in which the velocity of the drive grows from 0 to the full one [s], and how many steps
-    each row has then.
+    """Time in which the velocity of the drive grows from 0 to the full one [s], and steps of a row
+    then.
 
-    :param every: how many steps are between rows at full speed
+    :param every: steps of a row at full speed
     :param turns: whether the drive turns, and does not begin
     """
     least = rampTime(args)
@@ -298,10 +283,10 @@ def _rampOf(at, args, every, turns):
 
 def _pace(at, goal, args, every):
     """Velocities of the drive at the end and at the beginning of the next row, over the full one,
-    and how many steps the row has, from what a push remembers. Parameters as in :func:`_rampOf`.
+    and the steps of the row. Parameters as in :func:`_rampOf`.
 
-    The velocity grows evenly to the full one, but is not more than what can be braked before the
-    next turn: √(2·a·s) at the distance s with the deceleration a.
+    The velocity grows evenly, but can be braked before the next turn: at most √(2·a·s) at the
+    distance s with the deceleration a.
     """
     growing, closer = _rampOf(at, args, every, at.turned)
     braking, _ = _rampOf(at, args, every, True)
@@ -320,14 +305,13 @@ def _pace(at, goal, args, every):
 
 
 def _sum(growth, more):
-    """A velocity over the full one that has grown; it is 1 at most, also after the sum of equal
-    parts."""
+    """A velocity over the full one that has grown, exactly 1 after the sum of equal parts."""
     grown = growth + more
     return 1.0 if grown > 1 - 1e-9 else grown
 
 
 def pathOf(args, start=0.0):
-    """How far the drive goes in all from a displacement on, there and back [mm]."""
+    """Length of the path of the drive from a displacement on, there and back [mm]."""
     points = args.history["points_mm"] if args.history else [args.until]
     return pathLength(points, start)
 
@@ -339,8 +323,7 @@ def rowSpacing(args):
 
 
 def rowCount(args):
-    """How many rows of curve.csv a push has, about. A turn takes as long as the path at full speed
-    in a ramp."""
+    """Number of rows of a push, about. A turn takes as long as the path at full speed in a ramp."""
     turning = turns(args.history["points_mm"]) if args.history else 0
     return (pathOf(args) + turning * args.rate * rampTime(args)) / rowSpacing(args)
 
@@ -351,13 +334,11 @@ def frameSpacing(args):
 
 
 def tooFast(args, imbalance):
-    """The warning of a push that is too fast, with what would do: the imbalance grows with the rate
-    at least."""
+    """The warning of a push that is too fast, with a remedy: the imbalance grows with the rate."""
     slower = f"--rate {float(f'{args.rate * IMBALANCE / imbalance:.2g}'):g}"
     cure = "--damping-kind combined" if args.damping_kind == "local" else slower
-    # The stiffest joints swing with a period of four time steps if the step is 1/√2 of the limit
-    # without damping. Combined damping then finds the same signs in every swing, and can brake a
-    # steady motion.
+    # If the step is 1/√2 of the limit without damping, the stiffest joints swing in four steps.
+    # Combined damping then finds the same signs in every swing, and can brake a steady motion.
     default, fours = USUAL["dt_fraction"], 0.7 * math.sqrt(1 + args.damping)
     if args.dt_fraction > max(fours, default):
         cure = f"--dt-fraction {default:g}"

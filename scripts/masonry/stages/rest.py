@@ -17,22 +17,17 @@ from ..scene.resuming import saidBefore
 from .answers import AT_REST, MOVING
 from .stage import Duration, stage
 
-# [s] in which loads and velocities grow: some ten periods of a wave through the height of a wall
-RAMP = 0.02
-CALM = 1e-5  # kinetic over elastic energy of a structure that is said to be at rest [-]
-LOOKS = 3  # so many looks one after the other find a structure at rest before it is said to be
-EVERY = 100  # steps between two looks
-#: If time steps are long: steps in which a part of the loads is put on, a third at most, and after
-#: which it is seen whether a block has fallen far.
-SHORTER = 1, 2, 5, 10, 20, 50, EVERY
-#: Periods of a structure on springs to the ground in which loads grow, so that it sinks slowly,
-#: however soft they are.
+RAMP = 0.02  # [s] in which loads and velocities grow: ten periods of a wave through a wall
+REST_ENERGY_RATIO = 1e-5  # largest kinetic over elastic energy of a structure at rest [-]
+CONSECUTIVE_CHECKS = 3  # that find a structure at rest, before it is said to be
+EVERY = 100  # steps between two checks
+#: Steps in which a part of the loads is put on, a third at most, and after which it is seen whether
+#: a block has fallen far: few if time steps are long.
+CHECK_INTERVALS = 1, 2, 5, 10, 20, 50, EVERY
+#: Periods on springs to the ground in which loads grow, so that a structure sinks slowly.
 PERIODS = 4.0
-#: Periods on springs for which a trial waits at least.
-WAITED = 10.0
-#: Height over the least width from which a structure that has settled is looked at for buckling
-#: [-].
-SLENDER = 8.0
+WAITED = 10.0  # periods on springs for which a trial waits at least
+SLENDER = 8.0  # height over the least width from which a settled structure may buckle [-]
 SWINGING = 4.0  # [s] in the scene: settle() waits at least so long after the release of a drive
 SETTLING = 0.5  # most local damping of deformable units in settle(): with more they creep to rest
 
@@ -53,7 +48,7 @@ class Resting:
     """What a stage remembers that waits for rest."""
 
     done: int = 0  # steps so far
-    quiet: int = 0  # looks that found it at rest, one after the other
+    quiet: int = 0  # checks that found it at rest, one after the other
     begun: list | None = None  # the load when it began to be put on
     goal: float = 0.0  # factor of the load that is put on [-]
 
@@ -66,8 +61,7 @@ def buckles(scene: Any) -> bool:
 
 
 def isSlender(scene: Any) -> bool:
-    """Whether a structure is so high over its width that it may buckle under its own weight, or
-    stands on springs."""
+    """Whether a structure is so high over its width, or on springs, that it may buckle."""
     box = scene.description
     wide, deep, high = (b - a for a, b in zip(box.low, box.high))
     least = wide if box.plane else min(wide, deep)
@@ -83,10 +77,9 @@ def settle(
 ) -> str:
     """Let gravity, presses and dead loads act until the structure is at rest.
 
-    At rest the supports carry all loads but for half a per cent, and the horizontal ones alone but
-    for half a per cent, and hardly anything moves. Presses and dead loads grow when it is called
-    first; they stay when it is called again, for example after :meth:`release`. What then falls
-    slowly needs ``longest``.
+    At rest the supports carry all loads, and the horizontal ones alone, but for half a per cent,
+    and hardly anything moves. Presses and dead loads grow when it is called first; they stay when
+    it is called again, for example after :meth:`release`. What then falls slowly needs ``longest``.
 
     :param longest: time in the scene after which it is given up [s]; None: 0.4 s, and longer for
         tall structures, for soft springs under platens, and after the release of a drive
@@ -122,7 +115,7 @@ def waitForRest(scene, at, longest, grow, over=0.0, record=True, buckling=False)
     slowest = model.supports.slowest()
     ramp = max(growthTime(scene), over, PERIODS * slowest)
     growing = max(1, int(ramp / O.dt))
-    every = max(n for n in SHORTER if n == 1 or n <= growing / 3)
+    every = max(n for n in CHECK_INTERVALS if n == 1 or n <= growing / 3)
     swinging = SWINGING * scene.args.density_scaling**0.5 * (model.motion.far == FAR)
     longest = longest or max(20 * ramp, WAITED * slowest, swinging)
     if math.isinf(O.dt):
@@ -133,7 +126,7 @@ def waitForRest(scene, at, longest, grow, over=0.0, record=True, buckling=False)
             f"longest {longest:g} s, after which the wait for rest ends, must be above the time"
             f" step, {O.dt:.3g} s"
         )
-    while (at.done < most or at.done % EVERY) and at.quiet < LOOKS:
+    while (at.done < most or at.done % EVERY) and at.quiet < CONSECUTIVE_CHECKS:
         load = min(1.0, (at.done + every) / growing)
         grow(load)
         running.advance(every)
@@ -143,7 +136,7 @@ def waitForRest(scene, at, longest, grow, over=0.0, record=True, buckling=False)
             continue
         missing, moving = model.supports.unrest()
         grown = at.done > (1.2 if over else 1.1) * growing
-        rests = missing < REST and moving < CALM and grown
+        rests = missing < REST and moving < REST_ENERGY_RATIO and grown
         at.quiet = at.quiet + 1 if rests else 0
         if load == 1:
             model.motion.checkFall()
@@ -152,16 +145,16 @@ def waitForRest(scene, at, longest, grow, over=0.0, record=True, buckling=False)
         running.show(
             at.done / most,
             lambda: f"unbalanced {100 * missing:+.2f} %, kinetic/elastic {moving:.1e}",
-            at.quiet == LOOKS or at.done >= most,
+            at.quiet == CONSECUTIVE_CHECKS or at.done >= most,
         )
-    if at.quiet < LOOKS:
+    if at.quiet < CONSECUTIVE_CHECKS:
         missing, moving = model.supports.unrest()
         say(
             f"note: the structure is not at rest after {at.done * O.dt:.2f} s:"
             f" {100 * missing:.2f} % of the load is missing at the supports, kinetic over elastic"
             f" energy is {moving:.1e}; longest=... [s] waits longer"
         )
-    ended = AT_REST if at.quiet == LOOKS else MOVING
+    ended = AT_REST if at.quiet == CONSECUTIVE_CHECKS else MOVING
     if buckling and ended == AT_REST and buckles(scene):
         say(
             "note: the structure buckles under this load: a small push sideways grows, so it counts"
@@ -178,15 +171,15 @@ def waitForRest(scene, at, longest, grow, over=0.0, record=True, buckling=False)
 
 
 def stepBack(scene: Any) -> None:
-    """Take the scene back to its last state at rest, also after a collapse. The load that was held
-    then acts again, also the one that a growth or a bracket has found. Rows of curve.csv stay."""
+    """Take the scene back to its last state at rest, also after a collapse, with the load that was
+    held then, also by a growth or a bracket. Rows of curve.csv stay."""
     with scene.noted(stepBack):
         if scene.only:
             return
         running, model = scene.running, scene.model
         known = model is not None and model.atRest is not None
         before, at = running.scriptBefore, len(scene.script.words)
-        if running.takesUp and at < len(before):  # it had none yet
+        if running.isResumed and at < len(before):  # it had none yet
             known = before[at][1].get("known", known)
         isEarlier = saidBefore(scene, "stepBack", known=known)
         if not known:
@@ -195,5 +188,5 @@ def stepBack(scene: Any) -> None:
         scene.results.run.pop("collapse", None)
         if not isEarlier:
             loadScene(model.atRest)
-            running.checkpoints.mark()
+            running.checkpoints.setRollbackPoint()
             model.motion.restart()

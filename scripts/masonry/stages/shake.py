@@ -12,9 +12,9 @@ import numpy as np
 from yade import O, Vector3
 
 from ..arguments import FilePath, Level, Numbers, listOf, number, oneOf, validated
-from ..folders import replaced
+from ..folders import replaced, writing
 from ..model.period import firstPeriod
-from ..errors import Refused, Unwritable
+from ..errors import Refused
 from ..terminal import say
 from ..run import batch
 from ..scene.accelerograms import components, drift
@@ -31,8 +31,7 @@ LONGEST = 4.0  # [s]: the longest first period that is looked for
 
 
 def displacements(scene, rows):
-    """The largest horizontal displacement of every target that moves, and what remains at the end,
-    with the direction's sign."""
+    """The largest horizontal displacement of every target that moves, and that at the end."""
     for target in scene.description.targets.values():
         for axis in "xy" if not target.fixed else "":
             if values := rows(f"{target.name}_{axis}_mm"):
@@ -63,7 +62,7 @@ class Damped(Timed):
 
 
 def inRealTime(scene, name, damping, massDamping=0.0, stiffnessDamping=0.0):
-    """Begin a stage in real time with a damping of its own. Returns what it remembers."""
+    """Begin a stage in real time with a damping of its own. Returns its memory."""
     at, scheme = scene.running.stage(name, Damped()), scene.model.scheme
     scheme.trueMasses(name)
     scheme.damp(damping, scene.args.damping_kind, massDamping, stiffnessDamping)
@@ -71,7 +70,7 @@ def inRealTime(scene, name, damping, massDamping=0.0, stiffnessDamping=0.0):
     return at
 
 
-@stage(options=("record", "scale"), real=True, answers=displacements)
+@stage(options=("record", "scale"), dynamic=True, answers=displacements)
 def shake(
     scene: Any,
     accelerations: Annotated[Numbers | FilePath | Sequence[FilePath], record],
@@ -86,23 +85,22 @@ def shake(
 ) -> str:
     """Shake the ground by a record.
 
-    The scene moves with the ground: every block feels the negative ground acceleration, and all
-    displacements are relative to the ground. Time is real, so masses must not be scaled. Between
-    the samples the acceleration changes evenly, and each step has that of its middle: nothing is
-    filtered, and the time step does not depend on the samples.
+    Every block feels the negative ground acceleration, and displacements are relative to the
+    ground. Time is real, so masses must not be scaled. Between the samples the acceleration changes
+    evenly, and each step has that of its middle: nothing is filtered, and the time step does not
+    depend on the samples.
 
-    Joints that slide, crack and crush take energy, and so do those without bond that close after
-    they have been open, as their ``restitution`` says. The default adds no other damping, since
-    none is measured for masonry that rocks.
-    :func:`rayleigh` gives the two viscous ones from a damping ratio. They end with the stage.
+    Joints that slide, crack and crush take energy, and so do those without bond that close, as
+    their ``restitution`` says. The default adds no other damping, since none is measured for
+    masonry that rocks. :func:`rayleigh` gives the two viscous ones from a damping ratio. They end
+    with the stage.
 
-    ``--record FILE`` replaces the record of the first shake of a scene, with the time between its
-    samples, its factor and its unit, and ``--scale S`` makes that shake S times as strong. A record
-    that does not end at rest is named with its numbers; nothing is corrected.
+    ``--record FILE`` replaces the record of the first shake of a scene, with its time between
+    samples, factor and unit, and ``--scale S`` makes that shake S times as strong. A record that
+    does not end at rest is named with its numbers; nothing is corrected.
 
-    :param accelerations: a list, or the path of a file as :mod:`masonry.scene.accelerograms` reads
-        it; or three paths, of both horizontal components and the vertical one, upwards, which act
-        at once
+    :param accelerations: a list, or the path of a file (:mod:`masonry.scene.accelerograms`); or
+        three paths, of both horizontal components and the vertical one, upwards
     :param every: time between two samples [s]; None: that of the file
     :param direction: of the ground's motion, horizontal; the second of three components is at 90°
         to its left
@@ -157,12 +155,12 @@ def shake(
     return DONE
 
 
-@stage(farther=("seconds",), real=True, answers=displacements)
+@stage(extendable=("seconds",), dynamic=True, answers=displacements)
 def run(scene: Any, seconds: Duration, damping: Damping = 0.0) -> str:
-    """Let time pass, as it is: nothing brakes but what joints and contacts lose.
+    """Let time pass: nothing brakes but what joints and contacts lose.
 
-    A block hits a wall, as a car does, if a script gives it a velocity after ``settle()``, and says
-    so to the energy balance::
+    A script may give a block a velocity after ``settle()``, as to a car that hits a wall, if it
+    says so to the energy balance::
 
         from yade import O
         # allowGaps: the car is apart from the wall
@@ -172,8 +170,7 @@ def run(scene: Any, seconds: Duration, damping: Damping = 0.0) -> str:
         scene.model.energy.given()
         scene.run(3)
 
-    The script would do this again in a run that ``--resume`` continues later, so start such a run
-    anew.
+    ``--resume`` would give the velocity again, so start such a run anew.
 
     :param seconds: time in the scene [s]
     :param damping: numerical damping constant of the options' kind [-]
@@ -221,8 +218,7 @@ def shakeAgain(
 ) -> list[str]:
     """Shake a structure by one record after the other, as it was left by those before. After each
     it comes to rest, and its period and what remains are measured: stages :meth:`shake`,
-    :meth:`settle` and :meth:`period`. ``shakes.csv`` has a row for every record. ``--resume`` goes
-    on within a record as it does in :meth:`shake`.
+    :meth:`settle` and :meth:`period`. ``shakes.csv`` has a row for every record.
 
     :param records: of each what :meth:`shake` takes
     :param every: time between two samples [s], and ``direction``: as in :meth:`shake`
@@ -265,10 +261,7 @@ def shakeAgain(
 def _write(scene, rows):
     heads = dict.fromkeys(head for row in rows for head in row if head != "ended")
     path = scene.results.path(TABLE)
-    try:
-        with replaced(path, "w", newline="") as file:
-            writer = csv.DictWriter(file, [*heads, "ended"])
-            writer.writeheader()
-            writer.writerows(rows)
-    except OSError as error:
-        raise Unwritable(f"{path} cannot be written: {error.strerror}") from None
+    with writing(path), replaced(path, "w", newline="") as file:
+        writer = csv.DictWriter(file, [*heads, "ended"])
+        writer.writeheader()
+        writer.writerows(rows)

@@ -5,6 +5,7 @@ that last for a given time."""
 import functools
 import os
 from dataclasses import dataclass
+from enum import Enum
 from typing import Annotated, Any, Callable, Concatenate, ParamSpec
 
 from yade import O
@@ -15,8 +16,9 @@ from ..errors import Collapsed, NotAccurate
 from ..terminal import say
 from ..run import batch
 from ..run.accuracy import STAGES
-from ..scene.resuming import enter
-from ..scene.script import argumentsOf
+from ..run.checkpoints import stateOf
+from ..run.run_state import StageContext
+from ..scene.script import PUSHES, argumentsOf, asData
 from .answers import COLLAPSED, DONE, FALL, FALLEN
 from .falling import followFall, writeTable
 from .falling import answers as answersOfFall
@@ -39,11 +41,12 @@ class Traits:
 
     :param bounded: whether ``--preset bound`` finds the bound of its load; other stages are left
         out then
-    :param farther: names of the arguments that say how far it goes: a run that is resumed in this
-        stage may change them
+    :param extendable: names of the arguments that set the end of the stage; a resumed run may give
+        larger ones
     :param options: options of the command line that the stage uses, by the names of their values
     :param grows: whether presses, dead loads and wind grow in it
-    :param real: whether it runs in real time, whatever falls, in a scene whose collapse is followed
+    :param dynamic: whether it runs in real time, whatever falls, in a scene whose collapse is
+        followed
     :param check: function of the scene and what the user says, which raises Refused before the
         scene is built
     :param answers: function of the scene, and of one that gives the values of a column in the rows
@@ -52,10 +55,10 @@ class Traits:
     """
 
     bounded: bool = False
-    farther: tuple = ()
+    extendable: tuple = ()
     options: tuple = ()
     grows: bool = False
-    real: bool = False
+    dynamic: bool = False
     check: Callable | None = None
     answers: Callable = lambda scene, rows: []
 
@@ -73,17 +76,12 @@ def stage(**traits: Any) -> Callable[[Stage[P]], Stage[P]]:
 
         @functools.wraps(act)
         def staged(scene: Any, *args: P.args, **settings: P.kwargs) -> str:
-            if scene.staging:  # it is a part of another stage
-                return _carryOut(scene, act, known, args, settings)
+            command = _Command(scene, act, known)
             if notebook.isHere() and not scene.finished:
                 # a word that is wrong can be corrected in the cell: it is no end of the run
-                _check(scene, act, known, args, settings)
-            scene.staging = True
-            try:
-                with scene.noted(staged, *args, **settings), scene.running.listening():
-                    return _carryOut(scene, act, known, args, settings)
-            finally:
-                scene.staging = False
+                command.check(args, settings)
+            with scene.noted(staged, *args, **settings), scene.running.listening():
+                return command.carryOut(args, settings)
 
         known = Traits(**traits)
         vars(staged).update(traits=known)
@@ -92,140 +90,198 @@ def stage(**traits: Any) -> Callable[[Stage[P]], Stage[P]]:
     return made
 
 
-def _check(scene, act, traits, args, settings):
-    """What the user says to a stage, as its kinds return it. Raises Refused."""
-    (_, *args), settings = act.checked((scene, *args), settings)
-    if scene.args.accuracy and act.__name__ not in STAGES:
-        raise NotAccurate(
-            "--accuracy: it is about peak and work of a push, and this scene has the stage"
-            f" {act.__name__}; scenes with it have the stages {', '.join(STAGES)} alone"
-        )
-    if traits.check:
-        traits.check(scene, *args, **settings)
-    return args, settings
+class SkipReason(Enum):
+    """Why a stage is left out."""
+
+    PROBED = "a study asks what the scene knows"
+    FALLEN = "the structure has fallen"
+    BOUND_ONLY = "there is no run, but limit analysis alone"
+    DONE_BEFORE = "it was over before the run was resumed"
 
 
-def _carryOut(scene, act, traits, args, settings):
-    running, before, name = scene.running, None, act.__name__
-    scene.checkOpen(name)
-    loaded = scene.description.loaded()
-    if not scene.model and loaded and not traits.grows:
-        raise ValueError(
-            f"{name}: the loads on {', '.join(loaded)} grow in settle(): call that first"
-        )
-    try:
-        args, settings = _check(scene, act, traits, args, settings)
-        scene.begin()
+class _Command:
+    """A stage that the script asks for: it is prepared, then skipped or executed."""
+
+    def __init__(self, scene, act, traits):
+        self.scene, self.running, self.act, self.traits = scene, scene.running, act, traits
+        self.name = act.__name__
+        self.before = None  # how many stages the run had entered when it began
+
+    def carryOut(self, args, settings):
+        """Carry the stage out. Returns how it ended."""
+        scene = self.scene
+        scene.checkOpen(self.name)
+        loaded = scene.description.loaded()
+        if not scene.model and loaded and not self.traits.grows:
+            raise ValueError(
+                f"{self.name}: the loads on {', '.join(loaded)} grow in settle(): call that first"
+            )
+        try:
+            args, settings = self.check(args, settings)
+            scene.begin()
+            said = argumentsOf(self.act, scene, args, settings)
+            extended = self._prepare(said)
+            if reason := self.skipReason(extended):
+                return self._skip(reason, said)
+            return self._execute(args, settings)
+        except Collapsed as collapse:
+            return self._endFallen(str(collapse))
+        except BaseException as error:
+            if self.running.entered == self.before:
+                # it has done nothing, and a run that goes on need not say it again
+                scene.script.words.pop()
+            return scene.failed(error)
+
+    def check(self, args, settings):
+        """What the user says, as its kinds return it. Raises Refused."""
+        scene = self.scene
+        (_, *args), settings = self.act.checked((scene, *args), settings)
+        if scene.args.accuracy and self.name not in STAGES:
+            raise NotAccurate(
+                "--accuracy: it is about peak and work of a push, and this scene has the stage"
+                f" {self.name}; scenes with it have the stages {', '.join(STAGES)} alone"
+            )
+        if self.traits.check:
+            self.traits.check(scene, *args, **settings)
+        return args, settings
+
+    def _prepare(self, said):
+        """Note the stage as a command of the script. Returns whether a resumed run goes on with it
+        beyond its former end."""
+        script, running, state = self.scene.script, self.running, self.running.state
+        script.add(self.name, asData(said), self.traits.extendable)
+        if not running.isResumed:
+            return False
+        extended = script.compare(running.scriptBefore)
+        if script.isFirst(PUSHES):  # the command line says how far the push goes
+            was, now = running.saved.options, asData(vars(self.scene.args))
+            extended = extended or any(was.get(n) != now[n] for n in ("until", "history"))
+        return extended and running.entered + 1 == state.begun
+
+    def skipReason(self, extended):
+        """Why the stage is left out, or None."""
+        scene, running = self.scene, self.running
         if batch.PROBE in os.environ:
-            return scene.probe(name, traits, argumentsOf(act, scene, args, settings))
-        scene.script.note(act, scene, args, settings, traits.farther)
-        farther = not running.advanced and scene.script.compare(running.scriptBefore)
+            return SkipReason.PROBED
         if scene.collapsed:
+            return SkipReason.FALLEN
+        if scene.only and not self.traits.bounded:
+            return SkipReason.BOUND_ONLY
+        self.before = running.entered
+        goesOn = running.isResumed and not running.resumedHere
+        if goesOn and not extended and str(self.before + 1) in running.state.ended:
+            return SkipReason.DONE_BEFORE
+        return None
+
+    def _skip(self, reason, said):
+        """Leave the stage out. Returns how it ended."""
+        scene, running = self.scene, self.running
+        if reason is SkipReason.PROBED:
+            return scene.probe(self.name, self.traits, said)
+        if reason is SkipReason.FALLEN:
             say(
-                f"note: {name} is left out, because the structure has fallen; stepBack() takes it"
-                " to its last state at rest"
+                f"note: {self.name} is left out, because the structure has fallen; stepBack() takes"
+                " it to its last state at rest"
             )
             return COLLAPSED
-        if scene.only and not traits.bounded:
-            say(f"note: --preset bound: no run, {name} is left out")
+        if reason is SkipReason.BOUND_ONLY:
+            say(f"note: --preset bound: no run, {self.name} is left out")
             return DONE
-        before = running.entered
-        over = enter(scene, before + 1, farther)
-        if over:  # before the run was resumed: it ends as it did then
-            if over in FALLEN:
-                running.collapsed = True
-                running.results.run["collapse"] = running.at.fall
-            scene.ended = over
-            return COLLAPSED if scene.collapsed else over
-        running.loading = traits.grows and not scene.grown
+        scene.ended, running.entered = running.state.ended[str(self.before + 1)]
+        running.cutBackTo(running.entered + 1, False)
+        if scene.ended in FALLEN:
+            running.collapsed = True
+            running.results.run["collapse"] = running.state.fall
+        return COLLAPSED if scene.collapsed else scene.ended
+
+    def _execute(self, args, settings):
+        """Carry out the stage or the rest of it. Returns how it ended."""
+        scene, running, traits, state = self.scene, self.running, self.traits, self.running.state
+        if running.isResumed and not running.resumedHere:
+            resumedHere = self.before + 1 == state.begun
+            running.cutBackTo(self.before + 1, resumedHere)
+            if not running.sceneState.isRestored:
+                running.sceneState.put(state.before if resumedHere else state.now)
+        state.begun, state.before = self.before + 1, stateOf(scene)
         scheme, follows = scene.model.scheme, scene.description.contact is not None
         scheme.dampByOptions()
-        scheme.joints.impacts = traits.real
+        scheme.joints.impacts = traits.dynamic
         if follows:
             scheme.keepStable()
-        if follows and running.redoes and running.at.stage == FALL:
-            return _follow(scene, name)
-        running.endsAtFall = follows and not traits.real
-        scene.ended = ended = act(scene, *args, **settings)
+        running.context = StageContext(loadsGrow=traits.grows and not scene.grown)
+        if follows and running.resumedHere and state.stage == FALL:
+            return self._follow()
+        running.context.endsAtFall = follows and not traits.dynamic
+        scene.ended = ended = self.act(scene, *args, **settings)
         if follows:
             scene.model.checkFallen()
-        _noteEnd(running, before, ended)
-        if not traits.farther:
-            running.checkpoints.mark()
-        _answer(scene, name, traits, before)
+        self._noteEnd(ended)
+        if not traits.extendable:
+            running.checkpoints.setRollbackPoint()
+        self._answer()
         return ended
-    except Collapsed as collapse:
-        return _fall(scene, name, traits, before, str(collapse))
-    except BaseException as error:
-        if before is not None and running.entered == before:
-            # it has done nothing, and a run that goes on need not say it again
-            scene.script.words.pop()
-        return scene.failed(error)
 
-
-def _fall(scene, name, traits, before, what):
-    """End a stage in which the structure has fallen, or go on with the fall; ``what`` has fallen,
-    and how far."""
-    running = scene.running
-    scene.ended = COLLAPSED
-    follows = scene.description.contact is not None and not scene.bracketing
-    if not follows:  # else it ends with the fall
-        _noteEnd(running, before, COLLAPSED)
-    running.fall(what)
-    try:
-        if running.readings.time != O.time:
-            running.record()
-        running.flush()
-        running.checkpoints.markFall()
-    except FloatingPointError:
-        follows = False  # what has fallen may have left finite numbers
-        _noteEnd(running, before, COLLAPSED)
-    _answer(scene, name, traits, before)
-    return _follow(scene, name) if follows else COLLAPSED
-
-
-def _follow(scene, name):
-    """Go on with a structure that has fallen until it is at rest, in a stage or in a run that is
-    resumed while it falls."""
-    running, begun = scene.running, scene.running.at.begun
-    try:
-        running.endsAtFall = False
-        if running.redoes and not running.advanced:  # all before the fall is over
-            running.entered = running.at.number - 1
-            running.fall(running.at.fall)
+    def _endFallen(self, what):
+        """End a stage in which the structure has fallen, or go on with the fall; ``what`` has
+        fallen, and how far."""
+        scene, running = self.scene, self.running
         scene.ended = COLLAPSED
+        follows = scene.description.contact is not None and not scene.bracketing
+        if not follows:  # else it ends with the fall
+            self._noteEnd(COLLAPSED)
+        running.fall(what)
         try:
-            scene.ended = followFall(scene, tilted=name == "tilt")
-        except Collapsed as collapse:
-            say(f"note: the fall is followed no farther: {collapse}")
-        found = answersOfFall(scene, scene.ended, running.memory.begun)
-        _keepAnswers(running, FALL, running.entered, found)
-        writeTable(scene)
-        _noteEnd(running, begun - 1, scene.ended)
-        running.checkpoints.mark()
-        return COLLAPSED
-    except BaseException as error:
-        return scene.failed(error)
+            if running.readings.time != O.time:
+                running.record()
+            running.flush()
+            running.checkpoints.recordFall()
+        except FloatingPointError:
+            follows = False  # what has fallen may have left finite numbers
+            self._noteEnd(COLLAPSED)
+        self._answer()
+        return self._follow() if follows else COLLAPSED
 
+    def _follow(self):
+        """Go on with a structure that has fallen until it is at rest, in a stage or in a run that
+        is resumed while it falls."""
+        scene, running = self.scene, self.running
+        try:
+            running.context.endsAtFall = False
+            if running.resumedHere and not running.advanced:  # all before the fall is over
+                running.entered = running.state.number - 1
+                running.fall(running.state.fall)
+            scene.ended = COLLAPSED
+            try:
+                scene.ended = followFall(scene, tilted=self.name == "tilt")
+            except Collapsed as collapse:
+                say(f"note: the fall is followed no farther: {collapse}")
+            found = answersOfFall(scene, scene.ended, running.memory.begun)
+            self._keepAnswers(FALL, running.entered, found)
+            writeTable(scene)
+            self._noteEnd(scene.ended)
+            running.checkpoints.setRollbackPoint()
+            return COLLAPSED
+        except BaseException as error:
+            return scene.failed(error)
 
-def _noteEnd(running, before, ended):
-    running.at.ended = {**running.at.ended, str(before + 1): [ended, running.entered]}
+    def _noteEnd(self, ended):
+        state = self.running.state
+        state.ended = {**state.ended, str(self.before + 1): [ended, self.running.entered]}
 
+    def _answer(self):
+        """Keep the answers of a stage that was carried out now, and not before the run was
+        resumed."""
+        scene, running = self.scene, self.running
+        if scene.only or running.entered == self.before:
+            return
+        results, first = running.results, running.state.stages[self.before][3]
+        rows = lambda head: results.column(head)[first:] if head in results.columns else []
+        self._keepAnswers(self.name, self.before + 1, self.traits.answers(scene, rows))
 
-def _answer(scene, name, traits, before):
-    """Keep the answers of a stage that was carried out now, and not before the run was resumed;
-    ``before``: how many stages the run had entered before it."""
-    running = scene.running
-    if scene.only or before is None or running.entered == before:
-        return
-    results, first = running.results, running.at.stages[before][3]
-    rows = lambda head: results.column(head)[first:] if head in results.columns else []
-    _keepAnswers(running, name, before + 1, traits.answers(scene, rows))
-
-
-def _keepAnswers(running, stage, number, answers):
-    kept = [{"stage": stage, "number": number, **vars(one)} for one in answers]
-    running.at.answers = {**running.at.answers, str(number): kept}
+    def _keepAnswers(self, stage, number, answers):
+        state = self.running.state
+        kept = [{"stage": stage, "number": number, **vars(one)} for one in answers]
+        state.answers = {**state.answers, str(number): kept}
 
 
 @dataclass

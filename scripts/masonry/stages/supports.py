@@ -27,8 +27,7 @@ Distance = Annotated[Union[float, Callable[[], float]], orFunction(millimetres)]
 
 @stage(bounded=True)
 def release(scene: Any, target: AnyTarget, axes: Freedoms, force: Force | None = None) -> str:
-    """Take a support away, or let the drive of a platen go. What follows is the next stage's, for
-    example ``settle``.
+    """Take a support away, or let a drive go. What follows is the next stage's, as ``settle``.
 
     :param target: a brick or platen that is held, a platen with a drive, or what a push has left
         under its drive
@@ -75,7 +74,7 @@ def displacement(scene, rows):
             yield Answer(f"displacement_of_{target.name}", "mm", squares**0.5, how)
 
 
-@stage(farther=("x", "y", "z"), options=("rate",), answers=displacement)
+@stage(extendable=("x", "y", "z"), options=("rate",), answers=displacement)
 def move(
     scene: Any,
     target: HeldTargets,
@@ -84,15 +83,13 @@ def move(
     z: Along = 0.0,
     rate: Rate | None = None,
 ) -> str:
-    """Move fixed targets by a displacement [mm], in straight lines at once: settlement or spreading
-    of supports, or a trough under a row of them.
-
-    They start and stop smoothly, and none of them turns: ``scene.move(footings, z=lambda x, y, z:
-    -20 * math.exp(-x * x / 18))``.
+    """Move fixed targets by a displacement, in straight lines at once: settlement or spreading of
+    supports, or a trough under a row of them, as ``scene.move(footings, z=lambda x, y, z: -20 *
+    math.exp(-x * x / 18))``. They start and stop smoothly, and none turns.
 
     :param target: one that is held, or a list of them
-    :param x: [mm], or a function of the place (x, y, z) [m] of the recorded point of a target that
-        gives it; ``y`` and ``z``: likewise
+    :param x: [mm], or a function that gives it of the recorded point (x, y, z) [m] of a target; so
+        are ``y`` and ``z``
     :param rate: of the one that moves farthest [mm/s]; None: ``--rate``
     """
     at = scene.running.stage("move", Timed())
@@ -121,7 +118,7 @@ def move(
             state.vel = speed * (1e-3 / distance * path)
 
     timed(scene, at, duration, before)
-    scene.running.at.supportsMoved = True
+    scene.running.state.supportsMoved = True
     for state in states:
         state.vel = Vector3.Zero
     return DONE
@@ -138,8 +135,7 @@ def _path(scene, target, along):
     return path
 
 
-#: The largest mean stresses of a recorded joint that are answers: name, column, and the sign with
-#: which they are counted.
+#: Stresses of a recorded joint that are answers: name, column, and sign.
 STRESSES = (
     ("peak_normal_stress", "normal_stress_MPa", 1),
     ("peak_compressive_stress", "normal_stress_MPa", -1),
@@ -148,8 +144,7 @@ STRESSES = (
 
 
 def stresses(scene, rows):
-    """The largest mean stresses of the joints that are recorded, in tension, compression and
-    shear."""
+    """The largest mean stresses of recorded joints, in tension, compression and shear."""
     how = "the largest mean over the joint in this stage"
     for joint in scene.description.joints:
         for name, column, sign in STRESSES:
@@ -167,13 +162,12 @@ def drive(
     z: Distance = 0.0,
 ) -> str:
     """Drive a target along an axis at ``--rate`` from the first step on, for example two bricks and
-    their joint.
+    their joint. Drives of other axes hold what they hold.
 
-    The rows of curve.csv are closer together at the beginning, where the peaks are. The drives of
-    other axes hold what they hold.
+    The rows of curve.csv are closer together at the beginning, where the peaks are.
 
-    :param x: displacement along x [mm], and likewise ``y`` and ``z``: one of them. It may be a
-        function without arguments that gives it when the stage begins
+    :param x: displacement along x, or ``y`` or ``z``, one of them [mm]. It may be a function
+        without arguments that gives it when the stage begins
     """
     given = {a: v for a, v in zip("xyz", (x, y, z)) if callable(v) or v}
     if len(given) != 1 or [*given][0] not in target.drives:
@@ -212,8 +206,7 @@ def pressJoint(
     joint: RecordedJoint,
     stress: Annotated[float, number("Pa", -1e12, 1e12)],
 ) -> str:
-    """Bring a bed joint to a mean normal stress by a drive along z, then hold that by its force:
-    nothing swings.
+    """Bring a bed joint to a mean normal stress by a drive along z, which then holds its force.
 
     :param target: a platen with a drive along z, above bricks on one column
     :param joint: as :meth:`joint` gave it

@@ -31,8 +31,8 @@ class Travelling(Resting):
 
 
 def standings(scene, rows):
-    """What a load did that travelled: how many places held it, where the structure gave way most,
-    and the least bound."""
+    """How many places held a load that travelled, where the structure gave way most, and the least
+    bound."""
     at = scene.running.memory
     if not isinstance(at, Travelling):
         return
@@ -82,10 +82,9 @@ def travel(
     """Let a vertical load go over the structure, as an axle goes over an arch bridge: it stands at
     one place after the other until the structure is at rest, and leaves behind the last one.
 
-    From place to place it grows on the next one as it leaves the one before. Every place has a row
-    of curve.csv, in which ``load_factor`` is the number of the place; the last row is without the
-    load. Joints that have opened, slid or crushed remember it. Of up to 500 joints, and with
-    ``--preset bound``, limit analysis finds the largest load at each place [kN].
+    The load grows on a place as it leaves the one before. Every place has a row of curve.csv, in
+    which ``load_factor`` is its number; the last row is without the load. Of up to 500 joints, and
+    with ``--preset bound``, limit analysis finds the largest load at each place [kN].
 
     :param force: downwards [N]
     :param along: points (x, y, z) [m]: the load stands on the highest face of a rigid brick below
