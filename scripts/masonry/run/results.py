@@ -11,8 +11,8 @@
   promises, a sentence
 - ``columns``: what each column of curve.csv means
 - ``joints``: the properties of every kind of joint [SI units]; ``joint_units``: the units by
-  property; ``joint_meanings``: what each property means; ``properties_of_laws``: which of them each
-  law reads, beside those that all read
+  property; ``joint_meanings``: what each property means; ``effective_properties``: by
+  kind of joint, the numbers among them that have an effect
 - ``unit_material``: ``young_Pa``, ``poisson`` and ``density_kg_per_m3`` of the bricks
 - ``assumed``: properties of the materials that were not given: a list of dicts with ``name``, as
   ``bed.residualFriction``, ``value``, ``unit`` and ``source``. An entry with the name ``support``

@@ -13,7 +13,7 @@ from yade.wrapper import MasonryVtkRecorder
 from ..arguments import isNumber
 from ..model import bodies
 from ..numbers import columns
-from ..model.engines import LAWS
+from ..materials.assumptions import effective
 from ..terminal import say
 from ..memory import withoutCollector
 from ..memory import FULL
@@ -108,7 +108,7 @@ class Outcome:
             joints=joints,
             joint_units={p["name"]: p["unit"] for p in known if p["unit"]},
             joint_meanings={p["name"]: p["meaning"] for p in known},
-            properties_of_laws={n: sorted(law["properties"]) for n, law in LAWS.items()},
+            effective_properties={name: effective(joint) for name, joint in model.joints.items()},
             unit_material={
                 "young_Pa": model.unit.young,
                 "poisson": model.unit.poisson,
