@@ -97,7 +97,7 @@ def tie(
     return _take(description, "tie", made, problems)
 
 
-def _springs(value, first=None):
+def _springs(value, context=None):
     """The kind of the stiffnesses of springs along or about three axes, of which none is
     negative."""
     found = numbers("", MOST)(value)

@@ -8,7 +8,7 @@ import statistics
 from ..bricks import Bricks, summary
 from ..terminal import say
 
-MOST_SIZES = 4  # of blocks that are listed
+MAX_SIZES = 4  # of blocks that are listed
 
 
 def sizes(description):
@@ -17,7 +17,7 @@ def sizes(description):
     kinds = ", ".join(f"{count} {kind}" for kind, count in found["kinds"].items())
     by = lambda low, high, unit: " × ".join(f"{unit * (b - a):.4g}" for a, b in zip(low, high))
     blocks = collections.Counter(by(b.low, b.high, 1e3) for b in description.bricks)
-    most = blocks.most_common(MOST_SIZES)
+    most = blocks.most_common(MAX_SIZES)
     sizes = "; ".join(f"{count} of {text} mm" for text, count in most)
     size = by(found["low_m"], found["high_m"], 1)
     yield "blocks", f"{found['blocks']:,} in {found['bricks']:,} bricks ({kinds})"

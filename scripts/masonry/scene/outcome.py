@@ -29,7 +29,7 @@ from ..stages.answers import answersText
 
 FRAMES = 20  # for ParaView in a stage that is no push
 REPORT = 2e6  # [bytes] of report.html, of which three.js takes nearly half
-MOST_NUMBERS = 24  # of a list that the script said, as run.json has it
+MAX_NUMBERS = 24  # of a list that the script said, as run.json has it
 
 
 class Outcome:
@@ -308,7 +308,7 @@ def shortened(entry):
     if isinstance(entry, dict):
         return {name: shortened(value) for name, value in entry.items()}
     if isinstance(entry, (list, tuple)):
-        if len(entry) > MOST_NUMBERS and all(map(isNumber, entry)):
+        if len(entry) > MAX_NUMBERS and all(map(isNumber, entry)):
             return f"{len(entry):,} numbers from {min(entry):.6g} to {max(entry):.6g}"
         return [shortened(value) for value in entry]
     return entry

@@ -56,7 +56,7 @@ from .targets import Target
 from .script import SHAKES, Call, Script, either
 
 
-def _ofFolder(value, first=None):
+def _ofFolder(value, context=None):
     """The kind of a name of a scene, which names a folder, too."""
     fine = isinstance(value, str) and value.strip(". ") and value.isprintable()
     if not fine or "/" in value or len(value.encode()) > LONGEST_NAME:
@@ -64,7 +64,7 @@ def _ofFolder(value, first=None):
     return value
 
 
-def _blocksOf(value, first=None):
+def _blocksOf(value, context=None):
     """The kind of the bricks of a scene."""
     try:
         found = list(value)
