@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What a run that is resumed finds in place of the stages that were over.
 
-A script is read from its beginning again. Words that it said before the checkpoint are left out: a
-stage that was over gives what it returned then, with the rows of that time. The stage in which the
-checkpoint was made begins from the state of the scene in Python as it was when the stage began, and
-goes on from the state of the checkpoint with its first steps: see
-:mod:`masonry.run.run`. YADE keeps the rest of the state: :func:`masonry.saveCheckpoint`.
+A script is read from its beginning again. Commands that it gave before the checkpoint are left out:
+a stage that was over returns what it returned then. The stage in which the checkpoint was made
+begins with the state of the scene in Python at its beginning, and takes its first steps from the
+state of the checkpoint: see :mod:`masonry.run.run`. YADE keeps the rest of the state:
+:func:`masonry.saveCheckpoint`.
 """
 
 import base64
@@ -118,30 +118,30 @@ def saidBefore(scene, word, **arguments):
     return len(scene.script.words) <= len(scene.running.scriptBefore)
 
 
-def resume(scene: Any) -> str:
-    """Go on with a run that was interrupted, as from a following cell of a notebook: the stage that
-    was interrupted is carried out to its end, from the checkpoint that the interruption left.
+def resume(scene: Any) -> Any:
+    """Go on with a run that was interrupted, as from a following cell of a notebook: ``scene =
+    scene.resume()``. The stage that was interrupted is carried out to its end, from the checkpoint
+    that the interruption left.
 
-    Every word of the scene is said again, as ``--resume`` of a script does it, so the result is the
-    same to the last bit. Of a search that the script makes by itself or by :meth:`bracket`, this is
-    the step that was interrupted.
+    Every command of the scene is given again, as ``--resume`` of a script does it, so the result is
+    the same to the last bit. Of a search that the script makes by itself or by :meth:`bracket`, this
+    is the step that was interrupted.
 
-    :returns: how that stage ended
+    :returns: a new scene, which goes on with the folder and the targets of this one; its ``ended``
+        says how that stage ended
     :raises ValueError: if the scene was not interrupted, or left no checkpoint
     """
     if not (scene.finished and scene.running.kept):
         raise ValueError(
             f"resume: scene {scene.name} has no run that was interrupted and left a checkpoint"
         )
-    folder, calls, given = scene.results.directory, scene.calls, scene.args
     (name, *made), settings = scene._made
-    arguments = given.parser.parse_args(["--resume", folder])
-    vars(scene).clear()
-    scene.__init__(name, *made, arguments, **settings)  # type: ignore[misc]
-    ended = None
-    for call in calls:
+    arguments = scene.args.parser.parse_args(["--resume", scene.results.directory])
+    resumed = type(scene)(name, *made, arguments, **settings)
+    for call in scene.calls:
         with contextlib.suppress(*[ValueError] * call.refused):
-            ended = call.word(scene, *call.args, **call.settings)
-        if call.found is not None:  # the script knows the record that it gave before
-            scene.description.replace(ended, call.found)
-    return ended
+            record = call.command(resumed, *call.args, **call.settings)
+        if call.record is not None:  # the script knows the one that it was given before
+            resumed.description.replace(record, call.record)
+            resumed.calls[-1].record = call.record
+    return resumed

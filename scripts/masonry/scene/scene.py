@@ -142,7 +142,7 @@ class Scene:
             self.description.bricks = list(Bricks(self.description.bricks).whole())
         self.description.deformable = arguments.blocks == "deformable"
         self.script = Script()
-        self.calls = []  # every word that was said
+        self.calls = []  # every command that was given
         self.staging = False  # whether a stage is being carried out
         # whether bracket() looks for a load, so that no collapse is followed
         self.bracketing = False
@@ -298,7 +298,6 @@ class Scene:
         facts.noteCourse(description)
         self.running.start(model, self.outcome.space(), State(self))
         Scene.present = self
-        atexit.unregister(self._remind)  # of a run that goes on
         atexit.register(self._remind)
 
     def finish(self) -> None:
@@ -333,10 +332,10 @@ class Scene:
         return done
 
     @contextlib.contextmanager
-    def noted(self, word: Callable[..., Any], *args: Any, **settings: Any) -> Iterator[None]:
-        """Note a word that is carried out in a block, for :meth:`resume`: also one that is refused,
-        but ends no run."""
-        call = Call(word, args, settings)
+    def noted(self, command: Callable[..., Any], *args: Any, **settings: Any) -> Iterator[None]:
+        """Note a command that is carried out in a block, for :meth:`resume`: also one that is
+        refused, but ends no run."""
+        call = Call(command, args, settings)
         self.calls.append(call)
         try:
             yield
