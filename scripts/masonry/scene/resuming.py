@@ -135,9 +135,8 @@ def resume(scene: Any) -> Any:
         raise ValueError(
             f"resume: scene {scene.name} has no run that was interrupted and left a checkpoint"
         )
-    (name, *made), settings = scene._made
     arguments = scene.args.parser.parse_args(["--resume", scene.results.directory])
-    resumed = type(scene)(name, *made, arguments, **settings)
+    resumed = type(scene)(*scene._made, arguments, **scene._settings)
     for call in scene.calls:
         with contextlib.suppress(*[ValueError] * call.refused):
             record = call.command(resumed, *call.args, **call.settings)
