@@ -12,7 +12,7 @@ from ..errors import Refused, refuse
 from ..bricks import Block, Bricks
 from .platens import Point
 from .targets import Part, Target, brick, isOwn
-from .ties import MOST, OF_OVERLAY, OF_TIE, End, Overlay, Spring, Tie
+from .ties import MAX_STIFFNESS, OF_OVERLAY, OF_TIE, End, Overlay, Spring, Tie
 from .script import describes
 
 
@@ -95,7 +95,7 @@ def tie(
 
 def _springs(value, context=None):
     """Validator of stiffnesses along or about three axes."""
-    found = numbers("", MOST)(value)
+    found = numbers("", MAX_STIFFNESS)(value)
     if min(found) < 0:
         raise ValueError(f"{value!r} must be three numbers of at least 0")
     return tuple(found)
