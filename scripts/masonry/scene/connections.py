@@ -16,11 +16,11 @@ from .ties import MAX_STIFFNESS, OF_OVERLAY, OF_TIE, End, Overlay, Spring, Tie
 from .script import describes
 
 
-def _end(value, first):
+def _end(value, context):
     """Validator of an end: a target of the scene, or a brick."""
     if not isinstance(value, Target):
-        return brick(value, first)
-    if not isOwn(value, first):
+        return brick(value, context)
+    if not isOwn(value, context):
         raise ValueError(f"{value.name!r}, which is of another scene, must be of this one")
     return value
 

@@ -19,8 +19,7 @@ from .script import PUSHES, asData
 
 
 def stateOf(scene):
-    """What stages have set of a scene, beside what YADE keeps: a dict of values that JSON can
-    hold."""
+    """What stages have set of a scene, beside what YADE keeps, as JSON can hold it."""
     of = ("until", "history", "rate") if scene.pushed else ()
     return {
         "model": scene.model.state(),
@@ -31,10 +30,9 @@ def stateOf(scene):
 
 
 def putState(scene, state):
-    """Give a scene a state of :func:`stateOf`. Raises Refused if it is not of the kind of the
-    present one."""
+    """Give a scene a state of :func:`stateOf`. Raises Refused if it has other entries."""
     like = stateOf(scene)
-    like["model"]["said"] = []  # stands for any number of things that were said of ties
+    like["model"]["said"] = []  # any number of events of ties
     if not (_alike(state, like) and _alike(state["model"], like["model"])):
         raise otherVersion("the state of the scene")
     scene.model.putState(state["model"])
@@ -52,8 +50,8 @@ class State:
 
     def __init__(self, scene):
         self._scene, self._model = scene, scene.model
-        self._rest = None, ""  # the last state at rest, and it as text
-        self.restored = False  # whether the scene has the state of a checkpoint again
+        self._rest = None, ""  # the last state at rest, and its text
+        self.restored = False  # the scene has the state of a checkpoint again
 
     def kept(self):
         """Entries of :class:`masonry.run.run_state.RunState`."""
@@ -69,20 +67,18 @@ class State:
         self.restored = True
 
     def takeRest(self, at):
-        """Take the last state at rest from a checkpoint:
-        :class:`masonry.run.run_state.RunState`."""
+        """Take the last state at rest from a :class:`masonry.run.run_state.RunState`."""
         if at.atRest:
             self._model.atRest = base64.b64decode(at.atRest)
         self._model.motion.places, self._model.motion.far = at.places, at.far
 
 
 def enter(scene, number, farther):
-    """Begin a stage. Returns how it ended if it was over before the run was resumed and is left out
-    now, else None.
+    """Begin a stage. Returns how it ended if it was over before the run was resumed and is left
+    out, else None.
 
     :param number: of the stage
-    :param farther: whether the script says now that it goes farther; the last stage is then gone on
-        with
+    :param farther: whether the script lets it go farther now, so that the last stage continues
     """
     running, at = scene.running, scene.running.at
     if running.takesUp and not running.redoes:
@@ -101,16 +97,15 @@ def enter(scene, number, farther):
 
 
 def _optionsDiffer(scene):
-    """Whether the command line says something else about how far the push goes in which the
-    checkpoint was made."""
+    """Whether the command line gives another end to the push of the checkpoint."""
     was, now = scene.running.saved.options, asData(vars(scene.args))
     differs = any(was.get(name) != now[name] for name in ("until", "history"))
     return differs and scene.script.isFirst(PUSHES)
 
 
 def saidBefore(scene, word, **arguments):
-    """Note a command that is no stage. Returns whether the script of a run that is resumed said it
-    before the checkpoint."""
+    """Note a command that is no stage. Returns whether the run that is resumed had it before its
+    checkpoint."""
     scene.script.add(word, arguments)
     if not scene.running.takesUp:
         return False

@@ -25,22 +25,20 @@ SHAKES = ("shake",)  # to the first of them --record and --scale apply
 class Call:
     """A command as the script gave it, for a run that goes on in the same process.
 
-    :param command: function of the scene and of what the script says
-    :param record: what it returned, if it describes
-    :param refused: whether it was refused, and the script went on
+    :param command: function of the scene and the arguments
     """
 
     command: Callable
     args: tuple
     settings: dict
-    record: Any = None
-    refused: bool = False
+    record: Any = None  # what it returned, if it describes
+    refused: bool = False  # and the script went on
 
 
 def describes(act: Callable[Concatenate[Any, P], R]) -> Callable[Concatenate[Any, P], R]:
     """A command that describes a scene: it comes before the first stage, and is noted.
 
-    :param act: function of a :class:`masonry.scene.description.Description` and what the user says
+    :param act: function of a :class:`masonry.scene.description.Description` and the arguments
     """
 
     @functools.wraps(act)
@@ -58,11 +56,10 @@ def describes(act: Callable[Concatenate[Any, P], R]) -> Callable[Concatenate[Any
 
 
 class Either(Protocol[P, S, Q]):
-    """What a script can call that takes one list of arguments before the first stage, and another
-    one after it."""
+    """A command with other arguments after the first stage than before it."""
 
     @overload
-    # both may be called without arguments, as far as mypy knows
+    # mypy: both may be called without arguments
     def __call__(self, *args: P.args, **settings: P.kwargs) -> S:  # type: ignore[misc]
         ...
 
@@ -72,7 +69,7 @@ class Either(Protocol[P, S, Q]):
 
 
 class EitherCommand(Protocol[P, S, Q]):
-    """The same, of the class of a scene."""
+    """Such a command in the class of a scene."""
 
     def __get__(self, scene: Any, cls: Any = None) -> Either[P, S, Q]:
         ...
