@@ -63,7 +63,11 @@ def ended(name, status, folder, error):
     :param error: what ended it, or None
     """
     if status == 130:
-        kept = f"; scene.resume() goes on, and its results so far are in {folder}" if folder else ""
+        kept = (
+            f"; scene = scene.resume() goes on, and its results so far are in {folder}"
+            if folder
+            else ""
+        )
         return Stopped(f"{name}: interrupted{kept}")
     why = f": {error}" if error else ", as was said above"
     return Failed(f"{name}: the run ended before its time{why}")

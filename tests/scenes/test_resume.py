@@ -5,7 +5,10 @@
 """
 
 from usual import *
+import itertools
+import signal
 import stopped
+from masonry import Scene, bricks, materials
 
 SEED = int(os.environ.get("RESUME_SEED", 1000))
 MOST = 20_000  # steps of a script
@@ -156,3 +159,40 @@ def test_a_script_stopped_and_resumed_leaves_what_an_unbroken_one_leaves(here, s
     stopped.carryOut(script, "--out", out, stop=stop)
     if os.path.exists("stopped"):  # else it was over before it was killed
         resumed(script, f"whole{trial}")
+
+
+def test_an_interrupted_scene_goes_on_as_a_new_one_and_so_does_that(here):
+    rows, due = itertools.count(), []
+
+    def button():
+        if next(rows) in due:
+            signal.raise_signal(signal.SIGINT)
+        return 0
+
+    def build(name):
+        words = ["--lean", "--out", name]
+        wall = bricks.Wall(0.44, 0.324)
+        scene = Scene(name, wall, materials.calciumSilicate(), arguments=words, rate=50)
+        scene.column("button", "a button that is pressed", button)
+        return scene, scene.platen("bottom"), scene.platen("top")
+
+    whole, base, top = build("whole")
+    whole.settle()
+    whole.push(top, 0.2)
+    whole.push(top, 0.3)
+    whole.finish()
+    broken, base, top = build("broken")
+    broken.settle()
+    rows, due[:] = itertools.count(), [5]
+    with raises(SystemExit):
+        broken.push(top, 0.2)
+    resumed = broken.resume()
+    assert resumed is not broken and resumed.ended == "done" and resumed.targets["top"] is top
+    rows, due[:] = itertools.count(), [2]
+    with raises(SystemExit):
+        resumed.push(top, 0.3)
+    last = resumed.resume()
+    last.finish()
+    assert last.targets["base"] is base and last.ended == "done"
+    curves = [open(f"{name}/curve.csv").read() for name in ("whole", "broken")]
+    assert curves[0] == curves[1]

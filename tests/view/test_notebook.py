@@ -149,7 +149,7 @@ def test_an_interrupted_run_goes_on_from_a_following_cell(kernel, tmp_path):
     broken = kernel.ask("print(scene.push(top, 1.5)); print('went on')", until=pushes)
     (error,) = of(broken, "error")
     assert error["ename"] == "Stopped" and len(error["traceback"]) == 1
-    assert "scene.resume() goes on" in error["evalue"]
+    assert "scene = scene.resume() goes on" in error["evalue"]
     assert "went on" not in printed(broken)
     assert "interrupted: what was computed is kept" in printed(broken)
     run = json.load(open(tmp_path / "stopped" / "run.json"))
@@ -160,7 +160,7 @@ def test_an_interrupted_run_goes_on_from_a_following_cell(kernel, tmp_path):
     endless = "print('on', flush=True)\nwhile True: pass"
     found = kernel.ask(endless, until=lambda m: m["msg_type"] == "stream")
     assert of(found, "error")[0]["ename"] == "KeyboardInterrupt"
-    assert "done" in str(kernel.say("scene.resume()"))
+    assert "done" in str(kernel.say("scene = scene.resume()\nscene.ended"))
     kernel.say("scene.move(base, z=-0.1)\nscene.finish()")
     kernel.say(SCENE.format(name="stopped", rate=0.5, out="whole"))
     kernel.say("scene.settle()\nscene.result('rest', 1.5, 'mm')\nscene.push(top, 1.5)")

@@ -29,6 +29,9 @@ def test_a_run_leaves_its_report_beside_its_figures(tmp_path):
     assert 0 <= run["stages"][1]["first_row"] < len(rows)
     assert run["recorded_height_m"] == pytest.approx(SMALL.courses * SMALL.unit[2])
     assert set(run["joint_meanings"]) >= set(run["joint_units"])
+    stiffnesses = ["normalStiffness", "shearStiffness"]  # of an elastic joint
+    assert run["effective_properties"]["support"] == stiffnesses
+    assert "peakRatio" in run["effective_properties"]["bed"]
     # written again from the folder it is the same
     again = tmp_path / "again.html"
     report.write(report.read(str(tmp_path)), str(again))

@@ -60,6 +60,14 @@ JOINT = {
     "modeIFractureEnergy": 16.0,
     "compressiveStrength": 7.55e6,
 }
+#: Units of the numbers among its properties.
+NUMBERS = {
+    "normalStiffness": "Pa/m",
+    "tensileStrength": "Pa",
+    "friction": "-",
+    "modeIFractureEnergy": "J/m²",
+    "compressiveStrength": "Pa",
+}
 RUN = {
     "scene": "made_up",
     "title": "A wall that is made up",
@@ -73,13 +81,12 @@ RUN = {
         "support": {**JOINT, "elastic": True},
         "crack": {**JOINT, "cap": False},
     },
-    "joint_units": {
-        "normalStiffness": "Pa/m",
-        "tensileStrength": "Pa",
-        "friction": "-",
-        "modeIFractureEnergy": "J/m²",
-        "compressiveStrength": "Pa",
+    "effective_properties": {
+        "bed": [*NUMBERS],
+        "support": ["normalStiffness"],
+        "crack": [*NUMBERS][:-1],
     },
+    "joint_units": NUMBERS,
     "joint_meanings": {
         "normalStiffness": (
             "Normal stiffness kn. A joint takes its elastic stiffness from it when it is made"
@@ -274,16 +281,21 @@ def test_the_head_the_sentences_and_the_chart(pushed):
     assert set(CHART.split(";")) <= {text.strip() for text in pushed.of("text")}
 
 
+#: A run with dry joints, in which an energy of softening has no effect.
+DRY = dict(
+    joints={"bed": JOINT, "dry": {**JOINT, "tensileStrength": 0.0}},
+    effective_properties={"bed": [*NUMBERS], "dry": ["tensileStrength", "friction"]},
+)
 #: What changes a run, the beginning of a row, and cells of it.
 CHANGED = [
     (
-        dict(joints={"bed": JOINT, "dry": {**JOINT, "tensileStrength": 0.0, "cohesion": 0.0}}),
+        DRY,
         {},
         "modeIFractureEnergy",
         ["0.016assumed", "–"],
     ),
     (
-        dict(joints={"bed": JOINT, "dry": {**JOINT, "tensileStrength": 0.0}}),
+        DRY,
         {},
         "friction",
         ["0.43assumed", "0.43"],
@@ -336,9 +348,10 @@ CHANGED = [
 
 @mark.parametrize("changed, columns, head, cells", CHANGED)
 def test_what_a_run_has_beside(tmp_path, changed, columns, head, cells):
-    changed["columns"] = {**MEANINGS, **{n: meaning for n, (meaning, _) in columns.items()}}
+    meanings = {**MEANINGS, **{n: meaning for n, (meaning, _) in columns.items()}}
     more = {n: values for n, (_, values) in columns.items()}
-    found = page(folder(tmp_path, columns={**COLUMNS, **more}, run={**RUN, **changed}))
+    run = {**RUN, **changed, "columns": meanings}
+    found = page(folder(tmp_path, columns={**COLUMNS, **more}, run=run))
     row = found.row(head)
     assert any(row[at : at + len(cells)] == cells for at in range(1, len(row)))
     assert "The moment at the base is not known" in found.said()

@@ -37,14 +37,14 @@ SUPPORT = (
     " friction"
 )
 
-#: Properties that have no effect without the cap.
-OF_CAP = """
-    compressiveStrength elasticLimitRatio residualStrengthRatio peakRatio compressiveFractureEnergy
-    capNormal capShear capLinear compressionStiffnessLoss bondLossByCrushing
-""".split()
-
-#: Properties that have no effect while another one is zero.
-OF_STRENGTH = {
+#: What a property needs to have an effect: another one that is on, or above zero.
+CONDITIONS = {
+    **dict.fromkeys(
+        """compressiveStrength elasticLimitRatio residualStrengthRatio peakRatio
+        compressiveFractureEnergy capNormal capShear capLinear compressionStiffnessLoss
+        bondLossByCrushing""".split(),
+        "cap",
+    ),
     "modeIFractureEnergy": "tensileStrength",
     "modeIIFractureEnergy": "cohesion",
     "residualCohesion": "cohesion",
@@ -52,7 +52,7 @@ OF_STRENGTH = {
     "dilatancyDecay": "dilatancy",
 }
 
-#: Properties in whose place a table may stand.
+#: Properties that a softening table replaces.
 TABLES = {"modeIFractureEnergy": "tensionTable", "modeIIFractureEnergy": "shearTable"}
 
 
@@ -74,18 +74,19 @@ def isDefault(thing: Any, name: str) -> bool:
     return thing.assumed().get(name) == DEFAULTS[type(thing)][name]
 
 
-def acts(joint: Any, name: str) -> bool:
-    """Whether a number among the properties of a joint has an effect on it."""
-    if name in ("normalStiffness", "shearStiffness"):
-        return True
-    number = isinstance(getattr(joint, name), float)
-    if joint.elastic or not number or name not in LAWS[joint.law]["properties"]:
-        return False
-    if name in OF_CAP:
-        return joint.cap
-    if name in TABLES and getattr(joint, TABLES[name]):
-        return False
-    return name not in OF_STRENGTH or getattr(joint, OF_STRENGTH[name]) > 0
+def effective(thing: Any) -> list[str]:
+    """Names of the properties that have an effect: of a joint numbers alone, of a unit all."""
+    if not isinstance(thing, MasonryJoint):
+        return [*DESCRIBED[type(thing)]]
+    read = () if thing.elastic else LAWS[thing.law]["properties"]
+    values = thing.dict()
+    found = ["normalStiffness", "shearStiffness"]
+    for name in filter(read.__contains__, values):
+        holds = name not in CONDITIONS or values[CONDITIONS[name]]
+        replaced = name in TABLES and values[TABLES[name]]
+        if isinstance(values[name], float) and holds and not replaced:
+            found.append(name)
+    return found
 
 
 def _things(masonry):
@@ -100,7 +101,7 @@ def entriesOf(masonry: Any) -> list[dict[str, Any]]:
     left out."""
     found = []
     for name, thing in _things(masonry):
-        sources = thing.assumed()
+        sources, counted = thing.assumed(), effective(thing)
         if AS_BED in sources.values():
             found.append({"name": name, "value": "bed", "unit": "", "source": SUPPORT})
         for one, p in DESCRIBED[type(thing)].items():
@@ -108,7 +109,7 @@ def entriesOf(masonry: Any) -> list[dict[str, Any]]:
             if source == AS_BED or isinstance(value, str):
                 continue
             switched = isinstance(value, bool) and not isDefault(thing, one)
-            if switched or not isinstance(thing, MasonryJoint) or acts(thing, one):
+            if switched or one in counted:
                 entry = {"name": f"{name}.{one}", "value": value, "unit": p["unit"]}
                 found.append({**entry, "source": source})
     return found
@@ -119,7 +120,8 @@ def missing(masonry: Any) -> list[str]:
     problems = []
     for name, thing in _things(masonry):
         kind, joint = type(thing), isinstance(thing, MasonryJoint)
-        lacks = [n for n in NEEDED[kind] if isDefault(thing, n) and (not joint or acts(thing, n))]
+        counted = effective(thing)
+        lacks = [n for n in NEEDED[kind] if isDefault(thing, n) and n in counted]
         if not lacks:
             continue
         what = f"{'joint' if joint else 'unit'} {name!r}"

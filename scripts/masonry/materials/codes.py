@@ -18,7 +18,7 @@ from typing import Annotated, Any, NamedTuple
 
 from ..arguments import number, oneOf, validated, whole
 from ..errors import refuse
-from .settings import such
+from .settings import matching
 
 #: Mean over characteristic compressive strength (EN 1052-1), characteristic over mean cohesion and
 #: friction (EN 1052-3) [-].
@@ -45,13 +45,13 @@ FVK0 = {
 
 #: Friction of bed joints, bound of fvk over fb, E over fk and G over E [-]: EN 1996-1-1:2005, 3.6.2
 #: and 3.7.
-FRICTION, MOST_SHEAR, STIFFNESS, SHEARING = 0.4, 0.065, 1000, 0.4
+FRICTION, MAX_SHEAR, STIFFNESS, SHEARING = 0.4, 0.065, 1000, 0.4
 #: The strongest units that equations (3.2), and (3.3) and (3.4), are for [Pa].
 STRONGEST = {GENERAL: 75e6, THIN: 50e6}
 
 #: Confidence factor of a level of knowledge [-]: Circolare 7/2019, table C8.5.IV.
 CONFIDENCE = {"LC1": 1.35, "LC2": 1.2}
-_knowledge = such(
+_knowledge = matching(
     lambda v: isinstance(v, str) and v in CONFIDENCE,
     "LC1 or LC2; LC3 needs tests: give what they say to materials.masonry",
 )
@@ -87,7 +87,7 @@ TABLE = {
 }  # fmt: skip
 
 
-def _mortar(value, first=None):
+def _mortar(value, context=None):
     """The kind of a class of mortar, as its strength [MPa]."""
     found = re.fullmatch(r"M(\d+(?:\.\d+)?)", value) if isinstance(value, str) else None
     if not found or not 1 <= float(found[1]) <= 20:
@@ -150,7 +150,7 @@ def en1996(
         fk, by = factor * (1e-6 * fb) ** 0.85, "(3.3)"
     ofMortar, thin = FVK0.get(unit, (OTHERS, 0.30e6))
     general = next(v for least, v in ofMortar if fm >= least)
-    fvk0 = min(general if joints == GENERAL else thin, MOST_SHEAR * fb)
+    fvk0 = min(general if joints == GENERAL else thin, MAX_SHEAR * fb)
     strength, shear, over = (MEAN, SHEAR, True) if value == "mean" else (1, 1, False)
     mean = lambda what: f" {what}" if over else ""
     E = 1e6 * STIFFNESS * fk

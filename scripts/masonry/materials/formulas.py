@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Masonry of one's own from what a data sheet and tests say of it: joints by stated formulas."""
 
-from types import SimpleNamespace
-from typing import Annotated, Any
+import inspect
+from dataclasses import dataclass
+from typing import Annotated, Any, Callable, ParamSpec
 
 from yade.wrapper import MasonryJoint, MasonryMat
 
@@ -51,15 +52,15 @@ MARGIN = 1.1
 Modulus = Annotated[float, number("Pa", 1e6, 1e12)]
 Crushing = Annotated[float, number("Pa", 1e4, 1e9)]
 OfBond = Annotated[float, number("Pa", 0, 1e8)]  # a strength
-OfBrick = Annotated[float, number("Pa", 1e3, 1e9)]  # likewise
+OfBrick = Annotated[float, number("Pa", 1e3, 1e9)]  # a strength
 Friction = Annotated[float, number("", 0, 5)]
 Energy = Annotated[float, number("J/m²", 0.1, 1e5)]
 EnergyOfBrick = Annotated[float, number("J/m²", 0.1, 1e6)]
 Mortar = Annotated[float, number("m", 0, 0.1)]
 
 
-def _ofMortar(value, first=None):
-    """The kind of an argument that is never right."""
+def _ofMortar(value, context=None):
+    """Validator of an argument of which no value is accepted: it explains what to give instead."""
     raise ValueError(
         "is the strength of the mortar in EN 1996 and on data sheets: give fc, the mean strength of"
         " the masonry, or fk; materials.en1996 finds it from unit and mortar"
@@ -68,7 +69,7 @@ def _ofMortar(value, first=None):
 
 @validated
 def compressiveFractureEnergy(fc: Crushing) -> tuple[float, str]:
-    """Compressive fracture energy of masonry [J/m²], and where it is from.
+    """Compressive fracture energy of masonry [J/m²], and its source.
 
     Gc = 15 + 0.43 fc - 0.0036 fc² with fc in MPa and Gc in N/mm, for fc from 12 to 80 MPa, after
     Model Code 90; below and above that 1.6 mm and 0.33 mm times fc, as Lourenço (2008) recommends.
@@ -92,10 +93,9 @@ def leastEnergy(
 ) -> float:
     """The least fracture energy [J/m²] with which the law softens as it is asked to.
 
-    Below strength²/stiffness, twice the elastic energy at the peak, the law takes another energy;
-    below half of that no law could take it, since softening would snap back. Between rigid units,
-    which have their elasticity lumped into the joint, softening snaps back below strength² (lumped
-    + 1/(2 stiffness)): yade_plugin/law/README.md, Softening and Rigid units.
+    Below strength²/stiffness, twice the elastic energy at the peak, the law takes another energy.
+    Between rigid units, whose elasticity is lumped into the joint, softening snaps back below
+    strength² (lumped + 1/(2 stiffness)): yade_plugin/law/README.md, Softening and Rigid units.
 
     :param strength: [Pa]
     :param stiffness: of the joint [Pa/m]
@@ -119,8 +119,8 @@ class _Joint:
         return self.values[name]
 
     def energy(self, mode, strength, stiffness, lumped, given):
-        """Take a fracture energy. One that is assumed is large enough; of one that is given and too
-        small a warning."""
+        """Take a fracture energy, which is large enough if assumed; warn of a given one that is
+        too small."""
         name, _, index = mode
         least = leastEnergy(strength, stiffness, lumped)
         if given is not None and given <= least:
@@ -146,41 +146,10 @@ class _Joint:
         return state(joint, **joint.assumed(), **self.sources)
 
 
-@validated
-def masonry(
-    *,
-    E: Modulus,
-    unit_E: Modulus,
-    fv0: OfBond,
-    friction: Friction,
-    unit: Sides,
-    joint: Mortar,
-    density: Annotated[float, number("kg/m³", 100, 1e4)],
-    fc: Crushing | None = None,
-    fk: Crushing | None = None,
-    fm: Annotated[None, _ofMortar] = None,
-    ft: OfBond | None = None,
-    bond_wrench: OfBond | None = None,
-    bond_ratio: Annotated[float, number("", 1, 5)] | None = None,
-    G: Modulus | None = None,
-    head_E: Modulus | None = None,
-    poisson: Annotated[float, number("", 0, 0.49)] | None = None,
-    GfI: Energy | None = None,
-    GfII: Energy | None = None,
-    Gc: Annotated[float, number("J/m²", 10, 1e7)] | None = None,
-    peak_strain: Annotated[float, number("", 1e-5, 0.1)] | None = None,
-    residual_friction: Friction | None = None,
-    dilatancy: Friction | None = None,
-    head_share: Annotated[float, number("", 0, 1)] | None = None,
-    unit_ft: OfBrick | None = None,
-    unit_GfI: EnergyOfBrick | None = None,
-    unit_fv0: OfBrick | None = None,
-    unit_friction: Friction | None = None,
-    unit_GfII: EnergyOfBrick | None = None,
-    clauses: Annotated[dict[str, Any], isA(dict)] | None = None,
-) -> Masonry:
-    """Masonry of one's own, from what a data sheet and tests of the masonry say. Returns a
-    :class:`Masonry`.
+@dataclass(kw_only=True)
+class DataSheet:
+    """Masonry of one's own, from what a data sheet and tests of the masonry say. :func:`masonry`
+    makes a :class:`Masonry` of it.
 
     ::
 
@@ -189,7 +158,7 @@ def masonry(
             unit=(0.25, 0.12, 0.065), joint=0.010, density=1800)
 
     What is not given is assumed by the formulas below; a scene prints it once, and run.json has it
-    under ``assumed``. These must be given, by hand or by a code (:func:`en1996`, :func:`ntc2018`):
+    under ``assumed``. Codes (:func:`en1996`, :func:`ntc2018`) give some of these:
 
     :param E: Young's modulus of the masonry under compression across its bed joints [Pa]
     :param unit_E: Young's modulus of the bricks [Pa], above E
@@ -199,17 +168,12 @@ def masonry(
     :param fv0: initial shear strength of the bed joints (EN 1052-3) [Pa], the cohesion
     :param friction: coefficient of friction of the bed joints [-]
     :param ft: **direct** tensile strength of the bed joints [Pa]; give this or ``bond_wrench``
-    :param bond_wrench: strength of the bond in a bond wrench test (EN 1052-5) [Pa]. It is no direct
-        tensile strength: the test divides the moment by the elastic section modulus, as if stresses
-        were linear when the bond fails, but by then the bond has softened at its edge and the
-        stresses behind it have grown, so that it overestimates. ft is bond_wrench/bond_ratio
+    :param bond_wrench: strength of the bond in a bond wrench test (EN 1052-5) [Pa]. The test
+        divides the moment by the elastic section modulus, but the bond has softened at its edge
+        when it fails, so this overestimates: ft is bond_wrench/bond_ratio
     :param unit: length, thickness and height of a brick without mortar [m]
     :param joint: thickness of the mortar [m]
-    :param density: of the masonry, bricks and mortar together [kg/m³], since blocks contain their
-        mortar
-
-    These can be given:
-
+    :param density: of the masonry, bricks and mortar together [kg/m³]
     :param fm: never: in EN 1996 it is the strength of the mortar
     :param bond_ratio: flexural over direct tensile strength of the bond [-]; default 1.5, after van
         der Pluijm (1999)
@@ -221,11 +185,10 @@ def masonry(
     :param GfI: mode I fracture energy of bed joints [J/m²]; default 0.029 mm times ft, Lourenço
         (2008)
     :param GfII: mode II fracture energy of bed joints without normal stress [J/m²]; default 0.093
-        mm times fv0, likewise
+        mm times fv0, from the same source
     :param Gc: compressive fracture energy [J/m²]; default as in :func:`compressiveFractureEnergy`
-    :param peak_strain: strain of the masonry at fc [-]; default 2 fc/E, that of a parabola which
-        begins with the modulus E, the branch up to the peak of Kaushik, Rai and Jain (2007), J.
-        Mater. Civ. Eng. 19(9)
+    :param peak_strain: strain of the masonry at fc [-]; default 2 fc/E, of a parabola with the
+        initial modulus E: Kaushik, Rai and Jain (2007), J. Mater. Civ. Eng. 19(9)
     :param residual_friction: [-]; default: the friction
     :param dilatancy: tan(psi) [-]; default 0
     :param head_share: strengths and energies of tension and shear of head joints over those of bed
@@ -239,63 +202,142 @@ def masonry(
     :param clauses: of a code: by the name of an argument its value and what says it
     :raises Refused: with all problems at once
 
-    Stiffness: bricks and joints in series have the modulus of the masonry, E of bed joints, head_E
-    of head joints: 1/kn = s (1/E - 1/unit_E). For bed joints s = height + joint; for head joints s
-    = length + joint, the distance from one to the next, also of bricks that are two rigid halves,
-    which together are as long. Their crack surface is so stiff that it leaves 0.99 of the stiffness
-    of a half. Blocks contain their mortar and have the modulus unit_E, rigid ones lumped into their
-    joints.
+    Stiffness: bricks and joints in series have the modulus of the masonry, E across bed joints,
+    head_E across head joints: 1/kn = s (1/E - 1/unit_E). For bed joints s = height + joint; for
+    head joints s = length + joint, also of bricks in two rigid halves, whose crack surface leaves
+    0.99 of the stiffness of a half. Blocks contain their mortar and have the modulus unit_E, rigid
+    ones lumped into their joints.
 
-    Crushing: the closure of a joint at its strength is ucp = s (peak_strain - fc/unit_E), what the
-    bricks leave of the strain, and the law's peak ratio n = kn ucp/fc. Head joints have the same
-    strength and Gc.
+    Crushing: the closure of a joint at its strength is ucp = s (peak_strain - fc/unit_E), and the
+    law's peak ratio n = kn ucp/fc. Head joints have the same strength and Gc.
 
-    An assumed energy in tension or shear with which softening would snap back between rigid units
-    is raised to 1.1 times the least that does not, :func:`leastEnergy`, and its source says so; a
-    given one that is too small is a warning with that least. Joints to platens take the bed joint.
+    An assumed energy in tension or shear is at least 1.1 :func:`leastEnergy`, so that softening does
+    not snap back between rigid units; a given one below leastEnergy is a warning. Joints to platens
+    take the bed joint.
     """
-    values = SimpleNamespace(**locals())
-    given = {n: v for n, v in vars(values).items() if v is not None}
-    values.nu = 0.2 if poisson is None else poisson
-    #: the distances from one bed joint to the next, and from one head joint to the next [m]
-    values.height, values.length = unit[2] + joint, unit[0] + joint
-    problems = []
-    if ("fc" in given) == ("fk" in given):
-        problems.append(
-            "give fc, the mean compressive strength of the masonry, or fk, the characteristic one"
-        )
-    elif fk is not None:
-        values.fc = given["fc"] = MEAN * fk
-    problems += _problems(values, given)
+
+    E: Modulus
+    unit_E: Modulus
+    fv0: OfBond
+    friction: Friction
+    unit: Sides
+    joint: Mortar
+    density: Annotated[float, number("kg/m³", 100, 1e4)]
+    fc: Crushing | None = None
+    fk: Crushing | None = None
+    fm: Annotated[None, _ofMortar] = None
+    ft: OfBond | None = None
+    bond_wrench: OfBond | None = None
+    bond_ratio: Annotated[float, number("", 1, 5)] | None = None
+    G: Modulus | None = None
+    head_E: Modulus | None = None
+    poisson: Annotated[float, number("", 0, 0.49)] | None = None
+    GfI: Energy | None = None
+    GfII: Energy | None = None
+    Gc: Annotated[float, number("J/m²", 10, 1e7)] | None = None
+    peak_strain: Annotated[float, number("", 1e-5, 0.1)] | None = None
+    residual_friction: Friction | None = None
+    dilatancy: Friction | None = None
+    head_share: Annotated[float, number("", 0, 1)] | None = None
+    unit_ft: OfBrick | None = None
+    unit_GfI: EnergyOfBrick | None = None
+    unit_fv0: OfBrick | None = None
+    unit_friction: Friction | None = None
+    unit_GfII: EnergyOfBrick | None = None
+    clauses: Annotated[dict[str, Any], isA(dict)] | None = None
+
+    @property
+    def nu(self):
+        """Poisson's ratio of the bricks [-]."""
+        return 0.2 if self.poisson is None else self.poisson
+
+    @property
+    def shearing(self):
+        """E/G of the bricks [-]."""
+        return 2 * (1 + self.nu)
+
+    @property
+    def height(self):
+        """Distance from one bed joint to the next [m]."""
+        return self.unit[2] + self.joint
+
+    @property
+    def length(self):
+        """Distance from one head joint to the next [m]."""
+        return self.unit[0] + self.joint
+
+    @property
+    def compressive(self):
+        """Mean compressive strength of the masonry [Pa], or None."""
+        return self.fc or self.fk and MEAN * self.fk
+
+    @property
+    def wrench(self):
+        """Flexural over direct tensile strength of the bond [-]."""
+        return WRENCH if self.bond_ratio is None else self.bond_ratio
+
+    @property
+    def tensile(self):
+        """Direct tensile strength of the bed joints [Pa], or None."""
+        return self.ft if self.bond_wrench is None else self.bond_wrench / self.wrench
+
+    def problems(self) -> list[str]:
+        """Sentences on values that do not go together."""
+        return [*_problems(self)]
+
+    def masonry(self) -> Masonry:
+        """The masonry of these values. Raises Refused with all problems."""
+        _refuse(self.problems())
+        joints, problems = {}, []
+        for one in (*_mortarJoints(self), _crackJoint(self)):
+            try:
+                joints[one.name] = one.made()
+            except ValueError as error:
+                problems += _sentencesOf(error)
+        _refuse(problems)
+        if self.unit_ft is None:
+            why = "unit_ft was not given: bricks do not crack"
+            state(joints["crack"], **{**joints["crack"].assumed(), "elastic": why})
+        brick = MasonryMat(label="brick", young=self.unit_E, poisson=self.nu, density=self.density)
+        assumed = {"poisson": "usual for masonry units"} if self.poisson is None else {}
+        state(joints["bed"], **{**joints["bed"].assumed(), **self._stated(OF_CLAUSES)})
+        assumed |= self._stated({"density": "density"})
+        return Masonry(state(brick, **assumed), joints, course=self.height)
+
+    def _stated(self, names):
+        """Sources of properties whose value is that of a clause; ``names``: by the arguments."""
+        given = {**vars(self), "fc": self.compressive}
+        of = {n: (self.clauses or {}).get(n, (None, "")) for n in names}
+        return {names[n]: why for n, (value, why) in of.items() if value and given[n] == value}
+
+
+P = ParamSpec("P")
+
+
+def _making(sheet: Callable[P, DataSheet]) -> Callable[P, Masonry]:
+    """The function that makes the masonry of a data sheet, whose arguments and help it has."""
+
+    def masonry(*args: P.args, **values: P.kwargs) -> Masonry:
+        return sheet(*args, **values).masonry()
+
+    signature = inspect.signature(sheet).replace(return_annotation=Masonry)
+    vars(masonry).update(__signature__=signature)
+    masonry.__doc__, masonry.__annotations__ = sheet.__doc__, DataSheet.__annotations__
+    return validated(masonry)
+
+
+masonry = _making(DataSheet)
+
+
+def _refuse(problems):
     refuse([f"materials.masonry: {one}" for one in problems])
-    joints = {}
-    for one in (*_mortarJoints(values), _crackJoint(values)):
-        try:
-            joints[one.name] = one.made()
-        except ValueError as error:
-            for problem in error.problems:
-                isSmall = problem["code"] == "smallEnergy"
-                advice = "; Gc and peak_strain, and fc and E, decide" if isSmall else ""
-                problems.append(problem["text"] + advice)
-    refuse([f"materials.masonry: {one}" for one in problems])
-    if unit_ft is None:
-        why = "unit_ft was not given: bricks do not crack"
-        state(joints["crack"], **{**joints["crack"].assumed(), "elastic": why})
-    brick = MasonryMat(label="brick", young=unit_E, poisson=values.nu, density=density)
-    assumed = {"poisson": "usual for masonry units"} if poisson is None else {}
-    said = _stated(clauses or {}, given, OF_CLAUSES)
-    state(joints["bed"], **{**joints["bed"].assumed(), **said})
-    assumed |= _stated(clauses or {}, given, {"density": "density"})
-    return Masonry(state(brick, **assumed), joints, course=values.height)
 
 
-def _stated(clauses, given, names):
-    """Sources of properties of which a clause says the value that is given.
-
-    :param names: of the properties by the arguments
-    """
-    of = {n: clauses[n] for n in names if n in clauses}
-    return {names[n]: why for n, (value, why) in of.items() if given.get(n) == value}
+def _sentencesOf(error):
+    """Sentences of a joint that is refused, with the arguments that decide."""
+    for problem in error.problems:
+        isSmall = problem["code"] == "smallEnergy"
+        yield problem["text"] + "; Gc and peak_strain, and fc and E, decide" * isSmall
 
 
 def _mortarJoints(v):
@@ -314,11 +356,10 @@ def _mortarJoints(v):
 
 def _stiffnesses(v, bed, head):
     """Stiffness of bed and head joints: bricks and joints in series."""
-    shearing = 2 * (1 + v.nu)  # E/G of the bricks [-]
     kn = bed.values["normalStiffness"] = 1 / (v.height * (1 / v.E - 1 / v.unit_E))
-    own = v.G and 1 / (v.height * (1 / v.G - shearing / v.unit_E))
+    own = v.G and 1 / (v.height * (1 / v.G - v.shearing / v.unit_E))
     why = f"kn/(2 (1 + nu)), nu = {v.nu:g}"
-    ks = bed.take("shearStiffness", own, kn / shearing, why)
+    ks = bed.take("shearStiffness", own, kn / v.shearing, why)
     own = v.head_E and 1 / (v.length * (1 / v.head_E - 1 / v.unit_E))
     same = "like the bed joint: the same mortar, as thick"
     headKn = head.take("normalStiffness", own, kn, same)
@@ -327,21 +368,18 @@ def _stiffnesses(v, bed, head):
 
 
 def _bond(v, bed, head):
-    ft = v.ft
-    if ft is None:
-        factor = WRENCH if v.bond_ratio is None else v.bond_ratio
-        ft = v.bond_wrench / factor
+    if v.bond_wrench is not None:
         reason = (
-            f"bond_wrench {v.bond_wrench:g} Pa over {factor:g}: linear stresses of the test"
+            f"bond_wrench {v.bond_wrench:g} Pa over {v.wrench:g}: linear stresses of the test"
             " overestimate"
         )
         reason += "; van der Pluijm (1999)" * (v.bond_ratio is None)
         bed.sources["tensileStrength"] = reason
     kn, ks = (bed.values[name] for name in ("normalStiffness", "shearStiffness"))
-    headKn, shearing = head.values["normalStiffness"], 2 * (1 + v.nu)
+    headKn = head.values["normalStiffness"]
     share = 1.0 if v.head_share is None else v.head_share
     for mode, strength, stiffness, energy, soft in zip(
-        MODES, (ft, v.fv0), (kn, ks), (v.GfI, v.GfII), (1.0, shearing)
+        MODES, (v.tensile, v.fv0), (kn, ks), (v.GfI, v.GfII), (1.0, v.shearing)
     ):
         bed.values[mode[1]] = strength
         if strength > 0:
@@ -356,33 +394,32 @@ def _bond(v, bed, head):
 
 
 def _crushing(v, bed, head):
-    energy, source = (v.Gc, "") if v.Gc is not None else compressiveFractureEnergy(v.fc)
-    if v.Gc is None and not MODEL_CODE[0] <= v.fc <= MODEL_CODE[1]:
+    fc = v.compressive
+    energy, source = (v.Gc, "") if v.Gc is not None else compressiveFractureEnergy(fc)
+    if v.Gc is None and not MODEL_CODE[0] <= fc <= MODEL_CODE[1]:
         say(
-            f"warning: materials.masonry: fc {v.fc / 1e6:g} MPa is outside of 12 to 80 MPa, the"
+            f"warning: materials.masonry: fc {fc / 1e6:g} MPa is outside of 12 to 80 MPa, the"
             f" range of Model Code 90 for the compressive fracture energy: Gc is {energy:.4g} J/m²,"
             f" {source}"
         )
-    given = None if v.fk else v.fc
-    bed.take("compressiveStrength", given, v.fc, f"{MEAN:g} fk, EN 1052-1")
-    head.take("compressiveStrength", None, v.fc, "like the bed joint")
+    bed.take("compressiveStrength", v.fc, fc, f"{MEAN:g} fk, EN 1052-1")
+    head.take("compressiveStrength", None, fc, "like the bed joint")
     # without a modulus of its own the head joint is that of the bed
     along = (v.head_E, v.length) if v.head_E else (v.E, v.height)
     for joint, (modulus, spacing) in ((bed, (v.E, v.height)), (head, along)):
         joint.take("compressiveFractureEnergy", v.Gc, energy, source)
-        strain = v.peak_strain or 2 * v.fc / modulus
-        closure = spacing * (strain - v.fc / v.unit_E)
-        n = joint.values["normalStiffness"] * closure / v.fc
+        strain = v.peak_strain or 2 * fc / modulus
+        closure = spacing * (strain - fc / v.unit_E)
+        n = joint.values["normalStiffness"] * closure / fc
         why = "peak strain 2 fc/E, parabola of Kaushik, Rai and Jain (2007)"
         joint.take("peakRatio", v.peak_strain and n, n, why)
 
 
 def _crackJoint(v):
     halves = 0.5 * v.length / v.unit_E  # what is lumped into it [m/Pa]
-    shearing = 2 * (1 + v.nu)
     kn = 100 / halves
     crack = _Joint("crack", elastic=v.unit_ft is None)
-    for name, stiffness in (("normal", kn), ("shear", kn / shearing)):
+    for name, stiffness in (("normal", kn), ("shear", kn / v.shearing)):
         crack.take(f"{name}Stiffness", None, stiffness, "100 times that of half a brick")
     if v.unit_ft is None:
         return crack
@@ -394,11 +431,13 @@ def _crackJoint(v):
     crack.take("residualCohesion", None, 0.0, "no cohesion is left of a bond")
     crack.take("dilatancy", None, 0.0, "none")
     crack.energy(MODES[0], v.unit_ft, kn, halves, v.unit_GfI)
-    crack.energy(MODES[1], cohesion, kn / shearing, shearing * halves, v.unit_GfII)
+    crack.energy(MODES[1], cohesion, kn / v.shearing, v.shearing * halves, v.unit_GfII)
     return crack
 
 
-def _problems(v, given):
+def _problems(v):
+    if (v.fc is None) == (v.fk is None):
+        yield "give fc, the mean compressive strength of the masonry, or fk, the characteristic one"
     if (v.ft is None) == (v.bond_wrench is None):
         yield (
             "give either ft, the direct tensile strength of bed joints, or bond_wrench, that of a"
@@ -408,47 +447,43 @@ def _problems(v, given):
         yield f"unit {v.unit} m must be at most 5 m: is it in m?"
     elif v.joint >= min(v.unit[0], v.unit[2]):
         yield f"joint {v.joint:g} m must be below length and height of the unit {v.unit} m"
-    for one in ("E", "head_E"):
-        if given.get(one, 0) >= v.unit_E:
+    for name, modulus in (("E", v.E), ("head_E", v.head_E)):
+        if modulus and modulus >= v.unit_E:
             yield (
-                f"{one} {given[one]:g} Pa must be below unit_E {v.unit_E:g} Pa: bricks and joints"
-                " are in series"
+                f"{name} {modulus:g} Pa must be below unit_E {v.unit_E:g} Pa: bricks and joints are"
+                " in series"
             )
-    most = v.unit_E / (2 * (1 + v.nu))
-    if v.G and v.G >= most:
-        yield f"G {v.G:g} Pa must be below that of the bricks, unit_E/(2 (1 + nu)) = {most:g} Pa"
-    pairs = [("residual_friction", "friction"), ("dilatancy", "residual_friction")]
-    for one, other in pairs:
-        most = given.get(other, v.friction)
-        if given.get(one, 0) > most:
-            yield f"{one} {given[one]:g} must be at most {other} {most:g}"
-    yield from _aboveCone(v, given)
-    if v.peak_strain and v.fc and v.peak_strain < v.fc / v.E:
-        yield (
-            f"peak_strain {v.peak_strain:g} must be at least fc/E = {v.fc / v.E:g}, that of elastic"
-            " masonry"
-        )
-    if v.bond_ratio and v.bond_wrench is None:
-        yield "bond_ratio goes with bond_wrench"
-    alone = [one for one in ("unit_GfI", "unit_fv0", "unit_friction", "unit_GfII") if one in given]
-    if alone and v.unit_ft is None:
-        yield f"{', '.join(alone)} without unit_ft: bricks do not crack then"
-
-
-def _aboveCone(v, given):
-    """Sentences on tensile strengths above the apex of the Coulomb cone."""
-    tensile, source = v.ft, "ft"
-    if v.bond_wrench is not None:
-        ratio = given.get("bond_ratio", WRENCH)
-        tensile, source = v.bond_wrench / ratio, f"bond_wrench/{ratio:g} ="
-    slides = given.get("unit_friction", 0.75)
-    for strength, what, cohesion, friction, names in (
-        (tensile, source, v.fv0, v.friction, "fv0/friction"),
+    bound = v.unit_E / v.shearing
+    if v.G and v.G >= bound:
+        yield f"G {v.G:g} Pa must be below that of the bricks, unit_E/(2 (1 + nu)) = {bound:g} Pa"
+    residual = v.friction if v.residual_friction is None else v.residual_friction
+    for name, value, other, bound in (
+        ("residual_friction", v.residual_friction, "friction", v.friction),
+        ("dilatancy", v.dilatancy, "residual_friction", residual),
+    ):
+        if value and value > bound:
+            yield f"{name} {value:g} must be at most {other} {bound:g}"
+    slides = 0.75 if v.unit_friction is None else v.unit_friction
+    source = "ft" if v.bond_wrench is None else f"bond_wrench/{v.wrench:g} ="
+    for strength, name, cohesion, friction, names in (
+        (v.tensile, source, v.fv0, v.friction, "fv0/friction"),
         (v.unit_ft, "unit_ft", v.unit_fv0, slides, "unit_fv0/unit_friction"),
     ):
         known = strength is not None and cohesion is not None
         if known and strength * friction > cohesion * (1 + 1e-12):
             yield (
-                f"{what} {strength:g} Pa must be at most {names} = {cohesion / friction:g} Pa, the"
+                f"{name} {strength:g} Pa must be at most {names} = {cohesion / friction:g} Pa, the"
                 " apex of the Coulomb cone"
             )
+    fc = v.compressive
+    if v.peak_strain and fc and v.peak_strain < fc / v.E:
+        yield (
+            f"peak_strain {v.peak_strain:g} must be at least fc/E = {fc / v.E:g}, that of elastic"
+            " masonry"
+        )
+    if v.bond_ratio and v.bond_wrench is None:
+        yield "bond_ratio goes with bond_wrench"
+    needing = ("unit_GfI", "unit_fv0", "unit_friction", "unit_GfII")
+    alone = [name for name in needing if getattr(v, name) is not None]
+    if alone and v.unit_ft is None:
+        yield f"{', '.join(alone)} without unit_ft: bricks do not crack then"

@@ -17,7 +17,7 @@ from ..arguments import byName as dictOf
 from ..model.engines import LAWS
 from ..errors import Refused, refuse
 from ..bricks import Bricks
-from .settings import Factor, Property, Settable, applySettings, such
+from .settings import Factor, Property, Settable, applySettings, matching
 from .assumptions import AS_BED, copied, entriesOf, isDefault, missing, state
 
 FACTOR = number("", 0, above=True)  # the kind of what a variation gives
@@ -26,10 +26,10 @@ FACTOR = number("", 0, above=True)  # the kind of what a variation gives
 STEEP = math.cos(math.radians(45))
 
 
-_slides = such(lambda v: hasattr(v, "residualFriction"), "a MasonryJoint")
-_options = such(lambda v: hasattr(v, "joints"), "the options of a scene")
+_slides = matching(lambda v: hasattr(v, "residualFriction"), "a MasonryJoint")
+_options = matching(lambda v: hasattr(v, "joints"), "the options of a scene")
 _isVaried = lambda v: isinstance(v, tuple) and len(v) == 4
-_varied = such(
+_varied = matching(
     lambda v: isinstance(v, list) and all(map(_isVaried, v)), "a list that vary() has made"
 )
 
@@ -51,10 +51,10 @@ def withResidual(
 
 
 _fits = lambda value: isinstance(value, Bricks) and len(value)
-_pieces = such(_fits, "what bricks.Beam or bricks.Floor gives")
+_pieces = matching(_fits, "what bricks.Beam or bricks.Floor gives")
 
 
-def _bearing(value, first=None):
+def _bearing(value, context=None):
     """The kind of what is between a beam or a floor and the masonry below."""
     if isinstance(value, str) and value != "fixed":
         raise ValueError(f"{shown(value)} must be 'fixed', a friction [-] or None")

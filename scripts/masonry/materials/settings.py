@@ -80,10 +80,10 @@ class Settable:
         self.updateAttrs({name: self.values()[name] * factor(*self.place())})
 
 
-def such(fits, what):
-    """The kind of what fits a function, and is called so where it must be."""
+def matching(fits, what):
+    """A validator of values for which ``fits`` is true; ``what`` names them in the error."""
 
-    def take(value, first=None):
+    def take(value, context=None):
         if not fits(value):
             raise ValueError(f"{shown(value)} must be {what}")
         return value

@@ -24,7 +24,7 @@ def calciumSilicate() -> Masonry:
 DRY_GRANITE_MASONRY = {100: 3.287e9, 175: 4.068e9, 250: 4.722e9}
 
 
-def tested(value: Any, first: Any = None) -> Any:
+def tested(value: Any, context: Any = None) -> Any:
     """The kind of a vertical load of the tests [kN]."""
     if not isNumber(value) or value not in DRY_GRANITE_MASONRY:
         levels = ", ".join(map(str, DRY_GRANITE_MASONRY))
@@ -43,7 +43,7 @@ def dryGranite(level: Level, height: Course) -> Masonry:
     return Masonry(graniteUnit(), dryGraniteJoints(level, height), brief=True)
 
 
-MOST_FRICTION = 5.0  # [-] of a joint: a larger one is an angle
+MAX_FRICTION = 5.0  # [-] of a joint: a larger one is an angle
 Stiffness = Annotated[float, number("Pa/m", 0, 1e20, above=True)]
 #: What stones with dry joints have if nothing else is said.
 DRY = dict(friction=0.7, normalStiffness=5e9, density=2600.0, young=20e9, poisson=0.2)
@@ -51,7 +51,7 @@ DRY = dict(friction=0.7, normalStiffness=5e9, density=2600.0, young=20e9, poisso
 
 @validated
 def dry(
-    friction: Annotated[float, number("", 0, MOST_FRICTION)] | None = None,
+    friction: Annotated[float, number("", 0, MAX_FRICTION)] | None = None,
     normalStiffness: Stiffness | None = None,
     shearStiffness: Stiffness | None = None,
     density: Annotated[float, number("kg/m³", 0, above=True)] | None = None,

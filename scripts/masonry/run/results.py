@@ -10,8 +10,9 @@ or None:
 - ``options``: those of the command line; ``option_units``: units of those that have one
 - ``preset``: :func:`masonry.run.presets.presetOf`; ``preset_note``: it as a sentence
 - ``columns``: what each column of curve.csv means
-- ``joints``: the properties of every kind of joint; ``joint_units``, ``joint_meanings``: of each
-  property; ``properties_of_laws``: those that only some laws read, by law
+- ``joints``: the properties of every kind of joint [SI units]; ``joint_units``: the units by
+  property; ``joint_meanings``: what each property means; ``effective_properties``: by
+  kind of joint, the numbers among them that have an effect
 - ``unit_material``: ``young_Pa``, ``poisson`` and ``density_kg_per_m3`` of the bricks
 - ``assumed``: properties that were not given: ``name``, as ``bed.residualFriction``, ``value``,
   ``unit`` and ``source``. The name ``support`` says that these joints take the bed joint

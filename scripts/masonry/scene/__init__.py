@@ -5,7 +5,7 @@
 - :mod:`masonry.scene.description`: what a scene describes, by the commands of
   :mod:`masonry.scene.platens`, :mod:`masonry.scene.loads`, :mod:`masonry.scene.connections` and
   :mod:`masonry.scene.records`
-- :mod:`masonry.scene.targets`, :mod:`masonry.scene.sections`: what is recorded;
+- :mod:`masonry.scene.targets`: what is recorded;
   :mod:`masonry.scene.ties`: ties, springs and fibre layers; :mod:`masonry.scene.pressures`:
   pressures as forces on faces; :mod:`masonry.scene.contact`: what blocks do that have lost their
   joints

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Ties and springs, which connect bricks and platens beside the joints: words that describe a
-scene."""
+"""Ties, springs and fibre layers: commands that describe a scene."""
 
 from typing import Annotated, Any, Union
 
@@ -13,16 +12,15 @@ from ..errors import Refused, refuse
 from ..bricks import Block, Bricks
 from .platens import Point
 from .targets import Part, Target, brick, isOwn
-from .ties import MOST, OF_OVERLAY, OF_TIE, End, Overlay, Spring, Tie
+from .ties import MAX_STIFFNESS, OF_OVERLAY, OF_TIE, End, Overlay, Spring, Tie
 from .script import describes
 
 
-def _end(value, first):
-    """The kind of an end: a target of the scene, or a brick as in
-    :func:`masonry.scene.targets.brick`."""
+def _end(value, context):
+    """Validator of an end: a target of the scene, or a brick."""
     if not isinstance(value, Target):
-        return brick(value, first)
-    if not isOwn(value, first):
+        return brick(value, context)
+    if not isOwn(value, context):
         raise ValueError(f"{value.name!r}, which is of another scene, must be of this one")
     return value
 
@@ -57,23 +55,21 @@ def tie(
     strut.
 
     It has no mass, does not bend, and pulls along the line between its ends, however far they move.
-    Its columns in curve.csv are its force [kN] and the elongation [mm]; when it yields or breaks,
-    the terminal says so. Bricks at its ends are rigid also with ``--blocks deformable``.
+    Its columns of curve.csv are its force [kN] and elongation [mm]; the terminal says when it
+    yields or breaks. Bricks at its ends are rigid also with ``--blocks deformable``.
 
-    :param one: a point (x, y, z) [m] in a brick or near it, at which the tie is fixed to it; the
-        index of a brick, or the block itself: its middle; or a platen, a handle, a brick that is
-        held or watched: the point on which loads act
-    :param other: the same for the other end; None: ``anchor`` says where
+    :param one: a point (x, y, z) [m] in a brick or near it; a brick, or its index: its middle; or a
+        target: the point on which loads act
+    :param other: the other end; None: ``anchor`` says where
     :param anchor: (x, y, z) [m] of an end on the ground, which does not move
     :param stiffness: E A / L [N/m]
     :param strength: force at which it yields, and then keeps [N]; None: it does not yield
-    :param prestress: force by which it is tightened, with the other loads that grow in
-        :meth:`settle` [N]: it is shortened by prestress / stiffness, so what the masonry gives way
-        reduces the force
+    :param prestress: force by which :meth:`settle` tightens it [N]: it is shortened by prestress /
+        stiffness, so masonry that gives way reduces the force
     :param slack: elongation before it carries anything [m]
     :param breaking: strain of the distance between its ends, its tightening included, at which it
         breaks [-]; None: it does not
-    :param compression: whether it carries compression, too, as a strut, with the same strength
+    :param compression: whether it also carries compression, as a strut, with the same strength
     :param name: of its columns; None: ``tie`` and a number
     :returns: a :class:`Tie`, whose ``force`` and ``elongation`` can be read between stages
     """
@@ -97,10 +93,9 @@ def tie(
     return _take(description, "tie", made, problems)
 
 
-def _springs(value, first=None):
-    """The kind of the stiffnesses of springs along or about three axes, of which none is
-    negative."""
-    found = numbers("", MOST)(value)
+def _springs(value, context=None):
+    """Validator of stiffnesses along or about three axes."""
+    found = numbers("", MAX_STIFFNESS)(value)
     if min(found) < 0:
         raise ValueError(f"{value!r} must be three numbers of at least 0")
     return tuple(found)
@@ -123,11 +118,11 @@ def spring(
     """Linear springs at a point, along and about x, y and z, between two bricks or platens, or one
     and the ground.
 
-    They have no force as the scene is built, and neither yield nor break. Directions stay those of
-    the global axes, so turns are small. Columns of curve.csv are the forces [kN] and moments [kN m]
-    of ``one`` on them. Bricks at their ends are rigid also with ``--blocks deformable``.
+    They have no force as the scene is built, and neither yield nor break. They keep the global
+    axes, so turns must be small. Columns of curve.csv are the forces [kN] and moments [kN m] of
+    ``one`` on them. Bricks at their ends are rigid also with ``--blocks deformable``.
 
-    :param one: where they are fixed: a point in a brick, a brick or a target, as for :meth:`tie`
+    :param one: where they are fixed, as for :meth:`tie`
     :param other: the other brick or platen, at the same point; None: the ground
     :param stiffness: along x, y and z, three numbers [N/m]
     :param rotation: about x, y and z, three numbers [N m/rad]
@@ -150,10 +145,10 @@ def spring(
     return _take(description, "spring", made, problems)
 
 
-#: Places of two bundles of fibres along the edge of a joint, which have the force and the moment of
-#: a layer whose strain is linear along it: those of Gauss.
+#: Gauss points along the edge of a joint: two bundles of fibres there have the force and the moment
+#: of a layer whose strain is linear.
 BUNDLES = 0.5 - 0.5 / 3**0.5, 0.5 + 0.5 / 3**0.5
-#: Of the largest extent of the structure: corners so near to a face lie on it.
+#: Corners so near to a face lie on it, over the largest extent of the structure [-].
 NEAR = 1e-6
 
 
@@ -171,23 +166,22 @@ def overlay(
     part: Part | None = None,
     name: Name | None = None,
 ) -> Overlay:
-    """A fibre layer on a face: textile or steel in mortar. Its fibres cross every joint that ends
-    at that face.
+    """A fibre layer on a face: textile or steel in mortar, over every joint that ends at the face.
 
     Fibres carry tension only. Two bundles over the edge of every joint are bars (:meth:`tie`)
-    between both bricks, at right angles to the joint. Mortar and bond of the layer are not modelled
-    but by ``gauge``, the length over which fibres are free on either side of a crack together.
+    between both bricks, at right angles to the joint. Mortar and bond of the layer are modelled by
+    ``gauge`` alone, the free length of fibres across a crack.
 
     :param side: outward direction of the face, for example (0, -1, 0)
-    :param stiffness: E t of the fibres, a metre of width [N/m]
-    :param strength: force a metre of width at which they slip or yield [N/m]
+    :param stiffness: E t of the fibres [N/m]
+    :param strength: force per width at which they slip or yield [N/m]
     :param gauge: length over which they stretch at a crack [m]
-    :param strain: of that length, at which they break [-]; None: they do not
+    :param strain: at which they break [-]; None: they do not
     :param fibres: ``"vertical"``: over joints that are nearer to level; ``"horizontal"``: over the
         others; ``"both"``
     :param part: name of a part of the bricks; None: all
-    :param name: of its columns, the numbers of bundles that have yielded and broken; None:
-        ``overlay`` and a number
+    :param name: of its columns, how many bundles have yielded and broken; None: ``overlay`` and a
+        number
     :returns: an :class:`Overlay`, whose ``ties`` are the bundles
     """
     if description.plane:
@@ -252,8 +246,7 @@ def _onOneBrick(one, other):
 
 
 def _take(description, word, made, problems):
-    """Take a tie, springs or a layer of fibres that has no problems, and whose name is its own.
-    Raises Refused."""
+    """Take a connector whose name is new. Raises Refused."""
     refuse([f"{word}: {one}" for one in problems])
     connectors, overlays = description.connectors, description.overlays
     taken = {one.name for one in (*connectors, *overlays)}

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The contact of blocks that have lost their joints: its properties, and the ground on which they
-fall."""
+"""Contact of blocks that have lost their joints, and the ground on which they fall."""
 
 import itertools
 from typing import Any
@@ -12,21 +11,20 @@ from ..materials.settings import Property, Settable
 from .targets import Target
 from .script import describes
 
-#: Speed after over before a central impact of two faces, as in MasonryContacts [-].
-RESTITUTION = 0.5
-FRICTION = 0.6  # of masonry blocks whose joints have none of their own [-]
-THICK = 0.5  # of the ground, over the height of what is built [-]
-BEYOND = 5.0  # how far the ground reaches out, over that height [-]
-#: Gap between the underside of what is held and the ground, over that height [-].
-BELOW = 1e-3
+RESTITUTION = 0.5  # [-] as in MasonryContacts
+FRICTION = 0.6  # [-] of masonry blocks with elastic joints
+#: Thickness of the ground, its reach beyond the structure, and the gap above it, over the height of
+#: what is built [-].
+THICKNESS, REACH, GAP = 0.5, 5.0, 1e-3
 
 
 class Contact(Settable):
-    """Contact of blocks that have lost their joints. What is None is that of the bed joint.
+    """Contact of blocks that have lost their joints. Properties that are None are those of the bed
+    joint.
 
     - ``normalStiffness``: of two faces per area [Pa/m]
     - ``tangentialRatio``: stiffness along the face over that along the normal [-]
-    - ``friction``: its coefficient [-]; None: the residual friction of the bed joint
+    - ``friction``: its coefficient [-]; of the bed joint the residual one
     - ``restitution``: speed after over before a central impact of two faces [-]
     """
 
@@ -46,7 +44,7 @@ class Contact(Settable):
         )
 
     def of(self, bed):
-        """The attributes of MasonryContacts, where ``bed`` is the bed joint, a MasonryJoint."""
+        """The attributes of MasonryContacts; ``bed``: the bed joint."""
         defaults = {
             "normalStiffness": bed.normalStiffness,
             "tangentialRatio": min(1.0, bed.shearStiffness / bed.normalStiffness),
@@ -56,7 +54,7 @@ class Contact(Settable):
 
 
 def problems(description, args):
-    """What does not go together with ``collapse="follow"``, or with functors: sentences."""
+    """Sentences on what does not go with ``collapse="follow"``, or with functors."""
     if args.points and description.functors:
         yield (
             f"--points {args.points}: with functors joints keep three points; leave functors=False"
@@ -83,11 +81,10 @@ def problems(description, args):
 @describes
 @validated
 def ground(description: Any, level: Coordinate, name: Name | None = None) -> Target:
-    """The ground on which blocks fall in a scene with ``collapse="follow"``: a block that is held
-    and reaches far out, without joints. A scene that does not say this has it just below everything
-    else.
+    """The ground on which blocks fall in a scene with ``collapse="follow"``: a wide block that is
+    held, without joints. Without this command it lies just below everything else.
 
-    :param level: z of its upper side [m], at or below the lowest of the bricks and of what is held
+    :param level: z of its upper side [m], at or below everything else
     :param name: in curve.csv; None: ground
     """
     if not description.contact:
@@ -108,13 +105,13 @@ def addGround(description, level=None, name=None):
     boxes = [target.box for target in targets.values() if target.box]
     lowest = min([description.low[2], *(box[0][2] for box in boxes)])
     height = description.high[2] - description.low[2]
-    top = lowest - BELOW * height if level is None else level
+    top = lowest - GAP * height if level is None else level
     if not top <= lowest:
         raise Refused(
             f"ground: level {top:g} m must be at most {lowest:g} m, where the lowest of what is"
             " built ends"
         )
-    reach = BEYOND * (description.high[2] - top)
+    reach = REACH * (description.high[2] - top)
     low = [v - reach for v in description.low[:2]]
     high = [v + reach for v in description.high[:2]]
     middle = (0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1]), top)
@@ -124,7 +121,7 @@ def addGround(description, level=None, name=None):
             fixed=True,
             point=middle,
             recorded=middle,
-            box=((*low, top - THICK * height), (*high, top)),
+            box=((*low, top - THICKNESS * height), (*high, top)),
             freedom="xyzXYZ",
             loaded=False,
             joined=False,

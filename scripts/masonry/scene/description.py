@@ -1,11 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What a scene describes before its first stage: its bricks, and what holds, loads and records
-them. Plain records.
-
-The words that describe are functions of a :class:`Description`: :mod:`masonry.scene.platens`,
-:mod:`masonry.scene.loads` and :mod:`masonry.scene.records`.
-:class:`masonry.model.structure.Structure` builds what they say in YADE.
-"""
+them. :class:`masonry.model.structure.Structure` builds that in YADE."""
 
 from numbers import Integral
 
@@ -20,11 +15,8 @@ from .contact import Contact
 
 
 class Description:
-    """Bricks, materials and everything that a scene says before its first stage.
-
-    :param name: of the scene
-    :param bricks: blocks, as in :class:`masonry.scene.scene.Scene`, which checks all parameters
-    """
+    """Bricks, materials and everything that a scene says before its first stage. Parameters are
+    those of :class:`masonry.scene.scene.Scene`, which checks them."""
 
     def __init__(
         self,
@@ -43,7 +35,7 @@ class Description:
         self.name, self.title = name, title or name
         self.materials, self.gravity = materials, gravity  # [m/s²], downwards
         self.functors = functors  # as in masonry.model.engines.engines
-        self.deformable = False  # whether bricks are
+        self.deformable = False  # bricks
         self.allowGaps = allowGaps  # as in masonry.model.connecting.connect
         #: Contact of blocks that have lost their joints, if a collapse is followed, else None.
         self.contact = Contact() if collapse == "follow" else None
@@ -71,8 +63,7 @@ class Description:
         return len({b.brick for b in self.bricks}) < len(self.bricks)
 
     def problems(self, materials):
-        """What does not go together, with the joints that the options choose: a list of
-        sentences."""
+        """Sentences on what does not go together with the materials of the options."""
         found = []
         if self.halves and "crack" not in materials.joints:
             found.append(
@@ -92,19 +83,19 @@ class Description:
         return found
 
     def connectorsOf(self, kind):
-        """Connectors of one class of records, in the order in which they were named."""
+        """Connectors of one class, in the order in which they were named."""
         return [one for one in self.connectors if type(one) is kind]
 
     def settable(self, copies=False):
-        """Ties, springs, fibre layers and the contact by name, which ``--set`` and ``--field`` can
-        change, or copies of them."""
+        """What ``--set`` and ``--field`` can change beside joints, by name, or copies of it: ties,
+        springs, fibre layers and the contact."""
         own = [one for one in self.connectors if not one.overlay] + self.overlays
         own += [self.contact] * bool(self.contact)
         return {one.name: one.copied() if copies else one for one in own}
 
     def pointLoaded(self):
-        """Indices of the bricks on which ties, springs, loads and drives act: a point of a brick
-        that deforms would give way without bound where the mesh is fine."""
+        """Indices of the bricks on which ties, springs, loads and drives act. They are rigid, since
+        a point of a fine mesh would give way without bound."""
         ends = [end.brick for one in self.connectors for end in one.ends]
         handles = [t.brick for t in self.targets.values() if t.loaded]
         return {*ends, *handles} - {None}
@@ -114,8 +105,8 @@ class Description:
         return next((t for t in self.targets.values() if not t.joined), None)
 
     def followed(self, loaded=None):
-        """The target whose displacement is drawn under a load that grows: the first that is
-        watched, else that with the load, else the first that moves, or None."""
+        """The target whose displacement is drawn under a load that grows, or None: the first that
+        is watched, else the loaded one, else the first that moves."""
         moving = [t for t in self.targets.values() if not t.fixed]
         watched = [t for t in moving if not t.loaded]
         return next(iter(watched + [loaded] * bool(loaded) + moving), None)
@@ -126,7 +117,7 @@ class Description:
         return names + ["the faces (pressure)"] * bool(self.winds)
 
     def add(self, target):
-        """Take a target. Its name begins those of its columns. Raises ValueError."""
+        """Take a target. Raises ValueError if its name is taken."""
         if target.name in self.targets:
             raise ValueError(
                 f"there are two targets of the name {target.name!r}; give one of them another name"
@@ -135,8 +126,8 @@ class Description:
         return target
 
     def replace(self, one, other):
-        """Let a record that a script holds stand for one that was made by the same word again,
-        whose values it gets: a target, a recorded joint, a section, a tie or springs."""
+        """Let a record ``other`` that a script holds take the values and the place of one that the
+        same command has made again: a target, a recorded joint, a section, a tie or springs."""
         if not hasattr(one, "__dict__"):
             return
         vars(other).clear()
@@ -148,10 +139,8 @@ class Description:
             records[:] = [other if record is one else record for record in records]
 
     def columns(self, structure, looped):
-        """The columns of curve.csv: those of the scene's choice, or all. Raises Refused.
-
-        :param looped: whether the drive follows a history
-        """
+        """The columns of curve.csv: those of the scene's choice, or all; ``looped``: whether the
+        drive follows a history. Raises Refused."""
         found = [*columns.PUSH, *accelerations(structure, self.plane)]
         if any(target.box and not target.fixed for target in self.targets.values()):
             found += columns.OF_PLATEN
@@ -179,8 +168,8 @@ class Description:
         return chosen + [c for c in found if c.head in always]
 
     def find(self, where):
-        """Index of a brick, and the point by which it is named, or None. Raises ValueError with a
-        sentence like a kind's."""
+        """Index of a brick, and the point by which it is named, or None. Raises ValueError like a
+        validator."""
         count = len(self.bricks)
         if isinstance(where, Integral) and not isinstance(where, bool):
             if not -count <= where < count:
@@ -212,8 +201,8 @@ class Description:
         return max(max(values) - min(values) for values in zip(*corners))
 
     def _nearest(self, point):
-        """The brick whose box is nearest to a point, and how far that is, with a little of the way
-        to its middle to break ties [m]."""
+        """The brick whose box is nearest to a point, and its distance [m]; among boxes that contain
+        the point, the one with the nearest middle."""
         if self._boxes[0] is not self.bricks:
             corners = [np.asarray(block.corners, float) for block in self.bricks]
             boxes = [np.array([f(c, axis=0) for c in corners]) for f in (np.min, np.max, np.mean)]

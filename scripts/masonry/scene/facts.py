@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What a scene is: what is built, held, loaded and watched, in words, which run.json has; and
-whether it is a wall in running bond."""
+"""What is built, held, loaded and watched, in words for run.json; and whether it is a wall in
+running bond."""
 
 import collections
 import statistics
@@ -8,7 +8,7 @@ import statistics
 from ..bricks import Bricks, summary
 from ..terminal import say
 
-MOST_SIZES = 4  # of blocks that are listed
+MAX_SIZES = 4  # of blocks that are listed
 
 
 def sizes(description):
@@ -17,7 +17,7 @@ def sizes(description):
     kinds = ", ".join(f"{count} {kind}" for kind, count in found["kinds"].items())
     by = lambda low, high, unit: " × ".join(f"{unit * (b - a):.4g}" for a, b in zip(low, high))
     blocks = collections.Counter(by(b.low, b.high, 1e3) for b in description.bricks)
-    most = blocks.most_common(MOST_SIZES)
+    most = blocks.most_common(MAX_SIZES)
     sizes = "; ".join(f"{count} of {text} mm" for text, count in most)
     size = by(found["low_m"], found["high_m"], 1)
     yield "blocks", f"{found['blocks']:,} in {found['bricks']:,} bricks ({kinds})"
@@ -33,9 +33,8 @@ def sizes(description):
 
 
 def properties(description, masonry):
-    """What decides whether a scene is like the walls on which a preset was measured: values by the
-    names in
-    :data:`masonry.run.presets.RANGE`; None for a scene in space."""
+    """Values by the names in :data:`masonry.run.presets.RANGE`, which tell whether a scene is like
+    the walls on which a preset was measured; None for a scene in space."""
     if not description.plane:
         return None
     length, _, height = (b - a for a, b in zip(description.low, description.high))
@@ -61,8 +60,7 @@ def properties(description, masonry):
 
 
 def held(description):
-    """What is held, loaded and watched before the first stage: pairs of texts, its name and what is
-    done to it."""
+    """What is held, loaded and watched before the first stage: pairs of a name and a text."""
     for target in description.targets.values():
         where = "platen" if target.box else f"brick {target.brick}"
         where = where if target.joined else "the ground"
@@ -93,7 +91,7 @@ def _freedom(freedom):
 
 
 def noteCourse(description):
-    """Say that the bricks are not those for which the stiffness of the joints was made."""
+    """Note that the joints were made for other courses."""
     course = description.materials.course
     heights = {block.high[2] - block.low[2] for block in description.bricks}
     if course and not any(abs(h - course) < 0.01 * course for h in heights):
@@ -105,11 +103,10 @@ def noteCourse(description):
 
 
 def wallOf(description, loading):
-    """The entry ``wall`` of run.json, or None if the structure is no whole wall in running bond in
-    the x-z plane, of which crack patterns are measured, or if no platen pushes it.
+    """The entry ``wall`` of run.json, for crack patterns, or None if the structure is no whole wall
+    in running bond in the x-z plane that a platen pushes.
 
-    :param loading: :class:`masonry.model.loading.Loading`, which knows what is pushed, and where
-        to
+    :param loading: :class:`masonry.model.loading.Loading`
     """
     target, bricks = loading.target, description.bricks
     (left, front, bottom), (right, back, top) = description.low, description.high

@@ -22,8 +22,7 @@ def rayleigh(
     low: Frequency,
     high: Frequency,
 ) -> tuple[float, float]:
-    """Viscous damping for :meth:`masonry.scene.scene.Scene.shake`: mass damping [1/s] and stiffness
-    damping [s].
+    """Rayleigh damping for ``scene.shake``: mass damping [1/s] and stiffness damping [s].
 
     :param ratio: share of critical damping at two frequencies [-]; between them it is less
     :param low: lower frequency [Hz]; ``high``: upper one
@@ -36,10 +35,10 @@ def rayleigh(
 
 #: Peaks beyond these may be in g, or in cm/s² [m/s²].
 LOWEST_PEAK, HIGHEST_PEAK = 1.5, 30.0
-#: No record has a larger peak [m/s²], several times the largest that was measured; and none has its
-#: samples farther apart [s].
+#: Bounds of a peak [m/s²], several times the largest that was measured, and of the time between
+#: samples [s].
 LARGEST_PEAK, COARSEST = 200.0, 0.5
-#: What stands for a sample that is missing, in any unit.
+#: Values that stand for a missing sample, in any unit.
 MISSING = [-999.0, -9999.0, -99999.0]
 
 
@@ -49,9 +48,8 @@ def isThree(value: Any) -> bool:
     return three and all(isinstance(one, (str, os.PathLike)) for one in value)
 
 
-def record(value: Any, first: Any = None) -> Any:
-    """The kind of a record: a list of accelerations, the path of a file, or a list of three
-    paths."""
+def record(value: Any, context: Any = None) -> Any:
+    """Validator of a record: a list of accelerations, the path of a file, or three paths."""
     if isinstance(value, (str, os.PathLike)):
         return path(value)
     if isThree(value):
@@ -72,7 +70,7 @@ def readRecord(
     :param unit: of the samples, a key of UNITS; None: m/s², if the peak does not look like another
         unit
     :returns: the samples [m/s²], or lists of their three components, without the scale, and the
-        time between two of them
+        time between two of them [s]
     :raises Refused: with what is wrong
     """
     if unit not in (None, *UNITS):

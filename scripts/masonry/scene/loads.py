@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What loads a structure from its first stage on: words that describe a scene."""
+"""What loads a structure from its first stage on: commands that describe a scene."""
 
 import math
 from typing import Annotated, Any, Callable, Union
@@ -13,8 +13,7 @@ from .pressures import LEAST, FaceForce, facesAgainst, pressures
 from .targets import Loaded, MovingPlaten, Part
 from .script import describes
 
-#: A mean stress, a force and the pressure of a wind. More than these would crush or throw over any
-#: masonry.
+#: Larger ones would crush or throw over any masonry.
 Stress = Annotated[float, number("Pa", 0, 1e12)]
 Force = Annotated[Numbers, numbers("N", 1e15)]
 Pressure = Annotated[float, number("Pa", -1e9, 1e9)]
@@ -56,11 +55,9 @@ def windForces(
 @describes
 @validated
 def press(description: Any, platen: MovingPlaten, stress: Stress, riding: bool = True) -> None:
-    """Press a platen on the bricks below it. The load grows in :meth:`settle`, and stays. A platen
-    has one press; dead loads and winds add up.
+    """Press a platen, once, on the bricks below it. The load grows in :meth:`settle`, and stays.
 
-    :param stress: mean vertical stress that the bricks feel [Pa]; the weight of the platen is part
-        of it
+    :param stress: mean vertical stress on the bricks, with the weight of the platen [Pa]
     :param riding: whether the load moves with the platen; else it keeps its line in space, as over
         rollers
     """
@@ -97,11 +94,10 @@ def pressure(
     """A pressure that may vary with the place: of water, earth, grain, snow, or fill on an arch. It
     grows in :meth:`settle`, and stays.
 
-    Loaded are the faces of rigid bricks that look against a direction, on the part that no joint
-    covers; platens cover nothing. Those that stand behind others are among them. There is no
-    pressure in the joints. On each face the forces have the resultant and the moments of the
-    pressure; what varies linearly is integrated exactly. With water up to z = 3 m and 0.4 m of fill
-    above the crown of an arch at z = 2 m::
+    Loaded are the faces of rigid bricks that look against a direction, also behind others, where no
+    joint covers them; there is no pressure in the joints. On each face the forces have the
+    resultant and the moments of the pressure, exactly if it varies linearly. With water up to z = 3
+    m and 0.4 m of fill above the crown of an arch at z = 2 m::
 
         scene.pressure(lambda x, y, z: 9810 * max(0, 3 - z), towards=(1, 0, 0))
         fill = lambda x, y, z: 18e3 * (2.4 - z)
@@ -110,8 +106,8 @@ def pressure(
     :param value: [Pa], or a function of the place (x, y, z) [m] that gives it
     :param towards: direction to which it presses
     :param part: name of a part of the bricks; None: all
-    :param normal: whether it acts along the normals of the faces, as water does; else it acts along
-        ``towards``, on the area that faces it, as snow and fill do on the area in plan
+    :param normal: whether it acts along the normals of the faces, as water does; else along
+        ``towards``, on the projected area, as snow and fill do
     :returns: the sum of the forces [N]
     """
     forces = pressures(description, value, towards, part, normal)
@@ -131,9 +127,8 @@ def wind(description: Any, pressure: Pressure, towards: Level, part: Part | None
     """A pressure on the faces that look against a horizontal direction. It grows in :meth:`settle`,
     and stays.
 
-    Loaded are the faces of rigid bricks within 45 degrees of the direction, each along its normal,
-    on the part that no joint covers. Those that stand behind others are among them. Suction is a
-    negative pressure.
+    Loaded are the faces of rigid bricks within 45 degrees of the direction, also behind others,
+    each along its normal, where no joint covers it. Suction is a negative pressure.
 
     :param pressure: [Pa]
     :param towards: direction in which the wind blows, horizontal

@@ -22,7 +22,7 @@ from .ground import readRecord
 from .parsing import Parser, checked, keep
 from ..materials.settings import scatterAll, setting
 
-#: The options of a scene: those of the table, with the laws of the plugin and the presets.
+#: The options of a scene: the table with the laws of the plugin and the presets.
 OPTIONS = {
     **option_table.OPTIONS,
     "preset": replace(option_table.OPTIONS["preset"], kind=oneOf(BOUND, *PRESETS)),
@@ -35,7 +35,7 @@ OPTIONS = {
 }
 
 
-#: What is made of the text of an option where it is used.
+#: How the texts of options are read.
 READ = {
     "history": reading(history.parse),
     "field": reading(lambda text: fields.read(text) and text),
@@ -44,11 +44,11 @@ READ = {
 
 
 def parser(description, until, rate=USUAL["rate"], loops=True):
-    """A parser with the common options, to which a scene adds its own.
+    """A parser with the common options; a scene adds its own.
 
     :param until: default displacement to stop at [mm]
     :param rate: default loading rate [mm/s]
-    :param loops: whether the scene has ``--history``; its value is None in all others
+    :param loops: whether the scene has ``--history``, else None
     """
     program = "yade" if hasattr(sys, "yade_argv") else "python3"
     p = Parser(
@@ -80,9 +80,7 @@ def ofScene(name, arguments, sceneOptions):
     """The options of a scene. Raises Refused with all problems.
 
     :param arguments: what a parser found; a list of words; or None: those of the command line
-    :param sceneOptions: what the script says, which holds unless the command line gives the same
-        option:
-        :func:`masonry.scene.parsing.keep`
+    :param sceneOptions: those of the script: :func:`masonry.scene.parsing.keep`
     """
     if arguments is None and (not sys.argv or notebook.isHere()):
         arguments = []  # words of a kernel, or of YADE's importer, are not the scene's
@@ -101,14 +99,13 @@ def ofScene(name, arguments, sceneOptions):
 
 
 def check(args, masonry, connectors, more=()):
-    """Apply ``--set`` and ``--field`` to what is in a scene. Refuse options that do not go
-    together, and materials that lack something.
+    """Apply ``--set`` and ``--field``. Refuse options that do not go together, and materials that
+    lack something.
 
-    :param args: the parsed options
-    :param masonry: :class:`masonry.materials.Masonry` for these options
+    :param args: the parsed options; ``masonry``: the :class:`masonry.materials.Masonry` for them
     :param connectors: ties, springs and fibre layers by name
-    :param more: problems that the caller has found, to be named with the others
-    :raises Refused: with all problems at once
+    :param more: problems that the caller has found
+    :raises Refused: with all problems
     """
     problems = [*more]
     if args.blocks == "rigid" and args.divisions > 1:
@@ -136,7 +133,7 @@ def check(args, masonry, connectors, more=()):
 
 
 def askAccuracy(name, args):
-    """As :func:`masonry.run.accuracy.ask`. Ends the script in order where there is no answer."""
+    """:func:`masonry.run.accuracy.ask`; ends the script where there is no answer."""
     _, ofLine = Parser.last
     fromLine = ofLine is args and sys.argv and os.path.isfile(sys.argv[0])
     script = sys.argv[0] if fromLine else None

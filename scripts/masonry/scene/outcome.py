@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What comes out of a scene: entries of run.json, what curve.png shows, and the lines at the end on
-the terminal."""
+"""What comes out of a scene: entries of run.json, also of its figure, and the lines at the end."""
 
 import collections
 import functools
@@ -13,7 +12,7 @@ from yade.wrapper import MasonryVtkRecorder
 from ..arguments import isNumber
 from ..model import bodies
 from ..numbers import columns
-from ..model.engines import LAWS
+from ..materials.assumptions import effective
 from ..terminal import say
 from ..memory import withoutCollector
 from ..memory import FULL
@@ -29,7 +28,7 @@ from ..stages.answers import answersText
 
 FRAMES = 20  # for ParaView in a stage that is no push
 REPORT = 2e6  # [bytes] of report.html, of which three.js takes nearly half
-MOST_NUMBERS = 24  # of a list that the script said, as run.json has it
+MAX_NUMBERS = 24  # of a list that the script said, as run.json has it
 
 
 class Outcome:
@@ -40,22 +39,20 @@ class Outcome:
         self.description, self.args = scene.description, scene.args
         self.results = scene.running.results
         self.drawing = DrawingProgram()
-        #: entries of run.json that say in words what is built and held, as it is before the first
-        #: stage
-        self._facts = {}
+        self._facts = {}  # entries of run.json on what is built and held before the first stage
         if not self.args.lean:
             of = {"built": facts.sizes, "held_and_loaded": facts.held}
             self._facts = {n: [*map(list, f(self.description))] for n, f in of.items()}
 
     @property
     def pushed(self):
-        """The options of the last push, or None if there was none."""
+        """The options of the last push, or None."""
         return self.scene.pushed
 
     @property
     def loads(self):
-        """What stages loaded, in their order: pairs of the number of the stage and what
-        :class:`RunState` keeps of it."""
+        """What stages loaded, in their order: pairs of a number of a stage and an entry of
+        ``RunState.loads``."""
         loads = self.scene.running.state.loads
         return [(number, loads[str(number)]) for number in sorted(map(int, loads))]
 
@@ -66,8 +63,8 @@ class Outcome:
         return pushes[-1] if pushes else []
 
     def _freeVibration(self):
-        """The first period, the weight of the base in the shear force, and when the velocity of the
-        drive had grown, of the first of the pushes that count."""
+        """The first period [s], the weight of the base in the shear force [-], and when the drive
+        had its velocity [s], of the first push that counts."""
         at, rows = self.scene.running.state, self.data.rows
         for number in sorted(map(int, at.freeVibrations)):
             if rows and at.stages[number - 1][3] >= rows[0]:
@@ -75,15 +72,14 @@ class Outcome:
         return 0.0, 0.0, 0.0
 
     def space(self):
-        """Bytes that a run writes at least, and those that it will probably write."""
+        """Bytes that a run writes at least, and probably."""
         model, args, frames, rows = self.model, self.args, FRAMES, 0
         frame = 50 * model.subcontacts + 150 * len(O.bodies) + 100 * self._nodes
         if args.history or args.until:
             frames = pushing.pathOf(args) / pushing.frameSpacing(args) + 2
             rows = pushing.rowCount(args)
         frames *= not (args.no_vtk or args.lean)
-        # and the first and last frame
-        least = (50e3 if args.lean else 400e3) + frame * min(frames, 2)
+        least = (50e3 if args.lean else 400e3) + frame * min(frames, 2)  # first and last
         return least, least + REPORT * (not args.lean) + frame * frames + 250 * rows
 
     @property
@@ -108,7 +104,7 @@ class Outcome:
             joints=joints,
             joint_units={p["name"]: p["unit"] for p in known if p["unit"]},
             joint_meanings={p["name"]: p["meaning"] for p in known},
-            properties_of_laws={n: sorted(law["properties"]) for n, law in LAWS.items()},
+            effective_properties={name: effective(joint) for name, joint in model.joints.items()},
             unit_material={
                 "young_Pa": model.unit.young,
                 "poisson": model.unit.poisson,
@@ -135,9 +131,8 @@ class Outcome:
             **self._facts,
             **dict(scene.bounds.inRunJson(self.pushes)),
         )
-        if description.views:
-            entries["views"] = description.views
-        return {**entries, **self._wall()}
+        views = {"views": description.views} if description.views else {}
+        return {**entries, **views, **self._wall()}
 
     def _figure(self):
         with self.scene.running.auxiliary("what curve.png shows"):
@@ -159,8 +154,7 @@ class Outcome:
         return [head for head in heads if head in self.results.columns]
 
     def _ground(self):
-        """Entries for the ground on which blocks fall and for their contact, if a collapse is
-        followed."""
+        """Entries for ground and contact, if a collapse is followed."""
         ground, engine = self.description.ground(), self.model.contacts
         if not (ground and engine):
             return {}
@@ -169,7 +163,7 @@ class Outcome:
 
     @property
     def data(self):
-        """What the numbers of the run are found from, as it stands now."""
+        """The data of the run so far, from which its numbers are found."""
         at, results = self.scene.running.state, self.results
         column = functools.cache(
             lambda name: results.column(name) if name in results.columns else None
@@ -199,13 +193,13 @@ class Outcome:
         if self.pushed and data.isLooped:
             run["cycles"] = data.cycles
         if self.pushed and scene.accuracy and not scene.running.interrupted:
-            # a push that is not over is shorter than those of its companions
+            # an unfinished push cannot be compared with the auxiliary runs
             with scene.running.auxiliary("--accuracy"):
                 self._addAccuracy(run)
         run["answers"] = scene.answers
 
     def _ofPush(self, data):
-        """Entries that the numbers of a push are found from, and what the joints say."""
+        """Entries from which the numbers of a push are found."""
         model = self.model
         period, weight, grown = self._freeVibration()
         target, sways = model.loading.target, abs(model.loading.direction[2]) < 1e-9
@@ -222,7 +216,7 @@ class Outcome:
         }
 
     def _cracks(self):
-        """Entries for the widest cracks, of all joints and by kind of joint and part."""
+        """The widest cracks: of all joints, and by kind of joint and part."""
         parts = {body: f"part {b.part}" for body, b in zip(self.model.ids, self.description.bricks)}
         groups = lambda i: {i.phys.joint.name, *(parts[b] for b in (i.id1, i.id2) if b in parts)}
         width, point, bodies, found = cracks.widest(
@@ -247,8 +241,7 @@ class Outcome:
         }
 
     def _addAccuracy(self, run):
-        """Add the entries for --accuracy, whose half-widths the answers of the last push get,
-        too."""
+        """Add the entries of --accuracy, and their half-widths to the answers of the last push."""
         at, asked = self.scene.running.state, self.scene.accuracy
         run.update(asked.report(run))
         number = str([n for n, load in self.loads if load[0] == "push"][-1])
@@ -263,14 +256,11 @@ class Outcome:
 
     def figure(self):
         """The entries of run.json by which curve.png is drawn."""
-        found = dict(title=self.description.title, **self._figure())
-        return {**found, **self._wall()}
+        return {"title": self.description.title, **self._figure(), **self._wall()}
 
     def write(self, directory, wait=True):
-        """Write what the scene has beside rows and frames: the mechanism of limit analysis.
-
-        :param wait: whether to wait for files that are made beside the run
-        """
+        """Write the mechanism of limit analysis; ``wait``: for files that are made beside the
+        run."""
         with self.scene.running.auxiliary("the mechanism of limit analysis"):
             try:
                 self.scene.bounds.write(directory, wait)
@@ -279,7 +269,7 @@ class Outcome:
                 say(f"the mechanism is not written to {directory}: {why}", sys.stderr)
 
     def report(self, run):
-        """Lines to print at the end, from the entries of run.json."""
+        """Lines to print at the end, by the entries of run.json."""
         name = self.scene.name
         for joint in self.description.joints:
             found = quantities.ofJoint(self.results.column, joint.prefixed, brief=True)
@@ -290,7 +280,7 @@ class Outcome:
         yield f"{name}: {quantities.headline(run, end=True) or run['ended']}"
 
     def warnings(self, run):
-        """Sentences on what the numbers of a run suffer from, from the entries of run.json."""
+        """Sentences on what the numbers suffer from, by the entries of run.json."""
         yield from self.scene.bounds.over(run)
         if not self.pushed:
             return
@@ -303,12 +293,11 @@ class Outcome:
 
 
 def shortened(entry):
-    """What a script said; long lists, as a record of an earthquake, as a text that says how long
-    they are."""
+    """What a script said, without the numbers of long lists, as of a record of an earthquake."""
     if isinstance(entry, dict):
         return {name: shortened(value) for name, value in entry.items()}
     if isinstance(entry, (list, tuple)):
-        if len(entry) > MOST_NUMBERS and all(map(isNumber, entry)):
+        if len(entry) > MAX_NUMBERS and all(map(isNumber, entry)):
             return f"{len(entry):,} numbers from {min(entry):.6g} to {max(entry):.6g}"
         return [shortened(value) for value in entry]
     return entry
@@ -318,7 +307,7 @@ def shortened(entry):
 
 
 def figureOf(outcome):
-    """The entry ``figure`` of run.json, by which curve.png is drawn, of an :class:`Outcome`."""
+    """The entry ``figure`` of run.json, by which curve.png is drawn."""
     scene, model, loads = outcome.scene, outcome.model, outcome.loads
     if loads and loads[-1][1][0] != "push" and model.loading.followed:
         return _ofLoad(outcome, *loads[-1])
@@ -370,15 +359,14 @@ def _ofPush(outcome):
 
 
 def _rowsOf(outcome, rows):
-    """The entry of the figure that says which rows it shows, if these are not all in their
-    order."""
+    """The entry of the figure with the rows that it shows, if these are not all in order."""
     every = list(range(len(outcome.results.rows)))
     return {} if list(rows) == every else {"rows": list(rows)}
 
 
 def _ofLoad(outcome, number, load):
-    """What is drawn of a load that grew, or was put on step by step: its factor over the
-    displacement of what is watched."""
+    """The factor of a load that grew, or was put on step by step, over the displacement of what is
+    watched."""
     kind, name, _ = load
     at, entry = outcome.scene.running.state, outcome.scene.bounds.entries.get(name, {})
     rows = range(at.stages[number - 1][3], len(outcome.results.rows))
@@ -403,8 +391,8 @@ def _ofLoad(outcome, number, load):
 
 
 def restsUnder(outcome, name):
-    """Rows at the ends of the stages that put on a load and came to rest, by its factor, after the
-    row before them."""
+    """The row before a load was put on, and those at the ends of its stages that came to rest, by
+    its factor."""
     at, results = outcome.scene.running.state, outcome.results
     ends = [stage[3] - 1 for stage in at.stages[1:]] + [len(results.rows) - 1]
     numbers = [n for n, load in outcome.loads if load[:2] == ["lean", name]]

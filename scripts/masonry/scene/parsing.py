@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""How the options of a scene are read: from the command line, from presets, from a run that is
-resumed, and from what a script gives to ``Scene`` as keywords, which holds unless the command line
-gives the same option."""
+"""How the options of a scene are read: from the command line, presets, a run that is resumed, and
+keywords of ``Scene``, over which the command line wins."""
 
 import argparse
 import difflib
@@ -19,7 +18,7 @@ from ..run.option_table import OPTIONS, asOption, optionsWith
 from ..run.presets import PRESETS
 from . import history
 
-#: What a script cannot say: it is about the run at hand.
+#: Options of the run at hand, which no script can give.
 OF_THE_RUN = {"help", *OPTIONS} - optionsWith("ofScript")
 #: Names that a scene takes beside its options.
 BESIDE = "title plane gravity columns functors arguments allowGaps collapse".split()
@@ -28,9 +27,8 @@ BESIDE = "title plane gravity columns functors arguments allowGaps collapse".spl
 class Options(argparse.Namespace):
     """The options that a :class:`Parser` has read.
 
-    Beside the options there are, and no part of what ``vars`` gives: ``parser``, which has read
-    them; ``given``, those of the command line, or None in a run that is resumed; ``defaults``,
-    those of the parser; ``replaced``, what :func:`keep` has changed."""
+    Not in ``vars``: the ``parser``; ``given``, those of the command line, or None in a run that is
+    resumed; ``defaults``, those of the parser; ``replaced``, what :func:`keep` has changed."""
 
     __slots__ = ("parser", "given", "defaults", "replaced")
 
@@ -40,21 +38,20 @@ class Options(argparse.Namespace):
 
 
 class Parser(argparse.ArgumentParser):
-    """A parser that tells all wrong options at once, and takes no part of a name for the whole.
+    """A parser that reports all wrong options at once, and takes whole names only.
 
-    Options that are not given are those of ``--preset``, or those of the run that is resumed.
-    Options that would change a resumed run are refused, but for those in ``free``. ``overrides`` of
-    the parsed options lists those that were given beside a preset and differ from it, or from the
-    default.
+    Options that are not given are those of ``--preset``, or those of the run that is resumed, which
+    refuses others, but for those in ``free``. ``overrides`` of the parsed options lists those that
+    differ from the preset, or from the default.
     """
 
-    #: The parser that read the command line last, and what it found.
+    #: The parser that read the command line last, and its options.
     last = None, None
 
     def __init__(self, **settings):
         super().__init__(allow_abbrev=False, **settings)
         self.problems = []
-        self.raises = False  # whether wrong options raise Refused, and end no program
+        self.raises = False  # wrong options raise Refused, and end no program
         self.free = optionsWith("free")
         # argparse knows no exponents and no lists: -5e-1 and -1,2x3 would be options
         self._negative_number_matcher = re.compile(
@@ -86,12 +83,12 @@ class Parser(argparse.ArgumentParser):
         super().error("\n  ".join([*self.problems, message]))
 
     def _refuse(self, refused):
-        """End the program, with what is refused."""
+        """End the program."""
         reportRefusal(refused)
         self.exit(2, f"{refused}\n")
 
     def refusals(self, words):
-        """The options that words give, or None, and why they are refused, a list of sentences."""
+        """The options that words give, or None, and sentences on why they are refused."""
         self.raises = True
         try:
             return self._parsed(words, None), []
@@ -101,8 +98,7 @@ class Parser(argparse.ArgumentParser):
             self.raises = False
 
     def parse_args(self, args=None, namespace=None):
-        """The options of the command line, or, in a run of ``yade-batch``, those of a row of its
-        table: masonry.run.batch."""
+        """The options of the command line, or those of a row of a table of ``yade-batch``."""
         whole = args is None
         if whole:
             try:
@@ -136,7 +132,7 @@ class Parser(argparse.ArgumentParser):
         return found
 
     def _checkKnown(self, known, folder):
-        """Refuse options of a checkpoint that this scene could not have had."""
+        """Refuse options of a checkpoint that this scene cannot have."""
         acting = {action.dest for action in self._actions}
         names = {*acting, *self._defaults, "overrides"}
         wrong = [asOption(name) for name in known if name not in names]
@@ -185,7 +181,7 @@ class Parser(argparse.ArgumentParser):
 
 
 def _overrides(given, expected):
-    """Names of the options that were given and drop the promise of a preset."""
+    """Names of given options that drop the promise of a preset."""
     harmless = optionsWith("harmless")
     return [o for o, v in given.items() if o not in harmless and v != expected[o]]
 
@@ -194,10 +190,11 @@ def _overrides(given, expected):
 
 
 def checked(parser, name, options):
-    """The values of keywords of a scene of this name, of the kind that the command line would give.
-    Raises Refused with all problems.
+    """Keywords of a scene as values that the command line would give. Raises Refused with all
+    problems.
 
-    :param parser: :class:`Parser` whose options they are; ``options``: values by option
+    :param parser: :class:`Parser` whose options they are
+    :param name: of the scene; ``options``: values by option
     """
     actions = {a.dest: a for a in parser._actions if a.dest not in OF_THE_RUN}
     found, problems = {}, []
@@ -221,8 +218,7 @@ def checked(parser, name, options):
 
 
 def _value(action, value):
-    """The value of an option from that of a keyword. Raises ValueError or
-    argparse.ArgumentTypeError."""
+    """The value of an option from that of a keyword. Raises ValueError or ArgumentTypeError."""
     if value is None and (action.default is None or action.dest == "until"):
         return None
     if action.choices:
@@ -248,12 +244,9 @@ def _typed(action, value):
 
 
 def keep(args, name, options):
-    """Let options have the values that a script gives as keywords, but for those that the command
-    line gives.
+    """Let options have the values that a script gives as keywords.
 
-    A line on the terminal names the others. A preset wins over what the script says of the options
-    that it chooses, and says so. Options of a run that is resumed are those with which it began,
-    and stay.
+    The command line and presets win, and a note says so. Options of a run that is resumed stay.
 
     :param args: :class:`Options`, which are changed
     :param name: of the scene; ``options``: values by option
@@ -275,13 +268,13 @@ def keep(args, name, options):
     preset = PRESETS.get(chosen, {})
     first = {**options, **preset}
     now = {option: given.get(option, value) for option, value in first.items()}
-    # by which
+    # keywords that do not hold, and the options that do
     beaten = {o: o for o, value in options.items() if given.get(o, value) != value}
     for option, value in options.items():
         if isinstance(value, list):  # what the command line adds comes last
             now[option] = [*value, *given.get(option, [])]
             beaten.pop(option, None)
-    # of which there is one
+    # only one of these two options is kept
     for option, other in (("until", "history"), ("history", "until")):
         if given.get(option) is not None:
             now.update({option: given[option], other: None})

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What holds a structure, and what of it is watched: words that describe a scene."""
+"""What holds a structure, and what is watched: commands that describe a scene."""
 
 import itertools
 from typing import Annotated, Any
@@ -9,22 +9,21 @@ from ..arguments import vector as numbers
 from ..model.bodies import vector
 from ..errors import IN_PLANE, refuse
 from .targets import BrickAt, Part, Target
-from .ties import MOST, End, Spring, Tie
+from .ties import MAX_STIFFNESS, End, Spring, Tie
 from .script import describes
 
 PLATEN = 0.2  # [m] height of a platen
 #: Bars along each side of a platen on a soil without tension, in a plane and in space.
 BARS = 21, 11
-HIGH = 1e3  # [m] length of these bars
+BAR_LENGTH = 1e3  # [m]
 
-#: A coordinate and a point, not farther from the origin than any masonry.
 Coordinate = Annotated[float, number("m", -1e6, 1e6)]
 Point = Annotated[Numbers, numbers("m", 1e6)]
 
 
-def stiffnesses(value: Any, first: Any = None) -> Any:
-    """The kind of the stiffnesses of springs: a dict from axes to numbers above 0."""
-    found = byName(number("N/m or N m", 0, MOST, above=True))(value)
+def stiffnesses(value: Any, context: Any = None) -> Any:
+    """Validator of stiffnesses of springs: a dict from axes to numbers above 0."""
+    found = byName(number("N/m or N m", 0, MAX_STIFFNESS, above=True))(value)
     unknown = [axis for axis in found if axis not in ("x", "y", "z", "X", "Y", "Z")]
     if unknown or not found:
         raise ValueError(f"{shown(value)} must be a dict from some of the axes xyzXYZ to stiffness")
@@ -48,32 +47,29 @@ def platen(
     springs: Annotated[dict[str, float], stiffnesses] | None = None,
     uplift: bool = False,
 ) -> Target:
-    """A stiff block over the whole lower or upper side of the structure.
+    """A stiff block over the whole lower or upper side of the structure, with ``support`` joints.
 
-    The one at the bottom is fixed. The one at the top moves; loads act on it, and ``rotation`` says
-    whether it can turn. Its joint to the bricks is the ``support`` joint of the materials.
+    The one at the bottom is fixed. The one at the top moves, and loads act on it.
 
     :param where: ``"bottom"`` or ``"top"``
-    :param rotation: ``"free"`` or ``"held"``, of the platen at the top; None: held
+    :param rotation: of the one at the top: ``"free"`` or ``"held"``; None: held
     :param height: [m]
     :param name: in curve.csv; None: base and top
     :param point: (x, y, z) [m] on which loads act; None: the middle of the platen's outer side
     :param guided: axes along which the middle of the one at the top cannot move: ``"x"``, ``"y"``
-        or ``"xy"``; its top support then carries horizontal force
-    :param part: name of a part of the bricks; the platen is over this part alone. None: over all
+        or ``"xy"``
+    :param part: name of the part of the bricks that the platen is over; None: over all
     :param upTo: z of its outer side [m], in place of ``height``: where a testing machine pushes
     :param recorded: z of the point whose displacement is recorded [m], on the line through
         ``point``; None: that of ``point``
-    :param drive: axes along which a drive holds the one at the top from the beginning: ``"x"``, or
-        ``"xz"``; none of them: it is free until it is pushed
+    :param drive: axes along which a drive holds the one at the top from the beginning, as ``"xz"``;
+        else it is free until it is pushed
     :param springs: of the one at the bottom, a soil or a rig that gives way: a dict from axes, xyz
         along and XYZ about, to stiffness [N/m], [N m/rad], at the middle of its outer side, for
-        example ``{"x": 37e6}``; along and about the others it is fixed, and where it is fixed along
-        x or y it turns about its own middle. Its weight counts if it can move along z. None: it is
-        fixed along and about all
-    :param uplift: whether the soil carries no tension. Then ``z`` of ``springs`` is spread over the
-        side of the platen, so that it also turns on it, and each part of the soil has compression
-        alone
+        example ``{"x": 37e6}``. Along and about the others it is fixed; where it is fixed along x
+        or y it turns about its own middle. Its weight counts if it can move along z
+    :param uplift: whether the soil carries no tension: ``z`` of ``springs`` is spread over the side
+        of the platen, on which it also turns
     """
     bottom, plane = where == "bottom", description.plane
     level = description.low[2] if bottom else description.high[2]
@@ -136,8 +132,7 @@ def _problems(plane, bottom, rotation, guided, drive, springs):
 
 
 def _sideAt(description, level, where, part):
-    """The opposite corners (x, y) of what the bricks of a part have at a level [m]. Raises
-    ValueError."""
+    """Opposite corners (x, y) of what a part has at a level [m]. Raises ValueError."""
     near = 1e-6 * (1 + abs(level))
     blocks = [
         [p for p in block.corners if abs(p[2] - level) < near]
@@ -158,17 +153,17 @@ def _sideAt(description, level, where, part):
 
 
 def _standLoose(description, target, stiffness, low, high):
-    """Let a platen stand on a soil without tension: bars by which it hangs from points so high
-    above that they stay upright.
+    """Let a platen stand on a soil without tension: it hangs from vertical bars, so long that they
+    stay vertical as it moves.
 
-    :param stiffness: of all together [N/m]
-    :param low: and ``high``: opposite corners of its outer side [m]
+    :param stiffness: of all bars together [N/m]
+    :param low: and ``high``: opposite corners of the outer side of the platen [m]
     """
     counts = (BARS[0], 1) if description.plane else (BARS[1], BARS[1])
     rows = [_spread(a, b, count) for a, b, count in zip(low, high, counts)]
     name = f"{target.name}_soil"
     for (x, one), (y, other) in itertools.product(*rows):
-        ends = End((x, y, low[2]), target), End((x, y, low[2] + HIGH))
+        ends = End((x, y, low[2]), target), End((x, y, low[2] + BAR_LENGTH))
         bar = Tie(name, ends, one * other * stiffness, None, 0.0, 0.0, None, False, overlay=name)
         bar.isSupport = True
         description.connectors.append(bar)
@@ -180,8 +175,8 @@ def _standLoose(description, target, stiffness, low, high):
 
 
 def _spread(low, high, count):
-    """Places from end to end, and the share of each by Simpson's rule, so that a soil has its
-    stiffness against rotation, too."""
+    """Places from end to end, and their shares by Simpson's rule, which keep the stiffness against
+    rotation."""
     if count == 1:
         return [((low + high) / 2, 1.0)]
     shares = [1, *([4, 2] * (count // 2))[:-1], 1]
@@ -197,12 +192,12 @@ def hold(
     name: Name | None = None,
     axes: Freedoms = "xyzXYZ",
 ) -> Target:
-    """Hold a brick, so that it neither moves nor turns but by :meth:`move`.
+    """Hold a brick, which then moves by :meth:`move` alone.
 
     :param where: a point [m] in it or near it, its index in the bricks, or the block itself
     :param name: in curve.csv; None: ``brick`` and its index
-    :param axes: along which it is held, xyz, and about which it cannot turn, XYZ; a prop against a
-        wall that leans is ``"y"``
+    :param axes: along which it is held, xyz, and about which, XYZ; a prop against a wall that leans
+        is ``"y"``
     """
     if description.plane and not set(axes) - set("yXZ"):
         raise ValueError(
@@ -217,16 +212,15 @@ def hold(
 @describes
 @validated
 def watch(description: Any, where: BrickAt, name: Name | None = None) -> Target:
-    """Record the motion of a brick. Parameters as in :meth:`hold`; a point is the one that is
-    recorded."""
+    """Record the motion of a brick, at the point that is given. Parameters as in :meth:`hold`."""
     return _brick(description, where, name, fixed=False, loaded=False)
 
 
 @describes
 @validated
 def handle(description: Any, where: BrickAt, name: Name | None = None) -> Target:
-    """A brick that loads act on, at its centre or at the point that is given. It is rigid, also
-    where bricks are deformable. Parameters as in :meth:`hold`."""
+    """A brick that loads act on, at its centre or at the point that is given; it is rigid.
+    Parameters as in :meth:`hold`."""
     return _brick(description, where, name, fixed=False, loaded=True)
 
 

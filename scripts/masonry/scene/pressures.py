@@ -13,10 +13,10 @@ from ..errors import Refused, checkPlane
 from ..bricks import Bricks
 from ..bricks.checks import LOOKING
 
-GRAZING = 0.01  # least cosine of the angle between a face and what presses on it [-]
-PARTS = 4  # of each side of a triangle: it is integrated in the square of this number of triangles
-LEAST = 1e-9  # of the largest force: what is less is round-off [-]
-MOST = number("Pa", -1e9, 1e9)
+GRAZING = 0.01  # least cosine between a face and the pressure on it [-]
+PARTS = 4  # of each side of a triangle, which is integrated in PARTS² triangles
+LEAST = 1e-9  # forces below this share of the largest one are round-off [-]
+FIELD = number("Pa", -1e9, 1e9)
 
 
 class FaceForce(NamedTuple):
@@ -28,11 +28,11 @@ class FaceForce(NamedTuple):
 
 
 def facesAgainst(description, towards, part, name, least=LOOKING):
-    """What joints leave free of the faces that look against a direction:
+    """Faces that look against a direction, without what joints cover:
     :class:`masonry.bricks.checks.FreePart`.
 
     :param least: cosine of the largest angle between both [-]
-    :raises ValueError: if there are none, or the scene can have none
+    :raises ValueError: if there are none
     """
     checkPlane(description, towards, name)
     if description.deformable:
@@ -48,14 +48,12 @@ def facesAgainst(description, towards, part, name, least=LOOKING):
 
 
 def pressures(description, value, towards, part, normal):
-    """The forces of a pressure: on each face at its middle and at one more point, or at two more of
-    a scene in space, which do not depend on the pressure. Parameters as in
-    :func:`masonry.scene.loads.pressure`. Raises ValueError.
-    """
+    """The forces of a pressure: on each face at its middle and at one more point, or at two more in
+    space. Parameters as in :func:`masonry.scene.loads.pressure`. Raises ValueError."""
     forces, along = [], np.array(towards, float) / np.linalg.norm(towards)
     for face in facesAgainst(description, towards, part, "pressure", GRAZING):
         outward, arm = np.array(face.normal), face.area**0.5 / 4
-        # two directions in the face, of which the first is in the plane of a scene in a plane
+        # two directions in the face; the first is in the plane of a scene in a plane
         side = np.cross(outward, (0, 1, 0) if abs(outward[1]) < 0.9 else (0, 0, 1))
         side /= np.linalg.norm(side)
         axes = arm * np.array([side, np.cross(outward, side)])
@@ -68,8 +66,8 @@ def pressures(description, value, towards, part, normal):
 
 
 def _corners():
-    """The middles of the sides of parts of a triangle, as shares of its corners, and the share of
-    the area that each has: exact for polynomials of degree two."""
+    """The middles of the sides of parts of a triangle, as shares of its corners, and their weights:
+    exact for polynomials of degree two."""
     found = Counter()
     for i, j in itertools.product(range(PARTS), repeat=2):
         one = [(i, j), (i + 1, j), (i, j + 1)]
@@ -86,9 +84,9 @@ SHARES, WEIGHTS = _corners()
 
 
 def _integral(face, value, axes):
-    """Integrals of a pressure over the free part of a face [N]: of itself, and times the distance
-    from the middle along each axis, over the length of that axis."""
-    at = lambda p: atPlace(value, p, MOST, "pressure") if callable(value) else value
+    """Integrals over the free part of a face [N]: of a pressure, and of it times the distance from
+    the middle along each axis, over the length of that axis."""
+    at = lambda p: atPlace(value, p, FIELD, "pressure") if callable(value) else value
     total = np.zeros(1 + len(axes))
     for sign, polygon in ((1, face.face), *((-1, cover) for cover in face.covers)):
         corners = np.asarray(polygon, float)
@@ -103,8 +101,7 @@ def _integral(face, value, axes):
 
 
 def atPlace(value, place, kind, name):
-    """What a function of the place gives there, by its kind. Raises ValueError, whatever goes wrong
-    in it."""
+    """The value of a function of the place, checked by a validator. Raises ValueError."""
     try:
         return kind(value(*place))
     except Exception as error:  # of the user's own
@@ -113,9 +110,8 @@ def atPlace(value, place, kind, name):
 
 
 def placesBelow(description, points):
-    """Where loads stand that are let down from some points: pairs of the number of a brick, and the
-    point on the highest of its faces that look up [m]. Raises ValueError if nothing is below a
-    point."""
+    """Where loads stand that are let down from some points: pairs of the number of a brick and the
+    point on the highest face that looks up [m]. Raises ValueError if there is none."""
     faces, found = Bricks(description.bricks).freeFaces((0, 0, 1), GRAZING), []
     near = 1e-6 * math.dist(description.low, description.high)
     for x, y, z in points:

@@ -1,32 +1,139 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What a scene records beside its targets, and how its figures look: words that describe a
-scene."""
+"""What a scene records beside its targets, and how its figures look: commands that describe a
+scene, and what a horizontal section transmits.
+
+The free body above a section is that of all blocks, platens too, whose centroid was above its
+height z when the scene was built. The joints, ties and springs between it and the other blocks and
+the ground transmit all that acts between both, so their resultant is exact statics in any bond. At
+rest it is the weight of these blocks and the loads on them.
+"""
 
 import itertools
+from dataclasses import dataclass
 from typing import Annotated, Any, Callable
 
+from yade import O, Vector3
+
+from .._masonry import resultant
 from ..arguments import Direction, Name, shown, validated
 from ..arguments import name as nameOf
 from ..model.bodies import vector
 from ..numbers.columns import Column
-from .sections import BASE, ENDS, Section
+from ..errors import Refused
 from .platens import Coordinate
 from .targets import AnyTarget, BrickAt, Drift, JointRecord, Part
+from .ties import GROUND
 from .script import describes
 
+BASE = "base"  # name of the section that every run on a platen records
+ENDS = "N", "V_x", "V_y", "M_x", "M_y"  # of names of columns
+LEVEL = 1e-9  # centroids so near to z, over the height of a structure, do not lie above it
 
-def _nameOrNothing(value, first=None):
-    """The kind of a name, or of an empty text."""
+
+@dataclass
+class Section:
+    """A horizontal section whose forces are recorded. ``scene.section`` makes it."""
+
+    name: str
+    z: float  # [m]
+    part: str  # of the bricks; None: all
+    middle: tuple  # point in space about which moments are [m]
+    isBase: bool = False  # recorded without a command
+    interactions: tuple | list = ()  # YADE's, of its joints, when the scene is built
+    _read: tuple = (None, None)  # the last reading, and its forces
+
+    def join(self, structure):
+        """Find its joints in a :class:`masonry.model.structure.Structure` in YADE. Raises Refused
+        if there are none."""
+        description = structure.description
+        size = description.high[2] - description.low[2]
+        level = self.z + LEVEL * (size + abs(self.z))
+        #: whether every body is above it, by its id; the ground is not
+        self.above = {b.id: b.state.refPos[2] > level for b in O.bodies} | {GROUND: False}
+        self._structure = structure
+        self._parts = dict(zip(structure.ids, (b.part for b in description.bricks)))
+        pairs = [(one, (one.id1, one.id2)) for one in structure.interactions]
+        crossing = [(one, ids) for one, ids in pairs if self._cross(*ids)]
+        self.interactions = [one for one, _ in crossing]
+        #: of each: 1 if its first body is the lower one, else -1
+        self.signs = [1 if self.above[ids[1]] else -1 for _, ids in crossing]
+        #: ties and springs that cross it, each with its upper end
+        self.connections = []
+        for one in description.connectors:
+            bodies = [end.bodyIn(structure.ids) for end in one.ends]
+            if self._cross(*bodies):
+                upper = one.ends[0 if self.above[bodies[0]] else 1]
+                self.connections.append((one, upper))
+        if not self.interactions:
+            what = f" of part {self.part!r}" if self.part else ""
+            raise Refused(
+                f"section {self.name}: no joint{what} crosses z = {self.z:g} m: there must be one"
+                " between a block whose centroid is above and one whose centroid is below"
+            )
+
+    def _cross(self, one, other):
+        """Whether one of two bodies is above it, and what joins them is of its part."""
+        if self.above[one] == self.above[other]:
+            return False
+        lower, upper = (one, other) if self.above[other] else (other, one)
+        # a joint to a platen is of the part of its brick
+        return self.part in (None, self._parts.get(upper, self._parts.get(lower)))
+
+    def forces(self):
+        """Force [N] and moment about the middle [N m] of what is above on what is below: two
+        vectors."""
+        if not self.interactions:
+            raise ValueError(f"section {self.name}: the scene is not built yet")
+        force, moment = resultant(self.interactions, self.signs, self.middle)
+        structure, middle = self._structure, Vector3(*self.middle)
+        for one, upper in self.connections:
+            on, turning = one.on(upper, structure.connectors)
+            arm = structure.connectors.placeOf(upper) - middle
+            force, moment = force - on, moment - arm.cross(on) - turning
+        # contacts of blocks above with blocks below, wherever these lie now
+        for one, other, on, turning in structure.contacts.pairs() if structure.contacts else ():
+            if self._cross(one, other):
+                # `on` and `turning` act on the second body of the pair, about its centre
+                sign = 1 if self.above[one] else -1
+                arm = O.bodies[other].state.pos - middle
+                force, moment = force + sign * on, moment + sign * (arm.cross(on) + turning)
+        return force, moment
+
+    def columns(self, plane):
+        """What is recorded of it; ``scene.section`` has the signs."""
+        at = f"the section at z = {self.z:g} m{f' of part {self.part}' if self.part else ''}"
+        about = "({})".format(", ".join(f"{v:g}" for v in self.middle))
+        yield self._column(0, 2, "N", "kN", f"normal force on {at}, positive in tension")
+        for i, axis in enumerate("x" if plane else "xy"):
+            meaning = f"shear force on {at}: of what is above on what is below, along {axis}"
+            yield self._column(0, i, f"V_{axis}", "kN", meaning)
+        for axis, side in (("y", "large x"), ("x", "small y"))[: 1 if plane else 2]:
+            meaning = (
+                f"moment on {at}: of what is above on what is below, about {axis} through {about} m"
+                f" by the right-hand rule, so that it presses the side of {side} where it is"
+                " positive"
+            )
+            yield self._column(1, "xy".index(axis), f"M_{axis}", "kNm", meaning)
+
+    def _column(self, which, axis, name, unit, meaning):
+        def value(reading):
+            if self._read[0] is not reading:
+                self._read = reading, self.forces()
+            return 1e-3 * self._read[1][which][axis]
+
+        return Column(f"{self.name}_{name}", unit, meaning, value)
+
+
+def _nameOrNothing(value, context=None):
+    """Validator of a name or an empty text."""
     return value if isinstance(value, str) and not value else nameOf(value)
 
 
 @describes
 @validated
 def drift(description: Any, lower: AnyTarget, upper: AnyTarget, name: Name | None = None) -> None:
-    """Record how far a target moves horizontally against a lower one, for example two floors.
-
-    The columns of curve.csv are the difference [mm] and that over the height between both points
-    [mrad].
+    """Record how far a target moves horizontally against a lower one, for example two floors: the
+    difference [mm], and over the height between both points [mrad].
 
     :param lower: a target, as :meth:`platen` or :meth:`watch` give it; ``upper``: one above it
     :param name: of the columns; None: that of ``upper`` with ``_drift``
@@ -45,8 +152,8 @@ def column(description: Any, name: Name, meaning: str, value: Callable[[], float
     """Record something of one's own: a column of curve.csv.
 
     :param name: with its unit at the end, for example ``drift_mm``
-    :param meaning: one line for run.json
-    :param value: function without arguments that gives a number
+    :param meaning: a line for run.json
+    :param value: function without arguments that returns a number
     """
 
     def read(reading):
@@ -69,12 +176,10 @@ def joint(
     two: BrickAt,
     name: Annotated[str, _nameOrNothing] | None = None,
 ) -> JointRecord:
-    """Record the means of a joint: opening, slide, normal and shear stress, as columns of
-    curve.csv.
+    """Record the means of a joint: opening, slide, normal and shear stress.
 
     :param one: a brick, as for :meth:`hold`; ``two``: the other one
-    :param name: before the names of the columns; None: ``joint`` and a number; an empty text:
-        nothing before them
+    :param name: before the names of the columns; None: ``joint`` and a number; or an empty text
     :returns: a :class:`JointRecord`, which can be read between stages, too
     """
     pair = tuple(description.find(where)[0] for where in (one, two))
@@ -90,12 +195,10 @@ def joint(
 def section(
     description: Any, z: Coordinate, part: Part | None = None, name: Name | None = None
 ) -> Section:
-    """Record what a horizontal section transmits: normal force, shear force and moment, as columns
-    of curve.csv.
+    """Record what a horizontal section transmits: normal force, shear force and moment.
 
     They are the resultant of the joints between the blocks, platens too, whose centroid is above
-    ``z`` when the scene is built, and those whose centroid is not: exact statics in any bond. All
-    are of the structure above on the part below:
+    ``z`` when the scene is built, and the others, of the structure above on the part below:
 
     - ``N`` [kN]: normal force, positive in tension
     - ``V_x``, in space also ``V_y`` [kN]: shear force along x and y
@@ -103,19 +206,17 @@ def section(
       by the right-hand rule. A push along +x above the section gives a positive ``M_y``, one along
       +y a negative ``M_x``
 
-    The middle is that of the box around the bricks that reach ``z``, at the height ``z``, as they
-    are built; it stays in space, while the forces act where the blocks are, so eccentric weight of
-    a wall that leans counts.
+    The middle is that of the box around the bricks that reach ``z`` as they are built, and stays in
+    space, while the forces act where the blocks are: eccentric weight of a wall that leans counts.
 
-    Every run of a structure on platens at its bottom records that at its base, ``base``, unless the
-    scene has one there.
+    Every run of a structure on platens records ``base``, at its bottom, unless the scene has a
+    section there.
 
     :param z: height [m]
-    :param part: name of a part of the bricks: the joints whose upper brick is of it (under a
-        platen, the lower one), so that what several parts transmit adds up to the whole; None: all
-        joints
+    :param part: name of a part of the bricks: the joints whose upper brick (under a platen, the
+        lower one) is of it, so that parts add up to the whole; None: all joints
     :param name: before the names of the columns; None: ``section`` and a number
-    :returns: a :class:`masonry.scene.sections.Section`, whose ``forces()`` can be read between
+    :returns: a :class:`Section`, whose ``forces()`` can be read between
         stages, too
     """
     name = f"section{len(description.sections)}" if name is None else name
@@ -125,7 +226,7 @@ def section(
 
 
 def _middleAt(description, z, part, name):
-    """The middle of the box around the bricks that reach a height [m]. Raises ValueError."""
+    """Middle of the bricks that reach a height [m]. Raises ValueError."""
     boxes = [
         [[*map(f, zip(*b.corners))] for f in (min, max)]
         for b in description.bricks
@@ -144,8 +245,7 @@ def _middleAt(description, z, part, name):
 
 
 def recordBase(description: Any) -> None:
-    """Record the section at the base of a structure that stands on platens, unless the scene has
-    one there."""
+    """Record the section at the base of a structure on platens, unless the scene has one there."""
     z, targets = float(description.low[2]), description.targets.values()
     near = 1e-6 * (1 + abs(z))
     own = (s.part is None and abs(s.z - z) < near for s in description.sections)
@@ -160,8 +260,8 @@ def recordBase(description: Any) -> None:
 
 
 def viewAlongY(description: Any) -> None:
-    """See parts that move in the x-z plane and are deeper than long from the front, unless the
-    scene says from where."""
+    """See parts of a scene in the x-z plane that are deeper than long along y, unless the scene
+    says from where."""
     if not description.plane:
         return
     for name in {block.part for block in description.bricks} - set(description.views):
@@ -174,8 +274,8 @@ def viewAlongY(description: Any) -> None:
 @describes
 @validated
 def view(description: Any, direction: Direction, part: Part | None = None) -> None:
-    """From where the crack figure sees the structure: the direction of sight, for example (1, 0, 0)
-    for a panel that bows out of its plane.
+    """The direction in which the crack figure sees the structure, for example (1, 0, 0) for a panel
+    that bows out of its plane.
 
     :param part: name of a part of the bricks; None: all
     """

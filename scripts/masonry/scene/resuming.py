@@ -7,8 +7,8 @@ from typing import Any
 
 
 def saidBefore(scene, word, **arguments):
-    """Note a command that is no stage. Returns whether the script of a run that is resumed said it
-    before the checkpoint."""
+    """Note a command that is no stage. Returns whether the run that is resumed had it before its
+    checkpoint."""
     scene.script.add(word, arguments)
     if not scene.running.isResumed:
         return False
@@ -16,30 +16,29 @@ def saidBefore(scene, word, **arguments):
     return len(scene.script.words) <= len(scene.running.scriptBefore)
 
 
-def resume(scene: Any) -> str:
-    """Go on with a run that was interrupted, as from a following cell of a notebook: the stage that
-    was interrupted is carried out to its end, from the checkpoint that the interruption left.
+def resume(scene: Any) -> Any:
+    """Go on with a run that was interrupted, as from a following cell of a notebook: ``scene =
+    scene.resume()``. The stage that was interrupted is carried out to its end, from the checkpoint
+    that the interruption left.
 
-    Every word of the scene is said again, as ``--resume`` of a script does it, so the result is the
-    same to the last bit. Of a search that the script makes by itself or by :meth:`bracket`, this is
-    the step that was interrupted.
+    Every command of the scene is given again, as ``--resume`` of a script does it, so the result is
+    the same to the last bit. Of a search that the script makes by itself or by :meth:`bracket`, this
+    is the step that was interrupted.
 
-    :returns: how that stage ended
+    :returns: a new scene, which goes on with the folder and the targets of this one; its ``ended``
+        says how that stage ended
     :raises ValueError: if the scene was not interrupted, or left no checkpoint
     """
     if not (scene.finished and scene.running.kept):
         raise ValueError(
             f"resume: scene {scene.name} has no run that was interrupted and left a checkpoint"
         )
-    folder, calls, given = scene.results.directory, scene.calls, scene.args
-    (name, *made), settings = scene._made
-    arguments = given.parser.parse_args(["--resume", folder])
-    vars(scene).clear()
-    scene.__init__(name, *made, arguments, **settings)  # type: ignore[misc]
-    ended = None
-    for call in calls:
+    arguments = scene.args.parser.parse_args(["--resume", scene.results.directory])
+    resumed = type(scene)(*scene._made, arguments, **scene._settings)
+    for call in scene.calls:
         with contextlib.suppress(*[ValueError] * call.refused):
-            ended = call.word(scene, *call.args, **call.settings)
-        if call.found is not None:  # the script knows the record that it gave before
-            scene.description.replace(ended, call.found)
-    return ended
+            record = call.command(resumed, *call.args, **call.settings)
+        if call.record is not None:  # the script knows the one that it was given before
+            resumed.description.replace(record, call.record)
+            resumed.calls[-1].record = call.record
+    return resumed

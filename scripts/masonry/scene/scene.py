@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Anybody's structures: bricks between platens, loaded in stages.
-
-A scene reads from top to bottom::
+"""A scene: bricks between platens, loaded in stages. It reads from top to bottom::
 
     from masonry import Scene, bricks, materials
 
@@ -14,12 +12,11 @@ A scene reads from top to bottom::
     scene.cycle(top, [2, 4, 8], repeats=2)    # [mm]
     scene.finish()
 
-What comes before the first stage describes: platens, supports, loads, what is recorded. Stages run
-in turn (:mod:`masonry.stages`). Each returns how it ended: one of ``AT_REST``, ``MOVING``,
-``DONE`` and ``COLLAPSED``. After a collapse the stages that follow are left out. ``finish`` writes
-what :mod:`masonry.run.results` lists. All options of the command line work, ``--help`` explains
-them: ``--preset``, ``--rate``, ``--set``, ``--out``, ``--resume`` and the others; ``--until`` or
-``--history`` replace what the first push or cycle of the scene says.
+Commands before the first stage describe: platens, supports, loads, what is recorded. Stages
+(:mod:`masonry.stages`) return how they ended: ``AT_REST``, ``MOVING``, ``DONE`` or ``COLLAPSED``;
+after a collapse those that follow are left out. ``finish`` writes what :mod:`masonry.run.results`
+lists. ``--help`` explains the options; ``--until`` or ``--history`` replace what the first push or
+cycle says.
 """
 
 from __future__ import annotations
@@ -57,16 +54,16 @@ from .targets import Target
 from .script import SHAKES, Call, Script, either
 
 
-def _ofFolder(value, first=None):
-    """The kind of a name of a scene, which names a folder, too."""
+def _ofFolder(value, context=None):
+    """Validator of the name of a scene, which names a folder, too."""
     fine = isinstance(value, str) and value.strip(". ") and value.isprintable()
     if not fine or "/" in value or len(value.encode()) > LONGEST_NAME:
         raise ValueError(f"{shown(value)} must be a text that can name a folder")
     return value
 
 
-def _blocksOf(value, first=None):
-    """The kind of the bricks of a scene."""
+def _blocksOf(value, context=None):
+    """Validator of the bricks of a scene."""
     try:
         found = list(value)
         found[0].corners[0][2]
@@ -78,12 +75,11 @@ def _blocksOf(value, first=None):
 
 
 class Scene:
-    """A structure of bricks, how it is held and loaded, and the stages of its test; the module
-    shows how to write one.
+    """A structure of bricks, how it is held and loaded, and the stages of its test.
 
-    It has a :class:`~masonry.scene.description.Description`; when its first stage begins it gets a
-    :class:`~masonry.model.structure.Structure`, its ``model`` in YADE; and a
-    :class:`~masonry.run.run.Run`, ``running``, takes the steps.
+    Its :class:`~masonry.scene.description.Description` becomes a
+    :class:`~masonry.model.structure.Structure`, the ``model`` in YADE, when its first stage begins;
+    a :class:`~masonry.run.run.Run`, ``running``, takes the steps.
 
     :param name: of the folder of results, ``results/<name>``
     :param bricks: blocks: :class:`masonry.bricks.Bricks`, or anything that gives blocks with
@@ -94,23 +90,21 @@ class Scene:
         are one leaf in it
     :param gravity: [m/s²], downwards
     :param columns: names of the columns of curve.csv, beside the energies and the section at the
-        base; None: all that there are
+        base; None: all
     :param functors: as in :func:`masonry.model.engines.engines`
     :param arguments: options as :func:`masonry.scene.options.parser` gives them, or a list of
         words; None: those of the command line
     :param allowGaps: whether bricks that nearly share a face stand apart on purpose, and have no
         joint
-    :param collapse: what a run does when the structure falls: ``"end"``, there, or ``"follow"``.
-        Then joints without bond whose blocks have slid by 2 % of the joint or turned by 1° become
-        contacts during the whole run, a stage that ends in a collapse goes on until the rubble is
-        at rest, and ``shake`` and ``run`` go on whatever falls. Rigid bricks only. The contact has
-        stiffness and residual friction of the bed joint; ``--set contact.friction=0.7`` and the
-        like change it. Blocks fall on the ground, a block that the scene adds below everything else
-    :param sceneOptions: options of this scene, for example ``rate=50`` [mm/s] or
-        ``dt_fraction=0.4``. They hold unless the command line, or the list of words, gives the same
-        option; a note says so then
-    :raises Refused: if something is wrong, with all problems at once. A script that does not catch
-        it ends with exit status 2
+    :param collapse: ``"end"``: the run ends when the structure falls; ``"follow"``, of rigid
+        bricks: joints without bond whose blocks have slid by 2 % of the joint or turned by 1°
+        become contacts, a stage that ends in a collapse goes on until the rubble is at rest, and
+        ``shake`` and ``run`` go on whatever falls. The contact has stiffness and residual friction
+        of the bed joint; ``--set contact.friction=0.7`` and the like change it. Blocks fall on the
+        ground, a block that the scene adds below everything else
+    :param sceneOptions: options of this scene, for example ``rate=50`` [mm/s]. The command line, or
+        the list of words, wins, and a note says so
+    :raises Refused: with all problems. A script that does not catch it ends with exit status 2
     """
 
     present: Scene | None = None  # the scene that stands in YADE
@@ -131,10 +125,10 @@ class Scene:
         collapse: Annotated[str, oneOf("end", "follow")] = "end",
         **sceneOptions: Any,
     ) -> None:
-        #: what it was made with, its name first, for :meth:`resume`
-        made = name, bricks, materials, title, plane, gravity, columns, functors
-        self._made = made, dict(allowGaps=allowGaps, collapse=collapse)
-        self.description = Description(*made, allowGaps=allowGaps, collapse=collapse)
+        # what it was made with, for resume()
+        self._made = name, bricks, materials, title, plane, gravity, columns, functors
+        self._settings = {"allowGaps": allowGaps, "collapse": collapse}
+        self.description = Description(*self._made, **self._settings)
         arguments = options.ofScene(name, arguments, sceneOptions)
         self.name, self.args = name, arguments
         #: what --accuracy found, :class:`masonry.run.accuracy.AuxiliaryRuns`, or None
@@ -143,33 +137,32 @@ class Scene:
             self.description.bricks = list(Bricks(self.description.bricks).whole())
         self.description.deformable = arguments.blocks == "deformable"
         self.script = Script()
-        self.calls = []  # every word that was said
-        # whether bracket() looks for a load, so that no collapse is followed
-        self.bracketing = False
+        self.calls = []  # every command that was given
+        self.bracketing = False  # bracket() looks for a load, so no collapse is followed
         self.running = Run(name, arguments, self.script.words)
-        self.model: Any = None  # when it is built, and so are the next two
+        self.model: Any = None  # until it is built, and so are the next two
         self.bounds: Any = None
         self.outcome: Any = None
         self.columns: list[Any] = []  # of curve.csv
         self.finished = False
-        #: of displacements, times and loads that grow [-]
+        #: share of displacements, times and loads that grow [-]
         self.share = 0.1 if arguments.quick else 1.0
         self.ended: str | None = None  # how the last stage ended
-        #: what was not given of the materials, when the scene is built: an entry of run.json
+        #: entry ``assumed`` of run.json, when the scene is built
         self.assumed: list[dict[str, Any]] = []
         self.pushed: Any = None  # options of the last push
         self.loadUnit = "-"  # of the load that a stage put on or let grow last
-        self.grown = False  # whether presses and dead loads have their whole
-        #: whether there is no run, but limit analysis alone
+        self.grown = False  # presses and dead loads act whole
+        #: there is no run, but limit analysis
         self.only = arguments.preset == BOUND
-        self._entered = False  # whether a ``with`` block ends it
+        self._entered = False  # a ``with`` block ends it
 
     platen, watch, handle = platens.platen, platens.watch, platens.handle
     drift, column = records.drift, records.column
     joint, section, view = records.joint, records.section, records.view
     tie, spring, overlay = connections.tie, connections.spring, connections.overlay
     ground = contact.ground
-    # Their names are those of stages, too, which are meant after the first stage.
+    # stages have these names after the first stage
     hold = either(platens.hold, stages.hold)
     press = either(loads.press, stages.press)
     load = either(loads.load, stages.load)
@@ -192,11 +185,8 @@ class Scene:
     bound, domain, result = bounding.bound, bounding.domain, answers.result
 
     def curve(self) -> Any:
-        """The columns of curve.csv so far: a :class:`masonry_view.notebook.Curve`, arrays of numpy
-        by name with their units.
-
-        :raises ValueError: before the first stage, since there is no row yet
-        """
+        """The columns of curve.csv so far: a :class:`masonry_view.notebook.Curve`. Raises
+        ValueError before the first stage."""
         return wings.find("curve")(self)
 
     def _repr_html_(self):
@@ -230,25 +220,21 @@ class Scene:
 
     @property
     def answers(self) -> list[dict[str, Any]]:
-        """What the stages were run for, in their order: a list of dicts, as in
-        :class:`masonry.stages.answers.Answer`, with the ``stage`` and its ``number``.
-        """
+        """What the stages have found, in their order: dicts as in
+        :class:`masonry.stages.answers.Answer`, with the ``stage`` and its ``number``."""
         kept, entered = self.running.state.answers, self.running.entered
         numbers = [number for number in sorted(kept, key=int) if int(number) <= entered]
         return [one for number in numbers for one in kept[number]]
 
     @property
     def factor(self) -> float:
-        """The largest load factor under which the structure came to rest in the last stage that
-        found one, for example the horizontal over the vertical acceleration of :meth:`accelerate`
-        [-]; not a number if no stage has found one.
-        """
+        """The largest load factor [-] under which the structure came to rest, of the last stage
+        that found one, for example of :meth:`accelerate`; else not a number."""
         found = [a["value"] for a in self.answers if a["name"] == "factor_held"]
         return next((value for value in reversed(found) if value is not None), math.nan)
 
     def checkOpen(self, name: str) -> None:
-        """Refuse a stage of a scene that is finished, or gone because another one was built. Raises
-        ValueError."""
+        """Raise ValueError if the scene is finished, or gone because another one was built."""
         if self.finished:
             raise ValueError(f"{name}: the scene is finished")
         if self.model and self.isGone:
@@ -259,8 +245,7 @@ class Scene:
 
     @functools.cached_property
     def masonry(self) -> Masonry:
-        """The materials for the options of this run: :class:`masonry.materials.Masonry`.
-        Raises Refused."""
+        """The materials for the options of this run. Raises Refused."""
         connectors = self.description.settable()
         masonry = self.description.materials.variant(self.args, [*connectors])
         problems = self.description.problems(masonry)
@@ -289,7 +274,7 @@ class Scene:
         self.outcome = Outcome(self)
         with self.running.clock("setup"), self.running.breakable(), withoutCollector():
             model.build(loadingBlock())
-            # the engines that stages had made before the checkpoint of a run that is resumed
+            # engines that stages had made before the checkpoint
             names, begun = {stage.__name__ for stage in STAGES}, False
             for word, arguments in self.running.scriptBefore:
                 begun = begun or word in names
@@ -298,12 +283,11 @@ class Scene:
         facts.noteCourse(description)
         self.running.start(model, self.outcome.space(), SceneState(self))
         Scene.present = self
-        atexit.unregister(self._remind)  # of a run that goes on
         atexit.register(self._remind)
 
     def finish(self) -> None:
-        """End the run: the last frame, run.json, the figures. A run that was not in order exits
-        with its status."""
+        """End the run: the last frame, run.json, the figures. A run that was not in order ends the
+        script with its status."""
         if batch.PROBE in os.environ and self.model:
             self.probe("finish", None, {})
         if not (self.finished or self._entered):
@@ -333,10 +317,10 @@ class Scene:
         return done
 
     @contextlib.contextmanager
-    def noted(self, word: Callable[..., Any], *args: Any, **settings: Any) -> Iterator[None]:
-        """Note a word that is carried out in a block, for :meth:`resume`: also one that is refused,
-        but ends no run."""
-        call = Call(word, args, settings)
+    def noted(self, command: Callable[..., Any], *args: Any, **settings: Any) -> Iterator[None]:
+        """Note a command that is carried out in a block, for :meth:`resume`: also one that is
+        refused, but ends no run."""
+        call = Call(command, args, settings)
         self.calls.append(call)
         try:
             yield
@@ -345,7 +329,7 @@ class Scene:
             raise
 
     def failed(self, error: BaseException) -> Any:
-        """End in order after an error of a stage. In a ``with`` block that does it."""
+        """End in order after an error of a stage, or leave that to the ``with`` block."""
         if isinstance(error, Interrupted):
             self.ended = "interrupted"
         if self._entered:

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The words of a script, noted as data: a run that is resumed can be compared with the script that
-began it."""
+"""The commands of a script, noted as data: a run that is resumed can be compared with the script
+that began it."""
 
 import contextlib
 import functools
@@ -16,53 +16,50 @@ Q = ParamSpec("Q")
 R = TypeVar("R")
 S = TypeVar("S", covariant=True)
 
-RESULT = "result"  # the word that keeps a number of the script's own
+RESULT = "result"  # the command that keeps a number of the script's own
 PUSHES = "push", "cycle", "follow"  # to the first of them --until and --history apply
 SHAKES = ("shake",)  # to the first of them --record and --scale apply
 
 
 @dataclass
 class Call:
-    """A word as the script said it, for a run that goes on in the same process.
+    """A command as the script gave it, for a run that goes on in the same process.
 
-    :param word: function of the scene and of what the script says
-    :param found: what it returned, if it describes
-    :param refused: whether it was refused, and the script went on
+    :param command: function of the scene and the arguments
     """
 
-    word: Callable
+    command: Callable
     args: tuple
     settings: dict
-    found: Any = None
-    refused: bool = False
+    record: Any = None  # what it returned, if it describes
+    refused: bool = False  # and the script went on
 
 
 def describes(act: Callable[Concatenate[Any, P], R]) -> Callable[Concatenate[Any, P], R]:
-    """A word that describes a scene: it comes before the first stage, and is noted.
+    """A command that describes a scene: it comes before the first stage, and is noted.
 
-    :param act: function of a :class:`masonry.scene.description.Description` and what the user says
+    :param act: function of a :class:`masonry.scene.description.Description` and the arguments
     """
 
     @functools.wraps(act)
-    def word(scene: Any, *args: P.args, **settings: P.kwargs) -> R:
+    def command(scene: Any, *args: P.args, **settings: P.kwargs) -> R:
         if scene.model:
             raise ValueError(
                 f"{act.__name__}() must come before the first stage: the scene is built already"
             )
-        found = act(scene.description, *args, **settings)
-        scene.calls.append(Call(word, args, settings, found))
+        record = act(scene.description, *args, **settings)
+        scene.calls.append(Call(command, args, settings, record))
         scene.script.note(act, scene, args, settings)
-        return found
+        return record
 
-    return word
+    return command
 
 
 class Either(Protocol[P, S, Q]):
-    """What a script can call that takes one list of arguments before the first stage, and another
-    one after it."""
+    """A command with other arguments after the first stage than before it."""
 
     @overload
-    # both may be called without arguments, as far as mypy knows
+    # mypy: both may be called without arguments
     def __call__(self, *args: P.args, **settings: P.kwargs) -> S:  # type: ignore[misc]
         ...
 
@@ -71,8 +68,8 @@ class Either(Protocol[P, S, Q]):
         ...
 
 
-class EitherWord(Protocol[P, S, Q]):
-    """The same, of the class of a scene."""
+class EitherCommand(Protocol[P, S, Q]):
+    """Such a command in the class of a scene."""
 
     def __get__(self, scene: Any, cls: Any = None) -> Either[P, S, Q]:
         ...
@@ -81,23 +78,22 @@ class EitherWord(Protocol[P, S, Q]):
 def either(
     describes: Callable[Concatenate[Any, P], S],
     stage: Callable[Concatenate[Any, Q], str],
-) -> EitherWord[P, S, Q]:
-    """A word that describes before the first stage, and is a stage after it."""
+) -> EitherCommand[P, S, Q]:
+    """A command that describes before the first stage, and is a stage after it."""
 
     @functools.wraps(describes)
     def command(scene: Any, *args: Any, **settings: Any) -> Any:
-        word: Any = stage if scene.model else describes
-        return word(scene, *args, **settings)
+        present: Any = stage if scene.model else describes
+        return present(scene, *args, **settings)
 
-    doc = f"{describes.__doc__}\n\n    After the first stage: {stage.__doc__}"
-    command.__doc__ = doc
-    said: Any = command
-    return said
+    command.__doc__ = f"{describes.__doc__}\n\n    After the first stage: {stage.__doc__}"
+    typed: Any = command
+    return typed
 
 
 def argumentsOf(act, first, args, settings):
-    """What the user says to a word, by the names of its parameters, with the defaults of those that
-    are left out."""
+    """What the user gives to a command, by the names of its parameters, with the defaults of the
+    others."""
     bound = inspect.signature(act).bind(first, *args, **settings)
     bound.apply_defaults()
     return dict(list(bound.arguments.items())[1:])
@@ -124,9 +120,9 @@ def asData(value):
 
 
 class Script:
-    """What a script has said so far.
+    """The commands that the script has given so far.
 
-    ``words`` is a list of pairs: the name of a word, and its arguments as a dict of data. A
+    ``words`` is a list of pairs: the name of a command, and its arguments as a dict of data. A
     checkpoint keeps it.
     """
 
@@ -135,25 +131,25 @@ class Script:
         self._extendable = []  # for each command, the arguments that set its end
 
     def note(self, act, first, args, settings):
-        """Note a word."""
+        """Note a command."""
         self.add(act.__name__, asData(argumentsOf(act, first, args, settings)))
 
     def add(self, word, arguments, extendable=()):
-        """Add a word and its arguments as data; ``extendable`` names those that set its end."""
+        """Add a command and its arguments as data; ``extendable`` names those that set its end."""
         self.words.append([word, arguments])
         self._extendable.append(set(extendable))
 
     def isFirst(self, words):
-        """Whether the last word is the first of some kinds that the script says."""
+        """Whether the last command is the first of some kinds that the script gives."""
         *before, (last, _) = self.words
         return last in words and not any(word in words for word, _ in before)
 
     def compare(self, before):
-        """Refuse a script that says something else than that of the run that is resumed. Returns
-        whether it goes on beyond the end of that.
+        """Refuse a script that differs from that of the run that is resumed. Returns whether it
+        goes farther.
 
-        :param before: ``words`` of that run, up to its checkpoint. The last of them, but for
-            results, is the stage in which that was made, whose end may be another now
+        :param before: ``words`` of that run, up to its checkpoint. The last stage among them may
+            go farther now
         """
         last = max((n for n, (word, _) in enumerate(before) if word != RESULT), default=-1)
         extended = False

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What a scene records: platens and bricks that are held, loaded or watched, and joints. Plain
-records with their columns, and the kinds of arguments that name them."""
+"""What a scene records: platens, bricks, drifts and joints, with their columns, and the validators
+of arguments that name them."""
 
 from dataclasses import dataclass
 from typing import Annotated, Any, Iterator, Sequence, Union
@@ -10,16 +10,12 @@ from ..numbers.columns import Column
 from ..bricks import Block
 
 
-@dataclass(eq=False)  # what a script holds is this one, also as the key of a dict
+@dataclass(eq=False)  # compared by identity, and keys of dicts
 class Target:
-    """A platen, or a brick that is held, loaded or watched. ``scene.platen`` and its like make it.
+    """A platen, or a brick that is held, loaded or watched."""
 
-    :param name: in the columns of curve.csv
-    :param fixed: whether it does not move but by ``scene.move``
-    """
-
-    name: str
-    fixed: bool = False
+    name: str  # in the columns of curve.csv
+    fixed: bool = False  # it moves by ``scene.move`` alone
     point: tuple | None = None  # [m] on which loads act
     recorded: tuple | None = None  # [m] whose motion is recorded
     brick: int | None = None  # index of a brick, None for a platen
@@ -30,19 +26,17 @@ class Target:
     body: int | None = None  # YADE's id, when the scene is built
     force: tuple | None = None  # [N] dead load
     pressed: float | None = None  # [Pa] on the bricks below
-    riding: bool = True  # whether the load moves with the platen
-    joined: bool = True  # whether a platen has joints with what it touches
+    riding: bool = True  # the load moves with the platen
+    joined: bool = True  # a platen has joints with what it touches
 
     @property
     def parts(self) -> tuple[tuple[Any, Any, float]]:
-        """What a push of it moves, as in :class:`masonry.model.loading.Pattern`."""
+        """As in :class:`masonry.model.loading.Pattern`."""
         return ((self.body, self.point, 1.0),)
 
     def columns(self, plane: bool) -> Iterator[Column]:
-        """What is recorded of it: displacements, forces where it is held, and its rotation.
-
-        :param plane: whether the scene moves in the x-z plane only
-        """
+        """What is recorded of it: displacements, forces where it is held, and its rotation;
+        ``plane``: whether the scene is in the x-z plane."""
         name, axes = self.name, "xz" if plane else "xyz"
         supports = lambda r: r.structure.supports
 
@@ -73,14 +67,14 @@ class Target:
 
 @dataclass
 class Drift:
-    """How far a target moves horizontally against a lower one; ``scene.drift`` makes it."""
+    """How far a target moves horizontally against a lower one."""
 
     name: str
     lower: Target
     upper: Target
 
     def columns(self, plane: bool) -> Iterator[Column]:
-        """The difference of the displacements, and that over the height between both points."""
+        """The difference of the displacements, and its ratio to the height between them."""
         height = self.upper.recorded[2] - self.lower.recorded[2]
         for i, axis in enumerate("x" if plane else "xy"):
             name = f"{self.name}_{axis}"
@@ -93,8 +87,7 @@ class Drift:
 
 @dataclass
 class JointRecord:
-    """A joint between two bricks whose means are recorded. ``scene.joint`` makes it; it can be read
-    between stages."""
+    """A joint between two bricks whose means are recorded."""
 
     name: str
     bricks: tuple  # indices of the two bricks
@@ -131,12 +124,11 @@ class JointRecord:
         return self._mean(stress[1] for stress in self.interaction.phys.stress)
 
     def prefixed(self, name: str) -> str:
-        """A name of a column or of an entry of run.json, with that of the joint before it if it has
-        one."""
+        """A name of a column or an entry of run.json, behind that of the joint, if it has one."""
         return f"{self.name}_{name}" if self.name else name
 
     def dissipated(self) -> dict[str, float]:
-        """Entries of run.json: what the joint dissipated, over its area [J/m²]."""
+        """Entries of run.json: dissipated energy over the area [J/m²]."""
         lost = zip(("tension", "shear", "compression"), self.interaction.phys.dissipated)
         return {self.prefixed(f"dissipated_{mode}_J_per_m2"): j / self.area for mode, j in lost}
 
@@ -169,22 +161,22 @@ OF_JOINTS = (
 )
 
 
-def _descriptionOf(first):
-    """The description of a scene, which is the first argument of a word, or belongs to it."""
-    return getattr(first, "description", first)
+def _descriptionOf(context):
+    """The description of a scene: the first argument of a command, or its attribute."""
+    return getattr(context, "description", context)
 
 
-def isOwn(target: Any, first: Any) -> bool:
+def isOwn(target: Any, context: Any) -> bool:
     """Whether a target is of this scene."""
-    return _descriptionOf(first).targets.get(target.name) is target
+    return _descriptionOf(context).targets.get(target.name) is target
 
 
 def _target(what, fits):
-    """The kind of a target of the scene for which a function is true."""
+    """Validator of targets of the scene for which a function is true."""
 
-    def take(value, first):
+    def take(value, context):
         known = isinstance(value, Target)
-        own = known and isOwn(value, first)
+        own = known and isOwn(value, context)
         if not (own and fits(value)):
             got = repr(value.name) if known else shown(value)
             other = ", which is of another scene" if known and not own else ""
@@ -194,32 +186,31 @@ def _target(what, fits):
     return take
 
 
-def _recordedJoint(value, first):
-    """The kind of a joint of the scene, as :meth:`masonry.scene.scene.Scene.joint` gave it."""
-    if not any(value is one for one in _descriptionOf(first).joints):
+def _recordedJoint(value, context):
+    """Validator of a joint that ``scene.joint`` returned."""
+    if not any(value is one for one in _descriptionOf(context).joints):
         raise ValueError(f"{shown(value)} must be a joint of this scene, as joint() gave it")
     return value
 
 
-def _part(value, first):
-    """The kind of the name of a part of the bricks."""
-    return oneOf(*sorted({block.part for block in _descriptionOf(first).bricks}))(value)
+def _part(value, context):
+    """Validator of the name of a part of the bricks."""
+    return oneOf(*sorted({block.part for block in _descriptionOf(context).bricks}))(value)
 
 
-def brick(value: Any, first: Any) -> Any:
-    """The kind of a brick: its index, a point in it or near it [m], or the block itself."""
-    _descriptionOf(first).find(value)
+def brick(value: Any, context: Any) -> Any:
+    """Validator of a brick: its index, a point in it or near it [m], or the block itself."""
+    _descriptionOf(context).find(value)
     return value
 
 
-#: What the user says to a command of a scene, as type hints name it.
 _any = _target(
     "a target of this scene, as platen(), hold(), watch() or handle() give it", lambda t: True
 )
 kindOfLoaded = _target("a platen that moves, or a handle(), of this scene", lambda t: t.loaded)
 _moving = _target("a platen of this scene that moves", lambda t: t.box and not t.fixed)
 _held = _target("a platen or brick of this scene that is held", lambda t: t.fixed)
-_allHeld = lambda v, first: listOf(_held)(v if isListed(v) else [v], first)
+_allHeld = lambda v, context: listOf(_held)(v if isListed(v) else [v], context)
 AnyTarget = Annotated[Target, _any]
 Loaded = Annotated[Target, kindOfLoaded]
 MovingPlaten = Annotated[Target, _moving]

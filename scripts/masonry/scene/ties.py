@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Ties and springs of a scene: plain records with their columns, and their entries of run.json."""
+"""Ties, springs and fibre layers: records with their columns and entries of run.json."""
 
 from dataclasses import dataclass, replace
 from typing import Any
@@ -11,18 +11,18 @@ from ..numbers.columns import Column
 from ..materials.settings import Property, Settable
 from .targets import Target
 
-MOST = 1e15  # of stiffness [N/m], [N m] and force [N]: more has no structure
+MAX_STIFFNESS = 1e15  # [N/m], [N m], and largest force [N]
 #: What ``--set`` and ``--field`` can change of a tie and of a fibre layer.
 OF_TIE = {
-    "stiffness": Property("N/m", 0, MOST, True),
-    "strength": Property("N", 0, MOST, True),
-    "prestress": Property("N", 0, MOST),
+    "stiffness": Property("N/m", 0, MAX_STIFFNESS, True),
+    "strength": Property("N", 0, MAX_STIFFNESS, True),
+    "prestress": Property("N", 0, MAX_STIFFNESS),
     "slack": Property("m", 0, 1e3),
     "breaking": Property("", 0, 10, True),
 }
 OF_OVERLAY = {
-    "stiffness": Property("N/m", 0, MOST, True),
-    "strength": Property("N/m", 0, MOST, True),
+    "stiffness": Property("N/m", 0, MAX_STIFFNESS, True),
+    "strength": Property("N/m", 0, MAX_STIFFNESS, True),
     "strain": Property("", 0, 10, True),
 }
 NEVER = 1e300  # strength [N] and breaking elongation [m] of a tie that has none
@@ -31,27 +31,21 @@ GROUND = -1  # in place of the id of a body
 
 @dataclass
 class End:
-    """An end of a tie or a spring; without target and brick it is on the ground.
+    """An end of a tie or a spring; without target and brick it is on the ground."""
 
-    :param point: where it is fixed [m]
-    :param target: a platen or brick, or None
-    :param brick: index of a brick, or None
-    """
-
-    point: tuple
+    point: tuple  # [m]
     target: Target | None = None
-    brick: int | None = None
+    brick: int | None = None  # index
 
     def bodyIn(self, ids):
-        """YADE's id of its body, -1 for the ground; ``ids`` are those of the bricks, in their
-        order."""
+        """YADE's id of its body, -1 for the ground; ``ids``: those of the bricks."""
         if self.target:
             return self.target.body
         return GROUND if self.brick is None else ids[self.brick]
 
     @property
     def isGround(self):
-        """Whether it does not move."""
+        """Whether it is on the ground."""
         return self.target is None and self.brick is None
 
     @property
@@ -64,17 +58,33 @@ class End:
 
 
 class Connector(Settable):
-    """What ties and springs share: their ``number`` among those of an ``engine``."""
+    """A tie or springs, or another kind with one engine for all of it.
+
+    ``number``: among those of the ``engine``; ``overlay``: name of that of which it is a fibre;
+    ``isSupport``: whether its force on a platen is one of a support; ``isListed``: whether run.json
+    has an entry of it
+    """
+
+    overlay, isSupport, isListed = "", True, True
+
+    @staticmethod
+    def grow(records, engine, share):
+        """Tighten connectors to a share of their prestress [-]."""
+
+    @staticmethod
+    def events(records, engine, since):
+        """Connectors to which something has happened since a time step, and what."""
+        return ()
 
     def _now(self, name, before):
-        """What the engine has of it, which has no numbers before its first step."""
+        """A present value of its engine; ``before``: that before the first step."""
         values = getattr(self.engine, name)
         return values[self.number] if len(values) else before
 
 
 @dataclass
 class Tie(Connector):
-    """A bar between two points; ``scene.tie`` makes it and says what the values mean."""
+    """A bar between two points; ``scene.tie`` says what the values mean."""
 
     name: str
     ends: tuple[End, End]
@@ -85,18 +95,16 @@ class Tie(Connector):
     breaking: float | None  # strain [-]
     compression: bool
     engine: Any = None  # YADE's, when the scene is built
-    number: int = 0  # among the ties of the engine
-    # name of the overlay of which it is a fibre; then it has no columns of its own
-    overlay: str = ""
+    number: int = 0
+    overlay: str = ""  # a fibre has no columns of its own
 
     WORD, PLURAL = "tie", "ties"  # in messages, and in run.json
-    isSupport = False  # whether its force on a platen is one of a support
-
+    isSupport = False
     known = OF_TIE
 
     @staticmethod
     def engineOf(records, **ends):
-        """The engine of all ties of a scene; ``ends`` are their bodies and points."""
+        """The engine of all ties; ``ends``: their bodies and points."""
         never = lambda value: NEVER if value is None else value
         breaks = lambda one: one.breaking and one.breaking * one.length
         return MasonryTies(
@@ -111,12 +119,10 @@ class Tie(Connector):
 
     @staticmethod
     def grow(records, engine, share):
-        """Tighten ties to a share of their prestress [-]."""
         engine.rest = [one.rest(share) for one in records]
 
     @staticmethod
     def events(records, engine, since):
-        """Ties to which something has happened since a time step, and what."""
         for what, steps in (("yields", engine.yieldedAt), ("breaks", engine.brokenAt)):
             for one, step in zip(records, steps):
                 if step >= since:
@@ -171,10 +177,8 @@ class Tie(Connector):
         return self._now("elongations", 0.0)
 
     def on(self, end, connectors):
-        """Force [N] and moment [N m] on one of its ends: two vectors.
-
-        :param connectors: :class:`masonry.model.connectors.Connectors`
-        """
+        """Force [N] and moment [N m] on one of its ends: two vectors; ``connectors``:
+        :class:`masonry.model.connectors.Connectors`."""
         other = self.ends[1] if end is self.ends[0] else self.ends[0]
         away = connectors.placeOf(other) - connectors.placeOf(end)
         return self.force * away.normalized(), 0 * away
@@ -199,7 +203,7 @@ class Tie(Connector):
 
     @property
     def isListed(self):
-        """Whether run.json has an entry of it: of a fibre only when it is no longer elastic."""
+        """Of a fibre only when it is no longer elastic."""
         return not self.overlay or self.state != "elastic"
 
     @property
@@ -230,21 +234,20 @@ class Tie(Connector):
 
 @dataclass
 class Spring(Connector):
-    """Springs at a point; ``scene.spring`` makes them and says what the values mean."""
+    """Springs at a point; ``scene.spring`` says what the values mean."""
 
     name: str
     ends: tuple[End, End]
     stiffness: tuple  # along x, y and z [N/m]
     rotation: tuple  # about x, y and z [N m]
     engine: Any = None  # YADE's, when the scene is built
-    number: int = 0  # among the springs of the engine
+    number: int = 0
 
     WORD, PLURAL = "spring", "springs"
-    isSupport, isListed, overlay = True, True, ""
 
     @staticmethod
     def engineOf(records, **ends):
-        """The engine of all springs of a scene, as that of ties, and so are those that follow."""
+        """The engine of all springs; ``ends``: their bodies and points."""
         return MasonrySprings(
             label="springs",
             stiffness=[one.stiffness for one in records],
@@ -252,19 +255,11 @@ class Spring(Connector):
             **ends,
         )
 
-    @staticmethod
-    def grow(records, engine, share):
-        pass
-
-    @staticmethod
-    def events(records, engine, since):
-        return ()
-
     @property
     def known(self):
-        """As of :class:`Settable`. A direction without a spring gets none."""
+        """Properties by name, of directions with a spring."""
         return {
-            f"{what}_{axis}": Property(unit, 0, MOST, True)
+            f"{what}_{axis}": Property(unit, 0, MAX_STIFFNESS, True)
             for what, unit in (("stiffness", "N/m"), ("rotation", "N m/rad"))
             for axis, value in zip("xyz", getattr(self, what))
             if value > 0
@@ -324,8 +319,7 @@ class Spring(Connector):
 
 @dataclass
 class Overlay(Settable):
-    """Fibres over the joints of a face; ``scene.overlay`` makes them and says what the values
-    mean."""
+    """Fibres over the joints of a face; ``scene.overlay`` says what the values mean."""
 
     name: str
     ties: list[Tie]
@@ -351,7 +345,7 @@ class Overlay(Settable):
             setattr(self, name, value)
 
     def vary(self, name, factor):
-        """Every bundle has the value of the field at its own place; the layer keeps the mean."""
+        """Give every bundle the value at its own place; the layer keeps the mean."""
         for one in self.ties:
             one.scatter("breaking" if name == "strain" else name, factor)
 

@@ -27,19 +27,6 @@ SHOWN = {
     "m": ("mm", 1e3),
     "1/m": ("1/mm", 1e-3),
 }
-#: Properties that count where a joint can crush, and for no other joint.
-OF_CAP = {
-    "compressiveStrength",
-    "elasticLimitRatio",
-    "residualStrengthRatio",
-    "peakRatio",
-    "compressiveFractureEnergy",
-    "capNormal",
-    "capShear",
-    "capLinear",
-}
-#: Energies that count where there is the strength that they soften.
-SOFTENING = {"modeIFractureEnergy": "tensileStrength", "modeIIFractureEnergy": "cohesion"}
 #: Counts of a run, by their entries in run.json.
 COUNTS = {
     "units": "blocks of the model, bricks or their halves",
@@ -48,7 +35,6 @@ COUNTS = {
     "refined_joints": "joints that got more points",
     "nodes": "nodes of deformable units",
 }
-STIFFNESSES = {"normalStiffness", "shearStiffness"}
 MOST_WORDS = 12  # of a script that are shown at once
 MOST_LEADING = 3  # answers at the head of a report
 OLDER = "The run was made by an older version of the plugin, whose run.json does not say this."
@@ -222,61 +208,42 @@ def _namesOf(run):
 
 
 def _joints(run):
-    joints = run.get("joints")
-    if not joints:
+    joints, effective = run.get("joints"), run.get("effective_properties")
+    if not (joints and effective):
         yield missing(OLDER)
         return
     units, meanings = run.get("joint_units") or {}, run.get("joint_meanings") or {}
     counted = run.get("joints_by_kind") or joints  # kinds without joints do not count
     joints = {kind: found for kind, found in joints.items() if kind in counted}
     assumed, kinds = _namesOf(run), list(joints)
-    names = dict.fromkeys(n for p in joints.values() for n in p if n in units)
-    ofLaws = run.get("properties_of_laws") or {}
-    particular = {name for read in ofLaws.values() for name in read}
-    counts = lambda name, joint: name not in particular or name in ofLaws.get(joint.get("law"), ())
     shown, others = [], []
-    for name in names:
+    for name in dict.fromkeys(n for p in joints.values() for n in p if n in units):
         meaning = str(meanings.get(name, "")).partition(". ")[0].rstrip(".")
         unit, factor = SHOWN.get(units[name], (units[name], 1))
-        cells = [_cell(joints[kind], name, factor, f"{kind}.{name}" in assumed) for kind in kinds]
-        line = meaning or name, unit, *cells
-        used = any(joints[kind].get(name) and counts(name, joints[kind]) for kind in kinds)
-        used = used and set(cells) != {"–"}
-        (shown if used else others).append(line)
+        having = [kind for kind in kinds if name in effective.get(kind, ())]
+        cells = ["–"] * len(kinds)
+        for kind in having:
+            value = joints[kind].get(name)
+            text = written(factor * value if isNumber(value) else None)
+            cells[kinds.index(kind)] = _marked(text, f"{kind}.{name}" in assumed)
+        used = any(joints[kind].get(name) for kind in having)
+        (shown if used else others).append((meaning or name, unit, *cells))
     laws = [_lawOf(joints[kind]) for kind in kinds]
     heads = ("property", "unit", *kinds)
     caption = (
-        "Joints, by kind. A dash: the property does not count for this kind. Source: run.json:"
-        " joints"
+        "Joints, by kind. A dash: the property has no effect on this kind. Source: run.json:"
+        " joints, effective_properties"
     )
     yield table(heads, [("law", "", *laws), *shown], caption, "joints")
     if others:
         inside = table(heads, others, "Other properties of the joints", "joints")
-        yield folded(
-            "Properties that are zero, or of no meaning for these joints", inside, kind="screen"
-        )
+        yield folded("Properties that are zero, or have no effect here", inside, kind="screen")
 
 
 def _lawOf(joint):
     if joint.get("elastic"):
         return "elastic: no strength is reached"
     return f"{joint.get('law', 'not known')}{'' if joint.get('cap', True) else ', cannot crush'}"
-
-
-def _cell(joint, name, factor, isAssumed):
-    isIgnored = (
-        joint.get("elastic")
-        and name not in STIFFNESSES
-        or name in OF_CAP
-        and not joint.get("cap", True)
-        or name in SOFTENING
-        and not joint.get(SOFTENING[name])
-    )
-    if isIgnored:
-        return "–"
-    value = joint.get(name)
-    text = written(factor * value) if isNumber(value) else written(None)
-    return _marked(text, isAssumed)
 
 
 def _assumed(run):
