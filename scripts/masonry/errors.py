@@ -23,7 +23,7 @@ def refuse(problems, begin="", between="\n"):
         raise Refused(begin + between.join(problems))
 
 
-class Held(Refused):
+class FolderLocked(Refused):
     """Another run is writing to the folder of the results."""
 
 

@@ -13,7 +13,7 @@ import os
 
 from .errors import Unwritable, refuse
 
-MOST = 5  # names that are listed
+MAX_NAMES = 5  # names that are listed
 
 
 def check(*folders):
@@ -29,7 +29,7 @@ def check(*folders):
         with contextlib.suppress(FileNotFoundError), os.scandir(folder) as entries:
             names = sorted(f"{e.name}, a symbolic link" for e in entries if e.is_symlink())
         if names:
-            named = ", ".join(names[:MOST]) + " and more" * (len(names) > MOST)
+            named = ", ".join(names[:MAX_NAMES]) + " and more" * (len(names) > MAX_NAMES)
             problems.append(
                 f"{folder} holds {named}: nothing is written where a name can lead elsewhere;"
                 " remove these, or name another folder"

@@ -10,7 +10,7 @@ from .blocks import Block, Bricks, Length, Point
 from .geometry import boxCorners
 
 Along = Annotated[str, oneOf("x", "y")]
-MOST = 100_000  # pieces
+MAX_PIECES = 100_000
 
 
 def _row(start, size, pieces, axis, name):
@@ -31,7 +31,7 @@ def Beam(
     width: Length,
     height: Length,
     along: Along = "x",
-    pieces: Annotated[int, whole(1, MOST)] = 8,
+    pieces: Annotated[int, whole(1, MAX_PIECES)] = 8,
     name: str = "beam",
 ) -> Bricks:
     """A beam that bends, as a ring beam, a lintel or a wall plate: a row of pieces, a
@@ -58,7 +58,7 @@ def Floor(
     width: Length,
     height: Length,
     along: Along = "x",
-    strips: Annotated[int, whole(2, MOST)] = 8,
+    strips: Annotated[int, whole(2, MAX_PIECES)] = 8,
     name: str = "floor",
 ) -> Bricks:
     """A floor or a roof that spans one way, and shears in its plane: strips side by side, a

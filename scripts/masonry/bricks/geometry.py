@@ -89,7 +89,7 @@ def _place(point):
     return "(" + ", ".join(f"{x:.6g}" for x in point) + ")"
 
 
-class Alike:
+class SameTopologyBatch:
     """Convex solids whose corners stand in the same order.
 
     :ivar index: numbers of the solids, (n,)
@@ -160,7 +160,7 @@ class Solids:
         """Groups of solids with the same number of corners, by their faces."""
         while len(index):
             try:
-                alike = Alike(index, corners, hull(corners[0]))
+                alike = SameTopologyBatch(index, corners, hull(corners[0]))
                 if not alike.fit[0]:
                     raise ValueError(
                         "its corners lie so near to one another, or to one plane, that its faces"
@@ -168,7 +168,7 @@ class Solids:
                     )
                 fit = alike.fit
                 self.groups.append(
-                    alike if fit.all() else Alike(index[fit], corners[fit], alike.faces)
+                    alike if fit.all() else SameTopologyBatch(index[fit], corners[fit], alike.faces)
                 )
             except ValueError as error:
                 self.problems[int(index[0])] = str(error)
@@ -177,7 +177,7 @@ class Solids:
 
     def volumes(self):
         """[m³], (n,); NaN for a solid with problems."""
-        return self._each(Alike.volumes)
+        return self._each(SameTopologyBatch.volumes)
 
     def thicknesses(self):
         """Smallest extent along the normal of a face [m], (n,); NaN for a solid with problems."""

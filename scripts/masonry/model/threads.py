@@ -20,7 +20,7 @@ from .._masonry import threads as records
 #: benchmarks.
 ALWAYS = os.environ.get("MASONRY_THREADS") == "always"
 
-MOST = 4  # threads that steps use unless the user says another number
+MAX_THREADS = 4  # threads that steps use unless the user says another number
 
 _allowed = _ofYade = 1
 _asked = False
@@ -53,7 +53,7 @@ def limit():
             openmp.omp_set_num_threads(1)
         _ofYade = openmp.omp_get_max_threads()
     _asked = _isAsked()
-    _allowed = _ofYade if _asked else min(MOST, len(os.sched_getaffinity(0)))
+    _allowed = _ofYade if _asked else min(MAX_THREADS, len(os.sched_getaffinity(0)))
     allowThreads(_allowed, ALWAYS)
 
 
