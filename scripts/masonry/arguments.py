@@ -8,10 +8,10 @@
 
 A hint is ``Annotated`` with a validator: a function of a value and of its context, the first
 argument of the command (the scene or its description). It returns the value as the command uses it,
-or raises ValueError, whose text completes "NAME ": "-1 Pa must be at least 0". Validators of numbers
-have their ``unit``, and ``of``, the type of Python; those of some texts have ``choices``. Texts,
-switches and functions need none; hints of other types without one are not checked. All problems of
-a call are in one error, and an unknown argument is answered with the nearest name.
+or raises ValueError, whose text completes "NAME ": "-1 Pa must be at least 0". Validators of
+numbers have their ``unit``, and ``of``, the type of Python; those of some texts have ``choices``.
+Texts, switches and functions need none; hints of other types without one are not checked. All
+problems of a call are in one error, and an unknown argument is answered with the nearest name.
 """
 
 import contextlib
@@ -216,8 +216,10 @@ def byName(validator, *needed):
 
 
 def axes(letters, none=False):
-    """Validator of some axes, as ``"xz"``: letters without repeats, or a list of them; with ``none``
-    there may be none."""
+    """Validator of some axes, as ``"xz"``: letters without repeats, or a list of them.
+
+    :param none: whether there may be none
+    """
 
     def take(value, context=None):
         fine = isinstance(value, (str, list, tuple, set, frozenset))
@@ -274,7 +276,7 @@ def series(value, context=None):
 
 
 def direction(level=False):
-    """Validator of a direction: three numbers, of any length but zero; with ``level`` horizontal."""
+    """Validator of a direction, if ``level`` a horizontal one: three numbers that are not all 0."""
     three = vector()
 
     def take(value, context=None):

@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Other processes: tasks that a copy of this one carries out, and programs, several at a time.
+"""Other processes: a :class:`Task` in a copy of this one, and programs, several at a time.
 
-A :class:`Task` begins with the scene as it is at that moment, so nothing need be packed for it, and
-what the run does then does not change what the copy sees. It takes no steps and ends without any
-clean-up. Where the system gives no process the work is done at once instead. :func:`carryOut` is
-the pool: it runs programs beside each other. Both end when this process does.
+A task begins with the scene as it is at that moment, takes no steps and ends without any clean-up.
+Where the system gives no process the work is done at once instead. :func:`carryOut` is the pool of
+programs. Both end when this process does.
 """
 
 import contextlib
@@ -25,8 +24,8 @@ from .errors import Interrupted, Refused
 LONGEST = 60.0  # [s] that is waited for at once
 LOOK_EVERY = 0.05  # [s] between looks at programs
 PARENT_ENDS = 1  # PR_SET_PDEATHSIG of prctl
-#: Name in the environment of a :class:`Program`: number of the open file that takes why it refuses
-#: its input.
+#: Variable in the environment of a :class:`Program`: number of the open file that takes why it
+#: refuses its input.
 REFUSAL = "MASONRY_REFUSAL"
 _refusal = int(os.environ.pop(REFUSAL, -1))  # programs that it starts have their own
 
@@ -36,8 +35,7 @@ class Failed(Exception):
 
 
 class Task:
-    """Work that goes on in a copy of this process. What it gives can be had from :meth:`result`,
-    one after the other.
+    """Work in a copy of this process, whose results :meth:`result` gives.
 
     :param work: a function without arguments whose result can be iterated, as a generator
     :param parts: how many results it gives
@@ -79,8 +77,7 @@ class Task:
         return True
 
     def result(self, part: int = 0) -> Any:
-        """A result; it is waited for. Raises what the work raised, or Failed if its process has
-        ended without it."""
+        """Wait for a result. Raises what the work raised, or Failed if its process has ended."""
         self.ready(part, math.inf)
         results = self._results[: part + 1]
         if results and isinstance(results[-1], BaseException):
@@ -102,7 +99,7 @@ class Task:
 
 
 def _carryOut(work, parts, writes):
-    """Do the work in the copy of the process, which ends here."""
+    """Do the work in the copy of the process, and end it."""
     try:
         os.setsid()  # Ctrl-C is for the run
         _endWithParent(signal.SIGKILL)
@@ -126,15 +123,14 @@ def _carryOut(work, parts, writes):
 
 
 def _endWithParent(number):
-    """Let this process get a signal when the one that started it ends, however that ends."""
+    """Let this process get a signal when the one that started it ends."""
     with contextlib.suppress(AttributeError, OSError):
         ctypes.CDLL(None).prctl(PARENT_ENDS, number, 0, 0, 0)
 
 
 class Program(subprocess.Popen[bytes]):
-    """A program, which is asked to stop (SIGTERM) when this process ends, also if that is killed.
-
-    It is in a session of its own: Ctrl-C is for this process, which ends it in order.
+    """A program, in a session of its own, which gets SIGTERM when this process ends, also if that
+    is killed.
 
     :param log: file that takes what it says
     :raises OSError: if it cannot be started
@@ -158,15 +154,14 @@ class Program(subprocess.Popen[bytes]):
         )
 
     def refusal(self) -> tuple[str, str]:
-        """The class and the text of what the program has refused; two empty texts if it has refused
-        nothing."""
+        """The class and the text of what the program has refused; two empty texts if nothing."""
         self._refusal.seek(0)
         kind, _, reason = self._refusal.read().decode().partition("\n")
         return kind, reason
 
 
 def reportRefusal(refused: Refused) -> None:
-    """Let the process that has started this one as a :class:`Program` know what is refused."""
+    """Tell the process that has started this one as a :class:`Program` what is refused."""
     if _refusal >= 0:
         with contextlib.suppress(OSError):  # a limit on the size of files
             os.pwrite(_refusal, f"{type(refused).__name__}\n{refused}".encode(), 0)
@@ -179,13 +174,13 @@ def carryOut(
     most: int,
     look: Callable[[], None] = lambda: None,
 ) -> None:
-    """Run programs, so many at a time. An error that a function raises stops all of them.
+    """Run programs beside each other. An error that a function raises stops all of them.
 
-    :param begin: function that starts the program of a name
-    :param ended: function of the name and the program, which is over
+    :param begin: starts the program of a name
+    :param ended: gets the name and the program, which is over
     :param most: programs at a time
-    :param look: function that is called about twenty times a second
-    :raises Interrupted: after Ctrl-C and SIGTERM. All programs have ended then
+    :param look: is called about twenty times a second
+    :raises Interrupted: after Ctrl-C and SIGTERM, when all programs have ended
     """
     due, running = [*names], {}
     stopped: list[int] = []
