@@ -1,20 +1,17 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What a script says to a command is checked here: every argument, before the command does
-anything.
-
-Type hints say what a parameter takes::
+"""Checks of arguments, before a command does anything. Type hints say what a parameter takes::
 
     Stress = Annotated[float, number("Pa", 0, 1e12)]
 
     @validated
     def press(description: Any, platen: MovingPlaten, stress: Stress, riding: bool = True): ...
 
-A hint is ``Annotated`` with a kind: a function of a value and of the first argument of the command,
-the scene or its description. It returns the value as the command uses it, or raises ValueError with
-a sentence that goes on behind the name: "-1 Pa must be at least 0". Kinds of numbers have their
-``unit``, and ``of``, the type of Python; kinds of some texts have ``choices``. Texts, switches and
-functions need no kind; hints of other types without one are not checked. All problems of a call are
-in one error, and an argument that is not known is answered with the nearest name.
+A hint is ``Annotated`` with a validator: a function of a value and of its context, the first
+argument of the command (the scene or its description). It returns the value as the command uses it,
+or raises ValueError, whose text completes "NAME ": "-1 Pa must be at least 0". Validators of
+numbers have their ``unit``, and ``of``, the type of Python; those of some texts have ``choices``.
+Texts, switches and functions need none; hints of other types without one are not checked. All
+problems of a call are in one error, and an unknown argument is answered with the nearest name.
 """
 
 import contextlib
@@ -32,21 +29,20 @@ import numpy as np
 
 from .errors import Refused, refuse
 
-#: What a user gives, as type hints name it: some numbers, some axes.
+#: Type hints of what a user gives.
 Numbers = Union[Sequence[float], np.ndarray[Any, Any]]
 Axes = Union[str, Sequence[str]]
-#: A kind of argument, as this module describes it.
-Kind = Callable[..., Any]
+Validator = Callable[..., Any]
 
 F = TypeVar("F", bound=Callable[..., Any])
 
-LONGEST_NAME, LONGEST_TEXT = 100, 1000  # characters of a name, and of a text
-SHORTEST, FARTHEST = 1e-100, 1e100  # lengths of a direction [-]
-SHOWN = 80  # characters of a value that are shown
+LONGEST_NAME, LONGEST_TEXT = 100, 1000  # characters
+SHORTEST, LONGEST = 1e-100, 1e100  # lengths of a direction [-]
+SHOWN = 80  # characters of a value in a message
 
 
 def shown(value):
-    """A value as a message has it, not too long."""
+    """A value as a message has it, cut to :data:`SHOWN`."""
     try:
         text = repr(value[:LONGEST_TEXT] if isinstance(value, str) else value)
     except Exception:  # of a class of the user's own
@@ -56,13 +52,12 @@ def shown(value):
 
 
 def nearest(name, names):
-    """The end of a sentence that names what is nearest to a name: ``, did you mean 'x'?``, or
-    nothing."""
+    """The end of a sentence, ``, did you mean 'x'?``, or nothing."""
     close = difflib.get_close_matches(str(name)[:SHOWN], [str(n) for n in names], 1)
     return f", did you mean {close[0]!r}?" if close else ""
 
 
-# -- kinds -----------------------------------------------------------------------------------------
+# -- validators ------------------------------------------------------------------------------------
 
 
 def isNumber(value):
@@ -71,8 +66,8 @@ def isNumber(value):
     return kind is float or kind is not bool and isinstance(value, Real)
 
 
-def plain(value):
-    """A real number as one of Python's own, or infinity if there is no float so large."""
+def asFloat(value):
+    """A real number as a float or int of Python, or infinity if there is no float so large."""
     if type(value) in (int, float) and abs(value) < 2**1000:
         return value
     try:
@@ -82,17 +77,17 @@ def plain(value):
     return int(value) if isinstance(value, Integral) else found
 
 
-def must(be, fine, value):
-    """A value that is fine; of another one ValueError says what it must be."""
-    if not fine:
-        raise ValueError(f"{shown(value)} must be {be}")
+def require(value, condition, expectation):
+    """Return a value if a condition holds, else raise ValueError with what is expected."""
+    if not condition:
+        raise ValueError(f"{shown(value)} must be {expectation}")
     return value
 
 
 def number(unit="", low=-math.inf, high=math.inf, above=False, below=False):
-    """The kind of a finite number.
+    """Validator of a finite number.
 
-    :param above: whether it must be above ``low``, not at least; ``below``: likewise
+    :param above: whether it must be above ``low``, not at least; ``below``: below ``high``
     """
     bounds = []
     if low > -math.inf:
@@ -103,9 +98,9 @@ def number(unit="", low=-math.inf, high=math.inf, above=False, below=False):
     if low == -high > -math.inf:
         bounds = f"from {low:g} to {high:g}"
 
-    def take(value, first=None):
-        must(f"a number{bounds and ' '}{bounds}{of}", isNumber(value), value)
-        found = plain(value)
+    def take(value, context=None):
+        require(value, isNumber(value), f"a number{bounds and ' '}{bounds}{of}")
+        found = asFloat(value)
         if not math.isfinite(found):
             raise ValueError(f"{shown(value)}{of} must be a finite number{bounds and ' '}{bounds}")
         outside = above and found == low or below and found == high
@@ -118,100 +113,99 @@ def number(unit="", low=-math.inf, high=math.inf, above=False, below=False):
 
 
 def whole(low=0, high=None):
-    """The kind of a whole number."""
+    """Validator of a whole number."""
     bounds = f"at least {low}" if high is None else f"from {low} to {high}"
 
-    def take(value, first=None):
+    def take(value, context=None):
         fine = isinstance(value, Integral) and not isinstance(value, bool)
         fine = fine and low <= value and (high is None or value <= high)
-        return int(must(f"a whole number {bounds}", fine, value))
+        return int(require(value, fine, f"a whole number {bounds}"))
 
     vars(take).update(of=int)
     return take
 
 
-def flag(value, first=None):
-    """The kind of True and False."""
-    return bool(must("True or False", isinstance(value, (bool, np.bool_)), value))
+def flag(value, context=None):
+    """Validator of True and False."""
+    return bool(require(value, isinstance(value, (bool, np.bool_)), "True or False"))
 
 
-def text(value, first=None):
-    """The kind of a text that can be printed and written to a file."""
-    must("a text", isinstance(value, str) and value.strip(), value)
+def text(value, context=None):
+    """Validator of a text that can be printed and written to a file."""
+    require(value, isinstance(value, str) and value.strip(), "a text")
     fine = len(value) <= LONGEST_TEXT and value.replace("\n", " ").isprintable()
-    be = f"a text of characters that can be printed, at most {LONGEST_TEXT} of them"
-    return must(be, fine, value)
+    expected = f"a text of characters that can be printed, at most {LONGEST_TEXT} of them"
+    return require(value, fine, expected)
 
 
-def label(value, first=None):
-    """The kind of a text as in :func:`text`, or of an empty one."""
+def label(value, context=None):
+    """Validator of a :func:`text`, or of an empty one."""
     return value if isinstance(value, str) and not value else text(value)
 
 
-def name(value, first=None):
-    """The kind of a name that begins names of columns."""
-    fine = isinstance(value, str) and value.isidentifier()
-    be = f"a name of letters, digits and underscores, at most {LONGEST_NAME} of them"
-    return must(be, fine and len(value) <= LONGEST_NAME, value)
+def name(value, context=None):
+    """Validator of a name that begins names of columns."""
+    fine = isinstance(value, str) and value.isidentifier() and len(value) <= LONGEST_NAME
+    expected = f"a name of letters, digits and underscores, at most {LONGEST_NAME} of them"
+    return require(value, fine, expected)
 
 
-def names(value, first=None):
-    """The kind of a text, or of a list of texts."""
+def names(value, context=None):
+    """Validator of a text, or of a list of texts."""
     return text(value) if isinstance(value, str) else listOf(text)(value)
 
 
-def path(value, first=None):
-    """The kind of a name of a file."""
+def path(value, context=None):
+    """Validator of the name of a file."""
     with contextlib.suppress(TypeError, UnicodeEncodeError):
         found = os.fspath(value)
         size = len(os.fsencode(found)) if isinstance(found, str) else 0
         if 0 < size < 4096 and "\0" not in found:
             return found
-    return must("the name of a file", False, value)
+    return require(value, False, "the name of a file")
 
 
-def function(value, first=None):
-    """The kind of a function."""
-    return must("a function", callable(value), value)
+def function(value, context=None):
+    """Validator of a function."""
+    return require(value, callable(value), "a function")
 
 
 def oneOf(*choices):
-    """The kind of one of some texts."""
+    """Validator of one of some texts."""
 
-    def take(value, first=None):
+    def take(value, context=None):
         fine = isinstance(value, str) and value in choices
         close = nearest(value, choices) if isinstance(value, str) and not fine else ""
-        return must(f"one of {', '.join(choices)}{close}", fine, value)
+        return require(value, fine, f"one of {', '.join(choices)}{close}")
 
     vars(take).update(choices=choices)
     return take
 
 
 def isA(cls, what=None):
-    """The kind of an object of a class.
+    """Validator of an object of a class.
 
     :param cls: or a tuple of classes
-    :param what: the words for it; None: the names of the classes
+    :param what: a name for it; None: the names of the classes
     """
     classes = cls if isinstance(cls, tuple) else (cls,)
     what = what or " or ".join(one.__name__ for one in classes)
+    return lambda value, context=None: require(value, isinstance(value, cls), f"a {what}")
 
-    return lambda value, first=None: must(f"a {what}", isinstance(value, cls), value)
 
+def byName(validator, *needed):
+    """Validator of a dict from names to values that another validator takes; some are needed."""
 
-def byName(kind, *needed):
-    """The kind of a dict from names to values of a kind, some of which are needed."""
-
-    def take(value, first=None):
+    def take(value, context=None):
         fine = isinstance(value, dict) and all(isinstance(n, str) for n in value)
-        must("a dict by name", fine, value)
+        require(value, fine, "a dict by name")
         missing = [n for n in needed if n not in value]
         if missing:
             raise ValueError(f"{shown(value)} must have {', '.join(map(repr, missing))}")
         problems = []
         for one, thing in value.items():
             try:
-                kind(thing)
+                validator(thing)
             except ValueError as error:
                 problems.append(f"{one!r}: {error}")
         if problems:
@@ -222,18 +216,17 @@ def byName(kind, *needed):
 
 
 def axes(letters, none=False):
-    """The kind of some axes, as ``"xz"``: letters without repeats, or a list of them.
+    """Validator of some axes, as ``"xz"``: letters without repeats, or a list of them.
 
     :param none: whether there may be none
     """
 
-    def take(value, first=None):
+    def take(value, context=None):
         fine = isinstance(value, (str, list, tuple, set, frozenset))
         fine = fine and all(isinstance(a, str) and a in [*letters] for a in value)
         fine = fine and len({*value}) == len(value) and (none or value)
-        must(f"some of the axes {letters!r}, each once", fine, value)
-        ordered = sorted(value) if isinstance(value, (set, frozenset)) else value
-        return "".join(ordered)
+        require(value, fine, f"some of the axes {letters!r}, each once")
+        return "".join(sorted(value) if isinstance(value, (set, frozenset)) else value)
 
     return take
 
@@ -246,7 +239,7 @@ def isListed(value):
 
 
 def items(value):
-    """The values of a list, a tuple, an array or the like, or None if it is not one."""
+    """The values of what :func:`isListed`, else None."""
     if type(value) in (list, tuple):
         return [*value]
     if not isListed(value):
@@ -258,59 +251,53 @@ def items(value):
 
 
 def vector(unit="", most=1e100):
-    """The kind of three finite numbers.
-
-    :param most: largest amount of each
-    """
+    """Validator of three finite numbers, none larger than ``most``."""
     of = unit and f" {unit}"
     bound = f" of at most {most:g}{of}" if most < 1e100 else ""
 
-    def take(value, first=None):
+    def take(value, context=None):
         found = items(value)
         fine = found is not None and len(found) == 3 and all(map(isNumber, found))
-        numbers = tuple(map(plain, found)) if fine else ()
+        numbers = tuple(map(asFloat, found)) if fine else ()
         fine = fine and all(abs(v) <= most for v in numbers)  # NaN is not
-        must(f"three finite numbers{bound}", fine, value)
+        require(value, fine, f"three finite numbers{bound}")
         return numbers
 
     return take
 
 
-def series(value, first=None):
-    """The kind of a list of numbers in one dimension, as an array."""
+def series(value, context=None):
+    """Validator of a list of numbers in one dimension, as an array."""
     with contextlib.suppress(TypeError, ValueError, OverflowError):
         found = np.asarray(value, float)
         if found.ndim == 1:
             return found
-    return must("a list of numbers", False, value)
+    return require(value, False, "a list of numbers")
 
 
 def direction(level=False):
-    """The kind of a direction: three numbers, of any length but zero.
-
-    :param level: whether it must be horizontal
-    """
+    """Validator of a direction, if ``level`` a horizontal one: three numbers that are not all 0."""
     three = vector()
 
-    def take(value, first=None):
+    def take(value, context=None):
         value = three(value)
-        fine = SHORTEST <= math.hypot(*value) <= FARTHEST
-        must("a direction, whose length is not zero", fine, value)
-        return must("a horizontal direction", not (level and value[2]), value)
+        fine = SHORTEST <= math.hypot(*value) <= LONGEST
+        require(value, fine, "a direction, whose length is not zero")
+        return require(value, not (level and value[2]), "a horizontal direction")
 
     return take
 
 
-def listOf(kind, least=1):
-    """The kind of a list of values of a kind."""
+def listOf(validator, least=1):
+    """Validator of a list of values that another validator takes."""
 
-    def take(value, first=None):
+    def take(value, context=None):
         found = items(value)
-        be = f"a list with at least {least} value{'s' * (least > 1)}"
-        must(be, found is not None and len(found) >= least, value)
+        expected = f"a list with at least {least} value{'s' * (least > 1)}"
+        require(value, found is not None and len(found) >= least, expected)
         for n, one in enumerate(found):
             try:
-                found[n] = kind(one, first)
+                found[n] = validator(one, context)
             except ValueError as error:
                 raise ValueError(f"(value {n} of the list) {error}") from None
         return found
@@ -318,19 +305,18 @@ def listOf(kind, least=1):
     return take
 
 
-def orNone(kind):
-    """The kind of None, or of another kind."""
-    return lambda value, first=None: None if value is None else kind(value, first)
+def orNone(validator):
+    """Validator of None, or of what another one takes."""
+    return lambda value, context=None: None if value is None else validator(value, context)
 
 
-def orFunction(kind):
-    """The kind of a function that gives the value later, or of another kind."""
-    return lambda value, first=None: value if callable(value) else kind(value, first)
+def orFunction(validator):
+    """Validator of a function that gives the value later, or of what another one takes."""
+    return lambda value, context=None: value if callable(value) else validator(value, context)
 
 
 # -- hints -----------------------------------------------------------------------------------------
 
-#: What a user gives, with its kind.
 Name = Annotated[str, name]
 Names = Annotated[Union[str, Sequence[str]], names]
 FilePath = Annotated[Union[str, os.PathLike[str]], path]
@@ -339,28 +325,28 @@ Direction = Annotated[Numbers, direction()]
 Level = Annotated[Numbers, direction(level=True)]
 Freedoms = Annotated[Axes, axes("xyzXYZ")]
 
-#: Kinds of hints that need not name one.
+#: Validators of hints that need not name one.
 PLAIN = {bool: flag, str: text}
 
 
-def kindOf(hint: Any) -> Kind | None:
-    """The kind that a type hint has; None: it is not checked."""
+def validatorOf(hint: Any) -> Validator | None:
+    """The validator of a type hint; None: it is not checked."""
     if get_origin(hint) is Annotated:
         return get_args(hint)[1]
     if get_origin(hint) in (Union, UnionType):
         one, *others = [a for a in get_args(hint) if a is not type(None)]
-        kind = None if others else kindOf(one)
-        return kind and orNone(kind)
+        found = None if others else validatorOf(one)
+        return found and orNone(found)
     if getattr(get_origin(hint), "__name__", "") == "Callable":
         return function
     return PLAIN.get(hint)
 
 
 def validated(act: F) -> F:
-    """Let a function, or a class, check its arguments by the kinds of its hints.
+    """Let a function, or a class, check its arguments by the validators of its hints.
 
-    A function gets ``kinds``, which returns them by name, and ``checked``, a function of its
-    positional and its named arguments that gives both as the kinds return them.
+    A function gets ``kinds``, which returns these by name, and ``checked``, a function of its
+    positional and its named arguments that gives both as validators return them.
 
     :raises Refused: from the function, with all problems
     """
@@ -371,10 +357,10 @@ def validated(act: F) -> F:
     called = act.__qualname__.removesuffix(".__init__").rpartition(".")[2]
 
     @functools.cache  # its hints name classes that are made later
-    def kinds() -> dict[str, Kind]:
+    def kinds() -> dict[str, Validator]:
         hints = get_type_hints(act, include_extras=True)
         hints.pop("return", None)
-        return {n: kind for n, hint in hints.items() if (kind := kindOf(hint))}
+        return {n: found for n, hint in hints.items() if (found := validatorOf(hint))}
 
     def checked(args, settings):
         return _checked(called, signature, kinds(), args, settings)
@@ -388,32 +374,32 @@ def validated(act: F) -> F:
     return cast(F, command)
 
 
-def _checked(word, signature, kinds, args, settings):
+def _checked(command, signature, kinds, args, settings):
     parameters, problems = signature.parameters, []
     more = {n for n, p in parameters.items() if p.kind in (p.VAR_POSITIONAL, p.VAR_KEYWORD)}
     known = {n: v for n, v in settings.items() if more or n in parameters}
     offered = [n for n in parameters if n not in more | {"self", "scene", "description"}]
     for unknown in settings.keys() - known.keys():
         close = nearest(unknown, offered) or f"; there are {', '.join(offered)}"
-        problems.append(f"{word}: no argument {unknown!r}{close}")
+        problems.append(f"{command}: no argument {unknown!r}{close}")
     try:
         bound = signature.bind_partial(*args, **known)
     except TypeError as error:  # too many, or one of them twice
-        problems.append(f"{word}: {error}; it takes {', '.join(offered)}")
+        problems.append(f"{command}: {error}; it takes {', '.join(offered)}")
         raise Refused("\n".join(problems)) from None
-    first = args[0] if args else None
+    context = args[0] if args else None
     given = bound.arguments
     needed = [n for n, p in parameters.items() if p.default is p.empty]
     missing = [n for n in needed if n not in {*given, *more}]
     if missing:
-        problems.append(f"{word}: {', '.join(missing)} must be given")
+        problems.append(f"{command}: {', '.join(missing)} must be given")
     for one in [n for n in given if n in kinds]:
         many = parameters[one].kind is inspect.Parameter.VAR_POSITIONAL
-        kind = listOf(kinds[one], 0) if many else kinds[one]
+        validator = listOf(kinds[one], 0) if many else kinds[one]
         try:
-            found = kind(given[one], first)
+            found = validator(given[one], context)
             given[one] = tuple(found) if many else found
         except ValueError as error:
-            problems.append(f"{word}: {one} {error}")
+            problems.append(f"{command}: {one} {error}")
     refuse(problems)
     return bound.args, bound.kwargs

@@ -95,7 +95,7 @@ class Task:
 
 
 def _carryOut(work, parts, writes):
-    """Do the work in the copy of the process, which ends here."""
+    """Do the work in the copy of the process, and end it."""
     try:
         os.setsid()  # Ctrl-C is for the run
         _endWithParent(signal.SIGKILL)
@@ -170,13 +170,13 @@ def carryOut(
     most: int,
     look: Callable[[], None] = lambda: None,
 ) -> None:
-    """Run programs, so many at a time. An error that a function raises stops all of them.
+    """Run programs beside each other. An error that a function raises stops all of them.
 
-    :param begin: function that starts the program of a name
-    :param ended: function of the name and the program, which is over
+    :param begin: starts the program of a name
+    :param ended: gets the name and the program, which is over
     :param most: programs at a time
-    :param look: function that is called about twenty times a second
-    :raises Interrupted: after Ctrl-C and SIGTERM. All programs have ended then
+    :param look: is called about twenty times a second
+    :raises Interrupted: after Ctrl-C and SIGTERM, when all programs have ended
     """
     due, running = [*names], {}
     stopped: list[int] = []

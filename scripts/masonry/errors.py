@@ -1,18 +1,16 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""How a run can end before its time. Each of these errors ends it in order, and what was computed
-is kept."""
+"""How a run can end before its time: in order, and what was computed is kept."""
 
 
 class Refused(ValueError):
     """Input that cannot be run, with all problems at once. Nothing was changed."""
 
 
-#: What is said of anything that cannot be done in a scene in a plane.
 IN_PLANE = "the scene is in the x-z plane; Scene(..., plane=False) is in space"
 
 
 def checkPlane(description, along, name):
-    """Refuse what has a part along y in a scene in the x-z plane. Raises ValueError."""
+    """Raise ValueError for a vector with a part along y in a scene in the x-z plane."""
     if description.plane and along[1]:
         raise ValueError(f"{name}: {IN_PLANE}")
 
@@ -23,12 +21,12 @@ def refuse(problems, begin="", between="\n"):
         raise Refused(begin + between.join(problems))
 
 
-class Held(Refused):
-    """Another run is writing to the folder of the results."""
+class FolderLocked(Refused):
+    """Another run writes to the folder of the results."""
 
 
 class NotResumed(Refused):
-    """A checkpoint from which this run cannot go on."""
+    """This run cannot go on from a checkpoint."""
 
 
 class NotAccurate(Refused):
@@ -40,7 +38,7 @@ class Interrupted(Exception):
 
 
 class Unwritable(Exception):
-    """A file of the results cannot be written, for example since the disk is full."""
+    """A file of the results cannot be written."""
 
 
 class Collapsed(Exception):

@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Folders that others may have packed, as results, studies and checkpoints are: what is written in
-them stays in them.
+"""Folders that may come from others, as results, studies and checkpoints: nothing is written
+through a symbolic link in them.
 
-An archive keeps symbolic links. So a file in such a folder is opened for writing by :func:`inside`
-or :func:`replaced` alone, which write through no link, and :func:`check` names all links of a
-folder before anything is written there. ``scripts/FILES.md`` says what may be shared.
+Files there are written by :func:`inside` or :func:`replaced` alone, after :func:`check` has refused
+the links of a folder. ``scripts/FILES.md`` says what may be shared.
 """
 
 import contextlib
@@ -13,15 +12,14 @@ import os
 
 from .errors import Unwritable, refuse
 
-MOST = 5  # names that are listed
+MAX_NAMES = 5  # of links in a message
 
 
 def check(*folders):
-    """Refuse folders that hold symbolic links, all at once. A folder that is missing holds none.
+    """Refuse folders that hold symbolic links, all at once. A missing folder holds none; a folder
+    itself may be a link.
 
-    A folder itself may be reached through a link: its user has named it.
-
-    :raises Refused: if there are any; an OSError if a folder cannot be listed
+    :raises OSError: if a folder cannot be listed
     """
     problems = []
     for folder in folders:
@@ -29,7 +27,7 @@ def check(*folders):
         with contextlib.suppress(FileNotFoundError), os.scandir(folder) as entries:
             names = sorted(f"{e.name}, a symbolic link" for e in entries if e.is_symlink())
         if names:
-            named = ", ".join(names[:MOST]) + " and more" * (len(names) > MOST)
+            named = ", ".join(names[:MAX_NAMES]) + " and more" * (len(names) > MAX_NAMES)
             problems.append(
                 f"{folder} holds {named}: nothing is written where a name can lead elsewhere;"
                 " remove these, or name another folder"
@@ -38,10 +36,8 @@ def check(*folders):
 
 
 def inside(path, flags):
-    """The ``opener`` of Python's ``open`` for a file that is written in such a folder.
-
-    :raises OSError: with the reason; also if the path is a symbolic link
-    """
+    """The ``opener`` of Python's ``open`` for such a file. Raises OSError, also for a symbolic
+    link."""
     try:
         return os.open(path, flags | os.O_NOFOLLOW | os.O_CLOEXEC, 0o666)
     except OSError as error:
@@ -52,10 +48,8 @@ def inside(path, flags):
 
 @contextlib.contextmanager
 def replaced(path, mode="w", **settings):
-    """A file to write, which takes the place of ``path`` when it is whole and on the disk; else
-    ``path`` stays as it is.
-
-    It is ``path + ".new"`` until then, and is removed after an error.
+    """A file to write, ``path + ".new"``, which replaces ``path`` when it is whole and on the disk,
+    and is removed after an error.
 
     :param mode: and ``settings``: as in Python's ``open``
     :raises OSError: if it cannot be written, or if ``path`` is a symbolic link
@@ -78,7 +72,7 @@ def replaced(path, mode="w", **settings):
 
 @contextlib.contextmanager
 def writing(what):
-    """Let an OSError in a block that writes be :class:`masonry.errors.Unwritable`.
+    """Turn an OSError of a block into :class:`masonry.errors.Unwritable`.
 
     :param what: is written: the path of a file, or ``to FOLDER``
     """

@@ -1,14 +1,11 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Finds the YADE of this machine in plain Python, and starts it when it is first needed.
+"""Finds the YADE of this machine in plain Python, and starts it when it is first imported.
 
-The program ``yade`` puts the folder of YADE's modules on ``sys.path`` before it runs a script;
-``/usr/bin/python3`` does not. After ``import masonry`` this module does it instead, as soon as
-anything imports ``yade``: a scene, a module of this package, or the script itself. Nothing is
-imported before that, so what reads results stays as quick as without YADE.
-
-YADE then starts without ports, without a change of ``sys.argv``, with one thread unless
-``OMP_NUM_THREADS`` says another number, and without its lines on the terminal. The classes of the
-plugin are registered at once.
+The program ``yade`` puts the folder of YADE's modules on ``sys.path``; ``/usr/bin/python3`` does
+not. After ``import masonry`` this module does it as soon as anything imports ``yade``, so what reads
+results stays as quick as without YADE. YADE starts without ports, without a change of ``sys.argv``,
+with one thread unless ``OMP_NUM_THREADS`` says another number, and without its lines on the
+terminal. The classes of the plugin are registered at once.
 """
 
 import contextlib
@@ -39,15 +36,13 @@ INSTALLED = "on Debian, apt-get install yade installs it"
 
 
 class Finder:
-    """The place of YADE among those of all modules. It stands before the other finders, whose
-    answers it takes first."""
+    """Finder of YADE, which stands before the others and takes their answer first."""
 
     def __init__(self, started):
         self._started = started  # called when YADE has been imported
 
     def find_spec(self, name, path=None, target=None):
-        """As of :class:`importlib.abc.MetaPathFinder`. Raises ModuleNotFoundError with a sentence
-        if there is no YADE."""
+        """The spec of YADE. Raises ModuleNotFoundError with a sentence if there is none."""
         if name == YADE:
             found = self._byOthers() or _installed()
             found.loader = Loader(YADE, found.origin)
@@ -61,8 +56,7 @@ class Finder:
         return None
 
     def _byOthers(self):
-        """YADE as the other finders see it, by sys.path; a folder of this name that is not YADE is
-        passed over."""
+        """YADE as the other finders see it; a folder of this name that is not YADE is ignored."""
         for finder in sys.meta_path:
             find = getattr(finder, "find_spec", None)
             found = find(YADE, None) if find and finder is not self else None
@@ -75,8 +69,7 @@ class Loader(importlib.machinery.SourceFileLoader):
     """Imports YADE quietly, with one thread unless the user wants more."""
 
     def exec_module(self, module):
-        """Run the module. Raises ImportError with a sentence if this Python lacks what YADE
-        needs."""
+        """Run the module. Raises ImportError if this Python lacks what YADE needs."""
         printed, asked = io.StringIO(), THREADS in os.environ
         os.environ.setdefault(THREADS, "1")  # OpenMP reads it when it is loaded
         quietly = contextlib.redirect_stdout(printed)
@@ -111,8 +104,8 @@ class Loader(importlib.machinery.SourceFileLoader):
 
 @contextlib.contextmanager
 def _withoutShell():
-    """Let YADE find the version of IPython without importing it, which is all that it does with it
-    in plain Python, and takes a third of its start."""
+    """Let YADE find the version of IPython, all that it needs in plain Python, without importing
+    it, which takes a third of the start."""
     standIn = types.ModuleType(SHELL)
     with contextlib.suppress(importlib.metadata.PackageNotFoundError):
         standIn.__version__ = importlib.metadata.version(SHELL)
@@ -137,11 +130,8 @@ class Imported:
 
 
 def folders():
-    """Folders in which YADE's modules can lie on this machine, the likeliest first.
-
-    They are those that the program ``yade`` adds to ``sys.path``, and those of a library folder of
-    Debian.
-    """
+    """Folders where YADE's modules can lie, the likeliest first: those that the program ``yade``
+    adds to ``sys.path``, and those of a library folder of Debian."""
     text = _program()
     named = re.findall(r"^sys\.path\.insert\(\d+, *'([^']+)'\)", text, re.MULTILINE)
     prefix = os.environ.get("YADE_PREFIX", "/usr")
@@ -161,8 +151,8 @@ def _program():
 
 
 def interpreter():
-    """The interpreter that the installed YADE was built for, as its program names it, and its
-    version as a pair of numbers. Both are None if that cannot be known."""
+    """The interpreter that the installed YADE was built for, and its version as a pair of numbers;
+    None where unknown."""
     found = re.match(r"#! *(/\S*python\S*)", _program())
     if not found:
         return None, None
@@ -172,8 +162,8 @@ def interpreter():
 
 
 def _installed():
-    """The spec of the YADE that is installed. Raises ImportError if there is none, or if it is of
-    another Python."""
+    """The spec of the installed YADE. Raises ImportError if there is none, or for another
+    Python."""
     path, version = interpreter()
     if version and version != sys.version_info[:2]:
         raise ImportError(
@@ -199,9 +189,6 @@ def _installed():
 
 
 def install(started):
-    """Let YADE be found.
-
-    :param started: function without arguments, called each time that YADE has been imported
-    """
+    """Add the finder; ``started()`` is called each time that YADE has been imported."""
     if not any(isinstance(finder, Finder) for finder in sys.meta_path):
         sys.meta_path.insert(0, Finder(started))

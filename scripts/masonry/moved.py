@@ -1,11 +1,10 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Where modules of version 2 are now: who imports one that has moved reads its new name."""
+"""Where modules of version 2 are now."""
 
 import sys
 
 from .terminal import say
 
-#: Old names of modules and their new names.
 MODULES = {
     "masonry.assembly": "masonry.model",
     "masonry.basics": "masonry.errors, masonry.terminal and masonry.units",
@@ -18,8 +17,7 @@ MODULES = {
     "masonry.scene.stages": "masonry.stages",
     "masonry.study": "masonry_study",
 }
-#: How names of programs begin that ``python3 -m`` ran, and how they begin now; the first one
-#: counts.
+#: Beginnings of names of programs; the first that fits counts.
 PROGRAMS = {
     "masonry.read.bilinear": "masonry_capacity.bilinear_curve",
     "masonry.read": "masonry_view",
@@ -29,11 +27,11 @@ PROGRAMS = {
 
 
 class Finder:
-    """The last place where Python looks for a module."""
+    """The last finder of ``sys.meta_path``."""
 
     def find_spec(self, name, path=None, target=None):
-        """As of :class:`importlib.abc.MetaPathFinder`. Raises ModuleNotFoundError for a module that
-        has moved; ``python3 -m`` of it ends with status 2."""
+        """Raise ModuleNotFoundError with the new name of a module that has moved; ``python3 -m`` of
+        it ends with status 2."""
         if name not in MODULES:
             return None
         if sys.argv[:1] == ["-m"]:
@@ -47,6 +45,6 @@ class Finder:
 
 
 def install():
-    """Let the new names be said."""
+    """Add the finder."""
     if not any(isinstance(finder, Finder) for finder in sys.meta_path):
         sys.meta_path.append(Finder())

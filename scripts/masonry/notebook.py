@@ -1,9 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What is different in a notebook: lines that are kept up to date, and how a run that ends is
-shown.
-
-This module loads nothing of Jupyter: it uses what the kernel of a notebook has loaded.
-"""
+"""Lines of progress and the end of a run in a notebook. Nothing of Jupyter is loaded: the kernel
+has loaded it."""
 
 import html
 import sys
@@ -17,16 +14,13 @@ def isHere():
 
 
 class Line:
-    """A line in the output of a cell that can be written anew."""
+    """A line in the output of a cell that is kept up to date."""
 
     def __init__(self):
         self._handle = None
 
     def show(self, text, fraction):
-        """Write the line.
-
-        :param fraction: how much is done, 0 to 1 [-], for the bar before the text
-        """
+        """Write the line, with a bar for the fraction that is done, 0 to 1 [-]."""
         from IPython.display import display
 
         done = min(max(fraction, 0.0), 1.0)
@@ -46,16 +40,14 @@ class Stopped(KeyboardInterrupt):
         return [str(self)]
 
 
-class Failed(Exception):
-    """A run ended before its time, as was said above the error. The cells that follow do not
-    run."""
+class RunFailed(Exception):
+    """A run ended before its time. The cells that follow do not run."""
 
-    def _render_traceback_(self):
-        return [str(self)]
+    _render_traceback_ = Stopped._render_traceback_
 
 
 def ended(name, status, folder, error):
-    """The error with which a run that was not in order ends a cell.
+    """The error with which a run ends a cell.
 
     :param name: of the scene
     :param status: exit status that a script would have
@@ -70,4 +62,4 @@ def ended(name, status, folder, error):
         )
         return Stopped(f"{name}: interrupted{kept}")
     why = f": {error}" if error else ", as was said above"
-    return Failed(f"{name}: the run ended before its time{why}")
+    return RunFailed(f"{name}: the run ended before its time{why}")

@@ -1,10 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Debian's packages that only a part of the project needs: what is left out without each, and how
-it is installed.
-
-``scripts/setup.sh`` installs what a run needs, and with ``--tests`` also what studies and tests
-need.
-"""
+"""Debian's packages that only a part of the project needs. ``scripts/setup.sh`` installs those of
+a run, with ``--tests`` also those of studies and tests."""
 
 import importlib
 import importlib.util
@@ -24,17 +20,11 @@ NEEDED_FOR = {
 
 
 class Missing(Refused, ImportError):
-    """A Python module is not installed; the text is one sentence with the command that installs
-    it."""
+    """A Python module is not installed; the text has the command that installs it."""
 
 
 def needed(name):
-    """A Python module that may be missing.
-
-    :param name: one of :data:`NEEDED_FOR`
-    :returns: the module
-    :raises Missing: if it is not installed
-    """
+    """Import a module of :data:`NEEDED_FOR`. Raises Missing."""
     try:
         return importlib.import_module(name)
     except ModuleNotFoundError as error:
@@ -44,11 +34,7 @@ def needed(name):
 
 
 def promised(name):
-    """Make sure that :func:`needed` will find a module, without the time that its import takes.
-
-    :param name: one of :data:`NEEDED_FOR`
-    :raises Missing: if it is not installed
-    """
+    """Check that a module of :data:`NEEDED_FOR` is there, without importing it. Raises Missing."""
     try:
         found = name in sys.modules or importlib.util.find_spec(name)
     except ModuleNotFoundError:  # of a finder that forbids it
@@ -58,7 +44,6 @@ def promised(name):
 
 
 def _missing(name):
-    """The error that says how a module is installed."""
     package, what = NEEDED_FOR[name]
     return Missing(
         f"{what} the Python module {name}, which is not installed: "

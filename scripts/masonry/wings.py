@@ -1,10 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The programs beside the core, and how the core finds them.
-
-A *wing* is a package that lies beside this one. The core imports none of them: what it needs of one
-is named in :data:`WINGS` and loaded when it is used. A wing imports of the core what
-:data:`PUBLIC` names.
-"""
+"""The packages beside the core, its wings. The core imports none of them: what it needs of one is
+named in :data:`WINGS` and loaded when it is used. A wing imports of the core what :data:`PUBLIC`
+names."""
 
 import importlib
 import os
@@ -22,7 +19,6 @@ WINGS = {
     "probe": "masonry_study.probing probe",
 }
 
-#: Modules of the core that wings may import.
 PUBLIC = """
     arguments auxiliary background bricks bricks.geometry errors folders materials materials.fields
     materials.settings memory model.arrays model.bodies model.load_names numbers.columns
@@ -38,12 +34,11 @@ FOLDER = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 
 
 class NotInstalled(Refused, ImportError):
-    """A wing is not installed; the text names it and what needs it."""
+    """A wing is not installed."""
 
 
 class Absent:
-    """Stands for the limit analysis of a scene where its wing is not installed: there are no
-    bounds, and what is asked of them has no answer."""
+    """Limit analysis of a scene where its wing is not installed: no bounds."""
 
     entries, endless = {}, frozenset()
     SMALL = EVERY = 0
@@ -53,8 +48,8 @@ class Absent:
 
 
 def folderOf(wing):
-    """The ``__path__`` of a wing: it lies beside the core that runs, which may not be that of the
-    folder in which the wing was found. Raises NotInstalled."""
+    """The ``__path__`` of a wing beside the core that runs, which may be another than that where
+    the wing was found. Raises NotInstalled."""
     folder = os.path.join(FOLDER, wing)
     if not os.path.isdir(folder):
         raise NotInstalled(f"{wing} is not installed in {FOLDER}")
@@ -62,19 +57,18 @@ def folderOf(wing):
 
 
 def isInstalled(what):
-    """Whether the wing is there that something needs, a key of :data:`WINGS`."""
+    """Whether the wing of a key of :data:`WINGS` is there."""
     package = WINGS[what].partition(".")[0]
     return os.path.isdir(os.path.join(FOLDER, package))
 
 
 def programOf(what):
-    """The module that ``python3 -m`` runs for something, a key of :data:`WINGS`."""
+    """The module that ``python3 -m`` runs for a key of :data:`WINGS`."""
     return WINGS[what].split()[0]
 
 
 def find(what):
-    """The class or function of a wing that something needs, a key of :data:`WINGS`. Raises
-    NotInstalled."""
+    """The class or function of a key of :data:`WINGS`. Raises NotInstalled."""
     module, name = WINGS[what].split()
     if not isInstalled(what):
         package = module.partition(".")[0]

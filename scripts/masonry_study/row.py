@@ -24,7 +24,7 @@ import time
 
 from masonry import background
 from masonry.run import batch
-from masonry.errors import Held, NotResumed, Refused
+from masonry.errors import FolderLocked, NotResumed, Refused
 from masonry.terminal import say
 from masonry.folders import inside
 from masonry.numbers.files import readRun, readWhole
@@ -112,7 +112,7 @@ class RowRunner:
             if status != REFUSED or folder.isEnded(number) or folder.isHeld(number):
                 return status
             kind, _ = self._child.refusal()
-            if kind == Held.__name__:  # that run has just ended, or was killed
+            if kind == FolderLocked.__name__:  # that run has just ended, or was killed
                 time.sleep(0.2)
             elif resumes and kind == NotResumed.__name__:
                 os.replace(checkpoint, checkpoint + ".refused")

@@ -6,7 +6,7 @@ import itertools
 from dataclasses import asdict, dataclass
 from typing import Annotated, Any, Sequence
 
-from masonry.arguments import FARTHEST, SHORTEST
+from masonry.arguments import LONGEST, SHORTEST
 from masonry.arguments import isA, isNumber, listOf, number, shown, validated, text
 from masonry.materials import fields
 from masonry.errors import Refused
@@ -77,8 +77,8 @@ def _aboutMean(kind, mean, cov, low, high):
         raise Refused(
             f"{kind}: coefficient of variation {cov} must be above 0, and at least {LEAST_COV:g}"
         )
-    if not SHORTEST <= (mean if kind == "lognormal" else abs(mean)) <= FARTHEST:
-        raise Refused(f"{kind}: mean {mean:g} must be above 0, from {SHORTEST:g} to {FARTHEST:g}")
+    if not SHORTEST <= (mean if kind == "lognormal" else abs(mean)) <= LONGEST:
+        raise Refused(f"{kind}: mean {mean:g} must be above 0, from {SHORTEST:g} to {LONGEST:g}")
     if low is not None and high is not None and not low < high:
         raise Refused(f"{kind}: low {low:g} must be below high {high:g}")
     made = Distribution(kind, (*whole.parameters, *ends.items()))

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from masonry.errors import Refused
-from masonry.bricks.geometry import Alike, Solids, boxCorners
+from masonry.bricks.geometry import SameTopologyBatch, Solids, boxCorners
 from masonry.numbers import drawing
 from masonry.numbers.cracks import CRACK, CRACK_SURFACE, CRUSHED, crushed, widths
 from .curve_figure import plan, unitOf
@@ -190,7 +190,7 @@ class Elevation:
         painting = Painting(self.view.towards, thin, bold)
         now = copy.copy(built)
         now.groups = [
-            Alike(
+            SameTopologyBatch(
                 g.index,
                 g.corners + magnification * s.moved[np.array([nodes[n] for n in g.index])],
                 g.faces,

@@ -4,7 +4,7 @@ script."""
 
 import os
 
-from masonry.terminal import plain
+from masonry.terminal import withoutMarkup
 from masonry.folders import replaced
 from masonry.packages import needed
 
@@ -25,7 +25,7 @@ def rendered(path, **values):
         loader=jinja2.FileSystemLoader(here),
         autoescape=True,
         undefined=jinja2.StrictUndefined,
-        finalize=lambda value: plain(value) if type(value) is str else value,
+        finalize=lambda value: withoutMarkup(value) if type(value) is str else value,
         trim_blocks=True,
         lstrip_blocks=True,
     )

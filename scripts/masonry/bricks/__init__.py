@@ -1,26 +1,22 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Bricks of any structure as plain records, before anything is made in YADE. Nothing here needs
-YADE.
+"""Bricks of any structure as plain records, without YADE.
 
 A :class:`Bricks` is an immutable collection of :class:`Block` records: convex blocks that meet face
-to face. These make one, and raise ValueError with all problems of what they are given at once:
+to face. These functions make one, and raise ValueError with all problems at once:
 
 - :func:`Wall`: running, stack, header, English and Flemish bond, with :class:`Opening` and
   :class:`Lintel`;
 - :func:`Corner`, :func:`Tee` and :func:`Room`: walls that meet, with interlocking courses;
-- :class:`House`: storeys of four walls with their floors and ring beams, from :class:`Storey`;
-- :func:`StoneWall`: squared or irregular stones, with the interlocking that :func:`leastTrace`
-  measures;
+- :class:`House`: storeys of four walls with floors and ring beams, from :class:`Storey`;
+- :func:`StoneWall`: squared or irregular stones, whose interlocking :func:`leastTrace` measures;
 - :func:`Arch`, :func:`BarrelVault` and :func:`Dome`, from voussoirs;
-- :func:`Beam` and :func:`Floor`: beams that bend and floors that shear, in pieces
-  (:mod:`masonry.bricks.beams`);
+- :func:`Beam` and :func:`Floor`: beams that bend and floors that shear, in pieces;
 - :func:`stack` and :func:`block`: boxes;
 - :func:`fromFile`: one block for each convex solid of a file;
 - :func:`fromOutlines`: stones of a drawing, with mortar between them.
 
-Collections are added with ``+``, moved, turned, named, cut by planes, and chosen from; see
-:class:`Bricks`. Its ``problems()`` tells gaps, overlaps, slivers, loose parts and joints of odd
-size, with the bricks and the place::
+Collections are added with ``+``, moved, turned, named, cut by planes, and chosen from. Their
+``problems()`` are gaps, overlaps, slivers, loose parts and joints of odd size::
 
     from masonry.bricks import Arch, Lintel, Opening, Wall, block
 
@@ -29,13 +25,13 @@ size, with the bricks and the place::
     scene = wall + block((0, 0, -0.2), (3.08, 0.102, 0)).named("base")
     assert not scene.problems()
 
-Lengths are in m and angles in degrees. Every length of a unit contains its joint, as blocks have no
-mortar between them; with ``joint``, the thickness of the mortar, ``unit`` is the brick without it.
+Lengths are in m and angles in degrees. Lengths of a unit contain its joint; with ``joint``, the
+thickness of the mortar, ``unit`` is the brick without it.
 """
 
 from ..packages import promised
 
-promised("scipy")  # it is imported for convex solids that are no boxes
+promised("scipy")  # imported for convex solids that are no boxes
 
 from .beams import Beam, Floor
 from .blocks import Block, Bricks, summary

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Beams and floors as rows of boxes. What they are made of is said by ``withBeam`` and
-``withFloor`` of
-:class:`masonry.materials.Masonry`."""
+"""Beams and floors as rows of boxes; :class:`masonry.materials.Masonry` gives their materials by
+``withBeam`` and ``withFloor``."""
 
 from typing import Annotated
 
@@ -10,11 +9,11 @@ from .blocks import Block, Bricks, Length, Point
 from .geometry import boxCorners
 
 Along = Annotated[str, oneOf("x", "y")]
-MOST = 100_000  # pieces
+MAX_PIECES = 100_000
 
 
 def _row(start, size, pieces, axis, name):
-    """Boxes one after the other along an axis, each a brick of its own."""
+    """Boxes along an axis, each a brick of its own."""
     found = []
     for n in range(pieces):
         low, high = list(start), [a + b for a, b in zip(start, size)]
@@ -31,14 +30,12 @@ def Beam(
     width: Length,
     height: Length,
     along: Along = "x",
-    pieces: Annotated[int, whole(1, MOST)] = 8,
+    pieces: Annotated[int, whole(1, MAX_PIECES)] = 8,
     name: str = "beam",
 ) -> Bricks:
-    """A beam that bends, as a ring beam, a lintel or a wall plate: a row of pieces, a
-    :class:`Bricks`.
-
-    Pieces are rigid, and bend against each other: with eight of them between its supports a beam
-    sags by 1.6 % too little, with 16 by 0.4 %.
+    """A beam that bends, as a ring beam, a lintel or a wall plate: a row of rigid pieces, a
+    :class:`Bricks`. With eight of them between its supports it sags by 1.6 % too little, with 16 by
+    0.4 %.
 
     :param start: lower left front corner [m]
     :param length: along its axis [m]
@@ -58,14 +55,11 @@ def Floor(
     width: Length,
     height: Length,
     along: Along = "x",
-    strips: Annotated[int, whole(2, MOST)] = 8,
+    strips: Annotated[int, whole(2, MAX_PIECES)] = 8,
     name: str = "floor",
 ) -> Bricks:
     """A floor or a roof that spans one way, and shears in its plane: strips side by side, a
-    :class:`Bricks`.
-
-    Every strip is stiff along its span and bears on what lies under its ends. So walls across the
-    span carry the floor.
+    :class:`Bricks`. A strip is stiff along its span and bears on the walls under its ends.
 
     :param start: lower left front corner [m]
     :param length: along the span, bearing included [m]

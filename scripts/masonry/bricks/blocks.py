@@ -29,10 +29,9 @@ from ..errors import firstOf
 from . import checks
 from .geometry import COINCIDENT, Solids, cosSin, cutCorners, joinedCorners
 
-#: No corner of masonry is farther from the origin [m].
+#: Largest distance of a corner from the origin [m].
 FARTHEST = 1e6
 
-#: A length, one that may be 0, a coordinate, and a point [m].
 Length = Annotated[float, number("m", 0, FARTHEST, above=True)]
 Gap = Annotated[float, number("m", 0, FARTHEST)]
 Coordinate = Annotated[float, number("m", -FARTHEST, FARTHEST)]
@@ -40,7 +39,7 @@ Point = Annotated[Numbers, vector("m", FARTHEST)]
 
 
 def sides(value: Any, first: Any = None) -> tuple[float, ...]:
-    """The kind of the length, thickness and height of a block."""
+    """Validator of the length, thickness and height of a block."""
     with contextlib.suppress(TypeError, ValueError):
         length, thickness, height = map(get_args(Length)[1], items(value))
         return length, thickness, height
@@ -50,7 +49,7 @@ def sides(value: Any, first: Any = None) -> tuple[float, ...]:
 
 
 def corner(value: Any, first: Any = None) -> tuple[float, ...]:
-    """The kind of a corner of a box, which may be infinitely far away."""
+    """Validator of a corner of a box, which may be infinitely far away."""
     found = items(value) or ()
     if len(found) != 3 or not all(isNumber(v) and v == v for v in found):
         raise ValueError(f"{shown(value)} must be three numbers [m]")
@@ -60,7 +59,7 @@ def corner(value: Any, first: Any = None) -> tuple[float, ...]:
 Sides = Annotated[Numbers, sides]
 _integer = whole(-(10**9), 10**9)
 
-#: Kinds of blocks that every masonry has: they are of its unit unless it says otherwise.
+#: Kinds of blocks that are of the unit of a masonry unless that says otherwise.
 KINDS = "brick", "lintel", "voussoir", "block"
 
 
@@ -70,13 +69,11 @@ class Block:
 
     :param corners: tuple of (x, y, z) [m]: all corners of the convex solid, in any order, at least
         four
-    :param brick: number of the brick that it is, or is a piece of. Pieces of one brick share the
-        number, and what they share is a crack surface of the brick, not a mortar joint
-    :param part: name of the part of the structure, such as "wall" or "arch". Figures draw part by
-        part
+    :param brick: number of the brick. Faces between pieces of one brick are crack surfaces of it,
+        not mortar joints
+    :param part: name of the part of the structure, such as "wall" or "arch", as figures draw it
     :param course: number of the course, or of the voussoir, from 0; -1: none
-    :param kind: one of :data:`KINDS`, or another one for which the materials have something of its
-        own
+    :param kind: one of :data:`KINDS`, or another one that the materials know
     """
 
     corners: tuple
@@ -127,13 +124,10 @@ class Block:
 
 
 class Bricks:
-    """An immutable collection of blocks. Whatever changes something returns a new collection.
+    """An immutable collection of :class:`Block` records. All changes return a new collection.
 
-    ``bricks[3]`` is a :class:`Block`, ``bricks[2:5]`` a collection; ``len()`` and iteration are
-    those of a tuple. The sum of two collections renumbers the bricks of the second so that numbers
-    stay unique.
-
-    :param blocks: the :class:`Block` records
+    ``bricks[3]`` is a block, ``bricks[2:5]`` a collection; ``len()`` and iteration are those of a
+    tuple. A sum renumbers the bricks of the second collection, so that numbers stay unique.
     """
 
     @validated
@@ -180,7 +174,7 @@ class Bricks:
         return max((b.brick for b in self._blocks), default=-1) + 1
 
     def _renumbered(self, first):
-        """The blocks with bricks numbered from `first`, in the order of their first appearance."""
+        """The blocks with bricks numbered from `first` in their order."""
         numbers = {}
         for block in self._blocks:
             number = numbers.setdefault(block.brick, first + len(numbers))
@@ -236,13 +230,8 @@ class Bricks:
         axis: Annotated[str, oneOf("x", "y", "z")] = "z",
         about: Point = (0, 0, 0),
     ) -> Bricks:
-        """The blocks turned about an axis through a point, by the right-hand rule. Quarter turns
-        are exact.
-
-        :param degrees: angle [°]
-        :param axis: "x", "y" or "z"
-        :param about: point of the axis [m]
-        """
+        """The blocks turned about an axis ("x", "y" or "z") through a point [m] by the right-hand
+        rule. Quarter turns are exact."""
         cos, sin = cosSin(degrees / 90, math.radians(degrees))
         k = "xyz".index(axis)
         i, j = (k + 1) % 3, (k + 2) % 3
@@ -272,17 +261,13 @@ class Bricks:
 
     @validated
     def where(self, function: Callable[[Block], bool]) -> Bricks:
-        """The blocks for which a function of the :class:`Block` is true, with their numbers of
-        bricks."""
+        """The blocks for which a function of the :class:`Block` is true."""
         return Bricks([b for b in self._blocks if function(b)])
 
     @validated
     def within(self, low: Annotated[Numbers, corner], high: Annotated[Numbers, corner]) -> Bricks:
-        """The blocks whose middle lies in a box, its sides included.
-
-        :param low: opposite corners of the box [m]; ``math.inf`` is allowed
-        :param high:
-        """
+        """The blocks whose middle lies in a box between two corners [m], which may be
+        infinite."""
         if not all(a <= b for a, b in zip(low, high)):
             refuse("within", [f"low corner {low} m must lie below high corner {high} m"])
         return self.where(lambda b: all(p <= x <= q for p, x, q in zip(low, b.middle, high)))
@@ -306,14 +291,12 @@ class Bricks:
 
     @validated
     def cut(self, point: Point, normal: Direction, own: bool = False) -> Bricks:
-        """The blocks, with every one that a plane crosses cut in two. Order and numbers of bricks
-        stay.
+        """The blocks, those that a plane crosses cut in two, in their order.
 
-        :param point: a point of the plane [m]
-        :param normal: its normal, of any length
-        :param own: whether the part beyond the plane (along the normal) becomes a brick of its own,
-            together with the other parts of its brick there, so that the cut is a mortar joint;
-            else the parts stay pieces of one brick and the cut is a crack surface
+        :param point: of the plane [m]
+        :param normal: of the plane, of any length
+        :param own: whether the parts of a brick beyond the plane (along the normal) become a brick
+            of their own, so that the cut is a mortar joint and not a crack surface
         """
         length = math.hypot(*normal)
         normal = tuple(n / length for n in normal)
@@ -336,7 +319,7 @@ class Bricks:
         return Bricks(blocks)
 
     def _convex(self, purpose):
-        """The solids of the blocks. Refuses a purpose for which some of them are not convex."""
+        """The solids of the blocks. Raises ValueError if some are not convex."""
         problems = sorted(self._solids.problems.items())
         refuse(
             purpose, [f"block {n} of brick {self._blocks[n].brick}: {what}" for n, what in problems]
@@ -344,10 +327,8 @@ class Bricks:
         return self._solids
 
     def whole(self) -> Bricks:
-        """The blocks with the pieces of every brick joined, where the first of them stands.
-
-        :raises ValueError: if the pieces of a brick do not make up a convex solid
-        """
+        """The blocks with the pieces of every brick joined, in the order of the first ones. Raises
+        ValueError if pieces make up no convex solid."""
         pieces, problems, joined = defaultdict(list), [], []
         for block in self._blocks:
             pieces[block.brick].append(block)
@@ -367,11 +348,8 @@ class Bricks:
     # -- checking ----------------------------------------------------------------------------------
 
     def joints(self) -> list[checks.Joint]:
-        """Joints of all blocks that share a face: a list of :class:`masonry.bricks.Joint`.
-
-        Two faces coincide as they do for the plugin: within 1e-4 of the diagonal of the smaller
-        block.
-        """
+        """Joints of blocks that share a face, within 1e-4 of the diagonal of the smaller block as
+        for the plugin."""
         return list(self._pairs[0])
 
     @validated
@@ -380,12 +358,11 @@ class Bricks:
         direction: Direction,
         least: Annotated[float, number("", -1, 1)] = checks.LOOKING,
     ) -> list[checks.FreePart]:
-        """Faces that look in a direction, with what no joint covers of them: a list of
-        :class:`masonry.bricks.checks.FreePart`.
+        """What no joint covers of faces that look in a direction.
 
-        :param direction: three numbers, of any length
+        :param direction: of any length
         :param least: cosine of the largest angle between direction and normal [-]; by default that
-            of 45 degrees
+            of 45°
         """
         solids = self._convex("freeFaces")
         return checks.freeParts(solids, self.joints(), direction, least)
@@ -395,14 +372,12 @@ class Bricks:
         return checks.findJoints(self._solids)
 
     def problems(self) -> list[str]:
-        """What is wrong with the blocks: a list of sentences, empty if nothing is.
+        """What is wrong with the blocks: sentences with their numbers in this collection, bricks
+        and places:
 
-        Each names the blocks (their numbers in this collection), the bricks, and the place:
-
-        - a block whose corners are not those of a convex solid, or lie in one plane;
+        - a block whose corners are not those of a convex solid;
         - an overlap deeper than 1e-4 of the diagonal of the smaller block;
-        - a gap between two faces that nearly coincide: within 6°, and within a quarter of the
-          thinner block;
+        - a gap between faces that nearly coincide: within 6° and a quarter of the thinner block;
         - a sliver: thinner than a quarter of what is usual for its kind;
         - a joint of odd size: narrower than a tenth of the thinner block;
         - blocks that have no joint with the rest.
@@ -416,7 +391,7 @@ class Bricks:
 
 @validated
 def summary(bricks: Annotated[Bricks, isA(Bricks)]) -> dict[str, Any]:
-    """Counts and sizes of a collection of blocks: a dict with units in its names."""
+    """Counts and sizes of a collection, with units in the names."""
     count = lambda what: dict(Counter(getattr(b, what) for b in bricks))
     return dict(
         blocks=len(bricks),

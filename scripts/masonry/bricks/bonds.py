@@ -3,7 +3,7 @@
 
 
 def layout(bond, wythes, quarters, course):
-    """Bricks of a course: their ends in quarter units, and from which to which wythe they reach."""
+    """Bricks of a course: both ends in quarter units, and first and last wythe."""
     if bond in ("running", "stack"):
         for w in range(wythes):
             shift = 2 if bond == "running" and (course + w) % 2 else 0
@@ -24,14 +24,12 @@ def _laid(ends, rows):
 
 
 def _headerBond(n, odd):
-    """Head joints of a course, in quarter units. Odd courses start and end with three-quarter
-    bats."""
+    """Head joints in quarter units. Odd courses start and end with three-quarter bats."""
     return range(3, n - 2, 2) if odd else range(2, n, 2)
 
 
 def _englishBond(n, odd):
-    """Head joints of a course. Odd courses are headers, with a queen closer next to each outer
-    one."""
+    """Head joints. Odd courses are headers, with a queen closer next to each outer one."""
     if odd:
         return [2, *range(3, n - 2, 2), n - 2] if n > 6 else range(2, n, 2)
     if n == 6:
@@ -44,10 +42,8 @@ def _englishBond(n, odd):
 
 
 def _flemishBond(n, odd):
-    """Head joints of a course. Odd courses start with a header and a queen closer, so that headers
-    stand over the middle of stretchers; they end likewise, or with a three-quarter bat where the
-    length asks for that.
-    """
+    """Head joints. Odd courses start with a header and a queen closer, so that headers stand over
+    the middle of stretchers, and end so, or with a three-quarter bat."""
     if not odd:
         return [k for k in range(4, n, 2) if k % 6 != 2]
     if n == 4:

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What is wrong with a set of blocks before anything runs: gaps, overlaps, slivers, loose parts,
-joints of odd size."""
+"""Joints of blocks, and what is wrong: gaps, overlaps, slivers, loose parts, joints of odd size."""
 
 from collections import defaultdict, namedtuple
 from math import dist
@@ -10,42 +9,34 @@ import numpy as np
 
 from .geometry import COINCIDENT, NEARLY_OPPOSITE, OPPOSITE, REACH, clip, measures
 
-#: A block is a sliver if it is thinner than this share of the middle thickness (the median) of the
-#: blocks of its kind. The thinnest brick that a mason cuts, a queen closer or a quarter bat, has
-#: more. Assumed.
+#: A block is a sliver if it is thinner than this share of the median of its kind; a queen closer or
+#: a quarter bat is thicker. Assumed.
 SLIVER = 0.25
-
-#: A joint is of odd size if its width, area through longest extent, is below this share of the
-#: thinner block. Assumed.
+#: A joint is of odd size if its width, area over longest extent, is below this share of the thinner
+#: block. Assumed.
 NARROW = 0.1
+LOOKING = float(np.cos(np.radians(45))) - COINCIDENT  # least cosine of normal and direction
+ALONG = 1 - 1e-6  # cosine between normals of one face
 
-#: Least cosine of the angle between the normal of a face and where it looks: of 45 degrees.
-LOOKING = float(np.cos(np.radians(45))) - COINCIDENT
-ALONG = 1 - 1e-6  # of the angle between normals of one face of a convex block
-
-#: Joint of two blocks: their numbers in the collection, the unit normal from the first to the
-#: second, the polygon (counter-clockwise about the normal) [m], its area [m²] and its centroid [m].
+#: Joint of two blocks: their numbers, the unit normal from the first to the second, the polygon
+#: (counter-clockwise about the normal) [m], its area [m²] and its centroid [m].
 Joint = namedtuple("Joint", "first second normal polygon area middle")
 
-#: What no joint covers of a face: number of the block, outward normal, area [m²], centroid [m], the
-#: polygon of the face, and those of the joints in it [m].
+#: What no joint covers of a face: number of the block, outward normal, area [m²], centroid [m],
+#: polygons of the face and of the joints in it [m].
 FreePart = namedtuple("FreePart", "block normal area middle face covers")
 
 
 def findJoints(solids):
-    """Joints, and pairs of blocks that do not fit.
-
-    :returns: list of :class:`Joint`, sorted by the numbers of the blocks, and a list of misfits:
-        (number of the first block, of the second, gap [m] (negative for an overlap), place [m])
-    """
+    """Joints, sorted by the numbers of the blocks, and misfits: numbers of both blocks, gap [m]
+    (negative for an overlap) and place [m]."""
     if not solids.groups:  # none of them is one
         return [], []
     thickness = solids.thicknesses()
     one, two = solids.nearPairs(REACH / 2 * thickness)
     apart, faces, cosine = solids.compare(one, two)
     width = COINCIDENT * np.minimum(solids.diagonal[one], solids.diagonal[two])
-    # A face that two blocks share is as long as wide: their bounding boxes overlap along two axes
-    # at least.
+    # bounding boxes of blocks that share a face overlap along two axes at least
     common = np.minimum(solids.high[one], solids.high[two])
     common -= np.maximum(solids.low[one], solids.low[two])
     flat = (common > 0.1 * width[:, None]).sum(axis=1) < 2
@@ -100,10 +91,7 @@ def _filled(solids, place, but):
 
 
 def freeParts(solids, joints, direction, least):
-    """What no joint covers of faces that look in a direction: a list of :class:`FreePart`.
-
-    :param least: cosine of the angle between direction and normal [-]
-    """
+    """See :meth:`masonry.bricks.Bricks.freeFaces`: a list of :class:`FreePart`."""
     sight = np.array(direction, float)
     sight /= np.linalg.norm(sight)
     covered = defaultdict(list)
@@ -132,8 +120,7 @@ def freeParts(solids, joints, direction, least):
 
 
 def components(count, joints):
-    """Number of the connected part to which each block belongs: a list. Parts are numbered by their
-    first block."""
+    """The connected part of each block, numbered by its first block."""
     parent = list(range(count))
 
     def root(n):
@@ -149,8 +136,7 @@ def components(count, joints):
 
 
 def findProblems(blocks, solids, joints, misfits):
-    """Sentences about what is wrong with some blocks, see
-    :meth:`masonry.bricks.Bricks.problems`."""
+    """See :meth:`masonry.bricks.Bricks.problems`."""
     found = []
     thickness = solids.thicknesses().tolist()
     nameOf = lambda n: f"block {n} of brick {blocks[n].brick}"

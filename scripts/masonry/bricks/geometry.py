@@ -1,10 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Convex solids that are given by their corners: faces, volumes, joints, gaps and overlaps. Many at
-a time, with numpy.
-
-Solids whose corners stand in the same order have the same faces, so the faces are looked for once
-for all of them.
-"""
+"""Convex solids given by their corners, many at a time: faces, volumes, gaps and overlaps. Solids
+whose corners stand in the same order share the search for faces."""
 
 import itertools
 import math
@@ -14,33 +10,28 @@ import numpy as np
 
 from ..arguments import Numbers, items, shown
 
-#: Largest gap or overlap of two faces that still share a joint, as a share of the diagonal of the
-#: smaller block. It is the plugin's own bound (coincidentFaces in
-#: yade_plugin/blocks/FaceContact.hpp).
+#: Largest gap or overlap of faces that share a joint over the diagonal of the smaller block. This and
+#: the next three bounds are the plugin's (yade_plugin/blocks/FaceContact.hpp).
 COINCIDENT = 1e-4
 
-#: Largest distance of a corner from its face's plane, as a share of the diagonal of the block.
-#: Coordinates in a file of six digits keep it.
+#: Largest distance of a corner from the plane of its face over the diagonal of the block, as of
+#: coordinates of six digits.
 FLAT = 1e-5
 
-#: Two faces look at each other if the cosine between their outward normals is below this. Faces
-#: within 6° of that, and no further apart than a quarter of the thinner block, were probably meant
-#: to touch. Both are the plugin's bounds.
+#: Cosine between outward normals below which faces look at each other. Faces within 6° of that, and
+#: a quarter of the thinner block, were probably meant to touch.
 OPPOSITE = -np.cos(np.radians(0.5))
 NEARLY_OPPOSITE = -np.cos(np.radians(6))
 REACH = 0.25
 
-#: Pairs of blocks that are compared at a time, so that memory stays small.
+#: Pairs of blocks that are compared at a time.
 _CHUNK = 10_000
 
 
 def hull(corners):
-    """Faces of the convex solid around some corners: tuples of corner numbers, counter-clockwise
-    seen from outside.
-
-    :param corners: (n, 3) [m]
-    :raises ValueError: if the corners have no volume, or if one of them is no corner of the solid
-    """
+    """Faces of the convex solid around corners (n, 3) [m]: tuples of corner numbers,
+    counter-clockwise from outside. Raises ValueError if they have no volume, or if one is no corner
+    of the solid."""
     corners = np.asarray(corners, float)
     middle = corners.mean(axis=0)
     size = np.ptp(corners, axis=0).max()
@@ -50,7 +41,7 @@ def hull(corners):
     for n in range(1, len(corners)):
         if np.abs(centred[:n] - centred[n]).max(axis=1).min() < 1e-9:
             raise ValueError(f"corner {n} at {_place(corners[n])} m is given twice")
-    # not above: a run of a wall of boxes needs none
+    # a run of a wall of boxes needs none
     from scipy.spatial import ConvexHull, QhullError
 
     try:
@@ -61,7 +52,7 @@ def hull(corners):
     first, second = (triangles[:, n] - triangles[:, 0] for n in (1, 2))
     areas = np.linalg.norm(np.cross(first, second), axis=1)
     faces, left = [], np.ones(len(triangles), bool)
-    # from the largest triangle on, whose plane is the surest; triangles in it belong to its face
+    # from the largest triangle on, whose plane is the surest
     for n in np.argsort(-areas, kind="stable"):
         if left[n]:
             normal, offset = found.equations[n][:3], found.equations[n][3]
@@ -89,12 +80,12 @@ def _place(point):
     return "(" + ", ".join(f"{x:.6g}" for x in point) + ")"
 
 
-class Alike:
+class SameTopologyBatch:
     """Convex solids whose corners stand in the same order.
 
     :ivar index: numbers of the solids, (n,)
     :ivar corners: (n, corners, 3) [m]
-    :ivar faces: tuples of corner numbers, counter-clockwise seen from outside
+    :ivar faces: as of :func:`hull`
     :ivar normals: outward unit normals, (n, faces, 3)
     :ivar offsets: normal times a point of the face, (n, faces) [m]
     :ivar fit: whether these faces are those of the solid, (n,)
@@ -107,7 +98,7 @@ class Alike:
         for face in faces:
             centres.append(corners[:, face].mean(axis=1))
             arms = corners[:, face] - centres[-1][:, None]
-            # Newell's normal of a polygon: half the sum of the products of neighbouring corners
+            # Newell: half the sum of the products of neighbouring corners
             normals.append(np.cross(arms, np.roll(arms, -1, axis=1)).sum(axis=1) / 2)
         self._areaVectors = np.stack(normals, axis=1)
         self._centres = np.stack(centres, axis=1)
@@ -125,17 +116,15 @@ class Alike:
         self.thickness = -heights.min(axis=2).max(axis=1)  # along the thinnest normal
 
     def volumes(self):
-        """[m³]: a third of the sum of face area times its distance from the middle."""
+        """[m³]"""
         arms = self._centres - self.corners.mean(axis=1)[:, None]
         return np.einsum("nfk,nfk->n", self._areaVectors, arms) / 3
 
 
 class Solids:
-    """Faces, joints, gaps and overlaps of convex solids.
+    """Convex solids, given by the corners (corners, 3) of each [m].
 
-    :param solids: for each solid its corners, (corners, 3) [m]
-    :ivar problems: dict from the number of a solid to what is wrong with it; such a solid has no
-        faces here
+    :ivar problems: what is wrong with solids, by number; they have no faces here
     """
 
     def __init__(self, solids):
@@ -157,10 +146,10 @@ class Solids:
         self.diagonal = np.linalg.norm(self.high - self.low, axis=1)
 
     def _sort(self, index, corners):
-        """Groups of solids with the same number of corners, by their faces."""
+        """Group solids with the same number of corners by their faces."""
         while len(index):
             try:
-                alike = Alike(index, corners, hull(corners[0]))
+                alike = SameTopologyBatch(index, corners, hull(corners[0]))
                 if not alike.fit[0]:
                     raise ValueError(
                         "its corners lie so near to one another, or to one plane, that its faces"
@@ -168,7 +157,7 @@ class Solids:
                     )
                 fit = alike.fit
                 self.groups.append(
-                    alike if fit.all() else Alike(index[fit], corners[fit], alike.faces)
+                    alike if fit.all() else SameTopologyBatch(index[fit], corners[fit], alike.faces)
                 )
             except ValueError as error:
                 self.problems[int(index[0])] = str(error)
@@ -177,10 +166,10 @@ class Solids:
 
     def volumes(self):
         """[m³], (n,); NaN for a solid with problems."""
-        return self._each(Alike.volumes)
+        return self._each(SameTopologyBatch.volumes)
 
     def thicknesses(self):
-        """Smallest extent along the normal of a face [m], (n,); NaN for a solid with problems."""
+        """Smallest extent along a normal [m], (n,); NaN for a solid with problems."""
         return self._each(lambda group: group.thickness)
 
     def _each(self, measure):
@@ -190,8 +179,8 @@ class Solids:
         return found
 
     def padded(self, name):
-        """``corners``, ``normals`` or ``offsets`` of all in one array; where one has fewer than
-        others, its last is repeated."""
+        """``corners``, ``normals`` or ``offsets`` of all in one array; the last one of a solid with
+        fewer than others is repeated."""
         values = [getattr(group, name) for group in self.groups]
         numbers = np.arange(max(own.shape[1] for own in values))
         found = np.zeros((self.count, len(numbers), *values[0].shape[2:]))
@@ -211,14 +200,14 @@ class Solids:
     # -- pairs -------------------------------------------------------------------------------------
 
     def nearPairs(self, reach):
-        """Pairs of solids whose bounding boxes are no further apart than `reach` [m] of both:
-        arrays of their numbers."""
+        """Pairs of solids whose bounding boxes are no further apart than the sum of their
+        ``reach`` [m]: arrays of numbers."""
         good = np.flatnonzero(self.groupOf >= 0)
         if len(good) < 2:
             return np.zeros((2, 0), int)
         low = self.low[good] - reach[good, None]
         high = self.high[good] + reach[good, None]
-        # Solids are sorted along the axis on which they overlap least.
+        # along the axis on which they overlap least
         extent = high.max(axis=0) - low.min(axis=0)
         axis = np.argmin((high - low).mean(axis=0) / np.maximum(extent, 1e-300))
         order = np.argsort(low[:, axis], kind="stable")
@@ -232,12 +221,9 @@ class Solids:
         return np.sort(np.concatenate(pairs, axis=1), axis=0)
 
     def compare(self, one, two):
-        """How far pairs of solids are apart, and with which of their faces they look at each other.
-
-        :returns: distance [m] along the normal of a face that parts them best, (n,), negative for
-            an overlap; the number of that face, of the first solid's and of the second's; and the
-            cosine between these two faces
-        """
+        """Distances of pairs of solids along the normal of the face that parts them best [m],
+        negative for an overlap; numbers of the faces of both that look at each other; and the
+        cosines between these."""
         pairs = np.array([one, two])
         beyond, normals = self.beyond(pairs), self.padded("normals")
         mine, theirs = beyond.max(axis=2)
@@ -250,8 +236,8 @@ class Solids:
         return np.maximum(mine, theirs), np.where(first, faces, faces[::-1]), cosines.min(axis=1)
 
     def beyond(self, pairs):
-        """How far both solids of pairs (2, n) are beyond each face of the other [m]: (2, n, faces),
-        those of the first one first."""
+        """How far solids of pairs (2, n) are beyond each face of the other [m]: (2, n, faces), the
+        faces of the first one first."""
         corners, normals, offsets = map(self.padded, ("corners", "normals", "offsets"))
         parts = np.array_split(pairs, pairs.shape[1] // _CHUNK + 1, axis=1)
         heights = [
@@ -260,8 +246,7 @@ class Solids:
         return np.concatenate(heights, axis=1) - offsets[pairs]
 
     def separation(self, one, two):
-        """How far two solids are apart [m] by the separating axis theorem; negative for an overlap:
-        its smallest depth."""
+        """Distance of two solids by the separating axis theorem [m], negative for an overlap."""
         corners, sides, axes = [], [], []
         for solid in (one, two):
             group, row = self.of(solid)
@@ -292,11 +277,8 @@ def cosSin(quarters, angle):
 
 
 def clip(polygon, other, normal):
-    """What two convex polygons in one plane have in common, as a list of points.
-
-    :param polygon: points, counter-clockwise about the normal
-    :param other: points, clockwise about the normal
-    """
+    """Common part of two convex polygons in a plane, the first counter-clockwise about the normal,
+    the other clockwise: a list of points."""
     px, py, pz = normal
     kept = [tuple(p) for p in polygon]
     others = [tuple(p) for p in other]
@@ -323,8 +305,7 @@ def clip(polygon, other, normal):
 
 
 def measures(polygon, normal):
-    """Area [m²], perimeter [m] and centroid [m] of a convex polygon; the centroid is None without
-    an area."""
+    """Area [m²], perimeter [m] and centroid [m] (None without an area) of a convex polygon."""
     x0, y0, z0 = polygon[0]
     nx, ny, nz = normal
     twice = mx = my = mz = 0.0
@@ -342,12 +323,8 @@ def measures(polygon, normal):
 
 
 def cutCorners(corners, faces, point, normal, width):
-    """Corners of the two parts of a convex solid on either side of a plane: beyond it (along the
-    normal), and below.
-
-    A corner no further from the plane than `width` [m] counts as lying in it. A part without volume
-    is None.
-    """
+    """Corners of the parts of a convex solid beyond a plane (along the normal) and below; None for
+    a part without volume. A corner within ``width`` of the plane [m] counts as in it."""
     corners = [tuple(map(float, c)) for c in corners]
     heights = [sum((x - p) * n for x, p, n in zip(c, point, normal)) for c in corners]
     above = [c for c, h in zip(corners, heights) if h >= -width]
@@ -365,8 +342,7 @@ def cutCorners(corners, faces, point, normal, width):
 
 
 def joinedCorners(pieces):
-    """Corners of the convex solid that some pieces make up, each given by its corners; None if they
-    make up none."""
+    """Corners of the convex solid that pieces make up, or None."""
     volume = math.fsum(Solids(pieces).volumes())
     points = list(dict.fromkeys(corner for piece in pieces for corner in piece))
     low, high = (tuple(map(end, zip(*points))) for end in (min, max))
@@ -382,7 +358,7 @@ def joinedCorners(pieces):
 
 
 def prism(section, low, high):
-    """Corners of a section (x, z) that is stretched along y [m]."""
+    """Corners of a section (x, z) stretched along y [m]."""
     return tuple((x, y, z) for y in (low, high) for x, z in section)
 
 

@@ -18,12 +18,10 @@ SIDES = "front", "right", "back", "left"
 @validated
 @dataclass(frozen=True)
 class Storey:
-    """A storey of a :func:`House`: four walls, what is on top of them, and the floor that covers
-    them.
+    """A storey of a :func:`House`: four walls, a ring beam, and the floor on top.
 
-    :param height: of the walls, without ring beam and floor [m]; whole courses
-    :param front: openings of this wall, and likewise ``right``, ``back`` and ``left``, as for
-        :func:`Room`
+    :param height: of the walls [m]; whole courses
+    :param front: openings of this wall, as ``right``, ``back`` and ``left``: see :func:`Room`
     :param span: direction of the span of its floor, ``"x"`` or ``"y"``
     :param ring: height of a ring beam on the walls [m]; 0: none
     """
@@ -38,8 +36,7 @@ class Storey:
 
 
 class House(Bricks):
-    """A house of one room on each storey: walls with interlocking corners, ring beams, floors: a
-    :class:`Bricks`.
+    """A house of one room on each storey, with interlocking corners, ring beams and floors.
 
     ::
 
@@ -48,18 +45,17 @@ class House(Bricks):
         house = bricks.House(4.8, 3.6, storeys, unit=(0.6, 0.3, 0.3))
         house.withFloors(stones, shear=1e6, mass=300)
 
-    Storeys are counted from 1. Parts are ``front 1`` and so on. What stands between the openings of
-    a wall, at the heights at which all of them are open, is a part of its own: ``front 1 pier 1``
-    and so on, from the origin. Floors are ``floor 1`` and ring beams ``ring 1``. Floors lie on the
-    walls or ring beams, and carry the next storey.
+    Parts are ``front 1``, ``floor 1``, ``ring 1`` and so on, by storeys from 1. What stands between
+    the openings of a wall, at the heights at which all of them are open, is a part of its own:
+    ``front 1 pier 1`` and so on, from the origin. Floors lie on the walls or ring beams, and carry
+    the next storey.
 
     :param length: along x, measured outside [m]; ``width``: along y. Both are whole units
     :param storeys: :class:`Storey` records, from below
     :param unit: length, thickness and height of a unit, joints included [m]
     :param thickness: of the floors [m]
-    :param eccentricity: how far the mass of each floor is off its middle, over length and width
-        [-]: the accidental eccentricity of EN 1998-1 is 0.05. The share of the mass that it takes
-        stands as a strip on the floor, along the wall
+    :param eccentricity: of the mass of each floor over length and width [-], 0.05 in EN 1998-1: a
+        part of the mass stands as a strip on the floor, along the wall
     :ivar heights: for each storey the height of the section through its piers [m]
     :ivar piers: for each storey a dict from the part to (wall, from where, to where along it [m])
     """
@@ -146,7 +142,7 @@ class House(Bricks):
         )
 
     def _ballast(self, n, z):
-        """A strip along the wall to which the mass of a floor is moved."""
+        """Strips along the walls to which the mass of a floor is moved."""
         found, thick = Bricks(), self.thick
         for axis, share in enumerate(self.eccentricity):
             if share:
@@ -168,13 +164,11 @@ class House(Bricks):
     def withFloors(
         self, masonry: Any, shear: float, mass: Any, bearing: Any = "fixed", ring: float = 30e9
     ) -> Any:
-        """Say what floors and ring beams are made of, by ``withFloor`` and ``withBeam`` of the
-        masonry. Returns it.
+        """Add the materials of floors and ring beams to the masonry, and return it.
 
         :param masonry: :class:`masonry.materials.Masonry`
         :param shear: shear stiffness G t of the floors [N/m]
-        :param mass: with what lies on it [kg/m²], of every floor from below, the last one is the
-            roof; or one for all
+        :param mass: with live loads [kg/m²], of every floor from below, or one for all
         :param bearing: of the floors, as for ``withFloor``
         :param ring: Young's modulus of ring beams [Pa]; their density is 2400 kg/m³
         """
@@ -209,12 +203,8 @@ class House(Bricks):
     @validated
     def weights(self, masonry: Any, storey: Annotated[int, whole(1)] = 1) -> dict[str, float]:
         """Weight on each pier of a storey as by hand [kN]: of all above the section through the
-        piers.
-
-        What is above a pier or nearer to it than to the next one of its wall goes to it, and half
-        of each strip of a floor to the wall at either end; what makes a floor eccentric is carried
-        by its strips, as by beams.
-        """
+        piers that is nearer to a pier than to the next one of its wall, and of half of each strip
+        of a floor at either end, which carries its ballast as a beam."""
         if storey > len(self.piers):
             refuse("weights", [f"storey {storey} must be at most {len(self.piers)}"])
         piers, z = self.piers[storey - 1], self.heights[storey - 1]

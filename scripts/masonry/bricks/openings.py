@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Bricks while a wall is laid, the openings that are cut out of it, and the blocks that come of
-it."""
+"""Bricks while a wall is laid, openings in it, and its blocks."""
 
 from dataclasses import dataclass, replace
 from typing import Annotated
@@ -10,7 +9,7 @@ from .blocks import Block, Bricks, Gap, Length, refuse
 from .checks import components, where
 from .geometry import boxCorners
 
-#: Lengths are whole units if they are by this share of a quarter unit.
+#: Round-off of lengths that are whole units [-].
 WHOLE = 1e-6
 
 
@@ -30,10 +29,10 @@ class Lintel:
 @validated
 @dataclass(frozen=True)
 class Opening:
-    """A rectangular hole through a wall. Bricks inside are left out, those at its edge are cut.
+    """A rectangular hole through a wall; bricks at its edge are cut.
 
-    :param x: distance of its left edge from the start of the wall [m]
-    :param z: height of its lower edge above the foot of the wall [m]; 0: a door
+    :param x: of its left edge from the start of the wall [m]
+    :param z: of its lower edge from the foot of the wall [m]; 0: a door
     :param width: [m]
     :param height: [m]
     :param lintel: :class:`Lintel`; None: none
@@ -48,22 +47,21 @@ class Opening:
 
 @dataclass(frozen=True)
 class LaidBrick:
-    """A brick or a cut one while a wall is laid: a box, and where it is in two halves."""
+    """A brick or a cut one while a wall is laid: a box."""
 
     low: tuple
     high: tuple
     course: int
     part: str
-    split: tuple | None  # (axis, coordinate)
+    split: tuple | None  # axis and coordinate between its halves
     number: int
     cut: bool = False  # whether an opening has cut it
     kind: str = "brick"
 
 
 def opened(bricks, openings, unit, levels, ends, ys, part, crossed=None):
-    """The bricks that openings leave, and the lintels over these.
+    """The bricks that openings leave, and lintels.
 
-    :param bricks: a number each
     :param ends: from where to where openings may be [m]
     """
     if not openings:
@@ -84,7 +82,6 @@ def opened(bricks, openings, unit, levels, ends, ys, part, crossed=None):
 
 
 def _unused(bricks):
-    """The first number that no brick has."""
     return max((brick.number for brick in bricks), default=-1) + 1
 
 
@@ -93,7 +90,7 @@ def _holes(openings, unit, levels, ends, crossed, problems):
     top, q = levels[-1], unit[0] / 4
 
     def at(value, places, size):
-        """One of some places, if a value is there but for round-off."""
+        """The nearest place, if a value is there but for round-off."""
         near = min(places, key=lambda place: abs(place - value))
         return near if abs(near - value) <= WHOLE * size else value
 
@@ -135,8 +132,7 @@ def _overlap(a, b):
 
 
 def _without(bricks, hole):
-    """The bricks outside a hole. A brick at its edge is cut; what is left of it in an L is two or
-    more pieces of it."""
+    """The bricks outside a hole. A brick at its edge is cut, an L into pieces of it."""
     x0, z0, x1, z1 = hole
     found, spare = [], _unused(bricks)
     for brick in bricks:
@@ -149,8 +145,7 @@ def _without(bricks, hole):
         beds += [(a, z1, b, d)] if d > z1 else []
         sides = [(a, low, x0, high)] if a < x0 else []
         sides += [(x1, low, b, high)] if b > x1 else []
-        # Beds and sides touch. Two beds alone, or two sides alone, are apart, and bricks of their
-        # own.
+        # beds and sides touch; two beds alone, or two sides, are bricks of their own
         for n, (p, r, s, t) in enumerate(beds + sides):
             number = brick.number
             if n and not (beds and sides):
@@ -161,8 +156,7 @@ def _without(bricks, hole):
 
 
 def _slivers(bricks, holes, unit, levels):
-    """Sentences about pieces of bricks, cut by openings or lintels, that are shorter or lower than
-    a quarter."""
+    """Sentences about cut bricks that are shorter or lower than a quarter."""
     slivers = []
     for brick in bricks:
         box = brick.low[0], brick.low[2], brick.high[0], brick.high[2]
@@ -192,7 +186,7 @@ def _touch(a, b):
 
 
 def _whole(bricks, part):
-    """Refuse a wall of which openings have cut something off."""
+    """Refuse a wall in parts."""
     boxes = Bricks(blocksOf(replace(b, split=None) for b in bricks))  # halves hold
     if not len(boxes):
         refuse(part, ["its openings leave nothing of it"])
@@ -208,7 +202,6 @@ def _whole(bricks, part):
 
 
 def blocksOf(bricks):
-    """The blocks of some bricks, in their order."""
     for brick in bricks:
         pieces = [(brick.low, brick.high)]
         if brick.split:

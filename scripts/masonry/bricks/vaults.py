@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Arches, barrel vaults and domes from voussoirs with plane faces. Neighbours share whole faces,
-corner by corner."""
+"""Arches, barrel vaults and domes from voussoirs whose plane faces fit corner by corner."""
 
 import math
 
@@ -10,10 +9,9 @@ from ..arguments import number, validated, whole
 from .blocks import Block, Bricks, Length, refuse
 from .geometry import cosSin, prism
 
-#: No arch, vault or dome has more stones.
-MOST_STONES = 100_000
+MAX_STONES = 100_000
 
-Stones = Annotated[int, whole(1, MOST_STONES)]
+Stones = Annotated[int, whole(1, MAX_STONES)]
 CentreAngle = Annotated[float, number("°", 1, 180)]
 
 
@@ -28,17 +26,16 @@ def Arch(
     skewback: Length | None = None,
     part: str = "arch",
 ) -> Bricks:
-    """A circular arch from equal voussoirs: a :class:`Bricks` of kind "voussoir", numbered from
-    left to right.
+    """A circular arch from equal voussoirs, from left to right: a :class:`Bricks` of kind
+    "voussoir".
 
     ::
 
         Arch(thickness=0.3, depth=0.5, stones=27, radius=2.0)                        # half a circle
         Arch(thickness=0.2, depth=0.3, stones=15, span=3.0, angle=90, skewback=0.3)  # segmental
 
-    The inner springings lie at (0, 0, 0) and (span, 0, 0); the arch spans along x and is ``depth``
-    wide along y. Corners of the voussoirs lie on the inner and outer circle; their edges between
-    these are straight.
+    The inner springings lie at (0, 0, 0) and (span, 0, 0). Corners of the voussoirs lie on the inner
+    and outer circle; their edges are straight.
 
     :param thickness: of the ring, between inner and outer circle [m]
     :param depth: along y [m]
@@ -46,10 +43,10 @@ def Arch(
     :param span: clear span between the inner springings [m]; give this or ``radius``
     :param radius: of the inner circle [m]
     :param angle: at the centre, between the springings [°], up to 180: a half circle, the default
-    :param skewback: width of two blocks, kind "block", part "skewback", on which the arch springs,
-        behind the outer springings [m]. Their bottom is level with the inner springings, so that an
-        arch of less than 180° can stand on level supports. An arch of 180° stands on two such
-        blocks, as wide as the ring and so high. None: none
+    :param skewback: width behind the outer springings of two blocks, kind "block", part "skewback",
+        on which the arch springs [m]. Their bottom is level with the inner springings, so that an
+        arch of less than 180° can stand on level supports. An arch of 180° stands on two blocks as
+        wide as the ring and so high. None: none
     """
     depth = float(depth)
     points = _ring("arch", stones, span, radius, angle, thickness, [])
@@ -82,9 +79,8 @@ def BarrelVault(
     staggered: bool = True,
     part: str = "vault",
 ) -> Bricks:
-    """A barrel vault: a :func:`Arch` stretched along y, with courses that run along it.
-
-    Courses are numbered from the left springing to the right one.
+    """A barrel vault: an :func:`Arch` stretched along y, whose courses run along it, numbered from
+    left to right.
 
     :param thickness: of the shell [m]
     :param length: along y [m]
@@ -120,21 +116,20 @@ def Dome(
 ) -> Bricks:
     """A dome whose horizontal courses are regular polygons: a :class:`Bricks` of kind "voussoir".
 
-    Its axis is the z axis, and the lowest inner corners lie at z = 0. Corners lie on two spheres
-    with a common centre. Vertical planes through the axis part the stones of a course, and planes
-    part the courses, so that all faces are plane and neighbours share whole faces. Courses are
-    numbered from below.
+    Its axis is the z axis, and the lowest inner corners lie at z = 0. Corners lie on two concentric
+    spheres. Vertical planes through the axis part the stones of a course, and planes part the
+    courses. Courses are numbered from below.
 
     :param radius: of the inner sphere [m]
     :param thickness: [m]
     :param courses: number of courses, without the keystone
     :param stones: number of stones in each course, at least 3; with ``staggered`` at least 2
-    :param oculus: radius of the hole at the crown, to its inner corners [m]. None: a keystone
-        closes the dome, which is as wide as a course is high
+    :param oculus: radius of the hole at the crown, to its inner corners [m]. None: a keystone as
+        wide as a course is high
     :param angle: at the centre, from springing to springing [°], up to 180: half a sphere, the
         default
     :param staggered: whether odd courses are turned by half a stone. Every stone is then two pieces
-        of one brick, and the faces between these are crack surfaces of it
+        of one brick, with a crack surface between them
     """
     problems = _few(2 * courses * stones)
     least = 2 if staggered else 3
@@ -178,12 +173,12 @@ def Dome(
 
 
 def _few(count):
-    return [f"{count} stones are more than {MOST_STONES}"] * (count > MOST_STONES)
+    return [f"{count} stones are more than {MAX_STONES}"] * (count > MAX_STONES)
 
 
 def _ring(what, stones, span, radius, angle, thickness, problems):
-    """Inner and outer point (x, z) of each joint of a ring, from left to right. Raises ValueError,
-    also with given problems."""
+    """Inner and outer point (x, z) of each joint of a ring, from left to right. Raises ValueError
+    with all problems, also given ones."""
     half, quarters = math.radians(angle / 2), angle / 180
     if (span is None) == (radius is None):
         problems = [*problems, "either span or radius [m] must be given"]

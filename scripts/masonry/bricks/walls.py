@@ -1,10 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Straight walls in five bonds, with openings and lintels; walls that meet at corners and
-junctions; stacks of blocks.
+"""Straight walls in five bonds, with openings and lintels; walls that meet; stacks of blocks.
 
-A wall stands along x from the origin, its thickness along y, its height along z. Units contain
-their joints: blocks meet face to face. All positions along a wall are multiples of a quarter unit,
-except cuts at openings and junctions.
+A wall stands along x from the origin, its thickness along y, its height along z. All positions
+along a wall are multiples of a quarter unit, except cuts at openings and junctions.
 """
 
 import functools
@@ -20,16 +18,13 @@ from .bonds import layout
 from .geometry import FLAT, boxCorners
 from .openings import WHOLE, LaidBrick, Opening, blocksOf, opened
 
-#: A calcium-silicate unit of the walls in the paper (yade_plugin/law/README.md): length, thickness
-#: and height [m].
+#: Calcium-silicate unit of the paper (yade_plugin/law/README.md): length, thickness and height [m].
 UNIT = (0.220, 0.102, 0.081)
 
-#: No wall has more bricks: lengths that need them are probably not in metres.
-MOST_BRICKS = 100_000
+MAX_BRICKS = 100_000  # of a wall: lengths that need more are probably not in metres
 
 BONDS = ("running", "stack", "header", "english", "flemish")
 
-#: Heights of courses [m], and openings.
 Courses = Annotated[Sequence[float], listOf(number("m", 0, FARTHEST, above=True))]
 Openings = Annotated[Iterable[Opening], listOf(isA(Opening, "bricks.Opening"), 0)]
 
@@ -58,26 +53,26 @@ def Wall(
         Wall(2.6, 1.5, unit=(0.25, 0.12, 0.065), joint=0.010)  # bricks without mortar, and joints
 
     Even courses, from 0, of a running bond start with a whole unit, odd ones with a half. English
-    bond has courses of stretchers and courses of headers in turn, Flemish bond a header after every
-    stretcher, header bond nothing but headers. Queen closers, half bats and three-quarter bats keep
-    the bond at the ends, so that no vertical joint goes through two courses; in stack bond all do.
+    bond has courses of stretchers and of headers in turn, Flemish bond a header after every
+    stretcher, header bond headers alone. Queen closers, half bats and three-quarter bats keep the
+    bond at the ends.
 
     :param length: [m]; whole half units, in stack bond whole units
     :param height: [m]; whole courses. None: that of ``courses``
-    :param unit: length, thickness and height of a unit, joints included [m]; default: the paper's
-        calcium-silicate unit. With ``joint`` it is the brick without mortar
-    :param joint: thickness of the mortar [m], which is added to length and height of every unit; it
-        is none across the wall, where headers are as long as the brick is
+    :param unit: length, thickness and height of a unit, joints included [m]; with ``joint`` those
+        of the brick without mortar
+    :param joint: thickness of the mortar [m], which is added to length and height of every unit,
+        and not across the wall, where headers are as long as the brick
     :param bond: "running", "stack", "header", "english" or "flemish"
-    :param wythes: bricks across the wall. Header, English and Flemish bond need 2, with headers
-        that go through both. Leaves of a running or stack bond are parts of their own, "wall leaf
-        1" and so on; those of running bond are shifted by half a unit against each other
+    :param wythes: bricks across the wall. Header, English and Flemish bond need 2. Leaves of a
+        running or stack bond are parts, "wall leaf 1" and so on, in running bond shifted by half a
+        unit against each other
     :param openings: :class:`masonry.bricks.Opening` records
     :param courses: heights of the courses from below [m]; None: all have the height of a unit
     :param halves: whether every whole brick is two half bricks that may crack apart; cut bricks are
         one block
     :param collar: thickness of the joint between two wythes [m], which they share in halves. None:
-        0, and where headers go through, what these are longer than two thicknesses
+        0, or the length of headers without two thicknesses
     :param part: name of the part
     """
     problems = []
@@ -139,18 +134,16 @@ def Corner(
     halves: bool = True,
     joint: Gap = 0.0,
 ) -> Bricks:
-    """Two walls of one wythe in running bond that meet at a right angle at the origin, with
-    interlocking courses.
+    """Two walls of one wythe in running bond that interlock at a right angle at the origin: part
+    "wall" along x and part "return" along y.
 
-    The first, part "wall", runs along x; the second, part "return", along y. Even courses of the
-    wall and odd ones of the return go through to the corner. The bricks beside the corner are cut
-    or stretched by what the thickness of the unit differs from half its length, so that the bond
-    goes on.
+    Even courses of the wall and odd ones of the return go through to the corner. Bricks beside the
+    corner are cut or stretched by the difference of the thickness from half the length of the unit.
 
     :param length: of the wall, measured outside [m]; whole half units, at least 1.5 units.
         ``length2``: of the return
     :param openings: of the wall, ``openings2``: of the return; x is measured along each from the
-        corner's outer edge
+        outer edge of the corner
     :param height: as for :func:`Wall`, like ``unit``, ``courses``, ``halves`` and ``joint``
     """
     sizes = dict(length=(length, 0.5, 1.5), length2=(length2, 0.5, 1.5))
@@ -175,16 +168,14 @@ def Tee(
     halves: bool = True,
     joint: Gap = 0.0,
 ) -> Bricks:
-    """A wall of one wythe in running bond along x, part "wall", and another, part "stem", that
-    meets it from behind.
-
-    Odd courses of the stem go through the wall, even courses of the wall go through the stem.
+    """A wall of one wythe in running bond along x, part "wall", and another from behind, part
+    "stem", whose odd courses go through the wall.
 
     :param length: of the wall [m]; whole half units
     :param length2: of the stem along y, measured from the outer face of the wall [m]; whole half
         units, at least 1.5 units
-    :param at: distance of the stem's axis from the start of the wall [m]: half a unit more than
-        whole units, so that it stands over the middle of a brick
+    :param at: of the axis of the stem from the start of the wall [m]: half a unit more than whole
+        units
     :param openings: of the wall, ``openings2``: of the stem; there x is measured from the outer
         face of the wall
     :param height: as for :func:`Wall`, like ``unit``, ``courses``, ``halves`` and ``joint``
@@ -228,16 +219,12 @@ def Room(
     halves: bool = True,
     joint: Gap = 0.0,
 ) -> Bricks:
-    """Four walls of one wythe in running bond around a rectangle, with interlocking courses at its
-    four corners.
+    """Four walls of one wythe in running bond that interlock around a rectangle: parts "front" and
+    "back" along x, whose even courses go through to the corners, "left" and "right" along y.
 
-    The parts "front" and "back" run along x, "left" and "right" along y. Even courses of front and
-    back, and odd ones of left and right, go through to the corners.
-
-    :param length: along x, measured outside [m]; whole units, at least 3. ``width``: along y,
-        likewise
-    :param front: openings of this wall, and likewise ``right``, ``back`` and ``left``; x is
-        measured along x or y from the outer edge of the corner nearer to the origin
+    :param length: along x, ``width``: along y, measured outside [m]; whole units, at least 3
+    :param front: openings of this wall, as ``right``, ``back`` and ``left``; x is measured along x
+        or y from the outer edge of the corner nearer to the origin
     :param height: as for :func:`Wall`, like ``unit``, ``courses``, ``halves`` and ``joint``
     """
     problems, long = [], unit[0] + joint
@@ -259,11 +246,9 @@ def Room(
 
 
 @validated
-def stack(count: Annotated[int, whole(1, MOST_BRICKS)], size: Sides, part: str = "stack") -> Bricks:
-    """Blocks on top of each other, the lowest one's lower left front corner at the origin: a
-    :class:`Bricks`.
+def stack(count: Annotated[int, whole(1, MAX_BRICKS)], size: Sides, part: str = "stack") -> Bricks:
+    """Blocks on top of each other, from the origin: a :class:`Bricks`.
 
-    :param count: number of blocks
     :param size: length, thickness and height of a block [m]
     """
     wide, deep, high = size
@@ -273,8 +258,7 @@ def stack(count: Annotated[int, whole(1, MOST_BRICKS)], size: Sides, part: str =
 
 @validated
 def block(low: Point, high: Point, part: str = "block", kind: str = "block") -> Bricks:
-    """One block, a box between two opposite corners [m]: a :class:`Bricks`. It can be a platen, a
-    pier or a beam."""
+    """One block, a box between two opposite corners [m]: a :class:`Bricks`."""
     if not all(a < b for a, b in zip(low, high)):
         raise ValueError(
             f"block: low corner {tuple(low)} m must lie below high corner {tuple(high)} m on every"
@@ -288,11 +272,11 @@ def block(low: Point, high: Point, part: str = "block", kind: str = "block") -> 
 
 def _counted(name, unit, joint, height, courses, problems, times, **sizes):
     """Sides of a unit with its joints, lengths in quarter units, and heights of bed joints. Raises
-    ValueError, with problems that are known before, too.
+    ValueError with all problems, also given ones.
 
     :param times: walls of all these lengths
-    :param sizes: of each length its value [m], the multiple of units that it must be, and how many
-        units it needs
+    :param sizes: by name the length [m], the multiple of units that it must be, and the least number
+        of units
     """
     if joint >= min(unit[0], unit[2]):
         raise ValueError(
@@ -306,21 +290,21 @@ def _counted(name, unit, joint, height, courses, problems, times, **sizes):
     levels = _levels(height, courses, unit, problems)
     refuse(name, problems)
     bricks = times * sum(units) * (len(levels) - 1)
-    if bricks > MOST_BRICKS:
+    if bricks > MAX_BRICKS:
         raise ValueError(
-            f"{name}: {bricks:.3g} bricks are more than {MOST_BRICKS}: are all lengths in m?"
+            f"{name}: {bricks:.3g} bricks are more than {MAX_BRICKS}: are all lengths in m?"
         )
     return unit, [round(4 * n) for n in units], levels
 
 
 def _multiple(what, size, one, word, share, least, problems):
-    """How many units or courses a size is, or None with a sentence.
+    """How many units or courses a size is; None, and one more problem, if they are not whole.
 
     :param one: size of a unit or a course [m]; ``word``: what it is
-    :param share: of one, whole numbers of which are needed, and of ones at ``least`` so many [-]
+    :param share: of one that is needed in whole numbers; ``least``: number of ones [-]
     """
     count = size / one / share
-    if not size / one < MOST_BRICKS:
+    if not size / one < MAX_BRICKS:
         problems.append(f"{what} {size:g} m is {size / one:.3g} {word}: is it in m?")
         return None
     nearest = round(count)
@@ -338,7 +322,7 @@ def _multiple(what, size, one, word, share, least, problems):
 
 
 def _levels(height, courses, unit, problems):
-    """Heights of all bed joints, from 0 to the top [m], or None with a sentence."""
+    """Heights of all bed joints, from 0 to the top [m]; None with one more problem."""
     if courses is not None:
         # a block as flat as corners may lie off their face's plane has no volume
         least = FLAT * max(unit)
@@ -363,11 +347,10 @@ def _levels(height, courses, unit, problems):
 
 
 def _leaf(levels, unit, halves, quarters, part, openings, ys, meets=(None, None), crossed=None):
-    """A leaf in running bond, as (bricks, lintels), along x between the two ``ys``.
+    """A leaf in running bond along x between two ``ys``: bricks and lintels.
 
-    :param meets: for both ends, where another wall may meet this one, the remainder by 2 of the
-        courses that go through to the end; the other courses begin beside that wall. None: no wall
-        there
+    :param meets: for both ends the parity of the courses that go through to the end; the others
+        begin beside the wall that meets this one. None: no wall there
     :param crossed: from where to where another wall goes through the odd courses [m]
     """
     joined = [end is not None for end in meets]
@@ -388,8 +371,7 @@ def _leaf(levels, unit, halves, quarters, part, openings, ys, meets=(None, None)
 
 
 def _course(quarters, unit, shifted, free, joined):
-    """Bricks of a course in running bond: start, end, and where its two halves meet (None: it is no
-    whole brick).
+    """Bricks of a course in running bond: start, end, and where two halves meet or None.
 
     :param shifted: whether the head joints stand half a unit off
     :param free: where a shifted course starts and ends [m]
@@ -401,7 +383,7 @@ def _course(quarters, unit, shifted, free, joined):
             k1 = min(k0 + 4, quarters)
             at = (k0 + 2) * q if k1 - k0 == 4 else None
             if at is not None and q < unit[1] < 3 * q:
-                # The end that stands in the other wall is split where that wall's face is.
+                # an end in the other wall is split at the face of that
                 at = free[0] if joinedStart and k0 == 0 else at
                 at = free[1] if joinedEnd and k1 == quarters else at
             yield k0 * q, k1 * q, at
@@ -411,7 +393,7 @@ def _course(quarters, unit, shifted, free, joined):
     joints = [k * q for k in range(2, quarters, 4)]
     joints = [x for x in joints if x - low >= near and high - x >= near]
     ends = [low, *joints, high]
-    # A piece beside a corner that is much longer than a unit is cut at three quarters of a unit.
+    # a piece beside a corner much longer than a unit is cut at three quarters of a unit
     if joinedStart and ends[1] - ends[0] > 1.1 * whole:
         ends.insert(1, ends[1] - 0.75 * whole)
     if joinedEnd and ends[-1] - ends[-2] > 1.1 * whole:
@@ -423,8 +405,7 @@ def _course(quarters, unit, shifted, free, joined):
 
 
 def _along(leaf):
-    """A leaf turned so that it runs along y: x and y change places, so that all coordinates stay
-    exact."""
+    """A leaf along y: x and y change places, so that all coordinates stay exact."""
     swap = lambda p: (p[1], p[0], p[2])
     split = lambda cut: cut and (1 - cut[0], cut[1])
     turn = lambda b: replace(b, low=swap(b.low), high=swap(b.high), split=split(b.split))
@@ -433,8 +414,7 @@ def _along(leaf):
 
 @withoutCollector()
 def _joined(*leaves):
-    """Blocks of the bricks of some leaves, course by course, then of their lintels. Bricks are
-    numbered in this order."""
+    """Blocks of leaves, course by course, then of lintels, with bricks numbered in this order."""
     bricks, lintels = [], []
     for n, (laid, over) in enumerate(leaves):
         own = lambda brick: replace(brick, number=brick.number * len(leaves) + n)

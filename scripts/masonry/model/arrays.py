@@ -13,14 +13,13 @@ from ..numbers.cracks import CRACK_SURFACE
 from .bodies import placeOf
 from .loading import bodiesOf
 
-#: What has moved by less, over the size of a typical block, is taken where it stood when the joints
-#: were made [-]. It changes a factor by as much, and without it all coefficients of a programme
-#: differ by a little, which takes Clp ten times as long.
+#: Blocks that have moved by less, over the size of a typical block, are taken where they stood when
+#: the joints were made [-]. A factor changes by as much; without it Clp takes ten times as long.
 STOOD = 1e-3
 NEVER = 1e300  # strength of a tie that does not yield [N]
-AXES = "xyzXYZ"  # as blockedDOFs names the freedoms of a body
-#: Components of normals that are smaller are zero [-]. A structure at rest under its weight has
-#: such ones everywhere, and with them the solver takes up to a hundred times as long.
+AXES = "xyzXYZ"  # of blockedDOFs
+#: Smaller components of normals are set to zero [-]. A structure at rest under its weight has them
+#: everywhere, and with them the solver takes up to a hundred times as long.
 SMALLEST = 1e-5
 
 
@@ -29,12 +28,10 @@ def _unit(vectors):
 
 
 def blocksAndJoints() -> dict[str, Any]:
-    """The blocks and joints of the scene in YADE, as they stand now: the arguments of
+    """The blocks and joints of the scene as they stand now: the arguments of
     :class:`masonry_limit.Assembly`. Where no block has moved by more than :data:`STOOD`, they are
-    taken as they stood when the joints were made.
-
-    Joints that have opened are taken as closed, so after supports have moved far the answer is one
-    for other joints.
+    taken as they stood when the joints were made. Open joints are taken as closed, so after
+    supports have moved far the answer is one for other joints.
 
     :raises Refused: if there are no joints
     """
@@ -78,8 +75,8 @@ def blocksAndJoints() -> dict[str, Any]:
 
 
 def _links(numbers, place):
-    """Ties and springs of the scene, as :class:`Assembly` takes them. Springs carry any force; ties
-    that break keep theirs, so what is found stays an upper bound."""
+    """Ties and springs as :class:`Assembly` takes them. Springs carry any force; ties that break
+    keep theirs, so the bound stays an upper one."""
     found = []
     for engine in O.engines:
         kind = type(engine).__name__
@@ -116,8 +113,8 @@ def _rows(vectors):
 
 
 def _held(blocks):
-    """Whether each block cannot move along x, y, z or turn about them (n, 6). The nodes of
-    deformable units are held in their engine, not in the States of their bodies."""
+    """Whether each block is held along x, y, z and about them (n, 6). Nodes of deformable units are
+    held in their engine, not in the States of their bodies."""
     blocked = [b.state.blockedDOFs for b in blocks]
     numbers = {body.id: number for number, body in enumerate(blocks)}
     for engine in O.engines:
@@ -145,31 +142,28 @@ class _Placement:
             self.now, self.turns = self.was, np.tile(np.eye(3), (len(blocks), 1, 1))
 
     def placed(self, block, point):
-        """Where a point of a block is, given in the reference state; of None, the ground, the point
-        itself."""
+        """Where a point in the reference state of a block is; of None, the ground, itself."""
         point = np.array(point)
         if block is None:
             return point
         return self.turns[block] @ (point - self.was[block]) + self.now[block]
 
     def turned(self, pairs, vectors):
-        """The mean of directions fixed to both blocks of pairs (k, 2), from the reference state (k,
-        3)."""
+        """Means of directions (k, 3) fixed to both blocks of pairs (k, 2) in the reference
+        state."""
         return 0.5 * (self._turn(pairs[:, 0], vectors) + self._turn(pairs[:, 1], vectors))
 
     def _turn(self, blocks, vectors):
         return np.einsum("kij,kj->ki", self.turns[blocks], vectors)
 
     def moved(self, pairs, points):
-        """The mean of points fixed to both blocks of pairs (k, 2), from the reference state (k,
-        3)."""
+        """Means of points (k, 3) fixed to both blocks of pairs (k, 2) in the reference state."""
         at = lambda side: self._turn(side, points - self.was[side]) + self.now[side]
         return 0.5 * (at(pairs[:, 0]) + at(pairs[:, 1]))
 
 
 def _strengths(p):
-    """Tensile strength, cohesion, friction, compressive strength, and whether a joint never gives
-    way."""
+    """Tensile strength, cohesion, friction, compressive strength, and whether it is elastic."""
     crushing = math.inf
     if p.cap and not p.elastic:
         # of eq. (8c) without shear: Cnn σ² - Cn σ = fc²
@@ -181,7 +175,7 @@ def _strengths(p):
 
 
 def _corners(body, stood):
-    """Corners of a block as it stands now, or as it stood when the joints were made (k, 3) [m]."""
+    """Corners of a block now, or when the joints were made (k, 3) [m]."""
     state = body.state
     turn, at = (state.refOri, state.refPos) if stood else (state.ori, state.pos)
     return np.array(body.shape.v) @ np.array(turn.toRotationMatrix()).T + np.array(at)
@@ -194,11 +188,10 @@ def _corners(body, stood):
 class DeadLoad:
     """A load that acts beside another one.
 
-    :param body: on which it acts, at ``point``, its place in the structure as built [m]
-    :param force: its whole [N]
+    :param point: on the body, in the structure as built [m]
+    :param force: when it has grown [N]
     :param label: of its engine
-    :param held: unit vector along which a drive holds the body, or None
-    :param bodies: those that the drive holds
+    :param held: unit vector along which a drive holds bodies, or None
     """
 
     body: int
@@ -210,14 +203,14 @@ class DeadLoad:
 
 
 def deadLoads(model):
-    """Presses, dead loads and wind with their whole, and the drives that hold the structure."""
+    """Presses, dead loads and wind when they have grown, and drives that hold the structure."""
     for load, force in model.loading.deadLoads():
         held = np.array(load.direction.normalized()) if load.driven else None
         yield DeadLoad(load.body, load.point, np.array(force), load.label, held, [*bodiesOf(load)])
 
 
 def beside(model, gravity):
-    """What acts beside a load and what holds the structure now: data that can be compared."""
+    """Loads beside a load, and supports, as data that can be compared."""
     loads = [[load.body, *force, load.driven] for load, force in model.loading.deadLoads()]
     held = [O.bodies[target.body].state.blockedDOFs for target in model.supports.held]
     return [list(gravity), loads, held]

@@ -13,35 +13,29 @@ from ..errors import firstOf
 
 #: The colour of a block in YADE's 3-D view: red, green and blue [-].
 PALE = (0.75, 0.7, 0.65)
-#: A body that is thinner than this share of its length is no block.
-THINNEST = 1e-6
+THINNEST = 1e-6  # thickness over length of a block [-]
 
 
 def properties(cls) -> list[dict[str, Any]]:
-    """The plugin's description of the properties of one of its classes: a list of dicts.
-
-    Keys are ``name``, ``unit``, ``meaning``, ``source``, the bounds ``low`` and ``high``, and what
-    is usual: ``usual_low`` and ``usual_high``. A value beyond these is probably given in
-    ``other_unit``.
-    """
+    """The properties of a class of the plugin, dicts with ``name``, ``unit``, ``meaning``,
+    ``source``, the bounds ``low`` and ``high``, and the usual ones ``usual_low`` and
+    ``usual_high``; a value beyond these is probably given in ``other_unit``."""
     return cls.properties()
 
 
 def units(cls) -> dict[str, str]:
-    """Units of the properties of a class of the plugin by name, of those that have one."""
+    """Units of the properties of a class of the plugin by name."""
     return {p["name"]: p["unit"] for p in properties(cls) if p["unit"]}
 
 
 def refuse(problems: list[str], *hints: str) -> None:
-    """Raise ValueError with the first problems of a list, if there are any, and what helps against
-    them."""
+    """Raise ValueError with the first problems of a list, if there are any, and hints."""
     if problems:
         raise ValueError("\n".join([*firstOf(problems), *hints]))
 
 
 def vector(value: Any, what: str) -> Any:
-    """Three finite numbers as a Vector3. ``what`` begins the sentence that refuses anything
-    else."""
+    """Three finite numbers as a Vector3. Raises ValueError, which begins with ``what``."""
     try:
         found = Vector3(*value)
         if len(value) == 3 and math.isfinite(found.norm()):
@@ -52,15 +46,14 @@ def vector(value: Any, what: str) -> Any:
 
 
 def placeOf(body: int, point: Any) -> Any:
-    """Where a point of a body is now [m], by its place in the structure as built."""
+    """Where a point of a body, given in the structure as built, is now [m]."""
     state = O.bodies[body].state
     turn = state.ori * state.refOri.conjugate()
     return state.pos + turn * (Vector3(*point) - state.refPos)
 
 
 def _extent(points):
-    """Longest extent of some points, and how far they reach out of a plane through three of them
-    [m]."""
+    """Longest extent of points, and how far they reach out of a plane through three [m]."""
     first = points[0]
     away = max((p - first for p in points), key=Vector3.norm)
     side = max((away.cross(p - first) for p in points), key=Vector3.norm)
@@ -77,15 +70,14 @@ def addBlock(
 ) -> int:
     """Append a convex block to the scene. Returns its body id.
 
-    :param vertices: corners [m], at least four, in global axes; every one a corner of the convex
-        block
-    :param inPlane: only x, z and the rotation about y stay free: a wall in the x-z plane
+    :param vertices: corners [m] in global axes, at least four, none inside the block
+    :param inPlane: only x, z and the rotation about y stay free
     """
     return placeBlock(vertices, material, inPlane, color)
 
 
 def placeBlock(vertices: Sequence[Any], material: Any, inPlane: bool, color: Any = PALE) -> int:
-    """As :func:`addBlock`, of arguments that are known to be such."""
+    """:func:`addBlock` without checks of types."""
     points = [vector(v, f"block: corner {n} [m]") for n, v in enumerate(vertices)]
     length, thickness = _extent(points)
     if not thickness > THINNEST * length:

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Ties, springs and whatever else connects bricks beside the joints: their engines, forces and
-news."""
+"""Engines, forces and news of connectors, as ties and springs."""
 
 from yade import O, Vector3
 
@@ -8,18 +7,17 @@ from .bodies import placeOf
 
 
 class Connectors:
-    """What connects blocks beside the joints, in YADE. A kind of connector is a class of records as
-    those in
-    :mod:`masonry.scene.ties`: one engine has all of a kind.
+    """Connectors of blocks. A kind of connector is a class of records, as those in
+    :mod:`masonry.scene.ties`, and has one engine.
 
-    - ``engines``: by their class of records, in the order in which the scene named them first
+    - ``engines``: by class of records, in the order of the scene
     """
 
     def __init__(self, structure):
         self.description, self.ids = structure.description, structure.ids
         self.axes = structure.axes
-        self.reported = set()  # sentences on ties, of which each is news once
-        self.saidUntil = 0  # step from which ties that yield or break are news
+        self.reported = set()  # events that were news
+        self.saidUntil = 0  # step from which events are news
         self.engines = {}
         for kind in dict.fromkeys(map(type, self.description.connectors)):
             records, ends = self.description.connectorsOf(kind), {}
@@ -32,13 +30,12 @@ class Connectors:
                 one.engine, one.number = self.engines[kind], number
 
     def grow(self, share):
-        """Let forces grow with which connectors are tightened, to a share of their whole [-]."""
+        """Tighten connectors to a share of their prestress [-]."""
         for kind, made in self.engines.items():
             kind.grow(self.description.connectorsOf(kind), made, share)
 
     def onGround(self):
-        """Force of ties and springs on the ground, to which they are fixed, along the axes of the
-        scene [N]."""
+        """Force of ties and springs on the ground, along the axes of the scene [N]."""
         force = self._onGround(lambda one: True)
         return Vector3(*(force[i] if i in self.axes else 0.0 for i in range(3)))
 
@@ -61,7 +58,7 @@ class Connectors:
         return placeOf(end.bodyIn(self.ids), end.point)
 
     def news(self):
-        """Sentences on connectors that have yielded or broken since this was asked last."""
+        """Sentences on connectors that have yielded or broken since the last call."""
         since, self.saidUntil = min(self.saidUntil, O.iter), O.iter
         for kind, made in self.engines.items():
             for one, what in kind.events(self.description.connectorsOf(kind), made, since):

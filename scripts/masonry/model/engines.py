@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The engines of a masonry scene, and how it takes steps. Bad input raises ValueError, with all
-problems at once."""
+"""The engines of a masonry scene, and its steps."""
 
 from typing import Annotated, Any, Sequence
 
@@ -13,17 +12,16 @@ from yade.wrapper import MasonrySprings, MasonryTies, MasonryZones, NewtonIntegr
 
 from ..arguments import Numbers, isA, listOf, number, oneOf, shown, validated, vector, whole
 
-MOST_STEPS = 10**15  # that no run has time for
+MAX_STEPS = 10**15
 
-#: The functor that makes joints of blocks. Its subclasses do so where a block is one of YADE's own
-#: Polyhedra.
+#: The functor that makes joints of blocks; its subclasses take YADE's own Polyhedra.
 _GEOMETRY = Ig2_MasonryBlock_MasonryBlock_MasonryJointGeom
 
-#: The laws that joints can follow, by name, the default one first: see ``MasonryJoint.laws()``.
+#: Laws of joints by name, the default one first: see ``MasonryJoint.laws()``.
 LAWS = {law["name"]: law for law in MasonryJoint.laws()}
 
-#: What a NewtonIntegrator needs to turn bodies as MasonryIntegrator does. YADE 2025 has several
-#: algorithms of rotation and takes another one by default; YADE 2023 has this one only.
+#: Settings with which a NewtonIntegrator turns bodies as MasonryIntegrator does. YADE 2025 has
+#: several algorithms of rotation, YADE 2023 this one only.
 ROTATION: dict[str, Any] = {"exactAsphericalRot": True}
 if hasattr(NewtonIntegrator, "rotAlgorithm"):
     ROTATION["rotAlgorithm"] = "Fincham1992"
@@ -49,38 +47,34 @@ def engines(
     connectors: Connectors = (),
     contacts: Annotated[Any, isA(MasonryContacts)] | None = None,
 ) -> None:
-    """Fill O.engines for a masonry scene: joints, loads, energy balance and integration. There is
-    no collider.
+    """Fill O.engines for a masonry scene: joints, loads, energy balance and integration, no
+    collider.
 
-    The engines have labels, by which ``masonry.engine(label)`` finds them: ``joints`` the
-    MasonryJointLoop, ``energy`` the MasonryEnergy, ``integrator`` the MasonryIntegrator; loads and
-    zones keep their own.
+    ``masonry.engine(label)`` finds them: ``joints`` the MasonryJointLoop, ``energy`` the
+    MasonryEnergy, ``integrator`` the MasonryIntegrator; loads and zones keep their own labels.
 
     :param joints: MasonryJoint objects; a pair of units takes the first that fits
-    :param damping: damping constant of rigid units [-], 0 for motion in real time; the paper's eq.
-        (3) has 0.8 (the paper: see yade_plugin/law/README.md)
+    :param damping: damping constant of rigid units [-], 0 for motion in real time; 0.8 in eq. (3)
+        of the paper (yade_plugin/law/README.md)
     :param gravity: [m/s²]
-    :param points: points along a side of a joint between rigid blocks from when it is about to
-        yield: ``MasonryJointLoop.points``. None: 8 where blocks move in a plane, 5 in space.
-        Functors keep those of the next two
-    :param subcontacts: how many there are, until then, along a joint, that is, at right angles to
-        its rows; None: 3. The ends of a joint are points, so a block rocks about its edge at the
-        true moment
-    :param rows: rows of subcontacts across a joint; None or 0: chosen for every joint when it is
-        made, one where its blocks can only turn about an axis in the joint, else three. So block
-        degrees of freedom before ``connect()``, and free none later. Two rows make a joint in space
-        three times too stiff out of its plane. ``Ig2_MasonryBlock_MasonryBlock_MasonryJointGeom``
-        says more of both
-    :param inPlane: the rows follow each other along y, also where the blocks' freedom does not say
-        so
+    :param points: points along a side of a joint between rigid blocks that is about to yield:
+        ``MasonryJointLoop.points``. None: 8 where blocks move in a plane, 5 in space. Functors keep
+        those of the next two
+    :param subcontacts: points along a joint until then, at right angles to its rows; None: 3. The
+        ends of a joint are points, so a block rocks about its edge at the true moment
+    :param rows: rows of subcontacts across a joint; None or 0: one where its blocks can only turn
+        about an axis in the joint when it is made, else three. So block degrees of freedom before
+        ``connect()``, and free none later. Two rows make a joint in space three times too stiff out
+        of its plane. See ``Ig2_MasonryBlock_MasonryBlock_MasonryJointGeom``
+    :param inPlane: whether rows follow each other along y, whatever the freedom of the blocks
     :param loads: MasonryLoad engines
     :param zones: MasonryZones of the deformable units, if there are any
     :param functors: YADE's InteractionLoop and NewtonIntegrator, the slow reference, instead of
         MasonryJointLoop and MasonryIntegrator
-    :param dampingKind: ``"combined"`` or ``"local"``; None: combined, and local with functors,
-        because NewtonIntegrator knows no other. Combined damping takes energy from vibration and
-        hardly brakes a steady motion. Local damping is the paper's eq. (3); it holds back what
-        moves steadily, so a mechanism that turns slowly seems stronger than it is
+    :param dampingKind: ``"combined"`` or ``"local"``; None: combined, with functors local, the only
+        one of NewtonIntegrator. Combined damping takes energy from vibration and hardly brakes a
+        steady motion. Local damping, eq. (3) of the paper, brakes steady motion, so a mechanism that
+        turns slowly seems stronger than it is
     :param connectors: MasonryTies and MasonrySprings engines
     :param contacts: MasonryContacts of the blocks that no joint connects, if there are some
     """
@@ -107,8 +101,7 @@ def engines(
 
 @validated
 def engine(label: str) -> Any:
-    """The engine of O.engines with this label. Raises ValueError, with the labels that there
-    are."""
+    """The engine of O.engines with this label. Raises ValueError."""
     found = {e.label: e for e in O.engines if e.label}
     if label not in found:
         raise ValueError(
@@ -118,13 +111,11 @@ def engine(label: str) -> Any:
 
 
 @validated
-def advance(steps: Annotated[int, whole(0, MOST_STEPS)]) -> None:
-    """Take time steps, in this thread, as fast as the engines go. Ctrl-C stops between two steps.
+def advance(steps: Annotated[int, whole(0, MAX_STEPS)]) -> None:
+    """Take time steps in this thread. Ctrl-C stops between two steps.
 
-    YADE's ``O.run(steps, True)`` waits for another thread and looks every 40 ms whether it has
-    finished, so short runs are mostly waiting, and Ctrl-C waits for its end.
-
-    :param steps: how many, a whole number from 0 on
+    YADE's ``O.run(steps, True)`` looks every 40 ms whether another thread has finished, so short
+    runs are mostly waiting, and Ctrl-C waits for the end.
     """
     step = O.step
     for _ in range(steps):
@@ -132,13 +123,12 @@ def advance(steps: Annotated[int, whole(0, MOST_STEPS)]) -> None:
 
 
 def functorLoop(geometry: Any, physics: Any) -> Any:
-    """An InteractionLoop with functors that make joints of all pairs of blocks and follow their
-    law."""
+    """An InteractionLoop with functors that make joints of all pairs of blocks."""
     laws = [joint.law for joint in physics.joints if not joint.elastic]
     law = LAWS[laws[0] if laws else next(iter(LAWS))]  # one functor takes all joints
     functor = getattr(wrapper, law["functor"])()
     same = {p["name"]: getattr(geometry, p["name"]) for p in _GEOMETRY.properties()}
-    # those of other pairs of shapes, where this YADE has Polyhedra
+    # pairs with Polyhedra, where this YADE has them
     kinds = _GEOMETRY, *_GEOMETRY.__subclasses__()
     others = [kind(**same) for kind in kinds if kind is not type(geometry)]
     return InteractionLoop([geometry, *others], [physics], [functor], label="joints")

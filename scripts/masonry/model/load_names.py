@@ -1,14 +1,13 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Names of loads, under which their bounds and the factors that were held are kept."""
+"""Names of loads, under which bounds and factors are kept."""
 
 
 def nameInDomain(target, direction, normal):
-    """The name of a push that is one of an N-V domain."""
+    """The name of a push of an N-V domain."""
     return f"{nameOfPush(target, direction)} under {normal:g} kN"
 
 
 def nameOfPush(target, direction):
-    """The name of a push."""
     return f"{target.name} along {nameOf(direction)}"
 
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The loads of a structure: what is driven, alone or with others in a fixed proportion, pressed and
-blown at, and whose displacement is followed."""
+"""Loads: displacement-controlled groups, presses, dead loads, wind; and the point whose displacement
+is recorded."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -12,28 +12,28 @@ from yade.wrapper import MasonryLoad
 from .._masonry import loadScene, saveScene
 from ..errors import checkPlane
 
-PATTERN = "_drive"  # label of the drive of a push in a pattern: that of no target
+PATTERN = "_drive"  # label of the drive of a push in a pattern
 
 
 def smooth(x):
-    """The share of a load that has grown when a share of the time in which it grows is over [-]."""
+    """The share of a load after a share of the time in which it grows [-]."""
     return x * x * (3 - 2 * x)
 
 
 class Loading:
     """Loads and drives of a structure, from its description and from stages.
 
-    - ``loads``: MasonryLoad engines by label, in the order in which they act; ``push``: the one
-      that drives the pushed target, or None
-    - ``target``: what is pushed; from the beginning the target that a drive holds
-    - ``followed``: whose displacement is recorded along the load, or None; ``direction`` of the
-      present push or load, and ``origin``: that displacement when it began, along it and up, and
-      that of the bricks at the followed platen along it [m]
+    - ``loads``: MasonryLoad engines by label, in their order; ``push``: the one that drives the
+      pushed target, or None
+    - ``target``: what is pushed; at first the target that a drive holds
+    - ``followed``: the target whose displacement is recorded, or None; ``direction`` of the present
+      push or load, and ``origin``: the displacement when it began, along it and up, and that of the
+      bricks at the followed platen along it [m]
     - ``pushing``: whether the present load is a push
-    - ``grown``: whether presses, dead loads and wind have their whole
+    - ``grown``: whether presses, dead loads and wind have grown
     - ``loadFactor`` of the load that a stage puts on or lets grow [-]
-    - ``goal``: point of a history that the drive is going to: its number, from 1, and its
-      displacement [mm]
+    - ``goal``: number, from 1, and displacement [mm] of the point of a history that the drive is
+      going to
     """
 
     def __init__(self, structure):
@@ -48,13 +48,12 @@ class Loading:
         self.pushing = self.grown = False
         self.loadFactor = 0.0
         self.goal = 0, 0.0
-        # forces of presses, dead loads and wind that have grown, by label [N]
+        # forces of grown presses, dead loads and wind, by label [N]
         self._grown = {}
         self._lines = {}  # points of the presses, as they were built [m]
 
     def _made(self):
-        """A dead load for every target that has one, and a drive for every one that can be
-        pushed."""
+        """Loads of targets and wind, and drives of targets that can be pushed."""
         for target in self.description.targets.values():
             if not target.loaded:
                 continue
@@ -72,8 +71,7 @@ class Loading:
             yield MasonryLoad(label=f"wind_{n}", damped=True, **on)
 
     def begin(self):
-        """Find what presses, dead loads and wind are when they have grown, when all joints are
-        there."""
+        """Find the grown presses, dead loads and wind, when all joints are there."""
         self.supports = self.structure.supports
         for target in self.description.targets.values():
             if target.pressed is None and target.force is None:
@@ -88,39 +86,40 @@ class Loading:
             self._grown[f"wind_{n}"] = Vector3(*force)
 
     def _centre(self, load, target):
-        """Let a resultant go through the middle of what a platen presses. Returns the area of that
+        """Move a resultant to the middle of what a platen presses. Returns the area of that
         [m²]."""
         area, middle = self.supports.contactOf(target)
         load.point = (middle[0], middle[1], target.point[2])
         return area
 
     def grow(self, x):
-        """Let presses and dead loads grow smoothly: 0 to 1 is from nothing to their whole."""
+        """Let presses, dead loads and wind grow smoothly, for x from 0 to 1."""
         self.grown = x == 1
         for label, force in self._grown.items():
             self.loads[label].force = force * smooth(x)
         self.structure.connectors.grow(smooth(x))
 
     def deadLoads(self):
-        """Loads, each with its force, or that which it will have when presses, dead loads and wind
-        have grown: pairs of MasonryLoad and force [N]."""
+        """Pairs of MasonryLoad and its force when it has grown [N]."""
         for label, load in self.loads.items():
             grown = load.force if self.grown else self._grown.get(label, load.force)
             yield load, grown
 
     def forceOf(self, target):
-        """The engine of the dead load on a target; it is made if it is missing."""
+        """The engine of the dead load on a target, made if missing."""
         return self._loadsOf({f"{target.name}_force": _on(target)})[0]
 
     def pressOf(self, target):
-        """The engine of a press, and the area of what the platen presses [m²]."""
+        """The engine of a press, and the pressed area [m²]."""
         known = f"{target.name}_force" in self.loads
         load = self.forceOf(target)
         return load, self.supports.contactOf(target)[0] if known else self._centre(load, target)
 
     def onBricks(self, label, places):
-        """The engines of forces at pairs of the number of a brick and a point [m], by how their
-        labels begin; they are made if they are missing."""
+        """The engines of forces at pairs of the number of a brick and a point [m], made if missing.
+
+        :param label: with which their labels begin
+        """
         made = {
             f"{label}_{n}": dict(body=self.ids[brick], point=point, damped=True)
             for n, (brick, point) in enumerate(places)
@@ -128,13 +127,13 @@ class Loading:
         return self._loadsOf(made)
 
     def patternDrive(self):
-        """The engine of a push in a pattern; it is made if it is missing."""
+        """The engine of a push in a pattern, made if missing."""
         on = dict(body=self.ids[0], point=(0, 0, 0), damped=False)
         return self._loadsOf({PATTERN: on})[0]
 
     def _loadsOf(self, made):
-        """Loads by their labels; those that are missing get their attributes and are made all at
-        once, before the engine of the energy balance."""
+        """Loads by their labels; missing ones are made from their attributes, before the engine of
+        the energy balance."""
         new = {n: MasonryLoad(label=n, **of) for n, of in made.items() if n not in self.loads}
         if new:
             before = list(O.engines)
@@ -161,13 +160,12 @@ class Loading:
         return self.loads.get(f"{target.name}_drive_{axis}")
 
     def pushOf(self, target, axis):
-        """The drive that a push made, if it holds a target along an axis, alone or with others,
-        else None."""
+        """The drive of a push that holds a target along an axis, or None."""
         made = map(self.loads.get, (f"{target.name}_drive", PATTERN))
         return next((load for load in made if load and isAlong(load, axis, target.body)), None)
 
     def stopDrives(self):
-        """Let drives hold what they have moved. Returns them."""
+        """Stop all drives, which hold from now on. Returns them."""
         drives = [load for label, load in self.loads.items() if "_drive" in label]
         for load in drives:
             load.velocity = load.ramp = 0
@@ -178,8 +176,11 @@ class Loading:
         return reactionOf(self.driveOf(target, axis))
 
     def follow(self, target, direction, origin=None):
-        """From now on record the displacement of a target, or None, along a direction, from an
-        origin [m]; None: where it is now. Returns that."""
+        """Record the displacement of a target, or none, along a direction from now on. Returns the
+        origin.
+
+        :param origin: [m]; None: where the target is now
+        """
         self.followed, self.direction, self.pushing = target, direction, False
         self.origin = origin or (0, 0, 0)
         if target and origin is None:
@@ -187,30 +188,32 @@ class Loading:
         return list(self.origin)
 
     def topDisplacement(self):
-        """Displacement since the scene was built [m] of the followed point, along the push or load
-        and upwards, and of the bricks at the followed platen along it."""
+        """Displacement since the scene was built [m] of the followed point, along the load and
+        upwards, and of the bricks at the followed platen along the load."""
         moved = self.supports.moved(self.followed)[0]
         masonry = self.supports.masonryMoved(self.followed, self.direction)
         return moved.dot(self.direction), moved[2], masonry
 
     def masonryAlong(self):
-        """Displacement of the bricks at the followed platen along the push or load since that began
-        [m]; 0 if none is followed."""
+        """Displacement of the bricks at the followed platen along the load since it began [m], or
+        0."""
         return self.topDisplacement()[2] - self.origin[2] if self.followed else 0.0
 
     def alongNow(self):
-        """The same of the followed point."""
+        """Displacement of the followed point along the load since it began [m]."""
         return self.topDisplacement()[0] - self.origin[0] if self.followed else 0.0
 
     def hasSunk(self, down=None):
-        """Whether the pushed platen has come down by half the height of a brick; ``down``: how far,
-        if that is known [m]."""
+        """Whether the pushed platen has come down by half the height of a brick.
+
+        :param down: how far, if that is known [m]
+        """
         down = -self.supports.moved(self.target)[0][2] if down is None else down
         block = self.description.bricks[-1].corners
         return down > 0.5 * (max(p[2] for p in block) - min(p[2] for p in block))
 
     def keepLoadLine(self):
-        """Move the points of vertical loads that keep their line in space back to it."""
+        """Move the points of presses that do not ride back to their line in space."""
         for target in self.description.targets.values():
             if target.pressed is None or target.riding:
                 continue
@@ -221,8 +224,7 @@ class Loading:
             load.point = self._lines[target.name] - Vector3(*away)
 
     def besideThePush(self):
-        """What acts on the structure beside a push: weights, dead loads, and other drives [N].
-        Nothing if none is pushed."""
+        """Force of weights, dead loads and other drives beside a push [N]; 0 without a push."""
         if not self.pushing:
             return Vector3.Zero
         beside = self.supports.applied()
@@ -234,7 +236,7 @@ class Loading:
     # -- what a checkpoint keeps beside the state in YADE ------------------------------------------
 
     def state(self):
-        """What stages have set: a dict of values that JSON can hold."""
+        """What stages have set, for JSON."""
         return {
             "target": self.target.name if self.target else "",
             "followed": self.followed.name if self.followed else "",
@@ -248,8 +250,7 @@ class Loading:
         }
 
     def putState(self, state):
-        """Give it a state of :meth:`state`. Raises KeyError if it names a target or a load that is
-        not there."""
+        """Take a state of :meth:`state`. Raises KeyError for unknown targets and loads."""
         targets = {"": None, **self.description.targets}
         self.target, self.followed = targets[state["target"]], targets[state["followed"]]
         self.push = {"": None, **self.loads}[state["push"]]
@@ -259,7 +260,7 @@ class Loading:
 
 
 def _on(target):
-    """Where a load on a target acts. A brick keeps its numerical damping until it is driven."""
+    """Attributes of a load on a target. A brick keeps its numerical damping until it is driven."""
     return dict(body=target.body, point=target.point, damped=target.brick is not None)
 
 
@@ -268,14 +269,12 @@ def _on(target):
 
 @dataclass(frozen=True)
 class Pattern:
-    """Blocks that a push moves with forces in a fixed proportion; what a push moves in place of a
-    target.
+    """Blocks that a push moves in place of a target, with forces in a fixed proportion.
 
     :param name: in bounds and messages
-    :param parts: of each block its body, the point on which its force acts in the structure as
-        built [m], and its share of the whole force [-]
-    :param damped: whether the blocks keep their numerical damping. Where all blocks are driven
-        nothing else would be damped
+    :param parts: of each block its body, the point of its force in the structure as built [m], and
+        its share of the whole force [-]
+    :param damped: whether the blocks keep their numerical damping, as where all are driven
     """
 
     name: str
@@ -284,8 +283,8 @@ class Pattern:
 
 
 def pushTo(loading, pushed, control, direction, name="push"):
-    """From now on ``push`` moves a target, or all of a :class:`Pattern`, in a direction, and the
-    displacement of a control is recorded. The other drives hold what they hold."""
+    """Let a push move a target or a :class:`Pattern` in a direction from now on, and record the
+    displacement of a control. Other drives hold."""
     checkPlane(loading.description, direction, name)
     for body, *_ in pushed.parts:
         blocked = O.bodies[body].state.blockedDOFs
@@ -303,7 +302,6 @@ def pushTo(loading, pushed, control, direction, name="push"):
 
 
 def _driveOf(loading, target, direction, name):
-    """The drive that pushes a target. Raises ValueError."""
     load = loading.loads.get(f"{target.name}_drive")
     pattern = loading.loads.get(PATTERN)
     if pattern and pattern.driven and target.body in bodiesOf(pattern):
@@ -327,7 +325,6 @@ def _driveOf(loading, target, direction, name):
 
 
 def _drivePattern(loading, pattern, direction, name):
-    """The drive that pushes in a pattern. Raises ValueError."""
     bodies, points, shares = zip(*pattern.parts)
     for other in loading.loads.values():
         if other.driven and set(bodies) & set(bodiesOf(other)):
@@ -349,7 +346,6 @@ def _drivePattern(loading, pattern, direction, name):
 
 
 def _refuseHeld(name, pushed, drive):
-    """Refuse to push what another drive holds. Raises ValueError."""
     raise ValueError(
         f"{name}: a drive holds {pushed.name} or some of it along {tuple(drive.direction)} already;"
         " release() lets it go"
@@ -357,7 +353,7 @@ def _refuseHeld(name, pushed, drive):
 
 
 def patternOfDrive(loading, name):
-    """The pattern that the drive of a push has, by its name."""
+    """The pattern of the drive of a push, with a name."""
     load = loading.patternDrive()
     points, shares = (load.point, *load.otherPoints), load.shares or (1.0,)
     return Pattern(name, tuple(zip(bodiesOf(load), points, shares)), load.damped)
@@ -369,8 +365,7 @@ def bodiesOf(load):
 
 
 def isAlong(load, axis, body):
-    """Whether a MasonryLoad is a drive that holds or moves a body along an axis, also across its
-    direction."""
+    """Whether a MasonryLoad is a drive of a body with a part along an axis."""
     along = axis in "xyz" and abs(load.direction["xyz".index(axis)]) > 1e-12
     return load.driven and along and body in bodiesOf(load)
 

@@ -8,42 +8,35 @@ from yade import O, Vector3
 from ..units import GRAVITY
 from ..errors import Collapsed
 
-#: A block falls when it has moved by this share of its largest side and is as fast as :data:`FAST`
-#: says.
+#: A block falls when it has moved by this share of its largest side and is as fast as :data:`FAST`.
 FALLEN = 0.05
-#: The same share where a block may swing as far as :data:`FALLEN` without falling: where joints are
-#: soft, or a drive let it go.
-FAR = 1.0
-#: The velocity of a falling block over √(g·side). A block that falls freely has it after half a
-#: hundredth of its side.
+SWUNG = 1.0  # the same share where joints are soft, or a drive let a block go, so that it may swing
+#: Velocity of a falling block over √(g·side); of a free fall after half a hundredth of its side.
 FAST = 0.1
-#: A structure is at rest when the forces at its supports differ from its load by no more than this
-#: share of the load.
-REST = 5e-3
+REST = 5e-3  # difference of loads and forces at supports over the loads, of a structure at rest
 
 
 class Motion:
-    """Displacements of all bricks since the last state at rest, and their velocities."""
+    """Displacements of all bricks since the last state at rest, and velocities."""
 
     def __init__(self, structure):
         self.ids, self.zones = structure.ids, structure.zones
         self.description = structure.description
         self._states = [O.bodies[body].state for body in self.ids]
         self._sizes = [self.description.size(index) for index in range(len(self.ids))]
-        #: Velocity of a block that has fallen by half a hundredth of its side [m/s].
+        #: Velocities of falling blocks [m/s].
         self._falling = [FAST * math.sqrt(GRAVITY * size) for size in self._sizes]
         self.restart()
 
     def restart(self):
-        """From now on :meth:`checkFall` counts displacements, up to :attr:`far` over the largest
-        side of a block [-]."""
+        """Count displacements from now on; a fall begins beyond :attr:`far` over the largest side
+        of a block [-]."""
         self.far = FALLEN
         self._places = [Vector3(state.pos) for state in self._states]
 
     @property
     def places(self):
-        """From where :meth:`checkFall` counts displacements: three numbers for every block, in one
-        list [m]."""
+        """Where displacements begin: three numbers for every block, in one list [m]."""
         return [value for place in self._places for value in place]
 
     @places.setter
@@ -53,17 +46,15 @@ class Motion:
         self._places = [Vector3(*values[n : n + 3]) for n in range(0, len(values), 3)]
 
     def positions(self):
-        """Where every block is, or the mean of its nodes: three numbers each, in one list [m]."""
+        """Where every block is: three numbers each, in one list [m]."""
         return [value for state in self._states for value in state.pos]
 
     def baseWeight(self, before, direction, moved):
-        """The weight of the base in the shear force of a push, as in
-        :func:`masonry.numbers.curves.quasiStatic` [-].
+        """The weight of the base of :func:`masonry.numbers.curves.quasiStatic` [-]; None if the
+        blocks have not moved with the push.
 
         :param before: :meth:`positions` when the push began
         :param moved: displacement of the driven point along it since then [m]
-        :returns: None if the blocks have not moved with the push, so that there is none from above
-            0 to 1
         """
         along = squares = 0.0
         for n, state in enumerate(self._states):
@@ -76,8 +67,7 @@ class Motion:
         return weight if 0 < weight <= 1 else None
 
     def _speeds(self):
-        """Velocity of every block [m/s]: of its centre, or, of deformable ones, the mean of their
-        nodes."""
+        """Velocity of every block [m/s]; of deformable ones the mean of their nodes."""
         speeds = {i: state.vel.norm() for i, state in zip(self.ids, self._states)}
         if self.zones:
             velocities = self.zones.velocities
@@ -88,8 +78,8 @@ class Motion:
         return [*speeds.values()]
 
     def fastest(self, far=0.0):
-        """Velocity over that of a block that has fallen [-], of the fastest one that has moved so
-        far since the last state at rest, over its largest side [-]."""
+        """Largest ratio of velocity to that of a falling block, of the blocks that have moved by at
+        least ``far`` times their size since the last rest [-]."""
         blocks = zip(self._speeds(), self._falling, self._moved(), self._sizes)
         return max(
             (v / falling for v, falling, moved, size in blocks if moved.norm() >= far * size),
@@ -100,8 +90,8 @@ class Motion:
         return [state.pos - place for state, place in zip(self._states, self._places)]
 
     def checkFall(self, far=None):
-        """Raise Collapsed if a block has moved far since the last state at rest, over its largest
-        side [-], and is fast."""
+        """Raise Collapsed if a block is fast and has moved by more than ``far`` times its size
+        since the last rest."""
         far, moved = self.far if far is None else far, self._moved()
         beyond = [n for n, v in enumerate(moved) if v.norm() > far * self._sizes[n]]
         speeds = beyond and self._speeds()

@@ -2,20 +2,16 @@
 """The first period of a structure along a direction, and whether it buckles, measured on its
 present state.
 
-A uniform acceleration that begins at once and stays sets an elastic structure swinging about the
-place to which it moves. Of its modes n, with the angular frequencies ω_n and the shares c_n of the
-mass, the momentum is then proportional to Σ c_n/ω_n sin(ω_n t). The first mode has nearly all of
-that, and in a bar in shear between two ends that are held the others pass through zero at the same
-moment. So half a period is over when the momentum is first back at zero. It is the integral over
-time of all forces on what can move, so it is the same for rigid and deformable blocks, walls and
-arches.
+A sudden uniform acceleration sets an elastic structure swinging. With the angular frequencies ω_n
+and mass shares c_n of its modes, its momentum is proportional to Σ c_n/ω_n sin(ω_n t). The first
+mode has nearly all of that, and in a bar in shear that is held at both ends the others pass through
+zero at the same moment: half a period is over when the momentum is first back at zero. It is the
+integral over time of all forces on what can move, of rigid and deformable blocks alike.
 
-Near the load at which a structure buckles, the stiffness against a push sideways vanishes. The
-momentum does not come back to zero then: beyond that load it grows faster than that of a body that
-nothing holds, which is the force times the time.
+Near buckling the stiffness against a push sideways vanishes, and the momentum does not come back to
+zero: beyond that load it grows faster than that of a free body, the force times the time.
 
-A structure that is said to be at rest still moves a little. So it is done to both sides, and the
-difference counts.
+A structure at rest still moves a little, so both sides are measured, and the difference counts.
 """
 
 import math
@@ -26,23 +22,21 @@ from .._masonry import loadScene, saveScene
 from ..units import GRAVITY
 
 SHARE = 0.05  # of gravity: the acceleration that acts in the measurement
-SAMPLE = 2e-5  # [s] between two readings of the forces, at true masses
-FEWEST = 10  # readings in half a period, else it is too short to be found within half a per cent
-#: How far the first side goes, over its own half period, so that the difference of both sides has
-#: its zero [-].
+SAMPLE = 2e-5  # [s] between readings of the forces, at true masses
+FEWEST = 10  # readings in half a period, for half a per cent
+#: Duration of the first side over its half period, so that the difference has its zero [-].
 BEYOND = 1.1, 2.0
-#: Of the search for buckling: acceleration over gravity [-], time between two readings, and that
-#: after which a push that has not come back counts as one that grows [s]; how many readings are
-#: looked at first; and how much faster than a body that nothing holds a structure moves that
-#: buckles [-].
+#: Search for buckling: acceleration over gravity [-], time between readings, time after which a
+#: push that has not come back counts as growing [s], first number of readings, and momentum of a
+#: structure that buckles over that of a free body [-].
 SMALL, LOOK, LONGEST, FIRST_LOOKS, FASTER = 1e-6, 5e-4, 5.0, 32, 1.1
 
 
 def firstPeriod(structure, direction, longest):
-    """The first period of a structure at rest along a direction [s], or None if none is found.
+    """The first period of a structure at rest along a direction [s], or None if none is found, in
+    the steps of a period or some more.
 
-    What drives hold stays where it is, and nothing is damped. Afterwards the scene is as before, to
-    the last bit. It takes the steps of a period or some more.
+    Drives hold, and nothing is damped. Afterwards the scene is as before, to the last bit.
 
     :param direction: unit vector
     :param longest: the longest period that is looked for [s]
@@ -77,8 +71,7 @@ def firstPeriod(structure, direction, longest):
     if not back[n] <= 0 or n < FEWEST:
         return None
     # The first velocity is that after a whole step, as if the acceleration had begun half a step
-    # before, and the sum of the forces begins at the first of them, half a step after that velocity
-    # would have been zero.
+    # before; the sum of the forces begins half a step after that velocity would have been zero.
     return 2 * O.dt * (1 + every * (n + back[n - 1] / (back[n - 1] - back[n])))
 
 
@@ -87,9 +80,9 @@ def firstMode(structure, direction, longest):
     YADE's ids, the largest amount 1; None if no first period is found. Afterwards the scene is as
     before.
 
-    They are those after half the first period under a uniform acceleration, of both sides. There
-    the first mode has its largest displacement, and all others have less than by the square of
-    their periods. Parameters as in :func:`firstPeriod`.
+    They are taken after half the first period under a uniform acceleration to both sides, where the
+    share of another mode is below the square of its period over the first. Parameters as in
+    :func:`firstPeriod`.
     """
     period = firstPeriod(structure, direction, longest)
     if period is None:
@@ -110,12 +103,8 @@ def firstMode(structure, direction, longest):
 
 def buckles(structure, direction):
     """Whether a small push along a direction grows, or does not come back within :data:`LONGEST`,
-    or within the longest period on springs if that is longer. Afterwards the scene is as before, to
-    the last bit. It takes the steps of some periods.
-
-    Seen are modes in which the structure moves to one side; the push is so small that no joint
-    notices it.
-    """
+    or within a longer period on springs. Afterwards the scene is as before, to the last bit. It
+    takes the steps of some periods, and sees modes in which the structure moves to one side."""
     before = saveScene("null")
     scaling = structure.args.density_scaling**0.5
     every = max(1, round(LOOK * scaling / O.dt))
@@ -131,7 +120,7 @@ def buckles(structure, direction):
             momentum = [there - back for there, back in zip(*sides)]
             if min(momentum) <= 0:
                 return False
-            free = looks * momentum[0]  # of a body that nothing holds
+            free = looks * momentum[0]  # of a free body
             if not momentum[-1] <= FASTER * free or looks >= most:
                 return True
             looks *= 4
@@ -142,8 +131,8 @@ def buckles(structure, direction):
 
 
 def _momenta(structure, direction, share, every):
-    """The momentum of a structure along a direction [N·s] after each ``every`` steps under a share
-    of gravity [-] along it."""
+    """The momentum of a structure along a direction [N·s] every some steps, under a share of
+    gravity along it [-]."""
     acceleration = share * GRAVITY / structure.args.density_scaling * direction
     structure.scheme.damp(0.0, "local")
     supports = structure.supports

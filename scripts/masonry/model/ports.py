@@ -1,10 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The ports that the program ``yade`` opens when it starts.
-
-One is a Python prompt, whose password is short and stands in the log; the other answers to XML-RPC
-without a password, and can stop the run. Both listen on every address of the machine, whatever the
-lines of the start say.
-"""
+"""The ports that the program ``yade`` opens when it starts: a Python prompt, whose short password
+stands in the log, and XML-RPC without a password. Both listen on every address of the machine."""
 
 import gc
 import socket
@@ -24,9 +20,9 @@ def close():
         try:
             ends.start()
         except RuntimeError:  # a limit of the system: no further thread
-            server.shutdown()  # half a second later it sees by itself that it ends
+            server.shutdown()  # takes half a second
         else:
-            # wakes it, so that it sees that it ends
+            # wake it
             server.socket.shutdown(socket.SHUT_RDWR)
             ends.join()
         server.server_close()

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What holds a structure, and what its platens and held bricks feel: forces, displacements, and
-whether it is at rest."""
+"""Supports of a structure: forces and displacements of its platens and held bricks, and rest."""
 
 import math
 
@@ -10,17 +9,14 @@ from ..units import GRAVITY
 from .loading import forceOn, reactionOf
 from .motion import FALLEN
 
-#: Share of all loads above which the horizontal ones must be carried on their own at rest [-].
+#: Share of horizontal loads above which they must be carried on their own at rest [-].
 HORIZONTAL = 1e-3
-LOST = (
-    0.5  # of its height [-]: a structure that would swing by more under its loads is not waited for
-)
-FILLED = 1e-9  # of a platen's side: what may be free of bricks if it is said to be full
+LOST = 0.5  # swing under loads over the height [-]: one that would swing by more is not waited for
+FILLED = 1e-9  # free share of a platen's side that counts as full [-]
 
 
 class _Point:
-    """A point of a body, at ``arm`` from its centre as it was built, and how far it has moved since
-    [m]."""
+    """A point of a body, at ``arm`` from its centre as built [m]."""
 
     def __init__(self, body, at):
         self.state = O.bodies[body].state
@@ -34,9 +30,9 @@ class _Point:
 
 
 class Supports:
-    """Platens, and bricks that are held, loaded or watched, of a structure that is built.
+    """Platens, and bricks that are held, loaded or watched.
 
-    - ``held``: targets of which a direction is held
+    - ``held``: targets with a held direction
     - ``freeMass``: of all other blocks [kg]
     """
 
@@ -46,7 +42,6 @@ class Supports:
         self.held = [target for target in targets if target.freedom]
         zones = structure.zones
         self._deformable = set(zones.bodies) if zones else set()
-        # Rows are read at every few steps: what does not change is kept.
         self._points = {t.name: _Point(t.body, t.recorded) for t in targets}
         self._faces = {t.name: [*self._faceOf(t)] for t in targets if t.box and not t.fixed}
         held = {target.body for target in self.held}
@@ -56,8 +51,8 @@ class Supports:
         return [i for i in self.structure.interactions if target.body in (i.id1, i.id2)]
 
     def _faceOf(self, target):
-        """The middles of a platen's joints, as points of the bricks there, each with its share of
-        the platen's area. Of a deformable brick its own middle stands for that."""
+        """The middles of a platen's joints, as points of the bricks, with their shares of the
+        area; of deformable bricks their own middles."""
         joints = self._jointsOf(target)
         whole = sum(sum(one.geom.areas) for one in joints)
         for one in joints:
@@ -68,7 +63,7 @@ class Supports:
             yield area / whole, _Point(brick, middle)
 
     def holdAlso(self, target, axes):
-        """Count a target as one that is held along more axes."""
+        """Hold a target along more axes."""
         if target not in self.held:
             self.held.append(target)
             self.freeMass -= O.bodies[target.body].state.mass
@@ -80,17 +75,16 @@ class Supports:
         return O.forces.f(target.body, True)
 
     def supportedBy(self, target):
-        """Force of the structure on a target along the axes that are held now, 0 along the others
-        [N]."""
+        """Force of the structure on a target along the axes that are held now [N]."""
         force, blocked = self.forceOn(target), O.bodies[target.body].state.blockedDOFs
         return Vector3(*(f if a in blocked else 0.0 for a, f in zip("xyz", force)))
 
     def forceFrom(self, target):
-        """Force of what loads, drives and holds a target on it [N]."""
+        """Force of loads, drives and supports on a target [N]."""
         return self._loadsOn(target) - self.supportedBy(target)
 
     def _loadsOn(self, target):
-        """Force of what loads and drives a target on it [N]."""
+        """Force of loads and drives on a target [N]."""
         loads = self.structure.loading.loads.values()
         return sum((forceOn(load, target.body) for load in loads), Vector3.Zero)
 
@@ -99,30 +93,29 @@ class Supports:
         return self.forceOn(target) - self._loadsOn(target)
 
     def moved(self, target):
-        """Displacement of a target's recorded point since the scene was built [m], and its
-        rotation, about y in a plane, else its angle [rad]."""
+        """Displacement of a target's recorded point since the scene was built [m], and rotation,
+        about y in a plane, else its angle [rad]."""
         point = self._points[target.name]
         axis, angle = (point.state.ori * point.upright).toAxisAngle()
         return point.moved(), angle * axis[1] if self.description.plane else angle
 
     def masonryMoved(self, target, direction):
-        """Displacement of the bricks at a platen along a direction since the scene was built [m];
-        of a brick, that of its point."""
+        """Displacement of the bricks at a platen, or of the point of a brick, along a direction
+        since the scene was built [m]."""
         face = self._faces.get(target.name)
         if not face:
             return self.moved(target)[0].dot(direction)
         return sum(share * point.moved().dot(direction) for share, point in face)
 
     def driftHeight(self, target):
-        """Height of the points of which :meth:`masonryMoved` is [m]."""
+        """Height of the points of :meth:`masonryMoved` [m]."""
         face = self._faces.get(target.name)
         if not face:
             return target.recorded[2]
         return sum(share * (p.state.refPos[2] + p.arm[2]) for share, p in face)
 
     def applied(self):
-        """Sum of the weights of what is free to follow them, and of the loads without drives
-        [N]."""
+        """Sum of the weights of what is free to follow them, and of the loads [N]."""
         gravity = self.structure.scheme.now
         applied = self.freeMass * gravity
         for target in self.held:
@@ -143,8 +136,8 @@ class Supports:
         return carried - self.structure.connectors.onGround()
 
     def unrest(self):
-        """What of the loads is missing at the supports, of all or of the horizontal ones where that
-        is more, and kinetic over elastic energy [-]."""
+        """Share of the loads, or of the horizontal ones if larger, that is missing at the supports,
+        and kinetic over elastic energy [-]."""
         energy = self.structure.energy.balance()
         elastic = sum(
             energy.get(f"elastic_{m}", 0.0)
@@ -163,16 +156,14 @@ class Supports:
         if across > HORIZONTAL * size:  # else it is round-off of what is vertical
             missing = max(missing, flat / across)
         moving = abs(energy["kinetic"])
-        # without loads there is next to no energy, and motion is compared with the weight over a
-        # picometre
+        # without loads motion is compared with the work of the weight over a picometre
         least = 1e-12 * GRAVITY * self.freeMass
         return missing, moving / max(elastic, least) if moving else 0.0
 
     def _sinkingPeriod(self):
-        """The vertical period of a structure that is so soft that it could be taken for one that
-        falls, while it only sinks under its loads and swings [s]; 0 of a stiffer one, and of one
-        that would lose more of its height than :data:`LOST` says. The structure counts as a column
-        of its height and volume that is everywhere as soft as at its softest joint.
+        """The vertical period of a structure so soft that its swing under its loads could be taken
+        for a fall [s]; 0 of a stiffer one, and of one that would lose more of its height than
+        :data:`LOST`. It counts as a column of its height and volume, as soft as its softest joint.
         """
         structure, description = self.structure, self.description
         load = structure.gravity * self.freeMass
@@ -187,8 +178,7 @@ class Supports:
         return 2 * math.pi * math.sqrt(sinking * structure.args.density_scaling / GRAVITY)
 
     def _softest(self):
-        """The least modulus of the masonry across any of its joints [Pa]; deformable bricks add
-        their own compliance."""
+        """The least modulus of the masonry across a joint, with that of deformable bricks [Pa]."""
         moduli = [math.inf]
         for one in self.structure.interactions:
             thickness = one.geom.distance1 + one.geom.distance2
@@ -199,10 +189,9 @@ class Supports:
         return min(moduli)
 
     def slowest(self):
-        """The longest period of what is free [s]: as one rigid body on the springs of a platen, or
-        of a structure that sinks so far under its loads that a swing would look like a fall; 0
-        without either. Its weight makes a rotation slower; where that overturns it, there is no
-        period."""
+        """The longest period of what is free [s]: of one rigid body on the springs of a platen, or
+        of :meth:`_sinkingPeriod`; 0 without either. Weight makes a rotation slower; where it
+        overturns the body, there is no period."""
         held = {target.body for target in self.held}
         found = [self._sinkingPeriod()]
         free = [body.state for body in O.bodies if body.id not in held]

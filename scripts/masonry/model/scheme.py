@@ -7,15 +7,14 @@ from .._masonry import timeStepLimit
 from ..terminal import say
 from .engines import engine
 
-MOST_SCALED = 50.0  # largest massScaling that is chosen by itself: more gained nothing in any wall
+MAX_SCALING = 50.0  # of masses that is chosen by itself: more gained nothing in any wall
 
 
 class Scheme:
-    """Damping, masses, time step and gravity of a structure that is built.
+    """Damping, masses, time step and gravity.
 
     - ``limit``: the stable limit of the time step under the present damping [s]
-    - ``massScaling``: selective scaling of masses that the options say [-]; ``joints``: the engine
-      of the joints
+    - ``massScaling``: selective scaling of masses by the options [-]
     """
 
     def __init__(self, args, zones):
@@ -26,10 +25,9 @@ class Scheme:
     def begin(self):
         """Choose masses and time step, when all joints are there.
 
-        With ``--mass-scaling auto`` there are two limits of the time step: with true masses, and
-        with deformation so slow that only the rigid motions of bricks are left. Waves through a
-        brick get slower by the root of 1 + massScaling, so the least that brings their limit to the
-        second one is known.
+        ``--mass-scaling auto`` compares the limit of the time step with true masses with that of
+        rigid motions alone. Waves through a brick get slower by the root of 1 + massScaling, so the
+        least that brings their limit to the second one is known.
         """
         self.massScaling = self.args.mass_scaling if self.zones else 0.0
         if self.massScaling == "auto":
@@ -38,7 +36,7 @@ class Scheme:
                 self.scaleMasses(scaling)
                 limits.append(timeStepLimit())
             least = round((limits[1] / limits[0]) ** 2 - 1, 1)
-            self.massScaling = min(MOST_SCALED, max(0.0, least))
+            self.massScaling = min(MAX_SCALING, max(0.0, least))
         self.scaleMasses(self.massScaling)
         self._usualLimit = self.chooseTimeStep()
 
@@ -54,15 +52,14 @@ class Scheme:
         self.joints.stiffnessDamping = stiffnessDamping
 
     def scaleMasses(self, scaling):
-        """Choose the selective scaling of the masses of deformable units from now on [-];
+        """Choose the selective scaling of the masses of deformable units [-];
         :meth:`chooseTimeStep` follows it."""
         if self.zones and self.zones.massScaling != scaling:
             self.zones.massScaling = scaling
 
     def trueMasses(self, stage):
-        """Have true masses from now on, because a stage runs in real time, and say so if the
-        options say otherwise;
-        :meth:`chooseTimeStep` follows it."""
+        """Have true masses for a stage in real time, and say so; :meth:`chooseTimeStep` follows
+        it."""
         if self.zones and self.massScaling:
             say(
                 f"note: {stage} runs in real time with true masses, without --mass-scaling"
@@ -71,33 +68,30 @@ class Scheme:
             self.scaleMasses(0.0)
 
     def dampByOptions(self):
-        """Choose the damping and the masses that the options say, for a stage that says nothing
-        else, and its time step if a stage has chosen another one. A time step that the script sets
-        stays."""
+        """Choose damping and masses of the options, and the time step if a stage has chosen another
+        one. A time step that the script sets stays."""
         self.damp(self.args.damping, self.args.damping_kind)
         self.scaleMasses(self.massScaling)
         if self.limit != self._usualLimit:
             self.chooseTimeStep(self._usualLimit)
 
     def chooseTimeStep(self, limit=None):
-        """Choose the time step that the present damping allows. Returns the stable limit.
+        """Choose the time step for the present damping. Returns the stable limit.
 
-        :param limit: the stable limit if it is known [s]: that of blocks that have moved differs in
-            its third digit
+        :param limit: if known [s]; that of blocks that have moved differs in its third digit
         """
         self.limit = limit or timeStepLimit()
         O.dt = self.args.dt_fraction * self.limit
         return self.limit
 
     def keepStable(self):
-        """Shorten the time step where blocks that have moved, or joints that have become contacts,
-        have a smaller limit."""
+        """Shorten the time step where moved blocks or new contacts have a smaller limit."""
         limit = timeStepLimit()
         if limit < self.limit:
             self.chooseTimeStep(limit)
 
     def setGravity(self, gravity):
-        """Gravity from now on [m/s²]; deformable units follow."""
+        """[m/s²]; deformable units follow."""
         self.integrator.gravity = gravity
 
     @property

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What a scene is in YADE: its bodies, joints, loads and engines."""
+"""A scene in YADE: its bodies, joints, loads and engines."""
 
 from yade import O
 from yade.wrapper import MasonryContacts, MasonryZones
@@ -19,17 +19,13 @@ from .restraints import Supports
 
 
 class Structure:
-    """What a scene is in YADE, and what acts on it.
-
-    ``__init__`` takes the description, so that what the user asks for can be refused before
-    anything changes. From :meth:`build` on it has
+    """A scene in YADE. From :meth:`build` on it has
 
     - ``ids``: body ids of the bricks, in their order; ``parts``: those of every part; ``bricks``:
-      number of the brick by body id, for all bodies that are bricks or parts of bricks
+      number of the brick by the body id of it or of its parts
     - ``widest``: width of the widest crack when it was looked for last [mm]
-    - ``interactions``: the joints between blocks; ``subcontacts``: how many points they have
-    - ``loading``, ``connectors``, ``supports``, ``scheme``, ``motion``: objects of the modules of
-      these names
+    - ``interactions``: the joints between blocks; ``subcontacts``: number of their points
+    - ``loading``, ``connectors``, ``supports``, ``scheme``, ``motion``: objects of these modules
     - ``zones``, ``contacts``: the engines of deformable units and of contacts, or None; ``energy``:
       that of the balance
 
@@ -41,12 +37,10 @@ class Structure:
         kinds = {block.kind for block in description.bricks} - set(masonry.units)
         self.unit, self.joints = masonry.unit, masonry.joints
         self.units = {**masonry.units, **dict.fromkeys(kinds, masonry.unit)}
-        # Heavier blocks that are attracted less weigh the same; waves are slower and the time step
-        # is longer.
+        # heavier blocks that are attracted less weigh the same, and the time step is longer
         for unit in {id(u): u for u in (self.unit, *self.units.values())}.values():
             unit.density *= args.density_scaling
-        # as it is built [m/s²]
-        self.gravity = description.gravity / args.density_scaling
+        self.gravity = description.gravity / args.density_scaling  # as built [m/s²]
         self.axes = (0, 2) if description.plane else (0, 1, 2)
         self.ids, self.parts, self.bricks = [], {}, {}
         self.zones = self.contacts = None
@@ -55,7 +49,7 @@ class Structure:
     # -- building ----------------------------------------------------------------------------------
 
     def build(self, loadingBlock):
-        """Build all of it in YADE, with a MasonryMat of the platens."""
+        """Build the scene, with a MasonryMat of the platens."""
         threads.beginScene(host=self.description.functors)
         O.reset()
         loadingBlock.density *= self.args.density_scaling
@@ -74,7 +68,7 @@ class Structure:
         self.widest = 0.0
         self.subcontacts = sum(len(i.geom.areas) for i in self.interactions)
         for target in self.description.targets.values():
-            if not target.joined:  # it is no neighbour of what it touches
+            if not target.joined:  # placed later: no joints are made to the blocks it touches
                 self._addPlaten(target, loadingBlock)
         self.scheme.begin()
         self._joinRecords()
@@ -123,8 +117,7 @@ class Structure:
                 " because ties, springs or fibre layers end at them"
             )
         if args.mass_scaling and "crack" in self.joints:
-            # the halves of a brick move as one, as far as masses are scaled, until their crack
-            # surface yields
+            # scaled masses let the halves of a brick move as one until their crack surface yields
             self.joints["crack"].monolithic = True
         # cells of a half brick along its length; a whole one has twice as many
         n = args.divisions
@@ -159,7 +152,7 @@ class Structure:
         self.energy = engine("energy")
 
     def _joinRecords(self):
-        """Find the joints whose means are recorded, and those of the sections."""
+        """Find the recorded joints and those of sections."""
         pairs = {frozenset((i.id1, i.id2)): i for i in self.interactions}
         for joint in self.description.joints:
             joint.interaction = pairs.get(frozenset(self.ids[b] for b in joint.bricks))
@@ -174,9 +167,9 @@ class Structure:
         return 1e3 * max(0.0, *(max(one.phys.opening) for one in self.interactions))
 
     def fallen(self):
-        """Blocks that have fallen, in a scene whose collapse is followed: a dict from the index of
-        the block to a dict with ``since``, when it had come loose [s], ``fell`` [s], ``most``, its
-        largest kinetic energy [J], and ``at``, when it had that [s]."""
+        """Fallen blocks of a scene whose collapse is followed: by the index of the block a dict
+        with ``since``, when it had come loose [s], ``fell`` [s], ``most``, its largest kinetic
+        energy [J], and ``at``, when it had that [s]."""
         if not self.contacts:
             return {}
         known = {b: one for b, one in self.contacts.fallen().items() if one["fell"] is not None}
@@ -194,8 +187,8 @@ class Structure:
             )
 
     def letFall(self):
-        """From now on no drive and no support moves, no numerical damping brakes blocks that have
-        come loose, and impacts of joints that close take energy."""
+        """Stop drives and supports and the numerical damping of loose blocks from now on, and let
+        impacts of joints that close take energy."""
         self.scheme.joints.impacts = True
         for target in self.supports.held:  # one that was released moves on
             state = O.bodies[target.body].state
@@ -210,7 +203,7 @@ class Structure:
     # -- what a checkpoint keeps beside the state in YADE ------------------------------------------
 
     def state(self):
-        """What stages have set, beside what YADE keeps: a dict of values that JSON can hold."""
+        """What stages have set, beside what YADE keeps, for JSON."""
         return {
             **self.loading.state(),
             "held": {target.name: target.freedom for target in self.supports.held},
@@ -221,8 +214,7 @@ class Structure:
         }
 
     def putState(self, state):
-        """Give it a state of :meth:`state`. Raises KeyError if it names a target or a load that is
-        not there."""
+        """Take a state of :meth:`state`. Raises KeyError for unknown targets and loads."""
         targets = self.description.targets
         self.loading.putState(state)
         self.supports.held = [targets[name] for name in state["held"]]

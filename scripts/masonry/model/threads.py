@@ -1,11 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""How many threads steps use.
+"""How many threads steps use: as many as there are cores, at most four, or as many as ``yade -j2``
+or ``OMP_NUM_THREADS`` says, where they are quicker.
 
-Steps may use as many threads as there are cores, four at most, or as many as ``yade -j2`` or
-``OMP_NUM_THREADS`` says. They are used where that is quicker: the plugin measures, while a run goes
-on, how long steps take on one thread and on more, and takes the quicker number. A small scene has
-too little to share out, and on a machine whose cores are all busy threads would wait for each
-other. The numbers of a run do not depend on how many threads took its steps, to the last bit.
+The plugin measures steps on one thread and on more, and takes the quicker number: small scenes and
+busy machines gain nothing by threads. The numbers of a run do not depend on it, to the last bit.
 """
 
 import contextlib
@@ -16,21 +14,18 @@ import re
 from .._masonry import allowThreads
 from .._masonry import threads as records
 
-#: With ``MASONRY_THREADS=always`` in the environment every step uses all threads, for tests and
-#: benchmarks.
+#: Whether every step uses all threads, for tests and benchmarks.
 ALWAYS = os.environ.get("MASONRY_THREADS") == "always"
 
-MOST = 4  # threads that steps use unless the user says another number
+MAX_THREADS = 4  # unless the user says another number
 
 _allowed = _ofYade = 1
 _asked = False
 
 
 def _isAsked():
-    """Whether the user says how many threads: by an option of ``yade``, or by ``OMP_NUM_THREADS``
-    in the environment with which the process began. Without such an option ``yade`` itself sets
-    that variable to 1.
-    """
+    """Whether the user says how many threads, by an option of ``yade`` or by ``OMP_NUM_THREADS`` in
+    the first environment of the process: without the option ``yade`` sets that variable to 1."""
     with open("/proc/self/cmdline", "rb") as words, open("/proc/self/environ", "rb") as names:
         options = words.read().partition(b"\0-x\0")[0]
         return bool(
@@ -40,11 +35,11 @@ def _isAsked():
 
 
 def limit():
-    """Give steps as many threads as the user says, or as there are cores, and YADE's own engines
-    one if the user says nothing. ``import masonry`` does this.
+    """Give steps their threads, and YADE's own engines one if the user says nothing. ``import
+    masonry`` does this.
 
-    After ``import yade`` in plain Python OpenMP takes all cores, whose threads wait by spinning: on
-    a busy machine a step then takes hundreds of times as long.
+    In plain Python OpenMP takes all cores, whose threads wait by spinning: on a busy machine a step
+    then takes hundreds of times as long.
     """
     global _allowed, _ofYade, _asked
     with contextlib.suppress(AttributeError):  # a YADE without OpenMP
@@ -53,7 +48,7 @@ def limit():
             openmp.omp_set_num_threads(1)
         _ofYade = openmp.omp_get_max_threads()
     _asked = _isAsked()
-    _allowed = _ofYade if _asked else min(MOST, len(os.sched_getaffinity(0)))
+    _allowed = _ofYade if _asked else min(MAX_THREADS, len(os.sched_getaffinity(0)))
     allowThreads(_allowed, ALWAYS)
 
 
@@ -63,17 +58,15 @@ def allowed():
 
 
 def ofYade():
-    """The number of threads of YADE's own engines. The last digits of the forces that they add up
-    depend on it."""
+    """The number of threads of YADE's own engines, on which the last digits of forces depend."""
     return _ofYade
 
 
 def beginScene(host):
-    """Count steps by threads anew, and say whether YADE's own engines may use several threads,
-    before ``O.reset()``.
+    """Count steps by threads anew before ``O.reset()``.
 
-    YADE adds up forces for each of its threads, and sums these columns in every step, also where a
-    single thread has added all of them.
+    :param host: whether YADE's own engines may use several threads: for each of them YADE has a
+        column of forces, which it sums in every step
     """
     with contextlib.suppress(AttributeError):
         ctypes.CDLL(None).omp_set_num_threads(_ofYade if host else 1)
@@ -81,10 +74,8 @@ def beginScene(host):
 
 
 def used():
-    """What steps took on each number of threads: a list of dicts with ``threads``; ``steps``, how
-    many were taken on that number; and ``microseconds_per_step``, the mean time of their loops over
-    joints and bodies [µs], None if there were none.
-    """
+    """Steps on each number of threads: dicts with ``threads``, ``steps`` and
+    ``microseconds_per_step``, the mean time of their loops over joints and bodies [µs] or None."""
     return [
         {
             "threads": r["threads"],

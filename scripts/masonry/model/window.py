@@ -6,8 +6,7 @@
     window.show(joints="damage", blocks="displacement", scale=50)
 
 The script must run in a YADE with its graphical interface (``yade my_scene.py``, without ``-n``),
-on a display. Where there is none, ``xvfb-run`` gives one that nobody sees, and :func:`picture`
-saves what it would show.
+on a display, or under ``xvfb-run`` with :func:`picture`.
 """
 
 import threading
@@ -32,20 +31,17 @@ def show(
     scale: float = 1.0,
     edges: bool = True,
 ) -> Any:
-    """Open YADE's 3-D view with blocks, joints and a legend, and keep it alive while the script
-    takes steps.
+    """Open YADE's 3-D view with blocks, joints and a legend, and draw it at most ten times a second
+    while the script takes steps. Call it when the scene has its engines. Deformable units are drawn
+    undeformed.
 
-    Call it when the scene has its engines. What is drawn costs time, ten times a second at most; a
-    run without the view is not changed. Deformable units are drawn undeformed.
-
-    :param blocks: what the colours of blocks show: ``"displacement"``, ``"velocity"``,
-        ``"material"``, or ``"own"`` for the colour that each block was made with
-    :param joints: what the colours of joints show: ``"damage"`` (the largest of tension, shear and
+    :param blocks: colours of blocks by ``"displacement"``, ``"velocity"``, ``"material"``, or their
+        ``"own"``
+    :param joints: colours of joints by ``"damage"`` (the largest of tension, shear and
         compression), ``"opening"``, ``"regime"``, or None for no joints
     :param scale: factor of displacements and rotations [-]
     :param edges: whether the edges of blocks are drawn
-    :raises ValueError: if a choice is not known, or if this YADE runs without its graphical
-        interface
+    :raises ValueError: for an unknown choice, or without the graphical interface
     """
     qt = _qt()
     Gl1_MasonryBlock(colours=blocks, edges=edges)
@@ -67,8 +63,7 @@ def show(
 
 
 def _look(view, scale):
-    """Turn the view to all blocks, from the side of a wall in the x-z plane and a little from
-    above."""
+    """Turn the view to all blocks of a wall in the x-z plane, a little from above."""
     corners = [
         b.state.pos + (scale - 1) * b.state.displ() + b.state.ori * v
         for b in O.bodies
@@ -82,8 +77,7 @@ def _look(view, scale):
 
 
 def refresh() -> None:
-    """Let the view draw and answer the mouse now. Does nothing beside a run in the background,
-    which needs no help."""
+    """Let the view draw and answer the mouse now, unless the run is in the background."""
     global _drawingTime
     if threading.current_thread() is threading.main_thread():
         start = time.process_time()
@@ -92,14 +86,14 @@ def refresh() -> None:
 
 
 def drawingTime() -> float:
-    """Time of the processor that the view has taken so far in this thread [s]."""
+    """Processor time of the view so far in this thread [s]."""
     return _drawingTime
 
 
 def picture(path: FilePath, wait: float = 2.0) -> None:
-    """Save what the view shows as a picture. :func:`show` comes first.
+    """Save what the view shows, after :func:`show`.
 
-    :param path: of the picture, with an ending that Qt knows, as ``.png``
+    :param path: with an ending that Qt knows, as ``.png``
     :param wait: how long the view may take to draw [s]
     """
     end = time.monotonic() + wait

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Numbers of a run, from its rows and its files; none of it needs YADE.
+"""Numbers of a run, from its rows and its files; only the columns need YADE.
 
-- :mod:`masonry.numbers.columns`: what a row of curve.csv holds
+- :mod:`masonry.numbers.columns`: columns of curve.csv
 - :mod:`masonry.numbers.files`: curve.csv and run.json, read again; :mod:`masonry.numbers.frames`:
   the frames for ParaView
 - :mod:`masonry.numbers.curves`, :mod:`masonry.numbers.loops`: numbers of a curve, and of loops

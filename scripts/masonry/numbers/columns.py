@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The columns of curve.csv: name, unit, meaning and value of each stand in one place.
+"""The columns of curve.csv: name, unit, meaning and value of each.
 
-Adding a column is adding a line here, to :meth:`masonry.scene.targets.Target.columns` if every
-target shall have it, or to
-:data:`masonry.scene.targets.OF_JOINTS` if every recorded joint shall. ``scene.column`` adds one
-    from a script.
+A column of every target is added to :meth:`masonry.scene.targets.Target.columns`, one of every
+recorded joint to :data:`masonry.scene.targets.OF_JOINTS`, any other one here. ``scene.column`` adds
+one from a script.
 """
 
 from dataclasses import dataclass
@@ -22,7 +21,7 @@ class Column:
     :param name: without its unit
     :param unit: ``"-"`` if it has none; None: name and meaning have it already
     :param meaning: one line for run.json, without the unit
-    :param value: function of a :class:`Reading` that gives the number in that unit
+    :param value: function of a :class:`Reading`, in that unit
     """
 
     name: str
@@ -32,31 +31,29 @@ class Column:
 
     @property
     def head(self):
-        """The name with its unit, as it stands in the first line of curve.csv."""
+        """The name with its unit, as in the first line of curve.csv."""
         return self.name if self.unit in (None, "-") else f"{self.name}_{self.unit}"
 
     @property
     def explanation(self):
-        """The meaning with its unit, as it stands in run.json."""
+        """The meaning with its unit, as in run.json."""
         return self.meaning if self.unit is None else f"{self.meaning} [{self.unit}]"
 
 
 class Reading:
-    """What a structure measures of itself at one moment, in SI units. The values of all columns are
-    taken from it at once.
+    """What all columns of a row are taken from: a structure at one moment, in SI units.
 
     - ``time`` since the scene was built [s]
-    - ``along``, ``up``: displacement of the followed point since the push or load began, along it
-      and upwards [m]
+    - ``along``, ``up``: displacement of the followed point since the push or load began [m]
     - ``sunk``: displacement of the pushed point downwards since the scene was built [m]
     - ``rotation`` of the pushed block, about y in a plane, else its angle [rad]
     - ``baseShear``: force of the structure on all that is held, along the push or load [N]
     - ``topShear``: force that drives the pushed point [N]
     - ``energy``: the energy balance [J]
-    - ``goal``: number of the point of a history that the drive is going to, from 1, and its
-      displacement [mm]
-    - ``forces``: force of the structure on what is held, along the axes that are held now or that
-      springs hold, by the name of the target [N]
+    - ``goal``: number, from 1, and displacement [mm] of the point of a history that the drive is
+      going to
+    - ``forces``: force of the structure by the name of the target, along the axes that are held now
+      or that springs hold [N]
     """
 
     def __init__(self, structure):
@@ -85,7 +82,7 @@ class Reading:
         self.goal = loading.goal
 
     def moved(self, target):
-        """Displacement of a target's recorded point since the scene was built [m], and its rotation
+        """Displacement [m] of a target's recorded point since the scene was built, and rotation
         [rad]."""
         if target.name not in self._moved:
             self._moved[target.name] = self.structure.supports.moved(target)
@@ -101,14 +98,12 @@ def _energies(names):
 CRACKS = Column(
     "largest_crack",
     "mm",
-    (
-        "largest opening of a point of any joint, without slide, 0 if none is open; looked for"
-        " every 300 steps or more"
-    ),
+    "largest opening of a point of any joint, without slide, 0 if none is open; looked for every 300"
+    " steps or more",
     lambda r: r.structure.widest,
 )
 
-#: The energy balance, in every run, and what ties and springs add to it.
+#: The energy balance of every run, and of ties and springs.
 BALANCE = [
     *_energies(ENERGIES),
     Column(
@@ -142,19 +137,15 @@ PUSH = [
     Column(
         "displacement",
         "mm",
-        (
-            "displacement of the pushed point along the push, or of the watched one along a load"
-            " that grows, since that began"
-        ),
+        "displacement of the pushed point along the push, or of the watched one along a load that"
+        " grows, since that began",
         lambda r: 1e3 * r.along,
     ),
     Column(
         "base_shear",
         "kN",
-        (
-            "force of the structure on all that is held, along the push or load; of a push without"
-            " dead weight and dead loads"
-        ),
+        "force of the structure on all that is held, along the push or load; of a push without dead"
+        " weight and dead loads",
         lambda r: 1e-3 * r.baseShear,
     ),
     Column(
@@ -182,10 +173,8 @@ OF_PLATEN = [
     Column(
         "masonry_displacement",
         "mm",
-        (
-            "displacement of the bricks at the pushed or watched platen along the push or load"
-            " since that began; elsewhere of that point"
-        ),
+        "displacement of the bricks at the pushed or watched platen along the push or load since"
+        " that began; elsewhere of that point",
         lambda r: 1e3 * r.structure.loading.masonryAlong(),
     )
 ]
@@ -202,10 +191,10 @@ HISTORY = [
 
 
 def heads(columns):
-    """The first line of curve.csv: names of columns with their units."""
+    """The first line of curve.csv."""
     return [column.head for column in columns]
 
 
 def meanings(columns):
-    """What each column means, by its head: the entry ``columns`` of run.json."""
+    """The entry ``columns`` of run.json."""
     return {column.head: column.explanation for column in columns}

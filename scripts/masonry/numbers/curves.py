@@ -9,25 +9,18 @@ import numpy as np
 from ..arguments import Numbers
 from . import loops
 
-#: Of the elastic energy: what joints dissipate up to it is no crack [-]. Where mortar bonds,
-#: nothing is dissipated before the first crack, and this share finds it a row or two late; dry
-#: joints slip a little from the first row on.
+#: Energy that joints dissipate before it counts as a crack, over the elastic energy [-]. Bonded
+#: mortar dissipates nothing before the first crack; dry joints slip a little from the first row on.
 CRACKED = 1e-5
-#: Of :func:`suddenLoss`: the stretch of the push [mm].
-SUDDEN = 0.1
-#: Of :func:`quasiStatic`: the weight of the base of a bar in shear [-].
-SHEAR = 2 / 3
+SUDDEN = 0.1  # stretch of the push for :func:`suddenLoss` [mm]
+SHEAR = 2 / 3  # weight of the base of a bar in shear for :func:`quasiStatic` [-]
 
 
 def dynamicImbalance(top: Numbers, base: Numbers) -> float:
-    """How much of the force of a push does not arrive at its base [-]: 0 if all does, 1 and more if
-    none does.
-
-    It is the root mean square of top less base shear over the largest of either: the larger of that
-    from half the peak at the base to that peak, and of that from there to the end. If this peak is
-    less than half of the largest force, all rows count together. Inertia makes the difference swing
-    about zero, and damping makes it drag.
-    """
+    """RMS of (top - base shear) over the largest of either [-]: the larger of the values from half
+    the peak at the base to that peak, and from there to the end; of all rows if this peak is less
+    than half of the largest force. Near 0 in a quasi-static test. Inertia makes the difference
+    swing about zero, and damping makes it drag."""
     differences, forces = np.subtract(top, base), np.abs(base)
     largest = max(np.abs(top).max(initial=0), forces.max(initial=0))
     if not largest:
@@ -40,13 +33,11 @@ def dynamicImbalance(top: Numbers, base: Numbers) -> float:
 
 
 def quasiStatic(top: Numbers, base: Numbers, weight: float = SHEAR) -> list[float]:
-    """The shear force V_s of a push without the first-order inertia of the structure's own mass, in
-    every row.
+    """The shear force V_s of a push in every row, without the first-order inertia of the structure.
 
-    A structure with the masses m that follows the accelerated displacement u of its driven point by
-    its static shape φ, which is 1 there, holds back Σ m φ² ü at the driven point, and Σ m φ ü in
-    all. So top less V_s is Σ m φ² ü, top less base is Σ m φ ü, and V_s = (1 - w) top + w base with
-    w = Σ m φ² / Σ m φ.
+    Masses m that follow the displacement u of the driven point by the static shape φ, which is 1
+    there, hold back Σ m φ² ü at the driven point, and Σ m φ ü in all. So top - V_s = Σ m φ² ü,
+    top - base = Σ m φ ü, and V_s = (1 - w) top + w base with w = Σ m φ² / Σ m φ.
 
     :param weight: w [-]. That of a bar in shear is 2/3, which gives (top + 2 base)/3; of a bar that
         bends 0.63 if it is free to turn at its driven end, and 0.74 if it is not
@@ -55,17 +46,16 @@ def quasiStatic(top: Numbers, base: Numbers, weight: float = SHEAR) -> list[floa
 
 
 def stiffness(displacement: Numbers, force: Numbers, ramp: int = 0) -> float:
-    """Initial stiffness of a push [force/displacement]: that of a line through its beginning that
-    fits its first part best.
+    """Initial stiffness of a push [force/displacement]: the line through its beginning that fits its
+    first part best.
 
     The first part begins where the velocity of the drive has grown, because before that a wave
-    passes through the structure, which is over after a whole first period. It ends at the first row
-    that has a quarter of the largest force and twice the displacement of its beginning, because
-    weaker waves go on. In a structure that cracks early it ends before that: at the first row that
-    has a third of the largest force and 1.1 times that displacement.
+    passes through the structure. It ends at the first row with a quarter of the largest force and
+    twice the displacement of its beginning, because weaker waves go on; in a structure that cracks
+    early at the first row with a third of the largest force and 1.1 times that displacement.
 
-    :param force: that of :func:`quasiStatic`. What it is in the first row does not count if it is
-        more than a hundredth of the peak, as for a drive that held a weight before
+    :param force: of :func:`quasiStatic`; its first value is subtracted if it is more than a
+        hundredth of the peak, as of a drive that held a weight before
     :param ramp: number of the row at which the velocity of the drive has grown
     """
     if not force:
@@ -84,11 +74,8 @@ def stiffness(displacement: Numbers, force: Numbers, ramp: int = 0) -> float:
 
 def suddenLoss(displacement: Numbers, top: Numbers, base: Numbers) -> tuple[float, float]:
     """The largest fall of the force of a push within :data:`SUDDEN`, over its peak [-], and the
-    displacement at which it begins.
-
-    The force is the mean of both ends, which leaves out waves that pass through. Rows that lie
-    farther apart show none.
-    """
+    displacement at which it begins. The force is the mean of both ends, which leaves out waves that
+    pass through."""
     force = [0.5 * (t + b) for t, b in zip(top, base)]
     peak, beyond, found = max(force, default=0.0), 0, (0.0, 0.0)
     for n, moved in enumerate(displacement):
@@ -100,13 +87,11 @@ def suddenLoss(displacement: Numbers, top: Numbers, base: Numbers) -> tuple[floa
 
 
 def fallen(displacement: Any, force: Any, at: int, level: float, pulse: float) -> float | None:
-    """Where the force falls below a level after a row and stays below for longer than a pulse: a
-    number of a row with a fraction, or None. What falls within a pulse before the end of the curve
-    may be a wave, too. Without pulses the first fall counts.
+    """Where the force falls below a level after the row ``at`` and stays below for longer than a
+    pulse, a displacement: a row number with a fraction, or None. A fall within a pulse before the
+    end may be a wave and does not count. Without pulses the first fall counts.
 
     :param displacement: that does not go back, and ``force``: arrays
-    :param at: number of the row
-    :param pulse: a displacement
     """
     below = (np.arange(len(force)) >= at) & (force < level)
     changes = np.flatnonzero(np.diff(below, prepend=False, append=False))
@@ -121,9 +106,8 @@ def fallen(displacement: Any, force: Any, at: int, level: float, pulse: float) -
 
 
 def stillGrows(displacement: Numbers, force: Numbers) -> bool:
-    """Whether the force of a push is largest at its end, and grows there with more than a twentieth
-    of its initial stiffness: then nothing has given way yet. The end is the last tenth of the
-    displacement."""
+    """Whether the force of a push is largest at its end, and grows over the last tenth of the
+    displacement with more than a twentieth of its initial stiffness: nothing has given way yet."""
     if len(force) < 10 or max(force) > 1.001 * max(force[-3:]):
         return False
     start = displacement[-1] - 0.1 * (displacement[-1] - displacement[0])
@@ -135,10 +119,7 @@ def stillGrows(displacement: Numbers, force: Numbers) -> bool:
 
 def initialStiffness(displacement: Numbers, force: Numbers) -> float:
     """Slope [force/displacement] of the line fitted between 5 % and 25 % of the peak, on the way to
-    it.
-
-    A push that begins under a force of more than a hundredth of the peak, as for a drive that held
-    a weight before, counts from that force.
+    it; a first force of more than a hundredth of the peak is subtracted, as in :func:`stiffness`.
     """
     moved, forces = np.asarray(displacement, float), np.asarray(force, float)
     if not len(forces):
@@ -155,14 +136,12 @@ def initialStiffness(displacement: Numbers, force: Numbers) -> float:
 
 
 def firstCrack(column: Callable[[str], Numbers], rows: slice = slice(None)) -> int | None:
-    """Number of the row at which the first crack of a push is seen, or None.
+    """The row of the first crack of a push, or None: the first at which the joints have dissipated,
+    in tension and shear since its first row, more than CRACKED of the elastic energy of joints and
+    units. Of dry joints it is the first slip that counts.
 
-    It is the first row at which the joints have dissipated, in tension and shear since the first of
-    these rows, more than CRACKED of the elastic energy that joints and units have there. So of dry
-    joints it is the first slip that counts.
-
-    :param column: function of the name of a column of curve.csv that gives its values
-    :param rows: those of the push, a slice
+    :param column: gives the values of a column of curve.csv by its name
+    :param rows: of the push
     """
     of = lambda *names: np.array([column(f"{n}_J")[rows] for n in names]).sum(axis=0)
     lost = of("dissipated_tension", "dissipated_shear")
@@ -175,13 +154,12 @@ def firstCrack(column: Callable[[str], Numbers], rows: slice = slice(None)) -> i
 def cycleNumbers(column: Callable[[str], Numbers], threshold: float) -> list[dict[str, Any]]:
     """Numbers of every cycle of a wall that follows a history: a list of dicts, for run.json.
 
-    They are those of :class:`masonry.numbers.loops.Cycle`, None in place of NaN, with the base
-    shear as the force. In place of ``start`` and ``end`` there is ``rows``, the first and the last
-    row of curve.csv, from 0. Beside them there are, of the same stretch [J]: ``top_work_J``, the
-    work of the force that drives the loading block over the same displacement; ``dissipated_J``,
-    what the joints dissipated; and ``damped_J``, what damping took.
+    They are those of :class:`masonry.numbers.loops.Cycle` with the base shear as the force, None in
+    place of NaN, and ``rows``, the first and the last row of curve.csv from 0, in place of
+    ``start`` and ``end``. Beside them there are, of the same stretch [J]: ``top_work_J``, the work
+    of the drive; ``dissipated_J``, by joints; and ``damped_J``, by damping.
 
-    :param column: function of the name of a column of curve.csv that gives its values
+    :param column: gives the values of a column of curve.csv by its name
     :param threshold: as in :mod:`masonry.numbers.loops` [mm]
     """
     moved, base = column("displacement_mm"), column("base_shear_kN")
@@ -205,8 +183,7 @@ def cycleNumbers(column: Callable[[str], Numbers], threshold: float) -> list[dic
 
 
 def dampedShare(column: Callable[[str], Numbers]) -> float:
-    """Of what joints and damping have taken since the first row, the share of damping [-]; 0 if
-    nothing was taken."""
+    """Share of damping in what joints and damping have taken since the first row [-]."""
     grown = lambda name: column(name)[-1] - column(name)[0]
     damped = max(0.0, grown("damping_J"))
     lost = sum(grown(f"dissipated_{m}_J") for m in ("tension", "shear", "compression"))

@@ -10,8 +10,7 @@ from ..packages import needed
 
 
 def empty(width, height):
-    """An empty figure [inch]. It has no window, and pyplot, whose settings YADE changes, has no
-    part in it."""
+    """An empty figure [inch], without pyplot, whose settings YADE changes."""
     needed("matplotlib")
     from matplotlib.figure import Figure
 
@@ -19,11 +18,7 @@ def empty(width, height):
 
 
 def style(settings=()):
-    """The settings of matplotlib that all figures are drawn with, whatever the caller has set: a
-    context.
-
-    :param settings: more of them, a dict
-    """
+    """A context with the settings of matplotlib of all figures, and more of them in a dict."""
     needed("matplotlib")
     import matplotlib.style
 
@@ -32,7 +27,7 @@ def style(settings=()):
 
 @contextlib.contextmanager
 def picture(path, width, height, dpi, settings=()):
-    """A figure [inch] that is written at the end of its block; ``settings`` are those of
+    """A figure [inch] that is written at the end of its block; ``settings`` as in
     :func:`style`."""
     with style(settings):
         figure = empty(width, height)
@@ -42,7 +37,7 @@ def picture(path, width, height, dpi, settings=()):
 
 
 def finish(axes, x, y, **legend):
-    """Labels, legend and grid of a diagram; ``legend`` are settings of its legend."""
+    """Add labels, a legend with these settings, and a grid to a diagram."""
     axes.set_xlabel(x)
     axes.set_ylabel(y)
     axes.legend(**legend)
@@ -57,10 +52,7 @@ def save(figure, path, dpi):
 
 
 def svg(figure, name):
-    """A figure as an element ``svg`` of a page, always the same one of the same figure.
-
-    :param name: that no other figure of the page has
-    """
+    """A figure as an element ``svg`` of a page, with a name of its own there."""
     from markupsafe import Markup
     from matplotlib import rc_context
 
@@ -72,10 +64,8 @@ def svg(figure, name):
 
 
 def placesOn(figure, points):
-    """Places in the first axes of a figure in the units of its :func:`svg`: a text "x,y x,y".
-
-    :param points: pairs of x and y
-    """
+    """Pairs of x and y in the first axes of a figure in the units of its :func:`svg`: a text "x,y
+    x,y"."""
     if not points:
         return ""
     axes = figure.axes[0]

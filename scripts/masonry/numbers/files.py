@@ -17,13 +17,12 @@ from ..terminal import say
 
 
 def readWhole(path: FilePath) -> bytes:
-    """The bytes of a file."""
     with open(path, "rb") as file:
         return file.read()
 
 
 def readText(path: FilePath) -> str:
-    """The text of a file. Raises Refused if there is none."""
+    """The text of a file. Raises Refused."""
     try:
         return readWhole(path).decode()
     except OSError as error:
@@ -33,8 +32,7 @@ def readText(path: FilePath) -> str:
 
 
 def readCurve(directory: FilePath) -> dict[str, list[float]]:
-    """curve.csv of a run as a dict of column name -> list of numbers. Raises Refused if there is
-    none."""
+    """curve.csv of a run: lists of numbers by the name of the column. Raises Refused."""
     path = os.path.join(directory, "curve.csv")
     lines = list(csv.reader(readText(path).splitlines()))
     if len(lines) < 2:
@@ -54,8 +52,7 @@ def readCurve(directory: FilePath) -> dict[str, list[float]]:
 
 
 def readRun(directory: FilePath) -> dict[str, Any]:
-    """run.json of a run as a dict; this module's docstring lists its keys. Raises Refused if there
-    is none."""
+    """run.json of a run, whose keys :mod:`masonry.run.results` lists. Raises Refused."""
     path = os.path.join(directory, "run.json")
     text = readText(path)
     try:
@@ -69,8 +66,7 @@ def readRun(directory: FilePath) -> dict[str, Any]:
 
 @contextlib.contextmanager
 def filesOf(directory: FilePath) -> Iterator[None]:
-    """Use the files of a run. What they lack, since they are damaged or not of a finished run,
-    becomes Refused."""
+    """Turn what damaged files, or those of an unfinished run, lead to in a block into Refused."""
     try:
         yield
     except (KeyError, IndexError, AttributeError, TypeError, SyntaxError) as problem:
@@ -81,7 +77,7 @@ def filesOf(directory: FilePath) -> Iterator[None]:
 
 
 def program(act: Callable[..., int | None]) -> Callable[..., int]:
-    """Let a main program return its exit status, and say on the terminal what ends it."""
+    """Let a main program return its exit status, and print what ends it."""
 
     @functools.wraps(act)
     def main(*words):
@@ -99,7 +95,7 @@ def program(act: Callable[..., int | None]) -> Callable[..., int]:
 
 @program
 def onFolder(act: Callable[[str], object], words: Sequence[str]) -> None:
-    """Main program of what reads a run: calls ``act`` with the folder that is the only word."""
+    """Main program of what reads a run: calls a function with the folder, the only word."""
     if len(words) != 1:
         raise Refused("name one folder of results, for example results/wall_comp4")
     try:

@@ -1,11 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Frames for ParaView that MasonryVtkRecorder wrote, read again. This module needs no YADE and no
-VTK.
+"""Frames for ParaView that MasonryVtkRecorder wrote, read again without YADE and VTK.
 
-VTK's own reader is not used: its Python modules come with python3-vtk9 or, in its place, with
-python3-paraview, and either can end a process in which YADE runs with a VTK of its own.
-MasonryVtkRecorder writes one kind of file, with all numbers appended in base64 and compressed by
-zlib, and that kind is read here.
+The Python modules of VTK (python3-vtk9 or python3-paraview) can end a process in which YADE runs
+with a VTK of its own. MasonryVtkRecorder writes one kind of file, with all numbers appended in
+base64 and compressed by zlib.
 """
 
 import base64
@@ -22,21 +20,16 @@ import numpy as np
 from ..arguments import FilePath, Names, number, oneOf, validated, whole
 from ..errors import Refused
 
-#: A kind of files.
+#: Files of blocks, of joints, or of ties and springs.
 Kind = Annotated[str, oneOf("blocks", "joints", "connectors")]
-#: Number of a frame.
+#: Number of a frame, from 0; negative numbers count from the end.
 FrameNumber = Annotated[int, whole(-(10**9))]
-#: Types of numbers in the files.
 TYPES = {"Float64": "f8", "Float32": "f4", "Int64": "i8", "Int32": "i4", "UInt8": "u1"}
 
 
 @validated
 def framePaths(directory: FilePath, kind: Kind) -> list[str]:
-    """Paths of all frames of a run, in the order of time.
-
-    :param kind: ``blocks``, ``joints`` or ``connectors``
-    :raises Refused: if there is none
-    """
+    """Paths of all frames of a run, in the order of time. Raises Refused if there is none."""
     pattern = os.path.join(glob.escape(os.fspath(directory)), kind + "_*.vt[up]")
     found = {path: re.search(r"_(\d+)\.vt[up]$", path) for path in glob.glob(pattern)}
     numbers = {path: int(match[1]) for path, match in found.items() if match}
@@ -47,15 +40,9 @@ def framePaths(directory: FilePath, kind: Kind) -> list[str]:
 
 @validated
 def frameTimes(directory: FilePath) -> list[float]:
-    """Times of all frames of a run in the order of time, as joints.pvd has them [s]."""
+    """Times of all frames of a run, as joints.pvd has them [s]."""
     path = os.path.join(directory, "joints.pvd")
-    try:
-        sets = ElementTree.parse(path).iter("DataSet")
-        return [float(s.get("timestep")) for s in sets]
-    except OSError as error:
-        raise Refused(f"cannot read {path}: {error.strerror}") from None
-    except (ElementTree.ParseError, TypeError, ValueError) as error:
-        raise Refused(f"cannot read {path}: {error}") from None
+    return _read(path, lambda root: [float(s.get("timestep")) for s in root.iter("DataSet")])
 
 
 @validated
@@ -68,12 +55,11 @@ def frameAt(directory: FilePath, time: Annotated[float, number("s")]) -> int:
 def readFrame(
     directory: FilePath, kind: Kind, number: FrameNumber = -1, names: Names | None = None
 ) -> dict[str, Any]:
-    """A frame of blocks, joints or connectors as a dict: ``points`` [m], ``cells`` (arrays of point
-    numbers), and every data array.
+    """A frame as a dict: ``points`` [m], ``cells`` (arrays of point numbers), and every data array.
 
-    :param kind: ``blocks``, ``joints`` or ``connectors``, the ties and springs
+    :param kind: ``blocks``, ``joints`` or ``connectors``
     :param number: of the frame, from 0; negative numbers count from the end
-    :param names: of those arrays that are needed, ``points`` and ``cells`` among them; None: all
+    :param names: of the arrays that are needed, ``points`` and ``cells`` among them; None: all
     :raises Refused: if there is no such frame, or if its file is damaged
     """
     return _read(_pathOf(directory, kind, number), lambda root: _frame(root, names))
@@ -83,12 +69,12 @@ def readFrame(
 def readSurfaces(
     directory: FilePath, number: FrameNumber = 0
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Triangles around the blocks of a frame, as :func:`readFrame` numbers points and cells.
+    """Triangles around the blocks of a frame, with points and cells as :func:`readFrame` numbers
+    them.
 
-    :returns: the corners of triangles, an array (n, 3) of point numbers; the cell of each of them;
-        and whether cells are rigid blocks, else they are zones of deformable units, all of whose
-        sides are given, also those inside the unit
-    :raises Refused: as in :func:`readFrame`
+    :returns: the corners of triangles, an array (n, 3) of point numbers; the cell of each; and
+        whether cells are rigid blocks, else zones of deformable units, with sides inside the unit
+    :raises Refused: as :func:`readFrame`
     """
     return _read(_pathOf(directory, "blocks", number), _surfaces)
 
@@ -101,7 +87,7 @@ def _pathOf(directory, kind, number):
 
 
 def _read(path, parsed):
-    """What a function makes of a file of a frame. Raises Refused if it is damaged."""
+    """What a function makes of the root of an XML file. Raises Refused if it is damaged."""
     try:
         return parsed(ElementTree.parse(path).getroot())
     except OSError as error:
@@ -113,11 +99,10 @@ def _read(path, parsed):
 
 
 def asFrame(found: Any, names: Sequence[str] | None = None) -> dict[str, Any]:
-    """The same dict as :func:`readFrame` gives, of what ``MasonryVtkRecorder().joints()`` gives
-    without a file.
+    """What ``MasonryVtkRecorder().joints()`` gives without a file, as :func:`readFrame` gives it.
 
-    :param names: the arrays that are needed, beside the cells; None: all of them, which takes twice
-        as long
+    :param names: of the arrays that are needed, beside the cells; None: all, which takes twice as
+        long
     """
     arrays = [name for name in names or found if name != "cells"]
     cells = [np.array(cell) for cell in found["cells"]]
@@ -128,7 +113,6 @@ POLYHEDRON, TETRAHEDRON = 42, 10  # numbers of VTK for the cells of blocks
 
 
 def _surfaces(root):
-    """What :func:`readSurfaces` returns, of the parsed file."""
     piece, read = _opened(root)
     cells = {a.get("Name"): read(a) for a in piece.findall("Cells/DataArray")}
     types, ends, corners = cells["types"], cells["offsets"], cells["connectivity"]
@@ -152,8 +136,8 @@ def _surfaces(root):
 
 
 def _oldFaces(cells, polyhedra):
-    """Triangles of each polyhedron, and the cell of each of them, as VTK wrote them before 9.4: how
-    many faces the polyhedron has, then of each how many corners, and these."""
+    """Triangles of each polyhedron and their cell, as VTK wrote them before 9.4: the number of
+    faces, then of each the number of corners, and these."""
     start = 0
     for cell in polyhedra:
         faces = cells["faces"][start : cells["faceoffsets"][cell]]
@@ -165,8 +149,8 @@ def _oldFaces(cells, polyhedra):
 
 
 def _newFaces(cells):
-    """The same of all polyhedra at once, as later versions write them: corners by face, and faces
-    by cell."""
+    """Triangles of all polyhedra and their cells, as later versions write them: corners by face,
+    and faces by cell."""
     if (np.diff(cells["face_offsets"], prepend=0) != 3).any():
         raise ValueError("faces of its cells are no triangles")
     faces = cells["face_connectivity"].reshape(-1, 3)[cells["polyhedron_to_faces"]]
@@ -175,7 +159,7 @@ def _newFaces(cells):
 
 
 def _opened(root):
-    """The piece of a parsed file, and a function that reads its arrays."""
+    """The piece of a file, and a function that reads its arrays."""
     form = root.get("compressor"), root.get("byte_order")
     if form != ("vtkZLibDataCompressor", "LittleEndian"):
         raise ValueError("it was not written by MasonryVtkRecorder")
@@ -188,7 +172,6 @@ def _opened(root):
 
 
 def _frame(root, names):
-    """What :func:`readFrame` returns, of the parsed file."""
     piece, read = _opened(root)
     data = piece.findall("PointData/DataArray") + piece.findall("CellData/DataArray")
     found = {"points": piece.find("Points/DataArray"), **{a.get("Name"): a for a in data}}
@@ -211,14 +194,13 @@ def _frame(root, names):
 
 
 def _array(array, text, size):
-    """The numbers of a DataArray: a row a tuple if it has several components.
+    """The numbers of a DataArray, a row a tuple if it has several components.
 
-    Its part of the text is a head and the data. The head has the number of blocks, the bytes of a
-    full block and of the last one before they were compressed, and the compressed bytes of each.
-    Head and data are encoded one by one.
+    Its text is a head and the data, each encoded on its own. The head has the number of blocks, the
+    bytes of a full block and of the last one before compression, and the compressed bytes of each.
     """
     start, width = int(array.get("offset")), struct.calcsize(size)
-    letters = lambda count: -(-count // 3) * 4  # of so many bytes in base64
+    letters = lambda count: -(-count // 3) * 4  # of bytes in base64
     decode = lambda at, count: base64.b64decode(text[at : at + letters(count)])
     blocks = struct.unpack_from("<" + size, decode(start, width))[0]
     head = width * (3 + blocks)

@@ -1,18 +1,16 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Numbers of loops of force over displacement, simulated or measured.
 
-Displacements are in mm and forces in kN, so that their products are in J. Both are given as
-one-dimensional sequences of the same length, in the order of time. Rows may be any distance apart
-and may repeat. Wrong input raises ValueError.
+Displacements [mm] and forces [kN], whose products are in J, are sequences of the same length in the
+order of time. Rows may be any distance apart and may repeat. Wrong input raises ValueError.
 
-``threshold`` is a displacement [mm] below which a reversal or an excursion is taken for noise. For
-a measured history take several times the scatter of its displacements, and less than half its
-smallest amplitude.
+``threshold`` is a displacement [mm] below which a reversal or an excursion is taken for noise: for
+a measured history several times the scatter of its displacements, and less than half its smallest
+amplitude.
 
-A *half cycle* is an excursion to one side: from one passage through zero displacement to the next.
-A *cycle* is two half cycles in a row, one to either side. A place in a curve is given as a row
-number with a fraction: 7.25 is a quarter of the way from row 7 to row 8, with straight lines
-between rows.
+A *half cycle* is an excursion to one side, between passages through zero displacement. A *cycle* is
+two half cycles in a row, one to either side. A place in a curve is a row number with a fraction:
+7.25 is a quarter of the straight line from row 7 to row 8.
 """
 
 import math
@@ -23,14 +21,13 @@ import numpy as np
 
 from ..arguments import Numbers
 
-#: An excursion to one side. ``start`` and ``end`` are its places in the curve; ``extreme`` is the
-#: row of its largest displacement, the first of equal ones; ``side`` is 1 or -1; ``complete`` says
-#: whether it both begins and ends at zero.
+#: An excursion to one side (1 or -1): its places in the curve, the row of its largest displacement
+#: (the first of equal ones), and whether it both begins and ends at zero.
 HalfCycle = namedtuple("HalfCycle", "start end extreme side complete")
 
 
 class Cycle(NamedTuple):
-    """A cycle and its numbers. What cannot be found is NaN."""
+    """A cycle and its numbers, NaN where there is none."""
 
     start: float  #: its place in the curve
     end: float
@@ -47,7 +44,6 @@ class Cycle(NamedTuple):
 
 
 def _row(values, name="displacement"):
-    """A sequence as an array of finite numbers, or ValueError."""
     values = np.asarray(values, float)
     if values.ndim != 1 or not len(values):
         raise ValueError(f"{name} must be a row of numbers, at least one")
@@ -58,7 +54,6 @@ def _row(values, name="displacement"):
 
 
 def _curve(displacement, force):
-    """Both sequences as arrays of finite numbers, or ValueError."""
     moved, force = _row(displacement), _row(force, "force")
     if len(moved) != len(force):
         raise ValueError(f"there are {len(moved)} displacements and {len(force)} forces")
@@ -75,10 +70,9 @@ def turningPoints(displacement: Numbers, threshold: float = 0.0) -> np.ndarray:
     than the threshold.
 
     A maximum counts once the displacement has fallen by more than the threshold below it, a minimum
-    once it has risen by more. The first row of the array is where the first swing begins: row 0, or
-    one that is not more than the threshold away from it. The last one is where the last swing ends:
-    the last row of the curve, or one from which the curve has turned back by no more than the
-    threshold. A curve without such a swing has row 0 alone.
+    once it has risen by more. The first row is 0, or one within the threshold of it; the last is
+    that of the curve, or one from which the curve has turned back by no more than the threshold. A
+    curve without such a swing has row 0 alone.
     """
     moved = _row(displacement)
     _noise(threshold)
@@ -101,14 +95,12 @@ def turningPoints(displacement: Numbers, threshold: float = 0.0) -> np.ndarray:
 
 
 def halfCycles(displacement: Numbers, threshold: float, zero: float = 0.0) -> list[HalfCycle]:
-    """Excursions to either side that go beyond the threshold: a list of :class:`HalfCycle` that
-    alternate in side.
+    """Excursions to alternate sides that go beyond the threshold: a list of :class:`HalfCycle`.
 
     A half cycle ends at the last passage through zero before the displacement goes beyond the
     threshold on the other side. The first one is complete if the curve begins within the threshold
-    of zero or passes through zero before it. The last one is complete if the curve ends within the
-    threshold of zero; it then ends at the last passage through zero, or at the last row if there is
-    none.
+    of zero or passes through zero before it; the last one if the curve ends within the threshold of
+    zero: then it ends at the last passage through zero, or at the last row if there is none.
 
     :param zero: the displacement from which excursions are counted [mm]
     """
@@ -134,8 +126,7 @@ def halfCycles(displacement: Numbers, threshold: float, zero: float = 0.0) -> li
 
 
 def _lastPassage(moved):
-    """The last place at which displacements pass through zero or leave it, or None; at zero itself
-    the last row."""
+    """The last place at which displacements pass through zero or leave it, or None."""
     if moved[-1] == 0:
         return float(len(moved) - 1)
     other = np.flatnonzero(np.sign(moved) != np.sign(moved[-1]))
@@ -146,8 +137,7 @@ def _lastPassage(moved):
 
 
 def stretch(values: Numbers, start: float, end: float) -> np.ndarray:
-    """The part of a sequence between two places: the values at both, and those of the rows
-    between."""
+    """Values of a sequence at two places and in the rows between."""
     values = np.asarray(values, float)
     rows = np.arange(len(values))
     between = rows[(rows > start) & (rows < end)]
@@ -155,11 +145,8 @@ def stretch(values: Numbers, start: float, end: float) -> np.ndarray:
 
 
 def area(force: Any, moved: Any) -> float:
-    """Area under a curve of straight lines, for example the work of a force over its displacement.
-
-    :param force: values; ``moved``: the places of these, of which the unit times that of the force
-        is the unit of the area
-    """
+    """Area under a curve of straight lines, as the work of a force over its displacement; its unit
+    is the product of theirs."""
     force, moved = np.asarray(force, float), np.asarray(moved, float)
     return float(0.5 * (force[1:] + force[:-1]) @ np.diff(moved))
 
@@ -167,29 +154,24 @@ def area(force: Any, moved: Any) -> float:
 def work(
     displacement: Numbers, force: Numbers, start: float = 0.0, end: float | None = None
 ) -> float:
-    """Integral of the force over the displacement between two places of a curve, from its first to
-    its last row unless they are given [J]. Trapezoids between rows."""
+    """Integral of the force over the displacement between two places of a curve [J], by default of
+    all rows. Trapezoids between rows."""
     moved, force = _curve(displacement, force)
     end = len(moved) - 1 if end is None else end
     return area(stretch(force, start, end), stretch(moved, start, end))
 
 
 def secantStiffness(displacement: Numbers, force: Numbers, high: int, low: int) -> float:
-    """Slope of the line between two rows of a curve, the peak-to-peak stiffness if they are its
-    extremes [kN/mm].
-
-    It is NaN if both have the same displacement.
-    """
+    """Slope of the line between two rows of a curve, the peak-to-peak stiffness of its extremes
+    [kN/mm]; NaN if both have the same displacement."""
     moved, force = _curve(displacement, force)
     far = moved[high] - moved[low]
     return float((force[high] - force[low]) / far) if far else math.nan
 
 
 def equivalentDamping(work: float, stiffness: float, amplitude: float) -> float:
-    """Ratio ξ of the viscous damping that takes as much work in a cycle, ξ = W / (4π·½·K·A²) [-].
-
-    It is W over 4π times the elastic energy ½·K·A² at the amplitude, as Jacobsen defined it (1930).
-    It is NaN if stiffness or amplitude are not above 0.
+    """Ratio of the viscous damping that takes as much work in a cycle, ξ = W / (4π·½·K·A²) [-]
+    (Jacobsen 1930); NaN if stiffness or amplitude are not above 0.
 
     :param work: W of the cycle [J]
     :param stiffness: K, secant from peak to peak [kN/mm]
@@ -203,13 +185,11 @@ def equivalentDamping(work: float, stiffness: float, amplitude: float) -> float:
 def residualDisplacement(
     displacement: Numbers, force: Numbers, extreme: int, end: int | None = None
 ) -> float:
-    """Displacement at which the force first vanishes after an extreme, on the way back, linear
-    between rows [mm].
-
-    It is NaN if the force at the extreme is zero already, or does not come to zero up to the end.
+    """Displacement at which the force first vanishes after an extreme [mm], linear between rows;
+    NaN if the force is zero at the extreme, or does not come to zero.
 
     :param extreme: row of the extreme displacement
-    :param end: last row to look at; the last of the curve if it is not given
+    :param end: last row to look at; None: that of the curve
     """
     moved, force = _curve(displacement, force)
     end = len(moved) - 1 if end is None else end
@@ -225,16 +205,13 @@ def residualDisplacement(
 def cycles(
     displacement: Numbers, force: Numbers, threshold: float, zero: float = 0.0
 ) -> list[Cycle]:
-    """The cycles of a curve with their numbers: a list of :class:`Cycle`.
-
-    Complete half cycles are joined in pairs from the first one on. One that is left over at the end
-    is no cycle.
+    """The cycles of a curve: pairs of complete half cycles from the first one on.
 
     :param zero: as in :func:`halfCycles`
     """
     moved, force = _curve(displacement, force)
     halves = [h for h in halfCycles(moved, threshold, zero) if h.complete]
-    # where the next swing to the other side ends, up to which a residual displacement is looked for
+    # a residual displacement is looked for up to the end of the next swing to the other side
     ends = [h.extreme for h in halves[1:]] + [len(moved) - 1]
     found = []
     for n in range(0, len(halves) - 1, 2):
@@ -270,12 +247,8 @@ def cycles(
 
 
 def envelope(displacement: Numbers, zero: float = 0.0) -> tuple[np.ndarray, ...]:
-    """Rows of the envelope: where the displacement is farther to its side than ever before.
-
-    Drawn as lines over the displacement, they bridge what is within reach of earlier rows.
-
-    :returns: two arrays of rows in order of time, of the positive and of the negative side
-    """
+    """Rows of the envelope, where the displacement is farther to its side than ever before: two
+    arrays, of the positive and of the negative side."""
     moved = _row(displacement) - zero
     before = lambda side: np.maximum.accumulate(np.append(0.0, side * moved))[:-1]
     return tuple(np.flatnonzero(side * moved > before(side)) for side in (1, -1))

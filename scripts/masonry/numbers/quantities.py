@@ -2,11 +2,8 @@
 """The numbers that a run answers with: one list, which run.json and its documentation, the
 terminal, the report, notebooks, studies and capacity read.
 
-To add a number is to add a :class:`Quantity` to :data:`QUANTITIES`: its entry in run.json, its
-name, its unit, what it is, where it comes from, and the function that finds it from a
-:class:`RunData`. That is what a run has at its end, and what its folder has later, so both give the
-same number. The module stands in this room and not in that of runs, because the report must be able
-to read it.
+To add a number is to add a :class:`Quantity` to :data:`QUANTITIES`. Its function finds it from a
+:class:`RunData`, which a run has at its end and its folder has later, so both give the same number.
 
 A *push* below is the last one of the run, with those before it along the same line. Forces along it
 are at its two ends: those of all supports (``base_shear_kN``) and that of the drive
@@ -21,9 +18,8 @@ from ..arguments import isNumber
 from . import cracks, curves, loops
 from .run_data import BASE, FALL, MASONRY, MOVED, TOP, RunData
 
-IMBALANCE = (
-    0.1  # a push with a larger dynamic imbalance is too fast: its peak is off by 1 to 5 % and more
-)
+#: A push with a larger dynamic imbalance is too fast: its peak is off by 1 to 5 % and more [-].
+IMBALANCE = 0.1
 
 #: Energies of the balance by their names in curve.csv, without the unit: what each is, and whether
 #: it is put in, stored or spent.
@@ -42,7 +38,7 @@ ENERGIES = {
     "dissipated_shear": ("energy that joints dissipated in shear", "spent"),
     "dissipated_compression": ("energy that joints dissipated in compression", "spent"),
 }
-#: Likewise of ties and springs, and of contacts, in scenes that have some.
+#: Energies of ties and springs, and of contacts, in scenes that have some.
 OF_CONNECTORS = {
     "elastic_connectors": ("elastic energy in ties and springs", "stored"),
     "dissipated_connectors": ("energy that ties dissipated", "spent"),
@@ -70,14 +66,16 @@ class Number(NamedTuple):
         return self._asdict()
 
 
+UNITS = "kN/mm J/m² cm² cm³ mrad MPa kN mm J s m".split()
+
+
 @dataclass(frozen=True)
 class Quantity:
     """A number of a run."""
 
-    key: str  #: its entry in run.json
+    key: str  #: its entry in run.json, which ends with its unit, as ``_J_per_m2``
     name: str  #: in words; empty: only run.json has it
-    unit: str  #: ``"-"`` if it has none
-    meaning: str  #: what it is, a sentence
+    meaning: str  #: a sentence
     source: str  #: columns of curve.csv, an equation or a function
     #: function of :class:`RunData`, or of a function that gives the columns of a joint; None: the
     #: run itself writes it
@@ -86,6 +84,14 @@ class Quantity:
     #: whether it is among the few that a notebook shows, and that stand first in study.csv
     brief: bool = False
     share: bool = False  #: whether it is shown in per cent
+    ownUnit: str = ""  #: where the key does not end with the unit
+
+    @property
+    def unit(self) -> str:
+        """``"-"`` if it has none."""
+        endings = {u.translate(str.maketrans({"/": "_per_", "²": "2", "³": "3"})): u for u in UNITS}
+        found = (unit for end, unit in endings.items() if self.key.endswith(f"_{end}"))
+        return self.ownUnit or next(found, "-")
 
     def shown(self, value):
         """The number as it is shown."""
@@ -97,27 +103,24 @@ class Quantity:
 class State(NamedTuple):
     """A state of a push that is looked for in its rows."""
 
-    name: str  #: in words
+    name: str
     displacement: str  #: entry of run.json
     drift: str  #: entry of run.json
-    find: Callable[[RunData], float | None]  #: a number of a row with a fraction
+    find: Callable[[RunData], float | None]  #: gives a row number with a fraction
     meaning: str
     missing: str = ""  #: why there may be none
     share: bool = False  #: whether it is a fall to :data:`FALL` of the peak
 
 
-#: States of a push; for each there is a displacement and a drift.
 STATES = (
     State(
         "first crack",
         "displacement_at_first_crack_mm",
         "drift_at_first_crack_mrad",
         lambda d: d.firstCrack,
-        (
-            "The first row at which the joints have dissipated, in tension and shear since the push"
-            " began, more than 1e-5 of the elastic energy; of dry joints it is where slip begins to"
-            " count."
-        ),
+        "The first row at which the joints have dissipated, in tension and shear since the push"
+        " began, more than 1e-5 of the elastic energy; of dry joints it is where slip begins to"
+        " count.",
         "no crack was seen in the push",
     ),
     State(
@@ -132,10 +135,8 @@ STATES = (
         "displacement_at_fall_mm",
         "drift_at_fall_mrad",
         lambda d: d.fallenTo(FALL),
-        (
-            "Where the force that both ends carry at once has fallen to 0.8 of its peak, after it,"
-            " for longer than a first period; of cycles on the envelope."
-        ),
+        "Where the force that both ends carry at once has fallen to 0.8 of its peak, after it,"
+        " for longer than a first period; of cycles on the envelope.",
         "the force never falls to 0.8 of its peak",
         True,
     ),
@@ -150,35 +151,34 @@ STATES = (
 )
 
 
+_AT_POINT, _AT_BASE, _AT_ENDS = (f"curve.csv: {c}" for c in (MOVED, BASE, f"{BASE}, {TOP}"))
+_OF_DRIFT = f"curve.csv: {MASONRY}, or {MOVED}, over drift_height_m"
+
+
 def _ofStates():
     for state in STATES:
         moved = lambda d, state=state: d.at(d[MOVED], d.place(state.find))
         drift = lambda d, state=state: d.drift(d.place(state.find))
-        where = (
-            f"at the state: {state.name}" if state.name == "collapse" else f"at the {state.name}"
-        )
+        where = f"at the {'state: ' * (state.name == 'collapse')}{state.name}"
         yield Quantity(
             state.displacement,
             f"displacement {where}",
-            "mm",
             f"Displacement of the pushed point. {state.meaning}",
-            f"curve.csv: {MOVED}",
+            _AT_POINT,
             moved,
-            "state",
-            state.name == "first crack" or state.name == "peak",
+            group="state",
+            brief=state.name in ("first crack", "peak"),
         )
         yield Quantity(
             state.drift,
             f"drift {where}",
-            "mrad",
             f"Drift of the masonry. {state.meaning}",
-            f"curve.csv: {MASONRY}, or {MOVED}, over drift_height_m",
+            _OF_DRIFT,
             drift,
-            "state",
+            group="state",
         )
 
 
-_BOTH = f"curve.csv: {BASE}, {TOP}"
 #: In which runs a quantity is: what they are called, and whether a run is one of them.
 GROUPS: dict[str, tuple[str, Callable[[RunData], bool]]] = {
     "every": ("Every run has these", lambda d: True),
@@ -191,17 +191,13 @@ GROUPS: dict[str, tuple[str, Callable[[RunData], bool]]] = {
     "one way": ("A push in one direction has these, too", lambda d: d.isPush and not d.isLooped),
     "loops": ("A push that follows a history has these, too", lambda d: d.isPush and d.isLooped),
     "wall": (
-        (
-            "A whole wall in running bond that a platen pushes has these with --lean, which leaves"
-            " no frames; masonry_view.measure finds them from frames"
-        ),
+        "A whole wall in running bond that a platen pushes has these with --lean, which leaves"
+        " no frames; masonry_view.measure finds them from frames",
         lambda d: d.isPush and d.joints is not None and "wall" in d.run,
     ),
     "joint": (
-        (
-            "A run that records the means of a joint has these, with its name before them if it"
-            " has one"
-        ),
+        "A run that records the means of a joint has these, with its name before them if it"
+        " has one",
         lambda d: False,
     ),
     "bound": (
@@ -211,30 +207,22 @@ GROUPS: dict[str, tuple[str, Callable[[RunData], bool]]] = {
 }
 
 
-def _ofPattern(key):
-    return lambda data: data.pattern[key]
-
-
 Q = Quantity
 QUANTITIES: tuple[Quantity, ...] = (
     Q(
         "peak_at_both_ends_kN",
         "peak",
-        "kN",
-        (
-            "Largest force along the push that the loaded point and the supports carry at once, so"
-            " without waves that pass through; of loops where the displacement is positive."
-        ),
-        _BOTH,
+        "Largest force along the push that the loaded point and the supports carry at once, so"
+        " without waves that pass through; of loops where the displacement is positive.",
+        _AT_ENDS,
         lambda d: d.peakForce(),
         brief=True,
     ),
     Q(
         "peak_base_shear_kN",
         "force at the supports at the peak",
-        "kN",
         "Force along the push at all that is held, at the peak.",
-        f"curve.csv: {BASE}",
+        _AT_BASE,
         lambda d: d[BASE][d.peak()],
         brief=True,
     ),
@@ -242,87 +230,73 @@ QUANTITIES: tuple[Quantity, ...] = (
     Q(
         "drift_height_m",
         "height of drifts",
-        "m",
-        (
-            "Height above the lowest brick of the points whose displacement is the drift of the"
-            " masonry; None if the push is not horizontal."
-        ),
+        "Height above the lowest brick of the points whose displacement is the drift of the"
+        " masonry; None if the push is not horizontal.",
         "the bricks at the pushed platen, or the pushed point",
         group="state",
     ),
     Q(
         "recorded_height_m",
         "height of the pushed point",
-        "m",
-        (
-            "Height above the lowest brick of the point whose displacement is recorded; None if the"
-            " push is not horizontal."
-        ),
+        "Height above the lowest brick of the point whose displacement is recorded; None if"
+        " the push is not horizontal.",
         "the platen or brick",
         group="state",
     ),
     Q(
         "negative_peak_at_both_ends_kN",
         "peak of the other side",
-        "kN",
-        "As the peak, of the way back, where the displacement is negative.",
-        _BOTH,
+        "Largest force on the way back that the loaded point and the supports carry at once,"
+        " where the displacement is negative.",
+        _AT_ENDS,
         lambda d: d.peakForce(-1),
-        "loops",
+        group="loops",
     ),
     Q(
         "negative_peak_base_shear_kN",
         "force at the supports at the peak of the other side",
-        "kN",
         "Force along the push at all that is held, at that peak.",
-        f"curve.csv: {BASE}",
+        _AT_BASE,
         lambda d: d[BASE][d.peak(-1)],
-        "loops",
+        group="loops",
     ),
     Q(
         "displacement_at_negative_peak_mm",
         "displacement at the peak of the other side",
-        "mm",
         "Displacement of the pushed point there.",
-        f"curve.csv: {MOVED}",
+        _AT_POINT,
         lambda d: d[MOVED][d.peak(-1)],
-        "loops",
+        group="loops",
     ),
     Q(
         "drift_at_negative_peak_mrad",
         "drift at the peak of the other side",
-        "mrad",
         "Drift of the masonry there.",
-        f"curve.csv: {MASONRY}, or {MOVED}, over drift_height_m",
+        _OF_DRIFT,
         lambda d: d.drift(d.peak(-1)),
-        "loops",
+        group="loops",
     ),
     Q(
         "base_shear_end_kN",
         "force at the end",
-        "kN",
         "Force at the supports in the last row.",
-        f"curve.csv: {BASE}",
+        _AT_BASE,
         lambda d: d[BASE][-1],
         brief=True,
     ),
     Q(
         "displacement_end_mm",
         "displacement at the end",
-        "mm",
         "Displacement of the pushed point in the last row.",
-        f"curve.csv: {MOVED}",
+        _AT_POINT,
         lambda d: d[MOVED][-1],
         brief=True,
     ),
     Q(
         "initial_stiffness_kN_per_mm",
         "initial stiffness",
-        "kN/mm",
-        (
-            "Slope of the line through the beginning of the push that fits its first part best,"
-            " without the inertia of the structure."
-        ),
+        "Slope of the line through the beginning of the push that fits its first part best,"
+        " without the inertia of the structure.",
         "masonry.numbers.curves.stiffness",
         lambda d: d.stiffness,
         brief=True,
@@ -330,56 +304,40 @@ QUANTITIES: tuple[Quantity, ...] = (
     Q(
         "push_work_J",
         "work of the push",
-        "J",
-        (
-            "Area under the curve of the push; none of a push in a pattern, whose force works on"
-            " the mean of its points."
-        ),
-        f"curve.csv: {BASE}, {MOVED}",
+        "Area under the curve of the push; none of a push in a pattern, whose force works on"
+        " the mean of its points.",
+        f"{_AT_BASE}, {MOVED}",
         lambda d: d.work(lambda moved, base: loops.area(base, moved)),
-        "one way",
-        True,
+        group="one way",
+        brief=True,
     ),
     Q(
         "first_period_s",
         "first period along the push",
-        "s",
-        (
-            "First period of the structure along the push, measured as it began; None if none was"
-            " found."
-        ),
+        "First period of the structure along the push, measured as it began; None if none was"
+        " found.",
         "masonry.model.period",
     ),
     Q(
         "base_weight",
         "",
-        "-",
-        (
-            "w of the shear force V_s = (1 - w) top + w base, which leaves out the inertia of the"
-            " structure's own mass; from the shape in which the structure moved as the push began,"
-            " else 2/3."
-        ),
+        "w of the shear force V_s = (1 - w) top + w base, which leaves out the inertia of the"
+        " structure's own mass; from the shape in which the structure moved as the push began,"
+        " else 2/3.",
         "masonry.numbers.curves.quasiStatic",
     ),
     Q(
         "velocity_grown_at_s",
         "",
-        "s",
-        (
-            "Time at which the velocity of the drive had grown in the first of these pushes; 0 if"
-            " no first period was found."
-        ),
+        "Time at which the velocity of the drive had grown in the first of these pushes; 0 if"
+        " no first period was found.",
         "the drive",
     ),
     Q(
         "dynamic_imbalance",
         "dynamic imbalance",
-        "-",
-        (
-            "Root mean square of the force that did not arrive at the supports, over the largest"
-            " force: from half of the peak to the peak or from there to the end, whichever is more."
-            " A slow test has nearly none."
-        ),
+        "RMS of (applied - base shear) over the largest force: the larger of the values before"
+        " and after the peak. Near 0 in a quasi-static test.",
         "masonry.numbers.curves.dynamicImbalance",
         lambda d: curves.dynamicImbalance(d[TOP], d[BASE]),
         brief=True,
@@ -388,7 +346,6 @@ QUANTITIES: tuple[Quantity, ...] = (
     Q(
         "too_fast",
         "",
-        "-",
         "Whether the dynamic imbalance is more than a push may have, 0.1.",
         "dynamic_imbalance",
         lambda d: curves.dynamicImbalance(d[TOP], d[BASE]) > IMBALANCE,
@@ -396,11 +353,8 @@ QUANTITIES: tuple[Quantity, ...] = (
     Q(
         "largest_crack_mm",
         "widest crack at the end",
-        "mm",
-        (
-            "Largest opening of a point of any joint at the end of the run, also of those to"
-            " platens; slide does not count; 0 if none is open."
-        ),
+        "Largest opening of a point of any joint at the end of the run, also of those to"
+        " platens; slide does not count; 0 if none is open.",
         "the joints at the end",
         group="every",
         brief=True,
@@ -408,150 +362,128 @@ QUANTITIES: tuple[Quantity, ...] = (
     Q(
         "damage_class",
         "damage class of the widest crack",
-        "-",
-        (
-            "Of the widest crack at the end, by the table of Burland, Broms and De Mello (1977) and"
-            " BRE Digest 251: 0 negligible, up to 0.1 mm; 1 very slight, 1 mm; 2 slight, 5 mm; 3"
-            " moderate, 15 mm; 4 severe, 25 mm; 5 very severe."
-        ),
+        "Of the widest crack at the end, by the table of Burland, Broms and De Mello (1977)"
+        " and BRE Digest 251: 0 negligible, up to 0.1 mm; 1 very slight, 1 mm; 2 slight, 5 mm;"
+        " 3 moderate, 15 mm; 4 severe, 25 mm; 5 very severe.",
         "largest_crack_mm",
         lambda d: cracks.damageClass(d.run["largest_crack_mm"]),
-        "every",
+        group="every",
     ),
     Q(
         "sudden_loss",
         "sudden loss of force",
-        "-",
-        (
-            "Largest fall of the force within a tenth of a millimetre, over its peak; above 0.1 the"
-            " answer can depend on chance."
-        ),
+        "Largest fall of the force within a tenth of a millimetre, over its peak; above 0.1"
+        " the answer can depend on chance.",
         "masonry.numbers.curves.suddenLoss",
         lambda d: d.sudden[0],
-        "one way",
+        group="one way",
         share=True,
     ),
     Q(
         "sudden_loss_at_mm",
         "displacement at the sudden loss",
-        "mm",
-        "Displacement at which that begins.",
+        "Displacement at which the sudden loss begins.",
         "masonry.numbers.curves.suddenLoss",
         lambda d: d.sudden[1],
-        "one way",
+        group="one way",
     ),
     Q(
         "force_drop",
         "force lost at the end",
-        "-",
-        (
-            "Share of the peak that is lost at the end; of loops along the envelope of the positive"
-            " side."
-        ),
-        _BOTH,
+        "Share of the peak that is lost at the end; of loops along the envelope of the"
+        " positive side.",
+        _AT_ENDS,
         lambda d: d.dropped()[0],
         share=True,
     ),
     Q(
         "drop_at_mm",
         "displacement at the drop of force",
-        "mm",
         "First displacement after the peak with less than 0.95 of it; None if there is none.",
-        _BOTH,
+        _AT_ENDS,
         lambda d: d.dropped()[1],
     ),
     Q(
         "force_drop_negative",
         "force lost at the end of the other side",
-        "-",
-        "Likewise along the envelope of the negative side.",
-        _BOTH,
+        "Share of the peak of the negative side that is lost at the end, along its envelope.",
+        _AT_ENDS,
         lambda d: d.dropped(-1)[0],
-        "loops",
+        group="loops",
         share=True,
     ),
     Q(
         "drop_at_negative_mm",
         "displacement at the drop of force of the other side",
-        "mm",
-        "Likewise, as a positive number.",
-        _BOTH,
+        "First displacement after the peak of the negative side with less than 0.95 of it, as"
+        " a positive number; None if there is none.",
+        _AT_ENDS,
         lambda d: d.dropped(-1)[1],
-        "loops",
+        group="loops",
     ),
     Q(
         "damped_share",
         "share of damping",
-        "-",
-        (
-            "Of what the joints and the damping of the run took in all, the share of the damping,"
-            " which a real wall does not have."
-        ),
+        "Of what the joints and the damping of the run took in all, the share of the damping,"
+        " which a real wall does not have.",
         "masonry.numbers.curves.dampedShare",
         lambda d: curves.dampedShare(d.__getitem__),
-        "loops",
+        group="loops",
         share=True,
     ),
     Q(
         "cycle_count",
         "whole cycles",
-        "-",
         "How many cycles are whole.",
         "cycles",
         lambda d: len(d.cycles),
-        "loops",
+        group="loops",
     ),
     Q(
         "cycle_work_J",
         "work of all cycles",
-        "J",
         "Sum of their works at the base.",
         "cycles",
-        lambda d: d.work(lambda *_: sum(one["work_J"] for one in d.cycles)),
-        "loops",
+        lambda d: d.work(lambda *_: sum((one["work_J"] for one in d.cycles))),
+        group="loops",
     ),
     Q(
         "loop_work_J",
         "work of the whole curve",
-        "J",
         "Integral of the base shear over the displacement.",
-        f"curve.csv: {BASE}, {MOVED}",
+        f"{_AT_BASE}, {MOVED}",
         lambda d: d.work(loops.work),
-        "loops",
+        group="loops",
     ),
     Q(
         "largest_amplitude_mm",
         "largest amplitude",
-        "mm",
-        "Of a cycle.",
+        "Largest amplitude of a cycle.",
         "cycles",
-        lambda d: max(one["amplitude_mm"] for one in d.cycles),
-        "loops",
+        lambda d: max((one["amplitude_mm"] for one in d.cycles)),
+        group="loops",
     ),
     Q(
         "largest_damping",
         "largest equivalent damping",
-        "-",
-        "Ratio of equivalent viscous damping of a cycle.",
+        "Largest ratio of equivalent viscous damping of a cycle.",
         "masonry.numbers.loops.equivalentDamping",
         lambda d: max(_damping(d)),
-        "loops",
+        group="loops",
         share=True,
     ),
     Q(
         "smallest_damping",
         "smallest equivalent damping",
-        "-",
-        "Likewise.",
+        "Smallest ratio of equivalent viscous damping of a cycle.",
         "masonry.numbers.loops.equivalentDamping",
         lambda d: min(_damping(d)),
-        "loops",
+        group="loops",
         share=True,
     ),
     Q(
         "bound_base_shear_kN",
         "limit analysis of the push",
-        "kN",
         "Bound of the force of the first push.",
         "masonry_limit",
         group="bound",
@@ -560,78 +492,78 @@ QUANTITIES: tuple[Quantity, ...] = (
     Q(
         "negative_bound_base_shear_kN",
         "limit analysis of the way back",
-        "kN",
-        "Likewise of the way back.",
+        "Bound of the force of the first push back.",
         "masonry_limit",
         group="bound",
     ),
     Q(
         "bound_acceleration",
         "limit analysis of the acceleration",
-        "g",
         "Bound of the first lean or tilt, horizontal over vertical.",
         "masonry_limit",
         group="bound",
+        ownUnit="g",
         brief=True,
     ),
     *(
-        Q(key, "", "-", f"As of {where}.", where, _ofPattern(key), "wall")
-        for key, where in cracks.MEASURED.items()
+        Q(
+            key,
+            "",
+            f"See {where}.",
+            where,
+            lambda d, key=key: d.pattern[key],
+            group="wall",
+        )
+        for (key, where) in cracks.MEASURED.items()
     ),
     Q(
         "peak_normal_stress_MPa",
         "largest normal stress",
-        "MPa",
         "Largest mean normal stress of the joint, positive in tension.",
         "curve.csv: normal_stress_MPa",
         lambda c: max(c("normal_stress_MPa")),
-        "joint",
-        True,
+        group="joint",
+        brief=True,
     ),
     Q(
         "peak_compressive_stress_MPa",
         "largest compression",
-        "MPa",
         "Largest mean compression of the joint, as a positive number.",
         "curve.csv: normal_stress_MPa",
         lambda c: -min(c("normal_stress_MPa")),
-        "joint",
-        True,
+        group="joint",
+        brief=True,
     ),
     Q(
         "peak_shear_stress_MPa",
         "largest shear stress",
-        "MPa",
         "Largest mean shear stress of the joint.",
         "curve.csv: shear_stress_MPa",
         lambda c: max(c("shear_stress_MPa")),
-        "joint",
-        True,
+        group="joint",
+        brief=True,
     ),
     Q(
         "end_normal_stress_MPa",
         "normal stress at the end",
-        "MPa",
         "Mean normal stress of the joint in the last row.",
         "curve.csv: normal_stress_MPa",
         lambda c: c("normal_stress_MPa")[-1],
-        "joint",
+        group="joint",
     ),
     Q(
         "end_shear_stress_MPa",
         "shear stress at the end",
-        "MPa",
         "Mean shear stress of the joint in the last row.",
         "curve.csv: shear_stress_MPa",
         lambda c: c("shear_stress_MPa")[-1],
-        "joint",
-        True,
+        group="joint",
+        brief=True,
     ),
     *(
         Q(
             f"dissipated_{mode}_J_per_m2",
             "",
-            "J/m²",
             f"Energy that the joint dissipated in {mode}, over its area.",
             "the joint",
             group="joint",
@@ -641,23 +573,17 @@ QUANTITIES: tuple[Quantity, ...] = (
     Q(
         "factor",
         "",
-        "-",
-        (
-            "Largest load factor under which the structure came to rest, in the last stage that"
-            " found one."
-        ),
+        "Largest load factor under which the structure came to rest, in the last stage that"
+        " found one.",
         "answers",
         group="every",
     ),
     Q(
         "energy_balance_error",
         "largest error of the energy balance",
-        "-",
-        (
-            "Largest error of the balance in all rows, relative to the largest work done until"
-            " then. It shows errors of the scheme, as a time step that is too long, and not those"
-            " of mesh or law."
-        ),
+        "Largest error of the balance in all rows, relative to the largest work done until"
+        " then. It shows errors of the scheme, as a time step that is too long, and not those"
+        " of mesh or law.",
         "curve.csv: balance_error",
         group="every",
         brief=True,
@@ -666,46 +592,54 @@ QUANTITIES: tuple[Quantity, ...] = (
     Q(
         "energy_made",
         "energy that joints made",
-        "-",
-        (
-            "Most energy that joints made by opening or closing within a step, relative to the"
-            " largest work done until then."
-        ),
+        "Most energy that joints made by opening or closing within a step, relative to the"
+        " largest work done until then.",
         "the energy balance",
         group="every",
         share=True,
     ),
-    Q("time_step_s", "", "s", "The time step.", "the run", group="cost"),
+    Q(
+        "time_step_s",
+        "",
+        "The time step.",
+        "the run",
+        group="cost",
+    ),
     Q(
         "time_step_limit_s",
         "",
-        "s",
         "The limit of the time step with the present damping.",
         "the run",
         group="cost",
     ),
-    Q("steps", "time steps", "-", "How many were taken.", "the run", group="cost", brief=True),
     Q(
-        "microseconds_per_step",
-        "time of a step",
-        "µs",
-        "Mean on the clock of the machine.",
+        "steps",
+        "time steps",
+        "How many were taken.",
         "the run",
         group="cost",
         brief=True,
     ),
     Q(
-        "nanoseconds_per_subcontact_step",
-        "time of a step and a point of a joint",
-        "ns",
+        "microseconds_per_step",
+        "time of a step",
         "Mean on the clock of the machine.",
         "the run",
         group="cost",
+        ownUnit="µs",
+        brief=True,
+    ),
+    Q(
+        "nanoseconds_per_subcontact_step",
+        "time of a step and a point of a joint",
+        "Mean on the clock of the machine.",
+        "the run",
+        group="cost",
+        ownUnit="ns",
     ),
     Q(
         "wall_clock_s",
         "time of the run",
-        "s",
         "On the clock of the machine, with set-up and files.",
         "the run",
         group="cost",
@@ -727,7 +661,6 @@ OF_CYCLES = (
     ("dissipated_J", "joints took", "J", 2, True),
     ("damped_J", "damping took", "J", 2, True),
 )
-#: Those by their entries in run.json.
 BY_KEY = {one.key: one for one in QUANTITIES}
 
 
@@ -736,8 +669,8 @@ def _damping(data):
 
 
 def found(data):
-    """All numbers that can be found from what a run has, by their entries in run.json. What needs a
-    column that curve.csv does not have, or a cycle of a run without one, is left out."""
+    """All numbers that a run has, by their entries in run.json. What needs a missing column of
+    curve.csv, or a cycle of a run without one, is left out."""
     entries = {}
     for one in QUANTITIES:
         if one.of and GROUPS[one.group][1](data):
@@ -751,8 +684,8 @@ def found(data):
 def ofJoint(column, prefixed, brief=False):
     """Numbers of a joint whose means are recorded, by their entries in run.json.
 
-    :param column: function of the name of a column of curve.csv that gives its values
-    :param prefixed: function of a name that gives it with that of the joint before it
+    :param column: gives the values of a column of curve.csv by its name
+    :param prefixed: gives a name with that of the joint before it
     :param brief: whether only those are wanted that the terminal shows
     """
     own = lambda head: column(prefixed(head))
@@ -761,26 +694,25 @@ def ofJoint(column, prefixed, brief=False):
 
 
 def known(data):
-    """All numbers of a run: those of run.json and, where it does not have them, those that can be
-    found."""
+    """All numbers of a run: those of run.json, and those that can be found beside them."""
     return {**found(data), **{k: v for k, v in data.run.items() if k in BY_KEY}}
 
 
 def shown(entries, *groups, brief=False):
-    """Those of some groups that have a name and a value, as they are shown.
+    """Numbers of some groups, or of all, that have a name and a value, as they are shown.
 
     :param entries: of :func:`known`, or of run.json
     :param brief: whether only those are wanted that a notebook shows
     """
     fine = lambda v: isNumber(v) and math.isfinite(v)
-    named = [q for q in QUANTITIES if q.name and q.brief >= brief]
-    named = [q for q in named if not groups or q.group in groups]
-    return [q.shown(entries[q.key]) for q in named if fine(entries.get(q.key))]
+    named = (q for q in QUANTITIES if q.name and q.brief >= brief)
+    wanted = (q for q in named if not groups or q.group in groups)
+    return [q.shown(entries[q.key]) for q in wanted if fine(entries.get(q.key))]
 
 
 def measures(run):
-    """Entries of run.json that measure the structure, for a row of study.csv: how it ended, and the
-    numbers of this list, those first that a notebook shows."""
+    """Entries of run.json for a row of study.csv: how the run ended, and the numbers that measure
+    the structure, those first that a notebook shows."""
     names = ["failure_mode", "collapsed", "ended"]
     for one in sorted(QUANTITIES, key=lambda one: not one.brief):
         if one.group == "joint":
@@ -792,10 +724,10 @@ def measures(run):
 
 
 def headline(run, end=False):
-    """The peak of a push and its bound in a line, from the entries of run.json; empty if there was
-    no push.
+    """The peak of a push and its bound in a line, from the entries of run.json; empty without a
+    push.
 
-    :param end: whether the force at the end stands there, too, and how many cycles there were
+    :param end: whether the force at the end stands in place of the bound
     """
     at = lambda force, moved: f"{run[force]:.4g} kN at {run[moved]:.4g} mm"
     keys = ("peak_at_both_ends_kN", "displacement_at_peak_mm")
@@ -815,8 +747,7 @@ def headline(run, end=False):
 
 
 def described():
-    """What run.json has of these, for its documentation: a list of reStructuredText for every
-    group."""
+    """The numbers in run.json as reStructuredText: a list for every group."""
     text = ""
     for group, (title, _) in GROUPS.items():
         lines = (
@@ -829,7 +760,5 @@ def described():
 
 
 def loadsOf(stages):
-    """The name of its load, by the number of a stage that has one, from the entries ``stages`` of
-    run.json."""
-    named = ((number, one.get("load")) for number, one in enumerate(stages, 1))
-    return {number: load[1] for number, load in named if load}
+    """Names of loads by the number of their stage, from the entries ``stages`` of run.json."""
+    return {n: one["load"][1] for n, one in enumerate(stages, 1) if one.get("load")}

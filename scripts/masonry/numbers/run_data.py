@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What the numbers of a run are found from: its rows, its force, its peak, its drift and the states
-of its push."""
+"""Rows, force, peak, drift and states of a push, from which the numbers of a run are found."""
 
 import functools
 import math
@@ -13,21 +12,17 @@ from ..errors import Refused
 from . import cracks, curves, loops
 from .files import readCurve, readRun
 
-# of the peak: a larger loss is a drop, a smaller one may be the scatter by single bricks at the toe
-LOST = 0.05
-# of the peak: where the force has fallen to it, a wall of masonry is said to have reached its
-# ultimate displacement
-FALL = 0.8
+LOST = 0.05  # of the peak: a smaller loss may be the scatter by single bricks at the toe
+FALL = 0.8  # of the peak: the force at the ultimate displacement of a wall
 MOVED, BASE, TOP = "displacement_mm", "base_shear_kN", "top_shear_kN"
 MASONRY = "masonry_displacement_mm"  # of the bricks at the pushed platen
 
 
 class RunData:
-    """What the numbers of a run are found from.
+    """A run from which its numbers are found.
 
-    :param run: entries of run.json, those that are no numbers of this list at least
-    :param column: function of the name of a column of curve.csv that gives its values, or None if
-        there is no such column
+    :param run: entries of run.json, at least those that are none of these numbers
+    :param column: gives the values of a column of curve.csv by its name, None if there is none
     :param joints: frame of the joints at the end, as in :mod:`masonry.numbers.cracks`; None: crack
         patterns are not measured
     :param height: of the recorded point above the base [m], in place of what run.json says
@@ -38,10 +33,10 @@ class RunData:
 
     @classmethod
     def read(cls, directory: FilePath, moved: str | None = None) -> "RunData":
-        """That of a folder of results. Raises Refused.
+        """The run of a folder of results. Raises Refused.
 
-        :param moved: name of a column of curve.csv whose displacements are those of the push, from
-            where it began; None: those of the pushed point
+        :param moved: column of curve.csv whose displacements are those of the push, from where it
+            began; None: those of the pushed point
         """
         curve = readCurve(directory)
         data = cls(readRun(directory), curve.get)
@@ -66,8 +61,7 @@ class RunData:
 
     @functools.cached_property
     def _stages(self):
-        """Loads of the stages, and their rows: lists of the load, the first row and the row after
-        the last."""
+        """The load of every stage, its first row and the row after its last."""
         found = self.run.get("stages") or []
         columns = (self.column(name) for name in (MOVED, "time_s"))
         count = len(next((values for values in columns if values is not None), ()))
@@ -76,8 +70,8 @@ class RunData:
 
     @functools.cached_property
     def pushes(self) -> list[tuple[int, int]]:
-        """Rows of the pushes, the first one and the one after the last: of the last push, and of
-        those along its line since another one."""
+        """The first row and the row after the last of the last push, and of those before it along
+        the same line without another one between."""
         pushed = [one for one in self._stages if one[0] and one[0][0] == "push"]
         others = [first for load, first, _ in pushed if load != pushed[-1][0]]
         since = max(others, default=-1)
@@ -87,8 +81,8 @@ class RunData:
 
     @functools.cached_property
     def rows(self) -> list[int]:
-        """Numbers of the rows of the push, from 0. If the run loads in no other way, what comes
-        before belongs to it, but not what comes after it, for example when the drive has let go."""
+        """Numbers of the rows of the push, from 0; in a run without other loads with those before
+        the push, but not those after it."""
         loads = [load for load, _, _ in self._stages if load]
         if self.pushes and all(load == loads[-1] for load in loads):
             return list(range(self.pushes[-1][1]))
@@ -117,29 +111,28 @@ class RunData:
         return "history" in self.run
 
     def carried(self, side: int = 1) -> np.ndarray:
-        """The force of the push [kN]: what both ends carry at once, in every row the one that is
-        less along the side. A wave that passes through is felt at one of them.
+        """The force of the push that both ends carry at once [kN], in every row the smaller one
+        along the side. A wave that passes through is felt at one end.
 
         :param side: 1, or -1 for the way back
         """
         return side * np.minimum(side * np.array(self[BASE]), side * np.array(self[TOP]))
 
     def peak(self, side: int = 1) -> int:
-        """Where this force is largest, a number of a row among those of the push; in loops on its
-        side of the displacement."""
+        """The row of the push where this force is largest; in loops on its side of the
+        displacement."""
         towards = side * self.carried(side)
         if self.isLooped:
             towards = np.where(side * np.array(self[MOVED]) >= 0, towards, -math.inf)
         return int(towards.argmax())
 
     def peakForce(self, side: int = 1) -> float:
-        """The force at the peak of a side [kN]."""
+        """[kN]"""
         return float(self.carried(side)[self.peak(side)])
 
     @property
     def pulse(self) -> float:
-        """Displacement of the drive within the first period of the structure [mm]; 0 if that is not
-        known."""
+        """Displacement of the drive within the first period [mm]; 0 if that is not known."""
         period, times = self.run.get("first_period_s"), self.column("time_s")
         if not period or times is None or len(self.rows) < 2:
             return 0.0
@@ -148,32 +141,26 @@ class RunData:
 
     @property
     def height(self) -> float | None:
-        """Height over which displacements of the push are drifts [m]; None if it is not known, or
-        if the push is not horizontal."""
+        """Height over which displacements of the push are drifts [m]; None if it is unknown or the
+        push not horizontal."""
         known = [self._height, self.run.get("drift_height_m"), self.run.get("recorded_height_m")]
         return next((h for h in known if isinstance(h, (int, float)) and 0 < h < math.inf), None)
 
     @functools.cached_property
     def ofDrift(self) -> list[float]:
-        """The displacements that are drifts over :attr:`height` [mm]: of the masonry where the
-        platen touches it, so that what the platen slips is no drift; of the pushed point where
-        there is no platen, or where another height is given.
-        """
+        """The displacements that are drifts over :attr:`height` [mm]: of the masonry at the platen,
+        without the slip of that; of the pushed point without a platen, or with another height."""
         own = self.column(MASONRY)
         return self[MOVED] if own is None or self._height else self[MASONRY]
 
     def at(self, values: Sequence[float], place: float | None) -> float | None:
-        """A value between rows, along a straight line. ``place``: a number of a row with a
-        fraction, or None."""
+        """A value between rows, linear; ``place``: a row number with a fraction, or None."""
         rows = np.arange(len(values))
         return None if place is None else float(np.interp(place, rows, values))
 
     def place(self, find: Callable[..., float | None]) -> float | None:
-        """Where a state is in the rows of the push, None if it is not reached or curve.csv does not
-        have its columns.
-
-        :param find: function that finds it
-        """
+        """Where a function finds a state in the rows of the push; None if the state is not reached
+        or curve.csv does not have its columns."""
         try:
             return find(self) if self.rows else None
         except LookupError:
@@ -191,8 +178,8 @@ class RunData:
         return next((self.rows.index(row) for row in found if row is not None), None)
 
     def fallenTo(self, share: float) -> float | None:
-        """Where the force has fallen to a share of its peak, after it; in loops on the envelope of
-        the positive side."""
+        """Where the force has fallen to a share of its peak; in loops on the envelope of the
+        positive side."""
         moved, force = np.array(self[MOVED]), self.carried(1)
         rows = loops.envelope(moved)[0] if self.isLooped else np.arange(len(moved))
         if not len(rows) or force[rows].max() <= 0:
@@ -213,7 +200,7 @@ class RunData:
 
     @functools.cached_property
     def sudden(self) -> tuple[float, float]:
-        """As of :func:`masonry.numbers.curves.suddenLoss`: that of the push with the largest."""
+        """The largest sudden loss of all pushes (see :func:`masonry.numbers.curves.suddenLoss`)."""
         columns = [self.whole(name) for name in (MOVED, TOP, BASE)]
         return max(
             curves.suddenLoss(*(values[slice(*push)] for values in columns)) for push in self.pushes
@@ -221,15 +208,15 @@ class RunData:
 
     @property
     def isOfControl(self) -> bool:
-        """Whether the displacements of the push are those of a control, on which its force does no
+        """Whether the recorded displacement is that of a control, on which the force does no
         work."""
         return bool(self.pushes) and any(
             len(load) > 3 for load, *_ in self._stages if load and load[0] == "push"
         )
 
     def work(self, workOf: Callable[[Any, Any], float]) -> float:
-        """A work of the base shear over the displacements of the push [J]. Raises LookupError if it
-        does none on these.
+        """A work of the base shear over the displacements of the push [J]. Raises LookupError if
+        these are of a control.
 
         :param workOf: function of displacements [mm] and forces [kN]
         """
@@ -244,8 +231,8 @@ class RunData:
 
     @functools.cached_property
     def stiffness(self) -> float:
-        """As of :func:`masonry.numbers.curves.stiffness`, of the force without the inertia of the
-        structure's own mass."""
+        """Initial stiffness (:func:`masonry.numbers.curves.stiffness`) of the force without the
+        inertia of the structure."""
         grown = self.run.get("velocity_grown_at_s") or 0.0
         ramp = next((n for n, time in enumerate(self["time_s"]) if time >= grown), 0)
         weight = self.run.get("base_weight") or curves.SHEAR
@@ -255,8 +242,8 @@ class RunData:
 
     def dropped(self, side: int = 1) -> tuple[float, float | None]:
         """Share of the peak that is lost at the end, and the first displacement after the peak with
-        less than 0.95 of it [mm], None if there is none; in loops along the envelope of a side,
-        positive outwards."""
+        less than 0.95 of it [mm] or None; in loops along the envelope of a side, positive
+        outwards."""
         moved, force = side * np.array(self[MOVED]), side * self.carried(side)
         if self.isLooped:
             rows = loops.envelope(self[MOVED])[0 if side > 0 else 1]
@@ -269,7 +256,7 @@ class RunData:
 
     @functools.cached_property
     def cycles(self) -> list[dict[str, Any]]:
-        """As of :func:`masonry.numbers.curves.cycleNumbers`, with rows of curve.csv."""
+        """See :func:`masonry.numbers.curves.cycleNumbers`; with rows of curve.csv."""
         found = curves.cycleNumbers(self.__getitem__, self.run["history"]["noise_mm"])
         for one in found:
             one["rows"] = [self.rows[n] for n in one["rows"]]

@@ -11,7 +11,7 @@ import re
 import socket
 
 from .. import folders
-from ..errors import Held
+from ..errors import FolderLocked
 from ..numbers.files import readWhole
 
 #: Files that a run writes, and those that are drawn of it; * is a number.
@@ -36,7 +36,7 @@ class Lock:
     The file ``run.lock`` says who holds it. After a kill it stays, and says that the files beside
     it are those of a run. Where the file system has no locks, its text alone counts.
 
-    :raises Held: if another run holds the folder; the message names its host and process
+    :raises FolderLocked: if another run holds the folder; the message names its host and process
     :raises OSError: if the folder cannot be written
     """
 
@@ -92,7 +92,7 @@ class Lock:
         if record:
             known = {"scene": "?", "host": "?", "process": "?", **record}
             who = "a run of {scene} on host {host}, process {process},".format(**known)
-        raise Held(
+        raise FolderLocked(
             f"{who} is writing to {os.path.dirname(self.path)}: wait for its end, or name another"
             f" folder with --out; if it is gone, remove {LOCK} there"
         )

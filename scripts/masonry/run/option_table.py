@@ -8,7 +8,7 @@ import contextlib
 from dataclasses import dataclass, replace
 from typing import Annotated, Any
 
-from ..arguments import Kind, flag, number, oneOf, text, whole
+from ..arguments import Validator, flag, number, oneOf, text, whole
 
 
 @dataclass(frozen=True)
@@ -16,7 +16,7 @@ class Option:
     """An option of all scenes."""
 
     name: str  # as Python has it: dt_fraction is --dt-fraction
-    kind: Kind = text  # of its values, as in masonry.arguments
+    kind: Validator = text  # of its values, as in masonry.arguments
     default: Any = None  # None: the scene says it, or there is none
     value: str | None = None  # what stands for its value in --help
     several: bool = False  # whether it can be given several times
@@ -55,7 +55,7 @@ class Option:
         parser.add_argument(asOption(self.name), **settings)
 
 
-def reading(kind: Kind) -> Any:
+def reading(kind: Validator) -> Any:
     """The function by which argparse reads values of a kind from texts. It raises
     argparse.ArgumentTypeError."""
 

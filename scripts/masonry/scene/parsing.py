@@ -7,11 +7,10 @@ import difflib
 import os
 import re
 
-from ..arguments import flag, isNumber, oneOf, shown
-from ..arguments import plain as plainNumber
+from ..arguments import asFloat, flag, isNumber, oneOf, shown
 from ..background import reportRefusal
 from ..errors import NotResumed, Refused, refuse
-from ..terminal import plain, say
+from ..terminal import say, withoutMarkup
 from ..run import batch
 from ..run.checkpoints import Saved
 from ..run.option_table import OPTIONS, asOption, optionsWith
@@ -73,7 +72,7 @@ class Parser(argparse.ArgumentParser):
             return action.default
 
     def _print_message(self, message, file=None):
-        super()._print_message(plain(message or ""), file)
+        super()._print_message(withoutMarkup(message or ""), file)
 
     def error(self, message):
         refused = Refused("\n".join([*self.problems, message]))
@@ -235,7 +234,7 @@ def _value(action, value):
 
 def _typed(action, value):
     if isNumber(value):
-        value = str(plainNumber(value))
+        value = str(asFloat(value))
     elif isinstance(value, os.PathLike):
         value = os.fspath(value)
     if not isinstance(value, str):

@@ -11,7 +11,7 @@ from typing import Annotated, Any
 
 from yade import O, Vector3
 
-from ..arguments import Direction, Freedoms, Level, isNumber, kindOf, number, shown
+from ..arguments import Direction, Freedoms, Level, isNumber, number, shown, validatorOf
 from ..errors import Refused
 from ..model.load_names import nameOf
 from .bounds import findBound
@@ -204,7 +204,7 @@ def together(value, first):
         )
     kinds = {True: (MovingPlaten, Stress), False: (Loaded, Force)}
     return {
-        kindOf(target)(one, first): kindOf(load)(amount, first)  # type: ignore[misc]
+        validatorOf(target)(one, first): validatorOf(load)(amount, first)  # type: ignore[misc]
         for one, amount in value.items()
         for target, load in [kinds[isNumber(amount)]]
     }

@@ -19,11 +19,11 @@ from ..arguments import (
     Direction,
     FilePath,
     Numbers,
+    asFloat,
     isNumber,
     listOf,
     number,
     oneOf,
-    plain,
     shown,
     whole,
 )
@@ -56,7 +56,7 @@ def pushed(value: Any, first: Any = None) -> Any:
     if isinstance(value, dict) and value:
         for target, share in value.items():
             kindOfLoaded(target, first)
-            if not isNumber(share) or not 0 < plain(share) < 1e9:
+            if not isNumber(share) or not 0 < asFloat(share) < 1e9:
                 raise ValueError(
                     f"{shown(share)}, the share of {target.name}, must be a number above 0"
                 )
@@ -84,8 +84,8 @@ def patternOf(scene: Any, value: Any, direction: Any, args: Any) -> Any:
     if isinstance(value, Target):
         return value
     if isinstance(value, dict):
-        whole = sum(map(plain, value.values()))
-        shares = {target: plain(share) / whole for target, share in value.items()}
+        whole = sum(map(asFloat, value.values()))
+        shares = {target: asFloat(share) / whole for target, share in value.items()}
         name = " and ".join(f"{share:.4g} {target.name}" for target, share in shares.items())
         return Pattern(name, tuple((t.body, t.point, s) for t, s in shares.items()))
     name = value if isinstance(value, str) else "a pattern"
@@ -141,12 +141,12 @@ def _shapeOf(model, value, direction, args):
             found = value(*body.state.refPos)
         except Exception as error:  # of the user's own
             found = f"{type(error).__name__}: {error}"
-        if not isNumber(found) or not abs(plain(found)) < 1e9:
+        if not isNumber(found) or not abs(asFloat(found)) < 1e9:
             raise Refused(
                 f"push: the pattern at {tuple(body.state.refPos)} m is {shown(found)}, and must be"
                 " a number"
             )
-        return plain(found)
+        return asFloat(found)
 
     return of
 

@@ -10,7 +10,7 @@ from yade import O, Vector3
 from .._masonry import loadScene, saveScene
 from ..arguments import oneOf
 from ..model import period
-from ..model.motion import FAR, REST
+from ..model.motion import REST, SWUNG
 from ..errors import Collapsed, Refused
 from ..terminal import say
 from ..scene.resuming import saidBefore
@@ -116,7 +116,7 @@ def waitForRest(scene, at, longest, grow, over=0.0, record=True, buckling=False)
     ramp = max(growthTime(scene), over, PERIODS * slowest)
     growing = max(1, int(ramp / O.dt))
     every = max(n for n in CHECK_INTERVALS if n == 1 or n <= growing / 3)
-    swinging = SWINGING * scene.args.density_scaling**0.5 * (model.motion.far == FAR)
+    swinging = SWINGING * scene.args.density_scaling**0.5 * (model.motion.far == SWUNG)
     longest = longest or max(20 * ramp, WAITED * slowest, swinging)
     if math.isinf(O.dt):
         raise Refused("every brick is held, so nothing can move")
@@ -132,7 +132,7 @@ def waitForRest(scene, at, longest, grow, over=0.0, record=True, buckling=False)
         running.advance(every)
         at.done += every
         if at.done % EVERY:
-            model.motion.checkFall(FAR)
+            model.motion.checkFall(SWUNG)
             continue
         missing, moving = model.supports.unrest()
         grown = at.done > (1.2 if over else 1.1) * growing

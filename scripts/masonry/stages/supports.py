@@ -8,7 +8,7 @@ from typing import Annotated, Any, Callable, Union, cast
 from yade import O, Vector3
 
 from ..arguments import Freedoms, number, orFunction
-from ..model.motion import FAR
+from ..model.motion import SWUNG
 from ..errors import Refused, checkPlane
 from ..scene.history import MOST
 from ..scene.loads import Force
@@ -58,7 +58,7 @@ def letGo(scene, target, axes, force):
         if drive:
             drive.driven, drive.velocity = False, 0
             drive.force = Vector3(*(force or (0, 0, 0)))
-            scene.model.motion.far = FAR  # what it held swings back
+            scene.model.motion.far = SWUNG  # what it held swings back
         else:
             state.blockedDOFs = state.blockedDOFs.replace(axis, "")
     return DONE

@@ -11,7 +11,7 @@ import zlib
 
 import numpy as np
 
-from masonry.terminal import plain
+from masonry.terminal import withoutMarkup
 from .. import painting
 from masonry.numbers.cracks import CRACK, CRUSHED, DAMAGED
 from masonry.numbers.files import filesOf
@@ -116,12 +116,12 @@ def _head(model, magnification, curve):
     """What is said about a run, and how it is seen first."""
     sight = model.sight(magnification)
     return {
-        "title": plain(model.title),
+        "title": withoutMarkup(model.title),
         "frames": [
             {
                 "time": one["time"],
-                "stage": one["stage"] and plain(one["stage"]),
-                "values": list(map(plain, one["values"])),
+                "stage": one["stage"] and withoutMarkup(one["stage"]),
+                "values": list(map(withoutMarkup, one["values"])),
             }
             for one in model.captions(curve)
         ],

@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The lines between the stones of a drawing, straightened so that both stones keep the same line.
+"""The lines between the stones of a drawing, straightened alike for both stones.
 
-Cells of a Voronoi diagram give lines of many short pieces, which meet at nodes. At each node the
-two lines that go on most nearly straight are one line, so that a bed joint stays straight where
-head joints meet it.
+Cells of a Voronoi diagram give lines of many short pieces between nodes. At each node the two lines
+that go on most nearly straight are one, so that a bed joint stays straight at head joints.
 """
 
 from collections import defaultdict
@@ -17,10 +16,10 @@ def straightened(cells, fine):
     """The outlines of stones, with as few corners as a tolerance allows.
 
     :param cells: sides of the cells: ``places`` (n, 2) [m], ``ends``, numbers of places (m, 2), and
-        ``labels`` of what is left and right of them (m, 2)
+        ``labels`` left and right of them (m, 2)
     :param fine: the tolerance [m]
-    :returns: dict from the label to the numbers of its corners, counter-clockwise; the places of
-        all corners; and the outlines of holes in the wall
+    :returns: numbers of corners by label, counter-clockwise; the places of all corners; and the
+        outlines of holes in the wall
     """
     ends, places = _contracted(cells, fine)
     rings, holes = _rings(ends, cells.labels, places)
@@ -47,8 +46,7 @@ def straightened(cells, fine):
 
 
 def _shallow(rings, places, between, fine):
-    """Corners at which a stone is concave by less than the tolerance: where they come to lie
-    between their neighbours."""
+    """Corners that are concave by less than the tolerance, as places between neighbours."""
     found = {}
     for ring in rings.values():
         good = withoutStraight(places[ring], numbers=True) if len(ring) > 2 else []
@@ -62,8 +60,8 @@ def _shallow(rings, places, between, fine):
 
 
 def _contracted(cells, fine):
-    """The sides with nodes nearer to each other than two tolerances made one, and the places. A
-    node moves by one at most."""
+    """Sides and places with nodes nearer than two tolerances made one; a node moves by one at
+    most."""
     places, first = cells.places.copy(), np.arange(len(cells.places))
     air = set(cells.ends[(cells.labels < 0).any(axis=1)].ravel().tolist())
     done, lines = set(), _lines(cells.ends, places)
@@ -79,8 +77,8 @@ def _contracted(cells, fine):
 
 
 def _rings(ends, labels, places):
-    """Numbers of the places around each stone, counter-clockwise, of the largest of its cells; and
-    the outlines of holes."""
+    """Numbers of the places around the largest cell of each stone, counter-clockwise; and the
+    outlines of holes."""
     following = defaultdict(lambda: defaultdict(list))
     for (v, w), (left, right) in zip(ends.tolist(), labels.tolist()):
         if v != w:
@@ -109,8 +107,7 @@ def _rings(ends, labels, places):
 
 
 def _lines(ends, places):
-    """Lines from node to node, and closed ones from their lowest left corner to it again: lists of
-    numbers."""
+    """Lines from node to node, and closed ones from their lowest left corner: lists of numbers."""
     beside = defaultdict(dict)
     for v, w in ends.tolist():
         if v != w:
@@ -152,7 +149,7 @@ def _joined(lines, places, fine):
             _, a, i, b, j = min(pairs)
             mates[a, i], mates[b, j] = (b, j), (a, i)
     left = dict.fromkeys(range(len(lines)))
-    # first those that begin at an end, then those that come back to where they began
+    # first open ones, then closed ones
     begins = [(k, side) for k in left for side in (0, 1) if (k, side) not in mates]
     for k, side in begins + [(k, 0) for k in left]:
         if k not in left:
@@ -169,7 +166,7 @@ def _joined(lines, places, fine):
 
 
 def _direction(points, fine):
-    """Unit vector from the start of a line to where it is two tolerances from there."""
+    """Unit vector from the start of a line to its point two tolerances away."""
     far = np.linalg.norm(points - points[0], axis=1)
     n = int(np.argmax(far > 2 * fine)) or len(points) - 1
     return (points[n] - points[0]) / max(far[n], 1e-300)
@@ -194,9 +191,9 @@ def _corners(points, fine):
 
 
 def _onLines(places, between):
-    """The places, with those that lie on a line between two others put there.
+    """The places, with some put on the line between two others.
 
-    :param between: number -> numbers of the two others, and the share of the distance
+    :param between: by number those of the two others, and the share of the distance
     """
     if not between:
         return places

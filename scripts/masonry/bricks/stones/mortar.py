@@ -8,20 +8,17 @@ import numpy as np
 from ..checks import components, where
 from ..geometry import Solids, clip, measures
 
-#: Faces look at each other across mortar if the cosine between their outward normals is below this:
-#: within 20°.
+#: Cosine between outward normals of faces that look at each other across mortar: within 20°.
 FACING = -np.cos(np.radians(20))
 
-#: Two faces with mortar between: (solid, face) of each, area [m²] that they share, middle of the
-#: mortar there [m], and the normal of its middle plane from the first to the second.
+#: Two faces with mortar between: (solid, face) of each, common area [m²], and middle [m] and normal
+#: of the mortar from the first to the second.
 _Gap = namedtuple("_Gap", "one two area middle normal")
 
 
 def closed(solids, mortar, problems):
-    """Corners of the solids after all faces with mortar between them have moved to its middle.
-
-    Faces that look at each other, and all faces in line with them, such as those of a bed joint,
-    come into one plane.
+    """Corners of the solids after all faces with mortar between them, and those in line with them,
+    as of a bed joint, have moved to its middle plane.
 
     :param solids: corners of each
     :param mortar: largest thickness of a joint [m]
@@ -93,7 +90,7 @@ def _gaps(solids, mortar, one, two):
 
 
 def _grown(solids, n, corners, planes):
-    """Corners of a solid some of whose faces have other planes; as they are if none has."""
+    """Corners of a solid some of whose faces have new planes."""
     count = len(solids.of(n)[0].faces)
     if not any((n, face) in planes for face in range(count)):
         return corners

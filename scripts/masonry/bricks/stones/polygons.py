@@ -5,9 +5,7 @@ import numpy as np
 
 from ..geometry import FLAT
 
-#: A corner is straight if it is no farther from the line between its neighbours, over the size of
-#: the polygon.
-STRAIGHT = 2 * FLAT
+STRAIGHT = 2 * FLAT  # distance of a straight corner from its line over the size of the polygon
 
 
 def inside(points, ring):
@@ -35,15 +33,14 @@ def area(ring):
 
 
 def turns(ring):
-    """How far each corner is out of the line between its neighbours [m]; negative: into the
-    polygon."""
+    """How far each corner is out of the line between its neighbours [m], negative inwards."""
     before, after = np.roll(ring, 1, axis=0), np.roll(ring, -1, axis=0)
     base = np.maximum(np.linalg.norm(after - before, axis=1), 1e-300)
     return np.cross(ring - before, after - ring) / base
 
 
 def withoutStraight(ring, numbers=False):
-    """A polygon without its corners that are none, or the numbers of the other ones."""
+    """A polygon without straight corners, or the numbers of the others."""
     size, good = np.linalg.norm(np.ptp(ring, axis=0)), np.arange(len(ring))
     while len(good) > 2:
         straight = abs(turns(ring[good]))
@@ -54,8 +51,7 @@ def withoutStraight(ring, numbers=False):
 
 
 def convexParts(ring):
-    """Convex polygons that make up one that need not be. Every cut begins at a corner that is not
-    convex."""
+    """Convex polygons that make up a polygon. Every cut begins at a concave corner."""
     ring = withoutStraight(ring)
     bent = np.flatnonzero(turns(ring) < 0)
     if not len(bent):
@@ -65,16 +61,14 @@ def convexParts(ring):
 
 
 def _worth(parts):
-    """How good a cut is: first by the corners that stay concave, then by the thickness of the
-    thinner part."""
+    """Worth of a cut: few corners stay concave, then the thinner part is thick."""
     concave = sum((turns(withoutStraight(part)) < 0).sum() for part in parts)
     thin = min(area(p) / np.linalg.norm(np.ptp(p, axis=0)) for p in parts)
     return -concave, thin
 
 
 def _cuts(ring, bent):
-    """Pairs of polygons into which a polygon is cut from a corner to another one, or straight on to
-    the opposite side."""
+    """Pairs of polygons, cut from a corner to another one, or straight on to a side."""
     following = np.roll(ring, -1, axis=0)
     sides = following - ring
     for n in bent:

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Walls of natural stone, squared or irregular, whose interlocking is as good as a surveyor found
-it."""
+"""Walls of natural stone, squared or irregular, with a surveyed interlocking."""
 
 import math
 from random import Random
@@ -13,33 +12,29 @@ from ...terminal import say
 from ..blocks import Block, Bricks, Length, Sides, refuse
 from ..geometry import prism
 
-#: Walls that are drawn until one has the trace that is asked for, and how near it must come [-].
+#: Walls that are drawn until one has the trace that is asked for, within this share [-].
 DRAWS, NEAR = 30, 0.03
 
-#: The largest scatter of the joints, over a stone's length or height [-]. Beyond it stones are no
-#: longer laid on beds.
-MOST_SCATTER = 0.4
+#: Largest scatter of joints over a stone's length or height, with stones still on beds [-].
+MAX_SCATTER = 0.4
 
-#: The shortest piece of a squared stone, over the length of a stone [-].
-SHORTEST = 0.3
+SHORTEST = 0.3  # piece of a squared stone, over the length of a stone [-]
+SAME = 1e-9  # distance of vertices that are one, over the size of the wall [-]
 
-#: Vertices of stones that are no further apart than this share of the wall are one [-].
-SAME = 1e-9
-
-#: Where the points of the stones at both ends of a wall stand, in lengths of a stone from there
-#: [-]. As they stand above each other, the joints between these stones are level, as masons dress
-#: them: a wedge would be squeezed out.
+#: Distance of the points of end stones from the ends of a wall, over the length of a stone [-]. The
+#: same for all, it makes level joints between these stones, as masons dress them: a wedge would be
+#: squeezed out.
 END = 0.3
 
 #: The least overlap of two head joints, and the shortest side of an irregular stone, over the size
-#: of a stone [-]. Shorter ones are closed: a joint that is so small would end a run as soon as its
-#: stones have slid along it.
+#: of a stone [-]. Shorter ones are closed: so small a joint ends a run when its stones have slid
+#: along it.
 LEAST = 0.12
 
-MOST_STONES = 20_000
+MAX_STONES = 20_000
 
 Trace = Annotated[float, number("", 1, 10)]
-Scatter = Annotated[float, number("", 0, MOST_SCATTER)]
+Scatter = Annotated[float, number("", 0, MAX_SCATTER)]
 
 
 @validated
@@ -61,21 +56,19 @@ def StoneWall(
         StoneWall(1.0, 1.2, unit=(0.20, 0.20, 0.15), scatter=0.1)  # ashlar, nearly a running bond
         StoneWall(1.6, 1.6, unit=(0.30, 0.40, 0.10), pattern="irregular", trace=1.1, seed=7)
 
-    Stones contain their mortar: they meet in the middle of the joint. Squared stones lie in level
-    courses. Irregular ones are the Voronoi cells of points, with lengths measured in lengths of a
-    stone and heights in heights of a stone, so that all are convex. In both the middle is a running
+    Stones meet in the middle of the mortar. Squared stones lie in level courses. Irregular ones are
+    the Voronoi cells of points, in lengths and heights of a stone. In both the mean is a running
     bond; ``scatter`` moves its head joints, or its points.
 
-    :param length: [m]; ``height``: likewise. Courses and stones are stretched by the little that
-        makes them fill the wall
+    :param length: [m]; ``height``: [m]. Courses and stones are stretched to fill the wall
     :param unit: mean length of a stone, thickness of the wall, and mean height of a stone [m]
     :param scatter: largest displacement of a head joint or a point, over the length and the height
         of a stone [-]. None: 0.2, and with ``trace`` another one in every draw
     :param trace: length of the line of minimum trace over the height of the wall [-], see
-        :func:`leastTrace`. Up to 30 walls are drawn, those of squared stones after the running bond
-        itself with overlaps from none to half a stone: the first within 3 % of it is taken, else
-        the nearest, and a note says how near it is
-    :param seed: of the draws; another one is another wall of the same kind
+        :func:`leastTrace`. Of up to 30 walls, those of squared stones after the running bond itself
+        with overlaps from none to half a stone, the first within 3 % is taken, else the nearest,
+        and a note says how near it is
+    :param seed: of the draws
     """
     problems = []
     for what, stone, wall in (("length", unit[0], length), ("height", unit[2], height)):
@@ -87,11 +80,11 @@ def StoneWall(
     counts = length / unit[0], round(height / unit[2])
     if pattern == "irregular":
         counts = round(counts[0]), counts[1]
-    if counts[0] * counts[1] > MOST_STONES:
+    if counts[0] * counts[1] > MAX_STONES:
         refuse(
             "stone wall",
             [
-                f"{counts[0] * counts[1]:.3g} stones are more than {MOST_STONES}: are all lengths"
+                f"{counts[0] * counts[1]:.3g} stones are more than {MAX_STONES}: are all lengths"
                 " in m?"
             ],
         )
@@ -100,7 +93,7 @@ def StoneWall(
     for n in range(1 if trace is None else DRAWS):
         own, overlap = scatter, 0.5
         if own is None:
-            own = MOST_SCATTER / 2 if trace is None else MOST_SCATTER * draw.random()
+            own = MAX_SCATTER / 2 if trace is None else MAX_SCATTER * draw.random()
         if pattern == "squared" and trace is not None:
             # the running bond itself comes first
             own, overlap = (own, 0.5 * draw.random()) if n else (0.0, 0.5)
@@ -128,10 +121,9 @@ def StoneWall(
 
 @validated
 def leastTrace(bricks: Annotated[Any, isA(Bricks)]) -> float:
-    """The line of minimum trace of a wall along x, the shortest way through its joints from its
-    foot to its top, over its height [-]. It is 1 if a straight vertical joint goes through, and
-    grows with the interlocking of the stones; it is inf if no way goes through because a course is
-    one stone."""
+    """The line of minimum trace of a wall along x, the shortest line through its joints from foot to
+    top, over its height [-]: 1 if a straight vertical joint goes through, more with interlocking
+    stones, inf if a course is one stone."""
     from scipy.sparse import csr_array
     from scipy.sparse.csgraph import dijkstra
     from scipy.spatial import cKDTree
@@ -152,8 +144,7 @@ def leastTrace(bricks: Annotated[Any, isA(Bricks)]) -> float:
 
 
 def _joints(bricks):
-    """Ends (x, z) of the joints of a wall along x, (n, 2, 2) [m]. What two pieces of a brick share
-    is no joint."""
+    """Ends (x, z) of the joints between bricks of a wall along x, (n, 2, 2) [m]."""
     found = []
     for joint in bricks.joints():
         x, y, z = joint.normal
@@ -189,7 +180,7 @@ def _irregular(counts, overlap, scatter, draw):
     columns, courses = counts
     points, rows = [], []
     for row in range(courses):
-        # a course begins and ends with what the overlap leaves of a stone
+        # at the ends of a course is what the overlap leaves of a stone
         shift = overlap * (row % 2)
         ends = [0.0, *(k + shift for k in range(0 if shift else 1, columns)), columns]
         inner = [(a + b) / 2 for a, b in zip(ends[1:], ends[2:-1])]
@@ -200,7 +191,7 @@ def _irregular(counts, overlap, scatter, draw):
             points.append([min(max(a, 0.1), most - 0.1) for a, most in zip(at, counts)])
             rows.append(row)
     points = np.array(points)
-    # mirrored points make the sides of the wall those of its stones
+    # mirrored points make the cells end at the sides of the wall
     sides = [(axis, at) for axis in (0, 1) for at in (0, counts[axis])]
     sites = [points]
     for axis, at in sides:
