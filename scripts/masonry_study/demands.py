@@ -11,7 +11,7 @@ which it fell it counts as infinite, which is on the safe side and matters only 
 other levels than each other.
 
 Rows that failed or are missing are left out, and at a level at which fewer than three records are
-known there is no quantile. This module needs no YADE.
+known there is no quantile.
 """
 
 import math

@@ -26,8 +26,6 @@ dispersion.
 With a = 1/β and b = ln(θ)/β, ln L is concave, so it has one maximum, and the set of likely values
 is convex: its edge is found along rays. The probability Φ(a ln x - b) of reaching the limit at x
 has its band from the same edge.
-
-This module needs no YADE.
 """
 
 import html

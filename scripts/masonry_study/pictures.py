@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Pictures of a study, for print. This module needs no YADE.
+"""Pictures of a study, for print.
 
 Each function takes numbers and writes one PNG file of 6 to 7 inches at 200 dots an inch. ``inputs``
 is a dict of the name of a varied property -> its values, one a row, and ``label`` says what the

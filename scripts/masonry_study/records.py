@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The rows of a study, read from its folder as :mod:`masonry_study.gathering` leaves it. This
-module needs no YADE."""
+"""The rows of a study, read from its folder as :mod:`masonry_study.gathering` leaves it."""
 
 import contextlib
 import csv
@@ -29,10 +28,7 @@ def _table(path):
     return dict(zip(head, map(list, zip(*lines))))
 
 
-CURVE = (
-    "displacement_mm",
-    "base_shear_kN",
-)  # columns of the curves that are usually compared
+CURVE = "displacement_mm", "base_shear_kN"  # columns of the curves that are usually compared
 #: Measures of every run, which nobody studies.
 IN_EVERY_RUN = {"collapsed", "ended", "energy_balance_error", "energy_made"}
 
@@ -44,8 +40,8 @@ class Record:
     """
 
     def __init__(self, directory):
-        #: its path, and texts of every column by its name
         self.directory = directory
+        #: texts of every column by its name
         self.cells = _table(os.path.join(directory, CSV))
         names = list(self.cells)
         #: names of what varied, and of the numbers of a run

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""How much every varied property decides: changes, rank correlations and Sobol indices. This module
-needs no YADE.
+"""How much every varied property decides: changes, rank correlations and Sobol indices.
 
 Everything here is found from the rows that a study has, whatever their design, with varied
 properties that are drawn independently of each other. OpenTURNS fits the polynomials.

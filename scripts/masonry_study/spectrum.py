@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The response of a linear oscillator to a record: spectral acceleration. This module needs no
-YADE.
+"""The response of a linear oscillator to a record: spectral acceleration.
 
 An oscillator with the angular frequency ω = 2π/T and the share ζ of critical damping, whose base
 moves with the acceleration a(t), has the displacement u against its base with

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Statistics of the rows of a study, each with its confidence interval. This module needs no YADE.
+"""Statistics of the rows of a study, each with its confidence interval.
 
 All intervals are those of independent rows. Rows of a Latin hypercube or of a Sobol sequence cover
 the space more evenly than independent ones, so that a mean is then better known than its interval
