@@ -11,7 +11,7 @@ On the command line::
 
 and in Python, also where there is no YADE::
 
-    from masonry import capacity
+    import masonry_capacity as capacity
 
     curve = capacity.bilinearOf("results/wall_comp4", rule="en1998")
     system = capacity.equivalent(mass=30e3, gamma=1.0)                      # [kg], [-]
@@ -19,14 +19,11 @@ and in Python, also where there is no YADE::
     found = capacity.demand(curve, system, spectrum)
     found.targetDisplacement, found.ductility, found.holds, found.verdict()
 
+- :mod:`masonry_capacity.bilinear_curve`: the bilinear curve of a push, and its drifts
 - :mod:`masonry_capacity.spectra`: elastic spectra of EN 1998-1:2004, and from files
-- :mod:`masonry_capacity.n2`: the equivalent system, and the target displacement by the N2 method of
-  EN 1998-1:2004, annex B
-- :mod:`masonry_capacity.domains`: the N-V domain of a pier, by limit analysis, with runs as points
-- :mod:`masonry_capacity.report`: all of that as files in a folder of results;
-  :mod:`masonry_capacity.figure` draws them
-
-Bilinear curves themselves are :mod:`masonry_capacity.bilinear_curve`.
+- :mod:`masonry_capacity.n2`: the equivalent system, and the target displacement by the N2 method
+- :mod:`masonry_capacity.domains`: the N-V domain of a pier, with runs as points
+- :mod:`masonry_capacity.report`: the files of all that, which :mod:`masonry_capacity.figure` draws
 
 **What the equivalent system is.** The structure is one mass on a spring: it moves in one shape,
 that of the push, and keeps that shape after it yields. The spring is the bilinear curve of the

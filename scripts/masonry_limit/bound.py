@@ -163,7 +163,7 @@ class Bound:
         states[c.joint[(opening > least) & (opening > ofSlide)]] = "opens"
         return states
 
-    def sentence(self, load: str, unit: str, digits: int = 4) -> str:
+    def sentence(self, load: str, unit: str) -> str:
         """What was found, as a sentence.
 
         :param load: name of the live load
@@ -180,7 +180,7 @@ class Bound:
             if not self.settled:
                 what += f"; {100 * self.overstressed:.1g} % of the forces are above friction"
         return (
-            f"limit analysis: {load} {self.factor:.{digits}g} {unit} ({what}); joints:"
+            f"limit analysis: {load} {self.factor:.4g} {unit} ({what}); joints:"
             f" {counts or 'none moves'}"
         )
 

@@ -76,7 +76,7 @@ def test_a_block_falls_at_the_levels_of_housner_and_no_row_above_is_run(whole):
         fallen = fallen and level != LEVELS[0]
         assert row["status"] == ("above collapse" if fallen else "ended")
         assert float(row["PGA_g"]) == level
-        assert float(row["scale"]) == pytest.approx(level / 0.5)
+        assert float(row["scale"]) == approx(level / 0.5)
         if fallen:
             assert row["collapsed"] == row[MOVED] == ""
             assert not (out / "rows" / row["run"]).exists()
@@ -94,7 +94,7 @@ def test_rotations_are_those_of_housner(whole):
         share, falls = housner(PULSES[row["record"]], level)
         if row["status"] == "ended" and not falls:
             # about a millimetre is of the joint
-            near = pytest.approx(0.25 * share, rel=0.06, abs=1.5e-3 if share else 1e-3)
+            near = approx(0.25 * share, rel=0.06, abs=1.5e-3 if share else 1e-3)
             assert 1e-3 * abs(float(row[MOVED])) == near
             compared += share > 0
     assert compared == 3
@@ -117,8 +117,8 @@ def test_the_report_has_curves_and_a_fragility(whole, capsys):
     assert (function.get("id"), imls.get("imt"), params.get("ls")) == ("out", "PGA", "collapse")
     assert float(imls.get("maxIML")) == LEVELS[-1]
     mean, deviation = (float(params.get(name)) for name in ("mean", "stddev"))
-    assert math.log1p((deviation / mean) ** 2) == pytest.approx(fit.dispersion.value**2, rel=1e-3)
-    assert mean**2 / math.hypot(mean, deviation) == pytest.approx(fit.median.value, rel=1e-3)
+    assert math.log1p((deviation / mean) ** 2) == approx(fit.dispersion.value**2, rel=1e-3)
+    assert mean**2 / math.hypot(mean, deviation) == approx(fit.median.value, rel=1e-3)
     assert report.main([str(out), "--limit", "30", "--no-pictures"]) == 0
     said = capsys.readouterr().out
     assert "shake 2 largest displacement of corner x [mm] reaches 30" in said
@@ -193,8 +193,8 @@ def planned(tmp_path, **changes):
 def test_levels_scale_every_record_and_scales_leave_them(tmp_path):
     found = planned(tmp_path).rows()
     assert [(r["record"], r["scale"]) for r in found[:5]] == [
-        *(("records/long.txt", pytest.approx(level / 0.5)) for level in LEVELS),
-        ("records/middle.txt", pytest.approx(0.4)),
+        *(("records/long.txt", approx(level / 0.5)) for level in LEVELS),
+        ("records/middle.txt", approx(0.4)),
     ]
     found = planned(tmp_path, levels=None, scales=[1, 2.5]).rows()
     assert [r["scale"] for r in found] == [1.0, 2.5] * 3
@@ -206,7 +206,7 @@ def test_a_spectral_acceleration_is_reached_by_every_record(tmp_path):
 
     for (motion, scale), level in zip(made.ida.rows(), LEVELS * 3):
         scaled = [scale * a for a in motion.values]
-        assert spectralAcceleration(scaled, motion.every, 0.5) == pytest.approx(9.81 * level)
+        assert spectralAcceleration(scaled, motion.every, 0.5) == approx(9.81 * level)
     assert made.describe()["ida"]["measure"] == "Sa_0.5s_g"
     assert Sa(0.5, 0.02).name == "Sa_0.5s_2%_g"
 
@@ -228,14 +228,14 @@ def test_three_components_are_one_record(tmp_path):
     made = planned(tmp_path, records=[triple, "long.txt"], unit="g", every=0.01)
     first, second = made.ida.read("")
     assert (first.name, second.name, second.every) == ("quake", "long", 0.001)
-    assert first.intensity == pytest.approx(math.sqrt(0.4 * 0.9))
+    assert first.intensity == approx(math.sqrt(0.4 * 0.9))
     assert len(made.ida.doubts()) == 4  # none of the components ends at rest
     path = tmp_path / "kept.txt"
     path.write_text(first.text)
     from masonry.scene.ground import readRecord
 
     assert readRecord(str(path), None) == (first.values, 0.01)
-    assert first.values[1] == pytest.approx([3.924, 8.829, 19.62])
+    assert first.values[1] == approx([3.924, 8.829, 19.62])
 
 
 def test_records_of_one_name_are_named_apart(tmp_path):
@@ -246,7 +246,7 @@ def test_records_of_one_name_are_named_apart(tmp_path):
     assert [m.name for m in made.ida.read("")] == ["el_centro", "el_centro_2"]
 
 
-@pytest.mark.parametrize(
+@mark.parametrize(
     "changes, message",
     [
         (dict(levels=None), "give either levels, in g of the measure, or scales"),
@@ -277,14 +277,14 @@ def test_a_plan_that_cannot_be_is_refused(tmp_path, changes, message):
     (tmp_path / "flat.dat").write_text("# unit: g\n0 0\n0.01 0\n")
     (tmp_path / "weak.dat").write_text("0 0\n0.01 0.4\n")
     (tmp_path / "odd.dat").write_text("0 0\n0.01 x\n")
-    with pytest.raises(Refused, match=message):
+    with raises(Refused, match=message):
         planned(tmp_path, **changes)
 
 
 def test_the_unit_of_a_study_is_for_files_that_do_not_say_theirs(tmp_path):
     (tmp_path / "weak.dat").write_text("0 0\n0.01 0.4\n")
     made = planned(tmp_path, records=["weak.dat", "long.txt"], unit="g")
-    assert [m.intensity for m in made.ida.read("")] == pytest.approx([0.4, 0.5])
+    assert [m.intensity for m in made.ida.read("")] == approx([0.4, 0.5])
 
 
 def test_rows_of_one_record_follow_each_other():
@@ -371,8 +371,8 @@ def three(tmp_path):
 
 def test_collapse_counts_as_an_infinite_demand(three):
     demands = Demands(Record(three))
-    assert demands.quantiles(0.3) == pytest.approx([1.32, 2.0, 2.68])
-    assert demands.quantiles(0.6) == [pytest.approx(4.64), 6.0, inf]
+    assert demands.quantiles(0.3) == approx([1.32, 2.0, 2.68])
+    assert demands.quantiles(0.6) == [approx(4.64), 6.0, inf]
     assert demands.quantiles(0.9) == [inf, inf, inf]  # 12, infinite, infinite
     assert demands.quantiles(0.9, [0.0]) == [12.0]
     low, high = demands.intervals()
@@ -394,7 +394,7 @@ def test_rows_that_failed_make_intervals_wider(tmp_path):
     assert report.main([out, "--no-pictures"]) == 0
 
 
-@pytest.mark.parametrize(
+@mark.parametrize(
     "found, message",
     [
         ({n: 1.0 for n in range(1, 10)}, "at none of the 3 records is the limit reach"),
@@ -414,16 +414,16 @@ def test_quantiles_and_the_fitted_fragility_are_drawn(three, drawn):
     assert report.main([three]) == 0
     axis = drawn["ida.png"].axes[0]
     lines = {line.get_label(): line for line in axis.lines}
-    assert lines["50 %"].get_xdata() == pytest.approx([0, 2, 6])
-    assert lines["50 %"].get_ydata() == pytest.approx([0, 0.3, 0.6])
-    assert lines["84 %"].get_xdata() == pytest.approx([0, 2.68])
+    assert lines["50 %"].get_xdata() == approx([0, 2, 6])
+    assert lines["50 %"].get_ydata() == approx([0, 0.3, 0.6])
+    assert lines["84 %"].get_xdata() == approx([0, 2.68])
     assert axis.get_xlabel() == "shake 2 largest displacement of top x [mm]"
     assert axis.get_ylabel() == "PGA [g]"
     lines = {line.get_label(): line for line in drawn["fragility.png"].axes[0].lines}
-    assert lines["share of 3 records"].get_ydata() == pytest.approx([0, 1 / 3, 2 / 3])
+    assert lines["share of 3 records"].get_ydata() == approx([0, 1 / 3, 2 / 3])
     curve = next(line for label, line in lines.items() if label.startswith("lognormal"))
     median = Demands(Record(three)).fragility().median.value
-    assert np.interp(median, *curve.get_data()) == pytest.approx(0.5, abs=0.01)
+    assert np.interp(median, *curve.get_data()) == approx(0.5, abs=0.01)
 
 
 @given(
@@ -438,18 +438,16 @@ def test_quantiles_are_those_of_numpy_where_all_is_finite(values, share):
     found = _quantile(values, share)
     finite = values[np.isfinite(values)]
     if len(finite) == len(values):
-        assert found == pytest.approx(np.quantile(values, share), rel=1e-9, abs=1e-9)
+        assert found == approx(np.quantile(values, share), rel=1e-9, abs=1e-9)
     elif share * (len(values) - 1) <= len(finite) - 1:
-        assert found == pytest.approx(
-            np.interp(share * (len(values) - 1), range(len(finite)), finite)
-        )
+        assert found == approx(np.interp(share * (len(values) - 1), range(len(finite)), finite))
     else:
         assert found == math.inf
 
 
 def test_between_levels_a_demand_changes_evenly_and_above_the_last_it_is_unknown():
     at = lambda x: _between([0.2, 0.6, 1.0], [1.0, 5.0, math.inf], x)
-    assert [at(0.1), at(0.2), at(0.4), at(0.6)] == pytest.approx([0.5, 1, 3, 5])
+    assert [at(0.1), at(0.2), at(0.4), at(0.6)] == approx([0.5, 1, 3, 5])
     assert at(0.7) == at(1.0) == at(2.0) == math.inf
     assert math.isnan(_between([0.2, 0.6], [1.0, 5.0], 0.7))
     # what has fallen stays so, also if a higher level was run
