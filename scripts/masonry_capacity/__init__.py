@@ -29,9 +29,9 @@ and in Python, also where there is no YADE::
 that of the push, and keeps that shape after it yields. The spring is the bilinear curve of the
 push. The mass m* and the factor Γ are those of the structure in an earthquake, not of the test: a
 wall that is pushed at its top holds back the mass of the floors that move with its top, and a share
-of its own. With all of it at the height of the loaded point Γ is 1. The precompression of a test
-says what presses the wall; that this mass also moves with it is for the user to say. So neither is
-guessed: they are given, or the script of the run says them by ``scene.result``.
+of its own. With all of it at the height of the loaded point Γ is 1. Whether the mass that presses
+the wall in a test also moves with it is for the user to say. So neither is guessed: they are given,
+or the script of the run says them by ``scene.result``.
 
 **What the demand is not.** Annex B has the relation of ductility and force of structures whose
 loops take energy; rocking walls take less. Torsion, walls that fall out of their plane, and the

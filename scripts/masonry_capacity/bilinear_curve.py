@@ -139,7 +139,10 @@ class Bilinear:
                 "ultimate_displacement_mm",
                 self.ultimateDisplacement,
                 "mm",
-                f"Displacement after the peak at which the force has fallen to {self.fall:g} of it.",
+                (
+                    "Displacement after the peak at which the force has fallen to"
+                    f" {self.fall:g} of it."
+                ),
                 CONVENTION,
                 missing,
             ),

@@ -133,7 +133,7 @@ def domain(
     """The N-V domain of a scene, with runs as points.
 
     :param directory: folder of results of a scene that says ``scene.domain(...)``
-    :param runs: folders of runs that push the same pier, each a point of the domain
+    :param runs: folders of runs that push the same pier
     :raises Refused: if the run has no domain, or if a run has no whole push
     """
     run, bounds, notes = readRun(directory), [], []

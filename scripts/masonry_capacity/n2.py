@@ -154,7 +154,10 @@ class Demand:
         """All numbers, each with its unit, its meaning and its source."""
         b = lambda equation: f"{ANNEX}, equation (B.{equation})"
         curve, gamma = self.curve, self.system.gamma
-        end = "the push was not taken to its ultimate displacement: the end of the curve stands for it"
+        end = (
+            "the push was not taken to its ultimate displacement: the end of the curve stands for"
+            " it"
+        )
         end = "" if curve.reached else end
         return [
             Number(

@@ -103,9 +103,9 @@ class Bound:
 
     @property
     def powers(self) -> dict[str, float]:
-        """Power of the mechanism by what takes it, with the live load at its factor and the dead
-        loads, as a dict: ``friction``, ``cohesion``, ``tension``, ``crushing``, and ``loads``, the
-        sum of what the loads do, all counted positive.
+        """Power of the mechanism by what takes it: ``friction``, ``cohesion``, ``tension``,
+        ``crushing``, and ``loads``, what the live load at its factor and the dead loads do, all
+        counted positive.
         """
         a, c = self.assembly, self.assembly.contacts
         opening, slide = self.jumps(c.joint, c.at)
@@ -145,7 +145,8 @@ class Bound:
     def exact(self) -> bool:
         """Whether the factor is what rigid blocks with dry joints carry: no joint slides or loses
         strength in the mechanism, and no joints close a loop, so that none can slip while others
-        keep it open."""
+        keep it open.
+        """
         return self.rigid and not self.assembly.bonded
 
     def joints(self) -> np.ndarray:

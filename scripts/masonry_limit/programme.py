@@ -21,7 +21,7 @@ class Programme:
         self.assembly, self.rows, self.size, self.force = assembly, rows, size, force
         self.columns, self.low, self.high = 0, [], []
         self._equal, self._unequal = [], []
-        #: of the forces on contacts: which, columns, share that is normal, direction along the joint
+        #: forces on contacts: which, columns, share that is normal, direction along the joint
         self._parts = []
         self.limits = np.zeros(0)
 

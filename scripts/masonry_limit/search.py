@@ -93,11 +93,11 @@ def search(model, load, lowerUpTo, seconds):
 
 def _tilted(find, first):
     """The bound of a tilt, at which weights have turned as far as its factor says, while other
-    loads have not: secants find it.
+    loads have not: secants find it. Raises UnboundedLoad if there is no such tilt below
+    :data:`STEEPEST`.
 
     :param find: function of the cosine of the tilt that gives the bound with weights of that share
     :param first: tilt with which the search begins [rad]
-    :raises UnboundedLoad: if there is no such tilt below :data:`STEEPEST`
     """
     bound = find(math.cos(first))
     angle = math.atan(bound.factor)

@@ -2,11 +2,11 @@
 """Mechanisms in which joints slip without opening, below the bound of associated flow.
 
 When a part of a wall tips over a stepped crack, nearly all of its head joints are open, and slip
-along their faces without anything to resist. Associated flow does not allow that, since joints that
-slip would have to open more. So this module solves programmes of the same structure with less
-friction where nothing presses joints together: in head joints first (:func:`_smooth`), then in
-every joint that carries nothing (:func:`loosened`). :func:`repeated` replaces friction by a
-cohesion. A mechanism counts only if hardly any friction is missing in it (:func:`_belongs`).
+along their faces without resistance. Associated flow does not allow that, since joints that slip
+would have to open more. So this module solves programmes of the same structure with less friction
+where nothing presses joints together: in head joints first (:func:`_smooth`), then in every joint
+that carries nothing (:func:`loosened`). :func:`repeated` replaces friction by a cohesion. A
+mechanism counts only if hardly any friction is missing in it (:func:`_belongs`).
 """
 
 import contextlib
@@ -25,11 +25,8 @@ MISSED = 0.02  # share of a mechanism's power that the friction it misses may ha
 
 
 def loosened(assembly, live, dead):
-    """The weakest mechanism that is found when joints without pressure lose their friction, as a
-    Bound; None if there is none.
-
-    It begins with the head joints. Then other joints that carry nothing lose their friction, too,
-    and so on.
+    """The weakest mechanism that is found when joints without pressure lose their friction, head
+    joints first, as a Bound; None if there is none.
     """
     smooth, least = _smooth(assembly, dead), None
     for _ in range(LOOSENED if smooth else 0):

@@ -5,8 +5,8 @@ A solver cannot be interrupted from Python while it works. So a copy of this pro
 can be ended at any moment: by Ctrl-C or SIGTERM, when its time is over, and when it fails.
 
 HiGHS, which scipy has, takes 4 to 6 times as long for a wall in its plane with 1,000 to 3,000
-joints, and more than 25 times as long in space: forces can be shared in many ways among many
-points, and its way to a corner of the solution takes most of the time.
+joints, and more than 25 times as long in space, where forces can be shared in many ways among many
+points: its way to a corner of the solution takes most of the time.
 """
 
 import ctypes

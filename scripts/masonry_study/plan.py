@@ -157,17 +157,16 @@ class Study:
 
     def _uncorrelated(self, name):
         """Why a name can have no correlation, or nothing."""
-        what = self.vary.get(name)
-        if isinstance(what, Distribution):
+        if isinstance(self.vary.get(name), Distribution):
             return ""
-        if what:
-            return f"{name} is a choice; only distributions have a correlation"
         for column, what in self.vary.items():
             names = tuple(namesOf(column))
-            if name in names and isinstance(what, Field):
-                return f"{name} is a field; only distributions have a correlation"
-            if name in names:
+            if name not in (column, *names):
+                continue
+            if isinstance(what, Distribution):
                 return f"{name} varies with others: name it by its key in vary, {names}"
+            kind = type(what).__name__.lower()
+            return f"{name} is a {kind}; only distributions have a correlation"
         return f"{name} does not vary"
 
     # -- what follows ------------------------------------------------------------------------------

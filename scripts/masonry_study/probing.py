@@ -37,8 +37,8 @@ def probe(scene, stage, traits, arguments):
       may not use
     - ``joints``: properties of every kind of joint; ``counts``: how many joints there are of each
       kind
-    - ``bounds``: of the properties of a joint: ``low``, ``high``, ``unit``; ``connectors``: of
-      every tie, spring and fibre layer the same by property
+    - ``bounds``: ``low``, ``high`` and ``unit`` of the properties of a joint; ``connectors``: the
+      same of every tie, spring and fibre layer
     - ``room``: bytes that a run will probably write
     - ``problems``: sentences on rows of the table that cannot be run
 

@@ -67,11 +67,8 @@ class Record:
         return np.array([_number(text) for text in self.cells[name]])
 
     def complete(self, measure):
-        """The rows that have this measure: which they are, the inputs by name, and the measure.
-
-        Inputs are those that are numbers; the seed of a random field is not.
-
-        :raises Refused: if no row has it
+        """The rows that have this measure: which they are, the inputs that are numbers, by name and
+        without seeds of random fields, and the measure. Raises Refused if there is no row.
         """
         values = self.numbers(measure)
         rows = np.flatnonzero(np.isfinite(values))

@@ -1,15 +1,15 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Runs rows of a study: ``/usr/bin/python3 -P -m masonry_study.row --scene FILE DIR NUMBER...``
+"""Runs rows of a study: ``/usr/bin/python3 -P -m masonry_study.row --scene FILE DIR NUMBER...``,
+for a study on this machine, a task of Slurm, or GNU parallel.
 
 A row of an incremental analysis is followed by the higher levels of its record, until the structure
 falls. A row that was run is left out, one that was stopped goes on from its checkpoint, and one
-that somebody else is running is left alone. ``DIR/rows/NUMBER.log`` has what it says. This is what
-a study on this machine, a task of Slurm, or GNU parallel calls. The exit status is 0 if all rows
-are ended.
+that somebody else is running is left alone. ``DIR/rows/NUMBER.log`` has what it says. The exit
+status is 0 if all rows are ended.
 
 The scene is a program, and the folder of a study is data: that study.json names a scene is no
 reason to run it. So the user names it, unless it is in the folder itself, and it must be the file
-with which the study began. The first line says what runs.
+with which the study began.
 """
 
 import argparse

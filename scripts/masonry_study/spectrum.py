@@ -43,7 +43,7 @@ def spectralAcceleration(
     The largest displacement is looked for during the record and a period of free vibration after
     it, at a hundred points of a period or more, so it is too small by 0.05 % at most.
 
-    :param values: samples of the acceleration [m/s²], between which it changes evenly; ``every``:
+    :param values: samples of the acceleration [m/s²], between which it is interpolated; ``every``:
         the time between them [s]
     :param period: of the oscillator [s]
     :param damping: share of critical damping [-]

@@ -192,8 +192,8 @@ def field(
 
     :param distribution: :func:`lognormal` or :func:`normal` of the values; None: lognormal about
         the value that the scene has, with ``cov``
-    :param length: correlation length [m], see :mod:`masonry.materials.fields`; 0: every joint has
-        its own value
+    :param length: correlation length [m], see :mod:`masonry.materials.fields`; 0: joints are
+        independent
     :param cov: coefficient of variation [-], where there is no distribution
     """
     if distribution is None:

@@ -11,9 +11,12 @@ from masonry_study.demands import Demands, _between, _quantile, _usual
 from masonry_study.gathering import Folder
 from masonry_study.incremental import Chains
 from masonry_study.records import Record
+from masonry_study.spectrum import spectralAcceleration
+from masonry.scene.ground import readRecord
 
 ROCKING = os.path.join(HERE, "rocking.py")
 LEVELS = [0.2, 0.36, 0.6, 0.9]  # [g]
+PLAN = dict(design="ida", records=["*.txt"], levels=LEVELS)
 MOVED = "shake_2_largest_displacement_of_corner_x_mm"
 PULSES = {"long": 0.4, "middle": 0.2, "short": 0.1}  # [s]
 
@@ -32,10 +35,9 @@ def records(folder):
 def write(folder, **changes):
     """The file of a study of the rocking block, and its records."""
     records(folder)
-    said = dict(design="ida", records=["*.txt"], levels=LEVELS, options={"checkpoint_every": 0.002})
-    words = ", ".join(f"{n}={v!r}" for n, v in {**said, **changes}.items())
+    said = {**PLAN, "options": {"checkpoint_every": 0.002}, **changes}
     path = folder / "study.py"
-    path.write_text(f"from masonry_study import *\nstudy = Study({ROCKING!r}, {words})\n")
+    path.write_text(f"from masonry_study import *\nstudy = Study({ROCKING!r}, **{said})\n")
     return path
 
 
@@ -48,9 +50,8 @@ def housner(seconds, level):
     Bulletin of the Seismological Society of America 53 (1963), where cosh(pt) = 1 + 1/(2 r (r - 1))
     with r = a/(gα) is the limit.
     """
-    slope, radius = 0.25, math.hypot(0.125, 0.5)
-    p = math.sqrt(3 * 9.81 / (4 * radius))
-    beyond = level / slope - 1
+    p = math.sqrt(3 * 9.81 / (4 * math.hypot(0.125, 0.5)))
+    beyond = level / 0.25 - 1
     if beyond <= 0:
         return 0.0, False
     rise, sinh = math.cosh(p * seconds) - 1, math.sinh(p * seconds)
@@ -135,7 +136,7 @@ def test_a_study_that_is_done_runs_nothing_and_compares_its_records(whole, tmp_p
     copy = shutil.copytree(out, tmp_path / "out")
     record = copy / "records" / "long.txt"
     record.write_text(record.read_text() + "0.0\n")
-    words = [out.parent / "study.py", "--out", copy]
+    words = out.parent / "study.py", "--out", copy
     said = study(*words).stderr
     assert "long.txt is not the record that the study reads; remove it" in said
     os.remove(record)
@@ -184,8 +185,7 @@ def test_a_task_of_slurm_runs_the_levels_of_a_record(whole, slurm, tmp_path):
 
 def planned(tmp_path, **changes):
     records(tmp_path)
-    said = dict(design="ida", records=["*.txt"], levels=LEVELS)
-    made = Study("any", **{**said, **changes})
+    made = Study("any", **{**PLAN, **changes})
     made.read(tmp_path)
     return made
 
@@ -202,8 +202,6 @@ def test_levels_scale_every_record_and_scales_leave_them(tmp_path):
 
 def test_a_spectral_acceleration_is_reached_by_every_record(tmp_path):
     made = planned(tmp_path, measure=Sa(0.5))
-    from masonry_study.spectrum import spectralAcceleration
-
     for (motion, scale), level in zip(made.ida.rows(), LEVELS * 3):
         scaled = [scale * a for a in motion.values]
         assert spectralAcceleration(scaled, motion.every, 0.5) == approx(9.81 * level)
@@ -213,12 +211,12 @@ def test_a_spectral_acceleration_is_reached_by_every_record(tmp_path):
 
 def test_what_varies_beside_is_drawn_once_for_every_record(tmp_path):
     pytest.importorskip("openturns", reason="python3-openturns is not installed")
-    found = planned(tmp_path, vary={"bed.friction": uniform(0.4, 0.8)}, seed=3).rows()
+    drawn = lambda: planned(tmp_path, vary={"bed.friction": uniform(0.4, 0.8)}, seed=3).rows()
+    found = drawn()
     values = [row["bed.friction"] for row in found]
     assert len(set(values)) == 3
     assert all(len(set(values[n : n + 4])) == 1 for n in (0, 4, 8))
-    again = planned(tmp_path, vary={"bed.friction": uniform(0.4, 0.8)}, seed=3)
-    assert again.rows() == found
+    assert drawn() == found
 
 
 def test_three_components_are_one_record(tmp_path):
@@ -232,8 +230,6 @@ def test_three_components_are_one_record(tmp_path):
     assert len(made.ida.doubts()) == 4  # none of the components ends at rest
     path = tmp_path / "kept.txt"
     path.write_text(first.text)
-    from masonry.scene.ground import readRecord
-
     assert readRecord(str(path), None) == (first.values, 0.01)
     assert first.values[1] == approx([3.924, 8.829, 19.62])
 
@@ -300,23 +296,22 @@ def test_rows_of_one_record_follow_each_other():
 def test_a_scene_that_is_not_shaken_gives_no_data(tmp_path):
     """A run that ended without a shake is no row of an analysis: it is counted as failed, with the
     reason."""
-    out = fake(tmp_path, [0.3, 0.6], ["a"], {}, shaken=False)
-    folder = Folder(out)
+    folder = Folder(fake(tmp_path, [0.3, 0.6], ["a"], {}))
+    os.makedirs(folder.row(1))
+    with open(os.path.join(folder.row(1), "run.json"), "w") as file:
+        ended = {"interrupted": False, "collapsed": True, "stages": [{"stage": "settle"}]}
+        json.dump(ended, file)
     assert [folder.status(n) for n in (1, 2)] == ["failed", "missing"]
 
 
 def test_a_row_refuses_a_record_that_was_cut_off(tmp_path):
     out = pathlib.Path(fake(tmp_path, [0.3, 0.6], ["a"], {}))
-    lines = [
-        "description lean record scale",
-        *(f"000{n} True 'records/a.txt' {n}.0" for n in (1, 2)),
-    ]
-    (out / "table.txt").write_text("\n".join(lines) + "\n")
+    (out / "table.txt").write_text("description lean\n0001 True\n0002 True\n")
     (out / "records").mkdir()
     (out / "records" / "a.txt").write_text("# unit: g\n# every: 0.01 s\n0\n0.5\n")
     scene = tmp_path / "x.py"
     scene.write_text("raise SystemExit(3)\n")
-    record = json.loads((out / "study.json").read_text())
+    record = json.loads(read(out, "study.json"))
     record["scene_sha256"] = hashlib.sha256(scene.read_bytes()).hexdigest()
     (out / "study.json").write_text(json.dumps(record))
     process = run(*ROW, "--scene", scene, out, 1)
@@ -327,7 +322,7 @@ def test_a_row_refuses_a_record_that_was_cut_off(tmp_path):
 # -- what is found ---------------------------------------------------------------------------------
 
 
-def fake(tmp_path, levels, names, found, shaken=True):
+def fake(tmp_path, levels, names, found):
     """A folder of a study as rows leave it.
 
     :param found: dict of the number of a row -> demand; infinite: it fell; None: it failed
@@ -340,15 +335,11 @@ def fake(tmp_path, levels, names, found, shaken=True):
     record = {"options": {}, "vary": {}, "runs": runs, "design": "ida", "ida": plan}
     (out / "study.json").write_text(json.dumps({"study": record, "script": "x.py"}))
     lines = ["run,record,scale,PGA_g,status,collapsed,shake_2_largest_displacement_of_top_x_mm"]
-    if not shaken:
-        (out / "rows" / "0001").mkdir()
-        (out / "rows" / "0001" / "run.json").write_text(
-            json.dumps({"interrupted": False, "collapsed": True, "stages": [{"stage": "settle"}]})
-        )
-    for r, name in enumerate(names):
+    number = 0
+    for name in names:
         fell = False
-        for k, level in enumerate(levels):
-            number = r * len(levels) + k + 1
+        for level in levels:
+            number += 1
             value = found.get(number)
             end = "failed,," if value is None else f"ended,{value == inf},{-min(value, 1e4)}"
             end = "above collapse,," if fell else end

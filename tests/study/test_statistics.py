@@ -111,12 +111,7 @@ def test_a_lognormal_distribution_is_found_and_another_one_is_doubted():
     "call, message",
     [
         (lambda: statistics.mean([1]), "2 rows or more, there are 1"),
-        (lambda: statistics.mean([1, math.nan, 3]), "rows 2 have no finite number"),
         (lambda: statistics.deviation(range(9)), "10 rows or more, there are 9"),
-        (lambda: statistics.quantile([1, 2, 3], 0), "quantile of 0"),
-        (lambda: statistics.lognormal([1, 2, -3]), "values of 0 or less, such as -3"),
-        (lambda: statistics.lognormal([2, 2, 2]), "all values are the same"),
-        (lambda: statistics.share(0, 0), "no rows"),
     ],
 )
 def test_what_no_statistics_can_be_made_of_is_refused(call, message):
