@@ -11,7 +11,7 @@ On the command line::
 
 and in Python, also where there is no YADE::
 
-    from masonry import capacity
+    import masonry_capacity as capacity
 
     curve = capacity.bilinearOf("results/wall_comp4", rule="en1998")
     system = capacity.equivalent(mass=30e3, gamma=1.0)                      # [kg], [-]
@@ -19,22 +19,19 @@ and in Python, also where there is no YADE::
     found = capacity.demand(curve, system, spectrum)
     found.targetDisplacement, found.ductility, found.holds, found.verdict()
 
+- :mod:`masonry_capacity.bilinear_curve`: the bilinear curve of a push, and its drifts
 - :mod:`masonry_capacity.spectra`: elastic spectra of EN 1998-1:2004, and from files
-- :mod:`masonry_capacity.n2`: the equivalent system, and the target displacement by the N2 method of
-  EN 1998-1:2004, annex B
-- :mod:`masonry_capacity.domains`: the N-V domain of a pier, by limit analysis, with runs as points
-- :mod:`masonry_capacity.report`: all of that as files in a folder of results;
-  :mod:`masonry_capacity.figure` draws them
-
-Bilinear curves themselves are :mod:`masonry_capacity.bilinear_curve`.
+- :mod:`masonry_capacity.n2`: the equivalent system, and the target displacement by the N2 method
+- :mod:`masonry_capacity.domains`: the N-V domain of a pier, with runs as points
+- :mod:`masonry_capacity.report`: the files of all that, which :mod:`masonry_capacity.figure` draws
 
 **What the equivalent system is.** The structure is one mass on a spring: it moves in one shape,
 that of the push, and keeps that shape after it yields. The spring is the bilinear curve of the
 push. The mass m* and the factor Γ are those of the structure in an earthquake, not of the test: a
 wall that is pushed at its top holds back the mass of the floors that move with its top, and a share
-of its own. With all of it at the height of the loaded point Γ is 1. The precompression of a test
-says what presses the wall; that this mass also moves with it is for the user to say. So neither is
-guessed: they are given, or the script of the run says them by ``scene.result``.
+of its own. With all of it at the height of the loaded point Γ is 1. Whether the mass that presses
+the wall in a test also moves with it is for the user to say. So neither is guessed: they are given,
+or the script of the run says them by ``scene.result``.
 
 **What the demand is not.** Annex B has the relation of ductility and force of structures whose
 loops take energy; rocking walls take less. Torsion, walls that fall out of their plane, and the

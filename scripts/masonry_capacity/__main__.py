@@ -21,7 +21,6 @@ OF_CODE, OF_FILE = ("type", "ground", "ag"), ("unit", "corner")
 
 
 def parser():
-    """The options of the program."""
     p = argparse.ArgumentParser(
         prog="python3 -m masonry_capacity",
         description=(

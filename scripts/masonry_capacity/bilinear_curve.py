@@ -60,10 +60,12 @@ SMALL = 1e-9
 CONVENTION = "a convention for masonry walls"
 #: The rules, and where each comes from.
 RULES = {"masonry": CONVENTION, "en1998": "EN 1998-1:2004, annex B.3, equation (B.6)"}
-#: A rule, a share of the peak, and the displacement at which the plastic mechanism forms.
+#: A rule, a share of the peak, the displacement at which the plastic mechanism forms, and the
+#: height of the recorded point.
 Rule = Annotated[str, oneOf(*RULES)]
 Share = Annotated[float, number("-", 0, 1, above=True, below=True)]
 Mechanism = Annotated[float, number("mm", 0, above=True)]
+Height = Annotated[float, number("m", 0, above=True)]
 
 
 @dataclass(frozen=True)
@@ -113,7 +115,7 @@ class Bilinear:
 
     def numbers(self) -> list[Number]:
         """K, Vy, dy, du, mu, and the peak, each with its unit, its meaning and its source."""
-        source = RULES[self.rule]
+        source, missing = RULES[self.rule], self.unreached
         if self.rule == "masonry":
             line = f"Secant stiffness at {self.secant:g} of the peak, on the way to it."
             force = (
@@ -123,10 +125,6 @@ class Bilinear:
         else:
             line = "Yield force over yield displacement."
             force = f"Force at which the plastic mechanism forms, at {self.mechanism:.4g} mm."
-        ultimate = (
-            f"Displacement after the peak at which the force has fallen to {self.fall:g} of it."
-        )
-        missing = self.unreached
         return [
             Number("bilinear_stiffness_kN_per_mm", self.stiffness, "kN/mm", line, source),
             Number("yield_force_kN", self.yieldForce, "kN", force, source),
@@ -141,7 +139,10 @@ class Bilinear:
                 "ultimate_displacement_mm",
                 self.ultimateDisplacement,
                 "mm",
-                ultimate,
+                (
+                    "Displacement after the peak at which the force has fallen to"
+                    f" {self.fall:g} of it."
+                ),
                 CONVENTION,
                 missing,
             ),
@@ -465,21 +466,20 @@ def ofRun(
         found = bilinear(*curve, rule, secant, fall, mechanism, push.data.pulse)
     except Refused as refused:
         raise Refused(f"{push.directory}: {refused}") from None
-    found = replace(found, remarks=(*found.remarks, *push.notes))
-    if not found.unreached or push.data.collapse is None:
-        return found
-    unreached = (
-        f"not reached: the structure collapsed at {found.ultimateDisplacement:.4g} mm before the"
-        f" force had fallen to {fall:g} of its peak, so the ultimate displacement is that of the"
-        " collapse"
-    )
-    return replace(found, unreached=unreached)
+    unreached = found.unreached
+    if unreached and push.data.collapse is not None:
+        unreached = (
+            f"not reached: the structure collapsed at {found.ultimateDisplacement:.4g} mm before"
+            f" the force had fallen to {fall:g} of its peak, so the ultimate displacement is that"
+            " of the collapse"
+        )
+    return replace(found, unreached=unreached, remarks=(*found.remarks, *push.notes))
 
 
 @validated
 def drifts(
     directory: PushOf,
-    height: Annotated[float, number("m", 0, above=True)] | None = None,
+    height: Height | None = None,
     fall: Share = FALL,
 ) -> list[Number]:
     """Drifts of the push of a run [mrad] at the first crack, at the peak, where the force has

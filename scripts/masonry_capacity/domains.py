@@ -7,14 +7,13 @@ A scene says ``scene.domain(top, normal=[50, 100, 200])`` after its presses are 
 these normal forces, and :func:`domain` reads it, with the peaks of other runs beside it.
 """
 
-import math
 import os
 from dataclasses import asdict, dataclass
 from typing import Annotated, Any, Sequence
 
 import numpy as np
 
-from masonry.arguments import FilePath, isNumber, listOf, path, validated
+from masonry.arguments import FilePath, listOf, path, validated
 from masonry.units import GRAVITY
 from masonry.errors import Refused
 from .bilinear_curve import pushover
@@ -72,11 +71,11 @@ class Domain:
         :raises Refused: if the domain does not reach so far
         """
         forces = [one.normal for one in self.bounds]
-        if not forces or not forces[0] <= normal <= forces[-1]:
-            reach = (
-                f"it goes from {forces[0]:.4g} to {forces[-1]:.4g} kN" if forces else "it is empty"
+        if not forces[0] <= normal <= forces[-1]:
+            raise Refused(
+                f"the domain has no normal force of {normal:.4g} kN: it goes from {forces[0]:.4g}"
+                f" to {forces[-1]:.4g} kN"
             )
-            raise Refused(f"the domain has no normal force of {normal:.4g} kN: {reach}")
         return float(np.interp(normal, forces, [one.largest for one in self.bounds]))
 
     def entries(self) -> dict[str, Any]:
@@ -134,7 +133,7 @@ def domain(
     """The N-V domain of a scene, with runs as points.
 
     :param directory: folder of results of a scene that says ``scene.domain(...)``
-    :param runs: folders of runs that push the same pier, each a point of the domain
+    :param runs: folders of runs that push the same pier
     :raises Refused: if the run has no domain, or if a run has no whole push
     """
     run, bounds, notes = readRun(directory), [], []
@@ -145,15 +144,8 @@ def domain(
             if "factor" not in entry:
                 notes.append(f"{entry['load']}: {entry['note']}")
                 continue
-            normal, largest = found = entry["normal_kN"], entry["factor"]
-            if not all(isNumber(one) and math.isfinite(one) for one in found):
-                raise Refused(
-                    f"{directory}: {entry['load']}: the normal force and the bound must be finite"
-                    f" numbers, not {[*found]}"
-                )
-            bounds.append(
-                BoundPoint(normal, largest, entry.get("without_dilatancy"), entry["exact"])
-            )
+            found = entry["normal_kN"], entry["factor"], entry.get("without_dilatancy")
+            bounds.append(BoundPoint(*found, entry["exact"]))
     if not bounds:
         none = (
             f"{directory}: run.json has no domain: say scene.domain(top, normal=[...]) in the"
@@ -164,14 +156,11 @@ def domain(
     for one in runs:
         points.append(runPoint(one))
         other = readRun(one)
-        unlike = [
-            what
-            for key, what in ALIKE.items()
-            if key in run and key in other and run[key] != other[key]
-        ]
+        both = ALIKE.keys() & run.keys() & other.keys()
+        unlike = [what for key, what in ALIKE.items() if key in both and run[key] != other[key]]
         if unlike:
             notes.append(
-                f"{points[-1].name}: its {' and its '.join(unlike)} are not those of the domain: is"
-                " it the same pier?"
+                f"{points[-1].name}: its {' and its '.join(unlike)} are not those of"
+                " the domain: is it the same pier?"
             )
     return Domain(sorted(bounds, key=lambda one: one.normal), points, notes)

@@ -26,7 +26,7 @@ ANNEX = "EN 1998-1:2004, annex B"
 ROUNDS, SAME = 50, 1e-4
 #: The largest ratio of the target displacement to that of the elastic system that annex B asks for
 #: [-].
-MOST = 3.0
+MAX_ELASTIC_RATIO = 3.0
 
 
 @dataclass(frozen=True)
@@ -113,8 +113,7 @@ def ofRun(run: Annotated[dict[str, Any], isA(dict)], directory: str = "run.json"
             f' PHI,PHI), or say them in the script: scene.result("{MASS[0]}", 30e3, "kg") and'
             f' scene.result("{GAMMA[0]}", 1.0)'
         )
-    known = equivalent(*found)
-    return Equivalent(known.mass, known.gamma, f"answers of the script in {directory}")
+    return replace(equivalent(*found), source=f"answers of the script in {directory}")
 
 
 @dataclass(frozen=True)
@@ -141,32 +140,25 @@ class Demand:
 
     def verdict(self) -> str:
         """Whether the capacity exceeds the demand, as a sentence."""
-        has, needs = (
-            f"{self.curve.ultimateDisplacement:.4g} mm",
-            f"{self.targetDisplacement:.4g} mm",
-        )
+        has, needs = self.curve.ultimateDisplacement, self.targetDisplacement
         if self.holds is None:
             return (
-                f"not known: the demand is {needs}, and the push was not taken to its ultimate"
-                f" displacement, it ends at {has}: push farther"
+                f"not known: the demand is {needs:.4g} mm, and the push was not taken to its"
+                f" ultimate displacement, it ends at {has:.4g} mm: push farther"
             )
-        over = self.curve.ultimateDisplacement / self.targetDisplacement
-        if self.holds:
-            return f"the capacity exceeds the demand: {has} is {over:.3g} times {needs}"
-        return f"the capacity does not reach the demand: {has} is {over:.3g} times {needs}"
+        verb = "exceeds" if self.holds else "does not reach"
+        ratio = f"{has:.4g} mm is {has / needs:.3g} times {needs:.4g} mm"
+        return f"the capacity {verb} the demand: {ratio}"
 
     def numbers(self) -> list[Number]:
         """All numbers, each with its unit, its meaning and its source."""
         b = lambda equation: f"{ANNEX}, equation (B.{equation})"
         curve, gamma = self.curve, self.system.gamma
         end = (
-            ""
-            if curve.reached
-            else (
-                "the push was not taken to its ultimate displacement: the end of the curve stands"
-                " for it"
-            )
+            "the push was not taken to its ultimate displacement: the end of the curve stands for"
+            " it"
         )
+        end = "" if curve.reached else end
         return [
             Number(
                 "equivalent_mass_kg",
@@ -273,11 +265,16 @@ class Demand:
         ]
 
 
+#: What :func:`demand` takes.
+System = Annotated[Equivalent, isA(Equivalent)]
+Elastic = Annotated[Spectrum, isA(Spectrum)]
+
+
 @validated
 def demand(
     curve: Annotated[Bilinear, isA(Bilinear)],
-    system: Annotated[Equivalent, isA(Equivalent)],
-    spectrum: Annotated[Spectrum, isA(Spectrum)],
+    system: System,
+    spectrum: Elastic,
     limited: bool = False,
 ) -> Demand:
     """The target displacement that a spectrum demands of a structure, EN 1998-1:2004, annex B.
@@ -309,15 +306,14 @@ def demand(
     if short and ratio > 1:
         branch = "B.10"
         target = max(elastic, elastic / ratio * (1 + (ratio - 1) * corner / period))
-        if target > MOST * elastic:
-            if limited:
-                target, branch = MOST * elastic, "B.10, at most 3 det*"
-            else:
-                notes.append(
-                    "annex B lets the target displacement of the equivalent system be at most 3"
-                    f" det*, {MOST * elastic:.4g} mm, in place of {target:.4g} mm (limited=True,"
-                    " --limited)"
-                )
+        most = MAX_ELASTIC_RATIO * elastic
+        if target > most and limited:
+            target, branch = most, "B.10, at most 3 det*"
+        elif target > most:
+            notes.append(
+                "annex B lets the target displacement of the equivalent system be at most 3 det*,"
+                f" {most:.4g} mm, in place of {target:.4g} mm (limited=True, --limited)"
+            )
     ultimate = curve.ultimateDisplacement / gamma
     scale = _scale(ultimate / yields, corner / period if short else 1.0, limited) / ratio
     moved = gamma * target
@@ -363,14 +359,14 @@ def _scale(ductility, corner, limited):
     :param corner: TC/T*, or 1 where the period is longer
     """
     ratio = 1 + (ductility - 1) / corner
-    return max(ratio, ductility / MOST) if limited else ratio
+    return max(ratio, ductility / MAX_ELASTIC_RATIO) if limited else ratio
 
 
 @validated
 def iterated(
     push: Annotated[Pushover, isA(Pushover)],
-    system: Annotated[Equivalent, isA(Equivalent)],
-    spectrum: Annotated[Spectrum, isA(Spectrum)],
+    system: System,
+    spectrum: Elastic,
     limited: bool = False,
 ) -> Demand:
     """The target displacement by the iterative procedure of EN 1998-1:2004, annex B: the plastic

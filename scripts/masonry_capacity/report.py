@@ -9,14 +9,13 @@ from functools import partial
 from typing import Annotated, Any, Sequence
 
 from masonry import folders
-from masonry.arguments import FilePath, isA, listOf, number, path, validated
+from masonry.arguments import FilePath, listOf, path, validated
 from masonry.errors import Refused
 from masonry.terminal import say
 from masonry.packages import Missing
 from . import bilinear_curve
 from . import figure, n2
 from .domains import Domain, domain
-from .spectra import Spectrum
 
 #: Files that are written.
 CAPACITY, DOMAIN = ("capacity.json", "capacity.png"), ("domain.json", "domain.png")
@@ -33,13 +32,13 @@ ASSUMED = (
 @validated
 def assess(
     directory: FilePath,
-    spectrum: Annotated[Spectrum, isA(Spectrum)] | None = None,
-    system: Annotated[n2.Equivalent, isA(n2.Equivalent)] | None = None,
+    spectrum: n2.Elastic | None = None,
+    system: n2.System | None = None,
     rule: bilinear_curve.Rule = "en1998",
     mechanism: bilinear_curve.Mechanism | None = None,
     limited: bool = False,
     iterate: bool = False,
-    height: Annotated[float, number("m", 0, above=True)] | None = None,
+    height: bilinear_curve.Height | None = None,
     out: FilePath | None = None,
     column: str | None = None,
 ) -> dict[str, Any]:

@@ -8,7 +8,7 @@ from typing import Annotated, Any
 
 import numpy as np
 
-from masonry.arguments import FilePath, Numbers, number, oneOf, validated, whole
+from masonry.arguments import FilePath, Numbers, listOf, number, oneOf, validated, whole
 from masonry.units import ACCELERATION_UNITS, GRAVITY
 from masonry.errors import Refused
 from masonry.numbers.files import readText
@@ -52,9 +52,8 @@ class Spectrum:
     accelerations: np.ndarray  #: at these periods [m/s²]
     corner: float  #: TC, upper limit of the periods with constant acceleration [s]
     longest: float  #: longest period [s]
-    formula: Any = (
-        None  #: function of a period that gives the acceleration; None: lines between the points
-    )
+    #: function of a period that gives the acceleration; None: lines between the points
+    formula: Any = None
 
     def acceleration(self, period: float) -> float:
         """Se at a period [m/s²].
@@ -86,7 +85,7 @@ def elastic(
     ground: Annotated[str, oneOf(*"ABCDE")],
     importance: Annotated[float, number("-", 0.1, 10)] = 1.0,
     damping: Annotated[float, number("%", 0, 100, above=True)] = 5.0,
-    parameters: Numbers | None = None,
+    parameters: Annotated[Numbers, listOf(number())] | None = None,
 ) -> Spectrum:
     """The horizontal elastic response spectrum of EN 1998-1:2004, 3.2.2.2, equations (3.2) to
     (3.5).
@@ -102,9 +101,15 @@ def elastic(
         of the spectrum itself
     :param parameters: S [-], TB, TC and TD [s] of a National Annex; None: the recommended values of
         tables 3.2 and 3.3
-    :raises Refused: with what is wrong
+    :raises Refused: if something is out of its bounds
     """
-    soil, tb, tc, td = PARAMETERS[type][ground] if parameters is None else _four(parameters)
+    four = PARAMETERS[type][ground] if parameters is None else tuple(parameters)
+    if len(four) != 4 or not (0 < four[0] < 10 and 0 < four[1] <= four[2] <= four[3] <= LONGEST):
+        raise Refused(
+            f"elastic: parameters {four} must be S [-], TB, TC and TD [s], with 0 < S < 10 and 0 <"
+            f" TB <= TC <= TD <= {LONGEST:g} s"
+        )
+    soil, tb, tc, td = four
     correction = max(math.sqrt(10 / (5 + damping)), LEAST_CORRECTION)
     peak = ag * UNITS[unit] * importance
     if peak > 3 * GRAVITY:
@@ -137,23 +142,6 @@ def elastic(
         longest=LONGEST,
         formula=formula,
     )
-
-
-def _four(parameters):
-    """S, TB, TC and TD of a National Annex. Raises Refused."""
-    try:
-        soil, tb, tc, td = (float(value) for value in parameters)
-    except (TypeError, ValueError):
-        raise Refused(
-            "elastic: parameters must be four numbers, S [-], TB, TC and TD [s], got"
-            f" {parameters!r}"
-        ) from None
-    if not (0 < soil < 10 and 0 < tb <= tc <= td <= LONGEST):
-        raise Refused(
-            f"elastic: parameters S {soil:g}, TB {tb:g} s, TC {tc:g} s, TD {td:g} s must have 0 < S"
-            f" < 10 and 0 < TB <= TC <= TD <= {LONGEST:g} s"
-        )
-    return soil, tb, tc, td
 
 
 @validated

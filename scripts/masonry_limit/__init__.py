@@ -4,7 +4,7 @@
 The blocks and joints are those of the scene that is built, so this is a second opinion on what a
 run says::
 
-    from masonry import limit
+    import masonry_limit as limit
 
     assembly = limit.read()                              # the scene as it stands in YADE
     dead = assembly.weights((0, 0, -9.81))               # [m/s²]

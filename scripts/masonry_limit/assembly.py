@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Rigid blocks, their joints and loads, and the bounds of what they carry."""
 
+import contextlib
 import math
 import time
 from collections import namedtuple
@@ -14,13 +15,13 @@ from masonry.errors import Refused, refuse
 from . import slipping
 from .bound import Bound
 from .programme import FACETS, Programme
-from .solver import Late, Unsolved
+from .solver import SolverTimeout, Unsolved
 
-TURNS = 6  # how often the facets of friction are turned at most
-STILL = 1e-3  # change of the factor at which they stand still [-]
+MAX_TURNS = 6  # of the facets of friction
+SAME_FACTOR = 1e-3  # relative change of the factor at which turning ends [-]
 
 
-class Endless(Refused):
+class UnboundedLoad(Refused):
     """No load is so large that anything gives way."""
 
 
@@ -34,7 +35,7 @@ class Assembly:
 
     :param centres: centroids of the blocks (n, 3) [m]
     :param masses: (n) [kg]
-    :param held: (n, 6) whether a block cannot move along x, y, z, or turn about them
+    :param held: whether a block cannot move along x, y, z, or turn about them (n, 6)
     :param pairs: numbers of the two blocks of each joint (m, 2)
     :param normals: unit normals from the first to the second block (m, 3)
     :param joint: number of the joint of each point (p), in ascending order
@@ -121,7 +122,6 @@ class Assembly:
 
         :param live: load that grows
         :param dead: loads that stay
-        :returns: :class:`Bound`
         :raises Refused: if the structure does not carry the dead loads alone, with the block that
             moves most; if nothing gives way, however large the factor is; or if the numbers of the
             programme are too far apart to be solved
@@ -148,13 +148,11 @@ class Assembly:
         bound.factor *= sense
         if sense > 0 and bound.rigid and self.bonded:
             other = slipping.loosened(self, live, dead)
-            if other and other.factor < bound.factor * (1 - STILL):
+            if other and other.factor < bound.factor * (1 - SAME_FACTOR):
                 bound.weaker = other.factor
         return bound
 
-    def withoutDilatancy(
-        self, live: np.ndarray, dead: np.ndarray, most: int = 60, within: float = 1e-3
-    ) -> Bound:
+    def withoutDilatancy(self, live: np.ndarray, dead: np.ndarray) -> Bound:
         """A collapse of joints that slip without opening, by repeated limit analysis.
 
         Friction is replaced, joint by joint, by a cohesion that is the friction under the normal
@@ -166,18 +164,16 @@ class Assembly:
         friction where nothing presses them, and the smallest result is taken. It is a collapse of
         such joints, and often the least, but no proof that there is none below.
 
-        :param most: rounds
-        :param within: change of the factor at which it ends [-]
-        :returns: :class:`Bound`; ``settled`` says whether normal forces came to repeat themselves
+        :returns: a bound whose ``settled`` says whether normal forces came to repeat themselves
         """
-        return slipping.withoutDilatancy(self, live, dead, most, within)
+        return slipping.withoutDilatancy(self, live, dead)
 
     def associated(
         self,
         live: np.ndarray,
         dead: np.ndarray,
         fixed: Any = None,
-        turns: int = TURNS,
+        turns: int = MAX_TURNS,
         sense: int = 1,
     ) -> Bound:
         """The bound of associated flow alone, with facets of friction that turn to where forces
@@ -190,7 +186,7 @@ class Assembly:
         best = self._solve(live, dead, sense, turn, fixed)
         if self.plane:
             return best
-        best.facetError = 1 / math.cos(math.pi / FACETS) - 1  # before any turn
+        best.facetError = 1 / math.cos(math.pi / FACETS) - 1
         for _ in range(turns):
             turn = best.directions - math.pi / FACETS
             try:
@@ -201,7 +197,7 @@ class Assembly:
             if again.value < best.value:
                 best = again
             best.facetError = change
-            if change < STILL or again is not best:
+            if change < SAME_FACTOR or again is not best:
                 break
         return best
 
@@ -229,14 +225,14 @@ class Assembly:
         try:
             left = self.deadline - time.monotonic()
             factor, values, dual = programme.solve(still, left)
-            if most is None and factor / step > self._endless(live, dead):
+            if most is None and factor / step > self._unreachable(live, dead):
                 raise Unsolved(
                     "no largest load was found; is a joint so strong that it never fails?"
                 )
         except Unsolved as unsolved:
             if most is not None:
                 raise
-            if isinstance(unsolved, Late):
+            if isinstance(unsolved, SolverTimeout):
                 raise Refused("limit analysis: it was not solved in time") from None
             raise self._why(live, dead, sense, turn, unsolved) from None
         speed = np.zeros(self.held.shape)
@@ -245,9 +241,9 @@ class Assembly:
         speed *= scale * sense
         return Bound(self, factor / step, speed, live, dead, *programme.read(values))
 
-    def _endless(self, live, dead):
-        """A factor that no strength explains: a million times all strengths and loads over the live
-        load."""
+    def _unreachable(self, live, dead):
+        """A factor that no strength explains: a million times all strengths and dead loads over the
+        live load."""
         areas = np.bincount(self.joint, self.areas, len(self.pairs))
         finite = np.where(np.isfinite(self.crushing), self.crushing, 0)
         strength = (areas * (self.tension + self.cohesion + finite)).sum()
@@ -255,26 +251,23 @@ class Assembly:
 
     def _why(self, live, dead, sense, turn, unsolved):
         """Why the programme could not be solved, as the error to raise."""
-        message = "limit analysis: "
-        try:
+        with contextlib.suppress(Unsolved):
             if np.abs(dead[~self.held]).max(initial=0) > 0:
                 carried = self._solve(dead, 0 * dead, 1, turn, most=1.0)
                 if carried.value < 1 - 1e-6:
                     fast = carried.fastest()
                     at = ", ".join(f"{v:.3g}" for v in self.centres[fast])
                     return Refused(
-                        f"{message}the structure does not stand under its dead loads alone: body"
-                        f" {self.ids[fast]} at ({at}) m moves first"
+                        "limit analysis: the structure does not stand under its dead loads alone:"
+                        f" body {self.ids[fast]} at ({at}) m moves first"
                     )
-            endless = 1e-3 * self._endless(live, dead)
-            if self._solve(live, dead, sense, turn, most=endless).value > 0.9 * endless:
-                return Endless(
-                    f"{message}nothing gives way, however large the load is: the blocks on which it"
-                    " acts are locked between others, or joined by joints that never fail"
+            limit = 1e-3 * self._unreachable(live, dead)
+            if self._solve(live, dead, sense, turn, most=limit).value > 0.9 * limit:
+                return UnboundedLoad(
+                    "limit analysis: nothing gives way, however large the load is: the blocks on"
+                    " which it acts are locked between others, or joined by joints that never fail"
                 )
-        except Unsolved:
-            pass
-        return Refused(f"{message}{unsolved}")
+        return Refused(f"limit analysis: {unsolved}")
 
     # -- geometry ----------------------------------------------------------------------------------
 
@@ -327,6 +320,6 @@ def _force(load, free):
     load = np.abs(np.where(free, load, 0))
     for part in (load[:, :3], load[:, 3:]):
         sizes = part.max(axis=1)
-        if (sizes > 0).any():
+        if sizes.any():
             return float(np.median(sizes[sizes > 0]))
     return 1.0

@@ -103,9 +103,9 @@ class Bound:
 
     @property
     def powers(self) -> dict[str, float]:
-        """Power of the mechanism by what takes it, with the live load at its factor and the dead
-        loads, as a dict: ``friction``, ``cohesion``, ``tension``, ``crushing``, and ``loads``, the
-        sum of what the loads do, all counted positive.
+        """Power of the mechanism by what takes it: ``friction``, ``cohesion``, ``tension``,
+        ``crushing``, and ``loads``, what the live load at its factor and the dead loads do, all
+        counted positive.
         """
         a, c = self.assembly, self.assembly.contacts
         opening, slide = self.jumps(c.joint, c.at)
@@ -145,7 +145,8 @@ class Bound:
     def exact(self) -> bool:
         """Whether the factor is what rigid blocks with dry joints carry: no joint slides or loses
         strength in the mechanism, and no joints close a loop, so that none can slip while others
-        keep it open."""
+        keep it open.
+        """
         return self.rigid and not self.assembly.bonded
 
     def joints(self) -> np.ndarray:
@@ -163,7 +164,7 @@ class Bound:
         states[c.joint[(opening > least) & (opening > ofSlide)]] = "opens"
         return states
 
-    def sentence(self, load: str, unit: str, digits: int = 4) -> str:
+    def sentence(self, load: str, unit: str) -> str:
         """What was found, as a sentence.
 
         :param load: name of the live load
@@ -180,7 +181,7 @@ class Bound:
             if not self.settled:
                 what += f"; {100 * self.overstressed:.1g} % of the forces are above friction"
         return (
-            f"limit analysis: {load} {self.factor:.{digits}g} {unit} ({what}); joints:"
+            f"limit analysis: {load} {self.factor:.4g} {unit} ({what}); joints:"
             f" {counts or 'none moves'}"
         )
 

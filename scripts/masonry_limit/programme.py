@@ -6,7 +6,7 @@ import math
 import numpy as np
 
 from . import solver
-from .solver import Late, Unsolved
+from .solver import SolverTimeout, Unsolved
 
 FACETS = 8  # of a friction cone
 SHARE = 12  # entries of the load by which a copy of the factor is multiplied
@@ -15,24 +15,20 @@ KEPT = 1e-6  # how well equilibrium and strength must be kept, relative to the l
 
 class Programme:
     """The linear programme: columns are force variables, rows are equilibrium and strength. Forces
-    are in units of a typical one, lengths of a typical one."""
+    and lengths are in units of typical ones."""
 
     def __init__(self, assembly, rows, size, force):
         self.assembly, self.rows, self.size, self.force = assembly, rows, size, force
         self.columns, self.low, self.high = 0, [], []
         self._equal, self._unequal = [], []
-        self._parts = (
-            []
-            # of the forces on contacts: which, columns, share that is normal, direction along the
-            # joint
-        )
+        #: forces on contacts: which, columns, share that is normal, direction along the joint
+        self._parts = []
         self.limits = np.zeros(0)
 
     def factor(self, load, most):
-        """The factor on a load.
-
-        A variable that acts on many blocks would couple them all in the solver. So it has one copy
-        for every :data:`SHARE` entries of the load, and each copy equals the one before.
+        """The factor on a load. A variable that acts on many blocks would couple them all in the
+        solver, so there is one copy for every :data:`SHARE` entries of the load, and each copy
+        equals the one before.
 
         :param load: entries of equilibrium, in units
         :param most: largest value; None: none
@@ -42,8 +38,8 @@ class Programme:
         columns = self._new(copies[-1] + 1, -np.inf, np.inf if most is None else most)
         self._equal.append((rows, columns[copies], load[rows]))
         links = int(self.rows.max()) + 1 + np.arange(copies[-1])
-        for column, sign in ((columns[:-1], 1.0), (columns[1:], -1.0)):
-            self._equal.append((links, column, np.full(len(links), sign)))
+        ones = np.ones(len(links))
+        self._equal += [(links, columns[:-1], ones), (links, columns[1:], -ones)]
         self._links, self._last = len(links), columns[-1]
 
     def _new(self, count, low=-np.inf, high=np.inf):
@@ -89,10 +85,10 @@ class Programme:
         areas = np.bincount(a.joint, a.areas, len(a.pairs))
         moments = [np.bincount(a.joint, a.areas * x, len(a.pairs)) for x in a.points.T]
         middle = np.column_stack(moments)[which] / areas[which][:, None]
-        free = ("xz", "y") if a.plane else ("xyz", "xyz")  # along and about which axes
+        free = ([0, 2], [1]) if a.plane else ([0, 1, 2], [0, 1, 2])  # along and about which axes
         for turns, axes in enumerate(free):
-            for axis in axes:
-                along = np.tile(np.eye(3)["xyz".index(axis)], (len(which), 1))
+            for axis in np.eye(3)[axes]:
+                along = np.tile(axis, (len(which), 1))
                 self._forces(which, middle, along, self._new(len(which)), turns)
 
     def _dry(self, which, turn):
@@ -147,7 +143,7 @@ class Programme:
         from scipy.sparse import csc_matrix
 
         if seconds <= 0:
-            raise Late
+            raise SolverTimeout
         loads = np.append(-still, np.zeros(self._links))
         count, sides = len(loads), np.append(loads, self.limits)
         entries = self._equal + [(count + r, *others) for r, *others in self._unequal]

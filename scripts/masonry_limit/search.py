@@ -10,11 +10,11 @@ from masonry.errors import Refused
 from masonry.memory import FULL
 
 from . import loads
-from .assembly import Endless
+from .assembly import UnboundedLoad
 from .reading import read
 
-#: Of the search for a tilt at which both parts of gravity are those of the tilt: its rounds at
-#: most, the difference of two tilts at which it ends, and the largest tilt [rad].
+#: Of the search for a tilt: its rounds at most, the difference of two tilts at which it ends, and
+#: the largest tilt [rad].
 TILTS, SAME_TILT, STEEPEST = 20, 1e-6, math.radians(89.9)
 
 
@@ -82,7 +82,7 @@ def search(model, load, lowerUpTo, seconds):
             found.lines.append(least.sentence(load.name, load.unit))
         found.bound = bound
     except Refused as refused:
-        found.endless = isinstance(refused, Endless)
+        found.endless = isinstance(refused, UnboundedLoad)
         found.entry["note"] = str(refused)
     except (MemoryError, ImportError):  # a library cannot be loaded either
         found.entry["note"] = f"limit analysis: {FULL}"
@@ -93,11 +93,11 @@ def search(model, load, lowerUpTo, seconds):
 
 def _tilted(find, first):
     """The bound of a tilt, at which weights have turned as far as its factor says, while other
-    loads have not: secants find it.
+    loads have not: secants find it. Raises UnboundedLoad if there is no such tilt below
+    :data:`STEEPEST`.
 
     :param find: function of the cosine of the tilt that gives the bound with weights of that share
     :param first: tilt with which the search begins [rad]
-    :raises Endless: if there is no such tilt below :data:`STEEPEST`
     """
     bound = find(math.cos(first))
     angle = math.atan(bound.factor)
@@ -112,5 +112,5 @@ def _tilted(find, first):
         last, off = angle, more
         angle = last - off / slope if slope < 0 else last + off
     if last == STEEPEST and off > 0:
-        raise Endless("limit analysis: no tilt below 90 degrees moves the structure")
+        raise UnboundedLoad("limit analysis: no tilt below 90 degrees moves the structure")
     return bound

@@ -2,13 +2,14 @@
 """Mechanisms in which joints slip without opening, below the bound of associated flow.
 
 When a part of a wall tips over a stepped crack, nearly all of its head joints are open, and slip
-along their faces without anything to resist. Associated flow does not allow that, since joints that
-slip would have to open more. So this module solves programmes of the same structure with less
-friction where nothing presses joints together: in head joints first (:func:`_smooth`), then in
-every joint that carries nothing (:func:`loosened`). :func:`repeated` replaces friction by a
-cohesion. A mechanism counts only if hardly any friction is missing in it (:func:`_belongs`).
+along their faces without resistance. Associated flow does not allow that, since joints that slip
+would have to open more. So this module solves programmes of the same structure with less friction
+where nothing presses joints together: in head joints first (:func:`_smooth`), then in every joint
+that carries nothing (:func:`loosened`). :func:`repeated` replaces friction by a cohesion. A
+mechanism counts only if hardly any friction is missing in it (:func:`_belongs`).
 """
 
+import contextlib
 from dataclasses import replace
 
 import numpy as np
@@ -16,17 +17,16 @@ import numpy as np
 from masonry.errors import Refused
 
 LOOSENED = 8  # rounds in which joints without pressure lose their friction, at most
+ROUNDS = 60  # in which friction is replaced by a cohesion, at most
+SAME_FACTOR = 1e-3  # relative change of the factor at which these end [-]
 UNPRESSED = 1e-6  # force on a joint over the largest, below which it is open [-]
 UPRIGHT = 0.5  # cosine between the dead loads and the normal below which a joint is a head joint
 MISSED = 0.02  # share of a mechanism's power that the friction it misses may have [-]
 
 
 def loosened(assembly, live, dead):
-    """The weakest mechanism that is found when joints without pressure lose their friction, as a
-    Bound; None if there is none.
-
-    It begins with the head joints. Then other joints that carry nothing lose their friction, too,
-    and so on.
+    """The weakest mechanism that is found when joints without pressure lose their friction, head
+    joints first, as a Bound; None if there is none.
     """
     smooth, least = _smooth(assembly, dead), None
     for _ in range(LOOSENED if smooth else 0):
@@ -45,18 +45,15 @@ def loosened(assembly, live, dead):
     return least
 
 
-def withoutDilatancy(assembly, live, dead, most, within):
-    """The smallest of all that this module finds. :meth:`Assembly.withoutDilatancy` describes
-    it."""
-    found = repeated(assembly, live, dead, most, within)
+def withoutDilatancy(assembly, live, dead):
+    """The smallest of all that this module finds: see :meth:`Assembly.withoutDilatancy`."""
+    found = repeated(assembly, live, dead)
     smooth = _smooth(assembly, dead)
     if smooth:
-        try:
-            other = repeated(smooth, live, dead, most, within)
+        with contextlib.suppress(Refused):  # without that friction it does not stand
+            other = repeated(smooth, live, dead)
             if other.factor < found.factor and _belongs(assembly, other):
                 found = other
-        except Refused:
-            pass  # without that friction it does not stand
     loose = loosened(assembly, live, dead)
     if loose and loose.factor < found.factor:
         found, loose.settled = loose, True
@@ -65,12 +62,12 @@ def withoutDilatancy(assembly, live, dead, most, within):
     return found
 
 
-def repeated(assembly, live, dead, most, within):
+def repeated(assembly, live, dead):
     """Rounds in which the friction of a joint is a cohesion: the friction under the normal force of
     the last round."""
     bound = assembly.associated(live, dead)
     pressed, factor, slope = bound.compressed, bound.factor, 0.3
-    for _ in range(most):
+    for _ in range(ROUNDS):
         slope = max(1e-3, slope * 0.7)
         try:
             following = assembly.associated(live, dead, (pressed, slope), turns=2)
@@ -79,7 +76,7 @@ def repeated(assembly, live, dead, most, within):
         change = abs(following.factor - factor) / max(abs(factor), 1e-12)
         pressed = 0.5 * pressed + 0.5 * following.compressed
         bound, factor = following, following.factor
-        if change < within and slope < 2e-3 and bound.overstressed < 0.01:
+        if change < SAME_FACTOR and slope < 2e-3 and bound.overstressed < 0.01:
             bound.settled = True
             break
     return bound

@@ -3,17 +3,14 @@
 
 Rows of a study fill the ranges of what is unknown. A surrogate, kriging by OpenTURNS, stands for
 the scene between them, and a Metropolis-Hastings chain of OpenTURNS draws properties with the
-probability that the test gives them, all values within their ranges being alike beforehand. Errors
-are normal and independent: those of the test, and those of the surrogate, which is what it misses
-of each row if that is left out. While these are more than half of the others, another round of rows
-fills what the draws keep of the ranges. A run with the means of the draws is compared with the
-surrogate, and added to its rows while it differs.
+probability that the test gives them, where all values within their ranges are equally likely
+beforehand. Errors are normal and independent: those of the test, and those of the surrogate, from
+leave-one-out prediction. While the surrogate's error is more than half of the test's, another round
+of rows fills what the draws keep of the ranges. A run with the means of the draws is compared with
+the surrogate, and added to its rows while it differs.
 
 A few accurate runs say how far the scene as it is run is off: their mean difference is added, and
-its scatter is another error.
-
-:mod:`masonry_study` runs a file with a calibration like one with a study. scripts/STUDIES.md is the
-    manual.
+its scatter is another error. scripts/STUDIES.md is the manual.
 """
 
 from __future__ import annotations
@@ -44,18 +41,18 @@ from .variables import uniform
 
 DRAWS, THINNING = 4000, 5  # of a chain
 BEGIN = 0.1  # steps of the first chain over the ranges [-]
-# of a chain over the deviation of a draw, over the root of the dimension: Gelman, Roberts and Gilks
-# (1996)
+# step of a chain over the deviation of a draw and the root of the dimension: Gelman, Roberts and
+# Gilks (1996)
 STEP = 2.38
 STARTS = 2000  # points of which the most likely one begins the first chain
 FINE = 0.5  # error of the surrogate over that of the test that needs no other round or check [-]
 CHECKS = 4  # runs with the means of the draws that may be added to the rows
-SMALLER = 0.5  # volume of another round over the last one, above which it does not pay
+MAX_VOLUME_RATIO = 0.5  # of another round to the last one; a larger one does not pay
 TAIL, MARGIN = 0.005, 0.25  # what a next round has outside, and its margin over width
 ENDS = 0.025, 0.975  # quantiles of an interval and of a band
 #: Deviation of the draws over that of the range from which the test does not tell a property [-].
 UNKNOWN = 0.8
-DOUBT = 0.01  # probability from which the difference of scene and test is no chance
+DOUBT = 0.01  # probability below which the difference of scene and test is no chance
 NEAR = 0.01  # distance of an interval to the end of a range, over the range [-]
 TOGETHER = 0.9  # correlation from which two properties are known only together [-]
 RESULT, PICTURE = "calibration.json", "calibration.png"  # in the folder
@@ -235,7 +232,7 @@ class Calibration:
             least, most = np.quantile(sample, (TAIL, 1 - TAIL), axis=0)
             margin = MARGIN * (most - least)
             least, most = np.maximum(least - margin, low), np.minimum(most + margin, high)
-            if off <= FINE or np.prod((most - least) / (high - low)) > SMALLER:
+            if off <= FINE or np.prod((most - least) / (high - low)) > MAX_VOLUME_RATIO:
                 break
             low, high = least, most
         return model, sample
@@ -258,17 +255,14 @@ class Calibration:
         return model, sample, run
 
     def _best(self, name, sample, options=()):
-        """What a run with the means of the draws says, as in :meth:`_rows`."""
+        """What a run with the means of the draws says, as :meth:`_rows` does."""
         means = dict(zip(self.keys, sample.mean(axis=0).tolist()))
         study = lambda s: Study(s.scene, {**s.options, **dict(options)}, vary=means, design="grid")
         return self._rows(name, study, 0)
 
     def _rows(self, name, studyOf, least):
-        """Run a study of every specimen: the unknown properties of the rows, and what all specimens
-        say of them.
-
-        :param least: how many rows there must be
-        """
+        """Run a study of every specimen: the unknown properties of the rows, of which there must be
+        at least ``least``, and what all specimens say of them."""
         found = []
         for number, specimen in enumerate(self.specimens, 1):
             study, place = studyOf(specimen), f"specimen{number}_{name}"
@@ -299,8 +293,7 @@ class Surrogate:
     :param x: of every row the unknown properties
     :param y: of every row what it says
     :param low: ends of the ranges, and ``high``
-    :param checks: how many rows at the end are where the properties are likely: the error is not
-        below that of these
+    :param checks: how many rows at the end are checks, whose error is the least that is taken
     """
 
     def __init__(
@@ -321,7 +314,7 @@ class Surrogate:
         self.own = np.einsum("jd,nd->jn", self.weights, u**2)
 
     def unit(self, u: np.ndarray) -> np.ndarray:
-        """What it says of properties over their ranges, a line each."""
+        """Its values for properties as shares of their ranges, a line each."""
         cross = (u @ self.cross).reshape(len(u), *self.own.shape)
         near = np.exp(cross - (u**2 @ self.weights.T)[:, :, None] - self.own)
         bent = np.einsum("mjn,jn->mj", near, self.factors)
@@ -332,8 +325,8 @@ class Surrogate:
 
 
 def _kriging(u, column):
-    """Slopes of the trend, lengths of the covariance, factors of the rows, and what is missed of
-    each if it is left out."""
+    """Slopes of the trend, lengths of the covariance, factors of the rows, and their leave-one-out
+    errors."""
     ot, size = needed("openturns"), u.shape[1]
     if not column.any():  # the same in all rows
         return np.zeros(size + 1), np.ones(size), np.zeros(len(u)), np.zeros(len(u))
@@ -354,13 +347,8 @@ def _kriging(u, column):
 
 
 def posterior(model: Surrogate, values: np.ndarray, errors: np.ndarray, seed: int) -> np.ndarray:
-    """Draws of the unknown properties, with the probability that the measured values give them: a
-    line each.
-
-    :param values: what was measured
-    :param errors: standard deviations of it
-    :param seed: of the draws
-    """
+    """Draws of the unknown properties, with the probability that measured values, with these
+    standard deviations, give them: a line each."""
     ot, size, spread = needed("openturns"), len(model.low), np.hypot(errors, model.errors)
     misfit = lambda u: -0.5 * (((model.unit(u) - values) / spread) ** 2).sum(axis=1)
     density = ot.PythonFunction(size, 1, lambda u: [misfit(np.array([u]))[0]])
@@ -384,10 +372,8 @@ def posterior(model: Surrogate, values: np.ndarray, errors: np.ndarray, seed: in
 class Found:
     """What the tests say of the unknown properties.
 
-    :param calibration: :class:`Calibration`, which has what was measured as ``values``, and its
-        standard deviations as ``errors``
+    :param calibration: has what was measured as ``values``, with its standard deviations ``errors``
     :param sample: draws of the properties, a line each
-    :param model: :class:`Surrogate`
     :param run: what a run with the means of the draws says, one line; none if it failed
     """
 
@@ -403,8 +389,7 @@ class Found:
 
     @property
     def spread(self) -> np.ndarray:
-        """Standard deviations of the draws over those of the ranges [-]: 1 is what was known
-        before."""
+        """Standard deviations of the draws over those of the ranges [-]: 1 tells nothing."""
         ranges = self.calibration.high - self.calibration.low
         return math.sqrt(12) * self.sample.std(axis=0) / ranges
 
@@ -446,8 +431,7 @@ class Found:
 
     @property
     def properties(self) -> list[dict[str, Any]]:
-        """Of every property: ``name``, ``value``, ``low`` and ``high`` of its interval, and
-        ``spread``."""
+        """Of every property ``name``, ``value``, ends of its interval, and ``spread``."""
         columns = self.sample.mean(axis=0), *self.intervals, self.spread
         rows = zip(self.calibration.names, *(c.tolist() for c in columns))
         return [dict(zip("name value low high spread".split(), row)) for row in rows]
@@ -461,14 +445,11 @@ class Found:
         }
 
     def lines(self) -> Iterator[str]:
-        """What is printed: properties, what was measured, doubts, and the properties as a study
-        takes them."""
+        """What is printed."""
         of = self.calibration
         wide = max(map(len, of.names))
-        yield (
-            f"{'property':{wide}}  {'value':>10}  {'95 % interval':^23}  deviation over that of the"
-            " range"
-        )
+        heads = f"{'property':{wide}}  {'value':>10}  {'95 % interval':^23}"
+        yield f"{heads}  deviation over that of the range"
         line = "{name:{wide}}  {value:10.4g}  {low:10.4g} … {high:10.4g}  {spread:.2f}"
         for one in self.properties:
             yield line.format(wide=wide, **one)
@@ -478,10 +459,8 @@ class Found:
         names = [name for one in of.specimens for name in one.names]
         run = self.run[0] if len(self.run) else np.full(len(names), np.nan)
         for name, value, low, high, one in zip(names, of.values, *self.bands(), run):
-            yield (
-                f"  {name}: measured {value:.4g}, draws {low:.4g} … {high:.4g}, run with their"
-                f" means {one:.4g}"
-            )
+            band = f"draws {low:.4g} … {high:.4g}"
+            yield f"  {name}: measured {value:.4g}, {band}, run with their means {one:.4g}"
         yield from self.doubts()
         yield "for a study with these properties, whose report draws the band of all curves:"
         yield from self.forStudies()

@@ -6,12 +6,12 @@ The demand of a row is the amount of one of its measures, for example the larges
 point. Where the structure falls the demand is infinite, and it stays so at all higher levels, which
 are not run. Quantiles over the records at a level count infinite demands like others: where more
 than half of the records have fallen, the median is infinite. Between two levels of a record the
-demand changes evenly, from zero at zero on; between the highest level at which it stood and that at
-which it fell it counts as infinite, which is on the safe side and matters only where records have
-other levels than each other.
+demand is interpolated, from zero at zero on; between the highest level at which the structure stood
+and that at which it fell it counts as infinite, which is on the safe side and matters only where
+records have other levels than each other.
 
-Rows that failed or are missing are left out, and at a level at which fewer than three records are
-known there is no quantile. This module needs no YADE.
+Rows that failed or are missing are left out, and at a level with fewer than three known records
+there is no quantile.
 """
 
 import math
@@ -80,10 +80,9 @@ class Demands:
         return [_quantile(values, share) if known else math.nan for share in shares]
 
     def intervals(self, limit=None):
-        """Of every record that has a row: the highest intensity below the first at which a limit is
-        reached (0: none), and that first one (infinite: none).
-
-        :param limit: of the demand; None: the structure falls
+        """Of every record that has a row: the highest intensity below the first at which a limit of
+        the demand is reached (0: none), and that first one (infinite: none). None: the structure
+        falls.
         """
         ends, most = [], math.inf if limit is None else limit
         for (intensities, demands), stood in zip(self.rows, self.stood):

@@ -9,6 +9,8 @@ moved by a random vector. Correlated numbers follow a normal copula with the giv
 import contextlib
 import itertools
 
+import numpy as np
+
 from masonry.errors import Refused
 from masonry.packages import needed
 from .variables import Distribution
@@ -19,8 +21,7 @@ DESIGNS = ("random", "latin", "sobol", "grid", "ida")
 
 @contextlib.contextmanager
 def seeded(ot, seed):
-    """Random numbers of OpenTURNS from a seed; those of the caller go on afterwards as if nothing
-    had been."""
+    """Random numbers of OpenTURNS from a seed; those of the caller go on afterwards unchanged."""
     before = ot.RandomGenerator.GetState()
     ot.RandomGenerator.SetSeed(seed)
     try:
@@ -35,27 +36,22 @@ def points(design, count, dimension, seed):
         return [[] for _ in range(count)]
     ot = needed("openturns")
     cube = ot.IndependentCopula(dimension)
-    inside = lambda u: min(max(u, EDGE), 1 - EDGE)
     with seeded(ot, seed):
         if design == "random":
-            # one after the other, so that more rows begin with the same ones
-            return [[*map(inside, cube.getRealization())] for _ in range(count)]
-        if design == "latin":
+            made = ot.MonteCarloExperiment(cube, count)  # more rows begin with the same ones
+        elif design == "latin":
             made = ot.LHSExperiment(cube, count, True, True)
         else:
             made = ot.LowDiscrepancyExperiment(ot.SobolSequence(), cube, count, True)
             made.setRandomize(True)
-        return [list(map(inside, point)) for point in made.generate()]
+        return np.clip(made.generate(), EDGE, 1 - EDGE).tolist()
 
 
-def root(names, correlation):
-    """The Cholesky factor of the normal copula of numbers with these rank correlations, or None if
-    there are none.
+def _factorize(names, correlation):
+    """The Cholesky factor of the normal copula of numbers with these rank correlations.
 
     :raises Refused: if no numbers have all these correlations at once
     """
-    if not correlation:
-        return None
     ot = needed("openturns")
     matrix = ot.CorrelationMatrix(len(names))
     for (one, two), value in correlation.items():
@@ -78,9 +74,10 @@ def values(design, count, seed, vary, correlation):
         return [dict(zip(vary, row)) for row in rows]
     names = [n for n, v in vary.items() if isinstance(v, Distribution)]
     chosen = [n for n in vary if n not in names]
-    cube, factor = points(design, count, len(vary), seed), root(names, correlation)
-    if factor is not None:
-        cube = [_tied(point, factor, needed("openturns").Normal()) for point in cube]
+    cube = points(design, count, len(vary), seed)
+    if correlation:
+        factor, normal = _factorize(names, correlation), needed("openturns").Normal()
+        cube = [_tied(point, factor, normal) for point in cube]
     columns = zip([*names, *chosen], zip(*cube))
     found = {name: vary[name].valuesAt(column) for name, column in columns}
     return [{name: found[name][row] for name in vary} for row in range(count)]

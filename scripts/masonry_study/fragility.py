@@ -4,9 +4,9 @@ a limit is first reached.
 
 Rows of one record are not independent: a record at which a structure falls makes it fall at higher
 levels, too. So each record is one observation, of which the levels tell an interval: the limit is
-not reached at ``low``, the highest level below the first that reaches it (0 if that is the lowest
-one), and it is reached at ``high`` (infinite if no level reaches it). With the median θ and the
-dispersion β, the standard deviation of the logarithm, the likelihood is
+not reached at ``low``, the highest level below the first that reaches it (0: none), and it is
+reached at ``high`` (infinite: at no level). With the median θ and the dispersion β, the standard
+deviation of the logarithm, the likelihood is
 
     L(θ, β) = Π [Φ(ln(high/θ)/β) - Φ(ln(low/θ)/β)].
 
@@ -14,20 +14,17 @@ A row that failed or is missing makes its interval wider. The usual likelihood o
 factor for every level, takes rows of one record for independent ones. Its estimate is nearly the
 same, but its intervals are too narrow.
 
-Intervals are those of the profile likelihood: all values of a number that it has anywhere where 2
-ln L is at most c below its maximum. For a normal distribution whose n values are known exactly, c =
-n ln(1 + t²/(n-1)), with the quantile t of Student's distribution with n-1 degrees of freedom, gives
-the exact interval of the median; for many records it is the quantile of χ². This c is used here. In
-1,000 samples of 5, 10 and 20 records each, with dispersions of 0.3 and 0.6 and eight levels, 94 to
-99 % of the 95 % intervals of median, dispersion and probability held the truth; in 400 samples of
-10 and 20 records those of counts did so in 79 % for the median and in 85 to 88 % for the
-dispersion.
+Intervals are those of the profile likelihood: all values of a number that it has anywhere where
+2 ln L is at most c below its maximum. For a normal distribution whose n values are known exactly,
+c = n ln(1 + t²/(n-1)), with the quantile t of Student's distribution with n-1 degrees of freedom,
+gives the exact interval of the median; for many records it is the quantile of χ². This c is used
+here. In 1,000 samples of 5, 10 and 20 records each, with dispersions of 0.3 and 0.6 and eight
+levels, 94 to 99 % of the 95 % intervals of median, dispersion and probability held the truth; those
+of counts did so in 79 to 88 % of 400 samples.
 
 With a = 1/β and b = ln(θ)/β, ln L is concave, so it has one maximum, and the set of likely values
 is convex: its edge is found along rays. The probability Φ(a ln x - b) of reaching the limit at x
 has its band from the same edge.
-
-This module needs no YADE.
 """
 
 import html
@@ -74,9 +71,8 @@ class Fit:
 def fit(low: Numbers, high: Numbers) -> Fit:
     """The fragility with the largest likelihood.
 
-    :param low: of every record the highest level at which the limit is not reached, below the first
-        that reaches it; 0: none
-    :param high: of every record the first level at which it is reached; infinite: none
+    :param low: of every record the highest level below the first that reaches the limit; 0: none
+    :param high: of every record the first level that reaches it; infinite: none
     :raises Refused: if the records cannot give it, with the reason
     """
     low, high = np.asarray(low, float), np.asarray(high, float)
@@ -122,9 +118,8 @@ def fit(low: Numbers, high: Numbers) -> Fit:
 
 def nrml(fits: dict[str, Fit], measure: str, state: str, what: str, highest: float) -> str:
     """Fragilities as a model that OpenQuake reads, of NRML 0.5: GEM Foundation, OpenQuake engine
-    manual, "Fragility Models".
-
-    Its mean and standard deviation are those of the intensity, not of its logarithm.
+    manual, "Fragility Models". Its mean and standard deviation are those of the intensity, not of
+    its logarithm.
 
     :param fits: by the taxonomy of the assets
     :param measure: of intensity, as a column of study.csv
@@ -160,8 +155,6 @@ def _check(low, high):
     n = len(low)
     if n < FEWEST:
         raise Refused(f"a fragility needs {FEWEST} records or more, there are {n}")
-    if not (np.all(low >= 0) and np.all(high > low)):
-        raise Refused("a fragility needs levels that grow from 0 on")
     if not np.isfinite(high).any():
         raise Refused(
             f"no fragility: at none of the {n} records is the limit reached; add higher levels"

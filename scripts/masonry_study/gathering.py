@@ -1,13 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The folder of a study: which of its rows are done, whether they are those of the study, and the
-table of their numbers.
+"""The folder of a study: which of its rows are done, and the table of their numbers.
 
 ``study.csv`` has a row a run: ``run``, what varies (of a field its seed), ``status``, and the
-numbers of run.json. It is the same to the last digit whoever ran the rows. ``times.csv`` has what
-is not: host, seconds, what a failed row said.
-
-A study that goes on compares the table with what it draws. A row that goes on from a checkpoint
-begins again if the scene refuses that, because it has other values.
+numbers of run.json. The file is the same to the last digit whoever ran the rows. ``times.csv`` has
+what depends on the machine: host, seconds, what a failed row said.
 """
 
 import collections
@@ -24,10 +20,9 @@ from masonry.errors import Refused, refuse
 from masonry.numbers.files import filesOf, readWhole
 from masonry.numbers.quantities import measures
 from masonry.run.lock import held
-from .incremental import FOLDER, Chains, fell, isPlan, shaken
+from .incremental import FOLDER, Chains, fell, shaken
 
 TABLE, STUDY, CSV, TIMES = "table.txt", "study.json", "study.csv", "times.csv"
-SHOWN = 5  # differences that are named
 
 #: Why a run that has ended is no row of an incremental dynamic analysis.
 UNSHAKEN = "it was not shaken: the scene has no shake(), or fell before it"
@@ -66,20 +61,20 @@ class Folder:
         """study.json. Raises Refused if there is none, or if it is no description of a study."""
         try:
             record = json.loads(readWhole(self.of(STUDY)))
-        except (OSError, ValueError):
+            record["script"], record["study"]["runs"], record["study"]["vary"]
+        except OSError:
             raise Refused(f"{self.path} is no folder of a study: it has no {STUDY}") from None
-        if not _isStudy(record):
-            raise Refused(f"{self.of(STUDY)} is damaged: it describes no study")
+        except (ValueError, KeyError, TypeError):
+            raise Refused(f"{self.of(STUDY)} is damaged: it describes no study") from None
         return record
 
     def lastJob(self, number):
         """How the last attempt at a row ended: a dict with ``host``, ``status``, ``seconds``,
         ``told``; or an empty one."""
         try:
-            record = json.loads(readWhole(self.job(number)))
+            return json.loads(readWhole(self.job(number)))
         except (OSError, ValueError):
             return {}
-        return record if _isJob(record) else {}
 
     def isEnded(self, number):
         return batch.ended(self.row(number)) is not None
@@ -120,33 +115,13 @@ class Folder:
         return "missing" if stopped else "failed"
 
 
-def _isStudy(record):
-    """Whether study.json is of the form that :meth:`masonry_study.plan.Study.describe` gives it."""
-    study = record.get("study") if isinstance(record, dict) else None
-    return (
-        isinstance(study, dict)
-        and isinstance(study.get("runs"), int)
-        and all(isinstance(study.get(name), dict) for name in ("options", "vary"))
-        and all(isinstance(what, dict) for what in study["vary"].values())
-        and isinstance(record.get("script"), str)
-        and ("ida" not in study or isPlan(study["ida"], study["runs"]))
-    )
-
-
-def _isJob(record):
-    """Whether a record of an attempt is of the form that :mod:`masonry_study.row` gives it."""
-    kinds = {"host": str, "status": int, "seconds": (int, float), "told": str}
-    fits = lambda name: isinstance(record.get(name), kinds[name])
-    return isinstance(record, dict) and all(map(fits, kinds))
-
-
 def written(path, text):
     """Write a file, whole or not at all. Raises Unwritable."""
     with folders.writing(path), folders.replaced(path, newline="") as f:
         f.write(text)
 
 
-#: How lines begin that are no reason of a failure.
+#: Prefixes of lines of a log that do not explain a failure.
 _CHATTER = (
     "Yade: ",
     "Running script",
@@ -171,30 +146,17 @@ def reason(log):
 
 
 def rowsOf(folder):
-    """The rows of the table of a study, in turn, as dicts of texts: as many as it has runs, with
-    its columns and names.
-
-    :raises Refused: if the table is another one
-    """
+    """The rows of the table of a study, in turn, as dicts of texts. Raises Refused if the table is
+    another one."""
     study, path = folder.description()["study"], folder.of(TABLE)
     rows = [*batch.readTable(path).values()]
-    needed = {"description", "lean", *study["options"], *study["vary"]}
-    needed |= {"record", "scale"} if study.get("ida") else set()
-    fields = [name for name in study["vary"] if name.startswith(batch.FIELD)]
-    known = needed | {name[len(batch.FIELD) :] for name in fields}
-    known = {n for n in known if n in ("description", "lean") or batch.isColumn(n)}
-    heads = [*rows[0]] if rows else []
-    foreign = [name for name in [*heads, *needed] if name not in known]
-    problems = [f"column {name} is not of the study" for name in foreign]
-    problems += [f"column {name} is missing" for name in needed.difference(heads)]
-    if len(rows) != study["runs"]:
-        problems.append(f"it has {len(rows)} rows, and the study {study['runs']}")
-    problems += [
-        f"row {batch.named(number)} is called {row['description']}"
-        for number, row in enumerate(rows, 1)
-        if row.get("description", "") != batch.named(number)
-    ]
-    refuse(problems[:SHOWN], f"{path} is not the table of its study:\n  ", "\n  ")
+    expected = [batch.named(number) for number in range(1, study["runs"] + 1)]
+    columns = {*study["options"], *study["vary"]}
+    if [row.get("description") for row in rows] != expected or not columns <= {*rows[0]}:
+        raise Refused(
+            f"{path} is not the table of its study, which has the rows {expected[0]} to"
+            f" {expected[-1]} and the columns {', '.join(sorted(columns))}"
+        )
     return rows
 
 
@@ -220,10 +182,8 @@ def gather(folder):
         found.append((begin, {**numbers, **answers}))
         job = folder.lastJob(number)
         why = (UNSHAKEN if run else job.get("told", "")) if status == "failed" else ""
-        host, cost = job.get("host", run.get("host", "")), run.get("wall_clock_s")
-        times.append(
-            [batch.named(number), status, host, cost, job.get("seconds"), run.get("commit"), why]
-        )
+        of = job.get("host", run.get("host", "")), run.get("wall_clock_s"), job.get("seconds")
+        times.append([batch.named(number), status, *of, run.get("commit"), why])
     heads = list(dict.fromkeys(name for _, numbers in found for name in numbers))
     lines = [[*begin, *map(numbers.get, heads)] for begin, numbers in found]
     heads = ["run", *names, *strengths, "status", *heads]

@@ -1,12 +1,10 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Incremental dynamic analysis: a scene is shaken by records that grow in strength. Here is what is
-run; what is found is in
-:mod:`masonry_study.demands`.
+run; what is found is in :mod:`masonry_study.demands`.
 
 Rows are in the order of the records, those of a record with growing levels. A record is not run
-beyond the level at which the structure falls: rows above it are ``above collapse``. That is found
-from the rows that are done whenever it is asked, so it does not matter who ran which row, nor in
-which order.
+beyond the level at which the structure falls: rows above it are ``above collapse``. The rows that
+are done tell which these are, so it does not matter who ran which row, nor in which order.
 """
 
 import glob
@@ -19,7 +17,7 @@ from dataclasses import dataclass
 from typing import Any, Iterable, Sequence
 
 from masonry import arguments
-from masonry.arguments import FilePath, isNumber, listOf, number, shown, validated
+from masonry.arguments import FilePath, listOf, number, shown, validated
 from masonry.units import GRAVITY
 from masonry.errors import Refused, refuse
 from masonry.scene import accelerograms
@@ -28,7 +26,7 @@ from .spectrum import DAMPING, LONGEST, Period, Ratio, SHORTEST
 from .spectrum import spectralAcceleration
 
 FOLDER = "records"  # in the folder of a study: the records as it read them
-MOST_RECORDS = 1000
+MAX_RECORDS = 1000
 LEVEL = number("", 0, 1000, above=True)
 
 
@@ -54,10 +52,7 @@ class Measure:
 
     def of(self, values: Sequence[Any], every: float) -> float:
         """The measure of a record [g]; of three components the geometric mean of both horizontal
-        ones.
-
-        :param values: samples [m/s²]; ``every``: the time between them [s]
-        """
+        ones. Parameters as in :class:`Motion`."""
         parts = accelerograms.components(values).tolist()
         if len(parts) == 3:
             return math.sqrt(self.of(parts[0], every) * self.of(parts[1], every))
@@ -71,13 +66,8 @@ class Measure:
 
 @validated
 def Sa(period: Period, damping: Ratio = DAMPING) -> Measure:
-    """Spectral acceleration as the measure of intensity: see
-    :func:`masonry_study.spectrum.spectralAcceleration`.
-
-    :param period: of the oscillator [s]
-    :param damping: share of critical damping [-]
-    :raises Refused: if one is out of its bounds
-    """
+    """Spectral acceleration as the measure of intensity. Parameters and errors as in
+    :func:`masonry_study.spectrum.spectralAcceleration`."""
     return Measure(float(period), float(damping))
 
 
@@ -166,7 +156,7 @@ class Incremental:
         return len(self.levels if self.scales is None else self.scales)
 
     def read(self, near: FilePath) -> list[Motion]:
-        """The records, read when they are first asked for. Raises Refused with all problems.
+        """The records, read by the first call. Raises Refused with all problems.
 
         :param near: folder from which paths that are not absolute begin
         """
@@ -178,8 +168,8 @@ class Incremental:
                     motions.append(self._motion(path, motions))
                 except Refused as refused:
                     problems.append(str(refused))
-            if len(motions) > MOST_RECORDS:
-                problems.append(f"records: {len(motions)}, there must be at most {MOST_RECORDS}")
+            if len(motions) > MAX_RECORDS:
+                problems.append(f"records: {len(motions)}, there must be at most {MAX_RECORDS}")
             refuse(problems, "study: ", "\n  ")
             self._motions = motions
         return self._motions
@@ -219,22 +209,16 @@ class Incremental:
         return Motion(name, values, every, intensity)
 
     def rows(self) -> list[tuple[Motion, float]]:
-        """What every row is shaken by, in turn: a record and the factor on it [-]. The records must
-        have been read."""
-        motions = self._known()
+        """What every row is shaken by, in turn: a record and the factor on it [-]."""
+        motions = self.read("")
         if self.scales is not None:
             return [(motion, s) for motion in motions for s in self.scales]
         return [(m, level / m.intensity) for m in motions for level in self.levels]
 
-    def _known(self):
-        if self._motions is None:
-            raise Refused("study: its records have not been read")
-        return self._motions
-
     def describe(self) -> dict[str, Any]:
-        """As study.json has it. The records must have been read."""
+        """As study.json has it."""
         return {
-            "records": [motion.entry for motion in self._known()],
+            "records": [motion.entry for motion in self.read("")],
             "measure": self.measure.name,
             "levels": self.levels,
             "scales": self.scales,
@@ -244,7 +228,7 @@ class Incremental:
         """Sentences on records that drift."""
         return [
             f"note: the record {motion.name} drifts: {doubt}"
-            for motion in self._known()
+            for motion in self.read("")
             for part in accelerograms.components(motion.values).tolist()
             if (doubt := accelerograms.drift(part, motion.every).sentence())
         ]
@@ -284,27 +268,9 @@ class Chains:
         return float(self.plan["scales"][level] * self.plan["records"][record]["intensity"])
 
 
-def isPlan(plan: Any, runs: int) -> bool:
-    """Whether the entry ``ida`` of study.json is of the form that :meth:`Incremental.describe`
-    gives it."""
-    try:
-        strengths, records = plan["levels"] or plan["scales"], plan["records"]
-        numbers = [*strengths, *(one["intensity"] for one in records)]
-        texts = [plan["measure"], *(one[n] for one in records for n in ("name", "sha256"))]
-    except (KeyError, TypeError):
-        return False
-    return (
-        len(records) * len(strengths) == runs
-        and all(map(isNumber, numbers))
-        and all(isinstance(text, str) for text in texts)
-    )
-
-
 def shaken(run: dict[str, Any]) -> bool:
     """Whether a run came to a shake: what falls under its own weight before does not."""
-    stages = run.get("stages")
-    stages = stages if isinstance(stages, list) else []
-    return any(isinstance(s, dict) and s.get("stage") == "shake" for s in stages)
+    return any(stage["stage"] == "shake" for stage in run.get("stages", []))
 
 
 def fell(run: dict[str, Any]) -> bool:

@@ -3,9 +3,8 @@
 process.
 
 So the signal is blocked while OpenTURNS can be at work, a thread takes it, and the process ends in
-order: nothing is written then that would have to be finished. A program that uses OpenTURNS calls
-:func:`block` before it imports NumPy, whose threads would else take the signal, and :func:`unblock`
-when it is over.
+order; nothing is being written then. A program calls :func:`block` before it imports NumPy, whose
+threads would else take the signal, and :func:`unblock` when OpenTURNS is over.
 """
 
 import contextlib
@@ -33,10 +32,8 @@ def unblock(handler=signal.default_int_handler):
 
 @contextlib.contextmanager
 def watched(text):
-    """End the process in order at Ctrl-C, with a text and exit status 130, although OpenTURNS is at
-    work in the block.
-
-    In another thread than the main one, which has no handlers, nothing is changed.
+    """End the process in order at Ctrl-C in the block, with a text and exit status 130. Other
+    threads than the main one have no handlers: there nothing is changed.
     """
     if threading.current_thread() is not threading.main_thread():
         yield

@@ -16,10 +16,8 @@ from masonry.run.progress import Progress
 
 LOOK_EVERY = 0.5  # [s] between looks at rows that somebody else runs
 LOG = "study.log"  # in the study's folder: what the programs say that run its rows
-FREE_SPACE = (
-    5e6  # bytes that must be free on the disk for every run at a time: its results and a checkpoint
-)
-TRIES = 3  # starts of a row that was killed
+FREE_SPACE = 5e6  # bytes on the disk for the results and the checkpoint of every run at a time
+MAX_ATTEMPTS = 3  # at a row that is killed each time
 
 
 class Local:
@@ -30,9 +28,8 @@ class Local:
         self.folder, self.runs, self.jobs = folder, runs, jobs
         self.scene = folder.description()["script"]
         self.open = {n for n in range(1, runs + 1) if not folder.isDone(n)}
-        self.failed = {}
+        self.failures, self.attempts = 0, collections.Counter()
         self.progress = Progress()
-        self._tries = collections.Counter()
 
     def run(self):
         """Run them. Raises Interrupted after Ctrl-C and SIGTERM."""
@@ -58,9 +55,8 @@ class Local:
             )
         words = ["--scene", self.scene, self.folder.path, str(number)]
         command = [sys.executable, "-P", "-m", "masonry_study.row", *words]
-        env = {name: v for name, v in os.environ.items() if name != batch.VARIABLE}
         with open(self.folder.of(LOG), "ab", opener=inside) as log:
-            return background.Program(command, log, env, self.folder.path)
+            return background.Program(command, log, dict(os.environ), self.folder.path)
 
     def _ended(self, number, program):
         """See how far the program of a row has come, which may have gone on with the levels
@@ -74,23 +70,22 @@ class Local:
             job = self.folder.lastJob(one)
             if not killed and job.get("status", 0) > 0:
                 self._fail(one, job["told"] or f"exit status {job['status']}")
-        if number in self.open and not self.folder.isHeld(number):
-            self._tries[number] += 1
-            if self._tries[number] == TRIES:
-                self._fail(number, f"it did not come to its end in {TRIES} attempts")
-        self._show()
+            elif one == number:
+                self.attempts[one] += 1
+                if self.attempts[one] == MAX_ATTEMPTS:
+                    self._fail(one, f"it did not come to its end in {MAX_ATTEMPTS} attempts")
 
     def _look(self, rows):
         self.open -= {number for number in rows if self.folder.isDone(number)}
 
     def _show(self):
-        done, failed = self.runs - len(self.open), len(self.failed)
-        more = f", {failed} failed" if failed else ""
-        text = lambda: f"{done - failed} of {self.runs} rows{more}"
+        done = self.runs - len(self.open)
+        more = f", {self.failures} failed" if self.failures else ""
+        text = lambda: f"{done - self.failures} of {self.runs} rows{more}"
         self.progress.show("study", done / self.runs, text, None, not self.open)
 
     def _fail(self, number, why):
-        self.failed[number] = why
+        self.failures += 1
         self.open.remove(number)
         log = self.folder.row(number) + ".log"
         say(f"\nrow {batch.named(number)} failed: {why}; see {log}")

@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Pictures of a study, for print. This module needs no YADE.
+"""Pictures of a study, for print.
 
-Each function takes numbers and writes one PNG file of 6 to 7 inches at 200 dots an inch. ``inputs``
-is a dict of the name of a varied property -> its values, one a row, and ``label`` says what the
-output is, with its unit in brackets.
+Each function takes numbers and writes one PNG file. ``inputs`` is a dict of the name of a varied
+property -> its values, one a row, and ``label`` says what the output is, with its unit in brackets.
 """
 
 import itertools
@@ -39,28 +38,26 @@ def scatter(path, inputs, output, label):
     """Every varied property and the output against each other, with histograms on the diagonal.
 
     The number in a panel is Spearman's correlation of ranks; k and M at a number stand for a
-    thousand and a million. Properties with one value throughout are left out.
+    thousand and a million.
 
-    :raises Refused: if no property is left
+    :raises Refused: if there is no property
     """
     from matplotlib.ticker import EngFormatter
 
-    columns = {n: np.asarray(v, float) for n, v in inputs.items() if np.ptp(v) > 0}
-    if not columns:
+    if not inputs:
         raise Refused(f"no number varies in this study beside {label}")
-    columns[label] = np.asarray(output, float)
+    columns = {**inputs, label: output}
     names, k = list(columns), len(columns)
     size = max(6.0, min(1.35 * k, 11.0))
-    dot = float(np.clip(60 / np.sqrt(len(columns[label])), 1.0, 10.0))
+    dot = float(np.clip(60 / np.sqrt(len(output)), 1.0, 10.0))
     with _picture(path, size, size) as figure:
         axes = figure.subplots(k, k, squeeze=False)
         for i, down in enumerate(names):
             for j, right in enumerate(names):
-                axis = axes[i, j]
+                axis, x, y = axes[i, j], columns[right], columns[down]
                 if j > i:
                     axis.set_visible(False)
                     continue
-                x, y = columns[right], columns[down]
                 if i == j:
                     axis.hist(x, bins=_bins(x), color=POINT, alpha=0.6)
                     axis.set_yticks([])
@@ -109,19 +106,15 @@ def sobol(path, found, label):
     first, total = zip(*indices.values())
     with _picture(path, 6.0, 1.3 + 0.38 * len(first)) as figure:
         axis = figure.subplots()
-        for values, shift, colour, text in (
-            (total, -0.18, LINE, "total, with all interactions"),
-            (first, 0.18, POINT, "first, alone"),
-        ):
-            style = dict(color=colour, height=0.34, label=text)
-            _bars(axis, indices, values, shift, cap=2, **style)
+        style = dict(height=0.34, cap=2)
+        text = "total, with all interactions"
+        _bars(axis, indices, total, -0.18, color=LINE, label=text, **style)
+        _bars(axis, indices, first, 0.18, color=POINT, label="first, alone", **style)
         axis.set_xlim(0, 1.05)
         axis.set_xlabel("share of the variance [-]")
         figure.suptitle(
-            (
-                f"{label}: Sobol indices,\nof a polynomial chaos that explains"
-                f" {100 * found.explained:.0f} % of the variance"
-            ),
+            f"{label}: Sobol indices,\nof a polynomial chaos that explains"
+            f" {100 * found.explained:.0f} % of the variance",
             fontsize=9,
         )
         axis.legend(loc="lower right")
@@ -146,9 +139,8 @@ def histogram(path, values, label, modes=None):
     """Histogram of the output with its quantiles of 5, 50 and 95 %, their intervals, and the fitted
     lognormal density.
 
-    :param modes: a word for every value, by which bars are divided into colours; None divides none
+    :param modes: a word for every value, which divides the bars into colours; None divides none
     """
-    values = np.asarray(values, float)
     words = np.asarray(modes or [f"{len(values)} rows"] * len(values))
     named = sorted(set(words), key=lambda word: (-np.sum(words == word), word))
     shares = [f"{word}, {100 * np.mean(words == word):.3g} %" for word in named]
@@ -179,23 +171,20 @@ def histogram(path, values, label, modes=None):
 def fragility(path, capacities, label):
     """Probability that the capacity is not above a demand, with its band, and the fitted lognormal
     distribution."""
-    capacities = np.asarray(capacities, float)
     reach = np.ptp(capacities) or abs(capacities[0]) or 1.0
     low, high = capacities.min() - 0.15 * reach, capacities.max() + 0.15 * reach
     demands = np.linspace(low, high, POINTS)
     probability, low, high = statistics.fragility(capacities, demands)
     with _picture(path, 6.0, 3.6) as figure:
         axis = figure.subplots()
-        style = dict(**BAND_STYLE, step="post", label=BAND_LABEL)
-        axis.fill_between(demands, low, high, **style)
+        axis.fill_between(demands, low, high, **BAND_STYLE, step="post", label=BAND_LABEL)
         rows = f"{len(capacities)} rows"
         axis.step(demands, probability, where="post", color=POINT, lw=1.3, label=rows)
         _lognormal(axis, capacities, demands, stats.lognorm.cdf, lw=1, ls=DASHES[1])
         axis.set_ylim(0, 1)
         axis.set_xlim(demands[0], demands[-1])
-        label = f"demand on {label}"
         below = "probability that the capacity is below"
-        drawing.finish(axis, label, below, loc="lower right")
+        drawing.finish(axis, f"demand on {label}", below, loc="lower right")
 
 
 def _lognormal(axis, values, x, curve, **line):
@@ -217,7 +206,7 @@ def ida(path, rows, fell, quantiles, xLabel, yLabel):
     """Demand and intensity of every record, with the quantiles of the demand over the records.
 
     A curve ends at the last level at which the structure stood; a thin line leads from there to the
-    right at the level at which it fell. A quantile ends likewise where it is infinite.
+    right at the level at which it fell, or at which a quantile is infinite.
 
     :param rows: of every record its intensities and demands
     :param fell: of every record the intensity at which it fell; infinite: it stood
@@ -239,9 +228,8 @@ def ida(path, rows, fell, quantiles, xLabel, yLabel):
                 axis.plot([demands[-1], right], [level, level], **falls)
         for (share, points), dashes in zip(quantiles.items(), (DASHES[1], "-", DASHES[2])):
             demands, intensities = _standing(*zip(*points)) if points else ([0], [0])
-            axis.plot(
-                demands, intensities, color=LINE, lw=1.8, ls=dashes, label=f"{100 * share:g} %"
-            )
+            text = f"{100 * share:g} %"
+            axis.plot(demands, intensities, color=LINE, lw=1.8, ls=dashes, label=text)
             beyond = [x for x, demand in points if np.isinf(demand)]
             if beyond:
                 axis.plot([demands[-1], right], [beyond[0]] * 2, color=LINE, lw=1, ls=dashes)
@@ -272,23 +260,11 @@ def fitted(path, fit, counts, xLabel, yLabel):
     with _picture(path, 6.0, 3.8) as figure:
         axis = figure.subplots()
         axis.fill_between(x, low, high, **BAND_STYLE, label=BAND_LABEL)
-        axis.plot(
-            x,
-            values,
-            color="black",
-            lw=1.2,
-            label=(
-                f"lognormal: median {fit.median.value:.3g}, dispersion {fit.dispersion.value:.3g}"
-            ),
-        )
-        axis.plot(
-            *np.transpose(known or [(np.nan,) * 2]),
-            ls="",
-            marker="o",
-            ms=4,
-            color=LINE,
-            label=f"share of {fit.records} records",
-        )
+        median, dispersion = fit.median.value, fit.dispersion.value
+        text = f"lognormal: median {median:.3g}, dispersion {dispersion:.3g}"
+        axis.plot(x, values, color="black", lw=1.2, label=text)
+        points = np.reshape(known, (-1, 2)).T
+        axis.plot(*points, "o", ms=4, color=LINE, label=f"share of {fit.records} records")
         axis.set_ylim(-0.02, 1.02)
         axis.set_xlim(0, x[-1])
         drawing.finish(axis, xLabel, yLabel, loc="lower right")
@@ -298,10 +274,8 @@ def fitted(path, fit, counts, xLabel, yLabel):
 
 
 def fan(path, curves, xLabel, yLabel):
-    """All curves over each other, with their median and the band that 90 % of them are in.
-
-    Where some have ended, the median and the band are those of the others; they end where half
-    have.
+    """All curves over each other, with their median and the band that 90 % of them are in: of those
+    that go on, up to where half have ended.
 
     :param curves: list of (x, y), of which the first is made increasing by leaving out what goes
         back
@@ -316,8 +290,8 @@ def fan(path, curves, xLabel, yLabel):
     with _picture(path, 6.0, 4.0) as figure:
         axis = figure.subplots()
         alpha = float(np.clip(12 / len(curves), 0.05, 0.6))
-        lines, thin = map(np.column_stack, curves), dict(color="0.35", lw=0.5)
-        axis.add_collection(LineCollection([*lines], alpha=alpha, zorder=1, **thin))
+        lines, thin = [*map(np.column_stack, curves)], dict(color="0.35", lw=0.5)
+        axis.add_collection(LineCollection(lines, alpha=alpha, zorder=1, **thin))
         band = "between the 5 % and the 95 % quantile"
         style = {**BAND_STYLE, "alpha": 0.25}
         axis.fill_between(grid, low, high, **style, zorder=2, label=band)
@@ -330,32 +304,21 @@ def fan(path, curves, xLabel, yLabel):
 def calibration(path, found):
     """Measured curves with the band of what the draws of the properties say, and a run with their
     means."""
-    of, (low, high), at = found.calibration.specimens, found.bands(), 0
-    curves = [one for one in of if one.grid is not None]
-    with _picture(path, 6.0, 3.2 * len(curves)) as figure:
-        axes = iter(figure.subplots(len(curves), 1, squeeze=False)[:, 0])
-        for one in of:
+    (low, high), at = found.bands(), 0
+    curves = [one.grid is not None for one in found.calibration.specimens]
+    with _picture(path, 6.0, 3.2 * sum(curves)) as figure:
+        axes = iter(figure.subplots(sum(curves), 1, squeeze=False)[:, 0])
+        for one, isCurve in zip(found.calibration.specimens, curves):
             here, at = slice(at, at + len(one.names)), at + len(one.names)
-            if one.grid is None:
+            if not isCurve:
                 continue
-            axis = next(axes)
-            axis.fill_between(
-                one.grid, low[here], high[here], **BAND_STYLE, label="95 % of the draws"
-            )
-            if len(found.run):
-                axis.plot(
-                    one.grid, found.run[0, here], color=LINE, lw=1.4, label="run with their means"
-                )
+            axis, x = next(axes), one.grid
+            axis.fill_between(x, low[here], high[here], **BAND_STYLE, label="95 % of the draws")
+            for run in found.run:
+                axis.plot(x, run[here], color=LINE, lw=1.4, label="run with their means")
             axis.plot(*one.curve, color="black", lw=0.8, alpha=0.5, label="measured")
-            axis.errorbar(
-                one.grid,
-                one.values,
-                2 * one.errors,
-                color="black",
-                fmt=".",
-                lw=0.8,
-                label="compared, ± 2 standard deviations",
-            )
+            style = dict(color="black", fmt=".", lw=0.8, label="compared, ± 2 standard deviations")
+            axis.errorbar(x, one.values, 2 * one.errors, **style)
             drawing.finish(axis, *(name.replace("_", " ") for name in one.columns), loc="best")
 
 

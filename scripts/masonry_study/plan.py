@@ -16,7 +16,7 @@ from masonry.errors import Refused, refuse
 from . import designs, incremental
 from .variables import Choice, Distribution, Field, choice
 
-MOST = 100_000  # rows of a study
+MAX_ROWS = 100_000  # of a study
 
 
 class Study:
@@ -57,7 +57,7 @@ class Study:
         self,
         scene: FilePath,
         options: Annotated[dict[str, Any], isA(dict)] | None = None,
-        runs: Annotated[int, whole(1, MOST)] | None = None,
+        runs: Annotated[int, whole(1, MAX_ROWS)] | None = None,
         seed: Annotated[int, whole(0, 2**31 - 1)] = 0,
         vary: Annotated[dict[Any, Any], isA(dict)] | None = None,
         design: Annotated[str, oneOf(*designs.DESIGNS)] = "random",
@@ -133,8 +133,8 @@ class Study:
             if self.runs not in (None, size):
                 yield f"runs {self.runs}: the grid has {size} points"
             self.runs = size
-        if self.runs is None or self.runs > MOST:
-            yield f"runs {self.runs} must be a whole number from 1 to {MOST}"
+        if self.runs is None or self.runs > MAX_ROWS:
+            yield f"runs {self.runs} must be a whole number from 1 to {MAX_ROWS}"
 
     def _correlate(self, correlation):
         """Take correlations. Yields what is wrong with them."""
@@ -157,26 +157,22 @@ class Study:
 
     def _uncorrelated(self, name):
         """Why a name can have no correlation, or nothing."""
-        what = self.vary.get(name)
-        if isinstance(what, Distribution):
+        if isinstance(self.vary.get(name), Distribution):
             return ""
-        if what:
-            return f"{name} is a choice; only distributions have a correlation"
         for column, what in self.vary.items():
             names = tuple(namesOf(column))
-            if name in names and isinstance(what, Field):
-                return f"{name} is a field; only distributions have a correlation"
-            if name in names:
+            if name not in (column, *names):
+                continue
+            if isinstance(what, Distribution):
                 return f"{name} varies with others: name it by its key in vary, {names}"
+            kind = type(what).__name__.lower()
+            return f"{name} is a {kind}; only distributions have a correlation"
         return f"{name} does not vary"
 
     # -- what follows ------------------------------------------------------------------------------
 
     def describe(self) -> dict[str, Any]:
-        """The study as JSON has it: two studies with the same description have the same rows.
-
-        The records of an incremental analysis must have been read: :meth:`read`.
-        """
+        """The study as JSON has it: two studies with the same description have the same rows."""
         return {
             "scene": self.scene,
             "options": self.options,
@@ -192,18 +188,16 @@ class Study:
         """Read the records of an incremental analysis, which say how many rows there are. Raises
         Refused.
 
-        :param near: folder of the study's file
+        :param near: folder of the study's file; without this call, the present folder
         """
         if self.ida:
             self.runs = len(self.ida.read(near)) * self.ida.steps
-            if self.runs > MOST:
-                raise Refused(f"study: {self.runs} rows, there must be at most {MOST}")
+            if self.runs > MAX_ROWS:
+                raise Refused(f"study: {self.runs} rows, there must be at most {MAX_ROWS}")
 
     def rows(self) -> list[dict[str, Any]]:
-        """The values of every row: a list of dicts, with the options that all have. Raises Refused.
-
-        The records of an incremental analysis must have been read: :meth:`read`.
-        """
+        """The values of every row: a list of dicts, with the options that all have. Raises
+        Refused."""
         if not self.ida:
             return self._drawn(self.design, self.runs)
         shaken, rows = self.ida.rows(), []

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What a scene knows, for those who are about to run it many times: see :mod:`masonry_study`. There
-is no run."""
+"""Builds a scene for a study and writes what it knows; there is no run."""
 
 import json
 import math
@@ -21,11 +20,11 @@ from masonry.scene.parsing import Parser
 from masonry.materials.settings import valuesOf
 from masonry.model.bodies import properties
 
-#: How far a random field is looked at to either side, in standard deviations of its normal: beyond
-#: lies one joint in a million.
-FAR = 4.75
-MOST = 20  # problems that are named of rows
-PLAIN = bool, int, float, str  # values of properties that are written
+#: Standard deviations of its normal up to which a random field is looked at: one joint in a million
+#: lies beyond.
+FIELD_LIMIT_SIGMAS = 4.75
+MAX_PROBLEMS = 20  # that are named of rows
+WRITTEN = bool, int, float, str  # types of values of properties that JSON gets
 
 
 def probe(scene, stage, traits, arguments):
@@ -38,8 +37,8 @@ def probe(scene, stage, traits, arguments):
       may not use
     - ``joints``: properties of every kind of joint; ``counts``: how many joints there are of each
       kind
-    - ``bounds``: of the properties of a joint: ``low``, ``high``, ``unit``; ``connectors``: of
-      every tie, spring and fibre layer the same by property
+    - ``bounds``: ``low``, ``high`` and ``unit`` of the properties of a joint; ``connectors``: the
+      same of every tie, spring and fibre layer
     - ``room``: bytes that a run will probably write
     - ``problems``: sentences on rows of the table that cannot be run
 
@@ -64,7 +63,7 @@ def probe(scene, stage, traits, arguments):
         "unused": {},
         "doubtful": dict.fromkeys(doubtful, f"its first stage is {stage}()"),
         "joints": {
-            name: {n: v for n, v in joint.dict().items() if isinstance(v, PLAIN)}
+            name: {n: v for n, v in joint.dict().items() if isinstance(v, WRITTEN)}
             for name, joint in joints.items()
         },
         "counts": {kind: counts.get(one.name, 0) for kind, one in joints.items()},
@@ -107,16 +106,15 @@ def _rows(scene, parser):
             alike = re.sub(r"\d[\d.e+-]*", "#", sentence)  # but for its numbers
             name = row.get("description", line)
             problems.setdefault(alike, []).append((name, sentence))
-    sentences = [
-        f"row {found[0][0]}{f' and {len(found) - 1} more' if found[1:] else ''}: {found[0][1]}"
-        for found in problems.values()
-    ]
-    return firstOf(sentences, MOST)
+    sentences = []
+    for (name, sentence), *others in problems.values():
+        more = f" and {len(others)} more" if others else ""
+        sentences.append(f"row {name}{more}: {sentence}")
+    return firstOf(sentences, MAX_PROBLEMS)
 
 
 def _refused(scene, parser, words):
-    """Why a row is refused, a list of sentences. Its fields are looked at where they are far
-    out."""
+    """Why a row is refused, a list of sentences."""
     args, refusals = parser.refusals(words)
     if refusals:
         return refusals
@@ -125,20 +123,20 @@ def _refused(scene, parser, words):
         masonry = scene.description.materials.variant(args, [*connectors])
         check(args, masonry, connectors)
         for text in args.field:
-            _far(text, masonry.joints, connectors)
+            _refuseFarValues(text, masonry.joints, connectors)
     except ValueError as refused:
         return str(refused).splitlines()
     return []
 
 
-def _far(text, joints, connectors):
-    """Refuse a field whose values are refused far from its mean."""
+def _refuseFarValues(text, joints, connectors):
+    """Refuse a field whose joints refuse its values far from the mean."""
     names, kind, cov, *_ = fields.parts(text)
     of = {}
     for name in withResidual(names, joints):
         thing, _, attribute = name.partition(".")
         of.setdefault(thing, []).append(attribute)
-    for factor in fields.ends(kind, cov, FAR):
+    for factor in fields.ends(kind, cov, FIELD_LIMIT_SIGMAS):
         for name, attributes in of.items():
             thing = {**joints, **connectors}[name]
             before = {a: valuesOf(thing)[a] for a in attributes}

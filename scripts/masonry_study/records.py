@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The rows of a study, read from its folder as :mod:`masonry_study.gathering` leaves it. This
-module needs no YADE."""
+"""The rows of a study, read from its folder as :mod:`masonry_study.gathering` leaves it."""
 
 import contextlib
 import csv
@@ -29,10 +28,7 @@ def _table(path):
     return dict(zip(head, map(list, zip(*lines))))
 
 
-CURVE = (
-    "displacement_mm",
-    "base_shear_kN",
-)  # columns of the curves that are usually compared
+CURVE = "displacement_mm", "base_shear_kN"  # columns of the curves that are usually compared
 #: Measures of every run, which nobody studies.
 IN_EVERY_RUN = {"collapsed", "ended", "energy_balance_error", "energy_made"}
 
@@ -44,8 +40,8 @@ class Record:
     """
 
     def __init__(self, directory):
-        #: its path, and texts of every column by its name
         self.directory = directory
+        #: texts of every column by its name
         self.cells = _table(os.path.join(directory, CSV))
         names = list(self.cells)
         #: names of what varied, and of the numbers of a run
@@ -71,11 +67,8 @@ class Record:
         return np.array([_number(text) for text in self.cells[name]])
 
     def complete(self, measure):
-        """The rows that have this measure: which they are, the inputs by name, and the measure.
-
-        Inputs are those that are numbers; the seed of a random field is not.
-
-        :raises Refused: if no row has it
+        """The rows that have this measure: which they are, the inputs that are numbers, by name and
+        without seeds of random fields, and the measure. Raises Refused if there is no row.
         """
         values = self.numbers(measure)
         rows = np.flatnonzero(np.isfinite(values))

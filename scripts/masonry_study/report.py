@@ -13,12 +13,14 @@ import math
 import os
 import sys
 from collections import Counter
+from functools import partial
 
 import numpy as np
 
 from masonry.errors import Refused
 from masonry.terminal import say
 from masonry.folders import check
+from masonry.numbers.files import program
 from . import pictures, sensitivity, statistics
 from .demands import QUANTILES, Demands
 from .fragility import nrml as nrmlOf
@@ -49,10 +51,10 @@ def table(record, measure):
             " refused for their values, the numbers below are on the unsafe side"
         )
     finds = [("mean", statistics.mean), ("standard deviation", statistics.deviation)]
-    finds += [(f"{100 * q:g} % quantile", statistics.quantile, q) for q in SHARES]
-    for name, find, *share in finds:
+    finds += [(f"{100 * q:g} % quantile", partial(statistics.quantile, share=q)) for q in SHARES]
+    for name, find in finds:
         try:
-            yield line(name, find(values, *share))
+            yield line(name, find(values))
         except Refused as refused:
             yield f"  {name:20} {refused}"
     if statistics.isLognormal(values):
@@ -72,7 +74,7 @@ def line(name, interval, form="{:.5g}"):
 
 
 def modes(record):
-    """Lines of the shares of failure modes, if the study has them."""
+    """Lines of the shares of failure modes, if there are any."""
     labels = [text for text in record.cells.get(MODE, []) if text]
     if labels:
         yield "share of the rows that fail by"
@@ -81,7 +83,7 @@ def modes(record):
 
 
 def statuses(record):
-    """A line about rows that have no results, if there are some."""
+    """A line about rows that have no results, if there are any."""
     counts = Counter(text for text in record.cells["status"] if text != "ended")
     if counts:
         names = (f"{n} {status or 'not run'}" for status, n in sorted(counts.items()))
@@ -93,25 +95,25 @@ def draw(record, measure):
     rows, inputs, values = record.complete(measure)
     title = label(measure)
     inputs = {name: column for name, column in inputs.items() if np.ptp(column) > 0}
-    curves = record.curves(rows, *CURVE)
     modes = record.cells.get(MODE)
     modes = modes and [modes[row] or "unknown" for row in rows]
-    effects, indices = sensitivity.effects, sensitivity.sobol
 
     def fan(path):
+        curves = record.curves(rows, *CURVE)
         if not curves:
             raise Refused("no row has a curve of " + " and ".join(CURVE))
         pictures.fan(path, curves, *map(label, CURVE))
 
+    effects, indices = sensitivity.effects, sensitivity.sobol
     makes = {
-        "scatter": lambda path: pictures.scatter(path, inputs, values, title),
-        "tornado": lambda path: pictures.tornado(path, effects(inputs, values), title),
-        "sobol": lambda path: pictures.sobol(path, indices(inputs, values), title),
-        "histogram": lambda path: pictures.histogram(path, values, title, modes),
-        "fragility": lambda path: pictures.fragility(path, values, title),
-        "curves": fan,
+        "scatter.png": lambda path: pictures.scatter(path, inputs, values, title),
+        "tornado.png": lambda path: pictures.tornado(path, effects(inputs, values), title),
+        "sobol.png": lambda path: pictures.sobol(path, indices(inputs, values), title),
+        "histogram.png": lambda path: pictures.histogram(path, values, title, modes),
+        "fragility.png": lambda path: pictures.fragility(path, values, title),
+        "curves.png": fan,
     }
-    yield from _drawn(record.directory, {f"{n}.png": make for n, make in makes.items()})
+    yield from _drawn(record.directory, makes)
 
 
 def _drawn(directory, makes):
@@ -198,15 +200,10 @@ def drawIncremental(demands, limit):
         pictures.fitted(path, fit, demands.counts(limit), measure, text)
 
     def nrml(path):
-        name = os.path.basename(os.path.abspath(demands.directory))
+        fits = {os.path.basename(os.path.abspath(demands.directory)): demands.fragility(limit)}
         state = "collapse" if limit is None else "limit"
-        about = (
-            demands.intensityName,
-            state,
-            reached(demands, limit),
-            demands.levels[-1],
-        )
-        written(path, nrmlOf({name: demands.fragility(limit)}, *about))
+        about = demands.intensityName, state, reached(demands, limit), demands.levels[-1]
+        written(path, nrmlOf(fits, *about))
 
     makes = {"ida.png": curves, "fragility.png": fragility, "fragility.xml": nrml}
     yield from _drawn(demands.directory, makes)
@@ -231,7 +228,6 @@ OPTIONS = {
 
 
 def parser():
-    """What the program takes."""
     parser = argparse.ArgumentParser(
         prog="python3 -m masonry_study.report",
         description="Statistics and pictures of a study.",
@@ -243,24 +239,19 @@ def parser():
     return parser
 
 
+@program
 def main(words=None):
     """The program. Returns its exit status."""
     args = parser().parse_args(words)
+    demands = sorted(_listed("--demand", args.demand))
+    limit = _listed("--limit", args.limit)
+    check(args.study)
+    said = _ofIncremental if isIncremental(args.study) else _ofRows
     try:
-        demands = sorted(_listed("--demand", args.demand))
-        check(args.study)
-        record = Record(args.study)
-        limit = _listed("--limit", args.limit)
-        said = _ofIncremental if isIncremental(args.study) else _ofRows
-        for text in said(record, args, limit, demands):
+        for text in said(Record(args.study), args, limit, demands):
             say(text)
-    except Refused as refused:
-        say(refused, sys.stderr)
-        return 2
     except OSError as error:
-        say(f"cannot write to {args.study}: {error.strerror}", sys.stderr)
-        return 2
-    return 0
+        raise Refused(f"cannot write to {args.study}: {error.strerror}") from None
 
 
 def isIncremental(directory):
@@ -304,9 +295,9 @@ def _listed(option, text):
     try:
         numbers = list(map(float, text.split(","))) if text else []
     except ValueError:
-        raise Refused(f"{option} {text} must be numbers with commas between them") from None
+        numbers = [math.nan]
     if not all(map(math.isfinite, numbers)):
-        raise Refused(f"{option} {text} must be finite numbers")
+        raise Refused(f"{option} {text} must be numbers with commas between them")
     return numbers
 
 

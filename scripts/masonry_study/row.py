@@ -1,17 +1,18 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Runs rows of a study: ``/usr/bin/python3 -P -m masonry_study.row --scene FILE DIR NUMBER...``
+"""Runs rows of a study: ``/usr/bin/python3 -P -m masonry_study.row --scene FILE DIR NUMBER...``,
+for a study on this machine, a task of Slurm, or GNU parallel.
 
 A row of an incremental analysis is followed by the higher levels of its record, until the structure
 falls. A row that was run is left out, one that was stopped goes on from its checkpoint, and one
-that somebody else is running is left alone. ``DIR/rows/NUMBER.log`` has what it says. This is what
-a study on this machine, a task of Slurm, or GNU parallel calls. The exit status is 0 if all rows
-are ended.
+that somebody else is running is left alone. ``DIR/rows/NUMBER.log`` has what it says. The exit
+status is 0 if all rows are ended.
 
 The scene is a program, and the folder of a study is data: that study.json names a scene is no
 reason to run it. So the user names it, unless it is in the folder itself, and it must be the file
-with which the study began. The first line says what runs.
+with which the study began.
 """
 
+import argparse
 import contextlib
 import hashlib
 import json
@@ -33,7 +34,7 @@ from .incremental import FOLDER
 
 REFUSED = 2  # exit status of a scene that refuses its input
 ATTEMPTS = 20  # of a row at most, while its folder is held or its checkpoint refused
-TAIL = 4000  # bytes at the end of a log in which the reason of a failure stands
+TAIL = 4000  # bytes at the end of a log in which the reason of a failure is looked for
 
 
 class RowRunner:
@@ -169,9 +170,21 @@ def _fingerprint(path, what=""):
         raise Refused(f"cannot read {what}{path}: {error.strerror}") from None
 
 
+def parser():
+    """What the program takes."""
+    p = argparse.ArgumentParser(
+        prog="python3 -P -m masonry_study.row", description="Run rows of a study."
+    )
+    scene = "the scene; not needed if it is in the folder of the study"
+    p.add_argument("--scene", metavar="FILE", help=scene)
+    p.add_argument("study", metavar="DIR", help="folder of the study")
+    p.add_argument("rows", metavar="NUMBER", nargs="+", type=int, help="of a row, from 1")
+    return p
+
+
 def main(words):
     try:
-        return _rows(words)
+        return _runRows(parser().parse_args(words))
     except Refused as refused:
         say(refused, sys.stderr)
         return REFUSED
@@ -180,25 +193,16 @@ def main(words):
         return 1
 
 
-def _rows(words):
+def _runRows(args):
     """Run the rows that the command line names. Returns the exit status."""
-    scene = None
-    if words[:1] == ["--scene"]:
-        scene, words = "".join(words[1:2]), words[2:]
-    if len(words) < 2 or not all(w.isdecimal() for w in words[1:]):
-        raise Refused(
-            "name the scene, the folder of a study and the numbers of its rows: --scene FILE DIR"
-            " NUMBER..."
-        )
-    runner = RowRunner(words[0], scene)
-    runs = runner.folder.description()["study"]["runs"]
-    beyond = [w for w in words[1:] if not 1 <= int(w) <= runs]
+    runner = RowRunner(args.study, args.scene)
+    chains = runner.folder.chains
+    beyond = [str(n) for n in args.rows if not 1 <= n <= chains.runs]
     if beyond:
-        raise Refused(f"no row {', '.join(beyond)}: {words[0]} has {runs}")
+        raise Refused(f"no row {', '.join(beyond)}: {args.study} has {chains.runs}")
     say(f"note: this runs {runner.script}")
-    worst, higher = 0, runner.folder.chains.higher
-    numbers = [n for row in map(int, words[1:]) for n in (row, *higher(row))]
-    for number in dict.fromkeys(numbers):
+    worst = 0
+    for number in dict.fromkeys(n for row in args.rows for n in (row, *chains.higher(row))):
         status = runner.run(number)
         if status:
             why = runner.folder.lastJob(number).get("told") or f"exit status {status}"

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""How much every varied property decides: changes, rank correlations and Sobol indices. This module
-needs no YADE.
+"""How much every varied property decides: changes, rank correlations and Sobol indices.
 
 Everything here is found from the rows that a study has, whatever their design, with varied
 properties that are drawn independently of each other. OpenTURNS fits the polynomials.
@@ -42,13 +41,11 @@ DEPENDENT = (
 def effects(inputs, output):
     """What every varied property does: a dict of name -> :class:`Effect`, strongest change first.
 
-    :param inputs: dict of name -> values, one a row; a property that has one value throughout is
-        left out
+    :param inputs: dict of name -> values, one a row; a property that has one value is left out
     :param output: of every row
-    :raises Refused: if there are fewer than three rows more than properties, or a number is not
-        finite
+    :raises Refused: if there are fewer than three rows more than properties
     """
-    inputs, x, y = _numbers(inputs, output)
+    inputs, x, y = _varying(inputs, output)
     n, k = x.shape
     free = n - k - 1
     if free < 2:
@@ -86,19 +83,18 @@ def sobol(inputs, output, seed=1):
     """First and total Sobol indices, from a polynomial chaos on the ranks of the varied properties:
     a :class:`Sobol`.
 
-    Each property is replaced by its rank, which is uniform whatever its distribution; indices do
-    not change by that. OpenTURNS chooses the polynomials by least angle regression, and the indices
-    are sums of squares of their coefficients. The intervals are those of RESAMPLES samples of the
-    rows, drawn with replacement and ranked again, with the same polynomials; they do not tell what
-    these leave out, which ``explained`` does.
+    The rank of a property is uniform whatever its distribution; indices do not change by that.
+    OpenTURNS chooses the polynomials by least angle regression, and the indices are sums of squares
+    of their coefficients. The intervals are those of RESAMPLES samples of the rows, drawn with
+    replacement and ranked again, with the same polynomials; what these leave out, ``explained``
+    tells.
 
     :param inputs: as in :func:`effects`, drawn independently of each other
     :param output: of every row
     :param seed: of the samples
-    :raises Refused: if there are fewer than ten rows a property, or a number is not finite, or
-        properties are dependent
+    :raises Refused: if there are fewer than ten rows a property, or properties are dependent
     """
-    inputs, x, y = _numbers(inputs, output)
+    inputs, x, y = _varying(inputs, output)
     n = len(x)
     refuse([*_unfit(inputs, x, y)])
     ranks = lambda rows: (stats.rankdata(x[rows], axis=0) - 0.5) / n
@@ -173,24 +169,10 @@ def _shares(powers, coefficients):
     return np.array([squares @ alone, squares @ involved]) / (squares.sum() or 1)
 
 
-def _numbers(inputs, output):
-    """The properties that vary, their values (rows, properties) and the output. Refuses what is no
-    number."""
-    y = np.asarray(output, float)
-    problems, kept = [], {}
-    for name, values in inputs.items():
-        try:
-            values = np.asarray(values, float)
-        except ValueError:
-            problems.append(f"{name}: choices that are no numbers have no sensitivity of this kind")
-            continue
-        if len(values) != len(y):
-            problems.append(f"{name}: {len(values)} values for {len(y)} rows")
-        elif not np.isfinite(values).all():
-            problems.append(f"{name}: a value is not finite")
-        elif np.ptp(values) > 0:
-            kept[name] = values
-    if not np.isfinite(y).all():
-        problems.append("a result is not finite")
-    refuse(problems or ["no property varies"] * (not kept))
-    return kept, np.column_stack(list(kept.values())), y
+def _varying(inputs, output):
+    """The properties that vary, their values (rows, properties) and the output. Refuses if there
+    are none."""
+    kept = {name: values for name, values in inputs.items() if np.ptp(values) > 0}
+    if not kept:
+        raise Refused("no property varies")
+    return kept, np.column_stack([*kept.values()]).astype(float), np.asarray(output, float)

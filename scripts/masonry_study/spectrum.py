@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The response of a linear oscillator to a record: spectral acceleration. This module needs no
-YADE.
+"""The response of a linear oscillator to a record: spectral acceleration.
 
 An oscillator with the angular frequency ω = 2π/T and the share ζ of critical damping, whose base
 moves with the acceleration a(t), has the displacement u against its base with
@@ -44,7 +43,7 @@ def spectralAcceleration(
     The largest displacement is looked for during the record and a period of free vibration after
     it, at a hundred points of a period or more, so it is too small by 0.05 % at most.
 
-    :param values: samples of the acceleration [m/s²], between which it changes evenly; ``every``:
+    :param values: samples of the acceleration [m/s²], between which it is interpolated; ``every``:
         the time between them [s]
     :param period: of the oscillator [s]
     :param damping: share of critical damping [-]

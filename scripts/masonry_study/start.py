@@ -10,7 +10,7 @@ import tempfile
 from masonry.run import batch
 from masonry.errors import Refused, Unwritable, refuse
 from masonry.terminal import say
-from masonry.numbers.files import readText, readWhole
+from masonry.numbers.files import readWhole
 from .gathering import STUDY, TABLE, Folder, reason, written
 from .incremental import FOLDER
 from .interrupts import watched
@@ -27,61 +27,48 @@ def begin(study, path, near):
     """The folder of a study: made if it is not there, else checked to be of the same study.
 
     :param near: folder of the study's file, where its scene is looked for
-    :raises Refused: with all problems at once. Nothing is written then
+    :raises Refused: with all problems at once
     """
-    folder = Folder(path)
+    folder, known = Folder(path), None
     folder.check()
     study.read(near)
     script, fingerprint = study.script(near)
     now = {"version": VERSION, "study": study.describe(), "scene_sha256": fingerprint}
-    now, known = json.loads(json.dumps(now)), None
+    now = json.loads(json.dumps({**now, "script": script}))
     with watched(NOTHING):
         table = study.table()
     if os.path.lexists(folder.of(STUDY)):
         known = folder.description()
         _compare(folder, known, now)
     else:
-        _checkEmpty(folder, study)
+        _checkEmpty(folder)
         problems, needed = _look(study, script, table)
         problems += _checkSpace(folder, study.runs * needed)
         refuse(problems, "study: ", "\n  ")
         try:
-            os.makedirs(folder.of(batch.ROWS), exist_ok=True)
+            os.makedirs(folder.path, exist_ok=True)
         except OSError as error:
             raise Refused(f"--out: cannot write to {path}: {error.strerror}") from None
-    if not (known and os.path.lexists(folder.of(TABLE))):
-        written(folder.of(TABLE), table)
-    elif readText(folder.of(TABLE)) != table:
-        raise Refused(
-            f"--out: {folder.of(TABLE)} is not what the study draws; remove it, and it is drawn"
-            " again"
-        )
-    _putRecords(folder, study)
-    now["script"] = script
     if known != now:
         written(folder.of(STUDY), json.dumps(now, indent=2) + "\n")
+    os.makedirs(folder.of(batch.ROWS), exist_ok=True)
+    _putFiles(folder, study, table)
     return folder
 
 
-def _recordsOf(study):
-    """The names and texts of the files of the records that a study has, a dict."""
-    return {f"{m.name}.txt": m.text for m in study.ida.read("")} if study.ida else {}
-
-
-def _putRecords(folder, study):
-    """Write the records of a study into its folder. Those that are there must be what the study has
-    read."""
-    if study.ida:
+def _putFiles(folder, study, table):
+    """Write the table and the records of a study into its folder. Those that are there must be
+    these."""
+    files = {TABLE: (table, "what the study draws")}
+    for motion in study.ida.read("") if study.ida else ():
         os.makedirs(folder.of(FOLDER), exist_ok=True)
-    for name, text in _recordsOf(study).items():
-        path = folder.of(FOLDER, name)
+        files[f"{FOLDER}/{motion.name}.txt"] = motion.text, "the record that the study reads"
+    for name, (text, what) in files.items():
+        path = folder.of(name)
         if not os.path.lexists(path):
             written(path, text)
         elif readWhole(path) != text.encode():
-            raise Refused(
-                f"--out: {path} is not the record that the study reads; remove it, and it is"
-                " written again"
-            )
+            raise Refused(f"--out: {path} is not {what}; remove it, and it is written again")
 
 
 def _compare(folder, known, now):
@@ -100,24 +87,18 @@ def _compare(folder, known, now):
         )
 
 
-def _checkEmpty(folder, study):
-    """Refuse a folder of something else. A table or records without study.json are left by a study
-    that was killed when it began."""
+def _checkEmpty(folder):
+    """Refuse a folder of something else."""
     try:
-        names = set(os.listdir(folder.path)) - {TABLE, TABLE + ".new", STUDY + ".new"}
-        if batch.ROWS in names and not os.listdir(folder.of(batch.ROWS)):
-            names.remove(batch.ROWS)
-        records = {n for name in _recordsOf(study) for n in (name, name + ".new")}
-        if FOLDER in names and records.issuperset(os.listdir(folder.of(FOLDER))):
-            names.remove(FOLDER)
+        names = sorted({*os.listdir(folder.path)} - {STUDY + ".new"})  # of a study that was killed
     except FileNotFoundError:
         return
     except OSError as error:
         raise Refused(f"--out: {folder.path}: {error.strerror}") from None
     if names:
-        some = ", ".join(sorted(names)[:3])
         raise Refused(
-            f"--out: {folder.path} is not empty ({some}) and holds no study: name another folder"
+            f"--out: {folder.path} is not empty ({', '.join(names[:3])}) and holds no study: name"
+            " another folder"
         )
 
 
@@ -142,8 +123,7 @@ def _look(study, script, table):
         raise Refused("a study needs yade: apt-get install --no-install-recommends yade")
     with tempfile.TemporaryDirectory() as place:
         place = Folder(place)
-        _putRecords(place, study)
-        written(place.of(TABLE), table)
+        _putFiles(place, study, table)
         found = _probed(script, place)
         if isinstance(found, str):  # the first row may be to blame
             found = _probed(script, place, line=1) or found
@@ -224,21 +204,19 @@ def _ignored(found, name):
 def _ranges(study, found):
     """Distributions that can give what a property cannot be."""
     for column, what in study.vary.items():
-        if isinstance(what, Field):
-            if what.kind == "normal" and what.mean is not None and what.mean < 0:
-                yield f"{column}: mean {what.mean:g} must be above 0"
+        if isinstance(what, Field) and what.kind == "normal" and (what.mean or 0) < 0:
+            yield f"{column}: mean {what.mean:g} must be above 0"
         for name in namesOf(column) if isinstance(what, Distribution) else ():
             of, _, attribute = name.partition(".")
             bounds = found["connectors"].get(of, found["bounds"]).get(attribute)
-            bounds = bounds or {"low": None, "high": None}
-            ends = [
-                f"{word} {bounds[end]:g}"
-                for end, word in (("low", "at least"), ("high", "at most"))
-                if bounds[end] is not None
-            ]
-            share = what.beyond(bounds["low"], bounds["high"])
+            if not bounds:
+                continue
+            low, high, unit = (bounds[entry] for entry in ("low", "high", "unit"))
+            share = what.beyond(low, high)
             if share > NEVER:
-                unit = f" {bounds['unit']}" if bounds["unit"] not in ("", "-") else ""
+                ends = ("at least", low), ("at most", high)
+                ends = [f"{word} {end:g}" for word, end in ends if end is not None]
+                unit = f" {unit}" if unit not in ("", "-") else ""
                 yield (
                     f"{name}: {what} gives impossible values in {100 * share:.2g} % of all rows: it"
                     f" must be {' and '.join(ends)}{unit}; low=... or high=... cuts it off"

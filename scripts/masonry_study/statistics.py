@@ -1,9 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Statistics of the rows of a study, each with its confidence interval. This module needs no YADE.
-
-All intervals are those of independent rows. Rows of a Latin hypercube or of a Sobol sequence cover
-the space more evenly than independent ones, so that a mean is then better known than its interval
-says. Values that are too few or not finite are refused.
+"""Statistics of the rows of a study, each with its confidence interval, which is that of
+independent rows. Rows of a Latin hypercube or of a Sobol sequence are more even, so that a mean is
+better known than its interval says. Values that are too few are refused.
 """
 
 import math
@@ -12,7 +10,7 @@ from collections import Counter, namedtuple
 import numpy as np
 from scipy import stats
 
-from masonry.errors import Refused, refuse
+from masonry.errors import Refused
 
 CONFIDENCE = 0.95  # of all intervals
 
@@ -38,13 +36,10 @@ def mean(values):
 
 
 def deviation(values):
-    """The standard deviation, with an interval that holds for distributions that are not normal,
-    too.
-
-    The interval is that of D. G. Bonett, "Approximate confidence interval for standard deviation of
-    nonnormal distributions", Computational Statistics & Data Analysis 50 (2006): the logarithm of
-    the variance is normal, with the variance (kurtosis - (n - 3)/n)/(n - 1), where the kurtosis
-    counts from a trimmed mean.
+    """The standard deviation, with an interval for distributions that need not be normal: D. G.
+    Bonett, "Approximate confidence interval for standard deviation of nonnormal distributions",
+    Computational Statistics & Data Analysis 50 (2006). The logarithm of the variance is normal,
+    with the variance (kurtosis - (n - 3)/n)/(n - 1), where the kurtosis counts from a trimmed mean.
 
     :param values: ten numbers or more
     """
@@ -66,16 +61,14 @@ def quantile(values, share):
     """The value below which a share of all lies, with an interval that holds for every
     distribution.
 
-    The ends of the interval are values of the sample, as the binomial distribution of how many lie
-    below tells. With too few of them an end is infinite: the 5 % quantile needs 72 rows for both
-    ends of a 95 % interval.
+    The ends of the interval are values of the sample, by the binomial distribution of how many lie
+    below. With too few of them an end is infinite: the 5 % quantile needs 72 rows for both ends of
+    a 95 % interval.
 
     :param values: two numbers or more
     :param share: between 0 and 1
     """
     values = np.sort(_numbers(values, 2, "a quantile"))
-    if not 0 < share < 1:
-        raise Refused(f"a quantile of {share:g}: it must be between 0 and 1")
     n, tail = len(values), (1 - CONFIDENCE) / 2
     # the k-th smallest lies above the quantile with probability P(fewer than k lie below it)
     below = stats.binom.cdf(np.arange(n), n, share)
@@ -90,8 +83,6 @@ def share(count, of):
     :param count: how many rows have what is asked for
     :param of: how many rows there are, one or more
     """
-    if of < 1:
-        raise Refused("a share of no rows")
     found = stats.binomtest(int(count), int(of))
     return Interval(count / of, *found.proportion_ci(CONFIDENCE, method="wilson"))
 
@@ -111,26 +102,16 @@ def lognormal(values):
     """The lognormal distribution with the mean and standard deviation of the logarithms: a
     :class:`Lognormal`.
 
-    :param values: three numbers or more, all above 0
+    :param values: for which :func:`isLognormal` holds
     """
-    values = _numbers(values, 3, "a lognormal distribution")
-    if values.min() <= 0:
-        raise Refused(
-            f"a lognormal distribution has no values of 0 or less, such as {values.min():g}"
-        )
     logs = np.log(values)
-    if np.ptp(logs) <= 1e-12:
-        raise Refused("a lognormal distribution: all values are the same")
     fits = stats.shapiro(logs).pvalue if len(logs) <= 5000 else math.nan
     return Lognormal(math.exp(logs.mean()), logs.std(ddof=1), fits)
 
 
 def fragility(capacities, demands):
-    """Probability that the capacity is not above a demand, for every demand, with the exact
-    interval of a share.
-
-    The band is that of Clopper and Pearson, for one demand at a time; a whole curve leaves it more
-    often.
+    """Probability that the capacity is not above a demand, with the exact interval of a share
+    (Clopper and Pearson): for one demand at a time; a whole curve leaves the band more often.
 
     :param capacities: one of every row
     :param demands: an increasing sequence in the same unit
@@ -147,17 +128,7 @@ def fragility(capacities, demands):
 
 
 def _numbers(values, least, what):
-    """Values as an array. Refuses fewer than ``least``, and values that are not finite."""
-    values = np.asarray(values, float).ravel()
-    problems = []
+    """Values as an array. Refuses fewer than ``least``."""
     if len(values) < least:
-        problems.append(f"{what} needs {least} rows or more, there are {len(values)}")
-    refuse(problems + [f"{what}: {why}" for why in notFinite(values)])
-    return values
-
-
-def notFinite(values):
-    """A sentence on rows whose number is not finite, as a list, which is empty if there are
-    none."""
-    rows = [str(i) for i, value in enumerate(values, 1) if not math.isfinite(value)]
-    return [f"rows {', '.join(rows[:10])} have no finite number"] if rows else []
+        raise Refused(f"{what} needs {least} rows or more, there are {len(values)}")
+    return np.asarray(values, float)

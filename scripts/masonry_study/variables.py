@@ -7,15 +7,13 @@ from dataclasses import asdict, dataclass
 from typing import Annotated, Any, Sequence
 
 from masonry.arguments import LONGEST, SHORTEST
-from masonry.arguments import isA, isNumber, listOf, number, shown, validated, text
+from masonry.arguments import isA, isNumber, listOf, number, require, shown, validated, text
 from masonry.materials import fields
 from masonry.errors import Refused
 from masonry.packages import needed
 
 LEAST_COV = 1e-6  # coefficient of variation below which nothing varies [-]
-#: What a distribution may give beyond a bound of a property: less than once in a thousand million
-#: draws.
-NEVER = 1e-9
+NEVER = 1e-9  # probability beyond the bounds of a property that does not matter [-]
 Finite = Annotated[float, number()]
 
 
@@ -51,9 +49,7 @@ class Distribution:
 
     def beyond(self, low: float | None, high: float | None) -> float:
         """Probability of a value below ``low`` or above ``high``; None is no bound [-]."""
-        law = self.law()
-        below = 0.0 if low is None else law.computeCDF(low)
-        return below + (0.0 if high is None else law.computeComplementaryCDF(high))
+        return 1.0 - self.law().computeProbability(_interval(low, high))
 
     def describe(self) -> dict[str, Any]:
         return {"kind": self.kind, **dict(self.parameters)}
@@ -140,13 +136,11 @@ class Choice:
 
 def _chosen(value, first=None):
     """The kind of a value of a choice."""
-    if isinstance(value, bool):
-        return value
     if isinstance(value, str):
         return text(value)
     if isNumber(value):
         return number()(value)
-    raise ValueError(f"{shown(value)} must be a number, a text, or True or False")
+    return require(value, isinstance(value, bool), "a number, a text, or True or False")
 
 
 @validated
@@ -198,8 +192,8 @@ def field(
 
     :param distribution: :func:`lognormal` or :func:`normal` of the values; None: lognormal about
         the value that the scene has, with ``cov``
-    :param length: correlation length [m], see :mod:`masonry.materials.fields`; 0: every joint has
-        its own value
+    :param length: correlation length [m], see :mod:`masonry.materials.fields`; 0: joints are
+        independent
     :param cov: coefficient of variation [-], where there is no distribution
     """
     if distribution is None:

@@ -3,7 +3,7 @@
 that have none."""
 
 from usual import *
-from masonry_capacity import bilinear_curve
+from masonry_capacity.bilinear_curve import RULES, bilinear, drifts, ofRun, pushover
 from made_runs import writeRun
 from scipy.integrate import trapezoid
 
@@ -19,14 +19,15 @@ def curve(*points, rows=401):
 
 # -- closed forms ----------------------------------------------------------------------------------
 
+SUDDEN = curve((0, 0), (2, 100), (12, 100), (12.001, 0))
 
-@mark.parametrize("rule", bilinear_curve.RULES)
+
+@mark.parametrize("rule", RULES)
 def test_a_perfect_bilinear_curve_gives_itself(rule):
-    """50 kN/mm up to 100 kN, a plateau to 12 mm and a fall within a thousandth of it; its mechanism
-    may form anywhere on it."""
-    moved, force = curve((0, 0), (2, 100), (12, 100), (12.001, 0))
+    """50 kN/mm up to 100 kN, a plateau to 12 mm and a sudden fall; the mechanism may form anywhere
+    on the plateau."""
     for mechanism in (None, 5.0, 12.0):
-        found = bilinear_curve.bilinear(moved, force, rule, mechanism=mechanism)
+        found = bilinear(*SUDDEN, rule, mechanism=mechanism)
         assert found.stiffness == approx(50)
         assert found.yieldForce == approx(100, rel=1e-4)
         assert found.yieldDisplacement == approx(2, rel=1e-4)
@@ -38,12 +39,11 @@ def test_a_perfect_bilinear_curve_gives_itself(rule):
 def test_a_triangle_has_its_closed_form():
     """Up to 1 at 1 and down to 0 at 2: K = 1, du = 1.2, area 1/2 + (1 + 0.8)/2 × 0.2 = 0.68, Vy =
     1.2 - √(1.44 - 1.36)."""
-    found = bilinear_curve.bilinear(*curve((0, 0), (1, 1), (2, 0)))
-    assert found.stiffness == approx(1)
-    assert found.ultimateDisplacement == approx(1.2)
-    assert found.area == approx(0.68)
+    triangle = curve((0, 0), (1, 1), (2, 0))
+    found = bilinear(*triangle)
+    assert (found.stiffness, found.ultimateDisplacement, found.area) == approx((1, 1.2, 0.68))
     assert found.yieldForce == approx(1.2 - math.sqrt(0.08))
-    found = bilinear_curve.bilinear(*curve((0, 0), (1, 1), (2, 0)), "en1998")
+    found = bilinear(*triangle, "en1998")
     assert (found.yieldForce, found.yieldDisplacement) == approx((1, 1))
 
 
@@ -54,32 +54,31 @@ def test_a_parabola_has_its_closed_form():
     force = 1 - (moved - 1) ** 2
     stiffness, end = 0.7 / (1 - math.sqrt(0.3)), 1 + math.sqrt(0.2)
     area = end**2 - end**3 / 3
-    found = bilinear_curve.bilinear(moved, force)
+    found = bilinear(moved, force)
     assert found.stiffness == approx(stiffness, rel=1e-6)
     assert found.ultimateDisplacement == approx(end, rel=1e-6)
     assert found.area == approx(area, rel=1e-6)
     plateau = stiffness * (end - math.sqrt(end**2 - 2 * area / stiffness))
     assert found.yieldForce == approx(plateau, rel=1e-5)
-    found = bilinear_curve.bilinear(moved, force, "en1998")
+    found = bilinear(moved, force, "en1998")
     assert found.yieldForce == approx(1)
     assert found.yieldDisplacement == approx(2 / 3, rel=1e-6)
     assert found.stiffness == approx(1.5, rel=1e-6)
-    half = bilinear_curve.bilinear(moved, force, "en1998", mechanism=0.5)
+    half = bilinear(moved, force, "en1998", mechanism=0.5)
     assert half.yieldForce == approx(0.75)
     assert half.yieldDisplacement == approx(2 * (0.5 - (0.25 - 0.125 / 3) / 0.75))
 
 
 def test_the_secant_and_the_fall_are_those_that_are_given():
     moved, force = curve((0, 0), (1, 50), (3, 100), (5, 100), (9, 0))
-    found = bilinear_curve.bilinear(moved, force, secant=0.5, fall=0.25)
+    found = bilinear(moved, force, secant=0.5, fall=0.25)
     assert found.stiffness == approx(50)
     assert found.ultimateDisplacement == approx(8)
-    assert bilinear_curve.bilinear(moved, force).stiffness == approx(70 / 1.8)
+    assert bilinear(moved, force).stiffness == approx(70 / 1.8)
 
 
 def test_the_curve_itself_has_the_plateau_and_no_force_beyond_its_end():
-    found = bilinear_curve.bilinear(*curve((0, 0), (2, 100), (12, 100), (12.001, 0)))
-    force = found.force([0, 1, 2, 12, 13])
+    force = bilinear(*SUDDEN).force([0, 1, 2, 12, 13])
     assert force[:4] == approx([0, 50, 100, 100], rel=1e-4)
     assert math.isnan(force[4])
 
@@ -105,14 +104,11 @@ def pushes(draw):
 
 
 def found(moved, force, *words):
-    """The bilinear curve. Those that lie too far above their secant to have one are left out of a
-    test."""
+    """The bilinear curve. Pushes that the method refuses with reason are left out of a test."""
     try:
-        return bilinear_curve.bilinear(moved, force, *words)
+        return bilinear(moved, force, *words)
     except Refused as refused:
-        # pushes of this kind that the method refuses with reason
-        reasons = "lies far above its secant", "the curve has no peak"
-        assume(not any(reason in str(refused) for reason in reasons))
+        assume(not re.search("far above its secant|the curve has no peak", str(refused)))
         raise
 
 
@@ -120,12 +116,11 @@ def found(moved, force, *words):
     pushes(),
     some.floats(1e-3, 1e3),
     some.floats(1e-3, 1e3),
-    some.sampled_from(sorted(bilinear_curve.RULES)),
+    some.sampled_from(sorted(RULES)),
 )
 def test_other_units_of_displacement_and_force_scale_the_answer(push, long, strong, rule):
     moved, force = push
-    one = found(moved, force, rule)
-    two = bilinear_curve.bilinear(long * moved, strong * force, rule)
+    one, two = found(*push, rule), bilinear(long * moved, strong * force, rule)
     assert two.ultimateDisplacement == approx(long * one.ultimateDisplacement)
     assert two.yieldForce == approx(strong * one.yieldForce, rel=1e-6)
     assert two.stiffness == approx(strong / long * one.stiffness, rel=1e-6)
@@ -135,28 +130,21 @@ def test_other_units_of_displacement_and_force_scale_the_answer(push, long, stro
 
 @given(pushes())
 def test_areas_are_equal(push):
-    moved, force = push
-    one = found(moved, force)
-    end, yields = one.ultimateDisplacement, one.yieldDisplacement
-    under = one.yieldForce * (end - yields / 2)
-    fine = np.linspace(0, end, 200001)
-    assert under == approx(trapezoid(np.interp(fine, moved, force), fine), rel=1e-4)
-    assert 0 < yields <= end * (1 + 1e-9)
-    above = [note for note in one.notes if "yield force is above the peak" in note]
-    assert bool(above) == (one.yieldForce > one.peakForce * (1 + 1e-9))
-    work = lambda b, d: b.yieldForce * (d - b.yieldDisplacement / 2)
-    code = bilinear_curve.bilinear(moved, force, "en1998")
-    fine = np.linspace(0, code.mechanism, 200001)
-    assert work(code, code.mechanism) == approx(
-        trapezoid(np.interp(fine, moved, force), fine), rel=1e-4
-    )
+    one, code = found(*push), bilinear(*push, "en1998")
+    for made, end in ((one, one.ultimateDisplacement), (code, code.mechanism)):
+        fine = np.linspace(0, end, 200001)
+        area = trapezoid(np.interp(fine, *push), fine)
+        assert made.yieldForce * (end - made.yieldDisplacement / 2) == approx(area, rel=1e-4)
+    assert 0 < one.yieldDisplacement <= one.ultimateDisplacement * (1 + 1e-9)
+    above = any("yield force is above the peak" in note for note in one.notes)
+    assert above == (one.yieldForce > one.peakForce * (1 + 1e-9))
 
 
 @given(pushes(), some.integers(2, 4))
 def test_more_rows_of_the_same_curve_change_nothing(push, times):
-    moved, force = push
-    fine = np.unique(np.concatenate([moved, np.linspace(0, moved[-1], times * len(moved))]))
-    one, two = found(moved, force), found(fine, np.interp(fine, moved, force))
+    moved, _ = push
+    fine = np.unique([*moved, *np.linspace(0, moved[-1], times * len(moved))])
+    one, two = found(*push), found(fine, np.interp(fine, *push))
     assume(not one.notes and not two.notes)
     assert two.yieldForce == approx(one.yieldForce, rel=1e-6)
     assert two.ductility == approx(one.ductility, rel=1e-6)
@@ -166,7 +154,7 @@ def test_more_rows_of_the_same_curve_change_nothing(push, times):
 
 
 def test_a_curve_that_does_not_fall_so_far_ends_at_its_end_and_says_so():
-    found = bilinear_curve.bilinear(*curve((0, 0), (2, 100), (10, 85)))
+    found = bilinear(*curve((0, 0), (2, 100), (10, 85)))
     assert found.ultimateDisplacement == 10 and not found.reached
     assert found.notes[0].startswith("not reached: the force never falls to 0.8 of its peak")
     notes = {one.name: one.note for one in found.numbers()}
@@ -175,45 +163,45 @@ def test_a_curve_that_does_not_fall_so_far_ends_at_its_end_and_says_so():
 
 
 def test_a_plateau_up_to_the_end_says_that_the_force_may_grow():
-    found = bilinear_curve.bilinear(*curve((0, 0), (2, 100), (10, 101)))
+    found = bilinear(*curve((0, 0), (2, 100), (10, 101)))
     assert any("largest at the end of the curve" in note for note in found.notes)
 
 
+#: A curve with a fall that lasts for 0.04 mm.
+WAVE = curve(
+    (0, 0), (2, 100), (3, 98), (3.01, 70), (3.04, 70), (3.05, 98), (6, 90), (7, 0), rows=4001
+)
+
+
 def test_a_short_fall_is_a_wave_and_a_long_one_is_the_ultimate_displacement():
-    moved, force = curve(
-        (0, 0), (2, 100), (3, 98), (3.01, 70), (3.04, 70), (3.05, 98), (6, 90), (7, 0), rows=4001
-    )
-    found = bilinear_curve.bilinear(moved, force, pulse=0.1)
+    found = bilinear(*WAVE, pulse=0.1)
     assert found.ultimateDisplacement == approx(6 + 1 / 9) and not found.notes
-    found = bilinear_curve.bilinear(moved, force)
+    found = bilinear(*WAVE)
     assert found.ultimateDisplacement == approx(3 + 0.01 * 18 / 28)
     assert "the force came back above that, up to 6.1" in found.notes[0]
 
 
 def test_a_fall_just_before_the_end_may_be_a_wave():
     moved, force = curve((0, 0), (2, 100), (6, 90), (6.01, 70), (6.05, 70), rows=4001)
-    assert bilinear_curve.bilinear(moved, force).reached
-    found = bilinear_curve.bilinear(moved, force, pulse=0.1)
+    assert bilinear(moved, force).reached
+    found = bilinear(moved, force, pulse=0.1)
     assert not found.reached and found.ultimateDisplacement == 6.05
     assert "for longer than a wave of 0.1 mm" in found.notes[0]
-    assert bilinear_curve.bilinear(moved, force, pulse=0.03).reached
+    assert bilinear(moved, force, pulse=0.03).reached
     drop = np.append(moved[moved <= 6], 6.0), np.append(force[moved <= 6], 0.0)
-    assert bilinear_curve.bilinear(*drop).ultimateDisplacement == 6  # an upright line
+    assert bilinear(*drop).ultimateDisplacement == 6  # an upright line
 
 
 def test_a_peak_anywhere_on_a_plateau_says_what_the_stiffness_depends_on():
     moved, force = curve((0, 0), (1, 50), (2, 96), (20, 100), (22, 0), rows=4001)
-    found = bilinear_curve.bilinear(moved, force, "en1998")
-    early = bilinear_curve.bilinear(moved, force, "en1998", mechanism=2 - 1 / 46)
-    assert (
-        "the force is above 0.95 of its peak from 1.978 mm on, and the peak is at 20 mm"
-        in found.notes[0]
-    )
-    assert (
-        f"{early.stiffness:.4g} kN/mm with the first and {found.stiffness:.4g} kN/mm with the"
-        " second" in found.notes[0]
-    )
-    assert early.notes == () and bilinear_curve.bilinear(moved, force).notes == ()
+    found = bilinear(moved, force, "en1998")
+    early = bilinear(moved, force, "en1998", mechanism=2 - 1 / 46)
+    for part in (
+        "the force is above 0.95 of its peak from 1.978 mm on, and the peak is at 20 mm",
+        f"{early.stiffness:.4g} kN/mm with the first and {found.stiffness:.4g} kN/mm with the",
+    ):
+        assert part in found.notes[0]
+    assert early.notes == () and bilinear(moved, force).notes == ()
 
 
 @mark.parametrize(
@@ -239,23 +227,21 @@ def test_a_peak_anywhere_on_a_plateau_says_what_the_stiffness_depends_on():
     ],
 )
 def test_a_curve_that_has_none_is_refused_in_a_sentence(moved, force, message):
-    for rule in bilinear_curve.RULES:
+    for rule in RULES:
         with raises(Refused, match=message):
-            bilinear_curve.bilinear(moved, force, rule)
+            bilinear(moved, force, rule)
 
 
 def test_a_curve_with_more_area_than_any_bilinear_one_is_refused():
     # the triangle of 1 kN/mm has 8 J up to 4 mm, the curve has 0.5 + 2.5 + 8 J
     moved, force = curve((0, 0), (1, 1), (2, 4), (4, 4.0), (4.001, 0))
-    with raises(
-        Refused,
-        match="the whole triangle has 8.*J, because the curve lies far above its secant",
+    for how, message in (
+        (dict(secant=0.25), "triangle has 8.*J, because the curve lies far above its secant"),
+        (dict(rule="en1998", mechanism=2.0), "no yield displacement between 0 and 2 mm"),
+        (dict(rule="en1998", mechanism=9.0), "beyond the ultimate displacement"),
     ):
-        bilinear_curve.bilinear(moved, force, secant=0.25)
-    with raises(Refused, match="no yield displacement between 0 and 2 mm"):
-        bilinear_curve.bilinear(moved, force, "en1998", mechanism=2.0)
-    with raises(Refused, match="beyond the ultimate displacement"):
-        bilinear_curve.bilinear(moved, force, "en1998", mechanism=9.0)
+        with raises(Refused, match=message):
+            bilinear(moved, force, **how)
 
 
 # -- of a run --------------------------------------------------------------------------------------
@@ -266,11 +252,9 @@ PUSH = {"stage": "push", "first_row": 0, "load": ["push", "top along x", ""]}
 
 def run(folder, moved, base, top=None, **entries):
     """A folder of results with a push that takes a second."""
-    rows = np.column_stack(
-        [np.linspace(0, 1, len(moved)), moved, base, base if top is None else top]
-    )
-    entries = {"stages": [PUSH], "interrupted": False, **entries}
-    return writeRun(folder, HEADS, rows, **entries)
+    time, top = np.linspace(0, 1, len(moved)), base if top is None else top
+    rows = np.column_stack([time, moved, base, top])
+    return writeRun(folder, HEADS, rows, **{"stages": [PUSH], "interrupted": False, **entries})
 
 
 def alike(one, two):
@@ -286,18 +270,15 @@ def test_the_force_of_a_run_is_what_both_ends_carry_at_once(tmp_path):
     top = base.copy()
     top[150], base = 140, np.where(np.arange(len(base)) == 160, 150, base)
     folder = run(tmp_path, moved, base, top)
-    assert alike(bilinear_curve.ofRun(folder), bilinear_curve.bilinear(*WHOLE))
+    assert alike(ofRun(folder), bilinear(*WHOLE))
 
 
 def test_a_wave_of_a_run_lasts_no_longer_than_its_first_period(tmp_path):
-    moved, force = curve(
-        (0, 0), (2, 100), (3, 98), (3.01, 70), (3.04, 70), (3.05, 98), (6, 90), (7, 0), rows=4001
-    )
-    slow = run(tmp_path / "slow", moved, force, first_period_s=1e-3)
-    fast = run(tmp_path / "fast", moved, force, first_period_s=2e-2)
-    assert bilinear_curve.pushover(fast).data.pulse == approx(0.14)
-    assert bilinear_curve.ofRun(slow).ultimateDisplacement < 3.01
-    assert bilinear_curve.ofRun(fast).ultimateDisplacement == approx(6 + 1 / 9)
+    slow = run(tmp_path / "slow", *WAVE, first_period_s=1e-3)
+    fast = run(tmp_path / "fast", *WAVE, first_period_s=2e-2)
+    assert pushover(fast).data.pulse == approx(0.14)
+    assert ofRun(slow).ultimateDisplacement < 3.01
+    assert ofRun(fast).ultimateDisplacement == approx(6 + 1 / 9)
 
 
 def test_only_the_rows_of_the_last_push_count(tmp_path):
@@ -305,7 +286,7 @@ def test_only_the_rows_of_the_last_push_count(tmp_path):
     both = np.append([3.0, 1.0, 0.0], moved), np.append([9.0, 9.0, 9.0], force)
     other = {**PUSH, "load": ["push", "top along y", ""]}
     folder = run(tmp_path, *both, stages=[other, {**PUSH, "first_row": 3}])
-    assert alike(bilinear_curve.ofRun(folder), bilinear_curve.bilinear(moved, force))
+    assert alike(ofRun(folder), bilinear(moved, force))
 
 
 @mark.parametrize(
@@ -321,54 +302,46 @@ def test_only_the_rows_of_the_last_push_count(tmp_path):
 def test_a_run_without_a_whole_push_is_refused_with_its_folder(tmp_path, entries, message):
     folder = run(tmp_path, *WHOLE, **entries)
     with raises(Refused, match=message) as refused:
-        bilinear_curve.ofRun(folder)
+        ofRun(folder)
     assert str(refused.value).startswith(folder)
 
 
 def test_a_run_that_is_no_push_is_refused(tmp_path):
     folder = writeRun(tmp_path, ["time_s", "load_factor"], [[0, 0], [1, 1]], figure={})
-    with raises(
-        Refused,
-        match=(
-            "the run has no push: curve.csv has no column displacement_mm, base_shear_kN,"
-            " top_shear_kN"
-        ),
-    ):
-        bilinear_curve.ofRun(folder)
+    heads = "displacement_mm, base_shear_kN, top_shear_kN"
+    with raises(Refused, match=f"the run has no push: curve.csv has no column {heads}"):
+        ofRun(folder)
     with raises(Refused, match="cannot read"):
-        bilinear_curve.ofRun(tmp_path / "nowhere")
+        ofRun(tmp_path / "nowhere")
 
 
 def test_a_push_to_its_collapse_and_one_that_was_too_fast_say_so(tmp_path):
     moved, force = curve((0, 0), (2, 100), (10, 90))
     folder = run(tmp_path, moved, force, collapsed=True, too_fast=True, dynamic_imbalance=0.12)
-    notes = bilinear_curve.ofRun(folder).notes
+    notes = ofRun(folder).notes
     assert notes[0].startswith("not reached: the structure collapsed at 10 mm")
     assert notes[1] == "the push was too fast: 12 % of the force did not reach the supports"
 
 
 def test_drifts_are_displacements_over_the_height(tmp_path):
     folder = run(tmp_path / "wall", *WHOLE, recorded_height_m=2.5)
-    found = {one.name: one for one in bilinear_curve.drifts(folder)}
-    fall = bilinear_curve.bilinear(*WHOLE).ultimateDisplacement
-    assert found["drift_at_peak_mrad"].value == approx(0.8)
-    assert found["drift_at_fall_mrad"].value == approx(fall / 2.5)
-    assert found["drift_at_collapse_mrad"].value is None
-    assert found["drift_at_collapse_mrad"].note == "the push did not end in a collapse"
-    doubled = {one.name: one for one in bilinear_curve.drifts(folder, height=5.0)}
-    assert doubled["drift_at_peak_mrad"].value == approx(0.4)
+    _, peak, fall, collapse = drifts(folder)
+    assert (peak.name, peak.value) == ("drift_at_peak_mrad", approx(0.8))
+    assert fall.value == approx(bilinear(*WHOLE).ultimateDisplacement / 2.5)
+    assert collapse.value is None and collapse.note == "the push did not end in a collapse"
+    assert drifts(folder, height=5.0)[1].value == approx(0.4)
     other = run(tmp_path / "other", *WHOLE)
     with raises(Refused, match="drifts need height=, in m"):
-        bilinear_curve.drifts(other)
-    assert bilinear_curve.drifts(other, 2.0)[1].value == approx(1)
+        drifts(other)
+    assert drifts(other, 2.0)[1].value == approx(1)
 
 
 def test_numbers_have_unit_meaning_and_source():
-    found = bilinear_curve.bilinear(*WHOLE)
+    found = bilinear(*WHOLE)
     for one in found.numbers():
         assert one.name.endswith(one.unit.replace("/", "_per_")) or one.unit == "-"
         assert one.meaning.endswith(".") and one.source
-    code = bilinear_curve.bilinear(*WHOLE, "en1998").numbers()
+    code = bilinear(*WHOLE, "en1998").numbers()
     assert code[0].source == "EN 1998-1:2004, annex B.3, equation (B.6)"
 
 

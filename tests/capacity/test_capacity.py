@@ -41,36 +41,38 @@ def test_grounds_have_the_corners_of_the_tables(type, ground, soil, corners):
     """The corners are where the plateau begins and ends, and where Se T² becomes constant."""
     found = capacity.elastic(1.0, "m/s²", type=type, ground=ground)
     tb, tc, td = corners
-    top, e = 2.5 * soil, 1e-6
-    assert found.acceleration(0) == approx(soil)
-    assert found.acceleration(tb - e) < top == approx(found.acceleration(tb))
-    assert found.acceleration(tc) == approx(top) and found.acceleration(tc + e) < top
-    assert found.acceleration(td) == approx(top * tc / td)
-    assert found.acceleration(3.0) * 9 == approx(found.acceleration(4.0) * 16)
-    assert found.acceleration(td - 0.1) * (td - 0.1) ** 2 < top * tc * td * (1 - e)
+    at, top, e = found.acceleration, 2.5 * soil, 1e-6
+    assert at(0) == approx(soil)
+    assert at(tb - e) < top == approx(at(tb))
+    assert at(tc) == approx(top) and at(tc + e) < top
+    assert at(td) == approx(top * tc / td)
+    assert at(3.0) * 9 == approx(at(4.0) * 16)
+    assert at(td - 0.1) * (td - 0.1) ** 2 < top * tc * td * (1 - e)
 
 
 def test_damping_lowers_the_spectrum_as_far_as_055():
     """η = √(10/(5 + ξ)), 0.816 at 10 %, not below 0.55; the acceleration at the period 0 is that of
     the ground."""
-    usual = capacity.elastic(1.0, "m/s²", type=1, ground="A")
-    for damping, correction in {
-        5: 1,
-        10: math.sqrt(10 / 15),
-        2: math.sqrt(10 / 7),
-        40: 0.55,
-    }.items():
-        found = capacity.elastic(1.0, "m/s²", type=1, ground="A", damping=damping)
+    ground = dict(ag=1.0, unit="m/s²", type=1, ground="A")
+    usual = capacity.elastic(**ground)
+    for damping, correction in (
+        (5, 1),
+        (10, math.sqrt(10 / 15)),
+        (2, math.sqrt(10 / 7)),
+        (40, 0.55),
+    ):
+        found = capacity.elastic(**ground, damping=damping)
         assert found.acceleration(0.3) == approx(correction * usual.acceleration(0.3))
         assert found.acceleration(0) == approx(1)
 
 
 def test_units_and_annexes():
-    one = capacity.elastic(0.1, "g", type=1, ground="C")
+    ground = dict(type=1, ground="C")
+    one = capacity.elastic(0.1, "g", **ground)
     for ag, unit in ((0.981, "m/s²"), (0.981, "m/s2"), (98.1, "cm/s²")):
-        other = capacity.elastic(ag, unit, type=1, ground="C")
+        other = capacity.elastic(ag, unit, **ground)
         assert other.accelerations == approx(one.accelerations)
-    own = capacity.elastic(0.1, "g", type=1, ground="C", parameters=(1.15, 0.2, 0.6, 2.0))
+    own = capacity.elastic(0.1, "g", **ground, parameters=(1.15, 0.2, 0.6, 2.0))
     assert own.accelerations == approx(one.accelerations)
     assert "given values" in own.source
 
@@ -99,8 +101,7 @@ def test_a_spectrum_ends_at_four_seconds():
 @mark.parametrize("mark", [",", ";", "\t", "  "])
 def test_a_spectrum_of_a_file_is_lines_between_its_rows(tmp_path, mark):
     path = tmp_path / "spectrum.csv"
-    rows = ["# a site", mark.join(("T", "Sa")), "0 0.1", "0.2 0.3", "", "1.0 0.1"]
-    path.write_text("\n".join(rows[:2] + [row.replace(" ", mark) for row in rows[2:]]) + "\n")
+    path.write_text("# a site\n" + "T Sa\n0 0.1\n0.2 0.3\n\n1.0 0.1\n".replace(" ", mark))
     found = capacity.readSpectrum(path, "g", corner=0.5)
     assert found.acceleration(0.1) == approx(0.2 * 9.81)
     assert found.acceleration(0.6) == approx(0.2 * 9.81)
@@ -172,12 +173,11 @@ def test_a_run_says_its_system_or_what_is_missing():
 # -- the target displacement -----------------------------------------------------------------------
 
 
-def bilinearOf(stiffness, force, ultimate, rule="en1998"):
+def bilinearOf(stiffness, force, ultimate):
     """A bilinear curve [kN/mm, kN, mm] that falls at its end."""
-    yields = force / stiffness
-    return capacity.bilinear(
-        *curve((0, 0), (yields, force), (ultimate, force), (ultimate * (1 + 1e-9), 0)), rule
-    )
+    end = ultimate * (1 + 1e-9)
+    points = (0, 0), (force / stiffness, force), (ultimate, force), (end, 0)
+    return capacity.bilinear(*curve(*points), "en1998")
 
 
 GROUND_A = capacity.elastic(0.2, "g", type=1, ground="A")
@@ -195,10 +195,8 @@ def test_above_tc_displacements_are_equal():
     assert found.targetDisplacement == found.elasticDisplacement == approx(moved)
     assert found.ductility == approx(moved / 10) and found.ductility > 4
     assert found.holds and found.scale == approx(90 / moved)
-    assert (
-        found.verdict()
-        == f"the capacity exceeds the demand: 90 mm is {90 / moved:.3g} times {moved:.4g} mm"
-    )
+    more = f"90 mm is {90 / moved:.3g} times {moved:.4g} mm"
+    assert found.verdict() == f"the capacity exceeds the demand: {more}"
 
 
 def test_below_tc_they_are_not():
@@ -223,11 +221,8 @@ def test_below_tc_they_are_not():
 def test_the_least_of_the_annex_is_taken_only_if_it_is_asked_for():
     """T* = 0.0628 s, TC = 0.8 s: dt* of (B.10) is 12 times as much as TC/T* says, and more than 3
     det*."""
-    words = (
-        bilinearOf(100, 10, 12),
-        capacity.equivalent(10e3, 1.0),
-        capacity.elastic(0.2, "g", type=1, ground="D"),
-    )
+    ground = capacity.elastic(0.2, "g", type=1, ground="D")
+    words = bilinearOf(100, 10, 12), capacity.equivalent(10e3, 1.0), ground
     found, least = capacity.demand(*words), capacity.demand(*words, limited=True)
     assert found.equivalentDisplacement > 3 * found.elasticDisplacement
     assert (
@@ -314,10 +309,8 @@ def test_the_iteration_ends_where_the_mechanism_forms_at_the_target(tmp_path):
     assert found.period == approx(period, rel=1e-3) and period > 0.6
     assert at == approx(spectrum.displacement(period), rel=1e-3)
     # with the mechanism at the peak, 60 mm, it is another one
-    assert (
-        capacity.demand(capacity.bilinearOf(push, "en1998"), system, spectrum).targetDisplacement
-        > 1.02 * at
-    )
+    atPeak = capacity.demand(capacity.bilinearOf(push, "en1998"), system, spectrum)
+    assert atPeak.targetDisplacement > 1.02 * at
 
 
 def test_an_iteration_that_leads_beyond_the_curve_says_so(tmp_path):
@@ -366,14 +359,11 @@ def test_a_folder_gets_its_numbers_and_its_picture(tmp_path):
 
 
 def test_without_a_spectrum_there_is_the_bilinear_curve_alone(tmp_path):
-    folder = run(tmp_path / "run", *WHOLE)
-    found = capacity.assess(folder, rule="masonry", out=tmp_path / "other")
+    folder, other = run(tmp_path / "run", *WHOLE), tmp_path / "other"
+    found = capacity.assess(folder, rule="masonry", out=other)
     assert "holds" not in found and found["rule"] == "masonry"
     assert any("drifts need height=" in note for note in found["notes"])
-    assert sorted(p.name for p in (tmp_path / "other").iterdir()) == [
-        "capacity.json",
-        "capacity.png",
-    ]
+    assert sorted(os.listdir(other)) == ["capacity.json", "capacity.png"]
     assert not (tmp_path / "run" / "capacity.json").exists()
 
 
@@ -381,56 +371,51 @@ def test_what_is_missing_is_refused_before_anything_is_written(tmp_path):
     folder = run(tmp_path, *WHOLE)
     with raises(Refused, match="neither is guessed"):
         capacity.assess(folder, capacity.elastic(0.2, "g", type=1, ground="B"))
-    assert sorted(p.name for p in tmp_path.iterdir()) == ["curve.csv", "run.json"]
+    assert sorted(os.listdir(tmp_path)) == ["curve.csv", "run.json"]
 
 
-CODE = ["--type", "1", "--ground", "B", "--ag", "0.2g"]
-MASS = ["--mass", "30e3", "--gamma", "1"]
+CODE = "--type=1 --ground=B --ag=0.2g"
+MASS = "--mass=30e3 --gamma=1"
 
 
 @mark.parametrize(
     "words, message",
     [
-        ([*CODE], "neither is guessed"),
-        ([*CODE, "--mass", "30e3"], "--mass: --gamma is missing, and it is not guessed"),
-        ([*CODE, "--masses", "1e3,2e3"], "--masses: --shape is missing"),
+        (CODE, "neither is guessed"),
+        (f"{CODE} --mass=30e3", "--mass: --gamma is missing, and it is not guessed"),
+        (f"{CODE} --masses=1e3,2e3", "--masses: --shape is missing"),
         (
-            [*CODE, *MASS, "--masses", "1e3", "--shape", "1"],
+            f"{CODE} {MASS} --masses=1e3 --shape=1",
             "give either --mass and --gamma or --masses and --shape",
         ),
         (
-            [*CODE, "--masses", "1e3;2e3", "--shape", "1,1"],
+            f"{CODE} --masses=1e3;2e3 --shape=1,1",
             "--masses '1e3;2e3' must be numbers with commas",
         ),
-        ([*CODE[:4], *MASS], "--type, --ground: --ag must be given, too"),
-        ([*CODE[:4], "--ag", "0.2", *MASS], "--ag '0.2' must be a number with its unit"),
-        ([*CODE[:4], "--ag", "-0.2g", *MASS], "ag -0.2 must be above 0"),
-        (["--spectrum", "s.csv", *MASS], "--spectrum: --unit is missing"),
+        (f"--type=1 --ground=B {MASS}", "--type, --ground: --ag must be given, too"),
+        (f"--type=1 --ground=B --ag=0.2 {MASS}", "--ag '0.2' must be a number with its unit"),
+        (f"--type=1 --ground=B --ag=-0.2g {MASS}", "ag -0.2 must be above 0"),
+        (f"--spectrum=s.csv {MASS}", "--spectrum: --unit is missing"),
         (
-            ["--spectrum", "s.csv", "--unit", "g", *CODE, *MASS],
+            f"--spectrum=s.csv --unit=g {CODE} {MASS}",
             "--spectrum: leave --type, --ground, --ag away",
         ),
-        (["--unit", "g", *MASS], "--unit: it is of --spectrum FILE, which is missing"),
-        (["other", "--out", "there"], "--out there: it is for one folder, not 2"),
-        (["--mechanism", "0"], "mechanism 0.0 mm must be above 0"),
+        (f"--unit=g {MASS}", "--unit: it is of --spectrum FILE, which is missing"),
+        ("other --out=there", "--out there: it is for one folder, not 2"),
+        ("--mechanism=0", "mechanism 0.0 mm must be above 0"),
     ],
 )
 def test_odd_options_are_refused_in_a_sentence(tmp_path, monkeypatch, capsys, words, message):
     monkeypatch.chdir(tmp_path)
     run("wall", *WHOLE)
-    words = [
-        f"--ag={word}" if before == "--ag" else word
-        for before, word in zip(["", *words], words)
-        if word != "--ag"
-    ]
-    assert program.main(["wall", *words]) == 2
+    assert program.main(["wall", *words.split()]) == 2
     assert message in capsys.readouterr().err
     assert not (tmp_path / "wall" / "capacity.json").exists()
 
 
 def test_the_program_prints_every_number_with_its_unit(tmp_path, capsys):
     folder = run(tmp_path, *WHOLE)
-    assert program.main([folder, *CODE, *MASS]) == 0
+    assert program.main([folder, *CODE.split(), *MASS.split()]) == 0
     said = capsys.readouterr().out
     for part in (
         "target_displacement_mm",
@@ -442,22 +427,8 @@ def test_the_program_prints_every_number_with_its_unit(tmp_path, capsys):
         assert part in said
     path = tmp_path / "s.csv"
     path.write_text("0,0.2\n0.1,0.5\n0.5,0.5\n2,0.1\n")
-    words = [
-        "--spectrum",
-        str(path),
-        "--unit",
-        "g",
-        "--corner",
-        "0.5",
-        "--masses",
-        "20e3,10e3",
-        "--shape",
-        "0.5,1",
-        "--limited",
-        "--rule",
-        "masonry",
-    ]
-    assert program.main([folder, *words]) == 0
+    words = "--unit=g --corner=0.5 --masses=20e3,10e3 --shape=0.5,1 --limited --rule=masonry"
+    assert program.main([folder, f"--spectrum={path}", *words.split()]) == 0
     assert program.main([folder]) == 0
     assert "no spectrum, so no demand" in capsys.readouterr().out
     assert program.main([]) == 2
@@ -484,12 +455,8 @@ def test_a_folder_that_has_no_curve_does_not_keep_the_others_from_theirs(tmp_pat
 def test_damaged_files_give_a_sentence_or_are_left_alone(tmp_path, entries):
     folder = run(tmp_path, *WHOLE, **entries)
     spectrum = capacity.elastic(0.2, "g", type=1, ground="B")
-    try:
+    with raises(Refused, match="not the files of a finished run|neither is guessed"):
         capacity.assess(folder, spectrum)
-    except Refused as refused:
-        assert "not the files of a finished run" in str(refused) or "neither is guessed" in str(
-            refused
-        )
     with contextlib.suppress(Refused):
         capacity.assess(folder)
         json.loads((tmp_path / "capacity.json").read_text(), parse_constant=pytest.fail)
@@ -500,15 +467,9 @@ def test_damaged_files_give_a_sentence_or_are_left_alone(tmp_path, entries):
 
 def bounds(*rows):
     """Entries of run.json: of pressed and normal force and bound."""
+    known = {"unit": "kN", "exact": True}
     return [
-        {
-            "load": f"top along x under {p} kN",
-            "unit": "kN",
-            "pressed_kN": p,
-            "normal_kN": n,
-            "factor": v,
-            "exact": True,
-        }
+        {**known, "load": f"top under {p} kN", "pressed_kN": p, "normal_kN": n, "factor": v}
         for p, n, v in rows
     ]
 
@@ -534,12 +495,8 @@ def test_a_domain_has_its_bounds_in_order_and_runs_as_points(tmp_path):
     assert [one.normal for one in found.bounds] == [25, 55, 105]
     assert found.shear(40) == approx((5.4 + 11.8) / 2)
     (one,) = found.runs
-    assert (one.name, one.normal, one.shear, one.displacement) == (
-        "run",
-        60,
-        approx(100),
-        approx(2),
-    )
+    assert one.name == "run"
+    assert (one.normal, one.shear, one.displacement) == approx((60, 100, 2))
     with open(tmp_path / "pier" / "domain.json") as file:
         assert json.load(file) == found.entries()
     assert (tmp_path / "pier" / "domain.png").read_bytes().startswith(b"\x89PNG")
@@ -549,16 +506,10 @@ def test_a_domain_has_its_bounds_in_order_and_runs_as_points(tmp_path):
 
 def test_a_wall_without_vertical_forces_has_those_of_its_load_and_weight(tmp_path):
     """4 m × 0.1 m under 0.5 MPa: 200 kN; 2.5 m of 1800 kg/m³ weigh 17.658 kN."""
-    wall = {
-        "length_m": 4.0,
-        "thickness_m": 0.1,
-        "height_m": 2.5,
-        "precompression_Pa": 0.5e6,
-        "measure_height_m": 2.5,
-    }
-    folder = run(
-        tmp_path, *WHOLE, wall=wall, unit_material={"density_kg_per_m3": 1800.0}, held=["base"]
-    )
+    wall = dict(length_m=4.0, thickness_m=0.1, height_m=2.5, precompression_Pa=0.5e6)
+    wall["measure_height_m"] = 2.5
+    material = {"density_kg_per_m3": 1800.0}
+    folder = run(tmp_path, *WHOLE, wall=wall, unit_material=material, held=["base"])
     found = capacity.runPoint(folder)
     assert found.normal == approx(217.658)
     assert "precompression and weight" in found.source
@@ -573,38 +524,22 @@ def test_a_scene_without_a_domain_is_refused_and_a_force_without_bound_is_a_note
     folder = scene(tmp_path / "none")
     with raises(Refused, match=r"run.json has no domain: say scene.domain\(top"):
         capacity.domain(folder)
-    failed = {
-        "load": "top along x under 9 kN",
-        "unit": "kN",
-        "pressed_kN": 9,
-        "note": "it was not solved in time",
-    }
+    failed = {"load": "top under 9 kN", "pressed_kN": 9, "note": "it was not solved in time"}
     with raises(Refused, match="under 9 kN: it was not solved in time"):
         capacity.domain(scene(tmp_path / "failed", failed))
     folder = scene(tmp_path / "some", failed, *bounds((20, 25, 5.4)))
-    assert capacity.domain(folder).notes == ["top along x under 9 kN: it was not solved in time"]
+    assert capacity.domain(folder).notes == ["top under 9 kN: it was not solved in time"]
     assert program.main(["--domain", folder]) == 0
     said = capsys.readouterr().out
-    assert "25" in said and "note: top along x under 9 kN" in said
+    assert "25" in said and "note: top under 9 kN" in said
 
 
 def test_a_run_of_another_pier_is_a_note(tmp_path):
-    material, wall = {"density_kg_per_m3": 1800.0}, {
-        "length_m": 1.0,
-        "thickness_m": 0.1,
-        "height_m": 2.5,
-        "precompression_Pa": 1e5,
-    }
-    made = {
-        "unit_material": material,
-        "wall": wall,
-        "units": 10,
-        "joints": {"bed": {"friction": 0.6}},
-    }
-    folder = scene(
-        tmp_path / "pier", *bounds((20, 25, 5.4)), units=10, joints={"bed": {"friction": 0.5}}
-    )
-    other = run(tmp_path / "run", *WHOLE, **made)
+    wall = dict(length_m=1.0, thickness_m=0.1, height_m=2.5, precompression_Pa=1e5)
+    known = dict(wall=wall, unit_material={"density_kg_per_m3": 1800.0}, units=10)
+    joints = lambda friction: {"bed": {"friction": friction}}
+    folder = scene(tmp_path / "pier", *bounds((20, 25, 5.4)), units=10, joints=joints(0.5))
+    other = run(tmp_path / "run", *WHOLE, **known, joints=joints(0.6))
     assert capacity.domain(folder, [other]).notes == [
         "run: its properties of joints are not those of the domain: is it the same pier?"
     ]

@@ -53,11 +53,11 @@ def test_a_linear_test_has_intervals_and_correlation_of_the_closed_form(tmp_path
     found = direct([0.33, 0.58]).find(tmp_path)
     # friction 0.25/0.4, its deviation 0.02 √2/0.4; cohesion 1.5 · 0.33 - 0.5 · 0.58, 0.02 √(1.5² +
     # 0.5²); -5/√(2.5 · 12.5)
-    assert found.sample.mean(axis=0) == pytest.approx([0.205, 0.625], abs=0.006)
-    assert found.sample.std(axis=0) == pytest.approx([0.03162, 0.07071], rel=0.08)
-    assert found.correlation[0, 1] == pytest.approx(-0.8944, abs=0.02)
+    assert found.sample.mean(axis=0) == approx([0.205, 0.625], abs=0.006)
+    assert found.sample.std(axis=0) == approx([0.03162, 0.07071], rel=0.08)
+    assert found.correlation[0, 1] == approx(-0.8944, abs=0.02)
     half = np.diff(found.intervals, axis=0)[0] / 2
-    assert half == pytest.approx(1.96 * np.array([0.03162, 0.07071]), rel=0.1)
+    assert half == approx(1.96 * np.array([0.03162, 0.07071]), rel=0.1)
     assert not found.doubts()
     written = json.loads((tmp_path / "calibration.json").read_text())
     assert written == found.describe()
@@ -70,13 +70,13 @@ def test_the_surrogate_is_openturns_kriging_and_knows_its_error():
     assert (off < 3 * model.errors + 1e-9).all() and (model.errors < 0.02).all()
     rough = designed(lambda x: np.round(3 * bent(x)), [(0, 1)] * 2, 30)
     off = np.sqrt(np.mean((rough(x) - np.round(3 * bent(x))) ** 2, axis=0))
-    assert off == pytest.approx(rough.errors, rel=0.6) and (rough.errors > 0.1).all()
+    assert off == approx(rough.errors, rel=0.6) and (rough.errors > 0.1).all()
 
 
 def test_the_same_number_in_all_rows_tells_nothing():
     act = lambda x: np.column_stack([x[:, 0], 7 + 0 * x[:, 0]])
     model = designed(act, [(0, 1)] * 2, 12)
-    assert model(np.full((1, 2), 0.3))[0] == pytest.approx([0.3, 7], abs=1e-3)
+    assert model(np.full((1, 2), 0.3))[0] == approx([0.3, 7], abs=1e-3)
     assert model.errors[1] == 0
 
 
@@ -91,7 +91,7 @@ def test_intervals_have_the_truth_as_often_as_they_say(monkeypatch):
         low, high = np.quantile(sample, ENDS, axis=0)
         inside += [*((low <= true[0]) & (true[0] <= high))]
     # three standard deviations of a binomial, if both properties of a case were one
-    assert np.mean(inside) == pytest.approx(0.95, abs=3 * math.sqrt(0.95 * 0.05 / 60))
+    assert np.mean(inside) == approx(0.95, abs=3 * math.sqrt(0.95 * 0.05 / 60))
     assert np.mean(inside) < 1
 
 
@@ -110,7 +110,7 @@ def test_what_a_test_does_not_tell_is_said(tmp_path, act):
     found = direct(bent(np.array([[0.4, 0.6]]))[0], names=names).find(tmp_path)
     said = [one for one in found.doubts() if "does not tell" in one]
     assert said == ["bed.c: the test does not tell it"]
-    assert found.spread[2] == pytest.approx(1, abs=0.05)
+    assert found.spread[2] == approx(1, abs=0.05)
     assert (found.spread[:2] < 0.5).all()
     act(lambda x: pressed(x)[:, :1])
     together = direct([0.33]).find(tmp_path).doubts()
@@ -133,7 +133,7 @@ def test_a_second_round_fills_what_the_first_keeps_of_the_ranges(tmp_path, act):
     found = one.find(tmp_path)
     first, second = one.seen["round1"], one.seen["round2"]
     assert np.ptp(second, axis=0).prod() < 0.5 * np.ptp(first, axis=0).prod()
-    assert found.sample.mean(axis=0) == pytest.approx([0.33, 0.5], abs=0.02)
+    assert found.sample.mean(axis=0) == approx([0.33, 0.5], abs=0.02)
     assert (found.model.errors < 0.05).all()
 
 
@@ -151,8 +151,8 @@ def test_a_run_is_added_where_the_surrogate_is_off(tmp_path, act):
 def test_few_accurate_runs_move_the_answer(tmp_path, monkeypatch):
     monkeypatch.setattr(Direct, "off", 0.05)
     found = direct([0.38, 0.63], accurate={"preset": "accurate"}).find(tmp_path)
-    assert found.sample.mean(axis=0) == pytest.approx([0.205, 0.625], abs=0.01)
-    assert found.run[0] == pytest.approx([0.38, 0.63], abs=0.01)
+    assert found.sample.mean(axis=0) == approx([0.205, 0.625], abs=0.01)
+    assert found.run[0] == approx([0.38, 0.63], abs=0.01)
 
 
 def test_what_is_printed_for_studies_is_a_study(tmp_path):
@@ -162,11 +162,11 @@ def test_what_is_printed_for_studies_is_a_study(tmp_path):
     settings = {name: of[name] for name in ("vary", "correlation")}
     drawn = Study("any", runs=400, **settings).rows()
     x = np.array([[row[n] for n in RANGES] for row in drawn])
-    assert x.mean(axis=0) == pytest.approx(found.sample.mean(axis=0), rel=0.03)
-    assert np.corrcoef(x.T)[0, 1] == pytest.approx(found.correlation[0, 1], abs=0.05)
+    assert x.mean(axis=0) == approx(found.sample.mean(axis=0), rel=0.03)
+    assert np.corrcoef(x.T)[0, 1] == approx(found.correlation[0, 1], abs=0.05)
 
 
-@pytest.mark.parametrize(
+@mark.parametrize(
     "make, message",
     [
         (lambda: Specimen("any", "t.csv:d:F"), "a curve needs it"),
@@ -186,13 +186,13 @@ def test_what_is_printed_for_studies_is_a_study(tmp_path):
     ],
 )
 def test_wrong_descriptions_are_refused(make, message):
-    with pytest.raises(Refused, match=re.escape(message)):
+    with raises(Refused, match=re.escape(message)):
         make()
 
 
 def test_a_curve_that_goes_back_is_refused(tmp_path):
     (tmp_path / "t.csv").write_text("d,F\n0,0\n1,2\n0.5,1\n")
-    with pytest.raises(Refused, match="cycles cannot be compared"):
+    with raises(Refused, match="cycles cannot be compared"):
         Specimen("any", "t.csv:d:F", 1.0).read(tmp_path)
 
 

@@ -19,8 +19,8 @@ def column(name, what, **settings):
     return np.array([row[name] for row in rows])
 
 
-@pytest.mark.parametrize("design", ["random", "latin", "sobol"])
-@pytest.mark.parametrize("law", LAWS)
+@mark.parametrize("design", ["random", "latin", "sobol"])
+@mark.parametrize("law", LAWS)
 def test_values_have_the_moments_of_their_distribution(law, design):
     what, mean, deviation = LAWS[law]
     values = column("bed.cohesion", what, runs=1024, design=design)
@@ -28,7 +28,7 @@ def test_values_have_the_moments_of_their_distribution(law, design):
     # it is closer
     wide = 4 * deviation / 32 / (1 if design == "random" else 10)
     assert abs(values.mean() - mean) < wide
-    assert values.std() == pytest.approx(deviation, rel=0.12)
+    assert values.std() == approx(deviation, rel=0.12)
 
 
 @given(
@@ -73,7 +73,7 @@ def test_a_cut_distribution_is_the_rest(kind, size, mean, cov, ends, given, u):
     value = kind(mean, cov, **bounds).law().computeQuantile(u)[0]
     # the part of the whole between its ends, in proportion
     expected = below + u * (above - below)
-    assert whole.computeCDF(value) == pytest.approx(expected, abs=1e-6)
+    assert whole.computeCDF(value) == approx(expected, abs=1e-6)
 
 
 def test_another_seed_gives_other_rows_and_fields():
@@ -114,8 +114,8 @@ def test_sobol_fills_the_square_evenly():
     assert unevenness("sobol") < 0.6 * unevenness("random")
 
 
-@pytest.mark.parametrize("design", ["random", "latin", "sobol"])
-@pytest.mark.parametrize("rank", [0.5, -0.8])
+@mark.parametrize("design", ["random", "latin", "sobol"])
+@mark.parametrize("rank", [0.5, -0.8])
 def test_correlated_numbers_have_rank_correlation_and_distributions(design, rank):
     vary = {"a.b": lognormal(2.0, 0.5), "t": choice("x", "y"), "a.c": uniform(0, 1)}
     said = dict(runs=1000, seed=2, vary=vary, design=design)
@@ -123,22 +123,22 @@ def test_correlated_numbers_have_rank_correlation_and_distributions(design, rank
     one, two = (np.array([row[n] for row in rows]) for n in ("a.b", "a.c"))
     ranks = [np.argsort(np.argsort(v)) for v in (one, two)]
     # the standard error of 1,000 rows is 0.03 at most
-    assert np.corrcoef(*ranks)[0, 1] == pytest.approx(rank, abs=0.1)
-    assert one.mean() == pytest.approx(2.0, abs=4 / math.sqrt(1000))
-    assert two.mean() == pytest.approx(0.5, abs=4 * 0.29 / math.sqrt(1000))
+    assert np.corrcoef(*ranks)[0, 1] == approx(rank, abs=0.1)
+    assert one.mean() == approx(2.0, abs=4 / math.sqrt(1000))
+    assert two.mean() == approx(0.5, abs=4 * 0.29 / math.sqrt(1000))
 
 
 def test_correlations_that_no_numbers_have_are_refused():
     vary = {f"a.{n}": uniform(0, 1) for n in "xyz"}
     pairs = {("a.x", "a.y"): 0.95, ("a.y", "a.z"): 0.95, ("a.x", "a.z"): -0.95}
-    with pytest.raises(Refused, match="no numbers have all these correlations"):
+    with raises(Refused, match="no numbers have all these correlations"):
         Study("any", runs=5, vary=vary, correlation=pairs).rows()
 
 
 def test_weights_of_a_choice():
     values = column("joints", choice("softening", "brittle", weights=(3, 1)), runs=2000)
     # the standard error is 0.01
-    assert np.mean(values == "brittle") == pytest.approx(0.25, abs=0.04)
+    assert np.mean(values == "brittle") == approx(0.25, abs=0.04)
 
 
 def test_a_grid_has_all_combinations():

@@ -6,7 +6,7 @@ from usual import *
 from xml.etree import ElementTree
 from hypothesis import reject
 from scipy import special
-from masonry_study import fragility
+from masonry_study.fragility import WIDEST, fit, nrml
 
 LEVELS = np.geomspace(0.2, 3, 8)
 
@@ -29,14 +29,14 @@ def test_drawn_data_give_their_distribution_back():
     """
     for seed in range(3):
         logs = 0.5 * np.random.default_rng(seed).standard_normal(1000)
-        found = fragility.fit(*drawn(seed, 1000))
-        assert math.log(found.median.value / 0.8) == pytest.approx(logs.mean(), abs=0.015)
-        assert found.dispersion.value == pytest.approx(logs.std(), abs=0.015)
+        found = fit(*drawn(seed, 1000))
+        assert math.log(found.median.value / 0.8) == approx(logs.mean(), abs=0.015)
+        assert found.dispersion.value == approx(logs.std(), abs=0.015)
         assert 0.05 < math.log(found.median.high / found.median.low) < 0.08
         assert 0.04 < found.dispersion.high - found.dispersion.low < 0.06
 
 
-@pytest.mark.parametrize("records", [6, 12])
+@mark.parametrize("records", [6, 12])
 def test_intervals_hold_the_truth_as_often_as_they_say(records):
     """Of 100 samples 95 should; the binomial standard deviation is 2.2, and 88 are three of them
     below."""
@@ -44,7 +44,7 @@ def test_intervals_hold_the_truth_as_often_as_they_say(records):
     tried = 0
     for seed in range(100):
         try:
-            found = fragility.fit(*drawn(seed, records, dispersion=0.6))
+            found = fit(*drawn(seed, records, dispersion=0.6))
         except Refused:
             continue  # records that do not tell the dispersion
         tried += 1
@@ -63,13 +63,13 @@ def test_two_levels_have_a_closed_form():
     """Shares p and q at or below two levels: Φ⁻¹ of both is ln(level/θ)/β, which are two equations
     for θ and β."""
     low, high = between([0.1] * 2 + [0.7] * 5 + [2] * 3, [0.5, 1.0])
-    found = fragility.fit(low, high)
+    found = fit(low, high)
     p, q = special.ndtri(0.2), special.ndtri(0.7)
     dispersion = math.log(2) / (q - p)
-    assert found.dispersion.value == pytest.approx(dispersion, rel=1e-4)
-    assert found.median.value == pytest.approx(math.exp(-dispersion * q), rel=1e-4)
-    assert found.probability(0.5).value == pytest.approx(0.2, rel=1e-4)
-    assert found.probability(1.0).value == pytest.approx(0.7, rel=1e-4)
+    assert found.dispersion.value == approx(dispersion, rel=1e-4)
+    assert found.median.value == approx(math.exp(-dispersion * q), rel=1e-4)
+    assert found.probability(0.5).value == approx(0.2, rel=1e-4)
+    assert found.probability(1.0).value == approx(0.7, rel=1e-4)
     assert (found.reached, found.records) == (7, 10)
 
 
@@ -79,13 +79,13 @@ def test_fine_levels_give_the_interval_of_student():
     from scipy import stats
 
     values = np.exp(0.4 * np.random.default_rng(3).standard_normal(8))
-    found = fragility.fit(values * (1 - 1e-4), values * (1 + 1e-4))
+    found = fit(values * (1 - 1e-4), values * (1 + 1e-4))
     logs = np.log(values)
     half = stats.t.ppf(0.975, 7) * logs.std(ddof=1) / math.sqrt(8)
-    assert math.log(found.median.value) == pytest.approx(logs.mean(), abs=1e-4)
-    assert found.dispersion.value == pytest.approx(logs.std(), rel=1e-3)
-    assert math.log(found.median.low) == pytest.approx(logs.mean() - half, rel=1e-3)
-    assert math.log(found.median.high) == pytest.approx(logs.mean() + half, rel=1e-3)
+    assert math.log(found.median.value) == approx(logs.mean(), abs=1e-4)
+    assert found.dispersion.value == approx(logs.std(), rel=1e-3)
+    assert math.log(found.median.low) == approx(logs.mean() - half, rel=1e-3)
+    assert math.log(found.median.high) == approx(logs.mean() + half, rel=1e-3)
 
 
 @given(seed=some.integers(0, 1000), scale=some.floats(0.01, 100))
@@ -93,20 +93,20 @@ def test_fine_levels_give_the_interval_of_student():
 def test_the_unit_of_the_intensity_does_not_matter(seed, scale):
     low, high = drawn(seed, 15)
     try:
-        one, other = fragility.fit(low, high), fragility.fit(scale * low, scale * high)
+        one, other = fit(low, high), fit(scale * low, scale * high)
     except Refused:  # as below
         reject()
-    assert other.dispersion == pytest.approx(one.dispersion, rel=1e-4)
-    assert other.median == pytest.approx([scale * m for m in one.median], rel=1e-4)
+    assert other.dispersion == approx(one.dispersion, rel=1e-4)
+    assert other.median == approx([scale * m for m in one.median], rel=1e-4)
     place = 0.7 * one.median.value
-    assert other.probability(scale * place) == pytest.approx(one.probability(place), abs=1e-4)
+    assert other.probability(scale * place) == approx(one.probability(place), abs=1e-4)
 
 
 @given(seed=some.integers(0, 1000))
 @settings(max_examples=20, deadline=None)
 def test_intervals_hold_the_value_and_probabilities_grow(seed):
     try:
-        found = fragility.fit(*drawn(seed, 12))
+        found = fit(*drawn(seed, 12))
     except Refused:  # of some draws all records may reach the limit at one level
         reject()
     for one in (found.median, found.dispersion):
@@ -125,16 +125,16 @@ def test_intervals_hold_the_value_and_probabilities_grow(seed):
 def test_any_records_give_numbers_or_a_sentence(capacities, count):
     low, high = between(capacities, np.geomspace(0.2, 3, count))
     try:
-        found = fragility.fit(low, high)
+        found = fit(low, high)
     except Refused as refused:
         assert "add" in str(refused) and "\n" not in str(refused)
     else:
         assert 0 < found.median.value < math.inf
-        assert 0 < found.dispersion.value <= fragility.WIDEST
+        assert 0 < found.dispersion.value <= WIDEST
         assert 0 <= found.median.low <= found.median.value <= found.median.high
 
 
-@pytest.mark.parametrize(
+@mark.parametrize(
     "capacities, message",
     [
         ([0.5, 1.0], "needs 3 records or more, there are 2"),
@@ -151,18 +151,18 @@ def test_any_records_give_numbers_or_a_sentence(capacities, count):
     ],
 )
 def test_data_that_cannot_give_it_are_refused_with_a_sentence(capacities, message):
-    refused = pytest.raises(Refused, match=message)
+    refused = raises(Refused, match=message)
     with refused if message else contextlib.nullcontext():
-        assert fragility.fit(*between(capacities)).median.value > 0
+        assert fit(*between(capacities)).median.value > 0
 
 
 def test_a_model_for_openquake_has_names_and_measures_that_it_reads():
-    fit = fragility.fit(*drawn(1, 20))
-    text = fragility.nrml({"house <1>": fit}, "Sa_0.5s_g", "limit", "x < 1 & more", 2.0)
+    found = fit(*drawn(1, 20))
+    text = nrml({"house <1>": found}, "Sa_0.5s_g", "limit", "x < 1 & more", 2.0)
     root = ElementTree.fromstring(text.encode())
     space = "{http://openquake.org/xmlns/nrml/0.5}"
     assert root.find(f".//{space}description").text == "x < 1 & more"
     function = root.find(f".//{space}fragilityFunction")
     assert function.get("id") == "house_1_" and function[0].get("imt") == "SA(0.5)"
-    with pytest.raises(Refused, match="OpenQuake has no Sa_0.5s_2%_g"):
-        fragility.nrml({}, "Sa_0.5s_2%_g", "limit", "", 2.0)
+    with raises(Refused, match="OpenQuake has no Sa_0.5s_2%_g"):
+        nrml({}, "Sa_0.5s_2%_g", "limit", "", 2.0)

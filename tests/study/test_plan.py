@@ -49,7 +49,7 @@ def test_a_table_of_the_users_own(tmp_path):
         ("description rate\nslow 20\nslow 40\n", "slow names several rows"),
     ):
         path.write_text(text)
-        with pytest.raises(Refused, match=message):
+        with raises(Refused, match=message):
             batch.readTable(str(path))
 
 
@@ -65,7 +65,7 @@ def test_a_field_is_read_as_it_is_written():
         "bed=lognormal(cov=0.3,length=0,seed=1)",
         "bed.cohesion=lognormal(cov=x,length=0,seed=1)",
     ):
-        with pytest.raises(ValueError, match="bed"):
+        with raises(ValueError, match="bed"):
             fields.read(wrong)
 
 
@@ -75,7 +75,7 @@ TIED = {BOTH: uniform(1, 2), "bed.cohesion": uniform(1, 2)}
 PAIR = {("bed.cohesion", "bed.friction"): -0.5}
 
 
-@pytest.mark.parametrize(
+@mark.parametrize(
     "wrong, message",
     [
         (dict(runs=3, vary={}), "nothing varies"),
@@ -94,11 +94,11 @@ PAIR = {("bed.cohesion", "bed.friction"): -0.5}
     ],
 )
 def test_a_wrong_study_is_refused(wrong, message):
-    with pytest.raises(Refused, match=message):
+    with raises(Refused, match=message):
         Study("any", **wrong)
 
 
-@pytest.mark.parametrize(
+@mark.parametrize(
     "wrong, messages",
     [
         (dict(runs=0, seed=-1, design="best"), ("design", "seed -1", "runs 0 must be")),
@@ -106,12 +106,12 @@ def test_a_wrong_study_is_refused(wrong, message):
     ],
 )
 def test_all_problems_are_reported_at_once(wrong, messages):
-    with pytest.raises(Refused) as refused:
+    with raises(Refused) as refused:
         Study("any", **wrong)
     assert all(message in str(refused.value) for message in messages)
 
 
-@pytest.mark.parametrize(
+@mark.parametrize(
     "make, message",
     [
         (lambda: uniform(2, 1), "low 2 must be below high 1"),
@@ -126,7 +126,7 @@ def test_all_problems_are_reported_at_once(wrong, messages):
     ],
 )
 def test_wrong_variables_are_refused(make, message):
-    with pytest.raises(Refused, match=message):
+    with raises(Refused, match=message):
         make()
 
 
@@ -139,5 +139,5 @@ def test_scenes_are_found_by_their_name():
     study = Study("wall_comp4", runs=1, vary={"rate": [20]})
     near = os.path.join(ROOT, "validation", "sensitivity")
     assert study.script(near)[0] == os.path.join(ROOT, "scripts", "wall_comp4.py")
-    with pytest.raises(Refused, match="no scene wall_comp44; looked in "):
+    with raises(Refused, match="no scene wall_comp44; looked in "):
         Study("wall_comp44", runs=1, vary={"rate": [20]}).script(near)
