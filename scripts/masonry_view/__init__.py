@@ -14,7 +14,7 @@
   frames; :mod:`masonry_view.page`: a page that shows it in any browser and in a notebook
 - :mod:`masonry_view.viewer`: the run in ParaView, in which :mod:`masonry_view.paraview_macro` works
 - :mod:`masonry_view.notebook` and :mod:`masonry_view.notebook_scene`: a run, its curve and a scene
-  in a notebook, of the parts in :mod:`masonry_view.cells`
+  in a notebook
 """
 
 from masonry.wings import folderOf

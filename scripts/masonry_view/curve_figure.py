@@ -200,3 +200,8 @@ def unitOf(axis: dict[str, Any]) -> str:
     """Unit of an axis: in the brackets of its label, else at the end of the name of its column."""
     found = re.search(r"\[([^\]]*)\]\s*$", axis["label"])
     return found[1] if found else axis["column"].rsplit("_", 1)[-1]
+
+
+def bare(text: Any) -> str:
+    """What an axis or column is, without its unit in brackets at the end."""
+    return re.sub(r" *\[[^\[\]]+\]$", "", str(text))

@@ -13,7 +13,7 @@ from masonry.errors import Refused
 from masonry.bricks.geometry import SameTopologyBatch, Solids, boxCorners
 from masonry.numbers import drawing
 from masonry.numbers.cracks import CRACK, CRACK_SURFACE, CRUSHED, crushed, widths
-from .curve_figure import plan, unitOf
+from .curve_figure import bare, plan, unitOf
 from masonry.numbers.files import readCurve, readRun
 from masonry.numbers.frames import frameAt, frameTimes, readFrame
 
@@ -39,13 +39,13 @@ class Structure:
     """Blocks and joints at one moment."""
 
     blocks: dict[str, Any]  #: as :func:`masonry.numbers.frames.readFrame` gives them
-    joints: dict[str, Any] | None  #: likewise; None where there are none to show
+    joints: dict[str, Any] | None  #: as the blocks; None where there are none to show
     #: name -> ids of bodies, the façades first of all; all blocks are one part if it is empty
     parts: dict[str, list[int]] = field(default_factory=dict)
     #: key of :data:`SHADES` by the id of a body; others are bricks
     shades: dict[int, str] = field(default_factory=dict)
     names: dict[int, str] = field(default_factory=dict)  #: texts that stand on bodies
-    sights: dict[str, Any] = field(default_factory=dict)  #: directions by part
+    viewDirections: dict[str, Any] = field(default_factory=dict)  #: by part, as the user gave them
     ground: int | None = None  #: on which blocks fall; it is drawn as far as needed
     #: numbers of the kinds of joints inside units, which are not drawn unless they crack
     seams: tuple[int, ...] = ()
@@ -61,9 +61,9 @@ class Structure:
         self._outer = {}  # by the shape of blocks
         self.moved = self.blocks["displacement"] - self.still
         if self.ground in self.corners:
-            self._lay()
+            self._layGround()
 
-    def _lay(self):
+    def _layGround(self):
         """Let the ground be a slab that is as large as what stands and lies on it."""
         points = self.blocks["points"]
         level = (points + self.moved)[self.corners.pop(self.ground), 2].max()
@@ -101,9 +101,8 @@ class Structure:
     def cracks(self):
         """Joints that are cracked, crushed or seams: a list with an entry for each side of all
         joints that have the same number of corners. An entry has arrays: the bodies on this side;
-        the numbers of the joints; their kinds, as in
-        :mod:`masonry_view.painting`; their crushing, or 0 [m]; their corners as built [m]; and how
-            these move with the bodies [m].
+        the numbers of the joints; their kinds, as in :mod:`masonry_view.painting`; their crushing,
+        or 0 [m]; their corners as built [m]; and how these move with the bodies [m].
         """
         j, found = self.joints, []
         if not j:
@@ -118,34 +117,24 @@ class Structure:
         for size in np.unique(sizes):
             here = chosen[sizes == size]
             cells = np.array([j["cells"][n] for n in here])
+            alike = here, kinds[here], closures[here], j["points"][cells]
             for own, name in zip(j["bodies"][here].T, ("displacement", "second_displacement")):
-                found.append(
-                    (
-                        own,
-                        here,
-                        kinds[here],
-                        closures[here],
-                        j["points"][cells],
-                        j[name][cells] - self.still,
-                    )
-                )
+                found.append((own, *alike, j[name][cells] - self.still))
         return found
 
 
 class Elevation:
     """What is seen of a structure from one side: a façade with all that stands in it, or all of it
-    in space."""
+    in space.
+
+    :param view: a :class:`masonry_view.views.View`; ``bodies``: ids of the blocks that are drawn
+    :param members: of these, the ones of the façade, of which it is said whether they moved across
+        it
+    :param moment: what is said of it if it is not that of the other elevations
+    """
 
     def __init__(self, structure, name, view, bodies, members=(), moment=""):
-        """
-        :param view: a :class:`masonry_view.views.View`; ``bodies``: ids of the blocks that are
-            drawn
-        :param members: of these, the ones of the façade, of which it is said whether they moved
-            across it
-        :param moment: what is said of it if it is not that of the other elevations
-        """
-        self.structure, self.name = structure, name
-        self.view, self.bodies = view, bodies
+        self.structure, self.name, self.view, self.bodies = structure, name, view, bodies
         self.to = np.column_stack([view.right, view.up])
         self.nodes = structure.points(bodies)
         self.note, self.across = " ".join(t for t in (view.name, moment) if t), 0.0
@@ -170,9 +159,8 @@ class Elevation:
         reach = REACH * (high - low).max()
         low = np.maximum(np.minimum(low, now.min(axis=0)), low - reach)
         high = np.minimum(np.maximum(high, now.max(axis=0)), high + reach)
-        return np.array([low, high]) + (high - low).max() * np.array(
-            [[-0.045, -0.12], [0.045, 0.045]]
-        )
+        margins = np.array([[-0.045, -0.12], [0.045, 0.045]])
+        return np.array([low, high]) + (high - low).max() * margins
 
     def draw(self, axes, magnification, scale):
         """Draw it.
@@ -189,16 +177,14 @@ class Elevation:
         thin, bold = np.clip(0.06 * course, 0.15, 0.5), np.clip(0.21 * course, 0.7, 1.8)
         painting = Painting(self.view.towards, thin, bold)
         now = copy.copy(built)
-        now.groups = [
-            SameTopologyBatch(
-                g.index,
-                g.corners + magnification * s.moved[np.array([nodes[n] for n in g.index])],
-                g.faces,
+        now.groups = []
+        for g in built.groups:
+            moved = s.moved[np.array([nodes[n] for n in g.index])]
+            now.groups.append(
+                SameTopologyBatch(g.index, g.corners + magnification * moved, g.faces)
             )
-            for g in built.groups
-        ]
-        for g in built.groups if magnification else ():
-            painting.blocks(np.full(len(g.index), -1), g)
+            if magnification:
+                painting.blocks(np.full(len(g.index), -1), g)
         colours = np.array([rgb(SHADES[s.shades.get(body, "brick")]) for body in self.bodies])
         # the joints of a block come after it and before the next block
         places = 10**9 * np.argsort(fromBackToFront(now, sight))
@@ -211,25 +197,18 @@ class Elevation:
             painting.cracks(places, crack, built, now, colours)
         painting.finish(axes, self.flat, s.joints is not None)
         for shade in sorted({s.shades[b] for b in self.bodies if b in s.shades}):
-            axes.add_collection(
-                PolyCollection([], facecolor=SHADES[shade], edgecolor=MORTAR, label=shade)
-            )
+            look = dict(facecolor=SHADES[shade], edgecolor=MORTAR, label=shade)
+            axes.add_collection(PolyCollection([], **look))
         for body in set(s.names) & set(self.bodies):
             middle = self.flat(s.blocks["points"][s.corners[body]]).mean(axis=0)
             axes.annotate(s.names[body], middle, ha="center", va="center", fontsize=8)
         for state, (colour, dash) in TIES.items():
-            ends = [
-                self._tie(one, magnification)
-                for one in s.ties
-                if one["state"] == state and set(one["bodies"]) & set(self.bodies)
-            ]
-            if ends:
+            ties = [t for t in s.ties if t["state"] == state and set(t["bodies"]) & {*self.bodies}]
+            if ties:
+                ends = [self._tie(tie, magnification) for tie in ties]
+                look = dict(color=colour, lw=1.2 * bold, ls=dash, zorder=4)
                 label = "tie" if state == "elastic" else f"tie, {state}"
-                axes.add_collection(
-                    LineCollection(
-                        ends, color=colour, lw=1.2 * bold, ls=dash, label=label, zorder=4
-                    )
-                )
+                axes.add_collection(LineCollection(ends, **look, label=label))
         self._frame(axes, magnification, scale)
 
     def _frame(self, axes, magnification, scale):
@@ -247,17 +226,10 @@ class Elevation:
         power = 10.0 ** np.floor(np.log10(most))
         length = max(n * power for n in (1, 2, 5) if n * power <= most)
         x, y = low + 8 / scale
-        axes.plot(
-            [x, x + length], [y, y], color="black", lw=2, solid_capstyle="butt", label="_scale"
-        )
-        axes.annotate(
-            f"{length:g} m",
-            (x + length, y),
-            xytext=(4, 0),
-            textcoords="offset points",
-            va="center",
-            fontsize=8,
-        )
+        look = dict(color="black", lw=2, solid_capstyle="butt", label="_scale")
+        axes.plot([x, x + length], [y, y], **look)
+        place = dict(xytext=(4, 0), textcoords="offset points", va="center")
+        axes.annotate(f"{length:g} m", (x + length, y), **place, fontsize=8)
 
     def _tie(self, tie, magnification):
         s, ends = self.structure, []
@@ -295,7 +267,7 @@ def _facade(structure, name, members):
         own = np.isin(joints["bodies"], members).all(axis=1)
         normals, areas = joints["normal"][own], joints["area"][own]
     nodes = structure.points(members)
-    view = viewOf(points[nodes], normals, areas, structure.sights.get(name))
+    view = viewOf(points[nodes], normals, areas, structure.viewDirections.get(name))
     depth = points @ view.towards
     near, far = depth[nodes].max(), depth[nodes].min()
     parted = {body for part in structure.parts.values() for body in part}
@@ -341,14 +313,11 @@ def figureOf(structure, title, magnification=None, later=None):
     sizes = np.array([high - low for low, high in boxes])
     columns = max(range(1, len(sizes) + 1), key=lambda n: _scale(sizes, n))
     scale = _scale(sizes, columns)
-    wides = [scale * max(sizes[c::columns, 0]) for c in range(columns)]
-    highs = [scale * max(sizes[n : n + columns, 1]) for n in range(0, len(sizes), columns)]
+    wides, highs = (scale * cells for cells in _cells(sizes, columns))
     # inches for labels beside and below each, for the legend at the right, and for the title
     above = 0.85 if title else 0.3
-    width, height = (
-        max(sum(wides) + 0.85 * columns + 1.6, 7.0),
-        sum(highs) + 0.75 * len(highs) + above,
-    )
+    width = max(sum(wides) + 0.85 * columns + 1.6, 7.0)
+    height = sum(highs) + 0.75 * len(highs) + above
     figure, handles = drawing.empty(width, height), {}
     for n, one in enumerate(elevations):
         row, column = divmod(n, columns)
@@ -365,27 +334,24 @@ def figureOf(structure, title, magnification=None, later=None):
             title = title.replace("{}", scaleText(structure.joints, magnification))
         figure.suptitle(title, fontsize=9, x=0.3 / width, y=1 - 0.1 / height, ha="left")
     if handles:
-        figure.legend(
-            handles.values(),
-            handles,
-            loc="upper right",
-            fontsize=8,
-            bbox_to_anchor=(1 - 0.08 / width, 1 - above / height),
-        )
+        place = dict(loc="upper right", bbox_to_anchor=(1 - 0.08 / width, 1 - above / height))
+        figure.legend(handles.values(), handles, **place, fontsize=8)
     return figure
+
+
+def _cells(sizes, columns):
+    """Widths of the columns and heights of the rows of a page of elevations of these sizes [m]."""
+    wides = [max(sizes[c::columns, 0]) for c in range(columns)]
+    highs = [max(sizes[n : n + columns, 1]) for n in range(0, len(sizes), columns)]
+    return np.array(wides), np.array(highs)
 
 
 def _scale(sizes, columns):
     """The largest scale with which elevations of these sizes [m] stand on a page in so many columns
     [inch/m]."""
-    wide = sum(max(sizes[c::columns, 0]) for c in range(columns))
-    high = sum(max(sizes[n : n + columns, 1]) for n in range(0, len(sizes), columns))
-    rows = -(-len(sizes) // columns)
-    return min(
-        (10.0 - 0.85 * columns) / wide,
-        (9.5 - 0.75 * rows) / high,
-        7.2 / wide if len(sizes) == 1 else np.inf,
-    )
+    wides, highs = _cells(sizes, columns)
+    most = 7.2 if len(sizes) == 1 else 10.0 - 0.85 * columns
+    return min(most / sum(wides), (9.5 - 0.75 * len(highs)) / sum(highs))
 
 
 def structureOf(run, blocks, joints, directory):
@@ -398,19 +364,16 @@ def structureOf(run, blocks, joints, directory):
     bodies = set(map(int, blocks["body"]))
     parts, reference = run.get("parts") or {}, run.get("reference_body")
     members = {body for part in parts.values() for body in part}
-    wrong, ground = members - bodies, run.get("ground_body")
-    still = np.zeros(3)
-    if reference is not None:
-        nodes = [c for b, c in zip(blocks["body"], blocks["cells"]) if b == reference]
-        if nodes:
-            still = blocks["displacement"][np.concatenate(nodes)].mean(axis=0)
-        else:
-            wrong.add(reference)
+    ground, still = run.get("ground_body"), np.zeros(3)
+    wrong = (members | {reference} - {None}) - bodies
     if wrong:
         raise Refused(
             f"{directory}: run.json names bodies {sorted(wrong)[:10]}, which are not in the"
             " ParaView files"
         )
+    if reference is not None:
+        nodes = [c for b, c in zip(blocks["body"], blocks["cells"]) if b == reference]
+        still = blocks["displacement"][np.concatenate(nodes)].mean(axis=0)
     for name, part in parts.items():
         if not part:
             raise Refused(f"{directory}: parts: {name} has no bodies")
@@ -418,47 +381,41 @@ def structureOf(run, blocks, joints, directory):
     shades = {one["body"]: "held" for one in targets if one.get("held")}
     shades.update(dict.fromkeys(bodies - (members or bodies) - {ground}, "platen"))
     seams = tuple(n for n, kind in enumerate(kinds) if kind == CRACK_SURFACE)
-    more = dict(sights=run.get("views") or {}, ties=run.get("ties") or [], still=still)
-    return Structure(blocks, joints, parts, shades, ground=ground, seams=seams, **more)
+    views, ties = run.get("views") or {}, run.get("ties") or []
+    seen = dict(viewDirections=views, ground=ground, seams=seams, still=still, ties=ties)
+    return Structure(blocks, joints, parts, shades, **seen)
 
 
 def cracksOf(run, blocks, joints, when, directory, later=None):
     """The figure of cracks.png. Cracks are red, joints that slid are blue, and crushed spots are
     black. Raises Refused.
 
-    :param when: text that names the moment of the frame; ``later`` is as in :func:`figureOf`; the
-        others are those of
-        :func:`structureOf`
+    :param when: text that names the moment of the frame; ``later`` is as in :func:`figureOf`, the
+        others as in :func:`structureOf`
     """
     limits = f"open or slid more than {1e3 * CRACK:g} mm, crushed more than {1e3 * CRUSHED:g} mm"
     title = f"{run['title']}\n{when}\n{{}}; {limits}"
     return figureOf(structureOf(run, blocks, joints, directory), title, later=later)
 
 
-def cracksOfFrame(run, directory, number=None):
-    """The figure of cracks.png of a frame that a run has left; of a run that followed a collapse,
-    with its end beside it.
+def cracksOfRun(run, directory):
+    """The figure of cracks.png of a run; if it followed a collapse, with its end beside it.
 
     :param run: entries of run.json
-    :param number: of the frame, from 0; negative numbers count from the end; None: as in
-        :func:`frameOfCracks`
     """
-    last = len(frameTimes(directory)) - 1
-    chosen = frameOfCracks(run, directory) if number is None else number % (last + 1)
-    later, frames = None, lambda n: [
-        readFrame(directory, k, n, NEEDED) for k in ("blocks", "joints")
-    ]
-    if number is None and chosen != last:
+    frames = lambda n: [readFrame(directory, kind, n, NEEDED) for kind in ("blocks", "joints")]
+    last, chosen, later = len(frameTimes(directory)) - 1, frameOfCracks(run, directory), None
+    if chosen != last:
         end = structureOf(run, *frames(last), directory)
         later = f"{whenOf(run, directory, last)}, true to scale", end
     when = whenOf(run, directory, chosen)
     return cracksOf(run, *frames(chosen), when, directory, later)
 
 
-def cracks(directory, number=None):
-    """Draw cracks.png; ``number`` is as in :func:`cracksOfFrame`."""
+def cracks(directory):
+    """Draw cracks.png."""
     with drawing.style():
-        figure = cracksOfFrame(readRun(directory), directory, number)
+        figure = cracksOfRun(readRun(directory), directory)
         drawing.save(figure, os.path.join(directory, "cracks.png"), 110)
 
 
@@ -500,6 +457,6 @@ def whenOf(run, directory, number):
             value, unit = np.interp(times[number], data["time_s"], data[spec["column"]]), unitOf(
                 spec
             )
-            name = spec["label"].rsplit(" [", 1)[0]
-            texts.append(f"{name} = {value:{'.1f' if unit == 'mm' else '.3g'}} {unit}")
+            shown = f"{value:.1f}" if unit == "mm" else f"{value:.3g}"
+            texts.append(f"{bare(spec['label'])} = {shown} {unit}")
     return f"{names.get(number, 'during the run')}: {', '.join(texts)}"

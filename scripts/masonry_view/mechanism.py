@@ -38,7 +38,7 @@ def _draw(found, path):
     shades = {int(b): "platen" for b in blocks["body"] if masonry and b not in masonry}
     with drawing.style():
         structure = Structure(
-            blocks, joints, found["parts"], shades, sights=found["views"], seams=(SEAM,)
+            blocks, joints, found["parts"], shades, viewDirections=found["views"], seams=(SEAM,)
         )
         drawing.save(figureOf(structure, found["title"], 1), path, DPI)
 

@@ -13,18 +13,59 @@
 ``scene.curve()`` gives the same of a scene between its stages, or after its end.
 """
 
+import base64
+import contextlib
+import html
+import io
 import os
-import re
 
 import numpy as np
-
 from masonry.arguments import nearest, validated
 from masonry.errors import Refused
-from . import cells, curve_figure, elevation
 from masonry.numbers import drawing, quantities
 from masonry.numbers.files import filesOf, readCurve, readRun
 
-DPI = 72  # of pictures in a notebook, for 10 to 50 kB each
+from . import curve_figure, elevation
+
+DPI, COLOURS = 72, 64  # of a picture, which then has 10 to 50 kB
+
+
+def picture(draws):
+    """The figure of matplotlib that a function gives, as an image that stands in the HTML itself.
+    Its palette of few colours makes it a third as large."""
+    from PIL import Image
+
+    drawn, small = io.BytesIO(), io.BytesIO()
+    with drawing.style():
+        draws().savefig(drawn, dpi=DPI, format="png")
+    Image.open(drawn).convert("RGB").quantize(COLOURS).save(small, "png", optimize=True)
+    data = base64.b64encode(small.getvalue()).decode()
+    return f'<img src="data:image/png;base64,{data}"/>'
+
+
+def table(rows, heads=()):
+    """Rows of texts as a table in HTML; the first of each row is its head."""
+
+    def cell(text, kind="td"):
+        return f'<{kind} style="text-align:left">{html.escape(str(text))}</{kind}>'
+
+    lines = ["".join(cell(head, "th") for head in heads)] * bool(heads)
+    lines += [cell(first, "th") + "".join(map(cell, others)) for first, *others in rows]
+    return f"<table>{''.join(f'<tr>{line}</tr>' for line in lines)}</table>"
+
+
+def folded(title, inside):
+    """What is seen after a click on its title."""
+    return f"<details><summary>{html.escape(title)}</summary>{inside}</details>"
+
+
+def titled(title, *parts):
+    """Parts below a title."""
+    return f"<div><b>{html.escape(title)}</b>{''.join(parts)}</div>"
+
+
+#: Units at the end of names of columns that a script adds, whose meaning need not have them.
+UNITS = {"mm", "m", "s", "kN", "N", "MPa", "kPa", "Pa", "J", "g", "mrad", "rad", "kg"}
 
 
 def unitOf(head, meaning):
@@ -33,17 +74,8 @@ def unitOf(head, meaning):
 
     :param head: its name in curve.csv; ``meaning``: its line in the entry ``columns`` of run.json
     """
-    found, last = re.search(r"\[([^\[\]]+)\]$", meaning), head.rpartition("_")[2]
-    return found[1] if found else last if last in UNITS else "-"
-
-
-def bare(meaning):
-    """The meaning of a column without its unit."""
-    return re.sub(r" *\[[^\[\]]+\]$", "", str(meaning))
-
-
-#: Units at the end of names of columns that a script adds, whose meaning need not have them.
-UNITS = {"mm", "m", "s", "kN", "N", "MPa", "kPa", "Pa", "J", "g", "mrad", "rad", "kg"}
+    unit = curve_figure.unitOf({"label": meaning, "column": head})
+    return unit if meaning.endswith("]") or unit in UNITS else "-"
 
 
 class Curve:
@@ -66,8 +98,9 @@ class Curve:
     def __getitem__(self, name):
         if name not in self._columns:
             close = nearest(name, self._columns)
-            others = close or f"; there are {', '.join(self._columns)}"
-            raise KeyError(f"no column {name!r}{others}")
+            raise KeyError(
+                f"no column {name!r}{close or '; there are ' + ', '.join(self._columns)}"
+            )
         return self._columns[name]
 
     def __iter__(self):
@@ -90,11 +123,8 @@ class Curve:
             import pandas
         except ModuleNotFoundError as error:
             raise ImportError(
-                (
-                    "to_pandas needs pandas, which is not installed (on Debian, apt-get install"
-                    " python3-pandas): the columns are arrays of numpy without it, as"
-                    " curve['time_s']"
-                ),
+                "to_pandas needs pandas, which is not installed (on Debian, apt-get install"
+                " python3-pandas): the columns are arrays of numpy without it, as curve['time_s']",
                 name=error.name,
             ) from None
         frame = pandas.DataFrame(self._columns)
@@ -105,30 +135,20 @@ class Curve:
         return f"curve of {len(self)} rows: {', '.join(self._columns)}"
 
     def _repr_html_(self):
-        title = f"{len(self)} rows, {len(self._columns)} columns"
-        ends = lambda v: (
-            [f"{x:.4g}" for x in (v[0], v[-1], v.min(), v.max())] if len(v) else [""] * 4
-        )
-        rows = [
-            (n, self.units[n], *ends(v), bare(self.meanings[n])) for n, v in self._columns.items()
-        ]
+        rows = []
+        for name, values in self._columns.items():
+            ends = [values[0], values[-1], values.min(), values.max()] if len(values) else []
+            ends = [f"{end:.4g}" for end in ends] or [""] * 4
+            meaning = curve_figure.bare(self.meanings[name])
+            rows.append((name, self.units[name], *ends, meaning))
         heads = "column", "unit", "first", "last", "smallest", "largest", "meaning"
-        table = cells.table(rows, heads)
-        return cells.titled(title, self.picture(), cells.folded("columns", table))
+        title = f"{len(self)} rows, {len(self._columns)} columns"
+        return titled(title, self.picture(), folded("columns", table(rows, heads)))
 
     def picture(self):
         """What curve.png shows as HTML; nothing where there are less than two rows, or no
         figure."""
-        return _drawn(self._draws) if len(self) > 1 else ""
-
-
-def _drawn(draws):
-    """A picture of a figure as HTML, or nothing if there is none."""
-    if not draws:
-        return ""
-    with drawing.style():
-        figure = draws()
-        return cells.picture(figure, DPI) if figure else ""
+        return picture(self._draws) if self._draws and len(self) > 1 else ""
 
 
 def curveOf(columns, run, directory):
@@ -140,12 +160,6 @@ def curveOf(columns, run, directory):
     """
     draws = lambda: curve_figure.figureOf(run, columns, directory)
     return Curve(columns, run.get("columns", {}), draws if "figure" in run else None)
-
-
-def cracksOf(run, blocks, joints, when, directory):
-    """The picture of cracks.png as HTML; parameters as in
-    :func:`masonry_view.elevation.cracksOf`."""
-    return _drawn(lambda: elevation.cracksOf(run, blocks, joints, when, directory))
 
 
 class RunFolder:
@@ -165,44 +179,33 @@ class RunFolder:
         """The columns of curve.csv: a :class:`Curve`. Raises Refused."""
         return curveOf(readCurve(self.directory), self.numbers, self.directory)
 
-    def _cracks(self):
-        try:
-            return _drawn(lambda: elevation.cracksOfFrame(self.numbers, self.directory))
-        except Refused:  # there are none with --no-vtk
-            return ""
-
     def __repr__(self):
         return f"{self.numbers.get('scene')}: results in {self.directory}"
 
     def _repr_html_(self):
-        run = self.numbers
+        run, pictures = self.numbers, []
+        draws = lambda: elevation.cracksOfRun(run, self.directory)
         with filesOf(self.directory):
             title = f"{run['title']}: {run.get('ended') or 'no rows'}"
-            results = cells.table(resultsOf(run))
-            try:
-                curve = self.curve().picture()
-            except Refused:  # a bound alone has no rows
-                curve = ""
-            return cells.titled(title, self._cracks(), curve, results)
+            for part in (lambda: picture(draws), lambda: self.curve().picture()):
+                with contextlib.suppress(Refused):  # no frames with --no-vtk; a bound has no rows
+                    pictures.append(part())
+            return titled(title, *pictures, table(resultsOf(run)))
 
 
 def resultsOf(run):
     """Rows of the table of results, from the entries of run.json: what it is, its value and its
     unit."""
-    rows = []
-    if run.get("collapse"):
-        rows.append(("collapsed", run["collapse"], ""))
-    if run.get("error"):
-        rows.append(("ended by", run["error"], ""))
+    named = {"collapsed": "collapse", "ended by": "error"}
+    rows = [(what, run[key], "") for what, key in named.items() if run.get(key)]
     for one in run.get("answers", []):
         if one["name"].startswith("displacement_"):
             continue
         value = "not found" if one["value"] is None else f"{one['value']:.4g}"
         if one["uncertainty"] is not None:
             value += f" ± {one['uncertainty']:.2g}"
-        what = f"{one['stage']}: {one['name'].replace('_', ' ')}"
-        rows.append((what, value, "" if one["unit"] == "-" else one["unit"]))
+        rows.append((f"{one['stage']}: {one['name'].replace('_', ' ')}", value, one["unit"]))
     for one in quantities.shown(run, brief=True):
         value = one.value if isinstance(one.value, int) else f"{one.value:.4g}"
-        rows.append((one.name, str(value), "" if one.unit == "-" else one.unit))
-    return rows
+        rows.append((one.name, str(value), one.unit))
+    return [(what, value, unit.removeprefix("-")) for what, value, unit in rows]

@@ -7,14 +7,13 @@ import numpy as np
 from masonry.bricks import Bricks, boxCorners
 from masonry.errors import Refused
 from masonry.model.bodies import units
-from masonry.numbers import columns, drawing
+from masonry.numbers import columns
 from masonry.numbers.frames import readFrame
 from masonry.scene import facts
 from yade.wrapper import MasonryVtkRecorder
 
-from . import cells
-from .elevation import Structure, figureOf
-from .notebook import DPI, Curve, RunFolder, cracksOf, curveOf, resultsOf
+from .elevation import Structure, cracksOf, figureOf
+from .notebook import RunFolder, curveOf, folded, picture, resultsOf, table, titled
 
 MOST_COUNTED = 20_000  # blocks whose joints are counted before the scene is built
 #: Properties of joints and units that the table shows.
@@ -45,8 +44,6 @@ def curve(scene):
         if results.rows:
             run.update(scene.outcome.figure())
     values = {head: results.column(head) for head in results.columns}
-    if not results.rows or "figure" not in run:
-        return Curve(values, run["columns"])
     return curveOf(values, run, results.directory)
 
 
@@ -59,7 +56,7 @@ def asHtml(scene):
     if scene.finished or scene.isGone:
         title = f"{scene.description.title}: {_state(scene)}"
         parts = [curve(scene)._repr_html_()] if scene.results.rows else []
-        return cells.titled(title, *parts)
+        return titled(title, *parts)
     return _standing(scene)
 
 
@@ -76,24 +73,22 @@ def _standing(scene):
         MasonryVtkRecorder(directory=folder)()
         blocks, joints = (readFrame(folder, kind) for kind in ("blocks", "joints"))
     when = f"after {at.stage}" if at.stage else "as built"
-    return cells.titled(
+    return titled(
         f"{title}: {_state(scene)}",
-        cracksOf(run, blocks, joints, when, scene.name),
+        picture(lambda: cracksOf(run, blocks, joints, when, scene.name)),
         curve(scene).picture(),
-        cells.table(resultsOf(run) + [("so far", _state(scene), "")]),
+        table(resultsOf(run) + [("so far", _state(scene), "")]),
     )
 
 
 def _built(scene):
     description = scene.description
-    with drawing.style():
-        figure = figureOf(_structure(description), description.title, 0)
-        drawn = cells.picture(figure, DPI)
-    return cells.titled(
+    draws = lambda: figureOf(_structure(description), description.title, 0)
+    return titled(
         f"{description.title}: before its first stage",
-        drawn,
-        cells.table([*_counted(description), *facts.held(description)]),
-        cells.folded("materials", _materials(scene)),
+        picture(draws),
+        table([*_counted(description), *facts.held(description)]),
+        folded("materials", _materials(scene)),
     )
 
 
@@ -124,7 +119,7 @@ def _structure(description):
         "body": range(len(corners)),
         "cells": cells,
     }
-    return Structure(blocks, None, parts, shades, sights=description.views)
+    return Structure(blocks, None, parts, shades, viewDirections=description.views)
 
 
 def _shade(target):
@@ -147,7 +142,7 @@ def _materials(scene):
     try:
         masonry.apply(scene.args.set, connectors)
     except Refused as refused:
-        return cells.table([("refused", str(refused))])
+        return table([("refused", str(refused))])
     joints, blocks = masonry.joints, {"brick": masonry.unit, **masonry.units}
     return _properties("joint", joints, OF_JOINTS) + _properties("unit", blocks, OF_UNITS)
 
@@ -159,4 +154,4 @@ def _properties(what, things, names):
         (name, known.get(name, "-"), *(f"{getattr(t, name):.4g}" for t in things.values()))
         for name in names
     ]
-    return cells.table(rows, (what, "unit", *things))
+    return table(rows, (what, "unit", *things))

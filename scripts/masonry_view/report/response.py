@@ -8,8 +8,7 @@ from masonry.errors import Refused
 from masonry_capacity import bilinear_curve
 from .. import curve_figure
 from masonry.numbers import drawing, quantities
-from ..curve_figure import energies, unitOf
-from ..notebook import bare
+from ..curve_figure import bare, energies, unitOf
 
 from .pieces import (
     Badged,
