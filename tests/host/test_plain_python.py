@@ -143,7 +143,7 @@ def test_a_yade_that_was_imported_before_has_one_thread(tmp_path):
             "from masonry.run.checkpoints import readCheckpoint; import masonry;"
             " masonry.MasonryJoint.set"
         ),
-        "from masonry.model import columns; from masonry import Scene",
+        "from masonry.numbers import columns; from masonry import Scene",
         FOUND + "import yade, masonry; masonry.Scene, masonry.scene, masonry.MasonryJoint.set",
         FOUND + "import masonry, yade; masonry.Scene, yade.wrapper.MasonryJoint.set",
     ],
@@ -156,7 +156,7 @@ def test_whatever_is_imported_first(code):
 def test_what_reads_results_does_not_start_yade():
     code = """
 import sys, masonry, masonry_view.measure, masonry_view.notebook, masonry_study, masonry.run.batch
-from masonry import bricks, fields, read
+from masonry import bricks, fields, numbers
 assert not hasattr(masonry, "__wrapped__") and "Scene" in dir(masonry)
 bricks.Wall(1.1, 0.81).joints()
 print([name for name in sys.modules if name.split(".")[0] == "yade"])

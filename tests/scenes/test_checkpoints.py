@@ -84,10 +84,8 @@ def whole(tmp_path_factory):
     return files(out)
 
 
-@pytest.mark.parametrize(
-    "path, every", [(PUSH, 35), pytest.param(LOOPS, 211, marks=pytest.mark.long)]
-)
-@pytest.mark.parametrize(
+@mark.parametrize("path, every", [(PUSH, 35), pytest.param(LOOPS, 211, marks=mark.long)])
+@mark.parametrize(
     "wall, blocks",
     [(SMALL, "rigid"), (SMALL, "deformable"), (CANTILEVER, "rigid")],
     ids=["rigid", "deformable", "cantilever"],
@@ -105,8 +103,8 @@ def test_a_wall_interrupted_in_every_stage(tmp_path, at, wall, blocks, path, eve
     assert len(readRun(out)["resumed_at_s"]) == len(found)
 
 
-@pytest.mark.parametrize("blocks", ["rigid", "deformable"])
-@pytest.mark.parametrize("path", ["shear", "closure-shear"])
+@mark.parametrize("blocks", ["rigid", "deformable"])
+@mark.parametrize("path", ["shear", "closure-shear"])
 def test_a_couplet_interrupted_in_every_move(tmp_path, at, blocks, path):
     words = f"--path {path} --until 0.05 --rate 20 --closure 0.02 --blocks {blocks}"
     begin = lambda out: runScript("couplet", *words.split(), "--out", str(out))
@@ -136,7 +134,7 @@ def test_frames_can_begin_and_end_with_a_resumed_run(tmp_path, whole):
     assert found["curve.csv"] == whole["curve.csv"]
 
 
-@pytest.mark.parametrize("rows", [0, 29])
+@mark.parametrize("rows", [0, 29])
 def test_a_run_that_fails_is_taken_up_there(tmp_path, monkeypatch, rows, whole):
     read, count = readings.Reading, [rows + 1]
 
@@ -147,7 +145,7 @@ def test_a_run_that_fails_is_taken_up_there(tmp_path, monkeypatch, rows, whole):
         return read(model)
 
     monkeypatch.setattr(readings, "Reading", fail)
-    with pytest.raises(OSError, match="a pipe that broke"):
+    with raises(OSError, match="a pipe that broke"):
         run(tmp_path, *PUSH)
     assert len((tmp_path / "curve.csv").read_text().splitlines()) == 1 + rows
     assert run(tmp_path, resume=True) == 0
@@ -174,7 +172,7 @@ def test_a_run_goes_on_after_a_full_disk(tmp_path, at, capsys, monkeypatch, whol
     assert readCheckpoint(str(kept))["at"]["memory"]["moved"] > 0.25
 
 
-@pytest.mark.parametrize("lost", ["curve.csv", "joints_0001.vtp", "run.json.new"])
+@mark.parametrize("lost", ["curve.csv", "joints_0001.vtp", "run.json.new"])
 def test_results_wait_for_room(tmp_path, at, capsys, monkeypatch, lost, whole):
     monkeypatch.setattr(frame_writer, "SLOW_FRAME", math.inf)  # none is written beside
     out = tmp_path / "full"
@@ -246,7 +244,7 @@ def test_a_row_waits_for_a_fifth_of_a_second_at_most(tmp_path, at):
     assert seen[-1][0] == seen[0][0] + 2 * (len(seen) - 1)
 
 
-@pytest.mark.parametrize("end", ["checkpoint", "interrupt", "error"])
+@mark.parametrize("end", ["checkpoint", "interrupt", "error"])
 def test_rows_that_wait_are_kept(tmp_path, at, monkeypatch, end):
     def act(run):
         waiting = len(run.readings.waiting)
@@ -263,7 +261,7 @@ def test_rows_that_wait_are_kept(tmp_path, at, monkeypatch, end):
     seen = []
     monkeypatch.setattr("masonry.run.readings.FLUSH_EVERY", 1e9)
     at(60, act)
-    with pytest.raises(OSError) if end == "error" else contextlib.nullcontext():
+    with raises(OSError) if end == "error" else contextlib.nullcontext():
         run(tmp_path, *PUSH, "--no-vtk")
     rows = len(readCurve(tmp_path)["time_s"])
     if end == "checkpoint":
@@ -294,7 +292,7 @@ def refused(out, *words, wall=SMALL):
     return status
 
 
-@pytest.mark.parametrize(
+@mark.parametrize(
     "words, message",
     [
         (["--rate", "10"], "a run goes on as it began: --rate is 40.0"),

@@ -35,8 +35,8 @@ def test_steps_have_the_impulse_of_the_record(tmp_path, monkeypatch):
         Scheme, "setGravity", lambda self, g: (steps.update({O.iter: g[0]}), put(self, g))
     )
     shaken(tmp_path, accelerations=[3.0, 0.0], every=0.02)
-    assert sum(steps.values()) * O.dt == pytest.approx(-0.5 * 3.0 * 0.02, rel=1e-4)
-    assert (max(steps) - min(steps)) * O.dt == pytest.approx(0.02, abs=O.dt)
+    assert sum(steps.values()) * O.dt == approx(-0.5 * 3.0 * 0.02, rel=1e-4)
+    assert (max(steps) - min(steps)) * O.dt == approx(0.02, abs=O.dt)
 
 
 def test_answers_have_the_sign_of_the_largest_displacement_and_the_first_fall():
@@ -98,15 +98,15 @@ def test_three_components_act_at_once(tmp_path):
     forces = run("base_force_z_kN", "none", "none", "up")
     ratios = [force / forces[0] for force in forces]
     for end in (min, max):
-        assert end(ratios) == pytest.approx(1 + end(RECORD) * 0.5 / 9.81, abs=0.02)
-    with pytest.raises(ValueError, match="the scene is in the x-z plane"):
+        assert end(ratios) == approx(1 + end(RECORD) * 0.5 / 9.81, abs=0.02)
+    with raises(ValueError, match="the scene is in the x-z plane"):
         shaken(tmp_path / "e", accelerations=[paths["some"]] * 3)
 
 
 def test_a_record_of_the_command_line_that_is_wrong_is_refused_at_once(tmp_path):
     path = tmp_path / "short.AT2"
     path.write_text("ACCELERATION IN UNITS OF G\nNPTS= 5, DT= 0.01 SEC\n0.1 0.2\n")
-    with pytest.raises(SystemExit, match="2"):
+    with raises(SystemExit, match="2"):
         shaken(tmp_path / "a", "--record", str(path))
 
 
