@@ -6,6 +6,7 @@ from hosted import *
 
 from contact_motion import heap, rest, slope
 from contact_scenes import box, ground, prepare
+from contact_steps import MEETINGS as TURNS, energy as kinetic
 
 STIFF = 1e10  # Pa/m
 ABOUT_Y = Vector3(0, 1, 0)
@@ -35,30 +36,6 @@ def test_a_brick_falls_rests_and_slides_as_by_hand(case):
     assert all(row.met is not False for row in case(quick=True))
 
 
-@mark.parametrize("swapped", [False, True])
-def test_the_force_of_a_pair_is_opposite_on_both_blocks_and_has_one_line(swapped):
-    """Turned and shifted blocks that lie in each other; the force itself is tested in
-    tests/contact."""
-    dice = np.random.default_rng(4)
-    for _ in range(20):
-        O.reset()
-        turns = [Quaternion(*dice.normal(size=4)).normalized() for _ in (0, 1)]
-        sizes = 10 ** dice.uniform(-2, 0) * dice.uniform(0.2, 1, (2, 3))
-        places = [10 * dice.uniform(-1, 1, 3)] * 2
-        places[1] = places[0] + 0.3 * sizes.min() * dice.uniform(-1, 1, 3)
-        ids = [box(sizes[n], places[n], turns[n]) for n in ((1, 0) if swapped else (0, 1))]
-        contacts = prepare(1e-9, gravity=(0, 0, 0))
-        O.step()
-        one, other = ids
-        force = O.forces.f(other)
-        assert contacts.touching() == 1 and force.norm() > 0
-        assert contacts.forceOf(one, other) == force == -contacts.forceOf(other, one)
-        assert O.forces.f(one) == -force
-        arm = O.bodies[other].state.pos - O.bodies[one].state.pos
-        rest = O.forces.t(one) + O.forces.t(other) + arm.cross(force)
-        assert rest.norm() <= 1e-12 * force.norm() * (arm.norm() + sizes.max())
-
-
 def test_a_bar_that_turns_meets_what_lay_beside_it():
     """Its end goes down by 12.5 mm, onto a block 10 mm below, while its middle stays where it is:
     pairs are looked for anew."""
@@ -73,17 +50,9 @@ def test_a_bar_that_turns_meets_what_lay_beside_it():
 
 
 #: Turn of the second cube, and how far energy may be off, over what there is.
-MEETINGS = {
-    "faces": (Quaternion.Identity, 1e-3),
-    "edge": (Quaternion(ABOUT_Y, math.pi / 4), 1e-3),
-    "corner": (
-        Quaternion(ABOUT_Y, math.atan(math.sqrt(0.5))) * Quaternion(Vector3(0, 0, 1), math.pi / 4),
-        1e-3,
-    ),
-    # Faces that are turned by so little that the whole face comes within few steps.
-    "tilted by 0.1°": (Quaternion(ABOUT_Y, math.radians(0.1)), 3e-3),
-    "tilted by 1°": (Quaternion(ABOUT_Y, math.radians(1)), 3e-3),
-}
+MEETINGS = {kind: (turn, 1e-3) for kind, turn in TURNS.items()}
+#: Faces that are turned by so little that the whole face comes within few steps.
+MEETINGS |= {f"tilted by {a}°": (Quaternion(ABOUT_Y, math.radians(a)), 3e-3) for a in (0.1, 1)}
 
 #: Speed [m/s], share of it along the face, offset along the face [m] and density of the second cube
 #: [kg/m³].
@@ -93,13 +62,6 @@ APPROACHES = [
     (0.01, 0, (0, 0), 18000),
     (1, 0.7, (0.03, 0.01), 180),
 ]
-
-
-def kinetic(s):
-    spin = s.ori.conjugate() * s.angVel
-    return 0.5 * s.mass * s.vel.squaredNorm() + 0.5 * sum(
-        s.inertia[i] * spin[i] ** 2 for i in range(3)
-    )
 
 
 def meeting(turn, approach, step, phase):
@@ -124,13 +86,13 @@ def test_two_cubes_that_meet_keep_momentum_and_energy_at_any_time_step(kind):
     for step, approach, phase in cases:
         O.reset()
         contacts, one, other = meeting(turn, approach, step, phase)
-        before, momentum = kinetic(one), one.mass * one.vel
+        before, momentum = kinetic(), one.mass * one.vel
         while contacts.touching() or other.vel[0] <= one.vel[0]:
             O.run(100 if kind == "faces" else 3000, True)
         assert (
             one.mass * one.vel + other.mass * other.vel - momentum
         ).norm() < 1e-12 * momentum.norm()
-        after = kinetic(one) + kinetic(other)
+        after = kinetic()
         assert abs(after / before - 1) < bound, (step, approach, phase)
         assert abs(balance()["error"] - (1 - after / before)) < 2e-4
 

@@ -30,12 +30,6 @@ def test_the_published_set_is_the_paper_s_table_2():
     assert joints["support"].elastic and not joints["crack"].cap
 
 
-def test_the_compression_curve_passes_its_named_points():
-    bed = materials.calciumSilicateJoints()["bed"]
-    curve = bed.compressionCurve([0, 1.543e-3, 1.851e-3, 0.1])
-    assert curve == approx([2.265e6, 7.55e6, 4.53e6, 1.51e6], rel=1e-3)
-
-
 # -- options ---------------------------------------------------------------------------------------
 
 

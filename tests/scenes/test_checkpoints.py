@@ -63,12 +63,12 @@ def interrupt(run):
 CANTILEVER = Wall(loadHeight=0.6, riding=False)  # under rollers
 
 
-def interrupted(at, start, out, every, first=None):
+def interrupted(at, start, out, every):
     """Interrupt a run before every so many-th ``advance`` until it ends; ``start`` gets whether it
     is resumed. What was kept."""
     kept = []
     while True:
-        at(first if first and not kept else every, interrupt)
+        at(every, interrupt)
         status = start(bool(kept))
         if status == 0:
             return kept
@@ -82,25 +82,6 @@ def whole(tmp_path_factory):
     out = tmp_path_factory.mktemp("whole")
     assert run(out, *PUSH) == 0
     return files(out)
-
-
-@mark.parametrize("path, every", [(PUSH, 35), pytest.param(LOOPS, 211, marks=mark.long)])
-@mark.parametrize(
-    "wall, blocks",
-    [(SMALL, "rigid"), (SMALL, "deformable"), (CANTILEVER, "rigid")],
-    ids=["rigid", "deformable", "cantilever"],
-)
-def test_a_wall_interrupted_in_every_stage(tmp_path, at, wall, blocks, path, every):
-    words = [*path, "--blocks", blocks]
-    assert run(tmp_path / "whole", *words, wall=wall) == 0
-    out = tmp_path / "broken"
-    start = lambda again: run(out, *words[: 0 if again else None], wall=wall, resume=again)
-    found = interrupted(at, start, out, every, first=3)
-    assert {"settle", "push"} == {one["stage"] for one in found}
-    points = {one["memory"].get("passed", 0) for one in found}
-    assert path is PUSH or len(points) > 3
-    assert files(out) == files(tmp_path / "whole")
-    assert len(readRun(out)["resumed_at_s"]) == len(found)
 
 
 @mark.parametrize("blocks", ["rigid", "deformable"])
@@ -361,19 +342,10 @@ def test_what_cannot_be_taken_up_is_refused(broken, capsys):
     kept.write_bytes(data)
     says("holds a run of small, this is other", Wall(name="other"))
     says("run.checkpoint is of another scene: its blocks are others", Wall(courses=7))
-    middle = len(data) // 2
-    flip = data[:middle] + bytes([data[middle] ^ 1]) + data[middle + 1 :]
-    for wrong, message in (
-        (data[:middle], "run.checkpoint is cut short: "),
-        (flip, "run.checkpoint is damaged: "),
-        (data.replace(b"format 3", b"format 9"), "of another version of the plugin"),
-    ):
-        kept.write_bytes(wrong)
-        says(message)
+    kept.write_bytes(data[:-9])
+    says("run.checkpoint is cut short: ")
     saveCheckpoint(str(kept), "a user's own")
     says("was not left by a run in stages")
-    os.remove(kept)
-    says("has no run.checkpoint, which a run leaves unless")
 
 
 def test_another_build_or_number_of_threads_is_reported(broken, capsys):

@@ -4,9 +4,7 @@ day."""
 
 from usual import *
 
-for folder in ("", "statics", "stability"):
-    sys.path.insert(0, os.path.join(ROOT, "validation", folder))
-import extremes  # noqa: E402
+import extremes
 
 SEED = os.environ.get("EXTREMES_SEED", str(int(time.time() // 86400)))
 

@@ -7,8 +7,7 @@ from masonry._masonry import saveScene
 from masonry.errors import Collapsed
 from masonry.stages import gravity, growing
 
-sys.path[:0] = [os.path.join(ROOT, "validation", *f) for f in (["held_loads"], [])]
-import held_loads  # noqa: E402
+import held_loads
 
 STONE = materials.dry(friction=0.7, normalStiffness=1e11, density=2600)
 WEIGHT = 2600 * 9.81 * 0.3 * 0.3 * 0.6  # of the stack [N]

@@ -2,8 +2,6 @@
 """Records one after the other on one structure: what remains after each, by hand, and a run that is
 stopped within one."""
 
-import csv
-
 from hosted import *
 import stopped
 
