@@ -2,7 +2,7 @@
 """How the sources are formatted, and imports that nobody uses.
 
     /usr/bin/python3 tests/gates/formatting.py          prints what is wrong
-    /usr/bin/python3 tests/gates/formatting.py --write  formats, and takes unused imports out
+    /usr/bin/python3 tests/gates/formatting.py --write  formats
 
 C++ is formatted by clang-format 14 after ``.clang-format``, Python by black 23 after
 ``pyproject.toml``. Other versions break other lines, so the gate takes these alone, which are those
@@ -78,24 +78,6 @@ def unusedImports(path, root=tree.ROOT):
     return sorted((m.lineno, m.message_args[0]) for m in unused if m.lineno not in kept)
 
 
-def withoutUnused(source, unused):
-    lines = source.splitlines(keepends=True)
-    names = {}
-    for line, name in unused:
-        names.setdefault(line, set()).add(name.split(" as ")[0])
-    nodes = [n for n in ast.walk(ast.parse(source)) if isinstance(n, IMPORTS)]
-    nodes = [node for node in nodes if node.lineno in names]
-    for node in sorted(nodes, key=lambda n: -n.lineno):
-        prefix = ""
-        if isinstance(node, ast.ImportFrom):
-            prefix = "." * node.level + (node.module + "." if node.module else "")
-        unused = names[node.lineno]
-        node.names = [a for a in node.names if prefix + a.name not in unused]
-        new = [" " * node.col_offset + ast.unparse(node) + "\n"] if node.names else []
-        lines[node.lineno - 1 : node.end_lineno] = new
-    return "".join(lines)
-
-
 def problems():
     """Everything that is wrong in the tree, a line for each."""
     found = [f"{line}: clang-format" for line in unformattedCpp(tree.files(tree.CPP))]
@@ -106,12 +88,6 @@ def problems():
 
 
 def write():
-    for path in tree.files((".py",)):
-        unused = unusedImports(path)
-        if unused:
-            source = withoutUnused(tree.read(path), unused)
-            with open(os.path.join(tree.ROOT, path), "w", encoding="utf-8") as file:
-                file.write(source)
     python = tree.files((".py",))
     subprocess.run(["black", "--quiet", *python], cwd=tree.ROOT, check=True)
     cpp = tree.files(tree.CPP)

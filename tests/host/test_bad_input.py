@@ -5,7 +5,6 @@ A case is what the scene is, what is done to it, and what the message must say.
 """
 
 import io
-import resource
 import runpy
 
 from hosted import *
@@ -149,11 +148,10 @@ CURVE = "time_s,displacement_mm,base_shear_kN,top_shear_kN\r\n0,0,1,1\r\n1,1,2,2
 
 
 def files(run="{}", curve="time_s,base_shear_kN\r\n0,1\r\n1,2\r\n", **others):
-    """A folder with the files of a run; None leaves one out."""
+    """A folder with the files of a run."""
     for name, text in {"run.json": run, "curve.csv": curve, **others}.items():
-        if text is not None:
-            with open(name, "wb") as f:
-                f.write(text if isinstance(text, bytes) else text.encode())
+        with open(name, "wb") as f:
+            f.write(text.encode())
 
 
 def read(act, *words, **content):
@@ -243,7 +241,6 @@ CASES = {
             lambda: MasonryJoint(name="b", cohesion=-1, friction=nan, peakRatio=0),
             ["cohesion -1", "friction nan", "peak ratio 0"],
         ),
-        (nothing, lambda: assign(MasonryJoint(), "friction", -1), "friction -1 must be at least 0"),
         (
             nothing,
             lambda: update(MasonryJoint(), cohesion=2e5, friction=-1),
@@ -258,11 +255,6 @@ CASES = {
             nothing,
             lambda: assign(MasonryJoint(), "tensionTable", None),
             "expected a list of (ratio, damage) rows, got None",
-        ),
-        (
-            nothing,
-            lambda: MasonryJoint(tensionTable=[(2, 0), (1, 2), (0, 1)]),
-            ["row 1: must be", "row 2: damage 2", "row 2: ratio 1", "row 3: ratio 0"],
         ),
     ],
     "engines": [
@@ -320,11 +312,6 @@ CASES = {
             lambda: reorder(lambda e: e + [MasonryLoad(body=1)]),
             step,
             "MasonryLoad must stand before MasonryIntegrator",
-        ),
-        (
-            lambda: (deformable(), setattr(O, "engines", O.engines[:1] + O.engines[2:])),
-            step,
-            "O.engines: there is no MasonryJointLoop",
         ),
         (
             lambda: (deformable(), setattr(O, "engines", O.engines[-1:] + O.engines[:-1])),
@@ -457,11 +444,6 @@ CASES = {
             lambda: laid((0, 0, 0), (0, 0, 0.0811)),
             lambda: connect(tolerance=2e-4),
             "a gap of 0.1 mm; the tolerance is 0.0511 mm",
-        ),
-        (
-            lambda: laid((0, 0, 0), (0, 0, 0.081), (0, 0, 0.1621)),
-            connect,
-            "bodies 1 and 2 nearly share a face, with a gap of 0.1 mm",
         ),
         (
             lambda: laid((0, 0, 0), (0, 0, 0.080)),
@@ -664,8 +646,6 @@ CASES = {
         (nothing, lambda: materials.Masonry(mat(), {}), "Masonry: joints {} must have 'bed'"),
     ],
     "option": [
-        (joined, said("wall_comp4 --divisions 2"), "--divisions: rigid units are not divided"),
-        (joined, said("wall_comp4 --unti 5"), "unrecognized arguments: --unti 5"),
         (
             joined,
             said("wall_comp4 --until x --rate 0 --blocks soft --nonsense"),
@@ -731,15 +711,12 @@ CASES = {
         ),
     ],
     "files": [
-        (nothing, shown("a", "b"), "name one folder of results, for example results/wall_comp4"),
-        (nothing, shown("nowhere"), "cannot read nowhere/run.json: No such file or directory"),
         (nothing, shown(run=""), "run.json: Expecting value: line 1 column 1"),
         (
             nothing,
             shown(run="{}"),
             "not the files of a finished run (KeyError: 'energy_balance_error')",
         ),
-        (nothing, shown(curve=None), "cannot read ./curve.csv: No such file or directory"),
         (nothing, shown(curve=""), "curve.csv: there is no row of numbers"),
         (nothing, shown(curve="a,b\r\n1,2\r\n3\r\n"), "curve.csv, line 3: 1 numbers in 2 columns"),
         (
@@ -898,53 +875,3 @@ def test_gaps_that_are_meant_are_left_and_a_tolerance_of_the_users_makes_the_joi
     O.reset()
     laid((0, 0, 0), (0, 0, 0.082))
     assert len(connect(tolerance=0.005)) == 1
-
-
-# -- as a user meets it ----------------------------------------------------------------------------
-
-
-WRONG = {"--rate=0": "--rate: 0.0 mm/s must", "--normal-stress=-8": "crushes the bed"}
-
-
-@mark.slow
-@mark.parametrize("word", WRONG)
-def test_the_command_line_ends_with_status_2_and_leaves_files(tmp_path, word):
-    before = tmp_path / "results" / "couplet" / "curve.csv"
-    before.parent.mkdir(parents=True)
-    before.write_text("of another run")
-    run = runProgram("couplet", word, cwd=tmp_path, check=False)
-    assert run.returncode == 2
-    assert WRONG[word] in run.stderr and "Traceback" not in run.stderr
-    assert before.read_text() == "of another run"
-
-
-@mark.slow
-@mark.parametrize(
-    "name, words, most, lost",
-    [
-        ("couplet", ["--no-vtk"], 100e3, "curve.csv"),  # in the middle of the run
-        ("wall_comp0a", ["--until", "0.1"], 215e3, "joints_0001.vtp"),
-        ("wall_comp0a", ["--until", "0.05", "--no-vtk"], 60e3, "curve.png"),
-    ],
-)
-def test_a_disk_that_fills_ends_the_run_in_order(tmp_path, name, words, most, lost):
-    limit = (int(most), int(most))
-    env = {**os.environ, "IPYTHONDIR": str(tmp_path)}  # YADE's shell keeps a history
-    # files that may not grow fail as on a full disk do, with another reason
-    small = lambda: resource.setrlimit(resource.RLIMIT_FSIZE, limit)
-    around = dict(check=False, cwd=tmp_path, env=env, preexec_fn=small)
-    run = runProgram(name, *words, "--out", "results", **around)
-    assert run.returncode == 1, run.stdout + run.stderr
-    assert "Traceback" not in run.stderr
-    said = f"{lost}: File too large; what was written before is kept"
-    if lost == "curve.png":
-        said = "the figures are not drawn; what was written before is"
-    assert said in run.stderr
-    out = tmp_path / "results"
-    curve = readCurve(out)  # whole lines only
-    assert all(len(column) == len(curve["time_s"]) for column in curve.values())
-    assert readRun(out)["steps"] > 0
-    assert not (out / lost).exists() or lost == "curve.csv"
-    if "--no-vtk" not in words:
-        assert len([*out.glob("blocks_*")]) == len([*out.glob("joints_*")]) == 1
-        assert len(readFrame(out, "joints")["cells"]) > 100

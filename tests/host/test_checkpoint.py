@@ -141,11 +141,7 @@ def test_a_damaged_file_is_refused_in_words(saved):
     flipped = data[:half] + bytes([data[half] ^ 4]) + data[half + 1 :]
     for wrong, message in (
         (data[:half], "is cut short: "),
-        (data[:-1], "is cut short: "),
-        (b"", "is cut short: 0 bytes"),
-        (b"masonry checkpoint, format 3\n" + bytes([0] * 7 + [1]), "is cut short"),
         (flipped, "is damaged: its bytes do not give the sum"),
-        (data + b"\0", "is damaged: its size"),
         (b"time_s\n", "is no masonry checkpoint"),
         (data.replace(b"format 3", b"format 9"), "is of another version of the plugin"),
     ):

@@ -4,52 +4,25 @@ heaps."""
 
 from hosted import *
 
+from contact_motion import heap, rest, slope
+from contact_scenes import box, ground, prepare
+from contact_steps import MEETINGS as TURNS, energy as kinetic
+
 STIFF = 1e10  # Pa/m
 ABOUT_Y = Vector3(0, 1, 0)
-CUBE = [(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)]
-
-
-def box(size, middle=(0, 0, 0), turn=Quaternion.Identity, held=False, density=1800):
-    sides = [Vector3(*[s * (c - 0.5) for s, c in zip(size, corner)]) for corner in CUBE]
-    points = [Vector3(*middle) + turn * side for side in sides]
-    body = addBlock(points, unitMaterial(density=density))
-    hold(*[body] * held)
-    return body
-
-
-def ground(turn=Quaternion.Identity, size=(4, 2, 0.4)):
-    """A slab whose upper face goes through the origin."""
-    return box(size, turn * Vector3(0, 0, -size[2] / 2), turn, held=True)
-
-
-def prepare(step=0.5, gravity=(0, 0, -G), **properties):
-    made = contacts(**{"restitution": 0.5, **properties})
-    energy = MasonryEnergy(label="energy")
-    mover = MasonryIntegrator(damping=0, gravity=gravity)
-    O.engines = [ForceResetter(), made, energy, mover]
-    O.dt = step * criticalTimeStep()[0]
-    return made
 
 
 def contacts(**properties):
     return MasonryContacts(**{"normalStiffness": STIFF, "friction": 0.5, **properties})
 
 
-def inclined(angle, along=0.0):
-    """A brick on an incline of so many degrees, as deep in it as its weight presses it: its state
-    and the direction down."""
-    slope = math.radians(angle)
-    turn = Quaternion(ABOUT_Y, slope)
-    ground(turn, (8, 2, 0.4))
-    depth = 1800 * UNIT[2] * G * math.cos(slope) / STIFF
-    place = turn * Vector3(along, 0, UNIT[2] / 2 - depth)
-    s = O.bodies[box(UNIT, place, turn)].state
-    prepare()
-    return s, turn * Vector3(1, 0, 0)
-
-
 def test_a_block_rests_on_an_incline_just_below_the_angle_of_friction():
-    s, _ = inclined(26)  # 26.6° is the angle
+    angle = math.radians(26)  # 26.6° is the angle
+    turn = Quaternion(ABOUT_Y, angle)
+    ground(turn, (8, 2, 0.4))
+    depth = 1800 * UNIT[2] * G * math.cos(angle) / STIFF  # to which its weight presses it
+    s = O.bodies[box(UNIT, turn * Vector3(0, 0, UNIT[2] / 2 - depth), turn)].state
+    prepare()
     until(0.5)
     there = Vector3(s.pos)
     until(2.5)
@@ -58,66 +31,9 @@ def test_a_block_rests_on_an_incline_just_below_the_angle_of_friction():
     assert imbalance() < 0.01
 
 
-@mark.parametrize("angle", [30, 40])
-def test_a_block_slides_down_an_incline_as_friction_says(angle):
-    s, down = inclined(angle, -3)
-    until(0.05)
-    start, then = s.vel.dot(down), O.time
-    until(0.6)
-    found = (s.vel.dot(down) - start) / (O.time - then)
-    slope = math.radians(angle)
-    expected = G * (math.sin(slope) - 0.5 * math.cos(slope))
-    assert found == approx(expected, rel=1e-6)
-    assert imbalance() < 1e-4
-
-
-@mark.slow
-def test_a_brick_falls_freely_then_comes_to_rest_and_does_not_sink():
-    ground()
-    brick = box(UNIT, (0.3, 0.1, 0.05 + UNIT[2] / 2))
-    contacts = prepare()
-    s = O.bodies[brick].state
-    start = s.pos[2]
-    while O.time < 0.1 - O.dt:
-        O.run(50, True)
-        n = O.iter
-        # The sum of the steps of the leapfrog scheme, whose velocity begins half a step late.
-        assert abs(s.pos[2] - (start - G * O.dt**2 * n * (n + 1) / 2)) < 1e-9
-    assert contacts.touching() == 0
-    until(1.5)
-    weight = s.mass * G
-    assert contacts.touching() == 1
-    assert contacts.forceOf(0, brick)[2] == approx(weight, rel=1e-6)
-    assert s.vel.norm() < 1e-9
-    depth = UNIT[2] / 2 - s.pos[2]
-    assert depth == approx(weight / (STIFF * UNIT[0] * UNIT[1]), rel=1e-3)
-    there = Vector3(s.pos)
-    until(2.5)
-    assert (s.pos - there).norm() < 1e-12
-
-
-@mark.parametrize("swapped", [False, True])
-def test_the_force_of_a_pair_is_opposite_on_both_blocks_and_has_one_line(swapped):
-    """Turned and shifted blocks that lie in each other; the force itself is tested in
-    tests/contact."""
-    dice = np.random.default_rng(4)
-    for _ in range(20):
-        O.reset()
-        turns = [Quaternion(*dice.normal(size=4)).normalized() for _ in (0, 1)]
-        sizes = 10 ** dice.uniform(-2, 0) * dice.uniform(0.2, 1, (2, 3))
-        places = [10 * dice.uniform(-1, 1, 3)] * 2
-        places[1] = places[0] + 0.3 * sizes.min() * dice.uniform(-1, 1, 3)
-        ids = [box(sizes[n], places[n], turns[n]) for n in ((1, 0) if swapped else (0, 1))]
-        contacts = prepare(1e-9, gravity=(0, 0, 0))
-        O.step()
-        one, other = ids
-        force = O.forces.f(other)
-        assert contacts.touching() == 1 and force.norm() > 0
-        assert contacts.forceOf(one, other) == force == -contacts.forceOf(other, one)
-        assert O.forces.f(one) == -force
-        arm = O.bodies[other].state.pos - O.bodies[one].state.pos
-        rest = O.forces.t(one) + O.forces.t(other) + arm.cross(force)
-        assert rest.norm() <= 1e-12 * force.norm() * (arm.norm() + sizes.max())
+@mark.parametrize("case", [rest, slope])
+def test_a_brick_falls_rests_and_slides_as_by_hand(case):
+    assert all(row.met is not False for row in case(quick=True))
 
 
 def test_a_bar_that_turns_meets_what_lay_beside_it():
@@ -134,17 +50,9 @@ def test_a_bar_that_turns_meets_what_lay_beside_it():
 
 
 #: Turn of the second cube, and how far energy may be off, over what there is.
-MEETINGS = {
-    "faces": (Quaternion.Identity, 1e-3),
-    "edge": (Quaternion(ABOUT_Y, math.pi / 4), 1e-3),
-    "corner": (
-        Quaternion(ABOUT_Y, math.atan(math.sqrt(0.5))) * Quaternion(Vector3(0, 0, 1), math.pi / 4),
-        1e-3,
-    ),
-    # Faces that are turned by so little that the whole face comes within few steps.
-    "tilted by 0.1°": (Quaternion(ABOUT_Y, math.radians(0.1)), 3e-3),
-    "tilted by 1°": (Quaternion(ABOUT_Y, math.radians(1)), 3e-3),
-}
+MEETINGS = {kind: (turn, 1e-3) for kind, turn in TURNS.items()}
+#: Faces that are turned by so little that the whole face comes within few steps.
+MEETINGS |= {f"tilted by {a}°": (Quaternion(ABOUT_Y, math.radians(a)), 3e-3) for a in (0.1, 1)}
 
 #: Speed [m/s], share of it along the face, offset along the face [m] and density of the second cube
 #: [kg/m³].
@@ -154,13 +62,6 @@ APPROACHES = [
     (0.01, 0, (0, 0), 18000),
     (1, 0.7, (0.03, 0.01), 180),
 ]
-
-
-def kinetic(s):
-    spin = s.ori.conjugate() * s.angVel
-    return 0.5 * s.mass * s.vel.squaredNorm() + 0.5 * sum(
-        s.inertia[i] * spin[i] ** 2 for i in range(3)
-    )
 
 
 def meeting(turn, approach, step, phase):
@@ -185,13 +86,13 @@ def test_two_cubes_that_meet_keep_momentum_and_energy_at_any_time_step(kind):
     for step, approach, phase in cases:
         O.reset()
         contacts, one, other = meeting(turn, approach, step, phase)
-        before, momentum = kinetic(one), one.mass * one.vel
+        before, momentum = kinetic(), one.mass * one.vel
         while contacts.touching() or other.vel[0] <= one.vel[0]:
             O.run(100 if kind == "faces" else 3000, True)
         assert (
             one.mass * one.vel + other.mass * other.vel - momentum
         ).norm() < 1e-12 * momentum.norm()
-        after = kinetic(one) + kinetic(other)
+        after = kinetic()
         assert abs(after / before - 1) < bound, (step, approach, phase)
         assert abs(balance()["error"] - (1 - after / before)) < 2e-4
 
@@ -240,35 +141,10 @@ def test_what_friction_has_stored_is_lost_when_the_blocks_part(lift):
     assert balance()["friction_contacts"] == approx(stored, rel=1e-3)
 
 
-def heap(count, seed=3, abreast=1):
-    """Bricks above each other, so many abreast, turned at random, over a ground."""
-    ground(size=(20, 20, 0.4))
-    dice = np.random.default_rng(seed)
-    for n in range(count):
-        turn = Quaternion(*dice.normal(size=4)).normalized()
-        place = (0.15 * dice.uniform(-1, 1), 0.15 * dice.uniform(-1, 1))
-        level, column = divmod(n, abreast)
-        box((0.11, 0.102, 0.081), (place[0] + 0.5 * column, place[1], 0.1 + 0.16 * level), turn)
-
-
-@mark.slow
-@mark.parametrize("count", [12, pytest.param(200, marks=mark.long)])
-def test_a_heap_comes_to_rest_with_a_balance_of_energy(count):
-    heap(count, abreast=1 if count < 20 else 10)
-    # The error of the balance falls with the time step: 0.2 % at half of the limit.
-    prepare(0.2, normalStiffness=1e9, restitution=0.3)
-    until(2.1 if count < 20 else 3)
-    found = balance()
-    assert found["kinetic"] < 1e-5 * found["gravity"]
-    assert abs(found["error"]) < 1e-3
-    assert found["friction_contacts"] > 0 and found["damping_contacts"] > 0
-    assert min(b.state.pos[2] for b in O.bodies if b.id) > 0.03
-
-
 def test_threads_and_a_checkpoint_in_flight_change_no_bit(tmp_path):
     def built():
         O.reset()
-        heap(12)
+        heap(12, abreast=1)
         prepare(0.8, normalStiffness=1e9, restitution=0.3)
 
     built()
@@ -331,9 +207,9 @@ def test_polyhedra_of_yade_are_blocks_too(shapes):
         for n, poly in enumerate(polyhedra):
             size, middle = (0.2, 0.1, 0.1), (0.02 * n, 0, 0.1001 * n)
             if poly:
-                corners = [[m + s * (c - 0.5) for m, s, c in zip(middle, size, p)] for p in CUBE]
+                low, high = (np.array(middle) + side * np.array(size) / 2 for side in (-1, 1))
                 mat = unitMaterial()
-                O.bodies.append(polyhedra_utils.polyhedra(mat, v=corners))
+                O.bodies.append(polyhedra_utils.polyhedra(mat, v=corners(low, high)))
             else:
                 box(size, middle)
         hold(0)

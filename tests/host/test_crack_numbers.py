@@ -13,10 +13,8 @@ WIDTH, HEIGHT, COURSE = 0.4, 0.6, 0.2  # [m] of a pile of three blocks
 def pile(folder, masonry, push, direction=(1, 0, 0), press=1e5, rate=20, foot=0):
     """A pile on a foot at a height [m], whose uppermost block is pushed at its centre; run.json and
     curve.csv."""
-    words = ["--no-vtk", "--lean", "--out", str(folder)]
     blocks = bricks.stack(3, (WIDTH, 0.3, COURSE)).moved(0, 0, foot)
-    scene = Scene("pile", blocks, masonry, arguments=words)
-    scene.platen("bottom")
+    scene = standing(folder, blocks, masonry)
     top = scene.platen("top", rotation="free", height=0.1)
     scene.press(top, press)
     scene.settle()

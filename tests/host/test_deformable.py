@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Deformable units in the engine loop: closed forms, energy and saving."""
+"""Deformable units in the engine loop: closed forms and energy."""
 
 from hosted import *
-from elastic_cases import deflection, frequency, together
+from elastic_cases import deflection, frequency
 
 E, NU = 4.8e9, 0.16
 
@@ -64,12 +64,6 @@ def pull(load, distance, duration):
     return np.array([(O.step(), carried())[1] for _ in range(int(duration / O.dt))])
 
 
-@FUNCTORS
-@mark.parametrize("seed", range(3))
-def test_bricks_that_move_together_do_not_strain_their_joint(seed, functors):
-    assert together(seed, functors) < 1e-9
-
-
 @mark.slow
 def test_two_deformable_bricks_pulled_apart_carry_ft_and_take_the_mode_I_energy():
     load = couplet(MasonryJoint(name="bed"))
@@ -127,17 +121,3 @@ def test_the_stiffness_of_a_pair_is_that_of_bricks_and_joint_in_series():
     # The plates hold the ends of the bricks sideways. That can only make them stiffer, by a part of
     # nu².
     assert 1 < load.reaction / (series * load.displacement()[2]) < 1 + 2 * NU**2
-
-
-@mark.parametrize("extension", [".xml", ".yade.gz"])
-def test_a_deformable_run_saved_in_the_middle_goes_on_the_same(tmp_path, extension):
-    load = couplet(MasonryJoint(name="bed"))
-    pull(load, 4e-6, 0.005)
-    path = str(tmp_path / ("run" + extension))
-    O.save(path)
-    go = lambda: [(O.step(), balance())[1] for _ in range(500)][-1]
-    there = go()
-    O.load(path)
-    # The host calculates the centre of a block again when it loads a scene, so the nodes move by
-    # round-off.
-    assert go() == approx(there, rel=1e-6, abs=1e-8)

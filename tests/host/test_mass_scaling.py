@@ -33,7 +33,7 @@ def bricks(scaling, damping=0.3, strength=0.3e6, plane=True, kind="combined", pi
     return load, zones
 
 
-def test_bricks_of_three_units_are_refused(scene):
+def test_bricks_of_three_units_are_refused():
     with raises(ValueError, match="body 2 has two joints that are monolithic"):
         bricks(20, pieces=3)
 
@@ -52,7 +52,7 @@ def cracked():
     return sum(any(phys.dissipated) for phys in cracks)
 
 
-def test_the_time_step_grows_by_the_root_until_rigid_motions_limit_it(scene):
+def test_the_time_step_grows_by_the_root_until_rigid_motions_limit_it():
     limits = {}
     for scaling in (0, 1, 3, 1e8):
         bricks(scaling)
@@ -62,7 +62,7 @@ def test_the_time_step_grows_by_the_root_until_rigid_motions_limit_it(scene):
 
 
 @PLANES
-def test_the_balance_is_an_identity_while_bricks_crack(scene, plane):
+def test_the_balance_is_an_identity_while_bricks_crack(plane):
     started(20, plane=plane)
     for _ in range(4):
         run(1000)
@@ -72,7 +72,7 @@ def test_the_balance_is_an_identity_while_bricks_crack(scene, plane):
 
 
 @PLANES
-def test_a_change_of_the_scaling_in_motion_is_booked(scene, plane):
+def test_a_change_of_the_scaling_in_motion_is_booked(plane):
     zones = started(0, plane=plane)
     for scaling in (0, 20, 3, 0, 20):
         before = balance()["damping"]
@@ -82,7 +82,7 @@ def test_a_change_of_the_scaling_in_motion_is_booked(scene, plane):
         assert balance()["damping"] != before
 
 
-def test_a_state_of_rest_is_the_same_with_any_masses(scene):
+def test_a_state_of_rest_is_the_same_with_any_masses():
     found = []
     for scaling in (0, 20):
         zones = started(scaling, damping=0.8, velocity=0)
@@ -93,7 +93,7 @@ def test_a_state_of_rest_is_the_same_with_any_masses(scene):
 
 
 @mark.parametrize("threads", [1, 2])
-def test_a_run_resumed_before_or_after_a_crack_is_the_same(scene, tmp_path, threads):
+def test_a_run_resumed_before_or_after_a_crack_is_the_same(tmp_path, threads):
     def state(zones):
         motion = zones.displacements, zones.velocities
         return [[tuple(v) for v in part] for part in motion], balance()

@@ -172,10 +172,6 @@ def test_what_cannot_be_followed_is_reported():
     stack()
     O.periodic = True
     refused("O.periodic: ")
-    O.periodic = False
-    steps()
-    addBlock(cube(z=3 * SIDE), O.materials[0])
-    refused("body 3 was added after connect")
 
 
 def test_zones_of_another_scene_leave_the_blocks_of_the_present_one_alone():

@@ -143,7 +143,7 @@ def test_a_yade_that_was_imported_before_has_one_thread(tmp_path):
             "from masonry.run.checkpoints import readCheckpoint; import masonry;"
             " masonry.MasonryJoint.set"
         ),
-        "from masonry.model import columns; from masonry import Scene",
+        "from masonry.numbers import columns; from masonry import Scene",
         FOUND + "import yade, masonry; masonry.Scene, masonry.scene, masonry.MasonryJoint.set",
         FOUND + "import masonry, yade; masonry.Scene, yade.wrapper.MasonryJoint.set",
     ],
@@ -156,7 +156,7 @@ def test_whatever_is_imported_first(code):
 def test_what_reads_results_does_not_start_yade():
     code = """
 import sys, masonry, masonry_view.measure, masonry_view.notebook, masonry_study, masonry.run.batch
-from masonry import bricks, fields, read
+from masonry import bricks, fields, numbers
 assert not hasattr(masonry, "__wrapped__") and "Scene" in dir(masonry)
 bricks.Wall(1.1, 0.81).joints()
 print([name for name in sys.modules if name.split(".")[0] == "yade"])
@@ -331,25 +331,3 @@ def test_the_help_is_that_of_the_program_that_runs_the_scene(tmp_path):
     assert "usage: python3 couplet.py" in two.stdout
     rest = [n.partition("options:")[2] for n in (one.stdout, two.stdout)]
     assert rest[0] and rest[0] == rest[1]
-
-
-@mark.slow
-@mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-def test_a_run_that_is_stopped_goes_on_to_the_same_bits(tmp_path, number):
-    scene = os.path.join(ROOT, "scripts", "wall_comp1.py")
-    words = [sys.executable, scene, "--until", "6", "--no-vtk"]
-    around = dict(cwd=tmp_path, env=environment(), stdout=subprocess.PIPE, text=True)
-    run = subprocess.Popen([*words, "--out", "out"], **around)
-    for line in run.stdout:
-        if line.startswith("push "):
-            break
-    run.send_signal(number)
-    began = time.monotonic()
-    said = run.communicate(timeout=60)[0]
-    assert run.returncode == 130 and "--resume" in said
-    assert time.monotonic() - began < 10
-    assert json.loads((tmp_path / "out" / "run.json").read_text())["interrupted"]
-    assert python(scene, "--resume", "out", cwd=tmp_path).returncode == 0
-    assert python(*words[1:], "--out", "whole", cwd=tmp_path).returncode == 0
-    curve = lambda name: (tmp_path / name / "curve.csv").read_bytes()
-    assert curve("whole") == curve("out")

@@ -171,6 +171,7 @@ tries = [
     lambda: saveCheckpoint(path),
     lambda: loadCheckpoint(path),
     lambda: (O.pause(), O.run()),
+    lambda: setattr(O, "engines", list(O.engines)),
 ]
 refused = 0
 O.run()
@@ -315,23 +316,6 @@ del engines
 gc.collect()
 after = state(interactions)
 assert all((before[name] == after[name]).all() for name in before)
-"""
-    inYade(code)
-
-
-# -- other engines in the middle -------------------------------------------------------------------
-
-
-@mark.slow
-def test_engines_replaced_beside_a_run_do_no_harm():
-    code = """
-interactions = panel(False)
-O.run(3000)
-for _ in range(20):
-    O.engines = list(O.engines)
-    time.sleep(0.002)
-O.wait()
-assert O.iter == 3000
 """
     inYade(code)
 

@@ -11,10 +11,7 @@ RULES = {3: [0, 0.5, 1], 5: [0, 0.5 - (3 / 28) ** 0.5, 0.5, 0.5 + (3 / 28) ** 0.
 def strip(folder, *words, plane=False, courses=6):
     """A pile of bricks between platens that cannot turn, pressed by 0.2 MPa."""
     blocks = bricks.stack(courses, UNIT)
-    words = ["--no-vtk", "--lean", "--out", str(folder), *words]
-    around = dict(plane=plane, arguments=words)
-    scene = Scene("strip", blocks, materials.calciumSilicate(), **around)
-    scene.platen("bottom")
+    scene = standing(folder, blocks, materials.calciumSilicate(), *words, plane=plane)
     guided = "x" if plane else "xy"
     scene.press(scene.platen("top", rotation="held", guided=guided), 0.2e6)
     return scene

@@ -1,61 +1,14 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What acts in a stage whose load grows, and the search for the load that is held, on structures
-that are known."""
+"""The growth of a load, and the search for the load that is held, on structures that are known."""
 
 import base64
 
 from hosted import *
 from masonry.model.motion import REST
-from masonry.units import GRAVITY
 from masonry.errors import Collapsed
-from masonry.stages import growing, forces
-from masonry.stages.gravity import Acceleration, Tilting
+from masonry.stages import growing
 from masonry.stages.growing import Reason, Tried
 from masonry.stages.rest import CONSECUTIVE_CHECKS, EVERY, REST_ENERGY_RATIO, rampTime
-
-X = Vector3.UnitX
-
-
-# -- what acts -------------------------------------------------------------------------------------
-
-
-def model():
-    args = SimpleNamespace(density_scaling=4.0)
-    return SimpleNamespace(description=SimpleNamespace(gravity=5.0), args=args)
-
-
-@mark.parametrize("share", [0.0, 0.3, 1.0])
-def test_an_acceleration_grows_beside_a_gravity_that_stays(share):
-    load = Acceleration(model(), 0.4, X, "a")
-    # blocks are four times as heavy as they are, so that a quarter makes the forces of the true
-    # masses
-    assert load.at(None, share) == approx([share * 0.4 * GRAVITY / 4, 0, -5 / 4])
-    assert load.shareOf(load.factor(share)) == approx(share)
-
-
-@mark.parametrize("share", [0.0, 0.3, 1.0])
-def test_a_tilt_turns_gravity_and_its_factor_is_the_tangent(share):
-    angle = math.radians(50)
-    load = Tilting(model(), angle, X, "t")
-    x, y, z = load.at(None, share)
-    assert math.hypot(x, z) == approx(5 / 4) and y == 0
-    assert math.atan2(x, -z) == approx(share * angle)
-    assert load.factor(share) == approx(x / -z)
-    assert load.shareOf(load.factor(share)) == approx(share)
-
-
-def test_forces_add_to_what_is_there_or_replace_it_beside_one_that_stays():
-    engines = [SimpleNamespace(force=Vector3(1, 2, 3)), SimpleNamespace(force=Vector3(4, 5, 6))]
-    load = forces.Forces(engines, [Vector3(10, 0, 0), Vector3(0, 0, -20)], "f", "N", 2)
-    began = load.now()
-    assert began == [1, 2, 3, 4, 5, 6]
-    assert load.at(began, 0.5) == [11, 2, 3, 4, 5, -14]
-    assert load.shareOf(load.factor(0.5)) == 0.5 and load.factor(0.5) == 1
-    load.replaces, load.beside = True, [0, 0, 7]
-    assert load.at(began, 0.5) == [10, 0, 7, 0, 0, -13]
-    load.put(load.at(began, 1.0))
-    assert [tuple(e.force) for e in engines] == [(20, 0, 7), (0, 0, -33)]
-
 
 # -- the growth ------------------------------------------------------------------------------------
 
@@ -113,10 +66,22 @@ def test_a_growth_takes_longer_with_scaled_masses_and_has_the_load_of_the_middle
     assert load.values[-1] == 3.0  # no more than the whole
 
 
+def test_states_of_a_growth_are_evenly_apart_and_not_too_many(monkeypatch):
+    scene, at = standing(), growing.Growing(kept=[[0.0, ""]])
+    scene.model.motion.fastest = lambda: 0.0
+    monkeypatch.setattr(growing, "saveScene", lambda name: b"state")
+    growth = growing._Growth(scene, at, None, 1.0)
+    for scene.model.loading.loadFactor in range(1, 1000):
+        growth._after()
+        assert len(at.kept) <= growing.MOST_KEPT
+    factors = [factor for factor, _ in at.kept]
+    assert len(set(np.diff(factors))) == 1 and len(factors) > growing.MOST_KEPT / 2 - 1
+
+
 # -- a trial ---------------------------------------------------------------------------------------
 
 
-def trial(rests, source=0.2, goal=0.5, scaling=1.0, speeds=None):
+def trial(rests, source=0.2, goal=0.5, scaling=1.0, speeds=None, slowest=0.0):
     """A trial in which the checks find the structure at rest or not, as a function of their number
     says. Returns why it was not held, the trial and the load at each check."""
     O.dt = 1e-4
@@ -125,7 +90,7 @@ def trial(rests, source=0.2, goal=0.5, scaling=1.0, speeds=None):
     scene.model.supports.unrest = lambda: (
         (0.0, 0.0) if rests(next(number)) else (2 * REST, 2 * REST_ENERGY_RATIO)
     )
-    scene.model.supports.slowest = lambda: 0.0
+    scene.model.supports.slowest = lambda: slowest
     if speeds:
         scene.model.motion.fastest = lambda far: speeds(going.steps)
     reason = growing._Search(scene, growing.Growing(trial=going), load, 0.01)._wait()
@@ -151,6 +116,12 @@ def test_a_trial_without_checks_at_rest_in_a_row_is_given_up_in_its_time(scaling
     assert going.steps * O.dt == approx(
         growing.TRIAL * math.sqrt(scaling), rel=EVERY * O.dt / growing.TRIAL
     )
+
+
+def test_a_trial_puts_its_load_on_in_a_slow_period_and_waits_for_ten():
+    reason, going, values, _ = trial(lambda n: False, 0.0, 1.0, slowest=2.0)
+    assert reason is Reason.MOVING and going.steps * O.dt == approx(20.0)
+    assert values.index(1.0) + 1 == approx(2.0 / (O.dt * EVERY))
 
 
 def test_a_trial_ends_when_the_structure_moves_faster_and_faster():

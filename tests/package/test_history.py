@@ -4,7 +4,6 @@
 from usual import *
 import hashlib
 import itertools
-from masonry.run import presets
 from masonry.scene import history, options
 from masonry.scene.history import Target
 
@@ -90,12 +89,6 @@ def test_a_history_takes_the_place_of_until(capsys):
     with raises(SystemExit):
         options.parser("two bricks", until=2, loops=False).parse_args(["--history", "2"])
     assert "unrecognized arguments: --history" in capsys.readouterr().err
-
-
-def test_a_preset_promises_nothing_for_a_history():
-    args = parse("--preset", "fast", "--history", "2")
-    preset = presets.presetOf(args, None)
-    assert preset["promise"] is None and preset["overrides"] == ["history"]
 
 
 def test_a_file_gives_its_displacements_and_leaves_other_columns_alone(tmp_path):

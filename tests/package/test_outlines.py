@@ -268,10 +268,7 @@ def test_convex_parts_make_up_the_polygon(radii):
 def test_solids_with_mortar_between_them_meet_in_its_middle(tmp_path, wall):
     lines, start = [], 1
     for block in wall:
-        faces = bricks.geometry.hull(block.corners)
-        corners = np.array(block.corners)
-        middle = corners.mean(axis=0)
-        small = mortar._grown(*_inset(corners, 0.005))
+        small = mortar._grown(*_inset(np.array(block.corners), 0.005))
         faces = bricks.geometry.hull(small)
         lines += [f"g {start}", *("v {!r} {!r} {!r}".format(*c) for c in small)]
         lines += ["f " + " ".join(str(start + k) for k in face) for face in faces]

@@ -2,8 +2,7 @@
 """Masonry of one's own by formulas: the numbers of its joints, what it refuses and warns of, and
 one wall that has its modulus."""
 
-from usual import *
-from masonry import AT_REST, Scene, bricks, materials
+from hosted import *
 
 SIZE, MORTAR = (0.25, 0.12, 0.065), 0.010
 CLAY = dict(
@@ -260,10 +259,9 @@ def test_all_wrong_values_are_named_at_once():
 def wall(masonry, folder, length=0.52, height=0.375, **settings):
     """A small wall of these bricks between platens, before its first stage, and its upper
     platen."""
-    blocks = bricks.Wall(length, height, unit=SIZE, joint=MORTAR)
-    words = ["--no-vtk", "--lean", "--out", str(folder)]
-    scene = Scene("own", blocks, masonry, arguments=words, **settings)
-    scene.platen("bottom")
+    scene = standing(
+        folder, bricks.Wall(length, height, unit=SIZE, joint=MORTAR), masonry, **settings
+    )
     return scene, scene.platen("top", rotation="held")
 
 
@@ -300,7 +298,7 @@ def test_softening_that_snaps_back_is_a_warning_and_no_scene(
                 scene.settle()
         else:
             assert scene.settle() == AT_REST
-            scene.finish()
+            letGo()
 
 
 def test_a_wall_has_the_modulus_of_its_masonry(tmp_path):
@@ -310,7 +308,6 @@ def test_a_wall_has_the_modulus_of_its_masonry(tmp_path):
     scene.press(top, 0.4e6)
     assert scene.settle() == AT_REST
     moved = [scene.model.supports.moved(target)[0][2] for target in (lower, upper)]
-    scene.finish()
     strain = (moved[0] - moved[1]) / (0.6375 - 0.1125)
     assert 0.4e6 / strain == approx(CLAY["E"], rel=0.01)
 
@@ -318,10 +315,7 @@ def test_a_wall_has_the_modulus_of_its_masonry(tmp_path):
 def test_bricks_of_another_course_than_that_of_the_joints_are_noted(tmp_path, capsys):
     for name, size in (("same", SIZE), ("other", (0.25, 0.12, 0.09))):
         wall = bricks.Wall(2 * (size[0] + 0.01), 2 * (size[2] + 0.01), unit=size, joint=0.01)
-        words = ["--lean", "--out", str(tmp_path / name)]
-        scene = Scene(name, wall, clay(), arguments=words)
-        scene.platen("bottom")
-        scene.settle()
+        standing(tmp_path / name, wall, clay()).settle()
         said = capsys.readouterr().out
         assert ("the joints are for courses of 75 mm" in said) == (name == "other")
-        scene.finish()
+        letGo()

@@ -6,7 +6,7 @@ import resource
 from masonry import materials
 from masonry.background import Task
 from masonry.numbers import columns
-from masonry.numbers import curves, files, run_data
+from masonry.numbers import curves, files
 from masonry.run import presets, results
 from masonry.scene import options, targets
 from masonry.materials.settings import applySettings, setting
@@ -28,12 +28,6 @@ def test_the_published_set_is_the_paper_s_table_2():
     assert bed.compressiveFractureEnergy == 15000 and bed.peakRatio == 68.5
     assert head.compressiveFractureEnergy == 31500
     assert joints["support"].elastic and not joints["crack"].cap
-
-
-def test_the_compression_curve_passes_its_named_points():
-    bed = materials.calciumSilicateJoints()["bed"]
-    curve = bed.compressionCurve([0, 1.543e-3, 1.851e-3, 0.1])
-    assert curve == approx([2.265e6, 7.55e6, 4.53e6, 1.51e6], rel=1e-3)
 
 
 # -- options ---------------------------------------------------------------------------------------
@@ -79,6 +73,7 @@ def test_a_preset_stands_for_its_options(name):
         (["--damping", "0.5", "--divisions", "3"], ["divisions", "damping"]),
         (["--set", "bed.cohesion=1e5"], ["set"]),
         (["--crack-surfaces", "off"], ["crack_surfaces"]),
+        (["--history", "2"], ["history"]),
         (["--rate", "100", "--crack-surfaces", "on"], []),  # the preset's own values
     ],
 )
@@ -95,19 +90,17 @@ def test_an_option_beside_a_preset_wins_and_drops_the_promise(words, dropped):
 LIKE = {name: 0.5 * (least + most) for name, (least, most) in presets.RANGE.items()}
 
 
-def test_fast_promises_the_errors_of_the_walls_that_a_wall_is_like():
-    preset = presets.presetOf(parse("--preset", "fast"), LIKE)
-    assert preset["promise"] == presets.PROMISE and preset["outside"] == []
-    note = presets.presetNote(preset)
-    assert "their peak within 6 % and their work within 7 %" in note
-    assert presets.presetOf(parse(), LIKE) is None
-    preset = presets.presetOf(parse("--preset", "fast"), None)
-    assert preset["promise"] is None and "moves in space" in presets.presetNote(preset)
-
-
-def test_accurate_promises_nothing_and_names_accuracy():
-    preset = presets.presetOf(parse("--preset", "accurate"), LIKE)
-    assert preset["promise"] is None and "--accuracy 2 finds" in presets.presetNote(preset)
+@mark.parametrize(
+    "name, like, promise, sentence",
+    [
+        ("fast", LIKE, presets.PROMISE, "their peak within 6 % and their work within 7 %"),
+        ("fast", None, None, "moves in space"),
+        ("accurate", LIKE, None, "--accuracy 2 finds"),
+    ],
+)
+def test_fast_promises_the_errors_of_the_walls_that_a_wall_is_like(name, like, promise, sentence):
+    preset = presets.presetOf(parse("--preset", name), like)
+    assert preset["promise"] == promise and sentence in presets.presetNote(preset)
 
 
 @mark.parametrize("name", presets.RANGE)
@@ -145,23 +138,6 @@ def test_every_option_is_explained_with_its_unit():
 # -- results ---------------------------------------------------------------------------------------
 
 
-def test_rows_and_run_are_read_back(tmp_path):
-    r = results.Results(str(tmp_path), ["a_mm", "b_kN"])
-    r.append([[1, 2.5], [2, -3]])
-    r.append([])
-    r.run["title"] = "t"
-    r.close()
-    assert files.readCurve(tmp_path) == {"a_mm": [1, 2], "b_kN": [2.5, -3]}
-    assert files.readRun(tmp_path)["title"] == "t"
-
-
-def test_a_run_that_leaves_finite_numbers_is_stopped(tmp_path):
-    r = results.Results(str(tmp_path), ["a_mm", "b_kN"])
-    with raises(FloatingPointError, match="finite numbers in b_kN"):
-        r.append([[1, 2], [2, math.nan], [3, 3]])
-    assert files.readCurve(tmp_path) == {"a_mm": [1], "b_kN": [2]}
-
-
 def test_rows_that_a_full_disk_takes_stay_whole(tmp_path):
     folder = str(tmp_path)
 
@@ -178,16 +154,6 @@ def test_rows_that_a_full_disk_takes_stay_whole(tmp_path):
     assert Task(work).result() == 53
     # As many lines of 5 bytes as fit after the first 3.
     assert files.readCurve(folder)["a_mm"] == [1] * 3 + [3] * 17
-
-
-def test_a_pulse_at_one_end_is_no_peak_at_both():
-    columns = {
-        "base_shear_kN": [0.0, 10.0, 11.0, 13.0, 11.5, 9.0],
-        "top_shear_kN": [0.5, 10.2, 11.1, 11.2, 12.9, 9.0],
-        "displacement_mm": [0, 1, 2, 3, 4, 5],
-    }
-    stages = [{"first_row": 0, "load": ["push"]}]
-    assert run_data.RunData({"stages": stages}, columns.get).peakForce() == 11.5
 
 
 def test_dynamic_imbalance_is_the_share_of_the_force_that_does_not_arrive():

@@ -72,20 +72,8 @@ def test_a_run_leaves_out_what_a_missing_module_draws_and_ends_in_order(
     tmp_path, module, parts, absent
 ):
     scene = os.path.join(ROOT, "scripts", "wall_comp4.py")
-    done = without(
-        module,
-        tmp_path,
-        "yade",
-        "-n",
-        "-x",
-        scene,
-        "--until",
-        "0.02",
-        "--quick",
-        "--no-vtk",
-        "--out",
-        "run",
-    )
+    words = f"yade -n -x {scene} --until 0.02 --quick --no-vtk --out run".split()
+    done = without(module, tmp_path, *words)
     assert done.returncode == 0, done.stdout + done.stderr
     lines = (done.stdout + done.stderr).splitlines()
     for part in parts:

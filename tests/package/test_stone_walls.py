@@ -2,8 +2,6 @@
 """Predictions of stone walls see nothing that was measured in the tests, and are of what the rules
 say."""
 
-import csv
-
 from usual import *
 import codes
 import rules

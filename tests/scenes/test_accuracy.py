@@ -40,20 +40,20 @@ def recorded(folder):
 def test_differences_that_shrink_as_those_of_an_order_count_by_richardson_and_others_whole():
     source = Source("rate", ("a", "b", "c"))
     # second order: errors of 16, 4 and 1 % make differences of 12 and 3 %; 1 % is left
-    assert accuracy.shown(source, {"a": 116, "b": 104, "c": 101}, 100) == pytest.approx(0.01)
+    assert accuracy.shown(source, {"a": 116, "b": 104, "c": 101}, 100) == approx(0.01)
     # the other way round, or growing: the last difference counts whole
-    assert accuracy.shown(source, {"a": 92, "b": 104, "c": 101}, 100) == pytest.approx(0.03)
-    assert accuracy.shown(source, {"a": 105, "b": 104, "c": 101}, 100) == pytest.approx(0.03)
+    assert accuracy.shown(source, {"a": 92, "b": 104, "c": 101}, 100) == approx(0.03)
+    assert accuracy.shown(source, {"a": 105, "b": 104, "c": 101}, 100) == approx(0.03)
     assert accuracy.shown(source, {"a": 101, "b": 101, "c": 101}, 100) == 0
 
 
 def test_two_runs_count_by_their_share_and_chance_by_its_range():
-    assert accuracy.shown(
-        Source("mesh", ("a", "b"), 0.5), {"a": 104, "b": 100}, 100
-    ) == pytest.approx(0.02)
+    assert accuracy.shown(Source("mesh", ("a", "b"), 0.5), {"a": 104, "b": 100}, 100) == approx(
+        0.02
+    )
     chance = Source("chance", ("a", "b", "c"), chance=True)
     found = accuracy.shown(chance, {"a": 100, "b": 101, "c": 100.5}, 100)
-    assert found == pytest.approx(0.01 * accuracy.BY_CHANCE)
+    assert found == approx(0.01 * accuracy.BY_CHANCE)
     assert accuracy.shown(chance, {"a": 100, "b": 101}, 100) is None
 
 
@@ -77,10 +77,10 @@ def test_a_finer_fidelity_takes_what_it_does_not_know_yet_from_the_one_before():
     values = dict.fromkeys(COMPANIONS, 100.0)
     values["two cells, 100 mm/s"] = 102.0
     before, parts = accuracy.halfWidth(3, "peak", values, 100)
-    assert parts["mesh"] == pytest.approx(0.01)
+    assert parts["mesh"] == approx(0.01)
     after, parts = accuracy.halfWidth(3, "peak", {**values, MAIN: 101.8}, 100)
-    assert parts["mesh"] == pytest.approx(0.001)
-    assert after < before and sum(parts.values()) == pytest.approx(after)
+    assert parts["mesh"] == approx(0.001)
+    assert after < before and sum(parts.values()) == approx(after)
 
 
 def test_a_push_says_its_peak_and_work_with_half_widths_everywhere(pier):
@@ -90,7 +90,7 @@ def test_a_push_says_its_peak_and_work_with_half_widths_everywhere(pier):
     entry, values = found["accuracy"], {}
     for q in entry["quantities"]:
         values[q["name"]] = q
-        assert q["half_width"] == pytest.approx(q["value"] * sum(q["parts_percent"].values()) / 100)
+        assert q["half_width"] == approx(q["value"] * sum(q["parts_percent"].values()) / 100)
     assert values["peak"]["value"] == found["peak_at_both_ends_kN"]
     assert values["work"]["value"] == found["push_work_J"]
     assert found["peak_half_width_kN"] == values["peak"]["half_width"]
@@ -120,7 +120,7 @@ def test_what_cannot_be_reached_is_said_with_the_width_that_was_found(pier):
     assert "0.01 % is not reached by the finest fidelity there is" in done.stdout
 
 
-@pytest.mark.parametrize(
+@mark.parametrize(
     "words, sentence",
     [
         (["--accuracy", "60"], "60.0 % must be above 0 and at most 50"),
@@ -140,7 +140,7 @@ def test_wrong_values_and_options_are_one_sentence(pier, words, sentence):
 PUSH = "scene.push(top)"
 
 
-@pytest.mark.parametrize(
+@mark.parametrize(
     "what, other, sentence",
     [
         (PUSH, "scene.lean(0.01)", "this scene has the stage lean"),
@@ -175,7 +175,7 @@ def test_a_stack_that_falls_has_its_answer_and_a_sentence(pier):
     assert "the work of a run that collapses ends there" in done.stdout
 
 
-@pytest.mark.parametrize("name", ["accuracy", "accuracy/rigid_50_mm_s.log"])
+@mark.parametrize("name", ["accuracy", "accuracy/rigid_50_mm_s.log"])
 def test_nothing_is_written_through_a_link(pier, name):
     (pier / "other").mkdir()
     (pier / "out" / name).parent.mkdir(parents=True)
@@ -196,7 +196,7 @@ def companions():
     return found
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGKILL])
+@mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGKILL])
 def test_companions_end_with_the_run_and_the_same_command_goes_on(pier, number):
     (pier / "pier.py").write_text(
         SCENE.replace("0.44, 0.324", "1.1, 1.62").replace("until=1", "until=6")

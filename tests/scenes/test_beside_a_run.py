@@ -48,19 +48,34 @@ ACCURACY = ["--accuracy", "20", "--lean"]
 @mark.parametrize(
     "module, fault, note, words",
     [
-        ("limit.bound", "Bound.describe = fails", "limit analysis of top along x", []),
-        ("limit.bound", "Bound.describe = fails", "limit analysis of top", ["--preset=bound"]),
-        ("limit.bound", "Bound.draw = fails", "the mechanism of limit analysis", []),
-        ("scene.limit_loads", "beside = fails", "limit analysis", []),
-        ("scene.outcome", "figureOf = fails", "what curve.png shows", []),
-        ("read.curve_figure", "curve = fails", "the figures", []),
-        ("read.figures", "draw = kills", "the figures", []),
-        ("read.report", "read = kills", "figures and report", []),
-        ("read.report.structure", "facts = fails", "the report", []),
-        ("run.frames", "Frames._write = fails", "a frame for ParaView", []),
-        ("run.frames", "Frames._write = fails; SLOW_FRAME = -1", "a frame for ParaView", []),
-        ("run.accuracy", "answers = fails", "--accuracy", ACCURACY),
-        ("scene.outcome", "if inCompanion: Outcome.summarise = fails", "--accuracy", ACCURACY),
+        ("masonry_limit.bound", "Bound.describe = fails", "limit analysis of top along x", []),
+        (
+            "masonry_limit.bound",
+            "Bound.describe = fails",
+            "limit analysis of top",
+            ["--preset=bound"],
+        ),
+        ("masonry_limit.bound", "Bound.save = fails", "the mechanism of limit analysis", []),
+        ("masonry.model.arrays", "beside = fails", "limit analysis", []),
+        ("masonry.scene.outcome", "figureOf = fails", "what curve.png shows", []),
+        ("masonry_view.curve_figure", "curve = fails", "the figures", []),
+        ("masonry_view.figures", "drawRun = kills", "the figures", []),
+        ("masonry_view.report", "read = kills", "figures and report", []),
+        ("masonry_view.report.structure", "facts = fails", "the report", []),
+        ("masonry.run.frame_writer", "Frames._write = fails", "a frame for ParaView", []),
+        (
+            "masonry.run.frame_writer",
+            "Frames._write = fails; SLOW_FRAME = -1",
+            "a frame for ParaView",
+            [],
+        ),
+        ("masonry.run.accuracy", "answers = fails", "--accuracy", ACCURACY),
+        (
+            "masonry.scene.outcome",
+            "if inCompanion: Outcome.summarise = fails",
+            "--accuracy",
+            ACCURACY,
+        ),
     ],
 )
 def test_an_error_beside_a_run_is_a_note_and_its_traceback_a_log(
@@ -69,7 +84,7 @@ def test_an_error_beside_a_run_is_a_note_and_its_traceback_a_log(
     (tmp_path / "sitecustomize.py").write_text(PLANTS)
     (tmp_path / "pier.py").write_text(SCENE)
     path = os.pathsep.join([str(tmp_path), os.environ.get("PYTHONPATH", "")])
-    planted = dict(MODULE=f"masonry.{module}", FAULT=fault)
+    planted = dict(MODULE=module, FAULT=fault)
     env = {**os.environ, **planted, "PYTHONPATH": path}
     command = [sys.executable, "pier.py", "--out", "out", *words]
     done = ran(command, cwd=tmp_path, env=env, timeout=120)
@@ -82,5 +97,5 @@ def test_an_error_beside_a_run_is_a_note_and_its_traceback_a_log(
     assert "--preset=bound" in words or len((out / "curve.csv").read_text().splitlines()) > 9
     log = (out / ("accuracy" if "no ±" in said else ".") / "errors.log").read_text()
     assert said.removeprefix("note: ") in log and "Traceback" in log
-    if module == "limit.bound" and "describe" in fault:
+    if "describe" in fault:
         assert run["bounds"][0]["note"] == said.removeprefix("note: ")

@@ -63,12 +63,12 @@ def interrupt(run):
 CANTILEVER = Wall(loadHeight=0.6, riding=False)  # under rollers
 
 
-def interrupted(at, start, out, every, first=None):
+def interrupted(at, start, out, every):
     """Interrupt a run before every so many-th ``advance`` until it ends; ``start`` gets whether it
     is resumed. What was kept."""
     kept = []
     while True:
-        at(first if first and not kept else every, interrupt)
+        at(every, interrupt)
         status = start(bool(kept))
         if status == 0:
             return kept
@@ -84,29 +84,8 @@ def whole(tmp_path_factory):
     return files(out)
 
 
-@pytest.mark.parametrize(
-    "path, every", [(PUSH, 35), pytest.param(LOOPS, 211, marks=pytest.mark.long)]
-)
-@pytest.mark.parametrize(
-    "wall, blocks",
-    [(SMALL, "rigid"), (SMALL, "deformable"), (CANTILEVER, "rigid")],
-    ids=["rigid", "deformable", "cantilever"],
-)
-def test_a_wall_interrupted_in_every_stage(tmp_path, at, wall, blocks, path, every):
-    words = [*path, "--blocks", blocks]
-    assert run(tmp_path / "whole", *words, wall=wall) == 0
-    out = tmp_path / "broken"
-    start = lambda again: run(out, *words[: 0 if again else None], wall=wall, resume=again)
-    found = interrupted(at, start, out, every, first=3)
-    assert {"settle", "push"} == {one["stage"] for one in found}
-    points = {one["memory"].get("passed", 0) for one in found}
-    assert path is PUSH or len(points) > 3
-    assert files(out) == files(tmp_path / "whole")
-    assert len(readRun(out)["resumed_at_s"]) == len(found)
-
-
-@pytest.mark.parametrize("blocks", ["rigid", "deformable"])
-@pytest.mark.parametrize("path", ["shear", "closure-shear"])
+@mark.parametrize("blocks", ["rigid", "deformable"])
+@mark.parametrize("path", ["shear", "closure-shear"])
 def test_a_couplet_interrupted_in_every_move(tmp_path, at, blocks, path):
     words = f"--path {path} --until 0.05 --rate 20 --closure 0.02 --blocks {blocks}"
     begin = lambda out: runScript("couplet", *words.split(), "--out", str(out))
@@ -136,7 +115,7 @@ def test_frames_can_begin_and_end_with_a_resumed_run(tmp_path, whole):
     assert found["curve.csv"] == whole["curve.csv"]
 
 
-@pytest.mark.parametrize("rows", [0, 29])
+@mark.parametrize("rows", [0, 29])
 def test_a_run_that_fails_is_taken_up_there(tmp_path, monkeypatch, rows, whole):
     read, count = readings.Reading, [rows + 1]
 
@@ -147,7 +126,7 @@ def test_a_run_that_fails_is_taken_up_there(tmp_path, monkeypatch, rows, whole):
         return read(model)
 
     monkeypatch.setattr(readings, "Reading", fail)
-    with pytest.raises(OSError, match="a pipe that broke"):
+    with raises(OSError, match="a pipe that broke"):
         run(tmp_path, *PUSH)
     assert len((tmp_path / "curve.csv").read_text().splitlines()) == 1 + rows
     assert run(tmp_path, resume=True) == 0
@@ -174,7 +153,7 @@ def test_a_run_goes_on_after_a_full_disk(tmp_path, at, capsys, monkeypatch, whol
     assert readCheckpoint(str(kept))["state"]["memory"]["moved"] > 0.25
 
 
-@pytest.mark.parametrize("lost", ["curve.csv", "joints_0001.vtp", "run.json.new"])
+@mark.parametrize("lost", ["curve.csv", "joints_0001.vtp", "run.json.new"])
 def test_results_wait_for_room(tmp_path, at, capsys, monkeypatch, lost, whole):
     monkeypatch.setattr(frame_writer, "SLOW_FRAME", math.inf)  # none is written beside
     out = tmp_path / "full"
@@ -246,7 +225,7 @@ def test_a_row_waits_for_a_fifth_of_a_second_at_most(tmp_path, at):
     assert seen[-1][0] == seen[0][0] + 2 * (len(seen) - 1)
 
 
-@pytest.mark.parametrize("end", ["checkpoint", "interrupt", "error"])
+@mark.parametrize("end", ["checkpoint", "interrupt", "error"])
 def test_rows_that_wait_are_kept(tmp_path, at, monkeypatch, end):
     def act(run):
         waiting = len(run.readings.waiting)
@@ -263,7 +242,7 @@ def test_rows_that_wait_are_kept(tmp_path, at, monkeypatch, end):
     seen = []
     monkeypatch.setattr("masonry.run.readings.FLUSH_EVERY", 1e9)
     at(60, act)
-    with pytest.raises(OSError) if end == "error" else contextlib.nullcontext():
+    with raises(OSError) if end == "error" else contextlib.nullcontext():
         run(tmp_path, *PUSH, "--no-vtk")
     rows = len(readCurve(tmp_path)["time_s"])
     if end == "checkpoint":
@@ -294,7 +273,7 @@ def refused(out, *words, wall=SMALL):
     return status
 
 
-@pytest.mark.parametrize(
+@mark.parametrize(
     "words, message",
     [
         (["--rate", "10"], "a run goes on as it began: --rate is 40.0"),
@@ -363,19 +342,10 @@ def test_what_cannot_be_taken_up_is_refused(broken, capsys):
     kept.write_bytes(data)
     says("holds a run of small, this is other", Wall(name="other"))
     says("run.checkpoint is of another scene: its blocks are others", Wall(courses=7))
-    middle = len(data) // 2
-    flip = data[:middle] + bytes([data[middle] ^ 1]) + data[middle + 1 :]
-    for wrong, message in (
-        (data[:middle], "run.checkpoint is cut short: "),
-        (flip, "run.checkpoint is damaged: "),
-        (data.replace(b"format 3", b"format 9"), "of another version of the plugin"),
-    ):
-        kept.write_bytes(wrong)
-        says(message)
+    kept.write_bytes(data[:-9])
+    says("run.checkpoint is cut short: ")
     saveCheckpoint(str(kept), "a user's own")
     says("was not left by a run in stages")
-    os.remove(kept)
-    says("has no run.checkpoint, which a run leaves unless")
 
 
 def test_another_build_or_number_of_threads_is_reported(broken, capsys):

@@ -17,18 +17,18 @@ QUICK = [c for c in CASES if c.quick]
 REPORTED = {"restitution-elastic": (0.98764, 1e-3)}
 
 
-@pytest.mark.parametrize("case", [c for c in QUICK if c.aim], ids=lambda c: c.name)
+@mark.parametrize("case", [c for c in QUICK if c.aim], ids=lambda c: c.name)
 def test_a_closed_form_is_met_or_missed_as_the_readme_says(case):
     result = case.run(quick=True)
     shown = f"expected {result.expected:g}, measured {result.measured}"
     assert result.met == (not case.misses), shown
 
 
-@pytest.mark.parametrize("name", REPORTED)
+@mark.parametrize("name", REPORTED)
 def test_a_value_without_an_aim_is_that_of_the_readme(name):
     (case,) = (c for c in QUICK if c.name == name)
     value, tolerance = REPORTED[name]
-    assert case.run(quick=True).middle == pytest.approx(value, abs=tolerance)
+    assert case.run(quick=True).middle == approx(value, abs=tolerance)
     with open(os.path.join(ROOT, "validation", "closed_forms", "README.md")) as f:
         (row,) = (line for line in f if line.startswith(f"| {name} |"))
     assert f"| {value} |" in row
@@ -64,7 +64,7 @@ def test_the_program_writes_a_table_and_counts_misses(tmp_path, capsys, monkeypa
     out = capsys.readouterr().out
     assert "+20.00 % | ± 1 %, **missed**" in out
     assert "- bad: the reason is not known" in out
-    with pytest.raises(SystemExit):
+    with raises(SystemExit):
         closed_forms.main(["--only", "nothing"])
     assert "no case nothing; there are bad" in capsys.readouterr().err
 
@@ -72,18 +72,18 @@ def test_the_program_writes_a_table_and_counts_misses(tmp_path, capsys, monkeypa
 def test_the_forces_of_limit_analysis_are_added_up_once_more():
     arch(oppenheim(), friction=0.7)
     found = bound()
-    assert found.factor == pytest.approx(0.3736, rel=1e-3)
+    assert found.factor == approx(0.3736, rel=1e-3)
     found.normal *= 1.001
     assert unbalanced(found) > 1e-4
 
 
-@pytest.mark.parametrize("thickness", [0.09, 0.1])
+@mark.parametrize("thickness", [0.09, 0.1])
 def test_an_arch_too_thin_does_not_rest_whatever_the_solver_says(thickness):
     arch(semicircle(7, thickness))
     assert rests(limit.read()) == (thickness > 0.0957)
 
 
-@pytest.mark.parametrize("thickness", [0.1, 0.105, 0.1095, 0.11, 0.12])
+@mark.parametrize("thickness", [0.1, 0.105, 0.1095, 0.11, 0.12])
 def test_an_arch_of_many_voussoirs_rests_as_its_thickness_says(thickness):
     """The interior point of Clp misses equilibrium by 3e-5 in some of them; the least thickness is
     0.1074."""

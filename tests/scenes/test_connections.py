@@ -15,7 +15,7 @@ BASE = "<base>"  # in a table: the platen below
 
 
 def refused(text):
-    return pytest.raises((Refused, ValueError), match=re.escape(text))
+    return raises((Refused, ValueError), match=re.escape(text))
 
 
 STONE = materials.dry(5.0, normalStiffness=1e11)
@@ -40,7 +40,7 @@ def test_limit_analysis_has_the_tie(tmp_path):
     scene.tie(at(0.5), anchor=at(0.5, 3.0), stiffness=1e7, strength=force)  # slack
     found = scene.bound(towards=(1, 0, 0))
     expected = (WEIGHT * WIDTH / 2 + force * level) / (WEIGHT * HEIGHT / 2)
-    assert found["factor"] == pytest.approx(expected, rel=1e-4)
+    assert found["factor"] == approx(expected, rel=1e-4)
 
 
 def pulled(tmp_path, *words, most=1.0, **properties):
@@ -63,10 +63,10 @@ def test_a_tie_is_elastic_then_yields(tmp_path, capsys):
     assert np.abs(rows["tie0_force_kN"] - expected).max() < 1e-8
     plastic = 1e-3 * moved[-1] - strength / stiffness
     assert run["state"] == "yielded"
-    assert run["plastic_elongation_m"] == pytest.approx(plastic)
-    lost = pytest.approx(strength * plastic, rel=1e-2)
+    assert run["plastic_elongation_m"] == approx(plastic)
+    lost = approx(strength * plastic, rel=1e-2)
     assert rows["dissipated_connectors_J"][-1] == lost
-    stored = pytest.approx(strength**2 / (2 * stiffness))
+    stored = approx(strength**2 / (2 * stiffness))
     assert rows["elastic_connectors_J"][-1] == stored
     assert abs(rows["balance_error"]).max() < 1e-3
     assert capsys.readouterr().out.count("tie0 yields: between brick 0 at") == 1
@@ -76,8 +76,8 @@ def test_a_tie_breaks_at_its_strain(tmp_path, capsys):
     rows, tie, run = pulled(tmp_path, stiffness=4e6, breaking=1e-3)
     broken = rows["tie0_elongation_mm"] > 0.5
     assert (rows["tie0_force_kN"][broken] == 0).all() and broken.any()
-    assert rows["tie0_force_kN"].max() == pytest.approx(2.0, rel=0.1)
-    lost = pytest.approx(0.5 * 4e6 * 0.5e-3**2, rel=0.02)
+    assert rows["tie0_force_kN"].max() == approx(2.0, rel=0.1)
+    lost = approx(0.5 * 4e6 * 0.5e-3**2, rel=0.02)
     assert rows["dissipated_connectors_J"][-1] == lost
     assert run["state"] == "broken" and tie.force == 0
     assert abs(rows["balance_error"]).max() < 0.01
@@ -112,14 +112,14 @@ def test_prestress_grows_in_settle_and_its_work_is_counted(tmp_path):
     (joint,) = scene.model.interactions
     support = joint.phys.normalStiffness * WIDTH * DEPTH
     down = (force + WEIGHT) / (1e6 + support)
-    assert tie.force == pytest.approx(force - 1e6 * down, rel=1e-4)
+    assert tie.force == approx(force - 1e6 * down, rel=1e-4)
     scene.run(0.05, damping=0.5)
     rows = scene.curve()
-    pressed = pytest.approx(-1e-3 * (WEIGHT + tie.force), rel=1e-4)
+    pressed = approx(-1e-3 * (WEIGHT + tie.force), rel=1e-4)
     assert rows["base_force_z_kN"][-1] == pressed
-    stored = pytest.approx(tie.force**2 / 2e6, rel=1e-4)
+    stored = approx(tie.force**2 / 2e6, rel=1e-4)
     assert rows["elastic_connectors_J"][-1] == stored
-    assert rows["external_J"][-1] == pytest.approx(force**2 / 2e6, rel=0.02)
+    assert rows["external_J"][-1] == approx(force**2 / 2e6, rel=0.02)
     assert abs(rows["balance_error"][-1]) < 1e-3
 
 
@@ -133,8 +133,8 @@ def test_columns_of_a_platen_on_springs(tmp_path):
     rows = scene.curve()
     shear = rows["base_shear_kN"][-1]
     moment = shear * (level + 0.2)  # over the springs, at the outer side of the platen
-    assert rows["base_spring_moment_y_kNm"][-1] == pytest.approx(moment, rel=0.05)
-    assert rows["base_force_x_kN"][-1] == pytest.approx(shear, rel=1e-6)
+    assert rows["base_spring_moment_y_kNm"][-1] == approx(moment, rel=0.05)
+    assert rows["base_force_x_kN"][-1] == approx(shear, rel=1e-6)
     assert abs(rows["balance_error"]).max() < 1e-3
 
 
@@ -152,9 +152,9 @@ def test_a_spring_period_is_its_closed_form(tmp_path):
     period = 2 * math.pi * math.sqrt(mass / 4e5)
     scene.run(2 * period, damping=0.0)
     moved, times = scene.curve()["base_x_mm"], scene.curve()["time_s"]
-    assert moved.max() == pytest.approx(10 * period / (2 * math.pi), rel=0.01)
+    assert moved.max() == approx(10 * period / (2 * math.pi), rel=0.01)
     downs = [t for t, a, b in zip(times[1:], moved, moved[1:]) if a > 0 >= b]
-    assert downs[1] - downs[0] == pytest.approx(period, rel=0.02)
+    assert downs[1] - downs[0] == approx(period, rel=0.02)
 
 
 def test_a_tie_sets_the_time_step_where_it_is_stiffest(tmp_path):
@@ -170,7 +170,7 @@ def test_a_tie_sets_the_time_step_where_it_is_stiffest(tmp_path):
     assert limits[1] < 2 / math.sqrt(1e13 / mass) * 1.35 < 0.1 * limits[0]
 
 
-@pytest.mark.parametrize(
+@mark.parametrize(
     "word, settings, text",
     [
         ("tie", dict(), "tie: give either other or anchor"),
@@ -233,8 +233,8 @@ def test_fibres_cross_the_joints_of_one_face_only(tmp_path):
     # a level crack crosses the layer over all of the wall's length, with the strength and the
     # stiffness of that
     crack = [one for one in upright.ties if abs(one.place()[2] - 0.081) < 1e-9]
-    assert sum(one.strength for one in crack) == pytest.approx(1e4 * 0.66)
-    assert sum(one.stiffness for one in crack) == pytest.approx(1e7 * 0.66 / 0.1)
+    assert sum(one.strength for one in crack) == approx(1e4 * 0.66)
+    assert sum(one.stiffness for one in crack) == approx(1e7 * 0.66 / 0.1)
     front = max(c[1] for block in WALL for c in block.corners)
     assert {round(end.point[1] - front, 12) for t in both.ties for end in t.ends} == {0}
     with refused("no joint ends at a face"):
@@ -267,7 +267,7 @@ def test_a_spring_between_two_blocks_turns_nothing_as_a_whole(tmp_path):
     # its force would have an arm of 0.5 m between that point and the middle of the other block
     assert spring.force[0] < -100
     moment = scene.curve()["base_M_y_kNm"][-1]
-    assert moment == pytest.approx(1.5 * 0.4, rel=0.01)
+    assert moment == approx(1.5 * 0.4, rel=0.01)
 
 
 def test_ends_that_a_script_moves_are_where_it_moved_them(tmp_path):
@@ -283,7 +283,7 @@ def test_ends_that_a_script_moves_are_where_it_moved_them(tmp_path):
     engine = scene.description.connectors[0].engine
     engine.updateAttrs({"points1": [at(HEIGHT)], "points2": [at(HEIGHT, 3.0)]})
     O.step()
-    assert tie.elongation / low == pytest.approx(4, rel=0.01)
+    assert tie.elongation / low == approx(4, rel=0.01)
     twice = {
         name: 2 * list(getattr(engine, name))
         for name in ("bodies1", "points1", "bodies2", "points2")
@@ -317,7 +317,7 @@ def test_ties_pull_the_same_with_functors(tmp_path):
         at = lambda n: np.interp((0.3, 0.6, 0.9), rows["displacement_mm"], rows[n])
         found.append([*at("tie0_force_kN"), *at("spring0_force_x_kN")])
         letGo()
-    assert found[0] == pytest.approx(found[1], rel=0.01)
+    assert found[0] == approx(found[1], rel=0.01)
     assert min(map(abs, found[0])) > 0.01
 
 
@@ -344,26 +344,26 @@ def test_frames_have_ties_and_springs(tmp_path):
     assert [len(cell) for cell in frame["cells"]] == [1, 2, 2]
     assert set(frame) - {"points", "cells"} <= set(MasonryVtkRecorder.fields())
     assert frame["condition"].tolist() == [0, 1, 0] and tie.state == "yielded"
-    assert frame["tension"][1] == pytest.approx(tie.force, rel=1e-12)
-    assert np.linalg.norm(frame["force"][1]) == pytest.approx(tie.force, rel=1e-12)
-    assert frame["elongation"][1] == pytest.approx(tie.elongation, rel=1e-12)
+    assert frame["tension"][1] == approx(tie.force, rel=1e-12)
+    assert np.linalg.norm(frame["force"][1]) == approx(tie.force, rel=1e-12)
+    assert frame["elongation"][1] == approx(tie.elongation, rel=1e-12)
     spring = scene.description.connectors[0]
-    assert frame["force"][0] == pytest.approx(spring.force, rel=1e-12)
+    assert frame["force"][0] == approx(spring.force, rel=1e-12)
     one, other = frame["points"][frame["cells"][1]] + frame["displacement"][frame["cells"][1]]
     after = np.linalg.norm(other - one) - tie.length
     # bodies have moved on by half a step
-    assert after == pytest.approx(tie.elongation, rel=0.005)
+    assert after == approx(tie.elongation, rel=0.005)
     head, _ = dataOf(str(tmp_path))
     arrays = head["arrays"]
     assert arrays["tiePoints"]["count"] == 12
     assert arrays["tieCondition"]["row"] == 2 and arrays["tieMoved"]["row"] == 12
 
 
-@pytest.mark.parametrize("stiffness", [2e5, 1e8])
+@mark.parametrize("stiffness", [2e5, 1e8])
 def test_a_structure_that_sinks_into_soft_soil_has_not_fallen(tmp_path, stiffness):
     scene = lean(tmp_path, bricks.stack(4, (0.5, 0.5, 0.5)))
     base = scene.platen("bottom", springs={"z": stiffness})
     assert scene.settle() == AT_REST
     mass = sum(O.bodies[body].state.mass for body in [*scene.model.ids, base.body])
     sunk = -1e-3 * scene.curve()["base_z_mm"][-1]
-    assert sunk * stiffness == pytest.approx(GRAVITY * mass, rel=0.01)
+    assert sunk * stiffness == approx(GRAVITY * mass, rel=0.01)

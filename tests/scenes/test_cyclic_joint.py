@@ -29,7 +29,7 @@ def ways(values):
     return [0, *(1 + np.flatnonzero(steps[1:] * steps[:-1] < 0)), len(values) - 1]
 
 
-@pytest.mark.parametrize("name", figures.SHEAR[1:])
+@mark.parametrize("name", figures.SHEAR[1:])
 def test_slip_cycles_take_the_work_of_friction(paths, name):
     """Where the bond is gone, a way from -a to +a takes 2 τr (a - τr/ks): within 3 %, as a bit of
     bond is left."""
@@ -39,10 +39,10 @@ def test_slip_cycles_take_the_work_of_friction(paths, name):
     assert np.allclose(rows["normal_stress_MPa"], -residual / FRICTION, rtol=1e-3)
     turns = ways(slide)
     last = slice(turns[-3], turns[-2] + 1)
-    assert slide[turns[-2]] == pytest.approx(-3, abs=0.01)
-    assert slide[turns[-3]] == pytest.approx(3, abs=0.01)
+    assert slide[turns[-2]] == approx(-3, abs=0.01)
+    assert slide[turns[-3]] == approx(3, abs=0.01)
     work = trapezoid(shear[last], slide[last])
-    assert work == pytest.approx(2 * residual * (3 - 1e9 * residual / KS), rel=0.03)
+    assert work == approx(2 * residual * (3 - 1e9 * residual / KS), rel=0.03)
 
 
 def test_the_figure_shows_it(paths, tmp_path):

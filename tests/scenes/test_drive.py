@@ -10,7 +10,7 @@ from small_wall import SMALL, carryOut, parsed
 LEAN = ["--lean", "--checkpoint-every", "0"]
 
 
-@pytest.mark.parametrize("scaling", [1, 25])
+@mark.parametrize("scaling", [1, 25])
 def test_the_period_of_a_brick_between_two_joints_is_its_closed_form(tmp_path, scaling):
     """The joints above and below it turn it by opposite moments, so it only slides."""
     size, stones = (0.5, 0.1, 0.5), materials.calciumSilicate()  # [m]
@@ -25,14 +25,14 @@ def test_the_period_of_a_brick_between_two_joints_is_its_closed_form(tmp_path, s
     model.scheme.chooseTimeStep(0.2 * model.scheme.limit)
     before = saveScene("null")
     found = firstPeriod(model, Vector3.UnitX, 0.05)
-    assert found == pytest.approx(expected, rel=0.003)
+    assert found == approx(expected, rel=0.003)
     assert saveScene("null") == before
     assert firstPeriod(model, Vector3.UnitX, 0.5 * expected) is None
 
 
 #: A clamped wall that is pushed fast begins to crack within the first quarter of its peak, and then
 #: seems softer.
-@pytest.mark.parametrize("turns, within", [(False, 0.08), (True, 0.05)])
+@mark.parametrize("turns, within", [(False, 0.08), (True, 0.05)])
 def test_the_initial_stiffness_hardly_depends_on_the_rate(tmp_path, turns, within):
     found = {}
     wall = type(SMALL)(courses=12, length=1.32, loadHeight=1.1 if turns else None)
@@ -42,7 +42,7 @@ def test_the_initial_stiffness_hardly_depends_on_the_rate(tmp_path, turns, withi
         found[rate] = readRun(tmp_path)
     slow, fast = found.values()
     stiffness = "initial_stiffness_kN_per_mm"
-    assert fast[stiffness] == pytest.approx(slow[stiffness], rel=within)
+    assert fast[stiffness] == approx(slow[stiffness], rel=within)
     assert fast["first_period_s"] == slow["first_period_s"] > 0
     assert 0.6 < fast["base_weight"] < 0.8
 

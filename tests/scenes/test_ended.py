@@ -54,7 +54,7 @@ def started(out, *words):
     return carryOut(SMALL, parsed(*SHORT, *words, "--out", str(out)))
 
 
-@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
+@mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
 def test_a_signal_ends_a_bound(tmp_path, undrawn, monkeypatch, signalled, number):
     asked, solved = tmp_path / "asked", solver._solved
 
@@ -99,7 +99,7 @@ def test_a_drawing_program_that_is_missing(tmp_path, monkeypatch, capsys):
     assert readRun(tmp_path)["peak_base_shear_kN"] > 0
 
 
-@pytest.mark.parametrize("steps", [0, 300])
+@mark.parametrize("steps", [0, 300])
 def test_too_little_memory(tmp_path, monkeypatch, undrawn, capsys, steps):
     take = Run._take
 
@@ -126,7 +126,7 @@ import sys
 sys.path.insert(0, {HOST!r})
 import yade
 {LIMITED}
-from masonry import limit
+import masonry_limit
 """
 FIGURES = f"""
 import sys
@@ -141,7 +141,7 @@ np.ones((9, 9)) @ (2 * np.ones((9, 9)))
 """
 
 
-@pytest.mark.parametrize("program", [SCENE + PRODUCT, FIGURES], ids=["scene", "figures"])
+@mark.parametrize("program", [SCENE + PRODUCT, FIGURES], ids=["scene", "figures"])
 def test_too_little_memory_for_numerical_libraries_is_one_sentence(program):
     done = subprocess.run(
         [sys.executable, "-c", program], capture_output=True, text=True, timeout=30

@@ -51,16 +51,16 @@ def test_what_fell_lies_on_the_ground_at_rest(fallen):
     assert readRun(scene.results.directory)["ended"] == "collapsed and at rest"
     mass = 4 * 2 * SIDE**3 * DENSITY
     assert answer(scene, "fallen_blocks") == 6 and answer(scene, "fallen_share") == 1
-    assert answer(scene, "fallen_mass") == pytest.approx(mass)
-    assert answer(scene, "rubble_volume") == pytest.approx(8 * SIDE**3)
+    assert answer(scene, "fallen_mass") == approx(mass)
+    assert answer(scene, "rubble_volume") == approx(8 * SIDE**3)
     # one layer on the ground, which carries all of it
-    assert answer(scene, "rubble_height") == pytest.approx(SIDE, rel=1e-3)
-    assert rows["ground_force_z_kN"][-1] == pytest.approx(-1e-3 * mass * GRAVITY, rel=5e-3)
+    assert answer(scene, "rubble_height") == approx(SIDE, rel=1e-3)
+    assert rows["ground_force_z_kN"][-1] == approx(-1e-3 * mass * GRAVITY, rel=5e-3)
     assert rows["base_force_z_kN"][-1] == 0
     ground = scene.targets["ground"].box[1][2]
-    assert all(place[2] == pytest.approx(ground + SIDE / 2, abs=1e-5) for place in scene.places)
+    assert all(place[2] == approx(ground + SIDE / 2, abs=1e-5) for place in scene.places)
     reach = max(place[1] for place in scene.places) + SIDE / 2 - SIDE
-    assert answer(scene, "rubble_reach") == pytest.approx(reach, rel=0.01)
+    assert answer(scene, "rubble_reach") == approx(reach, rel=0.01)
 
 
 def test_the_base_section_has_what_contacts_carry(fallen):
@@ -69,7 +69,7 @@ def test_the_base_section_has_what_contacts_carry(fallen):
     _, rows = fallen
     for force, axis in (("N", "z"), ("V_y", "y")):
         carried = rows[f"base_force_{axis}_kN"] + rows[f"ground_force_{axis}_kN"]
-        assert rows[f"base_{force}_kN"] == pytest.approx(carried, abs=1e-4)
+        assert rows[f"base_{force}_kN"] == approx(carried, abs=1e-4)
     assert rows["handed_joints"][-1] > 0
 
 
@@ -77,7 +77,7 @@ def test_energies_of_the_fall(fallen):
     scene, rows = fallen
     work = rows["gravity_J"][-1]
     lost = rows["friction_contacts_J"][-1] + rows["damping_contacts_J"][-1]
-    assert lost == pytest.approx(work, rel=0.02)
+    assert lost == approx(work, rel=0.02)
     assert np.abs(rows["balance_error"]).max() < 0.02
     # every stone is fastest before it strikes, and not all of them at once
     assert rows["kinetic_J"].max() <= answer(scene, "impact_energy") < 1.5 * work
@@ -88,17 +88,17 @@ def test_the_table_has_a_row_for_every_fallen_block(fallen):
     rows = list(csv.DictReader(open(scene.results.path("fallen.csv"))))
     assert [int(row["block"]) for row in rows] == list(range(6))
     first = min(float(row["fallen_at_s"]) for row in rows)
-    assert answer(scene, "first_fall") == pytest.approx(first, rel=1e-8)
+    assert answer(scene, "first_fall") == approx(first, rel=1e-8)
     # those that lay below turn over once, about any axis; how far the upper ones roll on depends on
     # how they strike the ground
     fronts = [(turn * Vector3.UnitY)[2] for turn in scene.turns[:4]]
-    assert fronts == pytest.approx([-1] * 4, abs=1e-3)
+    assert fronts == approx([-1] * 4, abs=1e-3)
     for row, place, turn in zip(rows, scene.places, scene.turns):
         now = [float(row[f"now_{axis}_m"]) for axis in "xyz"]
-        assert now == pytest.approx(place, rel=1e-6, abs=1e-6)
+        assert now == approx(place, rel=1e-6, abs=1e-6)
         assert float(row["loose_at_s"]) < float(row["fallen_at_s"])
         turned = math.degrees(2 * math.acos(min(1, abs(turn[3]))))
-        assert float(row["turned_deg"]) == pytest.approx(turned, abs=1e-3)
+        assert float(row["turned_deg"]) == approx(turned, abs=1e-3)
         # no stone is faster than one that falls from the top, and slides at 0.4 g as long
         fell = math.sqrt(2 * GRAVITY * 5 * SIDE)
         assert (
@@ -139,15 +139,15 @@ def test_a_shaken_wall_goes_on_while_its_top_falls(tmp_path):
     fell = [one["fell"] for one in scene.model.fallen().values()]
     assert min(fell) < answer(scene, "noticed_at")
     times = scene.results.column("time_s")
-    assert answer(scene, "time_of_collapse") == pytest.approx(min(fell) - times[1], abs=0.05)
+    assert answer(scene, "time_of_collapse") == approx(min(fell) - times[1], abs=0.05)
     # the shake is not damped, and what stands when the fall is noticed has the damping of the
     # options from then on
     damped, noticed = scene.results.column("damping_J"), answer(scene, "noticed_at")
     shaken = max(d for d, t in zip(damped, times) if t <= noticed)
-    assert shaken == pytest.approx(damped[1], rel=1e-6) and damped[-1] > 2 * shaken
+    assert shaken == approx(damped[1], rel=1e-6) and damped[-1] > 2 * shaken
 
 
-@pytest.mark.parametrize(
+@mark.parametrize(
     "settings, message",
     [
         (dict(collapse="go on"), "collapse 'go on' must be one of end, follow"),
@@ -157,7 +157,7 @@ def test_a_shaken_wall_goes_on_while_its_top_falls(tmp_path):
     ],
 )
 def test_what_does_not_go_together_is_refused(tmp_path, capsys, settings, message):
-    with pytest.raises((Refused, SystemExit)) as end:
+    with raises((Refused, SystemExit)) as end:
         column(tmp_path, **settings).settle()
     assert message in str(end.value) + capsys.readouterr().err
 
@@ -171,10 +171,10 @@ def test_contact_takes_the_bed_joint_and_what_set_says(tmp_path, capsys):
         scene.begin()
         contacts = scene.model.contacts
         assert (contacts.friction, contacts.normalStiffness) == (friction, 2e9)
-        assert contacts.tangentialRatio == pytest.approx(0.4)
+        assert contacts.tangentialRatio == approx(0.4)
         assert (contacts.restitution == 0.2) == (friction == 0.6)
         letGo()
-    with pytest.raises(SystemExit):
+    with raises(SystemExit):
         column(tmp_path, "--set=contact.friction=11").settle()
     assert "friction 11.0 - must be at least 0 and at most 10" in capsys.readouterr().err
 
@@ -203,13 +203,13 @@ def test_the_ground_where_the_scene_has_it(tmp_path):
     scene.settle()
     scene.lean(0.55, towards=(-1, 0, 0))  # 0.5 overturns it, 0.6 lets it slide
     corners = [c for n in scene.model.fallen() for c in falling.cornersNow(scene.model, n)]
-    assert min(c[2] for c in corners) == pytest.approx(-1, abs=0.01)
+    assert min(c[2] for c in corners) == approx(-1, abs=0.01)
     # on the low side, too, and along x, to the farthest corner
     reach = -min(c[0] for c in corners)
-    assert answer(scene, "rubble_reach") == pytest.approx(reach, rel=1e-3) and reach > SIDE
-    with pytest.raises(Refused, match="ground: level 1 m must be at most -0.2 m"):
+    assert answer(scene, "rubble_reach") == approx(reach, rel=1e-3) and reach > SIDE
+    with raises(Refused, match="ground: level 1 m must be at most -0.2 m"):
         column(tmp_path).ground(1.0)
-    with pytest.raises(Refused, match="only a scene with collapse='follow'"):
+    with raises(Refused, match="only a scene with collapse='follow'"):
         column(tmp_path, collapse="end").ground(-1.0)
 
 
@@ -229,9 +229,9 @@ def test_a_tilt_stays_when_the_block_that_it_overturned_lies(tmp_path):
         for axis in "yz"
     )
     slope = scene.results.column("load_factor")[-1]
-    assert slope > 0.25 and y == pytest.approx(-slope * z, rel=0.01)
+    assert slope > 0.25 and y == approx(-slope * z, rel=0.01)
     weight = 4 * SIDE**3 * DENSITY * GRAVITY
-    assert math.hypot(y, z) == pytest.approx(weight, rel=0.01)
+    assert math.hypot(y, z) == approx(weight, rel=0.01)
 
 
 def test_without_follow_the_run_ends_where_it_fell(tmp_path):
@@ -260,4 +260,4 @@ def test_what_is_released_keeps_its_momentum_and_nothing_brakes_its_flight(tmp_p
         assert braked < (1e-3 if stage == "run" else 0.05) * energy
         assert max(abs(v) for v in column("balance_error")) < 1e-3
         kinetic = max(fall["most"] for fall in scene.model.fallen().values())
-        assert kinetic == pytest.approx(energy - braked, rel=0.01)
+        assert kinetic == approx(energy - braked, rel=0.01)

@@ -43,12 +43,12 @@ def test_a_rope_pulls_with_its_weight_and_is_known_everywhere(tmp_path):
     scene.settle()
     scene.finish()
     run, curve = readRun(tmp_path), readCurve(tmp_path)
-    assert curve["rope1_force_kN"][-1] == pytest.approx(0.3, rel=1e-4)
+    assert curve["rope1_force_kN"][-1] == approx(0.3, rel=1e-4)
     assert run["ropes"][0]["prestress_N"] == 300 and run["ties"][0]["name"] == tie.name
     shear = next(n for n in curve if n.startswith("section") and "_V_x" in n)
     # the rope to the ground crosses the section, and so does what it pulls through the joint
     assert abs(curve[shear][-1]) < 1e-3
     both = curve["base_force_x_kN"][-1] + curve["tie0_force_kN"][-1]
-    assert abs(both) == pytest.approx(0.3, rel=0.02)
+    assert abs(both) == approx(0.3, rel=0.02)
     assert abs(curve["balance_error"][-1]) < 1e-8
     assert made.state == "elastic"

@@ -118,12 +118,12 @@ def test_a_wall_of_the_law_goes_on_from_a_checkpoint(environment, tmp_path):
 
     joints = readFrame(whole, "joints")
     mobilised, normal = joints["mobilised_friction"], joints["normal_stress"]
-    assert mobilised.max() == pytest.approx(1, abs=1e-9)
+    assert mobilised.max() == approx(1, abs=1e-9)
     assert joints["slip"][mobilised > 1 - 1e-9].max() > 0
     crack = joints["kind"] == readRun(whole)["kinds"].index("crack")
     friction = np.where(crack, 0.75, 0.43)[mobilised > 0]  # of masonry.materials
     shear = (-normal * mobilised)[mobilised > 0] * friction
-    assert shear == pytest.approx(joints["shear_stress"][mobilised > 0], rel=1e-9)
+    assert shear == approx(joints["shear_stress"][mobilised > 0], rel=1e-9)
     assert joints["damage_tension"].max() == 0  # there is no bond
 
 
@@ -137,7 +137,7 @@ def test_the_law_runs_in_a_study(environment, tmp_path):
     assert "coulomb" in table and "softening" in table
 
 
-@pytest.mark.parametrize("script", [FUNCTORS, FALLING], ids=["functor", "collapse"])
+@mark.parametrize("script", [FUNCTORS, FALLING], ids=["functor", "collapse"])
 def test_the_law_has_a_functor_and_falls(environment, tmp_path, script):
     (tmp_path / "script.py").write_text(script)
     run = runProgram(str(tmp_path / "script.py"), env=environment, check=False)

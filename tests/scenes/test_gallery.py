@@ -34,9 +34,9 @@ def test_every_scene_is_of_the_gallery_or_published_and_the_manual_has_it():
     assert [link for link in links if link not in manual] == []
 
 
-@pytest.mark.parametrize(
+@mark.parametrize(
     "name",
-    [pytest.param(n, marks=[pytest.mark.long] * (n in LONGEST)) for n in GALLERY],
+    [pytest.param(n, marks=[mark.long] * (n in LONGEST)) for n in GALLERY],
 )
 def test_a_scene_of_the_gallery(runScene, name):
     _, out = runScene(name, "--quick", "--rate", "100")

@@ -98,7 +98,7 @@ def noLocks(file, how):
     raise OSError(errno.ENOLCK, "No locks available")
 
 
-@pytest.mark.parametrize("locks", [True, False])
+@mark.parametrize("locks", [True, False])
 def test_a_folder_is_for_one_run_at_a_time(finished, monkeypatch, capsys, locks):
     """Also where the file system has no locks, as some network folders: then the text of the file
     counts."""
@@ -183,7 +183,7 @@ def test_odd_names_and_terminals_end_in_order(tmp_path):
     odd = os.fsencode(tmp_path) + b"/caf\xe9"
     report = runProgram("couplet", "--out", os.fsdecode(odd), check=False)
     assert report.returncode == 2 and "is not UTF-8" in report.stderr
-    with pytest.raises(Refused, match="its name is not UTF-8"):
+    with raises(Refused, match="its name is not UTF-8"):
         Results(os.fsdecode(odd), ["a_mm"])
     assert not os.path.exists(odd)
 

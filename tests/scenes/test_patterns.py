@@ -25,7 +25,7 @@ def pier(folder, *words, stone=STONE):
     return scene, *handles
 
 
-@pytest.mark.parametrize("pattern", ["masses", "triangle", "place"])
+@mark.parametrize("pattern", ["masses", "triangle", "place"])
 def test_a_pier_turns_about_its_toe_at_the_force_by_hand(tmp_path, pattern):
     scene, top, middle = pier(tmp_path)
     heights = np.array([(n + 0.5) * HEIGHT / 6 for n in range(6)])
@@ -37,11 +37,11 @@ def test_a_pier_turns_about_its_toe_at_the_force_by_hand(tmp_path, pattern):
     scene.push(shape, 1.5, rate=1, control=top)
     scene.finish()
     curve = scene.curve()
-    assert bound["factor"] == pytest.approx(expected, rel=1e-4)
+    assert bound["factor"] == approx(expected, rel=1e-4)
     assert readRun(tmp_path)["first_period_s"] > 0
-    assert curve["base_shear_kN"][-1] == pytest.approx(expected, rel=0.02)
+    assert curve["base_shear_kN"][-1] == approx(expected, rel=0.02)
     moment, shear = curve["base_M_y_kNm"][-1], curve["base_V_x_kN"][-1]
-    assert moment / shear == pytest.approx(lever, rel=0.01)
+    assert moment / shear == approx(lever, rel=0.01)
 
 
 def test_forces_on_targets_keep_their_shares_and_do_the_work_of_the_push(tmp_path):
@@ -51,9 +51,9 @@ def test_forces_on_targets_keep_their_shares_and_do_the_work_of_the_push(tmp_pat
     above, below = (curve[f"{n}_force_x_kN"] for n in ("top", "middle"))
     assert np.allclose(below, 3 * above, rtol=1e-9) and abs(above[-1]) > 0.1
     assert np.allclose(-above - below, curve["top_shear_kN"], rtol=1e-9)
-    assert curve["displacement_mm"][-1] == pytest.approx(1, abs=0.02)
+    assert curve["displacement_mm"][-1] == approx(1, abs=0.02)
     moved = curve["middle_x_mm"][-1] - curve["middle_x_mm"][1]
-    assert curve["displacement_mm"][-1] == pytest.approx(moved, abs=1e-3)
+    assert curve["displacement_mm"][-1] == approx(moved, abs=1e-3)
     assert max(map(abs, curve["balance_error"])) < 1e-8
 
 
@@ -80,7 +80,7 @@ def test_a_drive_in_a_pattern_is_let_go_before_another_one_begins(tmp_path):
     triangle = patternOf(scene, "triangle", Vector3.UnitX, scene.args)
     with scene:
         for what, name in ((triangle, "triangle"), (top, "top")):
-            with pytest.raises(ValueError, match=f"a drive holds {name} or some"):
+            with raises(ValueError, match=f"a drive holds {name} or some"):
                 pushTo(scene.model.loading, what, top, Vector3.UnitX)
         assert "holds the structure" in scene.bound(towards=(1, 0, 0))["note"]
         scene.release(middle, "x")
@@ -88,7 +88,7 @@ def test_a_drive_in_a_pattern_is_let_go_before_another_one_begins(tmp_path):
         scene.push("triangle", 0.2, control=top)
 
 
-@pytest.mark.parametrize(
+@mark.parametrize(
     "pattern, sentence",
     [
         ("triangel", "did you mean|must be a platen"),
@@ -99,7 +99,7 @@ def test_a_drive_in_a_pattern_is_let_go_before_another_one_begins(tmp_path):
 )
 def test_patterns_that_are_none_are_refused(tmp_path, pattern, sentence):
     scene, top, _ = pier(tmp_path)
-    with pytest.raises(Refused, match=sentence):
+    with raises(Refused, match=sentence):
         scene.push(pattern, 1, control=top)
 
 
@@ -113,7 +113,7 @@ def test_every_pattern_has_its_own_bound_and_curve(tmp_path):
     heights = np.array([top.point[2], middle.point[2]])
     expected = [1e-3 * WEIGHT * WIDTH / 2 / (heights @ s) for s in ([0.1, 0.9], [1, 0])]
     data = RunData.read(tmp_path)
-    assert len(data.pushes) == 1 and max(data[MOVED]) == pytest.approx(0.3, abs=0.02)
+    assert len(data.pushes) == 1 and max(data[MOVED]) == approx(0.3, abs=0.02)
     # the force works on the mean of both points, not on the displacement of the control
     assert data.isOfControl and "push_work_J" not in readRun(tmp_path)
     scene, top, middle = pier(tmp_path / "bound", "--preset", "bound")
@@ -122,7 +122,7 @@ def test_every_pattern_has_its_own_bound_and_curve(tmp_path):
     scene.push({top: 1, middle: 1e-9}, 1)
     scene.finish()
     found = [one["factor"] for one in readRun(tmp_path / "bound")["bounds"]]
-    assert found == pytest.approx(expected, rel=1e-4)
+    assert found == approx(expected, rel=1e-4)
 
 
 def test_a_push_ends_where_another_part_gives_way_than_the_control(tmp_path):
@@ -139,5 +139,5 @@ def test_a_vertical_column_is_no_displacement_of_a_level_push(tmp_path):
     scene.push({top: 2, middle: 1}, 0.3)
     scene.finish()
     assert pushover(tmp_path, "middle_x_mm").displacement[-1] < 0.25
-    with pytest.raises(Refused, match="along the push: displacement_mm"):
+    with raises(Refused, match="along the push: displacement_mm"):
         pushover(tmp_path, "middle_z_mm")

@@ -39,21 +39,21 @@ def water(level):
 # -- forces on faces -------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("plane", [None, False])
+@mark.parametrize("plane", [None, False])
 def test_the_resultant_of_water_acts_at_a_third_of_its_depth(plane):
     """Force γ h²/2 a metre, moment about the foot γ h³/6, whatever the height of the blocks."""
     dam = described(bricks.stack(4, (1.0, 0.8, 0.5)), plane)
     force, moment = moments(pressed(dam, water(2)), (0, 0.4, 0))
-    assert force == pytest.approx([0.8 * WATER * 2**2 / 2, 0, 0], abs=1e-8)
-    assert moment == pytest.approx([0, 0.8 * WATER * 2**3 / 6, 0], abs=1e-8)
+    assert force == approx([0.8 * WATER * 2**2 / 2, 0, 0], abs=1e-8)
+    assert moment == approx([0, 0.8 * WATER * 2**3 / 6, 0], abs=1e-8)
 
 
 def test_a_pressure_that_varies_to_both_sides_turns_a_face_without_pushing_it():
     """p = a y + b z from the middle of a face: moments a w h³/12 and the like, and no force."""
     block = described(bricks.block((0, -0.5, -1), (1, 0.5, 1)), False)
     force, moment = moments(pressed(block, lambda x, y, z: 300 * y + 700 * z))
-    assert force == pytest.approx(np.zeros(3), abs=1e-9)
-    assert moment == pytest.approx([0, 700 * 1 * 2**3 / 12, -300 * 2 / 12], abs=1e-9)
+    assert force == approx(np.zeros(3), abs=1e-9)
+    assert moment == approx([0, 700 * 1 * 2**3 / 12, -300 * 2 / 12], abs=1e-9)
 
 
 def test_what_a_joint_covers_of_a_face_has_no_pressure():
@@ -61,8 +61,8 @@ def test_what_a_joint_covers_of_a_face_has_no_pressure():
     blocks = bricks.block((0, 0, 0), (1, 1, 2)) + bricks.block((-1, 0, 0), (0, 1, 1))
     found = pressed(described(blocks, False), water(2))
     high = moments([one for one in found if one.brick == 0], (0, 0.5, 0))
-    assert high[0][0] == pytest.approx(WATER / 2)
-    assert high[1][1] == pytest.approx(WATER / 2 * (1 + 1 / 3))
+    assert high[0][0] == approx(WATER / 2)
+    assert high[1][1] == approx(WATER / 2 * (1 + 1 / 3))
 
 
 def test_snow_weighs_its_pressure_times_the_area_in_plan(tmp_path):
@@ -72,24 +72,24 @@ def test_snow_weighs_its_pressure_times_the_area_in_plan(tmp_path):
     scene = made(tmp_path, arch)
     total = scene.pressure(1200, (0, 0, -1), part="arch", normal=False)
     # the outside of the arch is a polygon whose corners lie on the circle
-    assert total == pytest.approx((0, 0, -1200 * 4.6 * 0.5), abs=1e-6)
+    assert total == approx((0, 0, -1200 * 4.6 * 0.5), abs=1e-6)
     x, y, z = scene.pressure(water(3), (0, 0, -1), part="arch")
-    assert x == pytest.approx(0, abs=1e-6)
+    assert x == approx(0, abs=1e-6)
     # by Gauss: the weight of the water between the polygon and its surface
     polygon = 0.5 * 21 * 2.3**2 * math.sin(math.pi / 21)
-    assert z == pytest.approx(-WATER * 0.5 * (3 * 4.6 - polygon), rel=1e-9)
+    assert z == approx(-WATER * 0.5 * (3 * 4.6 - polygon), rel=1e-9)
 
 
 def test_a_level_within_a_face_is_found_within_a_part_of_it():
     dam = described(bricks.stack(2, (1.0, 0.8, 1.0)))
     force, _ = moments(pressed(dam, water(1.37)))
-    assert force[0] == pytest.approx(0.8 * WATER * 1.37**2 / 2, rel=4e-3)
+    assert force[0] == approx(0.8 * WATER * 1.37**2 / 2, rel=4e-3)
 
 
 # -- runs ------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("words", [[], ["--preset", "bound"]])
+@mark.parametrize("words", [[], ["--preset", "bound"]])
 def test_a_dam_of_blocks_tips_over_under_the_water_of_statics(tmp_path, words):
     """A dam of b × h tips about its foot under the factor f of a water level at its crown: W b/2 =
     f γ t h³/6."""
@@ -100,7 +100,7 @@ def test_a_dam_of_blocks_tips_over_under_the_water_of_statics(tmp_path, words):
     scene.finish()
     limit = DENSITY * G * b * h * b / 2 / (WATER * h**3 / 6)
     (bound,) = readRun(tmp_path)["bounds"]
-    assert bound["factor"] == pytest.approx(limit, rel=2e-3) and bound["exact"]
+    assert bound["factor"] == approx(limit, rel=2e-3) and bound["exact"]
     assert words or 0.98 * limit < scene.factor < 1.002 * limit
 
 
@@ -110,7 +110,7 @@ def test_water_that_rises_in_stages_replaces_what_was_there(tmp_path):
     pushed = lambda: 1e3 * scene.results.column("base_force_x_kN")[-1]
     for level in (1.0, 1.5, 0.5):
         assert scene.pressure(water(level), (1, 0, 0)) == AT_REST
-        assert pushed() == pytest.approx(WATER * level**2 / 2, rel=0.01)
+        assert pushed() == approx(WATER * level**2 / 2, rel=0.01)
     assert scene.pressure(0, (1, 0, 0)) == AT_REST
     assert abs(pushed()) < 10
 
@@ -128,9 +128,9 @@ def test_two_loads_in_proportion_tip_a_stack_at_the_factor_of_statics(tmp_path):
     weight = DENSITY * G * 0.3 * 0.3 * 0.6
     # about the edge at x = 0.3: W 0.15 + 300 (1 + f) 0.3 + 200 f 0.3 = f 1000 0.39
     limit = (weight * 0.15 + 300 * 0.3) / (1000 * 0.39 - (300 + 200) * 0.3)
-    assert scene.factor == pytest.approx(limit, rel=0.01)
+    assert scene.factor == approx(limit, rel=0.01)
     (bound,) = readRun(tmp_path)["bounds"]
-    assert bound["factor"] == pytest.approx(limit, rel=2e-3)
+    assert bound["factor"] == approx(limit, rel=2e-3)
 
 
 def bridge(folder, *words):
@@ -158,7 +158,7 @@ def test_an_axle_goes_over_an_arch_and_leaves_nothing(tmp_path):
     # what is elastic comes back
     assert answers["displacement_after"] < 0.05 * -answers["largest_displacement"]
     bounds = [b["factor"] for b in run["bounds"]]
-    assert bounds == pytest.approx(bounds[::-1], rel=1e-3)
+    assert bounds == approx(bounds[::-1], rel=1e-3)
     assert answers["least_bound"] == min(bounds) < bounds[2]
 
 
@@ -167,8 +167,8 @@ def test_the_bound_of_a_load_that_travels_is_that_of_one_that_stands_there(tmp_p
     scene.grow({crown: (0, 0, -1e5)})
     scene.finish()
     *travels, alone = [b["factor"] for b in readRun(tmp_path)["bounds"]]
-    assert travels[2] == pytest.approx(alone, rel=1e-6)
-    assert travels == pytest.approx(travels[::-1], rel=1e-3)
+    assert travels[2] == approx(alone, rel=1e-6)
+    assert travels == approx(travels[::-1], rel=1e-3)
 
 
 def test_a_load_that_travels_stands_on_the_highest_face_below(tmp_path):
@@ -176,9 +176,9 @@ def test_a_load_that_travels_stands_on_the_highest_face_below(tmp_path):
     description = described(blocks, False)
     below = lambda point: pressures.placesBelow(description, [point])
     for x, brick, z in ((0.1, 2, 0.6), (0.5, 3, 0.2)):
-        assert below((x, 0.1, 5)) == [(brick, (x, 0.1, pytest.approx(z)))]
+        assert below((x, 0.1, 5)) == [(brick, (x, 0.1, approx(z)))]
     for point in ((0.9, 0.1, 5), (0.5, 0.1, 0.1)):
-        with pytest.raises(ValueError, match="no face that looks up is below"):
+        with raises(ValueError, match="no face that looks up is below"):
             below(point)
 
 
@@ -192,8 +192,8 @@ def test_pressures_that_are_no_numbers_and_loads_that_are_none_are_refused(tmp_p
         (1.0, {"part": "roof"}, "'roof' must be one of stack"),
         (1.0, {"towards": (0, 1, 0)}, "the scene is in the x-z plane"),
     ):
-        with pytest.raises(ValueError, match=message):
+        with raises(ValueError, match=message):
             scene.pressure(pressure, **{"towards": (1, 0, 0), **settings})
     scene.settle()
-    with pytest.raises(ValueError, match="must say what grows"):
+    with raises(ValueError, match="must say what grows"):
         scene.grow({})

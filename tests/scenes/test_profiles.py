@@ -28,9 +28,9 @@ def test_a_rigid_beam_follows_supports_that_move_on_a_slope(tmp_path):
     scene.settle()
     curve = scene.curve()
     sunk = [curve[f"f{n}_z_mm"][-1] for n in range(4)]
-    assert sunk == pytest.approx([-1, -3, -5, -7], rel=1e-6)
-    assert curve["beam_z_mm"][-1] == pytest.approx(-3, abs=0.02)
-    assert curve["beam_rotation_mrad"][-1] == pytest.approx(4, abs=0.02)
+    assert sunk == approx([-1, -3, -5, -7], rel=1e-6)
+    assert curve["beam_z_mm"][-1] == approx(-3, abs=0.02)
+    assert curve["beam_rotation_mrad"][-1] == approx(4, abs=0.02)
 
 
 def test_a_lost_pier_leaves_its_load_to_the_others(tmp_path):
@@ -40,7 +40,7 @@ def test_a_lost_pier_leaves_its_load_to_the_others(tmp_path):
     scene.settle()
     half = -0.5e-3 * DENSITY * G * 1.5 * 0.2 * 0.4
     ends = [scene.curve()[f"f{n}_force_z_kN"][-1] for n in range(3)]
-    assert ends == pytest.approx([half, 0, half], rel=0.01, abs=1e-3)
+    assert ends == approx([half, 0, half], rel=0.01, abs=1e-3)
 
 
 def test_the_gap_under_a_beam_is_a_crack_of_every_row_and_of_its_groups(tmp_path):
@@ -50,7 +50,7 @@ def test_the_gap_under_a_beam_is_a_crack_of_every_row_and_of_its_groups(tmp_path
     scene.finish()
     run, curve = readRun(tmp_path), scene.curve()
     widest = run["largest_crack_mm"]
-    assert widest == pytest.approx(7, rel=0.01)
+    assert widest == approx(7, rel=0.01)
     assert run["damage_class"] == 3
     groups = dict.fromkeys(("bed", "part beam", "part block"), widest)
     assert run["largest_cracks_mm"] == groups
@@ -61,7 +61,7 @@ def test_the_gap_under_a_beam_is_a_crack_of_every_row_and_of_its_groups(tmp_path
     assert (gap > -late - 0.05).all() and (gap < 0.05).all() and len(set(crack)) > 5
 
 
-@pytest.mark.parametrize(
+@mark.parametrize(
     "last, z, message",
     [
         (4, -5, "value 3 of the list.*must be a platen or brick of this scene that is held"),
@@ -71,7 +71,7 @@ def test_the_gap_under_a_beam_is_a_crack_of_every_row_and_of_its_groups(tmp_path
 )
 def test_what_cannot_be_moved_is_refused(tmp_path, last, z, message):
     scene, footings, beam = footed(tmp_path, 3)
-    with pytest.raises(ValueError, match=message):
+    with raises(ValueError, match=message):
         scene.move([*footings, beam][:last], z=z)
 
 
@@ -91,7 +91,7 @@ def tower(folder, plane=None):
     return scene, top
 
 
-@pytest.mark.parametrize("plane", [None, False])
+@mark.parametrize("plane", [None, False])
 def test_a_tower_on_a_soil_without_tension_turns_as_by_hand(tmp_path, plane):
     """With the eccentricity e = H h/W beyond the kern, the soil carries on c = 3 (b/2 - e) with a
     triangle of stresses: W = k/b θ c²/2."""
@@ -104,7 +104,7 @@ def test_a_tower_on_a_soil_without_tension_turns_as_by_hand(tmp_path, plane):
     for _ in range(20):
         c = 3 * (SIDE / 2 - e * above / HIGH - theta * above / 2)
         theta = 2 * weight * SIDE / (SOIL * c**2)
-    assert turned == pytest.approx(1e3 * theta, rel=0.01 if plane is None else 0.03)
+    assert turned == approx(1e3 * theta, rel=0.01 if plane is None else 0.03)
     assert turned > 1.5 * 1e3 * 12 * weight * e / (SOIL * SIDE**2)  # with tension
 
 
@@ -118,4 +118,4 @@ def test_a_soil_without_tension_that_shakes_lets_the_tower_rock(tmp_path):
     force = scene.curve()["base_force_z_kN"]
     assert np.abs(scene.curve()["top_rotation_mrad"]).max() > 4
     assert force.max() <= 1e-9
-    assert force[-1] == pytest.approx(-1e-3 * WEIGHT, rel=0.02)
+    assert force[-1] == approx(-1e-3 * WEIGHT, rel=0.02)

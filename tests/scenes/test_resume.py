@@ -110,7 +110,7 @@ def resumed(script, whole):
     assert stopped.differences(stopped.left(whole), stopped.left("stopped")) == []
 
 
-@pytest.mark.parametrize(
+@mark.parametrize(
     "name, shares",
     [
         ("stages", (0.4, 0.6, 0.97)),
@@ -135,11 +135,11 @@ def test_a_run_stopped_again_and_again(here, name, shares):
     resumed(script, "whole")
 
 
-LONG = [[], [pytest.mark.long]]
+LONG = [[], [mark.long]]
 SEEDS = [pytest.param(SEED + n, marks=LONG[n >= SCRIPTS // 4]) for n in range(SCRIPTS)]
 
 
-@pytest.mark.parametrize("seed", SEEDS)
+@mark.parametrize("seed", SEEDS)
 def test_a_script_stopped_and_resumed_leaves_what_an_unbroken_one_leaves(here, seed):
     dice = random.Random(f"{seed} stop")
     for trial in range(100):

@@ -23,7 +23,7 @@ def test_a_top_that_keeps_its_height_presses_more_when_the_pier_rocks(tmp_path):
     scene.hold(top, "zY")
     scene.push(top, 2)
     force, up, turned = (scene.curve()[f"top_{n}"] for n in ("force_z_kN", "z_mm", "rotation_mrad"))
-    assert force[1] == pytest.approx(PRESSED, rel=1e-3)
+    assert force[1] == approx(PRESSED, rel=1e-3)
     assert np.ptp(up[1:]) == np.ptp(turned[1:]) == 0
     assert force.max() > 1.1 * PRESSED
 
@@ -36,7 +36,7 @@ def test_a_top_whose_force_is_kept_rises_when_the_pier_rocks(tmp_path):
     assert up[-1] - up[1] > 0.3
 
 
-@pytest.mark.parametrize("height", [0.5, 0.75])
+@mark.parametrize("height", [0.5, 0.75])
 def test_the_moment_is_zero_where_the_drive_of_a_free_top_acts(tmp_path, height):
     point = (LENGTH / 2, THICKNESS / 2, height * HEIGHT)
     scene, top = pier(tmp_path, point=point, recorded=HEIGHT)
@@ -48,16 +48,16 @@ def test_the_moment_is_zero_where_the_drive_of_a_free_top_acts(tmp_path, height)
     assert np.allclose(lever, height * HEIGHT, atol=0.03 * HEIGHT)
 
 
-@pytest.mark.parametrize("rotation", ["free", "held"])
+@mark.parametrize("rotation", ["free", "held"])
 def test_drifts_are_over_the_height_of_what_turns_or_of_bricks(tmp_path, rotation):
     scene, top = pier(tmp_path, rotation)
     scene.cycle(top, [0.05, 0.1], unit="%")
     scene.finish()
     height = HEIGHT + (0.2 if rotation == "free" else 0)
     found = [a for a, _ in readRun(tmp_path)["history"]["amplitudes_mm"]]
-    assert found == pytest.approx([0.5 * height, height], rel=1e-5)
+    assert found == approx([0.5 * height, height], rel=1e-5)
     moved = scene.curve()["displacement_mm"]
-    assert [-moved.min(), moved.max()] == pytest.approx([height] * 2, abs=0.02)
+    assert [-moved.min(), moved.max()] == approx([height] * 2, abs=0.02)
 
 
 def test_a_handle_of_deformable_bricks_is_a_rigid_one_that_can_be_pushed(tmp_path):
@@ -70,10 +70,10 @@ def test_a_handle_of_deformable_bricks_is_a_rigid_one_that_can_be_pushed(tmp_pat
     scene.push(top, 0.2)
     assert top.body not in scene.model.zones.bodies
     assert len(scene.model.zones.bodies) == len(wall) - 1
-    assert scene.curve()["brick_x_mm"][-1] == pytest.approx(0.2, abs=0.02)
+    assert scene.curve()["brick_x_mm"][-1] == approx(0.2, abs=0.02)
 
 
 def test_a_platen_is_not_held_along_an_axis_without_a_column_for_its_reaction(tmp_path):
     scene, top = pier(tmp_path)
-    with pytest.raises(ValueError, match="no column for its reaction along x"), scene:
+    with raises(ValueError, match="no column for its reaction along x"), scene:
         scene.hold(top, "x")

@@ -2,8 +2,6 @@
 """Records one after the other on one structure: what remains after each, by hand, and a run that is
 stopped within one."""
 
-import csv
-
 from hosted import *
 import stopped
 
@@ -53,11 +51,11 @@ def test_a_slab_slides_with_every_pulse_and_keeps_its_period(tmp_path, monkeypat
     numbers = lambda name: np.array(rows[name], float)
     x = numbers("residual_slab_x_mm")
     slips = np.cumsum([slip(PULSE), slip(PULSE / 2), -slip(PULSE)])
-    assert x == pytest.approx(-slips, abs=0.03 * slip(PULSE))
-    assert x[1] - x[0] == pytest.approx(-slip(PULSE / 2), rel=0.5)
+    assert x == approx(-slips, abs=0.03 * slip(PULSE))
+    assert x[1] - x[0] == approx(-slip(PULSE / 2), rel=0.5)
     # sways on its joint; it hardly turns
     swings = 2 * math.pi * math.sqrt(DENSITY * HIGH / STIFFNESS)
-    assert numbers("first_period_s") == pytest.approx(swings, rel=0.05)
+    assert numbers("first_period_s") == approx(swings, rel=0.05)
     assert [*numbers("peak_m_per_s2")] == [PULSE, PULSE / 2, PULSE]
     assert {*rows["ended"]} == {"done"}
     # stopped within the second record, the run goes on and leaves the same
@@ -77,12 +75,12 @@ def test_a_sequence_ends_with_the_record_in_which_the_structure_falls(tmp_path):
     settings = dict(every=EVERY, after=2.0, unit="m/s²")
     ends = scene.shakeAgain(records, scales=[0.1, 3, 1], **settings)
     assert ends == table(tmp_path)["ended"] == [DONE, COLLAPSED]
-    with pytest.raises(ValueError, match="2 scales for 3 records"):
+    with raises(ValueError, match="2 scales for 3 records"):
         scene.shakeAgain(records, scales=[1, 2])
 
 
 def test_options_for_the_record_of_one_shake_are_refused(tmp_path):
     scene = standing(tmp_path, bricks.stack(1, (SIDE, SIDE, HIGH)), None, "--scale", "2")
     scene.settle()
-    with pytest.raises(ValueError, match="give records and scales here"):
+    with raises(ValueError, match="give records and scales here"):
         scene.shakeAgain([pulse()], every=EVERY)

@@ -3,7 +3,7 @@
 small the load is."""
 
 from hosted import *
-from masonry.stages import growing, rest
+from masonry.stages import rest
 
 SIDE, HEIGHT, DENSITY = 2.0, 20.0, 2000.0  # [m], [m], [kg/m³]
 #: Weight times the height of the middle [N m]: a soil that is less stiff per radian does not hold
@@ -29,7 +29,7 @@ def test_a_tower_leans_as_its_soil_gives_way_and_waits_for_its_slow_period(tmp_p
     moment = pressure * SIDE * HEIGHT**2 / 2
     leans = moment / (stiffness - OVERTURNING)
     moved = 1e3 * leans * 0.75 * HEIGHT  # in the middle of the upper stone
-    assert scene.curve()["top_x_mm"][-1] == pytest.approx(moved, rel=0.03)
+    assert scene.curve()["top_x_mm"][-1] == approx(moved, rel=0.03)
 
 
 def test_a_tower_that_its_soil_does_not_hold_upright_is_not_at_rest(tmp_path, capsys):
@@ -38,8 +38,8 @@ def test_a_tower_that_its_soil_does_not_hold_upright_is_not_at_rest(tmp_path, ca
     assert "buckles" in capsys.readouterr().out
 
 
-@pytest.mark.parametrize("length, height", [(8.0, 1.0), (1.0, 8.0)])
-@pytest.mark.parametrize("place", [(0, 0, 0), (30, 0, -10)])
+@mark.parametrize("length, height", [(8.0, 1.0), (1.0, 8.0)])
+@mark.parametrize("place", [(0, 0, 0), (30, 0, -10)])
 def test_the_slowest_period_is_that_of_rocking(tmp_path, length, height, place):
     """T = 2π √(I / (k - W h/2)), with the inertia I = m (l²/12 + h²/3) about the soil."""
     wall = bricks.Wall(length, height, (0.5, 0.3, 0.25), halves=False).moved(*place)
@@ -50,29 +50,10 @@ def test_the_slowest_period_is_that_of_rocking(tmp_path, length, height, place):
     scene.begin()
     inertia = mass * (length**2 / 12 + height**2 / 3)
     expected = 2 * math.pi * math.sqrt(inertia / (stiffness / 2))
-    assert scene.model.supports.slowest() == pytest.approx(expected, rel=0.03)
+    assert scene.model.supports.slowest() == approx(expected, rel=0.03)
 
 
-@pytest.mark.parametrize("soil, seconds", [(0.0, growing.TRIAL), (2.0, 20.0)])
-def test_a_trial_puts_its_load_on_in_a_slow_period_and_waits_for_ten(soil, seconds):
-    O.dt, loads, nothing = 1e-3, [], lambda *words: None
-    model, scene = SimpleNamespace(loading=SimpleNamespace()), SimpleNamespace()
-    model.supports = SimpleNamespace(unrest=lambda: (1.0, 1.0), slowest=lambda: soil)
-    model.motion = SimpleNamespace(checkFall=nothing, fastest=lambda far: 0.0)
-    scene.args, scene.model = SimpleNamespace(density_scaling=1.0), model
-    scene.description = SimpleNamespace(low=(0, 0, 0), high=(0, 0, 1))
-    scene.running = SimpleNamespace(advance=nothing)
-    load = SimpleNamespace(
-        put=loads.append, at=lambda began, share: share, shareOf=lambda factor: factor
-    )
-    trial = growing.Trial(0.0, 1.0)
-    search = growing._Search(scene, growing.Growing(trial=trial), load, 0.01)
-    assert search._wait() is growing.Reason.MOVING
-    assert trial.steps * O.dt == pytest.approx(seconds)
-    assert loads.index(1.0) + 1 == max(1, soil / (O.dt * rest.EVERY))
-
-
-@pytest.mark.parametrize("plane, slender", [(True, False), (False, True)])
+@mark.parametrize("plane, slender", [(True, False), (False, True)])
 def test_a_thin_wall_is_slender_unless_it_stays_in_its_plane(plane, slender):
     box = SimpleNamespace(low=(0, 0, 0), high=(1.0, 0.125, 1.0), plane=plane)
     supports = SimpleNamespace(slowest=lambda: 0.0)
@@ -87,7 +68,7 @@ def test_small_horizontal_loads_must_be_carried_on_their_own(tmp_path):
     for across, missing in ((0.5, 0.5e-3), (2.0, 1.0)):  # of a load of 1 kN
         supports.applied = lambda: Vector3(across, 0, -1000)
         supports.carried = lambda: Vector3(0, 0, 1000)
-        assert supports.unrest()[0] == pytest.approx(missing, rel=1e-3)
+        assert supports.unrest()[0] == approx(missing, rel=1e-3)
 
 
 def test_a_wall_that_is_soft_sinks_far_and_slowly_and_has_not_fallen(tmp_path):
@@ -100,7 +81,7 @@ def test_a_wall_that_is_soft_sinks_far_and_slowly_and_has_not_fallen(tmp_path):
     scene.press(scene.platen("top", guided="x"), pressure)
     assert scene.settle() == AT_REST
     sinks = 5 * pressure / stiffness + sum(range(1, 5)) * DENSITY * G * side / stiffness
-    assert scene.curve()["top_z_mm"][-1] == pytest.approx(-1e3 * sinks, rel=0.01)
+    assert scene.curve()["top_z_mm"][-1] == approx(-1e3 * sinks, rel=0.01)
 
 
 def test_a_press_over_rollers_keeps_its_line_while_what_it_presses_leans(tmp_path):
@@ -113,5 +94,5 @@ def test_a_press_over_rollers_keeps_its_line_while_what_it_presses_leans(tmp_pat
     assert scene.settle() == AT_REST
     load = scene.model.loading.loads["roof_force"]
     moved = load.displacement()[0]
-    middle = pytest.approx(SIDE / 2, abs=1e-2 * moved)
+    middle = approx(SIDE / 2, abs=1e-2 * moved)
     assert moved > 1e-3 and load.point[0] + moved == middle

@@ -14,7 +14,7 @@ def sample(stage, count):
     return random.Random(f"{SEED} {stage}").sample(cells, count)
 
 
-@pytest.mark.parametrize("stage", statics.STAGES)
+@mark.parametrize("stage", statics.STAGES)
 def test_a_stage_obeys_newton_or_says_why_it_is_refused(stage):
     for cell in sample(stage, 1):
         try:
@@ -32,7 +32,7 @@ def test_every_stage_has_a_cell_that_is_allowed():
         assert statics.carryOut(cell) is None, cell
 
 
-@pytest.mark.parametrize(
+@mark.parametrize(
     "spoil, message",
     [
         (lambda s: s.model.loading.loads.pop("top_force"), "from outside"),
@@ -49,7 +49,7 @@ def test_the_oracle_sees_a_fault(monkeypatch, spoil, message):
         return ended
 
     monkeypatch.setattr(statics, "act", spoiled)
-    with pytest.raises(statics.Wrong, match=message):
+    with raises(statics.Wrong, match=message):
         statics.carryOut(("run", "free", "x", "rigid", "softening"))
 
 

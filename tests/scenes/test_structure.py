@@ -35,9 +35,9 @@ def test_the_drive_stops_when_its_stage_ends(tmp_path):
     scene.run(0.05)
     answer = next(a for a in scene.answers if a["name"].endswith("_x_at_the_end"))
     assert answer["unit"] == "mm"
-    assert answer["value"] == pytest.approx(last(scene, "top_x_mm"))
+    assert answer["value"] == approx(last(scene, "top_x_mm"))
     scene.lean(0.02)
-    assert last(scene, "top_x_mm") == pytest.approx(0.05, abs=0.01)
+    assert last(scene, "top_x_mm") == approx(0.05, abs=0.01)
 
 
 def test_a_platen_presses_what_it_touches(tmp_path):
@@ -48,7 +48,7 @@ def test_a_platen_presses_what_it_touches(tmp_path):
     tops = [b for b in blocks.top() if b.part == "wall"]
     area = sum((b.high[0] - b.low[0]) * (b.high[1] - b.low[1]) for b in tops)
     carried = -1e3 * last(scene, "base_force_z_kN")
-    assert carried == pytest.approx(1e5 * area + STONE * blocks.volume, rel=6e-3)
+    assert carried == approx(1e5 * area + STONE * blocks.volume, rel=6e-3)
 
 
 def test_a_guided_platen_has_its_share_of_the_force(tmp_path):
@@ -57,26 +57,26 @@ def test_a_guided_platen_has_its_share_of_the_force(tmp_path):
     scene.settle()
     assert scene.lean(0.2) == AT_REST
     both = last(scene, "base_force_x_kN") + last(scene, "top_force_x_kN")
-    assert both == pytest.approx(1e-3 * 0.2 * STONE * 0.4 * 0.3 * 0.6, rel=0.01)
-    assert last(scene, "base_shear_kN") == pytest.approx(both, rel=1e-6)
+    assert both == approx(1e-3 * 0.2 * STONE * 0.4 * 0.3 * 0.6, rel=0.01)
+    assert last(scene, "base_shear_kN") == approx(both, rel=1e-6)
 
 
 def test_a_resumed_script_has_the_same_words_and_rows(tmp_path, capsys):
     whole, _ = small(tmp_path)
     whole.finish()
     assert 0 < whole.rowsAtRest < len(whole.results.rows)
-    with pytest.raises(SystemExit, match="2"):
+    with raises(SystemExit, match="2"):
         small(tmp_path, "--resume", str(tmp_path), press=2e5)
     assert "the script said" in capsys.readouterr().err
     scene, _ = small(tmp_path, "--resume", str(tmp_path), push=0.08)  # farther
     assert scene.rowsAtRest == whole.rowsAtRest
-    assert last(scene, "displacement_mm") == pytest.approx(0.08, abs=0.01)
+    assert last(scene, "displacement_mm") == approx(0.08, abs=0.01)
 
 
 def test_two_scenes_at_once_are_refused(tmp_path):
     one, _ = small(tmp_path / "one")
     small(tmp_path / "two")
-    with pytest.raises(ValueError, match="scene small is gone"):
+    with raises(ValueError, match="scene small is gone"):
         one.lean(0.1)
 
 
@@ -93,7 +93,7 @@ def notGrown(scene):
     scene.push(top, 1)
 
 
-@pytest.mark.parametrize(
+@mark.parametrize(
     "act, message",
     [
         (lambda s: s.platen("bottom", rotation="free"), "the bottom is fixed"),
@@ -109,11 +109,11 @@ def notGrown(scene):
     ],
 )
 def test_wrong_words_before_the_first_stage_are_refused(tmp_path, act, message):
-    with pytest.raises(ValueError, match=message):
+    with raises(ValueError, match=message):
         act(lean(tmp_path, THREE, materials.calciumSilicate()))
 
 
-@pytest.mark.parametrize(
+@mark.parametrize(
     "act, message",
     [
         (lambda s, t: s.bracket(lambda f: True, 0.2, 0.3), "carries 0.3, the upper"),
@@ -125,14 +125,14 @@ def test_wrong_words_before_the_first_stage_are_refused(tmp_path, act, message):
     ],
 )
 def test_wrong_stages_are_refused(tmp_path, act, message):
-    with pytest.raises(ValueError, match=message):
+    with raises(ValueError, match=message):
         act(*small(tmp_path))
 
 
 def test_nothing_held_and_wind_on_deformable_bricks_are_refused(tmp_path):
-    with pytest.raises(SystemExit, match="2"):
+    with raises(SystemExit, match="2"):
         lean(tmp_path, TWO).settle()
-    with pytest.raises(Refused, match="wind: it loads rigid bricks"):
+    with raises(Refused, match="wind: it loads rigid bricks"):
         lean(tmp_path, TWO, blocks="deformable").wind(500, (1, 0, 0))
 
 
@@ -141,7 +141,7 @@ def test_a_block_that_is_tilted_beyond_its_diagonal_falls(tmp_path):
     scene = standing(tmp_path, block, materials.dry(friction=5, normalStiffness=1e10))
     scene.settle()
     assert scene.tilt(45, rate=3) == COLLAPSED
-    assert scene.factor == pytest.approx(0.5, rel=0.01)
+    assert scene.factor == approx(0.5, rel=0.01)
     assert scene.run(0.1) == COLLAPSED
     scene.stepBack()
     assert scene.lean(0.48) == AT_REST
@@ -159,7 +159,7 @@ def test_a_property_varies_from_place_to_place(tmp_path):
     found = {i.geom.polygon[0][2]: i.phys.joint.cohesion for i in beds}
     assert len(found) >= 9
     for height, cohesion in found.items():
-        assert cohesion == pytest.approx(0.11e6 * (1 + height), rel=5.1e-3)
+        assert cohesion == approx(0.11e6 * (1 + height), rel=5.1e-3)
 
 
 # -- supports that go, wind, drift, pushes that go on, records -------------------------------------
@@ -179,9 +179,9 @@ def test_a_support_is_released_and_the_other_one_carries_all(tmp_path):
     scene.run(0.2)
     weight = 1e-3 * STONE * 1.0 * 0.2 * 0.2
     # the leg has fallen off, and hangs on nothing: the joint has no tensile strength
-    assert carried("leg0") + carried("leg1") == pytest.approx(weight, rel=0.05)
+    assert carried("leg0") + carried("leg1") == approx(weight, rel=0.05)
     assert last(scene, "leg2_z_mm") < -50
-    with pytest.raises(ValueError, match="release: leg2 is not held along x"):
+    with raises(ValueError, match="release: leg2 is not held along x"):
         scene.release(right, "x")
 
 
@@ -197,9 +197,9 @@ def test_a_drive_that_is_released_leaves_a_force(tmp_path):
     top = scene.platen("top", drive="xz")
     scene.pressJoint(top, scene.joint(0, 1), -1e5)
     scene.run(0.05)
-    assert last(scene, "joint0_normal_stress_MPa") == pytest.approx(-0.1, rel=1e-3)
-    assert last(scene, "base_force_z_kN") == pytest.approx(-12, rel=1e-3)
-    with pytest.raises(ValueError, match="top has drives along x, z alone, not along"):
+    assert last(scene, "joint0_normal_stress_MPa") == approx(-0.1, rel=1e-3)
+    assert last(scene, "base_force_z_kN") == approx(-12, rel=1e-3)
+    with raises(ValueError, match="top has drives along x, z alone, not along"):
         scene.push(top, 1, direction=(1, 0, 1))
 
 
@@ -209,19 +209,19 @@ def test_a_second_push_in_another_direction_does_not_let_go(tmp_path):
     scene.press(top, 1e5)
     scene.settle()
     scene.push(top, 0.02)
-    with pytest.raises(ValueError, match="would let go of it to push along"):
+    with raises(ValueError, match="would let go of it to push along"):
         scene.push(top, 0.02, direction=(0, 1, 0))
 
 
 def test_a_push_goes_on_from_where_the_one_before_began(tmp_path):
     scene, top = small(tmp_path)
     scene.push(top, 0.08, continued=True)
-    assert last(scene, "displacement_mm") == pytest.approx(0.08, abs=0.01)
+    assert last(scene, "displacement_mm") == approx(0.08, abs=0.01)
     assert len(scene.running.state.stages) == 3
-    assert last(scene, "top_x_mm") == pytest.approx(0.08, abs=0.01)
+    assert last(scene, "top_x_mm") == approx(0.08, abs=0.01)
     scene.push(top, 0.03)
-    assert last(scene, "top_x_mm") == pytest.approx(0.11, abs=0.01)
-    with pytest.raises(ValueError, match="continued: top has not been pushed along"):
+    assert last(scene, "top_x_mm") == approx(0.11, abs=0.01)
+    with raises(ValueError, match="continued: top has not been pushed along"):
         scene.push(top, 1, direction=(-1, 0, 0), continued=True)
 
 
@@ -231,7 +231,7 @@ def test_storey_drift_is_the_difference_of_two_floors(tmp_path):
     base, top = scene.platen("bottom"), scene.platen("top")
     floor = scene.watch((0.2, 0.15, 0.4), name="floor")
     scene.drift(base, floor, name="first"), scene.drift(floor, top)
-    with pytest.raises(ValueError, match="drift: base at z = -0.2 m must be above top"):
+    with raises(ValueError, match="drift: base at z = -0.2 m must be above top"):
         scene.drift(top, base)
     scene.press(top, 1e5)
     scene.settle()
@@ -239,8 +239,8 @@ def test_storey_drift_is_the_difference_of_two_floors(tmp_path):
     names = "first_x_mm floor_x_mm top_x_mm top_drift_x_mm top_drift_x_mrad"
     first, below, above, drift, angle = (last(scene, name) for name in names.split())
     assert first == below > 0
-    assert drift == pytest.approx(above - below)
-    assert angle == pytest.approx(drift / 0.6)
+    assert drift == approx(above - below)
+    assert angle == approx(drift / 0.6)
 
 
 def test_wind_overturns_a_wall_at_the_pressure_of_statics(tmp_path):
@@ -252,18 +252,18 @@ def test_wind_overturns_a_wall_at_the_pressure_of_statics(tmp_path):
         stiff = materials.dry(normalStiffness=2e12)
         scene = standing(tmp_path, blocks, stiff, plane=False)
         area = scene.wind(share * limit, towards=(0, 1, 0))
-        assert area == pytest.approx(0.44 * 0.81)
+        assert area == approx(0.44 * 0.81)
         assert scene.settle(longest=4) == ends
         assert scene.model.energy.largestError < 1e-3
         if ends == AT_REST:
             force = 1e-3 * share * limit * area
-            assert last(scene, "base_force_y_kN") == pytest.approx(force, rel=0.01)
+            assert last(scene, "base_force_y_kN") == approx(force, rel=0.01)
             letGo()
-    with pytest.raises(SystemExit, match="1"):  # since it fell in settle()
+    with raises(SystemExit, match="1"):  # since it fell in settle()
         scene.finish()
 
 
-@pytest.mark.parametrize("stage", ["tilt", "accelerate"])
+@mark.parametrize("stage", ["tilt", "accelerate"])
 def test_scaled_masses_leave_the_weight_of_a_structure_that_leans(tmp_path, stage):
     """Four times the masses under a fourth of gravity weigh the same, and feel a fourth of the
     acceleration."""
@@ -276,12 +276,12 @@ def test_scaled_masses_leave_the_weight_of_a_structure_that_leans(tmp_path, stag
         scene.accelerate(0.1, rate=0.2)
     weight = 1e-3 * STONE * 0.4 * 0.3 * 0.6  # [kN]
     weight *= math.cos(angle) if stage == "tilt" else 1
-    assert last(scene, "base_force_z_kN") == pytest.approx(-weight, rel=0.02)
-    assert last(scene, "base_force_x_kN") == pytest.approx(0.1 * weight, rel=0.05)
-    assert scene.factor == pytest.approx(0.1, rel=0.01)
+    assert last(scene, "base_force_z_kN") == approx(-weight, rel=0.02)
+    assert last(scene, "base_force_x_kN") == approx(0.1 * weight, rel=0.05)
+    assert scene.factor == approx(0.1, rel=0.01)
     scene.finish()
     material = readRun(tmp_path)["unit_material"]
-    assert material["density_kg_per_m3"] == pytest.approx(2600)
+    assert material["density_kg_per_m3"] == approx(2600)
 
 
 def test_columns_are_read_as_often_in_a_run_of_many_rows(tmp_path, monkeypatch):
@@ -304,11 +304,11 @@ def test_columns_are_read_as_often_in_a_run_of_many_rows(tmp_path, monkeypatch):
 
 def test_a_platen_below_edges_alone_is_refused(tmp_path):
     dome = bricks.Dome(3.0, 0.25, courses=4, stones=8, angle=90, oculus=0.4)
-    with pytest.raises(ValueError, match="no horizontal side of a brick lies at the"):
+    with raises(ValueError, match="no horizontal side of a brick lies at the"):
         standing(tmp_path, dome)
 
 
-@pytest.mark.parametrize("plane", [True, False], ids=["plane", "space"])
+@mark.parametrize("plane", [True, False], ids=["plane", "space"])
 def test_what_moves_in_its_plane_is_seen_there_also_if_it_is_deep(tmp_path, plane):
     scene = standing(tmp_path, bricks.stack(2, (0.3, 1.0, 0.5)), plane=plane)
     scene.begin()

@@ -31,7 +31,7 @@ def test_the_tutorial_is_these_notebooks_without_outputs():
             assert not cell.get("outputs") and cell.get("execution_count") is None
 
 
-@pytest.mark.parametrize("name", NOTEBOOKS)
+@mark.parametrize("name", NOTEBOOKS)
 def test_a_notebook_runs_from_top_to_bottom(tmp_path, name):
     pytest.importorskip("nbconvert", reason="jupyter-nbconvert is not installed")
     pytest.importorskip("ipykernel", reason="python3-ipykernel is not installed")

@@ -21,7 +21,7 @@ CASES = sorted(path.parent.name for path in pathlib.Path(studies.HERE).glob("*/c
 QUICK = [case for case in CASES if "quick" in studies.readCase(case)]
 
 
-@pytest.mark.parametrize("case", QUICK)
+@mark.parametrize("case", QUICK)
 def test_the_quick_variant_holds_its_limits(case, tmp_path, capsys):
     assert validate.main([case, "quick", "--results", str(tmp_path)]) == 0
     assert "MISSED" not in capsys.readouterr().out
@@ -47,13 +47,13 @@ def test_every_limit_is_an_interval():
 
 
 def test_an_unknown_run_is_refused(capsys):
-    with pytest.raises(SystemExit) as refused:
+    with raises(SystemExit) as refused:
         validate.main(["wall_comp4", "soft"])
     assert refused.value.code == 2
     assert "no run soft; there are rigid, deformable" in capsys.readouterr().err
 
 
-@pytest.mark.parametrize("row", ROWS, ids=lambda row: row.name)
+@mark.parametrize("row", ROWS, ids=lambda row: row.name)
 def test_a_variation_changes_joints_within_their_bounds(row):
     assert row.low or row.high
     for text in (row.low, row.high):
@@ -61,7 +61,7 @@ def test_a_variation_changes_joints_within_their_bounds(row):
         applySettings(materials.calciumSilicateJoints(), args.set)
 
 
-@pytest.mark.parametrize("axis", [a for a in stability.AXES if "COMP-4" not in a])
+@mark.parametrize("axis", [a for a in stability.AXES if "COMP-4" not in a])
 def test_walls_at_the_extremes_are_stable_or_stopped_with_a_reason(axis):
     """Of the stability map: rigid units at both ends of each axis, deformable ones in its
     middle."""
@@ -83,7 +83,7 @@ def test_energy_that_joints_make_is_an_error_of_the_balance():
     assert "the run says so" in found["why"]
 
 
-@pytest.mark.parametrize("blocks", observed.BLOCKS)
+@mark.parametrize("blocks", observed.BLOCKS)
 def test_a_panel_in_other_units_turned_and_renumbered(blocks):
     units = dict(length=1e-3, stress=1e6)
     order = dict(turn=invariance.TURN, shuffle=True, mirror=blocks == "rigid")

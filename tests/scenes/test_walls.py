@@ -77,27 +77,15 @@ def test_frames_show_units_and_subcontacts_with_their_state(squat):
     blocks, joints = readFrame(squat, "blocks"), readFrame(squat, "joints")
     assert len(blocks["cells"]) == 1226
     assert len(joints["cells"]) > 7350  # three a joint, more where it yields
-    assert blocks["displacement"][:, 0].max() == pytest.approx(4e-3, rel=0.02)
+    assert blocks["displacement"][:, 0].max() == approx(4e-3, rel=0.02)
     # No displacement out of the plane of the wall.
     assert np.abs(blocks["displacement"][:, 1]).max() < 1e-12
     area = 35 * 3.96 * 0.102 + 34 * 35 * 0.081 * 0.102
-    assert joints["area"].sum() == pytest.approx(area, rel=1e-9)
+    assert joints["area"].sum() == approx(area, rel=1e-9)
     for name, values in joints.items():
         assert name == "cells" or np.all(np.isfinite(values)), name
     assert set(np.unique(joints["regime"])) <= {0, 1, 2, 3}
     assert set(readRun(squat)["kinds"]) == {"support", "bed", "head", "crack"}
-
-
-def test_the_squat_wall_cracks_along_its_diagonal(squat):
-    joints = readFrame(squat, "joints")
-    centres = np.array([joints["points"][c].mean(axis=0) for c in joints["cells"]])
-    # Head joints.
-    opened = (np.abs(joints["normal"][:, 0]) > 0.5) & (joints["opening"] > 0.05e-3)
-    course = np.floor(centres[opened, 2] / 0.081).astype(int)
-    steps = sorted(set(course))
-    assert len(steps) > 17  # more than half of the courses
-    at = [centres[opened, 0][course == c].mean() for c in steps]
-    assert np.corrcoef(steps, at)[0, 1] < -0.7  # from the top left to the bottom right
 
 
 def test_deformable_units_carry_the_weight_and_keep_the_balance(tmp_path):
@@ -105,13 +93,13 @@ def test_deformable_units_carry_the_weight_and_keep_the_balance(tmp_path):
     weight = 6 * 3 * 0.22 * 0.102 * 0.081 * 1800 * 9.81
     load = 0.5e6 * 0.66 * 0.102 + weight
     carried = O.forces.f(model.description.targets["base"].body, True)[2]
-    assert carried == pytest.approx(-load, rel=rest.REST)
+    assert carried == approx(-load, rel=rest.REST)
     run.push(top)
     assert max(run.results.column("base_shear_kN")) > 5
     assert model.energy.largestError < 1e-3
 
 
-@pytest.mark.parametrize("blocks", ["rigid", "deformable"])
+@mark.parametrize("blocks", ["rigid", "deformable"])
 def test_density_scaling_is_another_rate(tmp_path, blocks):
     """Four times the mass at half the rate: the same run in twice the time, bit for bit, as these
     are powers of two."""
@@ -123,31 +111,25 @@ def test_density_scaling_is_another_rate(tmp_path, blocks):
         curves.append(run.results.column)
     one, other = curves
     assert len(one("time_s")) > 20
-    assert other("time_s") == pytest.approx([2 * t for t in one("time_s")], rel=1e-9)
+    assert other("time_s") == approx([2 * t for t in one("time_s")], rel=1e-9)
     for name in ("displacement_mm", "base_shear_kN", "dissipated_shear_J"):
         assert one(name) == other(name)
 
 
-@pytest.mark.parametrize("name", options.PRESETS)
-def test_a_preset_runs_and_says_what_it_promises(runScene, name):
-    words = ["--preset", name, "--until", "0.3", "--no-vtk"]
-    process, out = runScene("wall_comp1", *words)
+@mark.parametrize(
+    "name, scene, note",
+    [("fast", "wall_comp1", "of 44 walls"), ("accurate", "wall_dry", "without a promise")],
+)
+def test_a_preset_runs_and_says_what_it_promises(runScene, name, scene, note):
+    process, out = runScene(scene, "--preset", name, "--until", "0.3", "--no-vtk")
     run = readRun(out)
     assert run["preset"]["name"] == name
-    note = {"fast": "of 44 walls", "accurate": "without a promise"}[name]
     assert len(re.findall(f"preset {name}:? {note}", process.stdout)) == 2
     chosen = options.PRESETS[name]
     assert {option: run["options"][option] for option in chosen} == chosen
 
 
-def test_a_dry_wall_takes_a_preset_without_a_promise(runScene):
-    words = ["--preset", "accurate", "--until", "0.2", "--no-vtk"]
-    process, out = runScene("wall_dry", *words)
-    assert "without a promise" in process.stdout
-    assert readRun(out)["options"]["blocks"] == "deformable"
-
-
-@pytest.mark.parametrize(
+@mark.parametrize(
     "words, cure",
     [
         ("--until 10 --rate 800", "--rate"),
@@ -176,7 +158,7 @@ def test_a_reading_that_is_not_finite_ends_the_run(tmp_path, monkeypatch):
         return reading
 
     monkeypatch.setattr(readings, "Reading", broken)
-    with pytest.raises(FloatingPointError, match="finite numbers in vertical_mm"):
+    with raises(FloatingPointError, match="finite numbers in vertical_mm"):
         carryOut(SMALL, parsed("--no-vtk", "--until", "0.5", "--out", str(tmp_path)))
     assert len(readCurve(tmp_path)["time_s"]) == 19
     assert "finite numbers in vertical_mm" in readRun(tmp_path)["error"]

@@ -13,7 +13,7 @@ from test_checkpoints import CANTILEVER, LOOPS, PUSH, files, interrupt, refused,
 from test_checkpoints import at  # noqa: F401: a fixture
 
 
-@pytest.mark.parametrize(
+@mark.parametrize(
     "wall, words",
     [
         (SMALL, "--rate 2 --density-scaling 100"),
@@ -28,12 +28,12 @@ def test_a_wall_turns_at_its_amplitudes_and_ends_at_zero(tmp_path, wall, words):
     moved = arrays(tmp_path)["displacement_mm"]
     turns = moved[loops.turningPoints(moved, 0.05)]
     wanted = [0, 0.1, -0.1, 0.3, -0.3, 0.3, -0.3, 1, -1, 0]
-    assert turns == pytest.approx(wanted, abs=0.01)
+    assert turns == approx(wanted, abs=0.01)
     made = readRun(tmp_path)
     step = made["time_step_s"] * made["options"]["rate"]  # [mm]
     # rows are ROW_EVERY apart, in whole time steps
     assert np.abs(np.diff(moved)).max() <= 0.0101 + step
-    assert moved[-1] == pytest.approx(0, abs=0.01)
+    assert moved[-1] == approx(0, abs=0.01)
 
 
 def test_a_measured_history_with_noise_is_followed_through_its_turns(tmp_path):
@@ -51,7 +51,7 @@ def test_a_measured_history_with_noise_is_followed_through_its_turns(tmp_path):
     data = arrays(tmp_path)
     moved = data["displacement_mm"]
     found = moved[loops.turningPoints(moved, 0.01)]
-    assert found == pytest.approx([0, *turns], abs=0.005)
+    assert found == approx([0, *turns], abs=0.005)
     # Every row goes to a point of the file, and the points come in turn.
     assert (data["target_mm"] == points[data["point"].astype(int) - 1]).all()
     assert data["point"][0] == 1 and data["point"][-1] >= len(points) - 1
@@ -88,7 +88,7 @@ def test_a_push_is_the_history_of_one_point(tmp_path):
     rows = np.flatnonzero(push["displacement_mm"] < 1 - 20 * rest.RAMP / 2)
     assert len(rows) > 80 and set(loop) - set(push) == {"point", "target_mm"}
     for name in ("time_s", "displacement_mm", "base_shear_kN"):
-        assert loop[name][rows] == pytest.approx(push[name][rows], rel=1e-6, abs=1e-6)
+        assert loop[name][rows] == approx(push[name][rows], rel=1e-6, abs=1e-6)
 
 
 @pytest.fixture(scope="module")
@@ -103,16 +103,16 @@ def test_run_json_tells_the_history_and_the_cycles(looped):
     text, data = readRun(looped), arrays(looped)
     assert not set(text) - set(re.findall(r"``(\w+)``", results.__doc__))
     assert text["history"]["amplitudes_mm"] == [[0.1, 1], [0.5, 2], [2.0, 1]]
-    assert text["history"]["path_mm"] == pytest.approx(4 * 3.1)
+    assert text["history"]["path_mm"] == approx(4 * 3.1)
     assert text["options"]["history"] == "0.1,0.5x2,2" and not text["collapsed"]
     shear = data["base_shear_kN"]
     for name, side in (("", 1), ("negative_", -1)):
         both = np.minimum(side * shear, side * data["top_shear_kN"])
         own = side * data["displacement_mm"] >= 0
         peak = side * text[f"{name}peak_at_both_ends_kN"]
-        assert peak == pytest.approx(both[own].max(), rel=1e-8)
+        assert peak == approx(both[own].max(), rel=1e-8)
         at = np.flatnonzero(own)[both[own].argmax()]
-        assert text[f"{name}peak_base_shear_kN"] == pytest.approx(shear[at], rel=1e-8)
+        assert text[f"{name}peak_base_shear_kN"] == approx(shear[at], rel=1e-8)
     assert text["displacement_at_negative_peak_mm"] < 0
     answers = {one["name"]: one["value"] for one in text["answers"]}
     assert answers["negative_peak"] == text["negative_peak_at_both_ends_kN"]
@@ -120,17 +120,17 @@ def test_run_json_tells_the_history_and_the_cycles(looped):
     amplitudes, works, losses = (
         [c[n] for c in cycles] for n in ("amplitude_mm", "work_J", "dissipated_J")
     )
-    assert amplitudes == pytest.approx([0.1, 0.5, 0.5, 2], abs=0.01)
+    assert amplitudes == approx([0.1, 0.5, 0.5, 2], abs=0.01)
     whole = loops.work(data["displacement_mm"], shear)
-    assert sum(works) == pytest.approx(whole, rel=0.01)
+    assert sum(works) == approx(whole, rel=0.01)
     parts = [data[f"dissipated_{m}_J"] for m in ("tension", "shear", "compression")]
     lost = sum(np.ptp(part) for part in parts)
-    assert sum(losses) == pytest.approx(lost, rel=0.01)
+    assert sum(losses) == approx(lost, rel=0.01)
     assert lost > 10  # it is cracked, not elastic
     assert text["energy_balance_error"] < 1e-6
     for cycle, one, other in zip(cycles, [0, 6, 9, 12], [3, 9, 12, 15]):
         rows = slice(*cycle["rows"])
-        assert cycle["largest_kN"] == pytest.approx(shear[rows].max(), rel=1e-3)
+        assert cycle["largest_kN"] == approx(shear[rows].max(), rel=1e-3)
         assert cycle["rows"][0] < cycle["rows"][1] < len(shear)
 
 
@@ -146,7 +146,7 @@ def test_what_the_drive_puts_into_a_cycle_is_lost_or_stored(looped):
         lifted = vertical * grown("vertical_mm") * 1e-3 - grown("gravity_J")
         spent = cycle["dissipated_J"] + cycle["damped_J"] + stored + lifted
         spent += grown("kinetic_J")
-        assert cycle["top_work_J"] == pytest.approx(spent, rel=0.03, abs=0.05)
+        assert cycle["top_work_J"] == approx(spent, rel=0.03, abs=0.05)
 
 
 def test_figures_and_measures_show_both_sides(looped, monkeypatch, capsys):
@@ -171,7 +171,7 @@ def test_figures_and_measures_show_both_sides(looped, monkeypatch, capsys):
     for name in ("diagonal_reach", "crushed_volume_cm3"):
         assert np.isfinite(numbers[name + "_mirrored"])
     mirrored = numbers["crushed_volume_cm3_mirrored"]
-    assert mirrored == pytest.approx(numbers["crushed_volume_cm3"])
+    assert mirrored == approx(numbers["crushed_volume_cm3"])
     measure.show(str(looped))
     table = capsys.readouterr().out.split(" cycle ")[1].splitlines()
     assert len(table) == 5 and table[4].split()[0] == "4"
@@ -230,7 +230,7 @@ def test_a_loop_that_unloads_is_no_collapse_and_a_lost_side_is_one():
     assert row(-6.1, -11, -1) and not row(-6.1, -13, -1)
 
 
-@pytest.mark.parametrize("side", [1, -1])
+@mark.parametrize("side", [1, -1])
 def test_a_wave_at_the_base_is_no_collapse(side):
     at = pushing.Pushing(moved=2.0 * side)
     # the base of a soft wall lags behind
@@ -238,7 +238,7 @@ def test_a_wave_at_the_base_is_no_collapse(side):
     assert at.hasLost(side, -0.5 * side, -0.1 * side)
 
 
-@pytest.mark.parametrize("whole, most", [(5.0, 1.0), (50.0, 5.0)])
+@mark.parametrize("whole, most", [(5.0, 1.0), (50.0, 5.0)])
 def test_how_far_a_wall_may_move_against_its_push(whole, most):
     """A tenth of a short path would be a vibration, so it is a millimetre at least."""
     for back, retreats in ((0.98 * most, False), (1.02 * most, True)):
@@ -285,10 +285,10 @@ def test_a_file_can_be_extended_and_need_not_be_there_to_go_on(tmp_path, at):
     assert run(tmp_path / "out", "--history", str(path), resume=True) == 0
     moved = arrays(tmp_path / "out")["displacement_mm"]
     turns = moved[loops.turningPoints(moved, 0.01)]
-    assert turns == pytest.approx([0, 0.2, -0.1, 0.15], abs=0.005)
+    assert turns == approx([0, 0.2, -0.1, 0.15], abs=0.005)
 
 
-@pytest.mark.parametrize(
+@mark.parametrize(
     "began, words, message",
     [
         (LOOPS, "--history 0.1", "0.1,0.25x2, and another one must begin with"),

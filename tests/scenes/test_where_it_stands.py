@@ -76,8 +76,8 @@ def answers(build, folder, stand, towards):
     return {key: value for key, value in found.items() if key not in noise}
 
 
-@pytest.mark.parametrize("place", PLACES)
-@pytest.mark.parametrize("build", [pushedWall, leaningArch, fallingStack])
+@mark.parametrize("place", PLACES)
+@mark.parametrize("build", [pushedWall, leaningArch, fallingStack])
 def test_no_number_depends_on_the_place(tmp_path_factory, build, place):
     folder = tmp_path_factory.getbasetemp() / "here" / build.__name__
     folder.parent.mkdir(exist_ok=True)
@@ -86,5 +86,5 @@ def test_no_number_depends_on_the_place(tmp_path_factory, build, place):
     assert found.keys() == expected.keys() and len(found) >= 4
     for key in found:
         # round-off grows where joints crack, and more where blocks fall
-        near = pytest.approx(expected[key], rel=SCATTER[build], abs=1e-4, nan_ok=True)
+        near = approx(expected[key], rel=SCATTER[build], abs=1e-4, nan_ok=True)
         assert found[key] == near, f"{key}: {found[key]}, here {expected[key]}"
