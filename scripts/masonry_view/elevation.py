@@ -103,7 +103,7 @@ class Structure:
         joints that have the same number of corners. An entry has arrays: the bodies on this side;
         the numbers of the joints; their kinds, as in
         :mod:`masonry_view.painting`; their crushing, or 0 [m]; their corners as built [m]; and how
-            these move with the bodies [m].
+        these move with the bodies [m].
         """
         j, found = self.joints, []
         if not j:
@@ -427,8 +427,7 @@ def cracksOf(run, blocks, joints, when, directory, later=None):
     black. Raises Refused.
 
     :param when: text that names the moment of the frame; ``later`` is as in :func:`figureOf`; the
-        others are those of
-        :func:`structureOf`
+        others are those of :func:`structureOf`
     """
     limits = f"open or slid more than {1e3 * CRACK:g} mm, crushed more than {1e3 * CRUSHED:g} mm"
     title = f"{run['title']}\n{when}\n{{}}; {limits}"

@@ -2,9 +2,8 @@
 """The columns of curve.csv: name, unit, meaning and value of each stand in one place.
 
 Adding a column is adding a line here, to :meth:`masonry.scene.targets.Target.columns` if every
-target shall have it, or to
-:data:`masonry.scene.targets.OF_JOINTS` if every recorded joint shall. ``scene.column`` adds one
-    from a script.
+target shall have it, or to :data:`masonry.scene.targets.OF_JOINTS` if every recorded joint shall.
+``scene.column`` adds one from a script.
 """
 
 from dataclasses import dataclass

@@ -2,8 +2,7 @@
 """Checkpoints: the state of a scene on disk, from which a run goes on as if it had never stopped.
 
 :func:`saveCheckpoint` and :func:`loadCheckpoint` serve any scene. A run in stages leaves its
-    checkpoints by them;
-:mod:`masonry.run.run_state` is what such a checkpoint tells of the run.
+checkpoints by them; :mod:`masonry.run.run_state` is what such a checkpoint tells of the run.
 """
 
 import contextlib
