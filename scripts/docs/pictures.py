@@ -331,9 +331,9 @@ def house():
     axes.text(2.1, 4.95, "masonry, the core", ha="center", fontsize=13, weight="bold")
     axes.text(6.5, 4.95, "four wings", ha="center", fontsize=13, weight="bold")
     for n, (rooms, what) in enumerate(ROOMS.items()):
-        for room in re.findall(r"\w+", rooms):
-            if not glob.glob(os.path.join(SCRIPTS, "masonry", room + "*")):
-                raise ValueError(f"the core has no {room}")
+        for name in re.findall(r"\w+", rooms):
+            if not glob.glob(os.path.join(SCRIPTS, "masonry", name + "*")):
+                raise ValueError(f"the core has no {name}")
         low = 4.25 - 0.52 * n
         box(axes, (0.1, low), 4.0, 0.5)
         axes.text(0.2, low + 0.33, rooms, weight="bold", va="center", fontsize=10.5)

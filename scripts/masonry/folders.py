@@ -4,7 +4,7 @@ them stays in them.
 
 An archive keeps symbolic links. So a file in such a folder is opened for writing by :func:`inside`
 or :func:`replaced` alone, which write through no link, and :func:`check` names all links of a
-folder before anything is written there. ``scripts/FILES.md`` says what may be shared.
+folder before anything is written there. ``scripts/SHARING.md`` says what may be shared.
 """
 
 import contextlib
