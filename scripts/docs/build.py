@@ -44,8 +44,12 @@ FIRST = "First steps"  # the notebooks of the tutorial come before its other pag
 SECTIONS = {
     FIRST: ["scripts/TASKS", "scripts/WALL", "gallery"],
     "Manual": (
-        "scripts/README commands options scripts/STUDIES scripts/FILES"
-        " yade_plugin/FOR_YADE_USERS"
+        "scripts/README commands options scripts/WORDS scripts/FILES scripts/CHECKPOINTS"
+        " scripts/SHARING scripts/RUNNING scripts/STUDIES yade_plugin/FOR_YADE_USERS"
+    ).split(),
+    "Packages": (
+        "scripts/masonry/README scripts/masonry_view/README scripts/masonry_limit/README"
+        " scripts/masonry_capacity/README scripts/masonry_study/README"
     ).split(),
     "Laws": (
         "yade_plugin/law/README yade_plugin/law/cyclic_softening/README"

@@ -3,7 +3,9 @@
 
 import inspect
 import os
+import re
 import sys
+from typing import Annotated, get_args, get_origin
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 
@@ -11,6 +13,8 @@ import kinds
 import masonry
 from docutils import nodes
 from masonry.stages import LATER
+from sphinx.ext.autodoc import DataDocumenter, GenericAliasMixin
+from sphinx.util.typing import restify
 
 #: How what a word is after the first stage begins in its docstring.
 AFTER = "After the first stage:"
@@ -98,6 +102,28 @@ def typesFromChecks(app, what, name, thing, options, lines):
     lines[:] = found
 
 
+class ConstantDocumenter(DataDocumenter):
+    """A constant without its value where that holds functions, and a type with its kind in
+    words."""
+
+    def should_suppress_value_header(self):
+        hasFunctions = "<function" in repr(self.object)
+        return hasFunctions or super().should_suppress_value_header()
+
+    def update_content(self, more_content):
+        if get_origin(self.object) is not Annotated:
+            return super().update_content(more_content)
+        hint, kind = get_args(self.object)[:2]
+        more_content.append(f"{restify(hint)}: {kinds.meaning(kind)}", "")
+        super(GenericAliasMixin, self).update_content(more_content)
+
+
+def functionsByName(app, what, name, thing, options, signature, returns):
+    """A signature whose defaults name functions as a source does."""
+    plain = re.sub(r"<function (?:[^<> ]*\.)?(\w+|<lambda>)>", r"\1", signature or "")
+    return plain.replace("<lambda>", "lambda"), returns
+
+
 def literally(name, raw, text, line, inliner, options=None, content=()):
     """The role of YADE's documentation in which the default of an attribute stands."""
     return [nodes.literal(raw, text)], []
@@ -105,4 +131,6 @@ def literally(name, raw, text, line, inliner, options=None, content=()):
 
 def setup(app):
     app.add_role("ydefault", literally)
+    app.add_autodocumenter(ConstantDocumenter, override=True)
     app.connect("autodoc-process-docstring", typesFromChecks)
+    app.connect("autodoc-process-signature", functionsByName)

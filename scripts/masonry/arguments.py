@@ -14,6 +14,8 @@ Texts, switches and functions need none; hints of other types without one are no
 problems of a call are in one error, and an unknown argument is answered with the nearest name.
 """
 
+import ast
+import collections.abc
 import contextlib
 import difflib
 import functools
@@ -342,6 +344,28 @@ def validatorOf(hint: Any) -> Validator | None:
     return PLAIN.get(hint)
 
 
+class _WithoutKinds(ast.NodeTransformer):
+    """Leaves of ``Annotated[type, kind]`` the type."""
+
+    def visit_Subscript(self, node):
+        self.generic_visit(node)
+        isAnnotated = isinstance(node.value, ast.Name) and node.value.id == "Annotated"
+        return node.slice.elts[0] if isAnnotated else node
+
+
+def typeOf(hint: Any) -> Any:
+    """A type hint, perhaps a text, without its kinds."""
+    if isinstance(hint, str):
+        return ast.unparse(_WithoutKinds().visit(ast.parse(hint)))
+    if get_origin(hint) is Annotated:
+        return typeOf(get_args(hint)[0])
+    if get_origin(hint) in (Union, UnionType):
+        return Union[tuple(map(typeOf, get_args(hint)))]
+    if get_origin(hint) is collections.abc.Sequence:
+        return Sequence[typeOf(get_args(hint)[0])]  # type: ignore[misc]
+    return hint
+
+
 def validated(act: F) -> F:
     """Let a function, or a class, check its arguments by the validators of its hints.
 
@@ -370,7 +394,9 @@ def validated(act: F) -> F:
         args, settings = checked(args, settings)
         return act(*args, **settings)
 
-    vars(command).update(kinds=kinds, checked=checked)
+    parameters = [p.replace(annotation=typeOf(p.annotation)) for p in signature.parameters.values()]
+    typed = signature.replace(parameters=parameters)  # what help() shows
+    vars(command).update(kinds=kinds, checked=checked, __signature__=typed)
     return cast(F, command)
 
 

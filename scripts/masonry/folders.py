@@ -3,7 +3,7 @@
 through a symbolic link in them.
 
 Files there are written by :func:`inside` or :func:`replaced` alone, after :func:`check` has refused
-the links of a folder. ``scripts/FILES.md`` says what may be shared.
+the links of a folder. ``scripts/SHARING.md`` says what may be shared.
 """
 
 import contextlib

@@ -27,6 +27,8 @@ _COMMANDS = (
     (re.compile(r"\bpython3 (?:-[A-Z] )?-m (masonry\w*(?:\.\w+)*)"), "module"),
     (re.compile(r"\bpython3 (?:-[A-Z] )?((?:[\w.-]+/)+[\w.-]+\.py)"), "script"),
 )
+_PICTURE = re.compile(r"!\[[^\]]*\]\(([^)\s]+)\)")
+LARGEST_PICTURE = 200_000  # bytes
 _MODULE = re.compile(r"`(masonry\w*(?:\.[a-z_]+)+)`")
 _PATH = re.compile(r"`((?:[\w.-]+/)+[\w.-]*)`")
 
@@ -120,6 +122,23 @@ def problems(path, root=tree.ROOT):
         ours = any(os.path.isdir(os.path.join(place, first)) for place in places)
         if ours and not name.startswith(MADE) and not _exists(name, folder, root):
             at(plain, match, f"no file {name}")
+    return found
+
+
+def pictures(path, root=tree.ROOT):
+    """The paths of the pictures that a document shows."""
+    names = _PICTURE.findall(withoutBlocks(tree.read(path, root)))
+    return [os.path.normpath(os.path.join(os.path.dirname(path), name)) for name in names]
+
+
+def largePictures(path, root=tree.ROOT):
+    """What a document shows that is missing or too large, as text."""
+    found = []
+    for picture in pictures(path, root):
+        file = os.path.join(root, picture)
+        size = os.path.getsize(file) if os.path.isfile(file) else None
+        if size is None or size >= LARGEST_PICTURE:
+            found.append(f"{path}: {picture} is {'missing' if size is None else 'too large'}")
     return found
 
 

@@ -3,6 +3,7 @@
 
 from usual import *
 import ast
+import inspect
 
 SCRIPTS = os.path.join(ROOT, "scripts")
 #: Packages of many modules. Those of bricks, limit and study are named by what users call,
@@ -57,3 +58,12 @@ def test_a_module_that_is_not_named_is_seen():
     assert unnamed("masonry.run", helpOf("masonry.run").replace("masonry.run.batch", "")) == {
         "batch"
     }
+
+
+def test_help_shows_the_types_of_arguments_without_their_kinds():
+    from masonry import Scene, bricks, materials
+
+    for thing in (Scene, Scene.push, Scene.shake, Scene.press, bricks.Wall, materials.masonry):
+        shown = str(inspect.signature(thing))
+        assert "Annotated" not in shown and "<function" not in shown, shown
+    assert "until: Optional[float] = None" in str(inspect.signature(Scene.push))

@@ -43,12 +43,12 @@ REASONS = {
     r".*validation/\w+/?\w*\.py": (
         "minutes or hours; tests/scenes/test_validation.py and its like run parts of them"
     ),
-    r".*(masonry\.study|masonry\.study\.report) (validation|results/validation)/": (
+    r".*masonry_study(\.report)? (validation|results/validation)/": (
         "minutes or hours: a study of validation/"
     ),
     r".*wall_comp4\.py --accuracy": "minutes: tests/scenes/test_accuracy.py has a small wall",
     r".*check_host\.py (FOLDER|libyade)": "needs an unpacked YADE of another release",
-    r".*-m masonry\.capacity": "a tenth of a push has no peak: tests/capacity/test_capacity.py",
+    r".*-m masonry_capacity": "a tenth of a push has no peak: tests/capacity/test_capacity.py",
     r"jupyter": "opens a browser",
     r"unshare": "needs namespaces of users, which containers may refuse",
 }
@@ -57,14 +57,14 @@ REPLACED = (
     (r"bash scripts/run\.sh (\w+)", r"yade -n -x scripts/\1.py"),
     (
         (
-            r"^((?:yade -n -x|/usr/bin/python3) (?:scripts/\w+|my_\w+)\.py\b(?!.*--(?:resume|preset"
+            r"^((?:yade -n -x|/usr/bin/python3) (?:scripts/(?:gallery/)?\w+|my_\w+)\.py\b(?!.*--(?:resume|preset"
             r" bound|help)).*)"
         ),
         r"\1 --quick",
     ),
     (r"(/usr/bin/python3 scripts/plot\.py.*) --quick", r"\1"),
     (r"(.*--preset bound)", r"\1 --out results/bound"),
-    (r"(.*scripts/wall_\w+\.py (?:--history|--joint).*)", r"\1 --lean --out results/other"),
+    (r"(.*wall_\w+\.py (?:--history|--joint).*)", r"\1 --lean --out results/other"),
     (r"\bFILE\b", "study.py"),
     (r"\bDIR\b", "study"),
 )
@@ -72,7 +72,7 @@ REPLACED = (
 #: own.
 BLOCKS = {
     "README.md": ["my_scene.py"],
-    "scripts/FILES.md": ["checkpoint.py"],
+    "scripts/CHECKPOINTS.md": ["checkpoint.py"],
     "scripts/STUDIES.md": ["study.py", "ida.py", "couplets.py"],
     "scripts/WALL.md": ["my_wall.py"],
     "yade_plugin/FOR_YADE_USERS.md": ["joints.py"],

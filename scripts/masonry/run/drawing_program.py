@@ -29,7 +29,7 @@ class DrawingProgram:
 
         :returns: what has failed unexpectedly: pairs of a note and a traceback
         :raises Unwritable: if disk or memory is full
-        :raises Failed: if the program has ended before its time
+        :raises masonry.background.Failed: if the program has ended before its time
         """
         try:
             self.begin(directory)

@@ -2,11 +2,11 @@
 """A run in stages, in a folder of results, with checkpoints from which it can be resumed.
 
 A stage steps by :meth:`Run.advance` alone. What it must know to go on after a checkpoint is its
-memory, a dataclass that it gives to :meth:`Run.stage`. A resumed run leaves out the stages that were
-over. A checkpoint is always made at the end of an ``advance`` or between its steps. The resumed
-stage starts from its beginning with the stored memory; its first ``advance`` does the remaining
-steps (perhaps none). So a stage changes its memory after it has advanced, and what it does before
-it advances may be done twice.
+memory, a dataclass that it gives to :meth:`Run.stage`. A resumed run leaves out the stages that
+were over. A checkpoint is always made at the end of an ``advance`` or between its steps. The
+resumed stage starts from its beginning with the stored memory; its first ``advance`` does the
+remaining steps (perhaps none). So a stage changes its memory after it has advanced, and what it
+does before it advances may be done twice.
 """
 
 import contextlib
