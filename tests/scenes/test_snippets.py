@@ -57,8 +57,8 @@ REPLACED = (
     (r"bash scripts/run\.sh (\w+)", r"yade -n -x scripts/\1.py"),
     (
         (
-            r"^((?:yade -n -x|/usr/bin/python3) (?:scripts/(?:gallery/)?\w+|my_\w+)\.py\b(?!.*--(?:resume|preset"
-            r" bound|help)).*)"
+            r"^((?:yade -n -x|/usr/bin/python3) (?:scripts/(?:gallery/)?\w+|my_\w+)\.py\b"
+            r"(?!.*--(?:resume|preset bound|help)).*)"
         ),
         r"\1 --quick",
     ),
