@@ -115,11 +115,11 @@ def figureSaved(figure, name):
     saved(Image.open(path), name)
 
 
-def sheet(height, low, high, **settings):
+def sheet(height, low, high):
     """A figure with axes for a drawing, whose units are equal in both directions."""
     figure = plt.figure(figsize=(WIDTH, height))
     axes = figure.add_axes((0, 0, 1, 1))
-    axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), **settings)
+    axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]))
     axes.set_axis_off()
     return figure, axes
 
@@ -229,40 +229,36 @@ def law():
     bed = materials.calciumSilicateJoints()["bed"]
     scene = os.path.join(SCRIPTS, "gallery", "couplet.py")
     paths = {"opening": [], "shear": "--until 20 --rate 20".split(), "closure": ["--until", "5"]}
-    runs = {p: ran(scene, p, "--path", p, "--lean", *more) for p, more in paths.items()}
-    figure, (tension, shear, compression) = plt.subplots(1, 3, figsize=(WIDTH, 3.5))
-    curve = columns(runs["opening"])
-    tension.plot(1e3 * curve["opening_mm"], curve["normal_stress_MPa"], color=RED)
-    strength = 1e-6 * bed.tensileStrength
-    tension.fill_between(
-        1e3 * curve["opening_mm"], curve["normal_stress_MPa"], color=RED, alpha=0.15
-    )
-    tension.axhline(strength, color=GREY, ls=":", lw=1)
-    tension.set(title="tension", xlabel="opening [µm]", ylabel="normal stress [MPa]")
-    tension.text(0.97, 0.83, f"$f_t$ = {strength:.2f} MPa", transform=tension.transAxes, ha="right")
+    runs = {p: columns(ran(scene, p, "--path", p, "--lean", *more)) for p, more in paths.items()}
+    figure, panels = plt.subplots(1, 3, figsize=(WIDTH, 3.5))
+
+    def drawn(axes, x, stress, colour, until, levels, names):
+        """One panel; ``levels`` are stresses [MPa] with their symbols, the largest first."""
+        top, axis = 1.25 * max(levels), axes.get_yaxis_transform()
+        axes.plot(abs(x), abs(stress), color=colour)
+        axes.set(xlim=(0, until), ylim=(0, top), **dict(zip(("title", "xlabel", "ylabel"), names)))
+        for level, symbol in levels.items():
+            axes.axhline(level, color=GREY, ls=":", lw=1)
+            place = dict(ha="right", va="bottom" if level == max(levels) else "top")
+            axes.text(0.97, level, f"${symbol}$ = {level:.4g} MPa", transform=axis, **place)
+
+    run = runs["opening"]
+    opening, stress = 1e3 * run["opening_mm"], run["normal_stress_MPa"]
+    names = "tension", "opening [µm]", "normal stress [MPa]"
+    drawn(panels[0], opening, stress, RED, 420, {1e-6 * bed.tensileStrength: "f_t"}, names)
+    panels[0].fill_between(opening, stress, color=RED, alpha=0.15)
     text = f"area $G_I$ =\n{bed.modeIFractureEnergy:g} J/m²"
-    tension.text(0.6, 0.5, text, transform=tension.transAxes, color=RED, ha="center")
-    tension.set(xlim=(0, 420), ylim=(0, 1.25 * strength))
+    panels[0].text(250, 0.06, text, color=RED, ha="center")
 
-    curve = columns(runs["shear"])
-    pressed = 0.5  # the default of --normal-stress
-    peak = 1e-6 * bed.cohesion + pressed * bed.friction
-    rest = pressed * bed.residualFriction
-    shear.plot(curve["slide_mm"], abs(curve["shear_stress_MPa"]), color=BLUE)
-    shear.axhline(peak, color=GREY, ls=":", lw=1)
-    shear.axhline(rest, color=GREY, ls=":", lw=1)
-    shear.set(title="shear, pressed by 0.5 MPa", xlabel="slip [mm]", ylabel="shear stress [MPa]")
-    shear.text(19, peak + 0.01, f"$c + \\mu\\,\\sigma$ = {peak:.3f} MPa", ha="right")
-    shear.text(19, rest - 0.03, f"$\\mu\\,\\sigma$ = {rest:.3f} MPa", ha="right")
-    shear.set(xlim=(0, 20), ylim=(0, 1.25 * peak))
+    run, pressed = runs["shear"], 0.5  # the default of --normal-stress
+    levels = {1e-6 * bed.cohesion + pressed * bed.friction: r"c + \mu\,\sigma"}
+    levels[pressed * bed.residualFriction] = r"\mu\,\sigma"
+    names = "shear, pressed by 0.5 MPa", "slip [mm]", "shear stress [MPa]"
+    drawn(panels[1], run["slide_mm"], run["shear_stress_MPa"], BLUE, 20, levels, names)
 
-    curve = columns(runs["closure"])
-    compression.plot(-curve["opening_mm"], -curve["normal_stress_MPa"], color=CRUSHED)
-    strength = 1e-6 * bed.compressiveStrength
-    compression.axhline(strength, color=GREY, ls=":", lw=1)
-    compression.set(title="compression", xlabel="closure [mm]", ylabel="pressure [MPa]")
-    compression.text(3.9, 1.03 * strength, f"$f_c$ = {strength:.2f} MPa", ha="right")
-    compression.set(xlim=(0, 4), ylim=(0, 1.25 * strength))
+    run, levels = runs["closure"], {1e-6 * bed.compressiveStrength: "f_c"}
+    names = "compression", "closure [mm]", "pressure [MPa]"
+    drawn(panels[2], run["opening_mm"], run["normal_stress_MPa"], CRUSHED, 4, levels, names)
     figure.tight_layout()
     figureSaved(figure, "law")
 

@@ -129,6 +129,13 @@ def test_the_page_of_commands_has_every_command_with_unit_and_bounds(pages):
 
 
 @needsSite
+def test_no_page_shows_functions_where_types_and_values_stand(pages):
+    found = [name for name, page in pages.items() if re.search("<function|<locals>", page.text)]
+    assert found == []
+    assert "Annotated" not in pages["commands.html"].text
+
+
+@needsSite
 def test_classes_options_and_gallery_are_those_of_the_code(pages):
     import masonry
     from masonry.scene import options
