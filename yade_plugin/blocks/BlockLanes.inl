@@ -319,45 +319,40 @@ template <class Vectors> inline Vectors weighted(Lanes a, const Vectors& one, La
     return sum;
 }
 
-// A step of units whose masses are scaled, of one part of their lanes. A motion v has a rigid part P v: W v, that of
-// both units together, where they are whole, else H v, that of each for itself. By the scaled masses M* an acceleration
-// M^-1 f becomes P* M^-1 f + (1 - P) M^-1 f / (1 + s), with P* = W where units are whole, else (1 - t) W + t H,
-// t = 1 / (1 + sharedScaling s).
-template <bool plane> class ScaledStep {
-public:
-    ScaledStep(const NodeMotion& motion, double scaling, ScaledUnits* units, int count, const Row& whole, Row* scratch,
-               int part)
+// What the loops over the nodes of units with scaled masses need, of one part of their lanes. Each phase of ScaledStep
+// has a copy, so that the compiler sees that no node's numbers are among these.
+template <bool plane> struct ScaledNodes {
+    static constexpr int directions = plane ? 2 : 3;
+    const NodeMotion m;
+    const double scaling;
+    ScaledUnits* const units;
+    const int count, part;
+    Lanes* const kept; // three numbers for every node and direction
+    const double alpha, share, apart, steady;
+    int direction[3];
+    bool free[3], turns[3];
+
+    ScaledNodes(const NodeMotion& motion, double scaling, ScaledUnits* units, int count, Row* scratch, int part)
         : m(motion),
           scaling(scaling),
           units(units),
           count(count),
           part(part),
           kept(at(scratch, 0)),
-          together(*at(&whole, part)),
-          split(1 - together) {
+          alpha(dampingShare(m.combined) * m.damping),
+          share(1 / (1 + scaling)),
+          apart(1 / (1 + sharedScaling * scaling)),
+          steady(0.5 * m.dt * meanOverStep(m.massDamping, m.dt)) {
         const int across = plane ? units[0].matrix.across : 2;
-        const int axesOfStep[3] = {(across + 1) % 3, (across + 2) % 3, across};
         for (int d = 0; d < 3; ++d) {
-            direction[d] = axesOfStep[d];
+            direction[d] = (across + 1 + d) % 3;
             free[d] = !m.held[direction[d]];
         }
         for (int k = 0; k < 3; ++k)
             turns[k] = plane ? free[0] && free[1] : free[(k + 1) % 3] && free[(k + 2) % 3];
     }
-    void predict();
-    void filter();
-    void correct();
-    void sumUp();
-
-private:
-    using Sums = RigidSums<plane>;
-    using Block = RigidBlock<plane>;
-    using Vector = typename Sums::Vector;
-    using Motion = typename Block::Motion;
-    static constexpr int directions = Sums::directions;
-
     // Calls `visit(x, node, keep)` for all nodes of a unit with the place of the node and its scratch.
-    template <class Visit> [[gnu::always_inline]] void eachNode(int k, Visit&& visit) {
+    template <class Visit> MASONRY_INLINED void eachNode(int k, Visit&& visit) const {
         const auto& unit = units[k];
         Lanes* keep = kept + (k ? 3 * directions * units[0].matrix.nodeCount : 0);
         for (int n = 0; n < unit.matrix.nodeCount; ++n, keep += 3 * directions) {
@@ -370,33 +365,47 @@ private:
             visit(x, n, keep);
         }
     }
-    Lanes weightOf(int k, int n, int d) const {
+    MASONRY_INLINED Lanes weightOf(int k, int n, int d) const {
         return units[k].matrix.masses[n] * m.gravity[direction[d]] * *at(&units[k].present, part);
     }
+};
+
+// A step of units whose masses are scaled, of one part of their lanes. A motion v has a rigid part P v: W v, that of
+// both units together, where they are whole, else H v, that of each for itself. By the scaled masses M* an acceleration
+// M^-1 f becomes P* M^-1 f + (1 - P) M^-1 f / (1 + s), with P* = W where units are whole, else (1 - t) W + t H,
+// t = 1 / (1 + sharedScaling s).
+template <bool plane> class ScaledStep {
+public:
+    ScaledStep(const ScaledNodes<plane>& nodes, const Row& whole)
+        : nodes(nodes), together(*at(&whole, nodes.part)), split(1 - together) {}
+    MASONRY_INLINED void predict();
+    MASONRY_INLINED void filter();
+    MASONRY_INLINED void correct();
+    MASONRY_INLINED void sumUp();
+
+private:
+    using Sums = RigidSums<plane>;
+    using Block = RigidBlock<plane>;
+    using Vector = typename Sums::Vector;
+    using Motion = typename Block::Motion;
+    static constexpr int directions = Sums::directions;
+
     // The rigid motions of momenta: `ofWhole` W + `ofOwn` H.
     void rigidPart(const Vector* v, Lanes ofWhole, Lanes ofOwn, Motion* motions) const {
-        if (count == 1) {
+        if (nodes.count == 1) {
             motions[0] = own[0].motion(v[0]);
             return;
         }
         const Lanes one = Lanes{} + 1;
         const auto whole = both.motion(weighted(one, v[0], one, v[1]));
-        for (int k = 0; k < count; ++k)
+        for (int k = 0; k < nodes.count; ++k)
             motions[k] = weighted(ofWhole, whole, ofOwn, own[k].motion(v[k]));
     }
     Lanes scaled(const Lanes& plain, int k, const Vector* a, const Vector* b) const;
 
-    const NodeMotion& m;
-    const double scaling;
-    ScaledUnits* const units;
-    const int count, part;
-    Lanes* const kept; // three numbers for every node and direction
+    const ScaledNodes<plane> nodes;
     const Lanes together, split;
-    const double alpha = dampingShare(m.combined) * m.damping, share = 1 / (1 + scaling),
-                 apart = 1 / (1 + sharedScaling * scaling), steady = 0.5 * m.dt * meanOverStep(m.massDamping, m.dt);
-    const Lanes left = together + split * (1 - apart);
-    int direction[3];
-    bool free[3], turns[3];
+    const Lanes left = together + split * (1 - nodes.apart);
     Block own[2], both;
     Vector olds[2] = {}, ofRigid[2] = {}, ofRest[2] = {}, means[2] = {}, nows[2] = {}; // momenta
     Motion old[2], half[2], halfScaled[2], forceChange[2], damped[2], rest[2];
@@ -406,78 +415,83 @@ private:
 // Predictor: the rigid parts of the velocities, P v, of their changes in half a step without damping, P dt f / 2M and
 // P* dt f / 2M, and of the changes of the forces.
 template <bool plane> void ScaledStep<plane>::predict() {
+    const auto s = nodes;
     const Lanes zero = {}, one = zero + 1;
     Sums sums[2] = {};
-    for (int k = 0; k < count; ++k) {
-        const auto& unit = units[k];
-        auto& s = sums[k];
-        eachNode(k, [&](const Lanes* x, int n, Lanes*) {
+    for (int k = 0; k < s.count; ++k) {
+        const auto& unit = s.units[k];
+        auto& sum = sums[k];
+        s.eachNode(k, [&](const Lanes* x, int n, Lanes*) {
             const double mass = unit.matrix.masses[n];
             Lanes momentum[directions], impulse[directions], grown[directions];
             for (int d = 0; d < directions; ++d) {
-                const int row = 3 * n + direction[d];
-                momentum[d] = free[d] ? mass * *at(unit.velocities + row, part) : zero;
-                const Lanes force = *at(unit.forces + row, part) + weightOf(k, n, d);
-                impulse[d] = free[d] ? 0.5 * m.dt * force : zero;
-                grown[d] = free[d] ? force - *at(unit.lastForces + row, part) : zero;
-                s.first[d] += mass * x[d];
-                s.velocity.sum[d] += momentum[d];
-                s.half.sum[d] += impulse[d];
-                s.forceChange.sum[d] += grown[d];
+                const int row = 3 * n + s.direction[d];
+                momentum[d] = s.free[d] ? mass * *at(unit.velocities + row, s.part) : zero;
+                const Lanes force = *at(unit.forces + row, s.part) + s.weightOf(k, n, d);
+                impulse[d] = s.free[d] ? 0.5 * s.m.dt * force : zero;
+                grown[d] = s.free[d] ? force - *at(unit.lastForces + row, s.part) : zero;
+                sum.first[d] += mass * x[d];
+                sum.velocity.sum[d] += momentum[d];
+                sum.half.sum[d] += impulse[d];
+                sum.forceChange.sum[d] += grown[d];
             }
-            s.mass += mass;
+            sum.mass += mass;
             if constexpr (plane)
-                s.second[0] += mass * (x[0] * x[0] + x[1] * x[1]);
+                sum.second[0] += mass * (x[0] * x[0] + x[1] * x[1]);
             else
                 for (int i = 0; i < 3; ++i) {
-                    s.second[i] += mass * x[i] * x[i];
-                    s.second[3 + i] += mass * x[(i + 1) % 3] * x[(i + 2) % 3];
+                    sum.second[i] += mass * x[i] * x[i];
+                    sum.second[3 + i] += mass * x[(i + 1) % 3] * x[(i + 2) % 3];
                 }
-            addCross<plane>(x, momentum, s.velocity.about);
-            addCross<plane>(x, impulse, s.half.about);
-            addCross<plane>(x, grown, s.forceChange.about);
+            addCross<plane>(x, momentum, sum.velocity.about);
+            addCross<plane>(x, impulse, sum.half.about);
+            addCross<plane>(x, grown, sum.forceChange.about);
         });
     }
     Vector halves[2], forceChanges[2];
-    for (int k = 0; k < count; ++k) {
-        own[k] = {sums[k], turns};
+    for (int k = 0; k < s.count; ++k) {
+        own[k] = {sums[k], s.turns};
         olds[k] = sums[k].velocity;
         halves[k] = sums[k].half;
         forceChanges[k] = sums[k].forceChange;
     }
-    both = {count == 1 ? sums[0] : weighted(one, sums[0], one, sums[1]), turns};
+    both = {s.count == 1 ? sums[0] : weighted(one, sums[0], one, sums[1]), s.turns};
     rigidPart(olds, together, split, old);
     rigidPart(halves, together, split, half);
-    rigidPart(halves, left, split * apart, halfScaled);
+    rigidPart(halves, left, split * s.apart, halfScaled);
     rigidPart(forceChanges, together, split, forceChange);
 }
 
 // Filter of modes: damping takes d from the rigid part of a velocity and e from the rest, each for itself as it would
 // from a motion without the other. What it takes of the motion is P* d + (e - P e).
 template <bool plane> void ScaledStep<plane>::filter() {
+    const auto s = nodes;
     const Lanes zero = {};
-    for (int k = 0; k < count; ++k) {
-        const auto& unit = units[k];
-        eachNode(k, [&](const Lanes* x, int n, Lanes* keep) {
+    for (int k = 0; k < s.count; ++k) {
+        const auto& unit = s.units[k];
+        const Motion before = old[k], change = half[k], scaledChange = halfScaled[k], ofForces = forceChange[k];
+        Vector rigid = {}, others = {};
+        s.eachNode(k, [&](const Lanes* x, int n, Lanes* keep) {
             const double mass = unit.matrix.masses[n];
             Lanes takenRigid[directions], takenRest[directions];
             for (int d = 0; d < directions; ++d) {
                 takenRigid[d] = takenRest[d] = zero;
-                if (!free[d]) continue;
-                const int row = 3 * n + direction[d];
-                const Lanes force = *at(unit.forces + row, part) + weightOf(k, n, d);
-                Lanes* last = at(unit.lastForces + row, part);
-                const Lanes grown = Block::at(forceChange[k], x, d);
-                const Lanes signs[2] = {m.combined ? sign(grown) : zero,
-                                        m.combined ? sign((force - *last) / mass - grown) : zero};
+                if (!s.free[d]) continue;
+                const int row = 3 * n + s.direction[d];
+                const Lanes force = *at(unit.forces + row, s.part) + s.weightOf(k, n, d);
+                Lanes* last = at(unit.lastForces + row, s.part);
+                const Lanes grown = Block::at(ofForces, x, d);
+                const Lanes signs[2] = {s.m.combined ? sign(grown) : zero,
+                                        s.m.combined ? sign((force - *last) / mass - grown) : zero};
                 *last = force;
                 // Changes of velocity in half a step, and velocities without damping: of the rigid part and the rest.
-                const Lanes changes[2] = {Block::at(halfScaled[k], x, d),
-                                          share * (0.5 * (m.dt / mass) * force - Block::at(half[k], x, d))};
-                const Lanes before = Block::at(old[k], x, d);
-                const Lanes undamped[2] = {before + changes[0], *at(unit.velocities + row, part) - before + changes[1]};
+                const Lanes changes[2] = {Block::at(scaledChange, x, d),
+                                          s.share * (0.5 * (s.m.dt / mass) * force - Block::at(change, x, d))};
+                const Lanes oldRigid = Block::at(before, x, d);
+                const Lanes undamped[2] = {oldRigid + changes[0],
+                                           *at(unit.velocities + row, s.part) - oldRigid + changes[1]};
                 const auto taken = [&](int i) {
-                    const Lanes reach = alpha * (changes[i] < zero ? -changes[i] : changes[i]);
+                    const Lanes reach = s.alpha * (changes[i] < zero ? -changes[i] : changes[i]);
                     return dampingTaken(Lanes(0.5 * undamped[i]), reach, signs[i]);
                 };
                 const Lanes first = taken(0), second = taken(1);
@@ -485,38 +499,43 @@ template <bool plane> void ScaledStep<plane>::filter() {
                 keep[3 * d + 1] = second;
                 takenRigid[d] = mass * first;
                 takenRest[d] = mass * second;
-                ofRigid[k].sum[d] += takenRigid[d];
-                ofRest[k].sum[d] += takenRest[d];
+                rigid.sum[d] += takenRigid[d];
+                others.sum[d] += takenRest[d];
             }
-            addCross<plane>(x, takenRigid, ofRigid[k].about);
-            addCross<plane>(x, takenRest, ofRest[k].about);
+            addCross<plane>(x, takenRigid, rigid.about);
+            addCross<plane>(x, takenRest, others.about);
         });
+        ofRigid[k] = rigid;
+        ofRest[k] = others;
     }
-    rigidPart(ofRigid, left, split * apart, damped);
+    rigidPart(ofRigid, left, split * s.apart, damped);
     rigidPart(ofRest, together, split, rest);
 }
 
 // Corrector: with the mean velocity of the step without viscous damping, w = v + dt a* / 2 - P* d - (e - P e), the
 // velocity after it is v' = 2 (1 - steady) w - v, and the displacement u' = u + dt v'.
 template <bool plane> void ScaledStep<plane>::correct() {
+    const auto s = nodes;
     const Lanes zero = {};
-    for (int k = 0; k < count; ++k) {
-        auto& unit = units[k];
+    for (int k = 0; k < s.count; ++k) {
+        auto& unit = s.units[k];
+        const Motion ofDamped = damped[k], ofOthers = rest[k];
+        Vector mean = {}, now = {};
         Lanes kinetic = zero, gravityWork = zero, damping = zero, pending = zero, before = zero, after = zero;
         Lanes moved[3] = {zero, zero, zero};
-        eachNode(k, [&](const Lanes* x, int n, Lanes* keep) {
+        s.eachNode(k, [&](const Lanes* x, int n, Lanes* keep) {
             const double mass = unit.matrix.masses[n];
             Lanes momentum[directions], afterwards[directions];
             for (int d = 0; d < directions; ++d) {
                 momentum[d] = afterwards[d] = zero;
-                const int row = 3 * n + direction[d];
-                *at(unit.forces + row, part) = zero;
-                if (!free[d]) continue;
-                const Lanes previous = *at(unit.velocities + row, part);
+                const int row = 3 * n + s.direction[d];
+                *at(unit.forces + row, s.part) = zero;
+                if (!s.free[d]) continue;
+                const Lanes previous = *at(unit.velocities + row, s.part);
                 const Lanes taken = keep[3 * d + 1];
-                const Lanes middle = keep[3 * d] - Block::at(damped[k], x, d) - (taken - Block::at(rest[k], x, d));
-                const Lanes next = 2 * (middle - steady * middle) - previous;
-                gravityWork += weightOf(k, n, d) * *at(unit.displacements + row, part);
+                const Lanes middle = keep[3 * d] - Block::at(ofDamped, x, d) - (taken - Block::at(ofOthers, x, d));
+                const Lanes next = 2 * (middle - s.steady * middle) - previous;
+                gravityWork += s.weightOf(k, n, d) * *at(unit.displacements + row, s.part);
                 damping += mass * taken * previous;
                 pending += mass * taken * next;
                 before += mass * middle * previous;
@@ -525,44 +544,49 @@ template <bool plane> void ScaledStep<plane>::correct() {
                 keep[3 * d] = next;
                 momentum[d] = mass * middle;
                 afterwards[d] = mass * next;
-                means[k].sum[d] += momentum[d];
-                nows[k].sum[d] += afterwards[d];
+                mean.sum[d] += momentum[d];
+                now.sum[d] += afterwards[d];
             }
-            addCross<plane>(x, momentum, means[k].about);
-            addCross<plane>(x, afterwards, nows[k].about);
+            addCross<plane>(x, momentum, mean.about);
+            addCross<plane>(x, afterwards, now.about);
         });
+        means[k] = mean;
+        nows[k] = now;
         kinetics[k] = kinetic;
         befores[k] = before;
         afters[k] = after;
         withOld[k] = damping;
         withNow[k] = pending;
-        *at(&unit.sums.gravityWork, part) = gravityWork;
-        const Lanes* keep = kept + (k ? 3 * directions * units[0].matrix.nodeCount : 0);
+        *at(&unit.sums.gravityWork, s.part) = gravityWork;
+        const Lanes* keep = s.kept + (k ? 3 * directions * s.units[0].matrix.nodeCount : 0);
         for (int n = 0; n < unit.matrix.nodeCount; ++n, keep += 3 * directions)
             for (int d = 0; d < directions; ++d) {
-                if (!free[d]) continue;
-                const int row = 3 * n + direction[d];
-                Lanes& u = *at(unit.displacements + row, part);
-                *at(unit.velocities + row, part) = keep[3 * d];
+                if (!s.free[d]) continue;
+                const int row = 3 * n + s.direction[d];
+                Lanes& u = *at(unit.displacements + row, s.part);
+                *at(unit.velocities + row, s.part) = keep[3 * d];
                 // places of the next unit count from the first node, which must not have moved yet
-                if (k > 0 || n > 0) u += m.dt * keep[3 * d];
-                moved[direction[d]] += unit.matrix.masses[n] * (k > 0 || n > 0 ? u : u + m.dt * keep[3 * d]);
+                if (k > 0 || n > 0) u += s.m.dt * keep[3 * d];
+                moved[s.direction[d]] += unit.matrix.masses[n] * (k > 0 || n > 0 ? u : u + s.m.dt * keep[3 * d]);
             }
         for (int d = 0; d < 3; ++d)
-            *at(unit.sums.moved + d, part) = moved[d];
+            *at(unit.sums.moved + d, s.part) = moved[d];
     }
     for (int d = 0; d < directions; ++d)
-        if (free[d])
-            *at(units[0].displacements + direction[d], part) += m.dt * *at(units[0].velocities + direction[d], part);
+        if (s.free[d])
+            *at(s.units[0].displacements + s.direction[d], s.part) +=
+                s.m.dt * *at(s.units[0].velocities + s.direction[d], s.part);
 }
 
 // The product of velocities a and b with the scaled masses: (1 + s) a M b - (s - t) a M H b - t a M W b, with the
 // factor 1 + t on the motion of the two units of a block against each other. That of W stands with the first unit.
 template <bool plane>
 Lanes ScaledStep<plane>::scaled(const Lanes& plain, int k, const Vector* a, const Vector* b) const {
-    const Lanes one = Lanes{} + 1, against = together * scaling + split * (scaling * sharedScaling);
-    if (count == 1) return (1 + scaling) * plain - scaling * Block::product(a[0], own[0].motion(b[0]));
-    const Lanes sum = (1 + scaling) * plain - (scaling - against) * Block::product(a[k], own[k].motion(b[k]));
+    const Lanes one = Lanes{} + 1, against = together * nodes.scaling + split * (nodes.scaling * sharedScaling);
+    if (nodes.count == 1)
+        return (1 + nodes.scaling) * plain - nodes.scaling * Block::product(a[0], own[0].motion(b[0]));
+    const Lanes sum =
+        (1 + nodes.scaling) * plain - (nodes.scaling - against) * Block::product(a[k], own[k].motion(b[k]));
     if (k > 0) return sum;
     return sum - against * Block::product(weighted(one, a[0], one, a[1]), both.motion(weighted(one, b[0], one, b[1])));
 }
@@ -571,23 +595,23 @@ Lanes ScaledStep<plane>::scaled(const Lanes& plain, int k, const Vector* a, cons
 template <bool plane> void ScaledStep<plane>::sumUp() {
     Motion now[2];
     rigidPart(nows, together, split, now);
-    for (int k = 0; k < count; ++k) {
-        auto& result = units[k].sums;
-        *at(&result.kinetic, part) = 0.5 * scaled(kinetics[k], k, olds, nows);
-        *at(&result.damping, part) =
-            Block::product(ofRigid[k], old[k]) + (1 + scaling) * (withOld[k] - Block::product(ofRest[k], old[k]));
-        *at(&result.pending, part) =
-            Block::product(ofRigid[k], now[k]) + (1 + scaling) * (withNow[k] - Block::product(ofRest[k], now[k]));
-        if (steady == 0) continue;
-        *at(&result.damping, part) += steady * scaled(befores[k], k, olds, means);
-        *at(&result.pending, part) += steady * scaled(afters[k], k, nows, means);
+    for (int k = 0; k < nodes.count; ++k) {
+        auto& result = nodes.units[k].sums;
+        *at(&result.kinetic, nodes.part) = 0.5 * scaled(kinetics[k], k, olds, nows);
+        *at(&result.damping, nodes.part) =
+            Block::product(ofRigid[k], old[k]) + (1 + nodes.scaling) * (withOld[k] - Block::product(ofRest[k], old[k]));
+        *at(&result.pending, nodes.part) =
+            Block::product(ofRigid[k], now[k]) + (1 + nodes.scaling) * (withNow[k] - Block::product(ofRest[k], now[k]));
+        if (nodes.steady == 0) continue;
+        *at(&result.damping, nodes.part) += nodes.steady * scaled(befores[k], k, olds, means);
+        *at(&result.pending, nodes.part) += nodes.steady * scaled(afters[k], k, nows, means);
     }
 }
 
 template <bool plane>
 void moveIn(const NodeMotion& m, double scaling, ScaledUnits* units, int count, const Row& whole, Row* scratch) {
     for (int part = 0; part < parts; ++part) {
-        ScaledStep<plane> step(m, scaling, units, count, whole, scratch, part);
+        ScaledStep<plane> step(ScaledNodes<plane>(m, scaling, units, count, scratch, part), whole);
         step.predict();
         step.filter();
         step.correct();

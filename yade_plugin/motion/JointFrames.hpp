@@ -16,7 +16,7 @@ namespace masonry {
 
 // Scratch of a batch of joints, small enough for the innermost cache. A column has one number for each joint. Vectors
 // without another remark are in the joint's frame.
-struct JointFrames {
+struct alignas(64) JointFrames {
     static constexpr int most = 32; // largest number of joints in a batch
     double axes[9][most];           // matrix whose columns are the frame's normal and tangents, row by row;
                                     // in a planar run 0 and 1 hold cosine and sine of the frame's angle

@@ -12,17 +12,20 @@ namespace masonry {
 // body has left the plane, or is no longer held in it.
 bool JointPlan::detectChanges(SceneContents& store) {
     auto& bodies = store.bodies;
+    const unsigned char* const joined = all_.joined.data();
+    const double* const referenceY = all_.referenceY.data();
+    const bool plane = all_.plane;
     std::atomic<bool> fits{true};
     Parallel::instance().overPieces(bodies.size(), bodiesAtOnce, [&](int first, int beyond) {
         double aside = 0; // largest distance of a body from its plane [m]
         bool held = true;
         for (int b = first; b < beyond; ++b) {
-            if (!all_.joined[b]) continue;
+            if (!joined[b]) continue;
             bodies.detectMove(b);
-            aside = std::max(aside, std::abs(bodies.position[1][b] - all_.referenceY[b]));
-            held = held && (bodies.isUnit[b] || !all_.plane || isHeldInPlane(bodies, b));
+            aside = std::max(aside, std::abs(bodies.position[1][b] - referenceY[b]));
+            held = held && (bodies.isUnit[b] || !plane || isHeldInPlane(bodies, b));
         }
-        if (!all_.plane) return;
+        if (!plane) return;
         const double* orientation[4];
         const double* fromReference[4];
         for (int d = 0; d < 4; ++d) {

@@ -11,6 +11,7 @@
 #include "engine/store/SceneStore.hpp"
 #include "engine/units/Zones.hpp"
 #include <algorithm>
+#include <utility>
 
 namespace masonry {
 
@@ -125,11 +126,10 @@ void checkBeforeStep(SceneStore& store) {
         if (!store.isConnected() && !store.joints.empty()) store.connected();
         store.checked = true;
     }
+    if (store.watched || scene.iter % collapseEvery != 0) return;
     auto& seen = store.kept<LookForCollapse>();
-    if (!store.watched && scene.iter % collapseEvery == 0 && scene.iter != seen.step) {
-        seen.step = scene.iter;
-        if (const auto ended = findCollapse(store, {}).ended()) throw *ended;
-    }
+    if (std::exchange(seen.step, scene.iter) == scene.iter) return;
+    if (const auto ended = findCollapse(store, {}).ended()) throw *ended;
 }
 
 } // namespace masonry
