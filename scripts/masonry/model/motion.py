@@ -88,8 +88,8 @@ class Motion:
         return [*speeds.values()]
 
     def fastest(self, far=0.0):
-        """Velocity over that of a block that has fallen [-], of the fastest one that has moved so
-        far since the last state at rest, over its largest side [-]."""
+        """Largest ratio of its velocity to that of a block that has fallen [-], of the blocks that
+        have moved at least ``far`` times their largest side since the last state at rest."""
         blocks = zip(self._speeds(), self._falling, self._moved(), self._sizes)
         return max(
             (v / falling for v, falling, moved, size in blocks if moved.norm() >= far * size),

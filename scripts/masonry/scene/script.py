@@ -124,7 +124,7 @@ def asData(value):
 
 
 class Script:
-    """What a script has said so far.
+    """The commands that the script has given so far.
 
     ``words`` is a list of pairs: the name of a word, and its arguments as a dict of data. A
     checkpoint keeps it.
