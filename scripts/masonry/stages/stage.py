@@ -117,7 +117,7 @@ class _Command:
             scene.begin()
             said = argumentsOf(self.act, scene, args, settings)
             extended = self._prepare(said)
-            if reason := self.skipReason(extended):
+            if reason := self._skipReason(extended):
                 return self._skip(reason, said)
             return self._execute(args, settings)
         except Collapsed as collapse:
@@ -144,17 +144,16 @@ class _Command:
     def _prepare(self, said):
         """Note the stage as a command of the script. Returns whether a resumed run goes on with it
         beyond its former end."""
-        script, running, state = self.scene.script, self.running, self.running.state
+        script, running = self.scene.script, self.running
         script.add(self.name, asData(said), self.traits.extendable)
-        if not running.isResumed:
-            return False
-        extended = script.compare(running.scriptBefore)
-        if script.isFirst(PUSHES):  # the command line says how far the push goes
+        extended = running.isResumed and script.compare(running.scriptBefore)
+        if running.isResumed and script.isFirst(PUSHES):  # options set the end of this push
             was, now = running.saved.options, asData(vars(self.scene.args))
             extended = extended or any(was.get(n) != now[n] for n in ("until", "history"))
-        return extended and running.entered + 1 == state.begun
+        self.before = running.entered
+        return extended and self.before + 1 == running.state.begun
 
-    def skipReason(self, extended):
+    def _skipReason(self, extended):
         """Why the stage is left out, or None."""
         scene, running = self.scene, self.running
         if batch.PROBE in os.environ:
@@ -163,11 +162,14 @@ class _Command:
             return SkipReason.FALLEN
         if scene.only and not self.traits.bounded:
             return SkipReason.BOUND_ONLY
-        self.before = running.entered
-        goesOn = running.isResumed and not running.resumedHere
-        if goesOn and not extended and str(self.before + 1) in running.state.ended:
+        ended = str(self.before + 1) in running.state.ended
+        if self._isBefore() and ended and not extended:
             return SkipReason.DONE_BEFORE
         return None
+
+    def _isBefore(self):
+        """Whether the stage begins before the checkpoint of a run that is resumed."""
+        return self.running.isResumed and not self.running.resumedHere
 
     def _skip(self, reason, said):
         """Leave the stage out. Returns how it ended."""
@@ -193,7 +195,7 @@ class _Command:
     def _execute(self, args, settings):
         """Carry out the stage or the rest of it. Returns how it ended."""
         scene, running, traits, state = self.scene, self.running, self.traits, self.running.state
-        if running.isResumed and not running.resumedHere:
+        if self._isBefore():
             resumedHere = self.before + 1 == state.begun
             running.cutBackTo(self.before + 1, resumedHere)
             if not running.sceneState.isRestored:
