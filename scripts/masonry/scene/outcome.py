@@ -70,7 +70,7 @@ class Outcome:
         drive had grown, of the first of the pushes that count."""
         state, rows = self.scene.running.state, self.data.rows
         for number in sorted(map(int, state.freeVibrations)):
-            if rows and state.stages[number - 1][3] >= rows[0]:
+            if rows and state.stages[number - 1]["first_row"] >= rows[0]:
                 return state.freeVibrations[str(number)]
         return 0.0, 0.0, 0.0
 
@@ -381,7 +381,7 @@ def _ofLoad(outcome, number, load):
     displacement of what is watched."""
     kind, name, _ = load
     state, entry = outcome.scene.running.state, outcome.scene.bounds.entries.get(name, {})
-    rows = range(state.stages[number - 1][3], len(outcome.results.rows))
+    rows = range(state.stages[number - 1]["first_row"], len(outcome.results.rows))
     if kind == "lean":
         rows = restsUnder(outcome, name)
     found = {a["name"]: a["value"] for a in state.answers.get(str(number), [])}
@@ -406,11 +406,11 @@ def restsUnder(outcome, name):
     """Rows at the ends of the stages that put on a load and came to rest, by its factor, after the
     row before them."""
     state, results = outcome.scene.running.state, outcome.results
-    ends = [stage[3] - 1 for stage in state.stages[1:]] + [len(results.rows) - 1]
+    ends = [stage["first_row"] - 1 for stage in state.stages[1:]] + [len(results.rows) - 1]
     numbers = [n for n, load in outcome.loads if load[:2] == ["lean", name]]
     answers = {n: state.answers.get(str(n), []) for n in numbers}
     held = {ends[n - 1] for n in numbers if any(a["value"] is not None for a in answers[n])}
-    before = state.stages[numbers[0] - 1][3] - 1
+    before = state.stages[numbers[0] - 1]["first_row"] - 1
     factors = results.column("load_factor")
     return [before] * (before >= 0) + sorted(held, key=lambda row: factors[row])
 

@@ -270,7 +270,7 @@ class _Command:
         scene, running = self.scene, self.running
         if scene.only or running.entered == self.before:
             return
-        results, first = running.results, running.state.stages[self.before][3]
+        results, first = running.results, running.state.stages[self.before]["first_row"]
         rows = lambda head: results.column(head)[first:] if head in results.columns else []
         self._keepAnswers(self.name, self.before + 1, self.traits.answers(scene, rows))
 
