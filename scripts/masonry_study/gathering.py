@@ -19,7 +19,7 @@ from masonry import folders
 from masonry.errors import Refused, refuse
 from masonry.numbers.files import filesOf, readWhole
 from masonry.numbers.quantities import measures
-from masonry.run.lock import held
+from masonry.run.lock import isLocked
 from .incremental import FOLDER, Chains, fell, shaken
 
 TABLE, STUDY, CSV, TIMES = "table.txt", "study.json", "study.csv", "times.csv"
@@ -80,7 +80,7 @@ class Folder:
         return batch.ended(self.row(number)) is not None
 
     def isHeld(self, number):
-        return held(self.row(number))
+        return isLocked(self.row(number))
 
     @functools.cached_property
     def chains(self):

@@ -67,12 +67,12 @@ def _state(scene):
 
 
 def _standing(scene):
-    title, views, at = scene.description.title, scene.description.views, scene.running.state
+    title, views, state = scene.description.title, scene.description.views, scene.running.state
     run = {"parts": scene.model.parts, "views": views, "title": title, "answers": scene.answers}
     with tempfile.TemporaryDirectory() as folder:
         MasonryVtkRecorder(directory=folder)()
         blocks, joints = (readFrame(folder, kind) for kind in ("blocks", "joints"))
-    when = f"after {at.stage}" if at.stage else "as built"
+    when = f"after {state.stage}" if state.stage else "as built"
     return titled(
         f"{title}: {_state(scene)}",
         picture(lambda: cracksOf(run, blocks, joints, when, scene.name)),

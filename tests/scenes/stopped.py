@@ -291,7 +291,8 @@ def left(folder):
     data, kept = checkpoints.readState(os.path.join(folder, checkpoints.NAME))
     for name in ("resumed", "seconds"):
         kept["state"].pop(name)
-    kept["state"]["stages"] = [(n, s, r) for n, s, _, r in kept["state"]["stages"]]
+    for stage in kept["state"]["stages"]:
+        stage.pop("seconds")
     for name in ("scene", "state", "rows", "script"):
         found[f"checkpoint: {name}"] = json.dumps(kept[name])
     for name, value in records(data).items():

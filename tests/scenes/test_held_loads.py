@@ -2,6 +2,8 @@
 """Loads that grow and the search for the one that is held; loads in later stages; pushes of any
 direction."""
 
+import base64
+
 from hosted import *
 from masonry._masonry import saveScene
 from masonry.errors import Collapsed

@@ -158,7 +158,7 @@ def row(name, slow=True):
     scene, at, seconds = grown(name)
     scene.finish()
     held, lost = at.held.factor, at.failure.factor
-    search = scene.running.state.steps - scene.running.state.stages[-1][1] - at.done
+    search = scene.running.state.steps - scene.running.state.stages[-1]["steps"] - at.done
     moved = 0.0
     if slow:
         slower, again, _ = grown(name, slower=3.0)

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""A run: its progress, checkpoints, folder of results, presets, and rows of a table in YADE's batch
-format.
+"""A run, from its options to its results.
 
 - :mod:`masonry.run.run`: a run in stages; :mod:`masonry.run.run_state`: how far it has come;
   :mod:`masonry.run.ending`: how it ends

@@ -121,7 +121,7 @@ class Lock:
 os.register_at_fork(after_in_child=Lock.forget)
 
 
-def held(directory):
+def isLocked(directory):
     """Whether a run is writing to a folder now, as far as its lock tells."""
     try:
         file = open(os.path.join(directory, LOCK), "rb", opener=folders.inside)

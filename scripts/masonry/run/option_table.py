@@ -23,10 +23,8 @@ class Option:
     chosen: bool = False  # whether presets and --accuracy choose it
     harmless: bool = False  # whether it leaves the promise of a preset alone
     free: bool = False  # whether a run that is resumed may have another value
-    ofStudy: bool = (
-        True  # whether a row of a study may have it: others are about files, or the study's own
-    )
-    ofScript: bool = True  # whether Scene has it as a keyword; others are of one run
+    ofStudy: bool = True  # whether a row of a study may have it
+    ofScript: bool = True  # whether Scene has it as a keyword
     meaning: str = ""  # what --help says
 
     def means(self, meaning: str) -> "Option":
@@ -56,8 +54,7 @@ class Option:
 
 
 def reading(kind: Validator) -> Any:
-    """The function by which argparse reads values of a kind from texts. It raises
-    argparse.ArgumentTypeError."""
+    """The function by which argparse reads values of a kind from texts."""
 
     def read(text):
         value = text
@@ -78,14 +75,11 @@ def asOption(name: str) -> str:
 
 # -- kinds -----------------------------------------------------------------------------------------
 
-#: Fewest points along a side that give a joint its stiffness against rotation: two give three times
-#: that, one none.
-FEWEST = 3
+FEWEST = 3  # points along a side: two give three times the true rotational stiffness, one none
 
 
 def points(value: Any, first: Any = None) -> str:
-    """The kind of ``--points``: one number of points, or two of which the first is not below the
-    second."""
+    """The kind of ``--points``: one number of points, or two, the second not above the first."""
     along = whole(FEWEST, 100)
     numbers = [along(int(n) if n.isdecimal() else n) for n in str(value).split(",")]
     if len(numbers) > 2:
@@ -125,13 +119,12 @@ Damping = Annotated[float, damping]
 # -- the table -------------------------------------------------------------------------------------
 
 _ROWS = (
-    # masonry.run.presets has its choices
+    # choices: masonry.run.presets
     Option("preset", harmless=True).means(
         "blocks, divisions, points, rate, damping and mass scaling with a promise of error and"
         " time; an option given beside it wins, and drops the promise; bound is limit analysis"
         " alone, without a run"
     ),
-    # what is less certain is no number
     Option("accuracy", number("%", 0, 50, above=True), value="PERCENT", harmless=True).means(
         "of a push: peak and work within this half-width [%%], by the cheapest block model, mesh"
         " and rate that reach it; cheaper runs beside it, on all cores, show the error, which the"
@@ -190,7 +183,7 @@ _ROWS = (
         "whether bricks can crack in half. on: each is two blocks with a crack surface between"
         " them; off: it is one block"
     ),
-    # the plugin knows which there are
+    # choices: the laws of the plugin
     Option("joints").means("law of the joints"),
     Option("set", value="NAME.PROPERTY=VALUE", several=True, ofStudy=False).means(
         "change a property of the bed, head, crack or support joints, in SI units; repeatable"
@@ -247,7 +240,7 @@ def optionsWith(trait: str) -> set[str]:
     return {name for name, one in OPTIONS.items() if getattr(one, trait)}
 
 
-#: Units of the options that have one; and the options that a preset chooses, as they are without
-#: one. A scene may have another rate.
+#: Units of the options that have one; defaults of those that a preset chooses. A scene may have
+#: another rate.
 UNITS = {name: one.unit for name, one in OPTIONS.items() if one.unit}
 USUAL = {name: one.default for name, one in OPTIONS.items() if one.chosen}

@@ -51,17 +51,13 @@ class Source:
 
 @dataclass(frozen=True)
 class Fidelity:
-    """Options of a run, and what is known of their error.
-
-    validation/trade has the runs from which ``error`` was taken, and validation/accuracy measures
-    what it is worth.
-    """
+    """Options of a run, and their error, from validation/trade and validation/accuracy."""
 
     name: str  # as the terminal says it
-    options: dict  # those of CHOSEN that are not named are as without options
+    options: dict  # others of CHOSEN have their defaults
     cost: float  # wall-clock time of a run over that of the first fidelity, about [-]
-    error: dict  # by quantity, against a fine and slow run, what no companion shows [-]
-    sources: tuple  # what companions show
+    error: dict  # by quantity, against a fine and slow run, beside the sources [-]
+    sources: tuple  # of the errors that companions show
 
 
 #: The run itself among those of a :class:`Source`. Before it has been made, the source counts as in
@@ -144,7 +140,7 @@ CHOSEN = USUAL  # options that --accuracy chooses, as they are without any
 
 
 def fidelityOf(args):
-    """The :class:`Fidelity` that options are those of, or None."""
+    """The :class:`Fidelity` with the options of a run, or None."""
     chosen = {name: getattr(args, name) for name in CHOSEN}
     return next((f for f in FIDELITIES if {**CHOSEN, **f.options} == chosen), None)
 
@@ -152,8 +148,7 @@ def fidelityOf(args):
 def outsideOf(properties):
     """Sentences on properties in which a scene is unlike the walls on which ``fast`` was measured.
 
-    :param properties: values by name, as :func:`masonry.scene.facts.properties` gives them; None:
-        it moves in space
+    :param properties: :func:`masonry.scene.facts.properties`; None: it moves in space
     """
     if properties is None:
         return ["it moves in space, and they were pushed in their plane"]
@@ -168,11 +163,9 @@ def outsideOf(properties):
 
 
 def presetOf(args, properties):
-    """What run.json says of the preset: None without one, or a dict.
-
-    ``name`` is the preset's. ``overrides`` are options given beside it. ``outside`` are sentences
-    on what was not measured. ``promise`` is None if there are any of both, else :data:`PROMISE`.
-    """
+    """What run.json says of the preset: None without one, or a dict with its ``name``; the
+    ``overrides``, options given beside it; ``outside``, sentences on what was not measured; and
+    ``promise``, which is None if there are any of both, else :data:`PROMISE`."""
     if not args.preset:
         return None
     outside = []

@@ -115,7 +115,7 @@ class Results:
     :meth:`begin`.
 
     :param directory: folder, made if it is missing
-    :param resumed: whether to leave everything as it is, until :meth:`goOn`
+    :param resumed: whether to leave everything as it is, until :meth:`resume`
     :param scene: name of the scene, for others that want the folder
     """
 
@@ -221,7 +221,7 @@ class Results:
         """curve.csv, open to add to it."""
         return open(self.path("curve.csv"), "ab", buffering=0, opener=folders.inside)
 
-    def goOn(self, rows, frames, seconds):
+    def resume(self, rows, frames, seconds):
         """Go on after these rows, number of ParaView frames and seconds of wall-clock time; later
         ones are removed."""
         # what is wrong with the rows or the file comes before anything is changed

@@ -2,9 +2,9 @@
 """A run in stages, in a folder of results, with checkpoints from which it can be resumed.
 
 A stage steps by :meth:`Run.advance` alone. What it must know to go on after a checkpoint is its
-memory, a dataclass that it gives to :meth:`Run.stage`. A resumed run leaves out the stages that
-were over. A checkpoint is always made at the end of an ``advance`` or between its steps. The
-resumed stage starts from its beginning with the stored memory; its first ``advance`` does the
+memory, a dataclass that it gives to :meth:`Run.stage`. A checkpoint is made at the end of an
+``advance`` or between its steps. A resumed run leaves out the stages that were over. The stage of
+the checkpoint starts from its beginning with the stored memory, and its first ``advance`` does the
 remaining steps (perhaps none). So a stage changes its memory after it has advanced, and what it
 does before it advances may be done twice.
 """
@@ -19,8 +19,7 @@ from yade import O
 from ..numbers.columns import CRACKS
 from ..auxiliary import Auxiliary
 from ..errors import Collapsed, Interrupted, NotResumed, Unwritable
-from ..terminal import listen, say
-from ..terminal import stopListening
+from ..terminal import listen, say, stopListening
 from . import batch
 from .checkpoints import Checkpoints, Saved, otherVersion, restored
 from .frame_writer import Frames
@@ -166,7 +165,7 @@ class Run:
         if resumedHere:
             rows, state.frames = rows[: state.rows], state.frames[: state.frameCount]
         elif number <= len(state.stages):
-            rows = rows[: state.stages[number - 1][3]]
+            rows = rows[: state.stages[number - 1]["first_row"]]
         self.results.rows[:] = rows
         if rows and self.results.columns[0] == "time_s":
             self.readings.time = rows[-1][0]
@@ -182,7 +181,7 @@ class Run:
             if again or not ofScene.isRestored:
                 ofScene.put(state.now)
             try:
-                self.results.goOn([*self.results.rows], len(state.frames), self.saved.seconds)
+                self.results.resume([*self.results.rows], len(state.frames), self.saved.seconds)
                 if self.frames:
                     self.frames.collect()
             except (OSError, RuntimeError, Unwritable) as error:
@@ -209,7 +208,8 @@ class Run:
             memory = restored(memory, state.memory)
         else:
             state.number, state.stage = self.entered, name
-            begun = [name, state.steps, state.seconds["steps"], self.readings.count]
+            before = dict(steps=state.steps, seconds=state.seconds["steps"])
+            begun = dict(stage=name, **before, first_row=self.readings.count)
             state.stages = [*state.stages, begun]
         self.memory = memory
         return memory

@@ -23,8 +23,8 @@ class RunState:
     left: int = 0  # of the present advance that are not taken yet
     rows: int = 0  # of curve.csv when the memory was as it is here
     frameCount: int = 0  # ParaView frames then
-    #: Of every stage so far: its name, and the steps, their seconds of wall-clock time and the rows
-    #: before it.
+    #: Of every stage so far: ``stage``, its name, ``steps`` and ``seconds`` that were taken before
+    #: it, and the number ``first_row`` of its first row.
     stages: list = field(default_factory=list)
     seconds: dict = field(default_factory=lambda: dict.fromkeys(PARTS, 0.0))
     frames: list = field(default_factory=list)  # times of the ParaView frames [s]
@@ -61,7 +61,7 @@ class RunState:
 
     def recordNote(self, text, number, time_s):
         """Keep what the run said in the stage of a number, unless it has said it before."""
-        stage = self.stages[number - 1][0] if 0 < number <= len(self.stages) else ""
+        stage = self.stages[number - 1]["stage"] if 0 < number <= len(self.stages) else ""
         note = dict(stage=stage, number=number, time_s=time_s, text=text)
         known = {one["text"] for one in self.notes}
         if text not in known and len(self.notes) < MAX_NOTES:
@@ -69,12 +69,10 @@ class RunState:
 
     def listed(self):
         """The entry ``stages`` of run.json."""
-        listed, end = [], ["", self.steps, self.seconds["steps"], 0]
-        for one, after in zip(self.stages, [*self.stages[1:], end]):
-            name, steps, seconds, row = one
-            entry = dict(stage=name, steps=after[1] - steps, seconds=after[2] - seconds)
-            load = self.loads.get(str(len(listed) + 1))
-            listed.append({**entry, "first_row": row, "load": load})
+        listed, end = [], dict(steps=self.steps, seconds=self.seconds["steps"])
+        for number, (one, after) in enumerate(zip(self.stages, [*self.stages[1:], end]), 1):
+            taken = {key: after[key] - one[key] for key in ("steps", "seconds")}
+            listed.append({**one, **taken, "load": self.loads.get(str(number))})
         return listed
 
 

@@ -65,10 +65,10 @@ class Outcome:
     def _freeVibration(self):
         """The first period [s], the weight of the base in the shear force [-], and when the drive
         had its velocity [s], of the first push that counts."""
-        at, rows = self.scene.running.state, self.data.rows
-        for number in sorted(map(int, at.freeVibrations)):
-            if rows and at.stages[number - 1][3] >= rows[0]:
-                return at.freeVibrations[str(number)]
+        state, rows = self.scene.running.state, self.data.rows
+        for number in sorted(map(int, state.freeVibrations)):
+            if rows and state.stages[number - 1]["first_row"] >= rows[0]:
+                return state.freeVibrations[str(number)]
         return 0.0, 0.0, 0.0
 
     def space(self):
@@ -164,11 +164,11 @@ class Outcome:
     @property
     def data(self):
         """The data of the run so far, from which its numbers are found."""
-        at, results = self.scene.running.state, self.results
+        state, results = self.scene.running.state, self.results
         column = functools.cache(
             lambda name: results.column(name) if name in results.columns else None
         )
-        return RunData({"stages": at.listed(), **results.run}, column)
+        return RunData({"stages": state.listed(), **results.run}, column)
 
     def summarise(self):
         """Add to the entries of run.json what follows from the rows."""
@@ -242,14 +242,14 @@ class Outcome:
 
     def _addAccuracy(self, run):
         """Add the entries of --accuracy, and their half-widths to the answers of the last push."""
-        at, asked = self.scene.running.state, self.scene.accuracy
+        state, asked = self.scene.running.state, self.scene.accuracy
         run.update(asked.report(run))
         number = str([n for n, load in self.loads if load[0] == "push"][-1])
         own = accuracy.answers(run["accuracy"])
         names = {one["name"] for one in own}
         stage = {"stage": "push", "number": int(number)}
-        others = [a for a in at.answers.get(number, []) if a["name"] not in names]
-        at.answers = {**at.answers, number: [*({**stage, **one} for one in own), *others]}
+        others = [a for a in state.answers.get(number, []) if a["name"] not in names]
+        state.answers = {**state.answers, number: [*({**stage, **one} for one in own), *others]}
         asked.onRunEnded()
 
     # -- files and terminal ------------------------------------------------------------------------
@@ -368,11 +368,11 @@ def _ofLoad(outcome, number, load):
     """The factor of a load that grew, or was put on step by step, over the displacement of what is
     watched."""
     kind, name, _ = load
-    at, entry = outcome.scene.running.state, outcome.scene.bounds.entries.get(name, {})
-    rows = range(at.stages[number - 1][3], len(outcome.results.rows))
+    state, entry = outcome.scene.running.state, outcome.scene.bounds.entries.get(name, {})
+    rows = range(state.stages[number - 1]["first_row"], len(outcome.results.rows))
     if kind == "lean":
         rows = restsUnder(outcome, name)
-    found = {a["name"]: a["value"] for a in at.answers.get(str(number), [])}
+    found = {a["name"]: a["value"] for a in state.answers.get(str(number), [])}
     marks = []
     for end in ("held", "not_held"):
         x, y = (found.get(f"{of}_{end}") for of in ("displacement", "factor"))
@@ -393,12 +393,12 @@ def _ofLoad(outcome, number, load):
 def restsUnder(outcome, name):
     """The row before a load was put on, and those at the ends of its stages that came to rest, by
     its factor."""
-    at, results = outcome.scene.running.state, outcome.results
-    ends = [stage[3] - 1 for stage in at.stages[1:]] + [len(results.rows) - 1]
+    state, results = outcome.scene.running.state, outcome.results
+    ends = [stage["first_row"] - 1 for stage in state.stages[1:]] + [len(results.rows) - 1]
     numbers = [n for n, load in outcome.loads if load[:2] == ["lean", name]]
-    answers = {n: at.answers.get(str(n), []) for n in numbers}
+    answers = {n: state.answers.get(str(n), []) for n in numbers}
     held = {ends[n - 1] for n in numbers if any(a["value"] is not None for a in answers[n])}
-    before = at.stages[numbers[0] - 1][3] - 1
+    before = state.stages[numbers[0] - 1]["first_row"] - 1
     factors = results.column("load_factor")
     return [before] * (before >= 0) + sorted(held, key=lambda row: factors[row])
 

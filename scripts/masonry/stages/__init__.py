@@ -1,9 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The stages of a test. Each is a function of the scene, in a file with those of its family, with
-its traits on it.
-
-A new stage is such a function (:func:`masonry.stages.stage.stage`) and its place in
-:data:`STAGES`.
+"""The stages of a test. Each is a function of the scene with its traits on it
+(:func:`masonry.stages.stage.stage`), in a file of its family, and has a place in :data:`STAGES`.
 
 - :mod:`masonry.stages.rest`: ``settle``
 - :mod:`masonry.stages.push`: ``push``, ``cycle`` and ``follow``, whose drive is in
@@ -12,9 +9,9 @@ A new stage is such a function (:func:`masonry.stages.stage.stage`) and its plac
 - :mod:`masonry.stages.gravity`: ``tilt``, ``accelerate``, ``lean`` and ``bracket``
 - :mod:`masonry.stages.forces`: ``load``, ``wind``, ``press``, ``pressure`` and ``hold``
   after the first stage, and ``grow``; :mod:`masonry.stages.travelling`: ``travel``
-- :mod:`masonry.stages.growing`: how a load grows, and the search for the one that is held
+- :mod:`masonry.stages.growing`: how a load grows, and the search for that which is held
 - :mod:`masonry.stages.shake`: ``shake``, ``run``, ``period`` and ``shakeAgain``
-- :mod:`masonry.stages.falling`: ``fall``, which follows a collapse where the scene says so
+- :mod:`masonry.stages.falling`: ``fall``, which follows a collapse
 - :mod:`masonry.stages.bounding`: the commands that ask for limit analysis;
   :mod:`masonry.stages.bounds`: what stages and a run ask of it
 - :mod:`masonry.stages.answers`: how stages end, and what they answer;

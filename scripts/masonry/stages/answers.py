@@ -115,10 +115,10 @@ def result(
     if not scene.model:
         raise ValueError(f"result {name}: it comes after the first stage")
     scene.calls.append(Call(result, (name, value, unit, how), {}))
-    at, before = scene.running.state, scene.running.scriptBefore
+    state, before = scene.running.state, scene.running.scriptBefore
     later = [word for word, _ in before[len(scene.script.words) + 1 :]]
     if saidBefore(scene, RESULT, name=name) and any(w != RESULT for w in later):
         return  # it was found in the state of that time
-    kept = [one for one in at.answers.get(OWN, []) if one["name"] != name]
+    kept = [one for one in state.answers.get(OWN, []) if one["name"] != name]
     own = {"stage": "script", "number": 0, **vars(Answer(name, unit, value, how))}
-    at.answers = {**at.answers, OWN: [*kept, own]}
+    state.answers = {**state.answers, OWN: [*kept, own]}

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What stages and a run ask of limit analysis, the object ``scene.bounds``, which the wing
-masonry_limit gives; without it there are no bounds."""
+"""What stages and a run ask of ``scene.bounds``, the limit analysis of the wing masonry_limit;
+without it there are no bounds."""
 
 import contextlib
 import time
@@ -11,8 +11,7 @@ SOON = 1.0  # [s] in which a run that is interrupted waits for its bound
 
 
 def boundsOf(scene):
-    """The bounds of a scene. Raises NotInstalled if the run is limit analysis alone, and the wing
-    is missing."""
+    """The bounds of a scene. Raises NotInstalled if a run of limit analysis alone has no wing."""
     if scene.only or wings.isInstalled("--preset bound"):
         bounds, running = wings.find("--preset bound"), scene.running
         return bounds(scene.model, running.state, running.auxiliary)
@@ -26,8 +25,7 @@ def findBy(scene, kind, *load, **how):
 
 
 def takeFound(scene, wait):
-    """Take the bound that is found beside the run; a run that is interrupted does not wait long for
-    it."""
+    """Take the bound that is found beside the run; a run that is interrupted hardly waits."""
     began, running = time.monotonic(), scene.running
     late = lambda: running.interrupted and time.monotonic() - began > SOON
     scene.bounds.take(wait, late)

@@ -62,7 +62,7 @@ class Forces(Acting):
 
 
 def _forceOn(scene, target, force, name):
-    """The load of a force on a target, in kN along its direction. Raises ValueError."""
+    """The load of a force on a target, in kN. Raises ValueError."""
     force = checkedForce(scene.description, force, name)
     engine = scene.model.loading.forceOf(target)
     if not force.norm() > 0 and name != "load":

@@ -47,7 +47,7 @@ class Acting:
 
 
 class Acceleration(Acting):
-    """Gravity, with a horizontal acceleration that grows beside it, to ``most`` [g]."""
+    """Gravity, with a horizontal acceleration that grows to ``most`` [g]."""
 
     def __init__(self, model, most, towards, name, unit="g"):
         super().__init__(name, most, unit, towards)
@@ -66,8 +66,7 @@ class Acceleration(Acting):
 
 
 class Tilting(Acceleration):
-    """Gravity that turns to an angle [rad], as on a ground that is tilted. The factor is the
-    horizontal over the vertical part."""
+    """Gravity that turns to an angle [rad]. The factor is the horizontal over the vertical part."""
 
     def __init__(self, model, angle, towards, name):
         super().__init__(model, math.tan(angle), towards, name, "-")
@@ -87,7 +86,7 @@ class Tilting(Acceleration):
 
 
 def putOnAnswers(scene, rows):
-    """The load that was put on, as held or as not held."""
+    """The load that was put on, as held or not held."""
     asked, unit = scene.running.memory.goal, scene.loadUnit
     end, load = Tried(asked, 1e3 * scene.model.loading.alongNow()), f"{asked:.4g} {unit}"
     if scene.ended == AT_REST:
@@ -214,8 +213,7 @@ def bracket(
     high: Annotated[float, number("", 0, above=True)],
     within: Width = 0.01,
 ) -> tuple[float, float]:
-    """Find the largest load that the structure carries, by halving: each trial starts from the last
-    state at rest.
+    """Find the largest load that the structure carries, by halving from the last state at rest.
 
     :param carries: function of a load factor that sets loads and stages, and returns whether the
         structure is at rest under it, for example ``lambda f: scene.lean(f) == AT_REST``

@@ -185,8 +185,7 @@ def follow(scene, name, load):
 
 
 def found(scene, rows):
-    """What a stage answers in which a load grew: the largest load that was held, and the smallest
-    that was not."""
+    """The largest load that was held when a load grew, and the smallest that was not."""
     at = scene.running.memory
     if not isinstance(at, Growing):
         return []
@@ -381,8 +380,7 @@ class _Search:
         return (low + high) // 2 if wide and low + 1 < high else None
 
     def _guess(self, factors):
-        """Number of the kept state with which the search begins: the last before the structure
-        leaves rest."""
+        """Number of the last kept state before the structure leaves rest: the search begins there."""
         speeds = [speed for _, _, speed in self.at.rows]
         n = len(speeds) - 1
         while n > 0 and speeds[n] > SETTING_OFF * statistics.median(speeds[:n]):
@@ -428,8 +426,7 @@ class _Search:
                 return Reason.MOVING
 
     def _accelerates(self, speed):
-        """Whether the fastest block is fast, and at least twice as fast as in the first half of the
-        trial."""
+        """Whether the fastest block is fast, and twice as fast as in the first half of the trial."""
         trial = self.at.trial
         checks = trial.steps // EVERY
         if checks & (checks - 1) == 0:

@@ -37,15 +37,14 @@ Stage = Callable[Concatenate[Any, P], str]
 
 @dataclass(frozen=True)
 class Traits:
-    """What the rest of the package must know of a kind of stage.
+    """Properties of a kind of stage.
 
-    :param bounded: whether ``--preset bound`` finds the bound of its load; other stages are left
-        out then
+    :param bounded: whether ``--preset bound`` finds the bound of its load, and does not skip it
     :param extendable: names of the arguments that set the end of the stage; a resumed run may give
         larger ones
     :param options: options of the command line that the stage uses, by the names of their values
     :param grows: whether presses, dead loads and wind grow in it
-    :param dynamic: whether it runs in real time, whatever falls, in a scene whose collapse is
+    :param dynamic: whether it runs in real time, and goes on whatever falls if a collapse is
         followed
     :param check: function of the scene and what the user says, which raises Refused before the
         scene is built
@@ -65,11 +64,8 @@ class Traits:
 
 def stage(**traits: Any) -> Callable[[Stage[P]], Stage[P]]:
     """Make a stage of a function of the scene and what the user says, which is checked as by
-    :func:`masonry.arguments.validated`; the keywords are those of :class:`Traits`.
-
-    The stage builds the scene if it is the first, is left out after a collapse, and ends the run in
-    order on errors.
-    """
+    :func:`masonry.arguments.validated`; keywords as in :class:`Traits`. The first stage builds the
+    scene; errors end the run in order."""
 
     def made(said: Stage[P]) -> Stage[P]:
         act = validated(said)
@@ -121,7 +117,7 @@ class _Command:
             scene.begin()
             said = argumentsOf(self.act, scene, args, settings)
             extended = self._prepare(said)
-            if reason := self.skipReason(extended):
+            if reason := self._skipReason(extended):
                 return self._skip(reason, said)
             return self._execute(args, settings)
         except Collapsed as collapse:
@@ -148,17 +144,16 @@ class _Command:
     def _prepare(self, said):
         """Note the stage as a command of the script. Returns whether a resumed run goes on with it
         beyond its former end."""
-        script, running, state = self.scene.script, self.running, self.running.state
+        script, running = self.scene.script, self.running
         script.add(self.name, asData(said), self.traits.extendable)
-        if not running.isResumed:
-            return False
-        extended = script.compare(running.scriptBefore)
-        if script.isFirst(PUSHES):  # the command line says how far the push goes
+        extended = running.isResumed and script.compare(running.scriptBefore)
+        if running.isResumed and script.isFirst(PUSHES):  # options set the end of this push
             was, now = running.saved.options, asData(vars(self.scene.args))
             extended = extended or any(was.get(n) != now[n] for n in ("until", "history"))
-        return extended and running.entered + 1 == state.begun
+        self.before = running.entered
+        return extended and self.before + 1 == running.state.begun
 
-    def skipReason(self, extended):
+    def _skipReason(self, extended):
         """Why the stage is left out, or None."""
         scene, running = self.scene, self.running
         if batch.PROBE in os.environ:
@@ -167,11 +162,14 @@ class _Command:
             return SkipReason.FALLEN
         if scene.only and not self.traits.bounded:
             return SkipReason.BOUND_ONLY
-        self.before = running.entered
-        goesOn = running.isResumed and not running.resumedHere
-        if goesOn and not extended and str(self.before + 1) in running.state.ended:
+        ended = str(self.before + 1) in running.state.ended
+        if self._isBefore() and ended and not extended:
             return SkipReason.DONE_BEFORE
         return None
+
+    def _isBefore(self):
+        """Whether the stage begins before the checkpoint of a run that is resumed."""
+        return self.running.isResumed and not self.running.resumedHere
 
     def _skip(self, reason, said):
         """Leave the stage out. Returns how it ended."""
@@ -197,7 +195,7 @@ class _Command:
     def _execute(self, args, settings):
         """Carry out the stage or the rest of it. Returns how it ended."""
         scene, running, traits, state = self.scene, self.running, self.traits, self.running.state
-        if running.isResumed and not running.resumedHere:
+        if self._isBefore():
             resumedHere = self.before + 1 == state.begun
             running.cutBackTo(self.before + 1, resumedHere)
             if not running.sceneState.isRestored:
@@ -222,8 +220,8 @@ class _Command:
         return ended
 
     def _endFallen(self, what):
-        """End a stage in which the structure has fallen, or go on with the fall; ``what`` has
-        fallen, and how far."""
+        """End the stage, or follow the fall, when the structure has fallen; ``what``, and how
+        far."""
         scene, running = self.scene, self.running
         scene.ended = COLLAPSED
         follows = scene.description.contact is not None and not scene.bracketing
@@ -242,8 +240,7 @@ class _Command:
         return self._follow() if follows else COLLAPSED
 
     def _follow(self):
-        """Go on with a structure that has fallen until it is at rest, in a stage or in a run that
-        is resumed while it falls."""
+        """Follow the fall until all is at rest, also if the run was resumed in it."""
         scene, running = self.scene, self.running
         try:
             running.context.endsAtFall = False
@@ -269,12 +266,11 @@ class _Command:
         state.ended = {**state.ended, str(self.before + 1): [ended, self.running.entered]}
 
     def _answer(self):
-        """Keep the answers of a stage that was carried out now, and not before the run was
-        resumed."""
+        """Keep the answers of the stage, if it was not carried out before the run was resumed."""
         scene, running = self.scene, self.running
         if scene.only or running.entered == self.before:
             return
-        results, first = running.results, running.state.stages[self.before][3]
+        results, first = running.results, running.state.stages[self.before]["first_row"]
         rows = lambda head: results.column(head)[first:] if head in results.columns else []
         self._keepAnswers(self.name, self.before + 1, self.traits.answers(scene, rows))
 
@@ -297,7 +293,7 @@ def timed(scene, at, duration, before, after=None, each=None):
 
     :param before: function of the number of steps so far and after the next stretch, called before
         each stretch
-    :param after: called after each row
+    :param after: function that is called after each row
     :param each: steps of a stretch; None: 20, or fewer
     """
     running, step = scene.running, O.step

@@ -65,7 +65,7 @@ def letGo(scene, target, axes, force):
 
 
 def displacement(scene, rows):
-    """How far each held target has moved in this stage: at its end, or when the structure fell."""
+    """How far each held target has moved in this stage."""
     how = "from the first row of the stage to its last, which is the collapse if the structure fell"
     for target in scene.description.targets.values():
         columns = [rows(f"{target.name}_{axis}_mm") for axis in "xyz" if target.fixed]

@@ -26,7 +26,7 @@ class Travelling(Resting):
 
     place: int = 0  # at which the load arrives, from 0; behind the last place it leaves
     began: Sequence = ()  # vertical displacements of all places when the load came [mm]
-    moved: Sequence = ()  # of each place where it stood, since then [mm]
+    moved: Sequence = ()  # displacements since then of each place where it stood [mm]
     after: float = 0.0  # largest amount of them when it has left [mm]
 
 
