@@ -3,8 +3,8 @@
 which cannot be assumed.
 
 A MasonryJoint and a MasonryMat note which of their properties were never given (``assumed``), when
-made, as an attribute, or with ``set`` or ``updateAttrs``. ``brittleCoulomb`` and :func:`copied` keep
-the note. An object that YADE has loaded from a file has none: everything counts as given.
+made, as an attribute, or with ``set`` or ``updateAttrs``. ``brittleCoulomb`` and :func:`copied`
+keep the note. An object that YADE has loaded from a file has none: everything counts as given.
 """
 
 from typing import Annotated, Any

@@ -211,9 +211,9 @@ class DataSheet:
     Crushing: the closure of a joint at its strength is ucp = s (peak_strain - fc/unit_E), and the
     law's peak ratio n = kn ucp/fc. Head joints have the same strength and Gc.
 
-    An assumed energy in tension or shear is at least 1.1 :func:`leastEnergy`, so that softening does
-    not snap back between rigid units; a given one below leastEnergy is a warning. Joints to platens
-    take the bed joint.
+    An assumed energy in tension or shear is at least 1.1 :func:`leastEnergy`, so that softening
+    does not snap back between rigid units; a given one below leastEnergy is a warning. Joints to
+    platens take the bed joint.
     """
 
     E: Modulus

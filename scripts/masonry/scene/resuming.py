@@ -119,8 +119,8 @@ def resume(scene: Any) -> Any:
     that the interruption left.
 
     Every command of the scene is given again, as ``--resume`` of a script does it, so the result is
-    the same to the last bit. Of a search that the script makes by itself or by :meth:`bracket`, this
-    is the step that was interrupted.
+    the same to the last bit. Of a search that the script makes by itself or by :meth:`bracket`,
+    this is the step that was interrupted.
 
     :returns: a new scene, which goes on with the folder and the targets of this one; its ``ended``
         says how that stage ended
