@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // The Python module masonry._masonry. When it is imported it checks whether it fits the running YADE, and registers its
 // classes there.
+#include "adapters/Connecting.hpp"
 #include "adapters/FunctorOfLaw.hpp"
 #include "adapters/Gl1_MasonryBlock.hpp"
 #include "adapters/Gl1_MasonryJointPhys.hpp"
@@ -20,13 +21,13 @@
 #include "common/Memory.hpp"
 #include "common/Parallel.hpp"
 #include "common/Text.hpp"
+#include "engine/bodies/StepLock.hpp"
+#include "engine/checkpoint/SceneCheckpoint.hpp"
+#include "engine/joints/Neighbours.hpp"
+#include "engine/joints/Resultant.hpp"
+#include "engine/store/SceneStore.hpp"
+#include "engine/watch/CriticalTimeStep.hpp"
 #include "host/SelfCheck.hpp"
-#include "scene/bodies/StepLock.hpp"
-#include "scene/checks/CriticalTimeStep.hpp"
-#include "scene/checks/SceneCheckpoint.hpp"
-#include "scene/joints/Neighbours.hpp"
-#include "scene/joints/Resultant.hpp"
-#include "scene/store/SceneStore.hpp"
 
 namespace {
 
@@ -120,10 +121,13 @@ void allowThreads(int most, bool always) {
     Parallel::instance().allow(most, always);
 }
 
-void gather() {
-    const BetweenSteps still;
-    SceneStore::present().update();
+py::tuple presentNeighbours(double tolerance, bool keepFaces) {
+    return neighbours(tolerance, keepFaces ? &SceneStore::present().kept<SharedFaces>() : nullptr);
 }
+
+void dropFaces() { SceneStore::present().kept<SharedFaces>() = {}; }
+
+py::object touchingPairs(double tolerance) { return neighbours(tolerance, nullptr)[0]; }
 
 void connected() {
     const BetweenSteps still;
@@ -135,7 +139,32 @@ void connected() {
 
 } // namespace
 
+// Raises an error of Python that has these attributes.
+template <class... Named> void raise(PyObject* type, const char* message, const Named&... attributes) {
+    py::object error(py::handle<>(PyObject_CallFunction(type, "s", message)));
+    ((error.attr(attributes.first) = attributes.second), ...);
+    PyErr_SetObject(type, error.ptr());
+}
+
+void raiseEnded(const RunEnded& ended) {
+    raise(PyExc_RuntimeError, ended.what(), std::pair("code", ended.code), std::pair("block", ended.block));
+}
+
+void raiseWrong(const WrongProperties& wrong) {
+    py::list problems;
+    for (const auto& problem : wrong.problems) {
+        py::dict one;
+        one["property"] = problem.property;
+        one["code"] = problem.code;
+        one["text"] = problem.text;
+        problems.append(one);
+    }
+    raise(PyExc_ValueError, wrong.what(), std::pair("problems", problems));
+}
+
 static void registerAll() {
+    py::register_exception_translator<WrongProperties>(&raiseWrong);
+    py::register_exception_translator<RunEnded>(&raiseEnded);
     Sequence<TableRow, RowToPython, RowFromPython>::enroll();
     Sequence<shared_ptr<MasonryJoint>, JointToPython, JointFromPython>::enroll();
 
@@ -175,7 +204,7 @@ static void registerAll() {
     py::scope().attr("commit") = MASONRY_COMMIT;
     py::scope().attr("version") = MASONRY_VERSION;
     py::def(
-        "neighbours", &neighbours, (py::arg("tolerance") = 1e-4, py::arg("keepFaces") = false),
+        "neighbours", &presentNeighbours, (py::arg("tolerance") = 1e-4, py::arg("keepFaces") = false),
         "Three lists for masonry.connect(): pairs (id1, id2) of bodies that share a face; pairs (id1, id2, gap, bound) "
         "that nearly share one or overlap, with the gap and the largest one accepted; (id, size) of the thinnest and "
         "of the largest block. Gaps and sizes in m. With keepFaces the joints that are made next take the faces that "
@@ -196,7 +225,10 @@ static void registerAll() {
         "joints, masses, blocked motions or damping.");
     py::def("timeStepLimit", &presentLimit,
             "The first number of criticalTimeStep() [s], in half the time. For masonry.model.structure.");
-    py::def("gather", &gather, "Move the joints that are there into their columns. For connect().");
+    py::def("connect", &connect, py::args("pairs", "geometry", "physics", "rule"),
+            "Make the joints of pairs of bodies. Returns the interactions, the MasonryJoint objects that they have, "
+            "and what is "
+            "wrong; then no joint is left. For masonry.connect().");
     py::def(
         "connected", &connected,
         "Tell the plugin that all blocks have their joints. A block that is added later and has no joint is then an "

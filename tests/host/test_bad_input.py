@@ -466,17 +466,17 @@ CASES = {
         (
             lambda: laid((0, 0, 0), (0, 0, 0.080)),
             connect,
-            "bodies 0 and 1 lie 1 mm deep in each other; the tolerance is 0.0256 mm",
+            "bodies 0 and 1 overlap by 1 mm; the tolerance is 0.0256 mm",
         ),
         (
             lambda: laid((0, 0, 0), (0, 0, 0.080)),
             lambda: connect(allowGaps=True),
-            "bodies 0 and 1 lie 1 mm deep in each other",
+            "bodies 0 and 1 overlap by 1 mm",
         ),
         (
             lambda: laid((0, 0, 0), (0.01, 0, 0.0405)),
             connect,
-            "bodies 0 and 1 lie 40.5 mm deep in each other",
+            "bodies 0 and 1 overlap by 40.5 mm",
         ),
         (
             lambda: laid(*[(0, 0, 0.082 * i) for i in range(15)]),
@@ -486,7 +486,7 @@ CASES = {
         (
             lambda: laid((0, 0, 0), (0, 0, 0.080), (0.221, 0, 0)),
             connect,
-            ["bodies 0 and 1 lie 1 mm deep", "bodies 0 and 2 nearly share"],
+            ["bodies 0 and 1 overlap by 1 mm", "bodies 0 and 2 nearly share"],
         ),
         (
             lambda: turned(1),

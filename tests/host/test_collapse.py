@@ -40,11 +40,12 @@ def go(seconds):
 
 
 def collapses(seconds, message):
-    with raises(RuntimeError, match="^collapsed: " + message) as text:
+    with raises(RuntimeError, match="^collapsed: " + message) as found:
         go(seconds)
+    assert found.value.code == "collapsed" and found.value.block >= 0
     when = r"at step \d+00, \S+ s\. Joints are for small displacements"
-    assert re.search(when, str(text.value))
-    return str(text.value)
+    assert re.search(when, str(found.value))
+    return str(found.value)
 
 
 # -- what is reported ------------------------------------------------------------------------------

@@ -9,7 +9,7 @@ from usual import *
 PLUGIN = os.path.join(ROOT, "yade_plugin")
 STANDARD = {"Eigen"}
 ALSO = {"ConvexHull.cpp": {"CGAL"}}  # the one file that knows CGAL
-BELOW_SCENE = {"common", "law", "blocks", "motion", "contact", "files", "host"}
+BELOW_ENGINE = {"common", "law", "blocks", "motion", "contact", "files", "host"}
 MAY_INCLUDE = {
     "common": {"common"},
     "law": {"common", "law"},
@@ -18,14 +18,14 @@ MAY_INCLUDE = {
     "contact": {"common", "blocks", "contact"},
     "files": {"common", "files"},
     "host": {"common", "host"},
-    "scene": BELOW_SCENE | {"scene"},
-    "adapters": BELOW_SCENE | {"scene", "adapters"},
+    "engine": BELOW_ENGINE | {"engine"},
+    "adapters": BELOW_ENGINE | {"engine", "adapters"},
 }
-WITH_YADE = ("host", "scene", "adapters")
-FOLDERS = ("bodies", "joints", "contacts", "store", "checks")  # of scene
+WITH_YADE = ("host", "engine", "adapters")
+ROOMS = "bodies units joints connectors contacts store watch checkpoint".split()  # of engine
 
 #: What registered classes share, so it is in adapters/ without being one.
-SHARED = "Adapter Assumptions Attribute Colours FunctorOfLaw".split()
+SHARED = "Adapter Assumptions Attribute Colours Connecting FunctorOfLaw".split()
 
 
 def sources(folder):
@@ -51,15 +51,24 @@ def test_a_layer_includes_only_what_it_may_know(layer):
                 assert not first[1] or first[0] in known, f"{name} includes {path}"
 
 
-def test_a_folder_of_the_scene_includes_only_those_before_it():
-    folder = os.path.join(PLUGIN, "scene")
-    assert sorted(os.listdir(folder)) == sorted(FOLDERS)
-    for n, name in enumerate(FOLDERS):
+def test_a_room_of_the_engine_includes_only_those_before_it():
+    folder = os.path.join(PLUGIN, "engine")
+    assert sorted(os.listdir(folder)) == sorted(ROOMS)
+    for n, name in enumerate(ROOMS):
         for source in sources(os.path.join(folder, name)):
             for path in included(source):
                 layer, _, rest = path.partition("/")
-                known = layer != "scene" or rest.split("/")[0] in FOLDERS[:n]
+                known = layer != "engine" or rest.split("/")[0] in ROOMS[:n]
                 assert known, f"{source} includes {path}"
+
+
+def test_nothing_in_engine_names_a_class_of_adapters():
+    names = [
+        os.path.basename(path)[:-4] for path in glob.glob(os.path.join(PLUGIN, "adapters", "*.hpp"))
+    ]
+    word = re.compile(r"\b(%s)\b" % "|".join(set(names) - set(SHARED)))
+    for path in sources(os.path.join(PLUGIN, "engine")):
+        assert not word.findall(open(path).read()), path
 
 
 def circle(folder):

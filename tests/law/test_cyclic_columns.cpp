@@ -39,7 +39,7 @@ TEST_CASE("cyclic: subcontacts that wait among others follow the law for one wit
                 law->advance(e, states[j], some(j % 2 ? -1 : 0.5));
             const CyclicState& s = states[j];
             CyclicState::visitNumbers(s, [&](const char*, double number, int column) { columns[column][j] = number; });
-            keep(consequences(e, s), columns, j);
+            keep(derive(e, s), columns, j);
             const Jump jump = some(dice.between(-2, 2));
             opening[j] = jump.opening, a[j] = jump.slide.a, b[j] = jump.slide.b;
             pending[j] = dice.happens(share);

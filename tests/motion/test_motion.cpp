@@ -418,11 +418,12 @@ struct Joints {
     void align() {
         const Pointers<3> p(position), s(span);
         const Pointers<4> q(orientation), f1(inBody1), f2(inBody2);
-        alignRigid(n, body1.data(), body2.data(), p.column, q.column, f1.column, f2.column, s.column, frames);
+        JointArithmetic<false>::alignRigid(n, body1.data(), body2.data(), p.column, q.column, f1.column, f2.column,
+                                           s.column, frames);
     }
     void findJumps() {
-        jumpRigid(n, offset[0].data(), offset[1].data(), offset[2].data(), jump[0].data(), jump[1].data(),
-                  jump[2].data(), frames);
+        JointArithmetic<false>::jumpRigid(n, offset[0].data(), offset[1].data(), offset[2].data(), jump[0].data(),
+                                          jump[1].data(), jump[2].data(), frames);
     }
 
     int n;
@@ -539,10 +540,11 @@ TEST_CASE("stress times area acts at the middle of the jump, on both blocks agai
             torque2[i] -= (here[i].middle() - here[i].two.position).cross(pull);
         }
         joints.findJumps();
-        pullRigid(n, area.data(), stress[0].data(), stress[1].data(), stress[2].data(), joints.frames);
+        JointArithmetic<false>::pullRigid(n, area.data(), stress[0].data(), stress[1].data(), stress[2].data(), nullptr,
+                                          nullptr, joints.frames);
     }
     std::vector<double> found(9 * n);
-    finishRigid(n, joints.frames, found.data());
+    JointArithmetic<false>::finishRigid(n, joints.frames, found.data());
     for (int i = 0; i < n; ++i)
         for (int d = 0; d < 3; ++d) { // forces of some 10 kN
             CHECK(std::abs(found[9 * i + d] - force[i][d]) < 1e-8);
@@ -574,9 +576,10 @@ TEST_CASE("the work of the forces on both blocks is that of the stresses on the 
     joints.findJumps();
     const int n = joints.n;
     const std::vector<double> area(n, 0.02), normal(n, 1e5), shearA(n, -4e4), shearB(n, 7e4);
-    pullRigid(n, area.data(), normal.data(), shearA.data(), shearB.data(), joints.frames);
+    JointArithmetic<false>::pullRigid(n, area.data(), normal.data(), shearA.data(), shearB.data(), nullptr, nullptr,
+                                      joints.frames);
     std::vector<double> onJoints(9 * n);
-    finishRigid(n, joints.frames, onJoints.data());
+    JointArithmetic<false>::finishRigid(n, joints.frames, onJoints.data());
     for (int i = 0; i < n; ++i) {
         const Eigen::Map<const Vector3d> force(&onJoints[9 * i]), torque1(&onJoints[9 * i + 3]),
             torque2(&onJoints[9 * i + 6]);
@@ -594,7 +597,8 @@ TEST_CASE("joints with a deformable side follow their nodes, and two forces that
     Joints joints(all, dice);
     const int n = joints.n;
     const Joints::Pointers<4> q(joints.orientation), f1(joints.inBody1), f2(joints.inBody2);
-    alignNodal(n, joints.body1.data(), joints.body2.data(), q.column, f1.column, f2.column, joints.frames);
+    JointArithmetic<false>::alignNodal(n, joints.body1.data(), joints.body2.data(), q.column, f1.column, f2.column,
+                                       joints.frames);
     std::vector<double> u(6 * lanes * n); // two nodes for each joint, three components, `lanes` numbers apart
     for (double& value : u)
         value = dice.between(-1, 1);
@@ -612,10 +616,11 @@ TEST_CASE("joints with a deformable side follow their nodes, and two forces that
             column.push_back(dice.between(-1e5, 1e5));
     }
     auto& jump = joints.jump;
-    jumpNodal(n, place1.data(), place2.data(), u.data(), jump[0].data(), jump[1].data(), jump[2].data(), joints.frames);
-    pullNodal(n, area.data(), stress[0].data(), stress[1].data(), stress[2].data(), jump[0].data(), jump[1].data(),
-              jump[2].data(), joints.frames, onPoints.data());
-    finishNodal(n, joints.frames, onJoints.data());
+    JointArithmetic<false>::jumpNodal(n, place1.data(), place2.data(), u.data(), jump[0].data(), jump[1].data(),
+                                      jump[2].data(), joints.frames);
+    JointArithmetic<false>::pullNodal(n, area.data(), stress[0].data(), stress[1].data(), stress[2].data(),
+                                      jump[0].data(), jump[1].data(), jump[2].data(), joints.frames, onPoints.data());
+    JointArithmetic<false>::finishNodal(n, joints.frames, onJoints.data());
     for (int i = 0; i < n; ++i) {
         const Matrix3d frame = all[i].frame();
         const Vector3d expected = frame.transpose() * apart[i];
@@ -694,14 +699,14 @@ TEST_CASE("in the plane jumps, forces and moments are those in space") {
     PlanarJoints planar(dice);
     const int n = planar.n;
     const Joints::Pointers<2> p(planar.position), q(planar.half), f(planar.frame), s(planar.span);
-    alignRigidInPlane(n, planar.body1.data(), planar.body2.data(), p.column, q.column, f.column, f.column, s.column,
-                      planar.frames);
-    jumpRigidInPlane(n, planar.offset[0].data(), planar.offset[1].data(), planar.jump[0].data(), planar.jump[1].data(),
-                     planar.frames);
-    pullRigidInPlane(n, planar.area.data(), planar.stress[0].data(), planar.stress[1].data(), planar.offset[0].data(),
-                     planar.offset[1].data(), planar.frames);
+    JointArithmetic<true>::alignRigid(n, planar.body1.data(), planar.body2.data(), p.column, q.column, f.column,
+                                      f.column, s.column, planar.frames);
+    JointArithmetic<true>::jumpRigid(n, planar.offset[0].data(), planar.offset[1].data(), nullptr,
+                                     planar.jump[0].data(), planar.jump[1].data(), nullptr, planar.frames);
+    JointArithmetic<true>::pullRigid(n, planar.area.data(), planar.stress[0].data(), planar.stress[1].data(), nullptr,
+                                     planar.offset[0].data(), planar.offset[1].data(), planar.frames);
     std::vector<double> found(4 * n);
-    finishRigidInPlane(n, planar.frames, found.data());
+    JointArithmetic<true>::finishRigid(n, planar.frames, found.data());
     for (int i = 0; i < n; ++i) {
         const auto& r = planar.all[i];
         const Vector3d expected = r.jump();
@@ -723,7 +728,8 @@ TEST_CASE("in the plane joints with a deformable side follow their nodes, too") 
     PlanarJoints planar(dice);
     const int n = planar.n;
     const Joints::Pointers<2> q(planar.half), f(planar.frame);
-    alignNodalInPlane(n, planar.body1.data(), planar.body2.data(), q.column, f.column, f.column, planar.frames);
+    JointArithmetic<true>::alignNodal(n, planar.body1.data(), planar.body2.data(), q.column, f.column, f.column,
+                                      planar.frames);
     std::vector<double> u(6 * lanes * n), onPoints(2 * n), onJoints(4 * n);
     for (double& value : u)
         value = dice.between(-1, 1);
@@ -732,11 +738,12 @@ TEST_CASE("in the plane joints with a deformable side follow their nodes, too") 
         place1.push_back(3 * lanes * (2 * i) + i % lanes);
         place2.push_back(3 * lanes * (2 * i + 1) + i % lanes);
     }
-    jumpNodalInPlane(n, place1.data(), place2.data(), u.data(), planar.jump[0].data(), planar.jump[1].data(),
-                     planar.frames);
-    pullNodalInPlane(n, planar.area.data(), planar.stress[0].data(), planar.stress[1].data(), planar.jump[0].data(),
-                     planar.jump[1].data(), planar.frames, onPoints.data());
-    finishNodalInPlane(n, planar.frames, onJoints.data());
+    JointArithmetic<true>::jumpNodal(n, place1.data(), place2.data(), u.data(), planar.jump[0].data(),
+                                     planar.jump[1].data(), nullptr, planar.frames);
+    JointArithmetic<true>::pullNodal(n, planar.area.data(), planar.stress[0].data(), planar.stress[1].data(), nullptr,
+                                     planar.jump[0].data(), planar.jump[1].data(), nullptr, planar.frames,
+                                     onPoints.data());
+    JointArithmetic<true>::finishNodal(n, planar.frames, onJoints.data());
     for (int i = 0; i < n; ++i) {
         const Matrix3d frame = planar.all[i].frame();
         const Vector3d apart(u[place2[i]] - u[place1[i]], 0, u[place2[i] + 2 * lanes] - u[place1[i] + 2 * lanes]);

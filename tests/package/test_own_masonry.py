@@ -235,6 +235,7 @@ def test_bricks_crack_if_their_strength_is_given():
         ),
         (dict(peak_strain=1e-3), "peak_strain 0.001 must be at least fc/E = 0.0035"),
         (dict(Gc=3000), "compressive fracture energy 3000 J/m² is too small for peak ratio"),
+        (dict(Gc=3000), "; Gc and peak_strain, and fc and E, decide"),
         (dict(unit_GfI=60), "unit_GfI without unit_ft: bricks do not crack then"),
         (dict(bond_ratio=2), "bond_ratio goes with bond_wrench"),
         (dict(density=None, joint=None), "joint, density must be given"),

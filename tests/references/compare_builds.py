@@ -14,8 +14,8 @@ work differs or failed.
 
 These differences are allowed:
 
-- files that say when and where something ran, and pages, whose figures are compared as .png files
-  and whose numbers as curve.csv, frames and run.json: ``EXCLUDED_FILES``
+- files that say when and where something ran, and pages and the mechanism, whose figures are
+  compared as .png files and whose numbers as curve.csv, frames and run.json: ``EXCLUDED_FILES``
 - in JSON files the entries ``EXCLUDED_ENTRIES``, the folders of builds, scenes and results, and
   names of modules
 - in checkpoints all names, and what a run notes beside its rows; compared are the bits of all
@@ -43,10 +43,10 @@ from typing import Callable
 import kept
 
 SCRIPTS = os.path.abspath(os.path.join(os.path.dirname(__file__), "..", "..", "scripts"))
-EXCLUDED_FILES = "*.html *.log *.py run.lock times.csv".split()
+EXCLUDED_FILES = "*.html *.log *.py mechanism.json run.lock times.csv".split()
 EXCLUDED_ENTRIES = {"made by"} | set(
-    "commit date host masonry microseconds_per_step nanoseconds_per_subcontact_step resumed_at_s"
-    " scene_sha256 seconds steps_by_threads wall_clock_s".split()
+    "commit date files host masonry microseconds_per_step nanoseconds_per_subcontact_step"
+    " resumed_at_s scene_sha256 seconds steps_by_threads wall_clock_s".split()
 )
 MODULE = re.compile(r"\bmasonry(_\w+)?(\.\w+)+")
 

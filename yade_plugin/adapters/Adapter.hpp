@@ -12,13 +12,15 @@
 // also define
 //     void postLoad()                               checks and prepares the object after attributes were changed
 //     std::vector<std::string> problems()           says what is wrong beyond the bounds of single attributes
+//     static constexpr ClassRole declares           is its role, which an engine must have
 //     std::string title()                           gives the name of the object in messages
 //     template <class PyClass> static void extras(PyClass&)    adds more properties and functions for Python
 #pragma once
 #include "Assumptions.hpp"
+#include "engine/bodies/Changes.hpp"
+#include "engine/bodies/ClassRole.hpp"
+#include "engine/bodies/StepLock.hpp"
 #include "host/Yade.hpp"
-#include "scene/bodies/Changes.hpp"
-#include "scene/bodies/StepLock.hpp"
 #include <boost/mpl/vector.hpp>
 #include <boost/python/raw_function.hpp>
 #include <boost/serialization/export.hpp>
@@ -26,12 +28,23 @@
 namespace masonry {
 
 struct Nothing {};
+template <class Derived> struct NoRole {};
+
+// The role of an engine, which its class declares.
+template <class Derived> class DeclaredRole : public EngineWithRole {
+public:
+    ClassRole role() const final { return Derived::declares; }
+};
+template <class Derived, class Base>
+using RoleOf = std::conditional_t<std::is_base_of<yade::Engine, Base>::value, DeclaredRole<Derived>, NoRole<Derived>>;
 
 // A class whose base is a class of ours has its state from there.
 template <class Base> using StateOf = std::conditional_t<std::is_base_of<Stateful, Base>::value, Nothing, Stateful>;
 
-template <class Derived, class Base> class Adapter : public Base, public StateOf<Base> {
+template <class Derived, class Base> class Adapter : public Base, public StateOf<Base>, public RoleOf<Derived, Base> {
 public:
+    static constexpr ClassRole declares = ClassRole::None;
+
     std::string getClassName() const override { return Derived::className; }
     std::string getBaseClassName(unsigned i = 0) const override { return i == 0 ? Derived::baseName : ""; }
     int getBaseClassNumber() const override { return 1; }
@@ -152,10 +165,10 @@ private:
                 const bool fine =
                     own.isNumber() ? own.problem("", py::extract<double>(value)).empty() : PyBool_Check(value.ptr());
                 if (!fine) throw;
-                throw std::invalid_argument(
-                    std::string(error.what()) +
-                    "; properties that depend on each other are set together, as in joint.set(" + attribute.name +
-                    "=..., ...)");
+                throw WrongProperties(std::string(error.what()) +
+                                          "; properties that depend on each other are set together, as in joint.set(" +
+                                          attribute.name + "=..., ...)",
+                                      error.problems);
             }
         };
         cls.add_property(attribute.name, get,
@@ -202,6 +215,7 @@ template <class T> void enroll(std::vector<std::string>& names) {
         T::className, [] { return static_cast<yade::Factorable*>(new T); },
         [] { return shared_ptr<yade::Factorable>(new T); }, [] { return static_cast<void*>(new T); });
     names.push_back(T::className);
+    if (T::declares != ClassRole::None) declareRole(T::declares, T::className);
 }
 
 // The number by which YADE's dispatchers know a class of materials, geometries or physics. Stands first in the class.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "Attribute.hpp"
-#include "scene/bodies/StepLock.hpp"
+#include "engine/bodies/StepLock.hpp"
 #include <boost/python/raw_function.hpp>
 
 namespace masonry {

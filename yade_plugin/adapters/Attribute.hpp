@@ -4,8 +4,8 @@
 // each class, which would take most of the time of a build.
 #pragma once
 #include "common/Property.hpp"
+#include "engine/checkpoint/Transfer.hpp"
 #include "law/common/SofteningTable.hpp"
-#include "scene/checks/Transfer.hpp"
 #include <boost/archive/binary_iarchive.hpp>
 #include <boost/archive/binary_oarchive.hpp>
 #include <boost/archive/xml_iarchive.hpp>

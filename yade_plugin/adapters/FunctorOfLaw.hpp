@@ -14,7 +14,7 @@
 #pragma once
 #include "MasonryJointGeom.hpp"
 #include "MasonryJointPhys.hpp"
-#include "scene/joints/JointFunctor.hpp"
+#include "engine/joints/JointFunctor.hpp"
 
 namespace masonry {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "Gl1_MasonryJointPhys.hpp"
 #include "Colours.hpp"
-#include "scene/store/SceneStore.hpp"
+#include "engine/store/SceneStore.hpp"
 #include <GL/gl.h>
 #include <algorithm>
 #include <unordered_map>

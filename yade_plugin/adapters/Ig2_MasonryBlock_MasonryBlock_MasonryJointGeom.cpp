@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "Ig2_MasonryBlock_MasonryBlock_MasonryJointGeom.hpp"
-#include "scene/bodies/Blocks.hpp"
-#include "scene/bodies/BodyStep.hpp"
-#include "scene/checks/EngineScope.hpp"
-#include "scene/joints/Neighbours.hpp"
+#include "engine/bodies/Blocks.hpp"
+#include "engine/bodies/BodyStep.hpp"
+#include "engine/joints/Neighbours.hpp"
+#include "engine/watch/EngineScope.hpp"
 
 template class masonry::Adapter<masonry::Ig2_MasonryBlock_MasonryBlock_MasonryJointGeom, yade::IGeomFunctor>;
 BOOST_CLASS_EXPORT_IMPLEMENT(masonry::Ig2_MasonryBlock_MasonryBlock_MasonryJointGeom)
@@ -15,7 +15,7 @@ using yade::State;
 // The host calls this before the interaction loop of every step. It brings the store up to date, so that all joints are
 // in their common groups and have the present properties.
 void Ig2_MasonryBlock_MasonryBlock_MasonryJointGeom::preStep() {
-    if (scene) const EngineScope turn(*scene);
+    if (scene) const EngineScope scope(*scene);
 }
 
 namespace {
@@ -59,7 +59,8 @@ bool Ig2_MasonryBlock_MasonryBlock_MasonryJointGeom::go(const shared_ptr<yade::S
                                                         const shared_ptr<yade::Interaction>& interaction) {
     const bool fresh = !interaction->geom;
     if (fresh) {
-        auto face = takeFace(*scene, interaction->id1, interaction->id2, tolerance); // connect() has found it
+        auto& faces = SceneStore::of(*scene).kept<SharedFaces>(); // that connect() has found
+        auto face = faces.take(interaction->id1, interaction->id2, tolerance);
         if (!face)
             face = coincidentFaces(blockOf(*shape1, state1.pos, state1.ori), blockOf(*shape2, state2.pos, state2.ori),
                                    tolerance);
@@ -73,7 +74,7 @@ bool Ig2_MasonryBlock_MasonryBlock_MasonryJointGeom::go(const shared_ptr<yade::S
         const shared_ptr<MasonryJointGeom> geom(new MasonryJointGeom);
         geom->define(*face, grid.along, subcontacts, grid.rows, interaction->id1, interaction->id2, state1, state2);
         for (auto& side : geom->group->joints[0].sides)
-            side.shearShare = shearShareOf(*scene, side.body);
+            side.shearShare = faces.shearShareOf(side.body);
         if (zones) geom->attach(zones);
         interaction->geom = geom;
         fixed_.fix(*scene, {double(subcontacts), double(rows)});

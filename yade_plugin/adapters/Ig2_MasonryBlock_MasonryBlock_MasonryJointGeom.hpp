@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 #include "MasonryJointGeom.hpp"
-#include "scene/bodies/Fixed.hpp"
+#include "engine/bodies/Fixed.hpp"
 
 namespace masonry {
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "Ip2_MasonryMat_MasonryMat_MasonryJointPhys.hpp"
 #include "MasonryJointGeom.hpp"
-#include "scene/bodies/BodyCheck.hpp"
-#include "scene/joints/Lumping.hpp"
+#include "engine/bodies/BodyCheck.hpp"
+#include "engine/joints/Lumping.hpp"
 
 template class masonry::Adapter<masonry::Ip2_MasonryMat_MasonryMat_MasonryJointPhys, yade::IPhysFunctor>;
 BOOST_CLASS_EXPORT_IMPLEMENT(masonry::Ip2_MasonryMat_MasonryMat_MasonryJointPhys)

@@ -33,10 +33,10 @@ public:
     void go(const shared_ptr<yade::Material>&, const shared_ptr<yade::Material>&,
             const shared_ptr<yade::Interaction>&) override;
     using FunctorWrapper::go;
+    void assignTo(const shared_ptr<yade::Interaction>&, const shared_ptr<MasonryJoint>&) const;
 
 private:
     void assign(const MasonryMat&, const MasonryMat&, yade::Interaction&, const shared_ptr<MasonryJoint>&) const;
-    void assignTo(const shared_ptr<yade::Interaction>&, const shared_ptr<MasonryJoint>&) const;
 };
 
 } // namespace masonry

@@ -2,7 +2,7 @@
 #pragma once
 #include "Adapter.hpp"
 #include "blocks/BlockShape.hpp"
-#include "scene/bodies/Blocks.hpp"
+#include "engine/bodies/Blocks.hpp"
 
 namespace masonry {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "MasonryContacts.hpp"
-#include "scene/checks/EngineScope.hpp"
+#include "engine/watch/EngineScope.hpp"
 
 template class masonry::Adapter<masonry::MasonryContacts, yade::GlobalEngine>;
 BOOST_CLASS_EXPORT_IMPLEMENT(masonry::MasonryContacts)
@@ -8,11 +8,11 @@ BOOST_CLASS_EXPORT_IMPLEMENT(masonry::MasonryContacts)
 namespace masonry {
 
 void MasonryContacts::action() {
-    const EngineScope turn(*scene, *this);
-    act(turn.store());
-    conversion_.act(turn.store(), *this);
-    lookAtFalls(turn.store());
-    turn.end();
+    const EngineScope scope(*scene, *this);
+    act(scope.store());
+    conversion_.act(scope.store(), *this);
+    lookAtFalls(scope.store());
+    scope.end();
 }
 
 void MasonryContacts::lookAtFalls(SceneStore& store) {

@@ -1,16 +1,19 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 #include "Adapter.hpp"
-#include "scene/checks/SceneCheck.hpp"
-#include "scene/contacts/FallenBlocks.hpp"
-#include "scene/contacts/JointConversion.hpp"
+#include "engine/contacts/FallenBlocks.hpp"
+#include "engine/contacts/JointConversion.hpp"
+#include "engine/watch/EngineOrder.hpp"
 
 namespace masonry {
+
+class SceneStore;
 
 class MasonryContacts : public Adapter<MasonryContacts, yade::GlobalEngine>, public Contacts {
 public:
     static constexpr const char* className = "MasonryContacts";
     static constexpr const char* baseName = "GlobalEngine";
+    static constexpr ClassRole declares = ClassRole::Contacts;
     static constexpr const char* doc =
         "Contacts of rigid blocks wherever they meet, also after large motions: of all pairs that no joint connects. "
         "The force comes from a potential of the overlap, with Coulomb friction and viscous damping in compression. "

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "MasonryIntegrator.hpp"
-#include "scene/checks/EngineScope.hpp"
+#include "engine/watch/EngineScope.hpp"
 
 template class masonry::Adapter<masonry::MasonryIntegrator, yade::GlobalEngine>;
 BOOST_CLASS_EXPORT_IMPLEMENT(masonry::MasonryIntegrator)
@@ -8,9 +8,9 @@ BOOST_CLASS_EXPORT_IMPLEMENT(masonry::MasonryIntegrator)
 namespace masonry {
 
 void MasonryIntegrator::action() {
-    const EngineScope turn(*scene, *this);
-    advance(*scene, turn->bodies, turn->loads, turn->foreignForces);
-    turn.end();
+    const EngineScope scope(*scene, *this);
+    advance(*scene, scope->bodies, scope->loads, scope->foreignForces);
+    scope.end();
 }
 
 } // namespace masonry

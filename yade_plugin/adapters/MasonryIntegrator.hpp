@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 #include "Adapter.hpp"
-#include "scene/bodies/Integrator.hpp"
-#include "scene/bodies/Ledger.hpp"
-#include "scene/checks/SceneCheck.hpp"
+#include "engine/bodies/Integrator.hpp"
+#include "engine/bodies/Ledger.hpp"
+#include "engine/watch/EngineOrder.hpp"
 
 namespace masonry {
 
@@ -11,6 +11,7 @@ class MasonryIntegrator : public Adapter<MasonryIntegrator, yade::GlobalEngine>,
 public:
     static constexpr const char* className = "MasonryIntegrator";
     static constexpr const char* baseName = "GlobalEngine";
+    static constexpr ClassRole declares = ClassRole::Integrator;
     static constexpr const char* doc =
         "Moves the rigid bodies by the equations of NewtonIntegrator (paper eqs. (1)-(3)) and counts their energies. "
         "Leaves out what masonry does not need: periodic cells, clumps and bounds for a collider. NewtonIntegrator "

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "MasonryJoint.hpp"
+#include "engine/joints/JointFunctor.hpp"
 #include "law/Laws.hpp"
 #include "law/piecewise_softening/PiecewiseLaw.hpp"
-#include "scene/joints/JointFunctor.hpp"
 
 template class masonry::Adapter<masonry::MasonryJoint, yade::Serializable>;
 BOOST_CLASS_EXPORT_IMPLEMENT(masonry::MasonryJoint)
@@ -19,7 +19,7 @@ void MasonryJoint::postLoad() {
             const auto reads = [&](const LawEntry& one) { return one.reads(property); };
             if (laws().front().reads(property) || std::none_of(laws().begin(), laws().end(), reads)) return;
             const auto problem = own.problem(inWords(property), this->*member);
-            if (!problem.empty()) throw std::invalid_argument("joint \"" + name + "\": " + problem);
+            if (!problem.empty()) throw wrongJoint(name, {{property, problem, "bounds"}});
         }
     });
 }

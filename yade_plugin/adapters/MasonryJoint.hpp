@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 #include "Adapter.hpp"
-#include "scene/joints/PropertySet.hpp"
+#include "engine/joints/PropertySet.hpp"
 
 namespace masonry {
 

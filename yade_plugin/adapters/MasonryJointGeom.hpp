@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 #include "MasonryZones.hpp"
-#include "scene/joints/JointView.hpp"
+#include "engine/joints/JointView.hpp"
 
 namespace masonry {
 

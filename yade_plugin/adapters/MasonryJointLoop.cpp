@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "MasonryJointLoop.hpp"
-#include "scene/checks/EngineScope.hpp"
+#include "engine/watch/EngineScope.hpp"
 #include <algorithm>
 
 template class masonry::Adapter<masonry::MasonryJointLoop, yade::GlobalEngine>;
@@ -9,10 +9,10 @@ BOOST_CLASS_EXPORT_IMPLEMENT(masonry::MasonryJointLoop)
 namespace masonry {
 
 void MasonryJointLoop::action() {
-    const EngineScope turn(*scene, *this);
-    if (refining_.look(turn.store())) turn->pointsChanged();
-    plan_.advance(turn.store());
-    refining_.count(turn.store());
+    const EngineScope scope(*scene, *this);
+    if (refining_.look(scope.store())) scope->pointsChanged();
+    plan_.advance(scope.store());
+    refining_.count(scope.store());
 }
 
 int MasonryJointLoop::groups() const {

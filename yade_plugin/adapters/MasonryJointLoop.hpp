@@ -2,9 +2,9 @@
 #pragma once
 #include "Ig2_MasonryBlock_MasonryBlock_MasonryJointGeom.hpp"
 #include "Ip2_MasonryMat_MasonryMat_MasonryJointPhys.hpp"
-#include "scene/checks/SceneCheck.hpp"
-#include "scene/joints/JointPlan.hpp"
-#include "scene/joints/Refinement.hpp"
+#include "engine/joints/JointPlan.hpp"
+#include "engine/joints/Refinement.hpp"
+#include "engine/watch/EngineOrder.hpp"
 
 namespace masonry {
 
@@ -12,6 +12,7 @@ class MasonryJointLoop : public Adapter<MasonryJointLoop, yade::GlobalEngine>, p
 public:
     static constexpr const char* className = "MasonryJointLoop";
     static constexpr const char* baseName = "GlobalEngine";
+    static constexpr ClassRole declares = ClassRole::Joints;
     static constexpr const char* doc =
         "A step of all masonry joints, in columns and on all threads. Stands in the place of InteractionLoop, which "
         "does the same with the functors of this plugin and remains as the reference. A run is the same, bit for bit, "

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "MasonryJointPhys.hpp"
-#include "scene/store/SceneStore.hpp"
+#include "engine/store/SceneStore.hpp"
 
 template class masonry::Adapter<masonry::MasonryJointPhys, yade::IPhys>;
 BOOST_CLASS_EXPORT_IMPLEMENT(masonry::MasonryJointPhys)

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "MasonryLoad.hpp"
-#include "scene/bodies/Integrator.hpp"
-#include "scene/checks/EngineScope.hpp"
-#include "scene/joints/Zones.hpp"
+#include "engine/bodies/Integrator.hpp"
+#include "engine/units/Zones.hpp"
+#include "engine/watch/EngineScope.hpp"
 
 template class masonry::Adapter<masonry::MasonryLoad, yade::GlobalEngine>;
 BOOST_CLASS_EXPORT_IMPLEMENT(masonry::MasonryLoad)
@@ -10,14 +10,14 @@ BOOST_CLASS_EXPORT_IMPLEMENT(masonry::MasonryLoad)
 namespace masonry {
 
 void MasonryLoad::action() {
-    const EngineScope turn(*scene, *this);
+    const EngineScope scope(*scene, *this);
     eachBody([&](int id) {
-        if (turn->zones && turn->zones->unitOf(id))
+        if (scope->zones && scope->zones->unitOf(id))
             throw std::invalid_argument("MasonryLoad.body " + std::to_string(id) +
                                         " is a deformable unit; load a rigid block joined to it");
     });
-    act(*scene, turn->gravity());
-    turn.end();
+    act(*scene, scope->gravity());
+    scope.end();
 }
 
 Vector3r MasonryLoad::displacement() const {

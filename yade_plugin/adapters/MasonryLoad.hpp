@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 #include "Adapter.hpp"
-#include "scene/bodies/Load.hpp"
-#include "scene/checks/SceneCheck.hpp"
+#include "engine/bodies/Load.hpp"
+#include "engine/watch/EngineOrder.hpp"
 
 namespace masonry {
 
@@ -10,6 +10,7 @@ class MasonryLoad : public Adapter<MasonryLoad, yade::GlobalEngine>, public Load
 public:
     static constexpr const char* className = "MasonryLoad";
     static constexpr const char* baseName = "GlobalEngine";
+    static constexpr ClassRole declares = ClassRole::Load;
     static constexpr const char* doc =
         "Loads a rigid block at a point fixed to it: with a constant force and, if it is driven, with a prescribed "
         "velocity of that point in one direction. The block remains free to rotate and to move in other directions. "

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 #include "Adapter.hpp"
-#include "scene/bodies/UnitMaterial.hpp"
+#include "engine/bodies/UnitMaterial.hpp"
 
 namespace masonry {
 
@@ -9,6 +9,7 @@ class MasonryMat : public Adapter<MasonryMat, yade::Material>, public UnitMateri
     MASONRY_DISPATCHED(MasonryMat, yade::Material)
     static constexpr const char* className = "MasonryMat";
     static constexpr const char* baseName = "Material";
+    static constexpr ClassRole declares = ClassRole::Material;
     static constexpr const char* doc =
         "Material of a masonry unit, which deforms elastically between the joints. Its density [kg/m³] is that of "
         "Material. The properties of joints are in MasonryJoint objects; "

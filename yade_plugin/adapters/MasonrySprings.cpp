@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "MasonrySprings.hpp"
-#include "scene/checks/EngineScope.hpp"
+#include "engine/watch/EngineScope.hpp"
 
 template class masonry::Adapter<masonry::MasonrySprings, yade::GlobalEngine>;
 BOOST_CLASS_EXPORT_IMPLEMENT(masonry::MasonrySprings)
@@ -8,9 +8,9 @@ BOOST_CLASS_EXPORT_IMPLEMENT(masonry::MasonrySprings)
 namespace masonry {
 
 void MasonrySprings::action() {
-    const EngineScope turn(*scene, *this);
-    act(turn.store());
-    turn.end();
+    const EngineScope scope(*scene, *this);
+    act(scope.store());
+    scope.end();
 }
 
 } // namespace masonry

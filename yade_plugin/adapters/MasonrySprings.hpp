@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 #include "Adapter.hpp"
-#include "scene/checks/SceneCheck.hpp"
-#include "scene/contacts/Springs.hpp"
+#include "engine/connectors/Springs.hpp"
+#include "engine/watch/EngineOrder.hpp"
 
 namespace masonry {
 
@@ -10,6 +10,7 @@ class MasonrySprings : public Adapter<MasonrySprings, yade::GlobalEngine>, publi
 public:
     static constexpr const char* className = "MasonrySprings";
     static constexpr const char* baseName = "GlobalEngine";
+    static constexpr ClassRole declares = ClassRole::Connectors;
     static constexpr const char* doc = "Linear springs between points of two rigid bodies, or of one and the ground, "
                                        "along and about the global axes. They "
                                        "have no mass and no force in the reference state. Turns are taken as small. "

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "MasonryTies.hpp"
-#include "scene/checks/EngineScope.hpp"
+#include "engine/watch/EngineScope.hpp"
 
 template class masonry::Adapter<masonry::MasonryTies, yade::GlobalEngine>;
 BOOST_CLASS_EXPORT_IMPLEMENT(masonry::MasonryTies)
@@ -8,9 +8,9 @@ BOOST_CLASS_EXPORT_IMPLEMENT(masonry::MasonryTies)
 namespace masonry {
 
 void MasonryTies::action() {
-    const EngineScope turn(*scene, *this);
-    act(turn.store());
-    turn.end();
+    const EngineScope scope(*scene, *this);
+    act(scope.store());
+    scope.end();
 }
 
 double MasonryTies::forceOf(int tie) {

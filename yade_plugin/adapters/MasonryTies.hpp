@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 #include "Adapter.hpp"
-#include "scene/checks/SceneCheck.hpp"
-#include "scene/contacts/Ties.hpp"
+#include "engine/connectors/Ties.hpp"
+#include "engine/watch/EngineOrder.hpp"
 
 namespace masonry {
 
@@ -10,6 +10,7 @@ class MasonryTies : public Adapter<MasonryTies, yade::GlobalEngine>, public Ties
 public:
     static constexpr const char* className = "MasonryTies";
     static constexpr const char* baseName = "GlobalEngine";
+    static constexpr ClassRole declares = ClassRole::Connectors;
     static constexpr const char* doc =
         "Bars between points of two rigid bodies, or of one and the ground: elastic, yielding at a force, breaking at "
         "an elongation, with prestress or slack, with or without compression. A bar has no mass and does not bend. Its "

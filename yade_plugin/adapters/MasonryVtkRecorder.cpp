@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "MasonryVtkRecorder.hpp"
+#include "engine/bodies/Blocks.hpp"
+#include "engine/connectors/Connectors.hpp"
+#include "engine/store/SceneStore.hpp"
+#include "engine/units/Zones.hpp"
 #include "law/Laws.hpp"
-#include "scene/bodies/Blocks.hpp"
-#include "scene/contacts/Connectors.hpp"
-#include "scene/joints/Zones.hpp"
-#include "scene/store/SceneStore.hpp"
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cerrno>
@@ -50,6 +50,7 @@ struct Field { // a column of numbers in the files; those that laws show come be
     const char* name;
     int components;
     Property about;
+    bool whole = false; // whether its numbers are whole
 };
 
 const Field fields[] = {
@@ -61,7 +62,7 @@ const Field fields[] = {
      number("rad", "Rotation of a rigid unit since the reference state, a vector along its axis of the length of the "
                    "angle; its corners tell how far it moved. Zero in the zones of deformable units")},
     {"velocity", 3, number("m/s", "Velocity")},
-    {"body", 1, described("Id of the unit's body")},
+    {"body", 1, described("Id of the unit's body"), true},
     {"stress", 6, number("Pa", "Stress of a zone of a deformable unit: xx, yy, zz, xy, yz, xz; zero in rigid units")},
     {"principal_stress", 3, number("Pa", "Principal stresses of a zone, the smallest first")},
     {"opening", 1, number("m", "Total opening of a subcontact; negative where it is closed")},
@@ -76,27 +77,49 @@ const Field fields[] = {
             "lies in the joint's plane in the reference state, as `slide` and `normal` do")},
     {"area", 1, number("m²", "Area of a subcontact")},
     {"joint_dissipated", 3, number("J", "Energy that the whole joint dissipated in tension, shear and compression")},
-    {"regime", 1, described("Regime in the last step: 0 elastic, 1 opening, 2 slipping, 3 crushing")},
-    {"kind", 1, described("Number of the joint's kind in `kinds`")},
-    {"bodies", 2, described("Ids of the two bodies of the joint, or of the tie or the spring; -1: the ground")},
+    {"regime", 1, described("Regime in the last step: 0 elastic, 1 opening, 2 slipping, 3 crushing"), true},
+    {"kind", 1, described("Number of the joint's kind in `kinds`"), true},
+    {"bodies", 2, described("Ids of the two bodies of the joint, or of the tie or the spring; -1: the ground"), true},
     {"force", 3, number("N", "Force of a tie or a spring on the first of its `bodies`")},
     {"tension", 1, number("N", "Force of a tie along its line, positive in tension")},
     {"elongation", 1, number("m", "Elongation of the distance between the ends of a tie")},
-    {"condition", 1, described("Of a tie: 0 elastic, 1 has yielded, 2 broken")},
+    {"condition", 1, described("Of a tie: 0 elastic, 1 has yielded, 2 broken"), true},
 };
 
-template <class Array> Array* column(vtkDataSetAttributes* data, const Field& field) {
-    vtkNew<Array> array;
+vtkSmartPointer<vtkDataArray> newColumn(vtkDataSetAttributes* data, const Field& field) {
+    vtkSmartPointer<vtkDataArray> array;
+    if (field.whole)
+        array = vtkSmartPointer<vtkIntArray>::New();
+    else
+        array = vtkSmartPointer<vtkDoubleArray>::New();
     array->SetName(field.name);
     array->SetNumberOfComponents(field.components);
     if (field.about.isNumber()) array->GetInformation()->Set(vtkDataArray::UNITS_LABEL(), field.about.unit);
     data->AddArray(array);
-    return array; // owned by `data`
+    return array;
 }
-template <class Array> Array* column(vtkDataSetAttributes* data, const char* name) {
-    return column<Array>(data, *std::find_if(std::begin(fields), std::end(fields),
-                                             [&](const Field& f) { return std::strcmp(f.name, name) == 0; }));
-}
+
+// Some of the fields, to which rows are added.
+class Rows {
+public:
+    Rows(vtkDataSetAttributes* data, std::initializer_list<const char*> names) {
+        for (const char* name : names)
+            columns_.push_back(newColumn(data, *std::find_if(std::begin(fields), std::end(fields), [&](const Field& f) {
+                                             return std::strcmp(f.name, name) == 0;
+                                         })));
+    }
+    // A row of values, in the order of the names.
+    template <class... Values> void insert(const Values&... values) {
+        auto column = columns_.begin();
+        (put(**column++, values), ...);
+    }
+
+private:
+    static void put(vtkDataArray& to, double value) { to.InsertNextTuple1(value); }
+    static void put(vtkDataArray& to, const double* values) { to.InsertNextTuple(values); }
+    static void put(vtkDataArray& to, const Vector3r& values) { to.InsertNextTuple(values.data()); }
+    std::vector<vtkSmartPointer<vtkDataArray>> columns_;
+};
 
 // The columns of what the laws of a scene show. Every law has the first of them, the others are zero where the law of a
 // joint does not show them.
@@ -104,8 +127,7 @@ class LawFields {
 public:
     LawFields(vtkDataSetAttributes* data, const std::vector<JointKind>& kinds) {
         const auto add = [&](const JointField& field) {
-            if (!columnOf(field))
-                columns_.push_back({field.name, column<vtkDoubleArray>(data, {field.name, 1, field.about})});
+            if (!columnOf(field)) columns_.push_back({field.name, newColumn(data, {field.name, 1, field.about})});
         };
         for (const auto* field : field::always)
             add(*field);
@@ -114,17 +136,17 @@ public:
     }
     void insert(const JointPhysics& phys, int point) {
         for (auto& column : columns_)
-            column.array->InsertNextValue(0);
+            column.array->InsertNextTuple1(0);
         phys.group->columns->show(point, phys.index, [&](const JointField& field, double value) {
-            auto* array = columnOf(field)->array;
-            array->SetValue(array->GetNumberOfValues() - 1, value);
+            auto& array = *columnOf(field)->array;
+            array.SetComponent(array.GetNumberOfTuples() - 1, 0, value);
         });
     }
 
 private:
     struct Column {
         const char* name;
-        vtkDoubleArray* array;
+        vtkSmartPointer<vtkDataArray> array;
     };
     Column* columnOf(const JointField& field) {
         for (auto& column : columns_)
@@ -196,10 +218,6 @@ std::string frame(const std::string& name, std::size_t number, const std::string
     return name + "_" + std::string(4 - std::min<std::size_t>(4, digits.size()), '0') + digits + extension;
 }
 
-} // namespace
-
-namespace {
-
 // The three tetrahedra of a prism over a triangle, whose upper corners have numbers larger by `up`, in an order that
 // makes their volumes positive. The diagonals of its sides start at the corner with the smaller number, so that
 // neighbours have the same ones.
@@ -270,12 +288,8 @@ void MasonryVtkRecorder::writeBlocks(const std::string& path) const {
     vtkNew<vtkUnstructuredGrid> grid;
     vtkNew<vtkPoints> points;
     points->SetDataTypeToDouble();
-    auto* displacement = column<vtkDoubleArray>(grid->GetPointData(), "displacement");
-    auto* velocity = column<vtkDoubleArray>(grid->GetPointData(), "velocity");
-    auto* ids = column<vtkIntArray>(grid->GetCellData(), "body");
-    auto* rotations = column<vtkDoubleArray>(grid->GetCellData(), "rotation");
-    auto* stress = column<vtkDoubleArray>(grid->GetCellData(), "stress");
-    auto* principal = column<vtkDoubleArray>(grid->GetCellData(), "principal_stress");
+    Rows ofPoints(grid->GetPointData(), {"displacement", "velocity"});
+    Rows ofCells(grid->GetCellData(), {"body", "rotation", "stress", "principal_stress"});
     const double none[6] = {};
     std::set<int> deformable;
     for (const auto& engine : scene->engines) {
@@ -294,8 +308,7 @@ void MasonryVtkRecorder::writeBlocks(const std::string& path) const {
                     Vector3r place = unit.centre + mesh.nodes[n];
                     if (across >= 0) place[across] += (face - 0.5) * mesh.thickness;
                     points->InsertNextPoint(place.data());
-                    displacement->InsertNextTuple(u[n].data());
-                    velocity->InsertNextTuple(zones->velocityOf(unit.firstNode + n).data());
+                    ofPoints.insert(u[n], zones->velocityOf(unit.firstNode + n));
                 }
             const Matrix3 rotation = unit.elasticity->rotation(u.data());
             const int all = int(across < 0 ? mesh.zones.size() : mesh.triangles.size());
@@ -309,10 +322,7 @@ void MasonryVtkRecorder::writeBlocks(const std::string& path) const {
                     for (int i = 0; i < 4; ++i)
                         corners[i] = first + zone[i];
                     grid->InsertNextCell(VTK_TETRA, 4, corners);
-                    ids->InsertNextValue(unit.body);
-                    rotations->InsertNextTuple(none);
-                    stress->InsertNextTuple(six);
-                    principal->InsertNextTuple(three.data());
+                    ofCells.insert(unit.body, none, six, three);
                 }
             }
         }
@@ -326,8 +336,7 @@ void MasonryVtkRecorder::writeBlocks(const std::string& path) const {
         for (const auto& v : block.vertices) {
             const Vector3r reference = s.refPos + s.refOri * v, arm = s.ori * v;
             points->InsertNextPoint(reference.data());
-            displacement->InsertNextTuple(Vector3r(s.pos + arm - reference).data());
-            velocity->InsertNextTuple(Vector3r(s.vel + s.angVel.cross(arm)).data());
+            ofPoints.insert(Vector3r(s.pos + arm - reference), Vector3r(s.vel + s.angVel.cross(arm)));
         }
         vtkNew<vtkIdList> faces; // number of faces, then for each face its number of corners and the corners
         faces->InsertNextId(block.triangles.size());
@@ -337,11 +346,8 @@ void MasonryVtkRecorder::writeBlocks(const std::string& path) const {
                 faces->InsertNextId(first + corner);
         }
         grid->InsertNextCell(VTK_POLYHEDRON, faces);
-        ids->InsertNextValue(body->id);
         const Eigen::AngleAxisd turn(s.ori * s.refOri.conjugate());
-        rotations->InsertNextTuple(Vector3r(turn.angle() * turn.axis()).data());
-        stress->InsertNextTuple(none);
-        principal->InsertNextTuple(none);
+        ofCells.insert(body->id, Vector3r(turn.angle() * turn.axis()), none, none);
     }
     grid->SetPoints(points);
     write<vtkXMLUnstructuredGridWriter>(path, grid.Get());
@@ -352,20 +358,10 @@ vtkSmartPointer<vtkPolyData> MasonryVtkRecorder::jointData() {
     vtkNew<vtkPoints> points;
     points->SetDataTypeToDouble();
     vtkNew<vtkCellArray> cells;
-    auto* first = column<vtkDoubleArray>(data->GetPointData(), "displacement");
-    auto* second = column<vtkDoubleArray>(data->GetPointData(), "second_displacement");
+    Rows ofPoints(data->GetPointData(), {"displacement", "second_displacement"});
     auto* values = data->GetCellData();
-    auto* opening = column<vtkDoubleArray>(values, "opening");
-    auto* slide = column<vtkDoubleArray>(values, "slide");
-    auto* normal = column<vtkDoubleArray>(values, "normal");
-    auto* normalStress = column<vtkDoubleArray>(values, "normal_stress");
-    auto* shearStress = column<vtkDoubleArray>(values, "shear_stress");
-    auto* shearTraction = column<vtkDoubleArray>(values, "shear_traction");
-    auto* area = column<vtkDoubleArray>(values, "area");
-    auto* lost = column<vtkDoubleArray>(values, "joint_dissipated");
-    auto* regime = column<vtkIntArray>(values, "regime");
-    auto* kind = column<vtkIntArray>(values, "kind");
-    auto* ids = column<vtkIntArray>(values, "bodies");
+    Rows ofCells(values, {"opening", "slide", "normal", "normal_stress", "shear_stress", "shear_traction", "area",
+                          "joint_dissipated", "regime", "kind", "bodies"});
 
     auto& store = SceneStore::of(*scene);
     store.update();
@@ -389,25 +385,16 @@ vtkSmartPointer<vtkPolyData> MasonryVtkRecorder::jointData() {
             cells->InsertNextCell(int(parts[p].size()));
             for (const auto& corner : parts[p]) {
                 cells->InsertCellPoint(points->InsertNextPoint(corner.data()));
-                first->InsertNextTuple(moved(store, geom, 0, p, corner).data());
-                second->InsertNextTuple(moved(store, geom, 1, p, corner).data());
+                ofPoints.insert(moved(store, geom, 0, p, corner), moved(store, geom, 1, p, corner));
             }
             const auto s = phys.state(p);
             const Vector3r jump = geom.jump(p);
-            opening->InsertNextValue(s.opening);
-            slide->InsertNextTuple(Vector3r(jump[1] * r.tangent + jump[2] * side).data());
-            normal->InsertNextTuple(r.normal.data());
-            normalStress->InsertNextValue(s.normalStress);
-            shearStress->InsertNextValue(std::hypot(s.shearStress.a, s.shearStress.b));
+            const Vector3r slide = jump[1] * r.tangent + jump[2] * side;
             const Vector3r traction = s.shearStress.a * r.tangent + s.shearStress.b * side;
-            shearTraction->InsertNextTuple(traction.data());
-            ofLaws.insert(phys, p);
-            area->InsertNextValue(geom.area(p));
-            lost->InsertNextTuple(dissipated.data());
-            regime->InsertNextValue(int(s.regime));
-            kind->InsertNextValue(number);
             const double bodies[2] = {double(joint.interaction->id1), double(joint.interaction->id2)};
-            ids->InsertNextTuple(bodies);
+            ofCells.insert(s.opening, slide, r.normal, s.normalStress, std::hypot(s.shearStress.a, s.shearStress.b),
+                           traction, geom.area(p), dissipated, double(s.regime), number, bodies);
+            ofLaws.insert(phys, p);
         }
     }
     data->SetPoints(points);
@@ -422,13 +409,8 @@ void MasonryVtkRecorder::writeConnectors(const std::string& path) const {
     vtkNew<vtkPoints> points;
     points->SetDataTypeToDouble();
     vtkNew<vtkCellArray> ofBars, ofSprings;
-    auto* displacement = column<vtkDoubleArray>(data->GetPointData(), "displacement");
-    auto* values = data->GetCellData();
-    auto* force = column<vtkDoubleArray>(values, "force");
-    auto* tension = column<vtkDoubleArray>(values, "tension");
-    auto* elongation = column<vtkDoubleArray>(values, "elongation");
-    auto* condition = column<vtkIntArray>(values, "condition");
-    auto* ids = column<vtkIntArray>(values, "bodies");
+    Rows ofPoints(data->GetPointData(), {"displacement"});
+    Rows ofCells(data->GetCellData(), {"force", "tension", "elongation", "condition", "bodies"});
     const auto& store = SceneStore::of(*scene);
     for (const bool bars : {false, true}) // VTK numbers cells that are points before those that are lines
         for (const Connectors* all : store.connectors) {
@@ -436,8 +418,7 @@ void MasonryVtkRecorder::writeConnectors(const std::string& path) const {
             for (int i = 0; i < all->count(); ++i) {
                 const auto at = std::size_t(i);
                 const auto add = [&](int body, const Vector3r& point) {
-                    const Vector3r moved = Connectors::endOf(store, body, point).place - point;
-                    displacement->InsertNextTuple(moved.data());
+                    ofPoints.insert(Vector3r(Connectors::endOf(store, body, point).place - point));
                     return points->InsertNextPoint(point.data());
                 };
                 vtkIdType ends[2] = {add(all->bodies1[at], all->points1[at])};
@@ -447,12 +428,8 @@ void MasonryVtkRecorder::writeConnectors(const std::string& path) const {
                 } else
                     ofSprings->InsertNextCell(1, ends);
                 const auto view = all->view(store, i);
-                force->InsertNextTuple(view.force.data());
-                tension->InsertNextValue(view.tension);
-                elongation->InsertNextValue(view.elongation);
-                condition->InsertNextValue(view.condition);
                 const double bodies[2] = {double(all->bodies1[at]), double(all->bodies2[at])};
-                ids->InsertNextTuple(bodies);
+                ofCells.insert(view.force, view.tension, view.elongation, view.condition, bodies);
             }
         }
     data->SetPoints(points);

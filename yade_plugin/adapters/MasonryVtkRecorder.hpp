@@ -11,6 +11,7 @@ class MasonryVtkRecorder : public Adapter<MasonryVtkRecorder, yade::GlobalEngine
 public:
     static constexpr const char* className = "MasonryVtkRecorder";
     static constexpr const char* baseName = "GlobalEngine";
+    static constexpr ClassRole declares = ClassRole::Recorder;
     static constexpr const char* doc =
         "Writes blocks.pvd and joints.pvd with their series of files for ParaView, one frame at every action, and "
         "connectors.pvd where there are ties or springs. Units "

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "MasonryZones.hpp"
-#include "scene/checks/EngineScope.hpp"
-#include "scene/joints/JointFunctor.hpp"
+#include "engine/joints/CrackedBricks.hpp"
+#include "engine/joints/JointFunctor.hpp"
+#include "engine/watch/EngineScope.hpp"
 
 template class masonry::Adapter<masonry::MasonryZones, yade::GlobalEngine>;
 BOOST_CLASS_EXPORT_IMPLEMENT(masonry::MasonryZones)
@@ -14,11 +15,11 @@ void MasonryZones::postLoad() {
 }
 
 void MasonryZones::action() {
-    const EngineScope turn(*scene, *this);
-    if (!turn->loop) gatherFromFunctors(turn->joints, *this);
-    followMasses(turn->kinds);
-    advance(*scene, turn->bodies, turn->gravity(), turn->massDamping());
-    turn.end();
+    const EngineScope scope(*scene, *this);
+    if (!scope->loop) gatherFromFunctors(scope->joints, *this);
+    followMasses(newlyCracked(*this, scope->kinds));
+    advance(*scene, scope->bodies, scope->gravity(), scope->massDamping());
+    scope.end();
 }
 
 py::tuple MasonryZones::nodesOf(int body) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 #include "Adapter.hpp"
-#include "scene/checks/SceneCheck.hpp"
-#include "scene/joints/Zones.hpp"
+#include "engine/units/Zones.hpp"
+#include "engine/watch/EngineOrder.hpp"
 
 namespace masonry {
 
@@ -10,6 +10,7 @@ class MasonryZones : public Adapter<MasonryZones, yade::GlobalEngine>, public Zo
 public:
     static constexpr const char* className = "MasonryZones";
     static constexpr const char* baseName = "GlobalEngine";
+    static constexpr ClassRole declares = ClassRole::Units;
     static constexpr const char* doc =
         "Deformable units: blocks divided into tetrahedral zones of linear elastic material, with their masses at the "
         "nodes (paper §2, eqs. (1)-(7)). Their joints act at points of the faces of cells, between which displacements "

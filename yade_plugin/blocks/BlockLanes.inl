@@ -220,8 +220,8 @@ template <bool plane> struct RigidSums {
         Lanes sum[directions]; // of m v [kg m/s]
         Lanes about[axes];     // of x × m v [kg m²/s]
     };
-    // Of the velocities, and of the changes of velocity that are called so in moveIn().
-    Vector velocity, half, trend;
+    // Of the velocities, of their changes in half a step, and of the changes of the forces since the last step.
+    Vector velocity, half, forceChange;
 };
 
 template <bool plane> inline void addCross(const Lanes* x, const Lanes* v, Lanes* out) {
@@ -238,6 +238,7 @@ template <bool plane> struct RigidBlock {
     Lanes mass, centre[directions];
     Lanes inverse[plane ? 1 : 9]; // of the inertia about the centre; zero for axes about which nodes cannot turn
 
+    RigidBlock() = default;
     RigidBlock(const RigidSums<plane>& s, const bool* turns) : mass(s.mass) {
         const Lanes zero = {}, one = zero + 1;
         for (int d = 0; d < directions; ++d)
@@ -318,218 +319,279 @@ template <class Vectors> inline Vectors weighted(Lanes a, const Vectors& one, La
     return sum;
 }
 
-template <bool plane>
-void moveIn(const NodeMotion& m, double scaling, ScaledUnits* units, int count, const Row& whole, Row* scratch) {
+// A step of units whose masses are scaled, of one part of their lanes. A motion v has a rigid part P v: W v, that of
+// both units together, where they are whole, else H v, that of each for itself. By the scaled masses M* an acceleration
+// M^-1 f becomes P* M^-1 f + (1 - P) M^-1 f / (1 + s), with P* = W where units are whole, else (1 - t) W + t H,
+// t = 1 / (1 + sharedScaling s).
+template <bool plane> class ScaledStep {
+public:
+    ScaledStep(const NodeMotion& motion, double scaling, ScaledUnits* units, int count, const Row& whole, Row* scratch,
+               int part)
+        : m(motion),
+          scaling(scaling),
+          units(units),
+          count(count),
+          part(part),
+          kept(at(scratch, 0)),
+          together(*at(&whole, part)),
+          split(1 - together) {
+        const int across = plane ? units[0].matrix.across : 2;
+        const int axesOfStep[3] = {(across + 1) % 3, (across + 2) % 3, across};
+        for (int d = 0; d < 3; ++d) {
+            direction[d] = axesOfStep[d];
+            free[d] = !m.held[direction[d]];
+        }
+        for (int k = 0; k < 3; ++k)
+            turns[k] = plane ? free[0] && free[1] : free[(k + 1) % 3] && free[(k + 2) % 3];
+    }
+    void predict();
+    void filter();
+    void correct();
+    void sumUp();
+
+private:
     using Sums = RigidSums<plane>;
     using Block = RigidBlock<plane>;
-    constexpr int directions = Sums::directions;
-    const int across = plane ? units[0].matrix.across : 2;
-    const int direction[3] = {(across + 1) % 3, (across + 2) % 3, across};
-    bool free[3], turns[3];
-    for (int d = 0; d < 3; ++d)
-        free[d] = !m.held[direction[d]];
-    for (int k = 0; k < 3; ++k)
-        turns[k] = plane ? free[0] && free[1] : free[(k + 1) % 3] && free[(k + 2) % 3];
-    const double alpha = dampingShare(m.combined) * m.damping, share = 1 / (1 + scaling),
-                 apart = 1 / (1 + sharedScaling * scaling);
-    const double steady = 0.5 * m.dt * meanOverStep(m.massDamping, m.dt);
-    const Lanes zero = {}, one = zero + 1;
-    for (int part = 0; part < parts; ++part) {
-        const Lanes together = *at(&whole, part);
-        Lanes* kept = at(scratch, 0); // three numbers for every node and direction
-        const auto place = [&](const ScaledUnits& unit, int n, Lanes* x) {
+    using Vector = typename Sums::Vector;
+    using Motion = typename Block::Motion;
+    static constexpr int directions = Sums::directions;
+
+    // Calls `visit(x, node, keep)` for all nodes of a unit with the place of the node and its scratch.
+    template <class Visit> [[gnu::always_inline]] void eachNode(int k, Visit&& visit) {
+        const auto& unit = units[k];
+        Lanes* keep = kept + (k ? 3 * directions * units[0].matrix.nodeCount : 0);
+        for (int n = 0; n < unit.matrix.nodeCount; ++n, keep += 3 * directions) {
+            Lanes x[directions];
             for (int d = 0; d < directions; ++d) {
                 const int row = direction[d];
                 x[d] = (unit.matrix.nodes[3 * n + row] + *at(unit.offset + row, part)) +
                        (*at(unit.displacements + 3 * n + row, part) - *at(units[0].displacements + row, part));
             }
-        };
-        Sums sums[2] = {};
-        for (int k = 0; k < count; ++k) {
-            const auto& unit = units[k];
-            auto& s = sums[k];
-            for (int n = 0; n < unit.matrix.nodeCount; ++n) {
-                const double mass = unit.matrix.masses[n];
-                Lanes x[directions], momentum[directions], impulse[directions], grown[directions];
-                place(unit, n, x);
-                for (int d = 0; d < directions; ++d) {
-                    const int row = 3 * n + direction[d];
-                    momentum[d] = free[d] ? mass * *at(unit.velocities + row, part) : zero;
-                    const Lanes weight = mass * m.gravity[direction[d]] * *at(&unit.present, part);
-                    const Lanes force = *at(unit.forces + row, part) + weight;
-                    impulse[d] = free[d] ? 0.5 * m.dt * force : zero;
-                    grown[d] = free[d] ? force - *at(unit.lastForces + row, part) : zero;
-                    s.first[d] += mass * x[d];
-                    s.velocity.sum[d] += momentum[d];
-                    s.half.sum[d] += impulse[d];
-                    s.trend.sum[d] += grown[d];
-                }
-                s.mass += mass;
-                if constexpr (plane)
-                    s.second[0] += mass * (x[0] * x[0] + x[1] * x[1]);
-                else
-                    for (int i = 0; i < 3; ++i) {
-                        s.second[i] += mass * x[i] * x[i];
-                        s.second[3 + i] += mass * x[(i + 1) % 3] * x[(i + 2) % 3];
-                    }
-                addCross<plane>(x, momentum, s.velocity.about);
-                addCross<plane>(x, impulse, s.half.about);
-                addCross<plane>(x, grown, s.trend.about);
-            }
+            visit(x, n, keep);
         }
-        // A motion has a rigid part: of both units together where they are whole, W, else of each for itself, H. Of the
-        // rigid part of a vector the scaled masses leave W where units are whole, else (1 - apart) W + apart H, and of
-        // the rest `share`.
-        const Lanes split = one - together;
-        const Sums all = count == 1 ? sums[0] : weighted(one, sums[0], one, sums[1]);
-        const Block own[2] = {{sums[0], turns}, {sums[count - 1], turns}}, both{all, turns};
-        const auto rigidPart = [&](const typename Sums::Vector* v, Lanes ofWhole, Lanes ofOwn,
-                                   typename Block::Motion* motions) {
-            if (count == 1) {
-                motions[0] = own[0].motion(v[0]);
-                return;
-            }
-            const auto whole = both.motion(weighted(one, v[0], one, v[1]));
-            for (int k = 0; k < count; ++k)
-                motions[k] = weighted(ofWhole, whole, ofOwn, own[k].motion(v[k]));
-        };
-        typename Sums::Vector olds[2] = {sums[0].velocity, sums[1].velocity}, halves[2] = {sums[0].half, sums[1].half};
-        typename Sums::Vector trends[2] = {sums[0].trend, sums[1].trend}, ofRigid[2] = {}, ofRest[2] = {};
-        typename Block::Motion old[2], half[2], halfScaled[2], trend[2], damped[2], rest[2], now[2];
-        const Lanes left = together + split * (1 - apart);
-        rigidPart(olds, together, split, old);
-        rigidPart(halves, together, split, half);
-        rigidPart(halves, left, split * apart, halfScaled);
-        rigidPart(trends, together, split, trend);
-        Lanes* keep = kept;
-        for (int k = 0; k < count; ++k) {
-            const auto& unit = units[k];
-            for (int n = 0; n < unit.matrix.nodeCount; ++n, keep += 3 * directions) {
-                const double mass = unit.matrix.masses[n];
-                Lanes x[directions], takenRigid[directions], takenRest[directions];
-                place(unit, n, x);
-                for (int d = 0; d < directions; ++d) {
-                    takenRigid[d] = takenRest[d] = zero;
-                    if (!free[d]) continue;
-                    const int row = 3 * n + direction[d];
-                    const Lanes weight = mass * m.gravity[direction[d]] * *at(&unit.present, part);
-                    const Lanes force = *at(unit.forces + row, part) + weight;
-                    Lanes* last = at(unit.lastForces + row, part);
-                    const Lanes grown = Block::at(trend[k], x, d);
-                    const Lanes signs[2] = {m.combined ? sign(grown) : zero,
-                                            m.combined ? sign((force - *last) / mass - grown) : zero};
-                    *last = force;
-                    // Changes of velocity in half a step, and velocities without damping: of the rigid part and the
-                    // rest.
-                    const Lanes changes[2] = {Block::at(halfScaled[k], x, d),
-                                              share * (0.5 * (m.dt / mass) * force - Block::at(half[k], x, d))};
-                    const Lanes before = Block::at(old[k], x, d);
-                    const Lanes undamped[2] = {before + changes[0],
-                                               *at(unit.velocities + row, part) - before + changes[1]};
-                    const auto taken = [&](int i) {
-                        const Lanes reach = alpha * (changes[i] < zero ? -changes[i] : changes[i]);
-                        return dampingTaken(Lanes(0.5 * undamped[i]), reach, signs[i]);
-                    };
-                    const Lanes first = taken(0), second = taken(1);
-                    keep[3 * d] = undamped[0] + undamped[1];
-                    keep[3 * d + 1] = second;
-                    takenRigid[d] = mass * first;
-                    takenRest[d] = mass * second;
-                    ofRigid[k].sum[d] += takenRigid[d];
-                    ofRest[k].sum[d] += takenRest[d];
-                }
-                addCross<plane>(x, takenRigid, ofRigid[k].about);
-                addCross<plane>(x, takenRest, ofRest[k].about);
-            }
+    }
+    Lanes weightOf(int k, int n, int d) const {
+        return units[k].matrix.masses[n] * m.gravity[direction[d]] * *at(&units[k].present, part);
+    }
+    // The rigid motions of momenta: `ofWhole` W + `ofOwn` H.
+    void rigidPart(const Vector* v, Lanes ofWhole, Lanes ofOwn, Motion* motions) const {
+        if (count == 1) {
+            motions[0] = own[0].motion(v[0]);
+            return;
         }
-        rigidPart(ofRigid, left, split * apart, damped);
-        rigidPart(ofRest, together, split, rest);
-        typename Sums::Vector means[2] = {}, nows[2] = {}; // momenta of the mean velocities and of those after the step
-        Lanes kinetics[2], befores[2], afters[2], withOld[2], withNow[2];
-        keep = kept;
-        for (int k = 0; k < count; ++k) {
-            auto& unit = units[k];
-            Lanes kinetic = zero, gravityWork = zero, damping = zero, pending = zero, before = zero, after = zero;
-            Lanes moved[3] = {zero, zero, zero};
-            for (int n = 0; n < unit.matrix.nodeCount; ++n, keep += 3 * directions) {
-                const double mass = unit.matrix.masses[n];
-                Lanes x[directions], momentum[directions], afterwards[directions];
-                place(unit, n, x);
-                for (int d = 0; d < directions; ++d) {
-                    momentum[d] = afterwards[d] = zero;
-                    const int row = 3 * n + direction[d];
-                    *at(unit.forces + row, part) = zero;
-                    if (!free[d]) continue;
-                    const Lanes previous = *at(unit.velocities + row, part);
-                    Lanes& u = *at(unit.displacements + row, part);
-                    const Lanes taken = keep[3 * d + 1];
-                    // Mean velocity of the step without viscous damping, and the velocity after the step.
-                    const Lanes middle = keep[3 * d] - Block::at(damped[k], x, d) - (taken - Block::at(rest[k], x, d));
-                    const Lanes next = 2 * (middle - steady * middle) - previous;
-                    gravityWork += mass * m.gravity[direction[d]] * *at(&unit.present, part) * u;
-                    damping += mass * taken * previous;
-                    pending += mass * taken * next;
-                    before += mass * middle * previous;
-                    after += mass * middle * next;
-                    kinetic += mass * previous * next;
-                    keep[3 * d] = next;
-                    momentum[d] = mass * middle;
-                    afterwards[d] = mass * next;
-                    means[k].sum[d] += momentum[d];
-                    nows[k].sum[d] += afterwards[d];
-                }
-                addCross<plane>(x, momentum, means[k].about);
-                addCross<plane>(x, afterwards, nows[k].about);
+        const Lanes one = Lanes{} + 1;
+        const auto whole = both.motion(weighted(one, v[0], one, v[1]));
+        for (int k = 0; k < count; ++k)
+            motions[k] = weighted(ofWhole, whole, ofOwn, own[k].motion(v[k]));
+    }
+    Lanes scaled(const Lanes& plain, int k, const Vector* a, const Vector* b) const;
+
+    const NodeMotion& m;
+    const double scaling;
+    ScaledUnits* const units;
+    const int count, part;
+    Lanes* const kept; // three numbers for every node and direction
+    const Lanes together, split;
+    const double alpha = dampingShare(m.combined) * m.damping, share = 1 / (1 + scaling),
+                 apart = 1 / (1 + sharedScaling * scaling), steady = 0.5 * m.dt * meanOverStep(m.massDamping, m.dt);
+    const Lanes left = together + split * (1 - apart);
+    int direction[3];
+    bool free[3], turns[3];
+    Block own[2], both;
+    Vector olds[2] = {}, ofRigid[2] = {}, ofRest[2] = {}, means[2] = {}, nows[2] = {}; // momenta
+    Motion old[2], half[2], halfScaled[2], forceChange[2], damped[2], rest[2];
+    Lanes kinetics[2], befores[2], afters[2], withOld[2], withNow[2];
+};
+
+// Predictor: the rigid parts of the velocities, P v, of their changes in half a step without damping, P dt f / 2M and
+// P* dt f / 2M, and of the changes of the forces.
+template <bool plane> void ScaledStep<plane>::predict() {
+    const Lanes zero = {}, one = zero + 1;
+    Sums sums[2] = {};
+    for (int k = 0; k < count; ++k) {
+        const auto& unit = units[k];
+        auto& s = sums[k];
+        eachNode(k, [&](const Lanes* x, int n, Lanes*) {
+            const double mass = unit.matrix.masses[n];
+            Lanes momentum[directions], impulse[directions], grown[directions];
+            for (int d = 0; d < directions; ++d) {
+                const int row = 3 * n + direction[d];
+                momentum[d] = free[d] ? mass * *at(unit.velocities + row, part) : zero;
+                const Lanes force = *at(unit.forces + row, part) + weightOf(k, n, d);
+                impulse[d] = free[d] ? 0.5 * m.dt * force : zero;
+                grown[d] = free[d] ? force - *at(unit.lastForces + row, part) : zero;
+                s.first[d] += mass * x[d];
+                s.velocity.sum[d] += momentum[d];
+                s.half.sum[d] += impulse[d];
+                s.forceChange.sum[d] += grown[d];
             }
-            kinetics[k] = kinetic;
-            befores[k] = before;
-            afters[k] = after;
-            withOld[k] = damping;
-            withNow[k] = pending;
-            *at(&unit.sums.gravityWork, part) = gravityWork;
-            keep -= 3 * directions * unit.matrix.nodeCount;
-            for (int n = 0; n < unit.matrix.nodeCount; ++n, keep += 3 * directions)
-                for (int d = 0; d < directions; ++d) {
-                    if (!free[d]) continue;
-                    const int row = 3 * n + direction[d];
-                    Lanes& u = *at(unit.displacements + row, part);
-                    *at(unit.velocities + row, part) = keep[3 * d];
-                    // x of the next unit counts from the first node, which must not have moved yet
-                    if (k > 0 || n > 0) u += m.dt * keep[3 * d];
-                    moved[direction[d]] += unit.matrix.masses[n] * (k > 0 || n > 0 ? u : u + m.dt * keep[3 * d]);
+            s.mass += mass;
+            if constexpr (plane)
+                s.second[0] += mass * (x[0] * x[0] + x[1] * x[1]);
+            else
+                for (int i = 0; i < 3; ++i) {
+                    s.second[i] += mass * x[i] * x[i];
+                    s.second[3 + i] += mass * x[(i + 1) % 3] * x[(i + 2) % 3];
                 }
-            for (int d = 0; d < 3; ++d)
-                *at(unit.sums.moved + d, part) = moved[d];
-        }
-        // Energies with the scaled masses: the product of velocities a and b is (1 + s) a M b - (s - t) a M H b - t a M
-        // W b, with the factor 1 + t on the motion of the two units of a block against each other. That of W stands
-        // with the first unit. What damping takes has the true masses in the rigid part, and 1 + s times these in the
-        // rest.
-        const Lanes against = together * scaling + split * (scaling * sharedScaling);
-        const auto scaled = [&](const Lanes& plain, int k, const typename Sums::Vector* a,
-                                const typename Sums::Vector* b) {
-            if (count == 1) return Lanes((1 + scaling) * plain - scaling * Block::product(a[0], own[0].motion(b[0])));
-            const Lanes sum = (1 + scaling) * plain - (scaling - against) * Block::product(a[k], own[k].motion(b[k]));
-            if (k > 0) return sum;
-            return Lanes(sum - against * Block::product(weighted(one, a[0], one, a[1]),
-                                                        both.motion(weighted(one, b[0], one, b[1]))));
-        };
-        rigidPart(nows, together, split, now);
-        for (int k = 0; k < count; ++k) {
-            auto& result = units[k].sums;
-            *at(&result.kinetic, part) = 0.5 * scaled(kinetics[k], k, olds, nows);
-            *at(&result.damping, part) =
-                Block::product(ofRigid[k], old[k]) + (1 + scaling) * (withOld[k] - Block::product(ofRest[k], old[k]));
-            *at(&result.pending, part) =
-                Block::product(ofRigid[k], now[k]) + (1 + scaling) * (withNow[k] - Block::product(ofRest[k], now[k]));
-            if (steady == 0) continue;
-            *at(&result.damping, part) += steady * scaled(befores[k], k, olds, means);
-            *at(&result.pending, part) += steady * scaled(afters[k], k, nows, means);
-        }
-        for (int d = 0; d < directions; ++d)
-            if (free[d])
-                *at(units[0].displacements + direction[d], part) +=
-                    m.dt * *at(units[0].velocities + direction[d], part);
+            addCross<plane>(x, momentum, s.velocity.about);
+            addCross<plane>(x, impulse, s.half.about);
+            addCross<plane>(x, grown, s.forceChange.about);
+        });
+    }
+    Vector halves[2], forceChanges[2];
+    for (int k = 0; k < count; ++k) {
+        own[k] = {sums[k], turns};
+        olds[k] = sums[k].velocity;
+        halves[k] = sums[k].half;
+        forceChanges[k] = sums[k].forceChange;
+    }
+    both = {count == 1 ? sums[0] : weighted(one, sums[0], one, sums[1]), turns};
+    rigidPart(olds, together, split, old);
+    rigidPart(halves, together, split, half);
+    rigidPart(halves, left, split * apart, halfScaled);
+    rigidPart(forceChanges, together, split, forceChange);
+}
+
+// Filter of modes: damping takes d from the rigid part of a velocity and e from the rest, each for itself as it would
+// from a motion without the other. What it takes of the motion is P* d + (e - P e).
+template <bool plane> void ScaledStep<plane>::filter() {
+    const Lanes zero = {};
+    for (int k = 0; k < count; ++k) {
+        const auto& unit = units[k];
+        eachNode(k, [&](const Lanes* x, int n, Lanes* keep) {
+            const double mass = unit.matrix.masses[n];
+            Lanes takenRigid[directions], takenRest[directions];
+            for (int d = 0; d < directions; ++d) {
+                takenRigid[d] = takenRest[d] = zero;
+                if (!free[d]) continue;
+                const int row = 3 * n + direction[d];
+                const Lanes force = *at(unit.forces + row, part) + weightOf(k, n, d);
+                Lanes* last = at(unit.lastForces + row, part);
+                const Lanes grown = Block::at(forceChange[k], x, d);
+                const Lanes signs[2] = {m.combined ? sign(grown) : zero,
+                                        m.combined ? sign((force - *last) / mass - grown) : zero};
+                *last = force;
+                // Changes of velocity in half a step, and velocities without damping: of the rigid part and the rest.
+                const Lanes changes[2] = {Block::at(halfScaled[k], x, d),
+                                          share * (0.5 * (m.dt / mass) * force - Block::at(half[k], x, d))};
+                const Lanes before = Block::at(old[k], x, d);
+                const Lanes undamped[2] = {before + changes[0], *at(unit.velocities + row, part) - before + changes[1]};
+                const auto taken = [&](int i) {
+                    const Lanes reach = alpha * (changes[i] < zero ? -changes[i] : changes[i]);
+                    return dampingTaken(Lanes(0.5 * undamped[i]), reach, signs[i]);
+                };
+                const Lanes first = taken(0), second = taken(1);
+                keep[3 * d] = undamped[0] + undamped[1];
+                keep[3 * d + 1] = second;
+                takenRigid[d] = mass * first;
+                takenRest[d] = mass * second;
+                ofRigid[k].sum[d] += takenRigid[d];
+                ofRest[k].sum[d] += takenRest[d];
+            }
+            addCross<plane>(x, takenRigid, ofRigid[k].about);
+            addCross<plane>(x, takenRest, ofRest[k].about);
+        });
+    }
+    rigidPart(ofRigid, left, split * apart, damped);
+    rigidPart(ofRest, together, split, rest);
+}
+
+// Corrector: with the mean velocity of the step without viscous damping, w = v + dt a* / 2 - P* d - (e - P e), the
+// velocity after it is v' = 2 (1 - steady) w - v, and the displacement u' = u + dt v'.
+template <bool plane> void ScaledStep<plane>::correct() {
+    const Lanes zero = {};
+    for (int k = 0; k < count; ++k) {
+        auto& unit = units[k];
+        Lanes kinetic = zero, gravityWork = zero, damping = zero, pending = zero, before = zero, after = zero;
+        Lanes moved[3] = {zero, zero, zero};
+        eachNode(k, [&](const Lanes* x, int n, Lanes* keep) {
+            const double mass = unit.matrix.masses[n];
+            Lanes momentum[directions], afterwards[directions];
+            for (int d = 0; d < directions; ++d) {
+                momentum[d] = afterwards[d] = zero;
+                const int row = 3 * n + direction[d];
+                *at(unit.forces + row, part) = zero;
+                if (!free[d]) continue;
+                const Lanes previous = *at(unit.velocities + row, part);
+                const Lanes taken = keep[3 * d + 1];
+                const Lanes middle = keep[3 * d] - Block::at(damped[k], x, d) - (taken - Block::at(rest[k], x, d));
+                const Lanes next = 2 * (middle - steady * middle) - previous;
+                gravityWork += weightOf(k, n, d) * *at(unit.displacements + row, part);
+                damping += mass * taken * previous;
+                pending += mass * taken * next;
+                before += mass * middle * previous;
+                after += mass * middle * next;
+                kinetic += mass * previous * next;
+                keep[3 * d] = next;
+                momentum[d] = mass * middle;
+                afterwards[d] = mass * next;
+                means[k].sum[d] += momentum[d];
+                nows[k].sum[d] += afterwards[d];
+            }
+            addCross<plane>(x, momentum, means[k].about);
+            addCross<plane>(x, afterwards, nows[k].about);
+        });
+        kinetics[k] = kinetic;
+        befores[k] = before;
+        afters[k] = after;
+        withOld[k] = damping;
+        withNow[k] = pending;
+        *at(&unit.sums.gravityWork, part) = gravityWork;
+        const Lanes* keep = kept + (k ? 3 * directions * units[0].matrix.nodeCount : 0);
+        for (int n = 0; n < unit.matrix.nodeCount; ++n, keep += 3 * directions)
+            for (int d = 0; d < directions; ++d) {
+                if (!free[d]) continue;
+                const int row = 3 * n + direction[d];
+                Lanes& u = *at(unit.displacements + row, part);
+                *at(unit.velocities + row, part) = keep[3 * d];
+                // places of the next unit count from the first node, which must not have moved yet
+                if (k > 0 || n > 0) u += m.dt * keep[3 * d];
+                moved[direction[d]] += unit.matrix.masses[n] * (k > 0 || n > 0 ? u : u + m.dt * keep[3 * d]);
+            }
+        for (int d = 0; d < 3; ++d)
+            *at(unit.sums.moved + d, part) = moved[d];
+    }
+    for (int d = 0; d < directions; ++d)
+        if (free[d])
+            *at(units[0].displacements + direction[d], part) += m.dt * *at(units[0].velocities + direction[d], part);
+}
+
+// The product of velocities a and b with the scaled masses: (1 + s) a M b - (s - t) a M H b - t a M W b, with the
+// factor 1 + t on the motion of the two units of a block against each other. That of W stands with the first unit.
+template <bool plane>
+Lanes ScaledStep<plane>::scaled(const Lanes& plain, int k, const Vector* a, const Vector* b) const {
+    const Lanes one = Lanes{} + 1, against = together * scaling + split * (scaling * sharedScaling);
+    if (count == 1) return (1 + scaling) * plain - scaling * Block::product(a[0], own[0].motion(b[0]));
+    const Lanes sum = (1 + scaling) * plain - (scaling - against) * Block::product(a[k], own[k].motion(b[k]));
+    if (k > 0) return sum;
+    return sum - against * Block::product(weighted(one, a[0], one, a[1]), both.motion(weighted(one, b[0], one, b[1])));
+}
+
+// Energies. What damping takes has the true masses in the rigid part, and 1 + s times these in the rest.
+template <bool plane> void ScaledStep<plane>::sumUp() {
+    Motion now[2];
+    rigidPart(nows, together, split, now);
+    for (int k = 0; k < count; ++k) {
+        auto& result = units[k].sums;
+        *at(&result.kinetic, part) = 0.5 * scaled(kinetics[k], k, olds, nows);
+        *at(&result.damping, part) =
+            Block::product(ofRigid[k], old[k]) + (1 + scaling) * (withOld[k] - Block::product(ofRest[k], old[k]));
+        *at(&result.pending, part) =
+            Block::product(ofRigid[k], now[k]) + (1 + scaling) * (withNow[k] - Block::product(ofRest[k], now[k]));
+        if (steady == 0) continue;
+        *at(&result.damping, part) += steady * scaled(befores[k], k, olds, means);
+        *at(&result.pending, part) += steady * scaled(afters[k], k, nows, means);
+    }
+}
+
+template <bool plane>
+void moveIn(const NodeMotion& m, double scaling, ScaledUnits* units, int count, const Row& whole, Row* scratch) {
+    for (int part = 0; part < parts; ++part) {
+        ScaledStep<plane> step(m, scaling, units, count, whole, scratch, part);
+        step.predict();
+        step.filter();
+        step.correct();
+        step.sumUp();
     }
 }
 

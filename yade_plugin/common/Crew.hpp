@@ -38,8 +38,8 @@ public:
 
 private:
     struct alignas(64) Share {
-        // Number of the loop, of the first portion that nobody has taken, and of the one beyond the last, in 48, 8 and
-        // 8 bits. A thread that comes late finds the number of another loop, and takes nothing.
+        // Three numbers in 48, 8 and 8 bits: the loop, the first portion that nobody has taken, and the end of the
+        // portions. A thread that comes late finds the number of another loop, and takes nothing.
         std::atomic<std::uint64_t> next{0};
     };
 

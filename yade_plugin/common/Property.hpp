@@ -105,9 +105,19 @@ private:
     }
 };
 
-// Properties that a law cannot have: one is out of its bounds, or some do not go together.
+// What is wrong with a property, or with some that do not go together.
+struct Problem {
+    std::string property;              // as the code names it
+    std::string text;                  // a sentence in the user's words
+    const char* code = "incompatible"; // or "bounds", "table", "law" or "smallEnergy"
+};
+
+// Properties that a law cannot have. Python finds `problems` as an attribute of the error.
 struct WrongProperties : std::invalid_argument {
-    using std::invalid_argument::invalid_argument;
+    std::vector<Problem> problems;
+
+    WrongProperties(const std::string& message, std::vector<Problem> problems)
+        : std::invalid_argument(message), problems(std::move(problems)) {}
 };
 
 constexpr Property number(const char* unit, const char* meaning) {
@@ -134,6 +144,11 @@ inline std::string inWords(const std::string& name) {
         words += capital && !numeral ? char(std::tolower(static_cast<unsigned char>(name[i]))) : name[i];
     }
     return words;
+}
+
+// A problem whose sentence begins with the name of the property.
+inline Problem about(const std::string& property, const std::string& rest, const char* code = "incompatible") {
+    return {property, inWords(property) + " " + rest, code};
 }
 
 // The name that differs in the fewest letters from a misspelt one; empty if more than a third of its letters, and more

@@ -58,8 +58,8 @@ double energyBesidePotential(const PairMemory& memory) {
     return elasticEnergyOf(memory.friction) + memory.elastic.excess;
 }
 
-// A force works over a step with its mean over both ends, as all forces of a scene do (scene/bodies/BodyStep): what the
-// forces of the last step did in the half step since then is counted first.
+// A force works over a step with its mean over both ends, as all forces of a scene do (engine/bodies/BodyStep): what
+// the forces of the last step did in the half step since then is counted first.
 void actOnPair(const ContactProperties& law, const NearBlocks& blocks, double dt, const Overlap& overlap,
                OverlapFinder& finder, PairMemory& memory, ContactEffect& effect) {
     effect.acts = effect.touches;

@@ -211,6 +211,8 @@ class InteractionContainer : public Serializable {
     std::vector<shared_ptr<Interaction>> linIntrs, sortedIntrs;
     void* bodies;
     std::size_t currSize;
+    bool insert(int id1, int id2); // the new interaction comes last
+    bool erase(int id1, int id2, int place);
 };
 
 // No object of this class is made here: its size is not declared, and Scene::forces() gives a reference to YADE's own.

@@ -42,20 +42,19 @@ const LawEntry* find(const std::string& name) {
 
 } // namespace
 
-std::vector<std::string> problemsOf(const JointProperties& properties) {
+std::vector<Problem> problemsOf(const JointProperties& properties) {
     if (const auto* law = find(properties.law)) return law->problems(properties);
     std::vector<std::string> names;
     for (const auto& law : laws())
         names.push_back(law.name);
     auto found = properties.outOfBounds([](const std::string&) { return false; });
-    found.push_back("law \"" + properties.law + "\" must be one of: " + joined(names, ", "));
+    found.push_back({"law", "law \"" + properties.law + "\" must be one of: " + joined(names, ", "), "law"});
     return found;
 }
 
 std::shared_ptr<const Law> lawOf(const JointProperties& properties) {
     if (const auto* law = find(properties.law)) return law->make(properties);
-    throw std::invalid_argument("joint \"" + properties.name + "\": " +
-                                joined(problemsOf(properties), ("\njoint \"" + properties.name + "\": ").c_str()));
+    throw wrongJoint(properties.name, problemsOf(properties));
 }
 
 } // namespace masonry

@@ -14,16 +14,16 @@ struct LawEntry {
     const char* meaning; // in words that continue "joints follow ..."
     std::shared_ptr<const Law> (*make)(const JointProperties&);
     bool (*reads)(const std::string& property); // whether the law ever reads a property of joints
-    std::vector<std::string> (*problems)(const JointProperties&);
+    std::vector<Problem> (*problems)(const JointProperties&);
     void (*show)(const ShowField&); // calls a function with every field that the law shows, of a fresh joint
 };
 const std::vector<LawEntry>& laws();
 
-// The law that properties name. Throws std::invalid_argument with all their problems at once.
+// The law that properties name. Throws WrongProperties with all their problems at once.
 std::shared_ptr<const Law> lawOf(const JointProperties&);
 
-// Everything that is wrong with properties, one sentence each, in the user's words; empty if all is well. Properties
+// Everything that is wrong with properties; empty if all is well. Properties
 // that do not act are not looked at.
-std::vector<std::string> problemsOf(const JointProperties&);
+std::vector<Problem> problemsOf(const JointProperties&);
 
 } // namespace masonry

@@ -58,9 +58,11 @@ namespace {
 
 } // namespace
 
-MASONRY_VECTORISED void alignRigid(int n, const int* body1, const int* body2, const double* const* position,
-                                   const double* const* q, const double* const* f1, const double* const* f2,
-                                   const double* const* span, JointFrames& __restrict out) {
+template <>
+MASONRY_VECTORISED void JointArithmetic<false>::alignRigid(int n, const int* body1, const int* body2,
+                                                           const double* const* position, const double* const* q,
+                                                           const double* const* f1, const double* const* f2,
+                                                           const double* const* span, JointFrames& __restrict out) {
     align(n, body1, body2, q, f1, f2, out);
     const double *px = position[0], *py = position[1], *pz = position[2];
     const double *sx = span[0], *sy = span[1], *sz = span[2];
@@ -84,17 +86,21 @@ MASONRY_VECTORISED void alignRigid(int n, const int* body1, const int* body2, co
     }
 }
 
-MASONRY_VECTORISED void alignNodal(int n, const int* body1, const int* body2, const double* const* q,
-                                   const double* const* f1, const double* const* f2, JointFrames& __restrict out) {
+template <>
+MASONRY_VECTORISED void JointArithmetic<false>::alignNodal(int n, const int* body1, const int* body2,
+                                                           const double* const* q, const double* const* f1,
+                                                           const double* const* f2, JointFrames& __restrict out) {
     align(n, body1, body2, q, f1, f2, out);
     for (auto& component : out.torque)
         for (int i = 0; i < n; ++i)
             component[i] = 0;
 }
 
-MASONRY_VECTORISED void jumpRigid(int n, const double* __restrict ax, const double* __restrict ay,
-                                  const double* __restrict az, double* __restrict jx, double* __restrict jy,
-                                  double* __restrict jz, JointFrames& __restrict out) {
+template <>
+MASONRY_VECTORISED void JointArithmetic<false>::jumpRigid(int n, const double* __restrict ax,
+                                                          const double* __restrict ay, const double* __restrict az,
+                                                          double* __restrict jx, double* __restrict jy,
+                                                          double* __restrict jz, JointFrames& __restrict out) {
 #pragma GCC ivdep
     for (int i = 0; i < n; ++i) {
         const double v0 = out.v[0][i], v1 = out.v[1][i], v2 = out.v[2][i], turn = 4 * out.w[i];
@@ -117,8 +123,10 @@ MASONRY_VECTORISED void jumpRigid(int n, const double* __restrict ax, const doub
 }
 
 // Multiplies stress by area. Tension is positive, so a joint in tension pulls body 1 along the normal.
-MASONRY_VECTORISED void pullRigid(int n, const double* area, const double* normal, const double* shearA,
-                                  const double* shearB, JointFrames& __restrict out) {
+template <>
+MASONRY_VECTORISED void JointArithmetic<false>::pullRigid(int n, const double* area, const double* normal,
+                                                          const double* shearA, const double* shearB, const double*,
+                                                          const double*, JointFrames& __restrict out) {
 #pragma GCC ivdep
     for (int i = 0; i < n; ++i) {
         const double x = area[i] * normal[i], y = area[i] * shearA[i], z = area[i] * shearB[i];
@@ -131,7 +139,8 @@ MASONRY_VECTORISED void pullRigid(int n, const double* area, const double* norma
     }
 }
 
-MASONRY_VECTORISED void finishRigid(int n, const JointFrames& f, double* __restrict onJoints) {
+template <>
+MASONRY_VECTORISED void JointArithmetic<false>::finishRigid(int n, const JointFrames& f, double* __restrict onJoints) {
 #pragma GCC ivdep
     for (int i = 0; i < n; ++i) {
         double* out = onJoints + 9 * i;
@@ -155,7 +164,9 @@ MASONRY_VECTORISED void finishRigid(int n, const JointFrames& f, double* __restr
 
 // ---- intact joints ----------------------------------------------------------------------------------------------
 
-MASONRY_VECTORISED void spreadIntact(int n, const IntactFaces& faces, JointFrames& __restrict out) {
+template <>
+MASONRY_VECTORISED void JointArithmetic<false>::spreadIntact(int n, const IntactFaces& faces,
+                                                             JointFrames& __restrict out) {
     const double *m0 = faces.middle[0], *m1 = faces.middle[1], *m2 = faces.middle[2];
 #pragma GCC ivdep
     for (int i = 0; i < n; ++i) {
@@ -170,8 +181,9 @@ MASONRY_VECTORISED void spreadIntact(int n, const IntactFaces& faces, JointFrame
     }
 }
 
-MASONRY_VECTORISED void jumpIntact(int n, const IntactFaces& faces, const double* a1, const double* a2,
-                                   JointFrames& __restrict out) {
+template <>
+MASONRY_VECTORISED void JointArithmetic<false>::jumpIntact(int n, const IntactFaces& faces, const double* a1,
+                                                           const double* a2, JointFrames& __restrict out) {
     const double *m1 = faces.middle[1], *m2 = faces.middle[2];
 #pragma GCC ivdep
     for (int i = 0; i < n; ++i) {
@@ -232,7 +244,9 @@ double dampIntact(int n, const IntactFaces& faces, double times, double* const* 
 
 // With b from the middle of the face, its arm is half^T (middle + b) + jump / 2 (see jumpRigid), and the stress is the
 // stiffness times the field. The first moments of b are zero.
-MASONRY_VECTORISED void pullIntact(int n, const IntactFaces& faces, JointFrames& __restrict out) {
+template <>
+MASONRY_VECTORISED void JointArithmetic<false>::pullIntact(int n, const IntactFaces& faces,
+                                                           JointFrames& __restrict out) {
     const double *m0 = faces.middle[0], *m1 = faces.middle[1], *m2 = faces.middle[2], *area = faces.area;
     const double *i11 = faces.inertia[0], *i22 = faces.inertia[1], *i12 = faces.inertia[2];
     const double kn = faces.normal, ks = faces.shear;
@@ -261,8 +275,10 @@ MASONRY_VECTORISED void pullIntact(int n, const IntactFaces& faces, JointFrames&
     }
 }
 
-MASONRY_VECTORISED void jumpNodal(int n, const int* place1, const int* place2, const double* u, double* __restrict jx,
-                                  double* __restrict jy, double* __restrict jz, JointFrames& __restrict out) {
+template <>
+MASONRY_VECTORISED void JointArithmetic<false>::jumpNodal(int n, const int* place1, const int* place2, const double* u,
+                                                          double* __restrict jx, double* __restrict jy,
+                                                          double* __restrict jz, JointFrames& __restrict out) {
 #pragma GCC ivdep
     for (int i = 0; i < n; ++i) {
         const int one = place1[i], two = place2[i];
@@ -280,9 +296,11 @@ MASONRY_VECTORISED void jumpNodal(int n, const int* place1, const int* place2, c
     }
 }
 
-MASONRY_VECTORISED void pullNodal(int n, const double* area, const double* normal, const double* shearA,
-                                  const double* shearB, const double* jx, const double* jy, const double* jz,
-                                  JointFrames& __restrict f, double* __restrict onPoints) {
+template <>
+MASONRY_VECTORISED void JointArithmetic<false>::pullNodal(int n, const double* area, const double* normal,
+                                                          const double* shearA, const double* shearB, const double* jx,
+                                                          const double* jy, const double* jz, JointFrames& __restrict f,
+                                                          double* __restrict onPoints) {
 #pragma GCC ivdep
     for (int i = 0; i < n; ++i) {
         const double x = area[i] * normal[i], y = area[i] * shearA[i], z = area[i] * shearB[i];
@@ -298,7 +316,8 @@ MASONRY_VECTORISED void pullNodal(int n, const double* area, const double* norma
 // The jump is measured in axes that turn with the mean rotation of the two blocks. So the joint does work on that
 // rotation, too, and each block takes half of the moment. With it the two forces, which act apart by the jump, have no
 // resulting moment.
-MASONRY_VECTORISED void finishNodal(int n, const JointFrames& f, double* __restrict onJoints) {
+template <>
+MASONRY_VECTORISED void JointArithmetic<false>::finishNodal(int n, const JointFrames& f, double* __restrict onJoints) {
 #pragma GCC ivdep
     for (int i = 0; i < n; ++i)
         for (int d = 0; d < 3; ++d)
@@ -333,9 +352,9 @@ MASONRY_VECTORISED double turnsInPlane(int n, const double* const* q, const doub
 
 namespace {
 
-[[gnu::always_inline]] inline void alignInPlane(int n, const int* body1, const int* body2, const double* const* turn,
-                                                const double* const* f1, const double* const* f2,
-                                                JointFrames& __restrict out) {
+[[gnu::always_inline]] inline void alignPlane(int n, const int* body1, const int* body2, const double* const* turn,
+                                              const double* const* f1, const double* const* f2,
+                                              JointFrames& __restrict out) {
     const double *cosine = turn[0], *sine = turn[1], *ac = f1[0], *as = f1[1], *bc = f2[0], *bs = f2[1];
 #pragma GCC ivdep
     for (int i = 0; i < n; ++i) {
@@ -358,10 +377,12 @@ namespace {
 
 } // namespace
 
-MASONRY_VECTORISED void alignRigidInPlane(int n, const int* body1, const int* body2, const double* const* position,
-                                          const double* const* turn, const double* const* f1, const double* const* f2,
-                                          const double* const* span, JointFrames& __restrict out) {
-    alignInPlane(n, body1, body2, turn, f1, f2, out);
+template <>
+MASONRY_VECTORISED void JointArithmetic<true>::alignRigid(int n, const int* body1, const int* body2,
+                                                          const double* const* position, const double* const* turn,
+                                                          const double* const* f1, const double* const* f2,
+                                                          const double* const* span, JointFrames& __restrict out) {
+    alignPlane(n, body1, body2, turn, f1, f2, out);
     const double *pz = position[0], *px = position[1], *along = span[0], *aside = span[1];
 #pragma GCC ivdep
     for (int i = 0; i < n; ++i) {
@@ -376,8 +397,10 @@ MASONRY_VECTORISED void alignRigidInPlane(int n, const int* body1, const int* bo
     }
 }
 
-MASONRY_VECTORISED void jumpRigidInPlane(int n, const double* __restrict a0, const double* __restrict a1,
-                                         double* __restrict j0, double* __restrict j1, JointFrames& __restrict out) {
+template <>
+MASONRY_VECTORISED void
+JointArithmetic<true>::jumpRigid(int n, const double* __restrict a0, const double* __restrict a1, const double*,
+                                 double* __restrict j0, double* __restrict j1, double*, JointFrames& __restrict out) {
 #pragma GCC ivdep
     for (int i = 0; i < n; ++i) {
         const double twist = 4 * out.w[i] * out.v[2][i];
@@ -389,8 +412,10 @@ MASONRY_VECTORISED void jumpRigidInPlane(int n, const double* __restrict a0, con
     }
 }
 
-MASONRY_VECTORISED void pullRigidInPlane(int n, const double* area, const double* normal, const double* shear,
-                                         const double* a0, const double* a1, JointFrames& __restrict out) {
+template <>
+MASONRY_VECTORISED void JointArithmetic<true>::pullRigid(int n, const double* area, const double* normal,
+                                                         const double* shear, const double*, const double* a0,
+                                                         const double* a1, JointFrames& __restrict out) {
 #pragma GCC ivdep
     for (int i = 0; i < n; ++i) {
         const double x = area[i] * normal[i], y = area[i] * shear[i];
@@ -402,7 +427,8 @@ MASONRY_VECTORISED void pullRigidInPlane(int n, const double* area, const double
 
 // The arms are those of jumpRigid: 1 - 2 v² times the offset, plus half of the common part of the jump. Here v stands
 // across all offsets. Factor and common part are the same for all subcontacts, so they are applied to the sums.
-MASONRY_VECTORISED void finishRigidInPlane(int n, const JointFrames& f, double* __restrict onJoints) {
+template <>
+MASONRY_VECTORISED void JointArithmetic<true>::finishRigid(int n, const JointFrames& f, double* __restrict onJoints) {
 #pragma GCC ivdep
     for (int i = 0; i < n; ++i) {
         const double m = f.axes[0][i], k = f.axes[1][i], v = f.v[2][i], f0 = f.force[0][i], f1 = f.force[1][i];
@@ -416,7 +442,9 @@ MASONRY_VECTORISED void finishRigidInPlane(int n, const JointFrames& f, double* 
     }
 }
 
-MASONRY_VECTORISED void spreadIntactInPlane(int n, const IntactFaces& faces, JointFrames& __restrict out) {
+template <>
+MASONRY_VECTORISED void JointArithmetic<true>::spreadIntact(int n, const IntactFaces& faces,
+                                                            JointFrames& __restrict out) {
     const double *m0 = faces.middle[0], *m1 = faces.middle[1];
 #pragma GCC ivdep
     for (int i = 0; i < n; ++i) {
@@ -428,8 +456,9 @@ MASONRY_VECTORISED void spreadIntactInPlane(int n, const IntactFaces& faces, Joi
     }
 }
 
-MASONRY_VECTORISED void jumpIntactInPlane(int n, const IntactFaces& faces, const double* a1,
-                                          JointFrames& __restrict out) {
+template <>
+MASONRY_VECTORISED void JointArithmetic<true>::jumpIntact(int n, const IntactFaces& faces, const double* a1,
+                                                          const double*, JointFrames& __restrict out) {
     const double* m1 = faces.middle[1];
 #pragma GCC ivdep
     for (int i = 0; i < n; ++i) {
@@ -438,7 +467,9 @@ MASONRY_VECTORISED void jumpIntactInPlane(int n, const IntactFaces& faces, const
     }
 }
 
-MASONRY_VECTORISED void pullIntactInPlane(int n, const IntactFaces& faces, JointFrames& __restrict out) {
+template <>
+MASONRY_VECTORISED void JointArithmetic<true>::pullIntact(int n, const IntactFaces& faces,
+                                                          JointFrames& __restrict out) {
     const double *m0 = faces.middle[0], *m1 = faces.middle[1], *area = faces.area, *i11 = faces.inertia[0];
     const double kn = faces.normal, ks = faces.shear;
 #pragma GCC ivdep
@@ -450,16 +481,19 @@ MASONRY_VECTORISED void pullIntactInPlane(int n, const IntactFaces& faces, Joint
     }
 }
 
-MASONRY_VECTORISED void alignNodalInPlane(int n, const int* body1, const int* body2, const double* const* turn,
-                                          const double* const* f1, const double* const* f2,
-                                          JointFrames& __restrict out) {
-    alignInPlane(n, body1, body2, turn, f1, f2, out);
+template <>
+MASONRY_VECTORISED void JointArithmetic<true>::alignNodal(int n, const int* body1, const int* body2,
+                                                          const double* const* turn, const double* const* f1,
+                                                          const double* const* f2, JointFrames& __restrict out) {
+    alignPlane(n, body1, body2, turn, f1, f2, out);
     for (int i = 0; i < n; ++i)
         out.torque[2][i] = 0;
 }
 
-MASONRY_VECTORISED void jumpNodalInPlane(int n, const int* place1, const int* place2, const double* u,
-                                         double* __restrict j0, double* __restrict j1, JointFrames& __restrict out) {
+template <>
+MASONRY_VECTORISED void JointArithmetic<true>::jumpNodal(int n, const int* place1, const int* place2, const double* u,
+                                                         double* __restrict j0, double* __restrict j1, double*,
+                                                         JointFrames& __restrict out) {
 #pragma GCC ivdep
     for (int i = 0; i < n; ++i) {
         const int one = place1[i], two = place2[i];
@@ -472,9 +506,11 @@ MASONRY_VECTORISED void jumpNodalInPlane(int n, const int* place1, const int* pl
     }
 }
 
-MASONRY_VECTORISED void pullNodalInPlane(int n, const double* area, const double* normal, const double* shear,
-                                         const double* j0, const double* j1, JointFrames& __restrict f,
-                                         double* __restrict onPoints) {
+template <>
+MASONRY_VECTORISED void JointArithmetic<true>::pullNodal(int n, const double* area, const double* normal,
+                                                         const double* shear, const double*, const double* j0,
+                                                         const double* j1, const double*, JointFrames& __restrict f,
+                                                         double* __restrict onPoints) {
 #pragma GCC ivdep
     for (int i = 0; i < n; ++i) {
         const double x = area[i] * normal[i], y = area[i] * shear[i], m = f.axes[0][i], k = f.axes[1][i];
@@ -484,7 +520,8 @@ MASONRY_VECTORISED void pullNodalInPlane(int n, const double* area, const double
     }
 }
 
-MASONRY_VECTORISED void finishNodalInPlane(int n, const JointFrames& f, double* __restrict onJoints) {
+template <>
+MASONRY_VECTORISED void JointArithmetic<true>::finishNodal(int n, const JointFrames& f, double* __restrict onJoints) {
     for (int i = 0; i < n; ++i)
         onJoints[4 * i + 2] = onJoints[4 * i + 3] = 0.5 * f.torque[2][i];
 }

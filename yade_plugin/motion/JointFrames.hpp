@@ -39,34 +39,14 @@ struct JointFrames {
 // y, as the sum of the sizes of the quaternion's x and z.
 double turnsInPlane(int n, const double* const* q, const double* const* r, double* cosine, double* sine);
 
-// Joints between rigid blocks. The arguments are:
-// - `turn`: quaternions of the blocks; `f1`, `f2`: quaternions of the joints' axes in each block
-// - `span`: vector d from centre to centre in the reference state, in the joints' axes [m]
-// - `a0`, `a1`, `a2`: offset a of the present subcontact [m]; `j0`, `j1`, `j2`: its jump [m], which is brought up to
-// date
-// - `area` [m²] and the stresses of the present subcontact [Pa]
-// - `onJoints`: for each joint 9 numbers, force on block 1 [N] and torques about the centres of both blocks [N m]
-void alignRigid(int n, const int* body1, const int* body2, const double* const* position, const double* const* turn,
-                const double* const* f1, const double* const* f2, const double* const* span, JointFrames&);
-void jumpRigid(int n, const double* a0, const double* a1, const double* a2, double* j0, double* j1, double* j2,
-               JointFrames&);
-void pullRigid(int n, const double* area, const double* normal, const double* shearA, const double* shearB,
-               JointFrames&);
-void finishRigid(int n, const JointFrames&, double* onJoints);
-
-// Intact joints between rigid blocks, whose stresses are the stiffness times the jumps (see JointPlan). The functions
-// are called in the order align, spreadIntact, then for some subcontacts jumpIntact or openIntact, then dampIntact and
-// pullIntact, then finish.
+// Intact joints between rigid blocks, whose stresses are the stiffness times the jumps (see BatchStep).
 struct IntactFaces {          // columns that begin at the first joint
     const double* middle[3];  // of a face, from the centre of block 1 in the reference state [m]
     const double* area;       // [m²]
     const double* inertia[3]; // second moments about the middle: along the first tangent, the second, and mixed [m⁴]
     double normal, shear;     // stiffnesses [Pa/m]
 };
-// Fills `middle` and `turn`.
-void spreadIntact(int n, const IntactFaces&, JointFrames&);
-// The jumps at a subcontact with the offsets a1 and a2, and the opening alone; in `step`.
-void jumpIntact(int n, const IntactFaces&, const double* a1, const double* a2, JointFrames&);
+// The openings at a subcontact with the offsets a1 and a2; in `step`.
 void openIntact(int n, const IntactFaces&, const double* a1, const double* a2, JointFrames&);
 // Keeps `middle` and `turn` in six columns.
 void keepIntact(int n, const JointFrames&, double* const* jumps);
@@ -74,42 +54,54 @@ void keepIntact(int n, const JointFrames&, double* const* jumps);
 // damping come to those of the law. `damped` are the columns of what was added in the step before, which is replaced.
 // Returns the energy taken [J].
 double dampIntact(int n, const IntactFaces&, double times, double* const* jumps, double* const* damped, JointFrames&);
-// Sets force and torque on block 1.
-void pullIntact(int n, const IntactFaces&, JointFrames&);
 
-// Joints with a deformable side, whose subcontacts move by displacements `u` [m]. `place1` and `place2` say where in
-// `u` the two sides of the present subcontact stand; the three components are `lanes` numbers apart. `onPoints`
-// receives three numbers for each joint: the force on side 1 of the present subcontact, global axes [N]. Of `onJoints`
-// only the moments on the rotations of both blocks are set.
-void alignNodal(int n, const int* body1, const int* body2, const double* const* turn, const double* const* f1,
-                const double* const* f2, JointFrames&);
-void jumpNodal(int n, const int* place1, const int* place2, const double* u, double* j0, double* j1, double* j2,
-               JointFrames&);
-void pullNodal(int n, const double* area, const double* normal, const double* shearA, const double* shearB,
-               const double* j0, const double* j1, const double* j2, JointFrames&, double* onPoints);
-void finishNodal(int n, const JointFrames&, double* onJoints);
+// How many numbers what a joint and a subcontact bring has: in space force on block 1 [N] and torques about the centres
+// of both blocks [N m], and a force; in a planar run force x and z and the torques about y, and a force x and z.
+constexpr int numbersOfJoint(bool plane) { return plane ? 4 : 9; }
+constexpr int numbersOfPoint(bool plane) { return plane ? 2 : 3; }
 
-// The same for planar runs, in which nothing leaves planes y = constant. A place or force is the complex number z + ix,
-// and a rotation about y is a multiplication by a complex number. `position` holds z and x; `turn`, `f1` and `f2` hold
-// cosine and sine of half angles. The angle of a joint's frame is counted from normal z and tangent x. For each joint
-// `onJoints` has 4 numbers: force x and z on block 1 and the torques about y on both blocks; `onPoints` has the force x
-// and z.
-void alignRigidInPlane(int n, const int* body1, const int* body2, const double* const* position,
-                       const double* const* turn, const double* const* f1, const double* const* f2,
-                       const double* const* span, JointFrames&);
-void jumpRigidInPlane(int n, const double* a0, const double* a1, double* j0, double* j1, JointFrames&);
-void pullRigidInPlane(int n, const double* area, const double* normal, const double* shear, const double* a0,
-                      const double* a1, JointFrames&);
-void finishRigidInPlane(int n, const JointFrames&, double* onJoints);
-void spreadIntactInPlane(int n, const IntactFaces&, JointFrames&);
-void jumpIntactInPlane(int n, const IntactFaces&, const double* a1, JointFrames&);
-void pullIntactInPlane(int n, const IntactFaces&, JointFrames&);
-void alignNodalInPlane(int n, const int* body1, const int* body2, const double* const* turn, const double* const* f1,
-                       const double* const* f2, JointFrames&);
-void jumpNodalInPlane(int n, const int* place1, const int* place2, const double* u, double* j0, double* j1,
-                      JointFrames&);
-void pullNodalInPlane(int n, const double* area, const double* normal, const double* shear, const double* j0,
-                      const double* j1, JointFrames&, double* onPoints);
-void finishNodalInPlane(int n, const JointFrames&, double* onJoints);
+// The arithmetic in space, and that of planar runs, in which nothing leaves planes y = constant. There a place or force
+// is the complex number z + ix, and a rotation about y is a multiplication by a complex number: `position` holds z and
+// x, and quaternions are cosine and sine of half angles. The angle of a joint's frame is counted from normal z and
+// tangent x. What points out of the plane is not read.
+//
+// The arguments are:
+// - `turn`: quaternions of the blocks; `f1`, `f2`: quaternions of the joints' axes in each block
+// - `span`: vector d from centre to centre in the reference state, in the joints' axes [m]
+// - `a0`, `a1`, `a2`: offset a of the present subcontact [m]; `j0`, `j1`, `j2`: its jump [m], which is brought up to
+//   date
+// - `area` [m²] and the stresses of the present subcontact [Pa]
+template <bool plane> struct JointArithmetic {
+    static constexpr int perJoint = numbersOfJoint(plane), perPoint = numbersOfPoint(plane);
+
+    // Joints between rigid blocks.
+    static void alignRigid(int n, const int* body1, const int* body2, const double* const* position,
+                           const double* const* turn, const double* const* f1, const double* const* f2,
+                           const double* const* span, JointFrames&);
+    static void jumpRigid(int n, const double* a0, const double* a1, const double* a2, double* j0, double* j1,
+                          double* j2, JointFrames&);
+    static void pullRigid(int n, const double* area, const double* normal, const double* shearA, const double* shearB,
+                          const double* a0, const double* a1, JointFrames&);
+    static void finishRigid(int n, const JointFrames&, double* onJoints);
+
+    // Intact ones, in the order align, spreadIntact, then for some subcontacts jumpIntact or openIntact, then
+    // dampIntact and pullIntact, then finish. spreadIntact fills `middle` and `turn`, jumpIntact the jumps at a
+    // subcontact in `step`, and pullIntact force and torque on block 1.
+    static void spreadIntact(int n, const IntactFaces&, JointFrames&);
+    static void jumpIntact(int n, const IntactFaces&, const double* a1, const double* a2, JointFrames&);
+    static void pullIntact(int n, const IntactFaces&, JointFrames&);
+
+    // Joints with a deformable side, whose subcontacts move by displacements `u` [m]. `place1` and `place2` say where
+    // in `u` the two sides of the present subcontact stand; the three components are `lanes` numbers apart. `onPoints`
+    // receives the force on side 1 of the present subcontact, global axes [N]. Of `onJoints` only the moments on the
+    // rotations of both blocks are set.
+    static void alignNodal(int n, const int* body1, const int* body2, const double* const* turn,
+                           const double* const* f1, const double* const* f2, JointFrames&);
+    static void jumpNodal(int n, const int* place1, const int* place2, const double* u, double* j0, double* j1,
+                          double* j2, JointFrames&);
+    static void pullNodal(int n, const double* area, const double* normal, const double* shearA, const double* shearB,
+                          const double* j0, const double* j1, const double* j2, JointFrames&, double* onPoints);
+    static void finishNodal(int n, const JointFrames&, double* onJoints);
+};
 
 } // namespace masonry

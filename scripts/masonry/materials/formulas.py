@@ -334,11 +334,10 @@ def _refuse(problems):
 
 
 def _sentencesOf(error):
-    """Sentences of a joint that is refused, with the arguments that decide. No other place reads
-    the text of such an error."""
-    for line in str(error).splitlines():
-        small = "too small for peak ratio" in line
-        yield f"{line}; Gc and peak_strain, and fc and E, decide" if small else line
+    """Sentences of a joint that is refused, with the arguments that decide."""
+    for problem in error.problems:
+        isSmall = problem["code"] == "smallEnergy"
+        yield problem["text"] + "; Gc and peak_strain, and fc and E, decide" * isSmall
 
 
 def _mortarJoints(v):

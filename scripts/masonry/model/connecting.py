@@ -4,17 +4,17 @@ ValueError, with all problems at once."""
 
 from typing import Annotated, Any, Callable
 
-from yade import O, utils
+from yade import O
 from yade.wrapper import InteractionLoop, MasonryIntegrator, MasonryJoint
 from yade.wrapper import MasonryJointGeom, MasonryJointLoop, MasonryLoad, MasonryZones
 from yade.wrapper import NewtonIntegrator
 
 from .. import _masonry
-from .._masonry import connected, dropFaces, gather, neighbours, timeStepLimit
+from .._masonry import connected, dropFaces, neighbours, timeStepLimit
 from ..arguments import number, validated
 from ..terminal import say
 from .bodies import properties, refuse
-from .engines import LAWS, functorLoop
+from .engines import LAWS
 
 
 #: The largest gap or overlap of faces that coincide, over the size of the smaller block [-].
@@ -64,15 +64,13 @@ def makeJoints(
     rule: Callable[..., Any] | None, tolerance: float = 1e-4, allowGaps: bool = False
 ) -> list[Any]:
     """:func:`connect` without its time step, for who chooses it by other rules."""
-    engines = list(O.engines)
-    loops = [e for e in engines if isinstance(e, (MasonryJointLoop, InteractionLoop))]
+    loops = [e for e in O.engines if isinstance(e, (MasonryJointLoop, InteractionLoop))]
     if not loops:
         raise ValueError(
             "connect() needs the joints' engine in O.engines: call masonry.engines() first"
         )
     loop = loops[0]
-    ofYade = isinstance(loop, InteractionLoop)
-    if ofYade:
+    if isinstance(loop, InteractionLoop):
         functors, ofPhysics = loop.geomDispatcher.functors, loop.physDispatcher.functors
     else:
         functors, ofPhysics = [loop.geometry], [loop.physics]
@@ -86,22 +84,18 @@ def makeJoints(
         for functor in functors:
             functor.tolerance = tolerance
         pairs, sizes = _pairs(tolerance, allowGaps)
-        if not ofYade:
-            # YADE makes interactions with the functors of an InteractionLoop: one stands in for a
-            # moment
-            O.engines = [functorLoop(geometry, physics)]
-        made, joints = _connect(pairs, physics, rule)
+        made, used, problems = _masonry.connect(pairs, geometry, physics, rule)
+        refuse([*dict.fromkeys(problems)])  # joints of a kind are refused alike
     except ValueError:
         if pairs:  # a value in another unit may be the reason
-            _warn(pairs, physics.joints, sizes, engines)
+            _warn(pairs, physics.joints, sizes)
         raise
     finally:
         dropFaces()
-        O.engines = engines
         for functor in functors:
             functor.tolerance = before
     connected()
-    _warn(pairs, joints, sizes, engines)
+    _warn(pairs, used if rule else physics.joints, sizes)
     return made
 
 
@@ -118,7 +112,7 @@ def _pairs(tolerance, allowGaps):
     for one, two, gap, bound in misfits:
         how = f"nearly share a face, with a gap of {1e3 * gap:g} mm"
         if gap < 0:
-            how = f"lie {-1e3 * gap:g} mm deep in each other"
+            how = f"overlap by {-1e3 * gap:g} mm"
         if gap < 0 or not allowGaps:
             how += f"; the tolerance is {1e3 * bound:.3g} mm"
             problems.append(f"bodies {one} and {two} {how}")
@@ -137,44 +131,7 @@ def _pairs(tolerance, allowGaps):
     return pairs, sizes
 
 
-def _connect(pairs, physics, rule):
-    """Make the joints of all pairs, or none of them. Returns the interactions and the MasonryJoint
-    objects."""
-    made, problems, due = [], [], 256
-    joints = {id(j): j for j in physics.joints}
-    try:
-        for id1, id2 in pairs:
-            try:
-                interaction = utils.createInteraction(id1, id2)
-            except ValueError as error:
-                problems.append(str(error))
-                continue
-            made.append(interaction)
-            # what joints leave when they move into columns is free for the next ones
-            if len(made) == due:
-                gather()
-                due += 256 + due // 12
-            if rule:
-                bodies = O.bodies[interaction.id1], O.bodies[interaction.id2]
-                joint = rule(*bodies, interaction.geom)
-                if isinstance(joint, MasonryJoint):
-                    physics.assign(interaction, joint)
-                    joints[id(joint)] = joint
-                elif joint is not None:
-                    problems.append(
-                        f"rule must return a MasonryJoint or None, got {joint!r} for bodies"
-                        f" {id1} and {id2}"
-                    )
-        refuse([*dict.fromkeys(problems)])  # joints of a kind are refused alike
-    except BaseException:
-        for interaction in made:
-            O.interactions.erase(interaction.id1, interaction.id2)
-        O.interactions.eraseNonReal()
-        raise
-    return made, list(joints.values())
-
-
-def _warn(pairs, joints, sizes, engines):
+def _warn(pairs, joints, sizes):
     """Print warnings of what looks like a mistake: other units, blocks without joints, properties
     without effect."""
     (thin, thickness), (large, size) = sizes
@@ -188,7 +145,7 @@ def _warn(pairs, joints, sizes, engines):
     _warnOfUnits([*mats.values(), *joints])
     _warnOfIdle(joints)
     kinds = MasonryIntegrator, NewtonIntegrator
-    gravity = next((e.gravity.norm() for e in engines if isinstance(e, kinds)), 0)
+    gravity = next((e.gravity.norm() for e in O.engines if isinstance(e, kinds)), 0)
     for label, _, density in mats:  # density scaling keeps the weight
         if gravity and not 1e3 <= density * gravity <= 1e5:
             say(
@@ -199,7 +156,7 @@ def _warn(pairs, joints, sizes, engines):
     if alone:
         more = " and more" * (len(alone) > 10)
         say(f"warning: no joint holds bodies {alone[:10]}{more}")
-    for engine in engines:
+    for engine in O.engines:
         if isinstance(engine, MasonryLoad) and engine.body in bodies:
             body = bodies[engine.body]
             away = (engine.point - body.state.refPos).norm()

@@ -2,7 +2,7 @@
 """What a scene is in YADE: its bodies, joints, loads and engines."""
 
 from yade import O
-from yade.wrapper import MasonryContacts, MasonryJoint, MasonryZones
+from yade.wrapper import MasonryContacts, MasonryZones
 
 from ..errors import Collapsed, Refused
 from ..terminal import say
@@ -142,8 +142,7 @@ class Structure:
         points = [int(n) for n in args.points.split(",")] if args.points else []
         points, along = (*points, None, None)[:2]
         engines(
-            # the rule chooses; YADE wants a joint that fits any pair before it asks
-            [MasonryJoint(name="any", elastic=True)],
+            list(self.joints.values()),
             damping=args.damping,
             gravity=(0, 0, -self.gravity),
             points=points,

@@ -39,7 +39,7 @@ public:
 
     explicit CoulombFriction(const JointProperties& p) : Law(p, problems(p)) {}
     static bool reads(const std::string& property) { return property == "friction" || property == "tensileStrength"; }
-    static std::vector<std::string> problems(const JointProperties& p) { return p.outOfBounds(reads); }
+    static std::vector<Problem> problems(const JointProperties& p) { return p.outOfBounds(reads); }
     Equations equations(const ElasticStiffness& k) const {
         return {k.normal, k.shear, properties().friction, properties().tensileStrength};
     }

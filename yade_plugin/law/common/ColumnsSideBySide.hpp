@@ -9,8 +9,8 @@
 // and, for its equations, the functions
 //
 //   normalStress(e, columns, i, yielded)   [Pa] of the state in columns
-//   consequences(e, state)                 what the columns that follow from the others hold
-//   keep(consequences, columns, i)         writes that
+//   derive(e, state)                 what the columns that follow from the others hold
+//   keep(derived, columns, i)         writes that
 //   neverYielded(e, state)                 whether a state is one of a subcontact that has always been elastic
 //   stayElastic, slideOpen, advanceSideBySide, addEnergies   steps and energies of several subcontacts
 //   isLinear(e), hasConvexDomain(e)        whether stresses are the stiffness times the jumps before anything yields,
@@ -36,7 +36,7 @@ public:
 
     ColumnsSideBySide(std::shared_ptr<const LawType> law, const ElasticStiffness& k, int joints, int points)
         : Base(std::move(law), k, joints, points),
-          neverYielded_(consequences(equations_, State{})),
+          neverYielded_(derive(equations_, State{})),
           groups_((stride_ + lanes - 1) / lanes),
           yielded_(std::size_t(groups_) * points, 0),
           rows_(std::size_t(stride_) * points, TableRows{0, 0}) {}
@@ -61,7 +61,7 @@ public:
         regime_[i] = s.regime;
         if (elastic) return;
         yieldFrom(point, joint);
-        keep(consequences(equations_, s), columns_, i);
+        keep(derive(equations_, s), columns_, i);
     }
     void setDissipated(int point, int joint, const Energies& lost) override {
         if (lost.tension == 0 && lost.shear == 0 && lost.compression == 0 && !hasYielded(point, joint)) return;
@@ -110,12 +110,12 @@ private:
             const std::size_t i = at(point, n);
             State s;
             State::visitNumbers(s, [&](const char*, double& number, int column) { number = columns_[column][i]; });
-            keep(consequences(equations_, s), columns_, i);
+            keep(derive(equations_, s), columns_, i);
         }
     }
 
-    using Consequences = decltype(consequences(std::declval<typename LawType::Equations>(), State{}));
-    Consequences neverYielded_;         // of subcontacts that never yielded
+    using Derived = decltype(derive(std::declval<typename LawType::Equations>(), State{}));
+    Derived neverYielded_;              // of subcontacts that never yielded
     int groups_;                        // of eight joints
     std::vector<std::uint8_t> yielded_; // of these groups at a point, whether one of the joints has yielded
     std::vector<TableRows> rows_;

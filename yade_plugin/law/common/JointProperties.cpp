@@ -6,30 +6,37 @@ namespace masonry {
 
 namespace {
 
-using Problems = std::vector<std::string>;
-
-void checkTable(Problems& found, const std::string& what, const std::vector<TableRow>& rows) {
+void checkTable(std::vector<Problem>& found, const char* property, const std::vector<TableRow>& rows) {
     if (rows.empty()) return;
     for (const auto& problem : SofteningTable::problems(rows))
-        found.push_back(what + ", " + problem);
+        found.push_back({property, inWords(property) + ", " + problem, "table"});
 }
 
 } // namespace
 
-std::vector<std::string> JointProperties::outOfBounds(const std::function<bool(const std::string&)>& acts) const {
+WrongProperties wrongJoint(const std::string& name, std::vector<Problem> problems) {
+    std::vector<std::string> texts;
+    for (auto& problem : problems) {
+        problem.text = "joint \"" + name + "\": " + problem.text;
+        texts.push_back(problem.text);
+    }
+    return {joined(texts, "\n"), std::move(problems)};
+}
+
+std::vector<Problem> JointProperties::outOfBounds(const std::function<bool(const std::string&)>& acts) const {
     using P = JointProperties;
-    Problems found;
-    if (name.empty()) found.push_back("name must not be empty");
+    std::vector<Problem> found;
+    if (name.empty()) found.push_back({"name", "name must not be empty", "bounds"});
     describe([&](const char* called, auto member, const Property& description) {
         using Value = std::decay_t<decltype(this->*member)>;
         if constexpr (std::is_same_v<Value, double>) {
             const bool stiffness = member == &P::normalStiffness || member == &P::shearStiffness;
             if (!stiffness && (elastic || !acts(called))) return;
             const auto problem = description.problem(inWords(called), this->*member);
-            if (!problem.empty()) found.push_back(problem);
+            if (!problem.empty()) found.push_back({called, problem, "bounds"});
         }
         if constexpr (std::is_same_v<Value, std::vector<TableRow>>)
-            if (!elastic && acts(called)) checkTable(found, inWords(called), this->*member);
+            if (!elastic && acts(called)) checkTable(found, called, this->*member);
     });
     return found;
 }

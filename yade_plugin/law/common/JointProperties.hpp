@@ -51,11 +51,14 @@ struct JointProperties {
     // Calls visit(name, member, description) for every property.
     template <class Visit> static void describe(Visit&& visit);
 
-    // Every value that is out of its bounds, one sentence each, in the user's words; empty if all is well. The name and
+    // Every value that is out of its bounds; empty if all is well. The name and
     // the two stiffnesses are looked at in any case, of the others those that `acts` says the law reads, and none of
     // them if the joint is elastic. What a law demands beyond these bounds, it checks itself (law/Laws.hpp).
-    std::vector<std::string> outOfBounds(const std::function<bool(const std::string& property)>& acts) const;
+    std::vector<Problem> outOfBounds(const std::function<bool(const std::string& property)>& acts) const;
 };
+
+// The error about the properties of a joint of this name, which each sentence begins with.
+WrongProperties wrongJoint(const std::string& name, std::vector<Problem> problems);
 
 template <class Visit> void JointProperties::describe(Visit&& visit) {
     using P = JointProperties;

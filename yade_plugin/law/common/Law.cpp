@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "Law.hpp"
-#include "common/Text.hpp"
 
 namespace masonry {
 
-Law::Law(const JointProperties& properties, const std::vector<std::string>& problems) : properties_(properties) {
-    if (problems.empty()) return;
-    const auto kind = "joint \"" + properties.name + "\": ";
-    throw WrongProperties(kind + joined(problems, ("\n" + kind).c_str()));
+Law::Law(const JointProperties& properties, std::vector<Problem> problems) : properties_(properties) {
+    if (!problems.empty()) throw wrongJoint(properties.name, std::move(problems));
 }
 
 const SofteningTable& Law::tension() const {

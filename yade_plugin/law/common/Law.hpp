@@ -36,9 +36,8 @@ public:
     virtual std::unique_ptr<LawColumns> columns(const ElasticStiffness& k, int joints, int points) const = 0;
 
 protected:
-    // Throws std::invalid_argument with all problems of the properties at once; `problems` are those that the law has
-    // found.
-    Law(const JointProperties& properties, const std::vector<std::string>& problems);
+    // Throws WrongProperties with the problems that the law has found, if there are any.
+    Law(const JointProperties& properties, std::vector<Problem> problems);
 
 private:
     JointProperties properties_;

@@ -19,7 +19,7 @@ inline double normalStress(const CyclicEquations& e, const Columns& columns, std
                     columns[CyclicColumn::ClosingStiffness][i]);
 }
 
-inline CyclicDerived consequences(const CyclicEquations& e, const CyclicState& s) {
+inline CyclicDerived derive(const CyclicEquations& e, const CyclicState& s) {
     const double fc = e.cap ? e.curve.strength(s.largestClosure, e.stretch) : HUGE_VAL;
     const double intact =
         PiecewiseEquations::intact(s.tensionDamage, s.shearDamage) * e.remainingByCrushing(s.largestClosure, fc);

@@ -36,45 +36,48 @@ bool CyclicLaw::reads(const std::string& property) {
     return own.count(property) > 0 || PiecewiseLaw::reads(property);
 }
 
-std::vector<std::string> CyclicLaw::problems(const JointProperties& p) {
+std::vector<Problem> CyclicLaw::problems(const JointProperties& p) {
     auto found = PiecewiseLaw::problems(p, reads);
     if (p.elastic) return found;
     // From here on a joint that slides back would fall by itself: it loses pressure, and with it strength, faster than
     // its shear stress falls.
     const double steepest = (1 - p.shearStiffnessLoss) * p.shearStiffness / (p.friction * p.normalStiffness);
     if (p.dilatancy > 0 && p.friction > 0 && !(p.dilatancy < steepest))
-        found.push_back("dilatancy " + text(p.dilatancy) +
-                        " must be below (1 - shear stiffness loss)·ks/(friction·kn) = " + text(steepest) +
-                        " in the cyclic law");
+        found.push_back(about("dilatancy", text(p.dilatancy) +
+                                               " must be below (1 - shear stiffness loss)·ks/(friction·kn) = " +
+                                               text(steepest) + " in the cyclic law"));
     if (p.cap && p.capLinear < 0)
-        found.push_back("cap linear " + text(p.capLinear) + " Pa must be at least 0 in the cyclic law");
+        found.push_back(about("capLinear", text(p.capLinear) + " Pa must be at least 0 in the cyclic law"));
     if (p.cap && p.compressionStiffnessLoss > 0 && (p.capNormal != 1 || p.capLinear != 0))
-        found.push_back("cap normal " + text(p.capNormal) + " and cap linear " + text(p.capLinear) +
-                        " Pa must be 1 and 0 in the cyclic law, or compression stiffness loss " +
-                        text(p.compressionStiffnessLoss) +
-                        " must be 0: how much of a closure is irreversible is only known "
-                        "for a cap whose strength under pure closure is that of the compression curve");
+        found.push_back(
+            about("capNormal", text(p.capNormal) + " and cap linear " + text(p.capLinear) +
+                                   " Pa must be 1 and 0 in the cyclic law, or compression stiffness loss " +
+                                   text(p.compressionStiffnessLoss) +
+                                   " must be 0: how much of a closure is irreversible is only known "
+                                   "for a cap whose strength under pure closure is that of the compression curve"));
     if (p.initialClosingStiffness > 0) {
         if (p.initialClosingStiffness >= p.normalStiffness)
-            found.push_back("initial closing stiffness " + text(p.initialClosingStiffness) +
-                            " Pa/m must be below the normal stiffness " + text(p.normalStiffness) +
-                            " Pa/m, that of the closed joint");
+            found.push_back(about("initialClosingStiffness",
+                                  text(p.initialClosingStiffness) + " Pa/m must be below the normal stiffness " +
+                                      text(p.normalStiffness) + " Pa/m, that of the closed joint"));
         if (p.tensileStrength > 0)
-            found.push_back("tensile strength " + text(p.tensileStrength) +
-                            " Pa must be 0 for a joint that closes on a curve: it is a dry joint");
+            found.push_back(
+                about("tensileStrength",
+                      text(p.tensileStrength) + " Pa must be 0 for a joint that closes on a curve: it is a dry joint"));
         if (!(p.closureLimit > 0))
-            found.push_back("closure limit " + text(p.closureLimit) +
-                            " m must be above 0 where there is an initial closing stiffness");
+            found.push_back(
+                about("closureLimit",
+                      text(p.closureLimit) + " m must be above 0 where there is an initial closing stiffness"));
         if (p.cap && p.compressionStiffnessLoss > 0)
-            found.push_back("compression stiffness loss " + text(p.compressionStiffnessLoss) +
-                            " must be 0 for a joint that closes on a curve");
+            found.push_back(about("compressionStiffnessLoss",
+                                  text(p.compressionStiffnessLoss) + " must be 0 for a joint that closes on a curve"));
     } else if (p.closureLimit > 0)
-        found.push_back("closure limit " + text(p.closureLimit) + " m needs an initial closing stiffness above 0");
+        found.push_back(about("closureLimit", text(p.closureLimit) + " m needs an initial closing stiffness above 0"));
     return found;
 }
 
 CyclicLaw::CyclicLaw(const JointProperties& properties)
-    : Law(properties, problems(properties)), paper_(properties, std::vector<std::string>{}) {}
+    : Law(properties, problems(properties)), paper_(properties, std::vector<Problem>{}) {}
 
 CyclicEquations CyclicLaw::equations(const ElasticStiffness& k) const {
     const auto& p = properties();
@@ -100,7 +103,7 @@ CyclicEquations CyclicLaw::equations(const ElasticStiffness& k) const {
 }
 
 Energies CyclicLaw::advance(const CyclicEquations& e, CyclicState& s, const Jump& jump) const {
-    const auto follows = consequences(e, s);
+    const auto derived = derive(e, s);
     CyclicPoint<double> p{s.opening,         s.crushing,
                           s.dilation,        s.slip,
                           s.largestOpening,  s.largestClosure,
@@ -109,9 +112,9 @@ Energies CyclicLaw::advance(const CyclicEquations& e, CyclicState& s, const Jump
                           s.plasticSlip.a,   s.plasticSlip.b,
                           s.shearSoftening,  s.shearStiffnessLoss,
                           s.capDisplacement, s.normalStress,
-                          follows.strength,  follows.closing,
-                          follows.shearing,  follows.intact,
-                          follows.secant,    follows.squaredHardening};
+                          derived.strength,  derived.closing,
+                          derived.shearing,  derived.intact,
+                          derived.secant,    derived.squaredHardening};
     const auto out =
         masonry::advance<double>(e, Look{e, tension(), shear()}, p, jump.opening, jump.slide.a, jump.slide.b);
     s.opening = p.opening;
@@ -133,8 +136,8 @@ Energies CyclicLaw::advance(const CyclicEquations& e, CyclicState& s, const Jump
 }
 
 double CyclicLaw::normalStress(const CyclicEquations& e, const CyclicState& s) {
-    const auto follows = consequences(e, s);
-    return e.normal(s.opening + (s.crushing - s.dilation), follows.secant, follows.closing);
+    const auto derived = derive(e, s);
+    return e.normal(s.opening + (s.crushing - s.dilation), derived.secant, derived.closing);
 }
 
 Energies CyclicLaw::stored(const ElasticStiffness& k, const CyclicState& s) const {
@@ -148,12 +151,12 @@ Energies CyclicLaw::stored(const ElasticStiffness& k, const CyclicState& s) cons
 
 Yield CyclicLaw::yield(const ElasticStiffness& k, const CyclicState& s) const {
     const auto e = equations(k);
-    const auto follows = consequences(e, s);
+    const auto derived = derive(e, s);
     const double w = s.opening + (s.crushing - s.dilation);
     const double tauSquared = s.shearStress.a * s.shearStress.a + s.shearStress.b * s.shearStress.b;
-    Yield f{s.normalStress - e.ft * follows.intact,
-            std::sqrt(tauSquared) - e.slipStrength(follows.intact, s.normalStress, w), -1};
-    if (e.cap) f.cap = e.capStress(std::fmin(s.normalStress, 0), tauSquared) - follows.strength * follows.strength;
+    Yield f{s.normalStress - e.ft * derived.intact,
+            std::sqrt(tauSquared) - e.slipStrength(derived.intact, s.normalStress, w), -1};
+    if (e.cap) f.cap = e.capStress(std::fmin(s.normalStress, 0), tauSquared) - derived.strength * derived.strength;
     return f;
 }
 

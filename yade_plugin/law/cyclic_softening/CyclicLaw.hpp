@@ -26,7 +26,7 @@ public:
 
     // Whether the law ever reads a property of joints, and what is wrong with the properties of a joint.
     static bool reads(const std::string& property);
-    static std::vector<std::string> problems(const JointProperties& properties);
+    static std::vector<Problem> problems(const JointProperties& properties);
 
     const SofteningTable& tension() const override { return paper_.tension(); }
     const SofteningTable& shear() const override { return paper_.shear(); }

@@ -10,21 +10,22 @@ namespace masonry {
 
 namespace {
 
-using Problems = std::vector<std::string>;
+using Problems = std::vector<Problem>;
 
 // A bound that is another property.
-void checkAtMost(Problems& found, const char* what, double value, const char* unit, double bound) {
+void checkAtMost(Problems& found, const char* property, double value, const char* unit, double bound) {
     if (std::isfinite(value) && value >= 0 && bound >= 0 && value > bound)
-        found.push_back(std::string(what) + " " + text(value) + unit + " must be at most " + text(bound));
+        found.push_back(about(property, text(value) + unit + " must be at most " + text(bound)));
 }
 
 // The ratios of an exponential table reach 1 + 12/decay: numbers must hold them.
 void checkExponential(Problems& found, const char* mode, double strength, double stiffness, double energy) {
     const double decay = strength * strength / (stiffness * energy);
     if (strength > 0 && stiffness > 0 && energy > 0 && !(decay > 1e-300 && decay < 1e300))
-        found.push_back(std::string(mode) + " strength " + text(strength) + " Pa, stiffness " + text(stiffness) +
-                        " Pa/m and fracture energy " + text(energy) +
-                        " J/m² are too far apart for an exponential table");
+        found.push_back({std::string(mode) + "FractureEnergy", inWords(mode) + " strength " + text(strength) +
+                                                                   " Pa, stiffness " + text(stiffness) +
+                                                                   " Pa/m and fracture energy " + text(energy) +
+                                                                   " J/m² are too far apart for an exponential table"});
 }
 
 SofteningTable tableOr(const std::vector<TableRow>& rows, double strength, double stiffness, double fractureEnergy) {
@@ -66,7 +67,7 @@ bool PiecewiseLaw::reads(const std::string& property) {
     return all.count(property) > 0;
 }
 
-std::vector<std::string> PiecewiseLaw::problems(const JointProperties& p, bool (*reads)(const std::string&)) {
+std::vector<Problem> PiecewiseLaw::problems(const JointProperties& p, bool (*reads)(const std::string&)) {
     const std::set<std::string> ofCap{"compressiveStrength",
                                       "elasticLimitRatio",
                                       "residualStrengthRatio",
@@ -82,19 +83,22 @@ std::vector<std::string> PiecewiseLaw::problems(const JointProperties& p, bool (
     });
     if (p.elastic) return found;
 
-    checkAtMost(found, "residual cohesion", p.residualCohesion, " Pa", p.cohesion);
-    checkAtMost(found, "residual friction", p.residualFriction, "", p.friction);
+    checkAtMost(found, "residualCohesion", p.residualCohesion, " Pa", p.cohesion);
+    checkAtMost(found, "residualFriction", p.residualFriction, "", p.friction);
     checkAtMost(found, "dilatancy", p.dilatancy, "", p.residualFriction);
     if (p.cohesion >= 0 && p.tensileStrength * p.friction > p.cohesion * (1 + 1e-12))
-        found.push_back("tensile strength " + text(p.tensileStrength) + " Pa is above the apex of the Coulomb cone, " +
-                        "cohesion/friction = " + text(p.cohesion / p.friction) + " Pa");
+        found.push_back(about("tensileStrength", text(p.tensileStrength) +
+                                                     " Pa is above the apex of the Coulomb cone, " +
+                                                     "cohesion/friction = " + text(p.cohesion / p.friction) + " Pa"));
     if (p.tensionTable.empty())
-        checkExponential(found, "mode I", p.tensileStrength, p.normalStiffness, p.modeIFractureEnergy);
+        checkExponential(found, "modeI", p.tensileStrength, p.normalStiffness, p.modeIFractureEnergy);
     if (p.shearTable.empty()) {
         if (p.cohesion == 0 && p.friction > p.residualFriction)
-            found.push_back("friction softens from " + text(p.friction) + " to " + text(p.residualFriction) +
-                            " without cohesion: give a shear table, no exponential one follows from zero cohesion");
-        checkExponential(found, "mode II", p.cohesion, p.shearStiffness, p.modeIIFractureEnergy);
+            found.push_back(
+                about("friction",
+                      "softens from " + text(p.friction) + " to " + text(p.residualFriction) +
+                          " without cohesion: give a shear table, no exponential one follows from zero cohesion"));
+        checkExponential(found, "modeII", p.cohesion, p.shearStiffness, p.modeIIFractureEnergy);
     }
 
     const bool capIsBounded = p.normalStiffness > 0 && p.outOfBounds([&](const std::string& property) {
@@ -107,10 +111,12 @@ std::vector<std::string> PiecewiseLaw::problems(const JointProperties& p, bool (
                                                                     p.elasticLimitRatio, p.residualStrengthRatio, 0);
     const double largest = p.peakRatio * (p.compressiveFractureEnergy - without) / (smallest - without);
     if (!(p.compressiveFractureEnergy > smallest)) // eq. (24): m <= 1 has no meaning
-        found.push_back(
-            "compressive fracture energy " + text(p.compressiveFractureEnergy) + " J/m² is too small for peak ratio " +
-            text(p.peakRatio) + " (needs at least " + text(std::ceil(smallest)) + " J/m², more between rigid units" +
-            (largest < 1 ? "" : ", or a peak ratio of at most " + text(std::floor(100 * largest) / 100)) + ")");
+        found.push_back(about(
+            "compressiveFractureEnergy",
+            text(p.compressiveFractureEnergy) + " J/m² is too small for peak ratio " + text(p.peakRatio) +
+                " (needs at least " + text(std::ceil(smallest)) + " J/m², more between rigid units" +
+                (largest < 1 ? "" : ", or a peak ratio of at most " + text(std::floor(100 * largest) / 100)) + ")",
+            "smallEnergy"));
     return found;
 }
 

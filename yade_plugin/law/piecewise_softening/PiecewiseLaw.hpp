@@ -28,13 +28,13 @@ public:
     // Throws std::invalid_argument with all problems of the properties at once.
     explicit PiecewiseLaw(const JointProperties& properties) : PiecewiseLaw(properties, problems(properties)) {}
     // For a law that is made of this one, with the problems that it has found.
-    PiecewiseLaw(const JointProperties& properties, const std::vector<std::string>& problems);
+    PiecewiseLaw(const JointProperties& properties, const std::vector<Problem>& problems);
 
     // Whether the law ever reads a property of joints, and what is wrong with the properties of a joint.
     static bool reads(const std::string& property);
-    static std::vector<std::string> problems(const JointProperties& properties) { return problems(properties, reads); }
+    static std::vector<Problem> problems(const JointProperties& properties) { return problems(properties, reads); }
     // The same for a law that reads others, too.
-    static std::vector<std::string> problems(const JointProperties& properties, bool (*reads)(const std::string&));
+    static std::vector<Problem> problems(const JointProperties& properties, bool (*reads)(const std::string&));
 
     const CompressionCurve& compression() const override { return own_.curve; }
     double squaredCapStress(double normal, double squaredShear) const override {

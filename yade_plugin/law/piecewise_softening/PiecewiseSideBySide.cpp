@@ -390,7 +390,7 @@ MASONRY_INLINED Mask crushAll(const SideBySide& all, Scratch& s) {
     const double* largestClosure = columns[Column::LargestClosure];
     Mask crushes = 0;
     const double limit = e.curve.limit(e.stretch);
-    const double closing = e.cap ? -1 : 0; // how closure counts
+    const double closing = e.cap ? -1 : 0; // sign of a closure; 0: without a cap none counts
     MASONRY_INDEPENDENT
     for (int i = 0; i < count; ++i) {
         const double a = s.share[i] * s.trialA[i];

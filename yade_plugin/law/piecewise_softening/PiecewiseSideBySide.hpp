@@ -27,7 +27,7 @@ inline double normalStress(const PiecewiseEquations& e, const Columns& columns, 
     return e.stiffness(elastic, columns[PiecewiseColumn::Secant][i]) * elastic;
 }
 
-inline PiecewiseDerived consequences(const PiecewiseEquations& e, const PiecewiseState& s) {
+inline PiecewiseDerived derive(const PiecewiseEquations& e, const PiecewiseState& s) {
     const double intact = PiecewiseEquations::intact(s.tensionDamage, s.shearDamage);
     const double fc = e.cap ? e.curve.strength(s.largestClosure, e.stretch) : HUGE_VAL;
     return {s.crushing - s.dilation, intact, e.secant(intact, s.largestOpening), e.reach(intact, s.largestOpening),

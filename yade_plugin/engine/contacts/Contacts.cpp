@@ -1,0 +1,474 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "Contacts.hpp"
+#include "common/Parallel.hpp"
+#include "contact/ContactStep.hpp"
+#include "engine/bodies/Blocks.hpp"
+#include "engine/bodies/BodyCheck.hpp"
+#include <Eigen/Geometry>
+#include <algorithm>
+
+namespace masonry {
+
+namespace {
+
+constexpr unsigned allAxes = 63;
+
+bool isHeld(const SceneContents& contents, int body) { return contents.bodies.blockedAxes(body) == allAxes; }
+
+Vector3r columnOf(const std::vector<double>* columns, int body) {
+    return {columns[0][std::size_t(body)], columns[1][std::size_t(body)], columns[2][std::size_t(body)]};
+}
+
+} // namespace
+
+std::vector<std::string> Contacts::problems() const {
+    auto sorted = bodies;
+    std::sort(sorted.begin(), sorted.end());
+    const auto twice = std::adjacent_find(sorted.begin(), sorted.end());
+    if (twice != sorted.end()) return {"body " + std::to_string(*twice) + " stands in bodies twice"};
+    return {};
+}
+
+std::vector<int> Contacts::idsOf(const SceneContents& contents) const {
+    if (!bodies.empty()) {
+        auto sorted = bodies;
+        std::sort(sorted.begin(), sorted.end());
+        return sorted;
+    }
+    std::vector<int> all;
+    for (const auto& body : contents.scene().bodies->body)
+        if (body && body->state && isBlock(body->shape.get())) all.push_back(body->id);
+    return all;
+}
+
+void Contacts::checkBodies(const SceneContents& contents) const {
+    if (!(normalStiffness > 0))
+        throw std::invalid_argument(nameOf(ClassRole::Contacts) + ".normalStiffness " + text(normalStiffness) +
+                                    " Pa/m must be given, above 0");
+    if (!(friction >= 0))
+        throw std::invalid_argument(nameOf(ClassRole::Contacts) + ".friction " + text(friction) +
+                                    " must be given, at least 0");
+    if (takesJoints && !contents.loop && !contents.joints.empty())
+        throw std::invalid_argument(nameOf(ClassRole::Contacts) + ".takesJoints needs " + nameOf(ClassRole::Joints) +
+                                    ": the functors go on with joints "
+                                    "that were handed over");
+    for (int id : idsOf(contents)) {
+        const auto& body = bodyAt(contents.scene(), id, ": body", ClassRole::Contacts);
+        const auto name = nameOf(ClassRole::Contacts) + ": body " + std::to_string(id);
+        if (!isBlock(body.shape.get())) throw std::invalid_argument(name + " is no block");
+        if (contents.bodies.isUnit[id])
+            throw std::invalid_argument(name +
+                                        " is a deformable unit, which has no contacts: give the ids of rigid "
+                                        "blocks in " +
+                                        nameOf(ClassRole::Contacts) + ".bodies");
+    }
+}
+
+void Contacts::prepare(const SceneContents& contents) {
+    if (revision_ == contents.stiffnessRevision()) return;
+    ids_ = idsOf(contents);
+    const auto count = std::size_t(contents.bodies.size());
+    blocks_.assign(count, ContactBlock{});
+    turns_.assign(count, Matrix3r::Identity());
+    double thinnest = HUGE_VAL;
+    finders_.clear();
+    OverlapFinder finder;
+    for (int id : ids_) {
+        const auto surface = blockOf(*contents.scene().bodies->body[std::size_t(id)]->shape);
+        auto& block = blocks_[std::size_t(id)];
+        try {
+            block = contactBlock(surface.vertices, surface.triangles);
+        } catch (const std::invalid_argument& error) {
+            throw std::invalid_argument(nameOf(ClassRole::Contacts) + ": body " + std::to_string(id) + ": " +
+                                        error.what());
+        }
+        if (!isHeld(contents, id)) thinnest = std::min(thinnest, block.thickness);
+        finder.provideFor(block);
+    }
+    finders_.push_back(finder);
+    // A tenth of the thinnest block that moves: few blocks are that near without touching, and it takes some time to go
+    // so far.
+    usedSkin_ = skin > 0 ? skin : thinnest < HUGE_VAL ? 0.1 * thinnest : 0.01;
+    joined_.clear();
+    contents.eachJoint([&](const JointView& joint) {
+        joined_.emplace_back(std::minmax(joint.interaction->id1, joint.interaction->id2));
+    });
+    std::sort(joined_.begin(), joined_.end());
+    stale_ = true;
+    revision_ = contents.stiffnessRevision();
+}
+
+// Whether a body has left its box. A point of a block is moved by a rotation of the angle a by at most a times its
+// distance from the centre, and a is at most 2.3 times the distance of the two unit quaternions up to a quarter turn.
+bool Contacts::moved(const SceneContents& contents) const {
+    const auto& all = contents.bodies;
+    for (std::size_t i = 0; i < ids_.size(); ++i) {
+        const int id = ids_[i];
+        const auto& then = placed_[i];
+        const double shift = (columnOf(all.position, id) - then.position).norm();
+        double same = 0, opposite = 0;
+        for (int d = 0; d < 4; ++d) {
+            same += std::pow(all.orientation[d][std::size_t(id)] - then.orientation[d], 2);
+            opposite += std::pow(all.orientation[d][std::size_t(id)] + then.orientation[d], 2);
+        }
+        const double turn = 2.3 * std::sqrt(std::min(same, opposite));
+        if (!(shift + turn * blocks_[std::size_t(id)].radius <= 0.5 * usedSkin_)) return true;
+    }
+    return false;
+}
+
+void Contacts::findPairs(const SceneContents& contents) {
+    const auto& all = contents.bodies;
+    std::vector<Box> boxes;
+    std::vector<unsigned char> awake;
+    placed_.clear();
+    for (int id : ids_) {
+        const auto& block = blocks_[std::size_t(id)];
+        Box box;
+        for (int d = 0; d < 3; ++d) {
+            const Vector3r row = turns_[std::size_t(id)].row(d).transpose();
+            double low = HUGE_VAL, high = -HUGE_VAL;
+            for (std::size_t c = 0; c < block.corners[0].size(); ++c) {
+                const double x =
+                    row[0] * block.corners[0][c] + row[1] * block.corners[1][c] + row[2] * block.corners[2][c];
+                low = std::min(low, x);
+                high = std::max(high, x);
+            }
+            box.low[d] = all.position[d][std::size_t(id)] + low - 0.5 * usedSkin_;
+            box.high[d] = all.position[d][std::size_t(id)] + high + 0.5 * usedSkin_;
+        }
+        boxes.push_back(box);
+        awake.push_back(isAwake(contents, id));
+        Placed placed{columnOf(all.position, id), {}};
+        for (int d = 0; d < 4; ++d)
+            placed.orientation[d] = all.orientation[d][std::size_t(id)];
+        placed_.push_back(placed);
+    }
+    // Ids are sorted, so pairs of ids are, too.
+    std::vector<Pair> found;
+    auto known = pairs_.begin();
+    const auto precedes = [](const Pair& a, const std::pair<int, int>& b) {
+        return a.one != b.first ? a.one < b.first : a.other < b.second;
+    };
+    for (const auto& [i, j] : overlappingBoxes(boxes, awake)) {
+        const std::pair<int, int> ids(ids_[std::size_t(i)], ids_[std::size_t(j)]);
+        while (known != pairs_.end() && precedes(*known, ids))
+            lostInFriction += endFriction((known++)->memory.friction);
+        const bool same = known != pairs_.end() && known->one == ids.first && known->other == ids.second;
+        if (std::binary_search(joined_.begin(), joined_.end(), ids)) continue;
+        found.push_back(same ? *known++ : Pair{ids.first, ids.second});
+    }
+    for (; known != pairs_.end(); ++known)
+        lostInFriction += endFriction(known->memory.friction);
+    pairs_ = std::move(found);
+    effects_.assign(pairs_.size(), Effect());
+    finders_.resize(std::max<std::size_t>(1, (pairs_.size() + piece - 1) / piece), finders_.front());
+    stale_ = false;
+}
+
+RelativePose Contacts::poseOf(const SceneContents& contents, const Pair& pair) const {
+    const auto& position = contents.bodies.position;
+    auto pose = relativePose(turns_[std::size_t(pair.one)], columnOf(position, pair.one),
+                             turns_[std::size_t(pair.other)], columnOf(position, pair.other));
+    pose.place += pair.gap;
+    return pose;
+}
+
+ContactBody Contacts::bodyOf(const SceneContents& contents, int body) const {
+    const auto& all = contents.bodies;
+    return {turns_[std::size_t(body)],    columnOf(all.position, body),
+            columnOf(all.velocity, body), columnOf(all.velocity + 3, body),
+            all.mass[std::size_t(body)],  columnOf(all.inertia, body),
+            all.blockedAxes(body)};
+}
+
+void Contacts::actOn(const SceneContents& contents, double dampingRatio, OverlapFinder& finder, Pair& pair,
+                     Effect& effect) const {
+    const auto pose = poseOf(contents, pair);
+    Overlap overlap;
+    effect.touches =
+        finder.find(blocks_[std::size_t(pair.one)], blocks_[std::size_t(pair.other)], pose, pair.axis, overlap);
+    const Vector3r gap = pair.gap;
+    if (!effect.touches) {
+        if (!gap.isZero(0)) { // once the blocks are apart as they stand, nothing is left of the joint
+            Overlap without;
+            const RelativePose stands{pose.turn, pose.place - gap};
+            if (!finder.find(blocks_[std::size_t(pair.one)], blocks_[std::size_t(pair.other)], stands, pair.axis,
+                             without))
+                pair.gap.setZero();
+        }
+        // Most pairs are only near each other.
+        if (!pair.memory.touched()) {
+            effect = Effect();
+            pair.memory.elastic.excess = 0;
+            return;
+        }
+    }
+    const auto one = bodyOf(contents, pair.one), other = bodyOf(contents, pair.other);
+    actOnPair({normalStiffness, tangentialRatio, friction, dampingRatio},
+              {blocks_[std::size_t(pair.one)], blocks_[std::size_t(pair.other)], one, other, pose, gap},
+              contents.scene().dt, overlap, finder, pair.memory, effect);
+}
+
+void Contacts::turnBlocks(const SceneContents& contents) {
+    const auto& all = contents.bodies;
+    for (int id : ids_) {
+        const auto b = std::size_t(id);
+        turns_[b] = Eigen::Quaterniond(all.orientation[0][b], all.orientation[1][b], all.orientation[2][b],
+                                       all.orientation[3][b])
+                        .toRotationMatrix();
+    }
+}
+
+void Contacts::act(SceneContents& contents) {
+    prepare(contents);
+    auto& all = contents.bodies;
+    for (int id : ids_)
+        if (!contents.loop) all.detectChange(id); // that engine has looked whether scripts have moved bodies
+    turnBlocks(contents);
+    if (takesJoints && contents.scene().iter % lookEvery == 0) wake(contents);
+    if (stale_ || moved(contents)) findPairs(contents);
+    countChanges(contents);
+    if (ratioOf_ != restitution) dampingRatio_ = dampingRatio(restitution);
+    ratioOf_ = restitution;
+    const int count = int(pairs_.size());
+    Parallel::instance().overPieces((count + piece - 1) / piece, 1, [&](int first, int beyond) {
+        for (int n = first; n < beyond; ++n)
+            for (int p = n * piece; p < std::min(count, (n + 1) * piece); ++p)
+                actOn(contents, dampingRatio_, finders_[std::size_t(n)], pairs_[std::size_t(p)],
+                      effects_[std::size_t(p)]);
+    });
+    const auto sums = contents.scene().forces().sums(all.size());
+    for (std::size_t p = 0; p < pairs_.size(); ++p) {
+        const auto& effect = effects_[p];
+        lostInFriction += effect.lost;
+        lostInDamping += effect.damped;
+        if (!effect.acts) continue;
+        const auto& [force, torques] = effect.wrench;
+        sums.forces[pairs_[p].one] -= force;
+        sums.forces[pairs_[p].other] += force;
+        sums.torques[pairs_[p].one] += torques[0];
+        sums.torques[pairs_[p].other] += torques[1];
+    }
+    if (!begun) given = elastic(contents); // blocks that a script has put into each other
+    begun = true;
+}
+
+// ---- joints that are handed over --------------------------------------------------------------------------------
+
+// Whether a body may come near blocks that it has no joint with. Where no joints are handed over, all may that can
+// move.
+bool Contacts::isAwake(const SceneContents& contents, int body) const {
+    return !isHeld(contents, body) && (!takesJoints || awake_.count(body));
+}
+
+// A body is awake from when one of its joints is handed over, or if it has none, or when it has moved from its
+// reference place by half of the skin. Where it overlaps a block then that it has no joint with, the gap of the pair is
+// as wide: neighbours that share an edge only are pressed a little into each other by the stress of the joints around.
+void Contacts::wake(const SceneContents& contents) {
+    std::vector<unsigned char> jointed(std::size_t(contents.bodies.size()), 0);
+    contents.eachJoint([&](const JointView& joint) {
+        for (const auto& side : joint.geom->reference().sides)
+            jointed[std::size_t(side.body)] = 1;
+    });
+    const auto before = awake_.size();
+    for (int id : ids_) {
+        if (awake_.count(id) || isHeld(contents, id)) continue;
+        const auto& s = contents.bodies.state(id);
+        const double moved = (columnOf(contents.bodies.position, id) - s.refPos).norm();
+        const double turn = (turns_[std::size_t(id)] - s.refOri.toRotationMatrix()).norm();
+        if (!jointed[std::size_t(id)] || moved + turn * blocks_[std::size_t(id)].radius > 0.5 * usedSkin_)
+            awake_.insert(id);
+    }
+    if (awake_.size() > before) findPairsOfWoken(contents);
+}
+
+// Finds the pairs anew, and gives those that there were not before a gap as wide as they overlap. In the first step
+// there are none before: what overlaps then was built so, and presses.
+void Contacts::findPairsOfWoken(const SceneContents& contents) {
+    std::vector<std::pair<int, int>> known;
+    for (const auto& pair : pairs_)
+        known.emplace_back(pair.one, pair.other);
+    findPairs(contents);
+    for (auto& pair : pairs_)
+        if (begun && !std::binary_search(known.begin(), known.end(), std::pair(pair.one, pair.other)))
+            settle(contents, pair, Vector3r::Zero(), Vector3r::Zero());
+}
+
+Contacts::Pair* Contacts::pairOf(int one, int other) {
+    for (auto& pair : pairs_)
+        if (std::minmax(pair.one, pair.other) == std::minmax(one, other)) return &pair;
+    return nullptr;
+}
+
+// Sets the gap of a pair so that its elastic force along a normal, which points from the one to the other body, is that
+// of `onOther` [N], and gives its friction what the limit allows of the tangential part; both in global axes. Without a
+// normal the gap goes along the present force, and the blocks just touch. Returns the elastic energy of the pair [J].
+double Contacts::settle(const SceneContents& contents, Pair& pair, const Vector3r& normal, const Vector3r& onOther) {
+    auto& finder = finders_.front();
+    const auto &one = blocks_[std::size_t(pair.one)], &other = blocks_[std::size_t(pair.other)];
+    const Matrix3r back = turns_[std::size_t(pair.one)].transpose();
+    pair.gap.setZero();
+    pair.memory = PairMemory{};
+    const RelativePose stands = poseOf(contents, pair);
+    Overlap overlap;
+    Vector3r axis = back * normal;
+    const double wanted = std::max(0.0, onOther.dot(normal));
+    const auto pressAt = [&](double gap) {
+        const RelativePose pose{stands.turn, stands.place + gap * axis};
+        return finder.find(one, other, pose, pair.axis, overlap) ? normalStiffness * overlap.force.norm() : 0.0;
+    };
+    const double present = pressAt(0);
+    if (normal.isZero(0)) {
+        if (present == 0) return 0;
+        axis = overlap.normal;
+    }
+    // The force falls as the gap grows: two gaps that enclose the one that is wanted, then the middle between them.
+    const double size = std::min(one.thickness, other.thickness);
+    double low = 0, high = 0;
+    if (present > wanted)
+        for (high = 1e-6 * size; high < size && pressAt(high) > wanted; high *= 2)
+            low = high;
+    else if (present < wanted)
+        for (low = -1e-6 * size; - low < size && pressAt(low) < wanted; low *= 2)
+            high = low;
+    for (int n = 0; n < 60 && low < high; ++n) {
+        const double middle = 0.5 * (low + high);
+        (pressAt(middle) > wanted ? low : high) = middle;
+    }
+    pair.gap = high * axis;
+    const double press = pressAt(high);
+    if (press == 0) return 0;
+    const RelativePose pose = poseOf(contents, pair);
+    const double energy = normalStiffness * finder.potential(one, other, pose);
+    if (!(overlap.area > 0)) return energy;
+    Vector3r shear = back * onOther;
+    shear -= shear.dot(overlap.normal) * overlap.normal;
+    const double limit = friction * press;
+    if (shear.norm() > limit) shear *= limit / shear.norm();
+    auto& s = pair.memory.friction;
+    s.stiffness = tangentialRatio * normalStiffness * overlap.area;
+    s.shear = shear;
+    s.normal = overlap.normal;
+    s.turn = pose.turn;
+    s.place = pose.place;
+    return energy + elasticEnergyOf(s);
+}
+
+// The force of a joint goes on as that of a contact: along the normal it is the same, and along the face it is cut to
+// friction. What remains are moments, and what is not the same counts as given: the difference of the elastic energies
+// here, and the work of the difference of both forces in the half step that follows (countChanges).
+void Contacts::takeOver(const SceneContents& contents, const std::vector<Joint>& joints) {
+    prepare(contents);
+    for (const auto& joint : joints) {
+        changes_.push_back({joint.body1, joint.force, joint.torque1});
+        changes_.push_back({joint.body2, -joint.force, joint.torque2});
+        awake_.insert(joint.body1);
+        awake_.insert(joint.body2);
+        const auto pair = std::pair<int, int>(std::minmax(joint.body1, joint.body2));
+        const auto joined = std::lower_bound(joined_.begin(), joined_.end(), pair);
+        if (joined != joined_.end() && *joined == pair) joined_.erase(joined);
+    }
+    converted += int(joints.size());
+    turnBlocks(contents);
+    findPairsOfWoken(contents);
+    for (const auto& joint : joints) {
+        auto* pair = pairOf(joint.body1, joint.body2);
+        if (!pair) continue;
+        const double sign = pair->one == joint.body1 ? 1 : -1;
+        conversionEnergy += settle(contents, *pair, sign * joint.normal, -sign * joint.force);
+        const auto pose = poseOf(contents, *pair);
+        Overlap overlap;
+        if (!finders_.front().find(blocks_[std::size_t(pair->one)], blocks_[std::size_t(pair->other)], pose, pair->axis,
+                                   overlap))
+            continue;
+        const Matrix3r& turn = turns_[std::size_t(pair->one)];
+        const Vector3r& shear = pair->memory.friction.shear;
+        const Vector3r force = normalStiffness * overlap.force + shear;
+        const Vector3r moment = normalStiffness * overlap.moment + overlap.centre.cross(shear);
+        changes_.push_back({pair->one, turn * force, turn * (moment - pair->gap.cross(force))});
+        changes_.push_back({pair->other, -(turn * force), -(turn * (moment - pose.place.cross(force)))});
+    }
+}
+
+void Contacts::countChanges(const SceneContents& contents) {
+    const double half = 0.5 * contents.scene().dt;
+    for (const auto& change : changes_)
+        conversionEnergy += half * (change.force.dot(columnOf(contents.bodies.velocity, change.body)) +
+                                    change.torque.dot(columnOf(contents.bodies.velocity + 3, change.body)));
+    changes_.clear();
+}
+
+double Contacts::elastic(const SceneContents& contents) {
+    prepare(contents);
+    double sum = 0;
+    for (const auto& pair : pairs_) {
+        sum += energyBesidePotential(pair.memory);
+        if (!pair.memory.touched()) continue;
+        const auto& s = pair.memory.friction;
+        const RelativePose pose{s.turn, s.place};
+        sum += normalStiffness *
+               finders_.front().potential(blocks_[std::size_t(pair.one)], blocks_[std::size_t(pair.other)], pose);
+    }
+    return sum;
+}
+
+double Contacts::largestEigenvalue(const SceneContents& contents, bool anew) {
+    if (!anew && boundRevision_ == contents.stiffnessRevision() && boundStiffness_ == normalStiffness &&
+        boundRatio_ == tangentialRatio)
+        return bound_;
+    checkBodies(contents);
+    double most = 0;
+    for (int id : idsOf(contents)) {
+        if (isHeld(contents, id)) continue;
+        const auto surface = blockOf(*contents.scene().bodies->body[std::size_t(id)]->shape);
+        const auto& s = contents.bodies.state(id);
+        most = std::max(most, embeddedEigenvalue(contactBlock(surface.vertices, surface.triangles), s.mass, s.inertia,
+                                                 normalStiffness, tangentialRatio * normalStiffness));
+    }
+    boundRevision_ = contents.stiffnessRevision();
+    boundStiffness_ = normalStiffness;
+    boundRatio_ = tangentialRatio;
+    bound_ = 2 * most;
+    return bound_;
+}
+
+double Contacts::largestDampingRatio() const { return std::sqrt(6) * dampingRatio(restitution); }
+
+std::vector<double> Contacts::diameters() const {
+    std::vector<double> found;
+    for (const auto& block : blocks_)
+        found.push_back(2 * block.radius);
+    return found;
+}
+
+std::vector<Contacts::PairForce> Contacts::pairForces() const {
+    std::vector<PairForce> found;
+    for (std::size_t p = 0; p < pairs_.size() && p < effects_.size(); ++p)
+        if (effects_[p].acts)
+            found.push_back({pairs_[p].one, pairs_[p].other, effects_[p].wrench.force, effects_[p].wrench.torques[1]});
+    return found;
+}
+
+int Contacts::touching() const {
+    return int(std::count_if(effects_.begin(), effects_.end(), [](const auto& effect) { return effect.touches; }));
+}
+
+Vector3r Contacts::forceOf(int id1, int id2) const {
+    for (std::size_t p = 0; p < pairs_.size() && p < effects_.size(); ++p)
+        if (effects_[p].acts && std::minmax(id1, id2) == std::minmax(pairs_[p].one, pairs_[p].other))
+            return pairs_[p].other == id2 ? effects_[p].wrench.force : Vector3r(-effects_[p].wrench.force);
+    return Vector3r::Zero();
+}
+
+void Contacts::visitState(StateNumbers& n) {
+    std::vector<int> awake(awake_.begin(), awake_.end());
+    effects_.resize(pairs_.size());
+    n(awake, changes_, pairs_, effects_);
+    if (!n.back) return;
+    if (effects_.size() != pairs_.size()) n.refuse();
+    awake_ = {awake.begin(), awake.end()};
+    stale_ = true;
+}
+
+} // namespace masonry

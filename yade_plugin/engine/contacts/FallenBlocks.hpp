@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// What has come loose in a scene whose joints are handed over to contact: when a block came loose, how fast it was at
+// most, and when it had fallen.
+#pragma once
+#include "engine/joints/SceneContents.hpp"
+#include <vector>
+
+namespace masonry {
+
+// A block that no joints hold.
+struct Fall {
+    int body;
+    double since; // when it was first seen so [s]
+    double fell;  // when it had fallen [s]; -1: it has not
+    double most;  // largest kinetic energy since then [J]
+    double at;    // when it had that [s]
+
+    template <class Visit> void visitState(Visit&& visit) { visit(body, since, fell, most, at); }
+};
+
+class FallenBlocks {
+public:
+    // A block has fallen when it has turned by so much since the reference state [rad], ...
+    static constexpr double turn = 1.0471975511965976; // 60°
+    static constexpr double travel = 1; // ... or when its centre has moved by so many of its diameters [-]
+
+    // Looks at bodies, sorted by their ids, whose diameters are given by id [m].
+    void look(const SceneContents&, const std::vector<int>& loose, const std::vector<double>& diameters);
+    const std::vector<Fall>& all() const { return all_; } // sorted by body
+
+    void visitState(StateNumbers& visit) { visit(all_); }
+
+private:
+    std::vector<Fall> all_;
+};
+
+// Whether each body is held by joints that were not handed over, one after the other, from a body whose axes are all
+// blocked; by its id. Such a body counts as held itself.
+std::vector<unsigned char> heldByJoints(const SceneContents&);
+
+} // namespace masonry

@@ -1,0 +1,386 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "Refinement.hpp"
+#include "blocks/JointPoints.hpp"
+#include "common/Text.hpp"
+#include <Eigen/Dense>
+#include <algorithm>
+#include <map>
+
+namespace masonry {
+
+namespace {
+
+using Points = std::vector<JointPoint>;
+
+constexpr double close = 1e-9; // over the length of a row: points that are nearer to each other are one
+
+// ---- points -----------------------------------------------------------------------------------------------------
+
+Points pointsOf(const JointGeometry& geom) {
+    Points all;
+    for (int p = 0; p < geom.points(); ++p)
+        all.push_back({geom.offset(p), geom.area(p)});
+    return all;
+}
+
+// Points of the first joint of a kind. All joints of a kind are alike in whether their points stand in a row.
+Points pointsOf(const JointKind& kind) {
+    Points all;
+    for (int p = 0; p < kind.shapes->points; ++p)
+        all.push_back({kind.shapes->offsetAt(p, 0), kind.shapes->areaAt(p, 0)});
+    return all;
+}
+
+// Whether points stand in one row along the joint's tangent, as those of a joint whose blocks move in a plane.
+bool isRow(const Points& points) {
+    const auto apart = [&](int d) {
+        const auto by = [&](const JointPoint& a, const JointPoint& b) { return a.offset[d] < b.offset[d]; };
+        const auto [low, high] = std::minmax_element(points.begin(), points.end(), by);
+        return high->offset[d] - low->offset[d];
+    };
+    return apart(2) <= close * apart(1);
+}
+
+// So many points along the row that a joint was made with, or along both sides of a joint in space.
+Points refinedPoints(const JointReference& r, const Points& first, int count) {
+    Points all;
+    for (const auto& part : subdivide(r.polygon(), r.normal, r.tangent, count, isRow(first) ? 1 : count))
+        all.push_back({r.axes().transpose() * (part.centre - r.sides[0].position), part.area});
+    return all;
+}
+
+// The points among which a place of a joint lies, with weights that keep what is linear over the face: one point, the
+// ends of the shortest stretch of a row, or the corners of the smallest triangle. In a rectangle of four points two
+// triangles are equally small, and each counts for a half.
+struct Share {
+    int point;
+    double weight;
+};
+std::vector<Share> sharesAt(const Vector3r& place, const Points& points) {
+    const int count = int(points.size());
+    double smallest = HUGE_VAL, nearest = HUGE_VAL;
+    int closest = 0;
+    std::vector<std::vector<Share>> found;
+    const auto take = [&](double size, std::vector<Share> shares) {
+        for (const auto& share : shares)
+            if (share.weight < -1e-6) return;
+        if (size > smallest * (1 + 1e-6)) return;
+        if (size < smallest * (1 - 1e-6)) found.clear();
+        smallest = std::min(size, smallest);
+        found.push_back(std::move(shares));
+    };
+    const auto between = [&](int from, int to) { return Vector3r(points[to].offset - points[from].offset); };
+    const bool row = isRow(points);
+    for (int a = 0; a < count; ++a) {
+        const Vector3r there = place - points[a].offset;
+        if (there.norm() < nearest) closest = a;
+        nearest = std::min(nearest, there.norm());
+        for (int b = a + 1; b < count; ++b) {
+            const Vector3r ab = between(a, b);
+            if (row) {
+                const double t = there.dot(ab) / ab.squaredNorm();
+                take(ab.squaredNorm(), {{a, 1 - t}, {b, t}});
+                continue;
+            }
+            for (int c = b + 1; c < count; ++c) {
+                const Vector3r ac = between(a, c);
+                const double area = ab.cross(ac)[0], size = ab.squaredNorm() + ac.squaredNorm();
+                if (std::abs(area) <= 1e-6 * size) continue;
+                const double u = there.cross(ac)[0] / area, v = ab.cross(there)[0] / area;
+                take(size + between(b, c).squaredNorm(), {{a, 1 - u - v}, {b, u}, {c, v}});
+            }
+        }
+    }
+    std::vector<double> weights(count, 0.0);
+    for (const auto& shares : found)
+        for (const auto& [point, weight] : shares)
+            weights[point] += weight / found.size();
+    if (nearest * nearest <= close * smallest) {
+        weights.assign(count, 0.0);
+        weights[closest] = 1;
+    }
+    std::vector<Share> all;
+    for (int p = 0; p < count; ++p)
+        if (std::abs(weights[p]) > close) all.push_back({p, weights[p]});
+    return all;
+}
+
+// Columns of one joint alone, with these points and without a state.
+struct SingleJointColumns {
+    shared_ptr<JointShapes> shapes;
+    shared_ptr<JointStates> states;
+
+    SingleJointColumns(const JointView& joint, const Points& points)
+        : shapes(new JointShapes(1, int(points.size()))),
+          states(new JointStates(joint.phys->propertySet(), joint.phys->stiffness(), 1, int(points.size()))) {
+        shapes->joints[0] = joint.geom->reference();
+        shapes->refined[0] = joint.geom->refined();
+        shapes->pointwise[0] = 1;
+        for (int p = 0; p < shapes->points; ++p)
+            shapes->setShape(p, 0, points[p].offset, points[p].area);
+    }
+    LawColumns& columns() const { return *states->columns.unsynchronised(); }
+    void attachTo(const JointView& joint) const {
+        joint.geom->group = shapes;
+        joint.phys->group = states;
+        joint.geom->index = joint.phys->index = 0;
+        joint.geom->step.reset();
+    }
+    // Elastic and dissipated energy [J].
+    double energy() const {
+        const auto sums = columns().energies(shapes->area.data(), false);
+        double all = 0;
+        for (const auto& e : {sums.stored, sums.dissipated})
+            all += e.tension + e.shear + e.compression;
+        return all;
+    }
+};
+
+// ---- state ------------------------------------------------------------------------------------------------------
+
+double sum(const Energies& e) { return e.tension + e.shear + e.compression; }
+
+// Gives a point of a joint the state among old points. Jumps and shear stresses are linear over the face. All else
+// comes from that of the old points which has lost least: the law itself opens or closes it as far as the face is open
+// or closed here, and last returns a shear stress beyond the strength. So no number of a law needs to be known.
+void follow(LawColumns& to, int point, const LawColumns& from, const std::vector<Share>& shares) {
+    int whole = shares[0].point;
+    double opening = 0;
+    Shear stress;
+    for (const auto& [old, weight] : shares) {
+        if (sum(from.dissipated(old, 0)) < sum(from.dissipated(whole, 0))) whole = old;
+        opening += weight * from.state(old, 0).opening;
+        stress.a += weight * *from.shearStressA(old, 0);
+        stress.b += weight * *from.shearStressB(old, 0);
+    }
+    to.take(point, 0, from, whole, 0);
+    if (shares.size() == 1) return;
+    to.advanceOne(point, 0, {opening - from.state(whole, 0).opening, {}});
+    to.setElastic(point, 0, opening, stress.a / to.stiffness().shear, stress.b / to.stiffness().shear);
+    to.advanceOne(point, 0, {});
+}
+
+// Gives a joint other points, which take over its state. Returns the energy that it gets by that [J].
+double refine(const JointView& joint, int count) {
+    auto& shapes = *joint.geom->group;
+    const int j = joint.geom->index;
+    const auto old = pointsOf(*joint.geom);
+    SingleJointColumns before(joint, old);
+    before.shapes->take(0, shapes, j);
+    before.states->take(0, *joint.phys->group, joint.phys->index);
+    const auto& from = before.columns();
+
+    SingleJointColumns after(joint, refinedPoints(joint.geom->reference(), old, count));
+    after.shapes->refined[0] = {count, std::make_shared<const Points>(old)};
+    auto& to = after.columns();
+    std::vector<std::vector<Share>> shares;
+    std::vector<double> areas(old.size(), 0.0); // of the new points, by the old ones
+    for (int p = 0; p < after.shapes->points; ++p) {
+        shares.push_back(sharesAt(after.shapes->offsetAt(p, 0), old));
+        for (const auto& [o, weight] : shares.back())
+            areas[o] += weight * after.shapes->areaAt(p, 0);
+    }
+    for (int p = 0; p < after.shapes->points; ++p) {
+        Vector3r jump = Vector3r::Zero(), viscous = Vector3r::Zero();
+        Energies lost;
+        for (const auto& [o, weight] : shares[p]) {
+            jump += weight * before.shapes->jumpAt(o, 0);
+            viscous += weight * before.shapes->viscousAt(o, 0);
+            const auto e = from.dissipated(o, 0);
+            const double part = weight * old[o].area / areas[o];
+            lost.tension += part * e.tension;
+            lost.shear += part * e.shear;
+            lost.compression += part * e.compression;
+        }
+        follow(to, p, from, shares[p]);
+        after.shapes->setJump(p, 0, jump);
+        after.shapes->setViscous(p, 0, viscous);
+        if (shares[p].size() == 1) after.shapes->setImpact(p, 0, before.shapes->impactAt(shares[p][0].point, 0));
+        to.setDissipated(p, 0, lost);
+    }
+    after.attachTo(joint);
+    return after.energy() - before.energy();
+}
+
+// What is linear over the face of a joint, by its values at the points.
+class LinearOver {
+public:
+    explicit LinearOver(const JointGeometry& geom) : middle_(geom.offset(0)) {
+        Eigen::MatrixXd places(geom.points(), 3);
+        for (int p = 0; p < geom.points(); ++p)
+            places.row(p) = row(geom.offset(p));
+        solver_.compute(places);
+    }
+    void fit(const std::vector<Vector3r>& values) {
+        Eigen::MatrixXd given(values.size(), 3);
+        for (std::size_t p = 0; p < values.size(); ++p)
+            given.row(p) = values[p].transpose();
+        field_ = solver_.solve(given);
+    }
+    Vector3r at(const Vector3r& offset) const { return (row(offset) * field_).transpose(); }
+
+private:
+    Eigen::RowVector3d row(const Vector3r& offset) const { return {1, offset[1] - middle_[1], offset[2] - middle_[2]}; }
+    Vector3r middle_;
+    Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver_; // points in a row leave one direction open
+    Eigen::MatrixXd field_;
+};
+
+} // namespace
+
+// ---- where ------------------------------------------------------------------------------------------------------
+
+// Whether points of a joint have the area and the moments of others: with fewer than three along a side they have not.
+bool sameMoments(const Points& one, const Points& other) {
+    const auto moments = [](const Points& points) {
+        Eigen::Matrix3d sums = Eigen::Matrix3d::Zero(); // of 1, b1, b2 with each other
+        for (const auto& p : points) {
+            const Vector3r arm = p.offset - points[0].offset;
+            const Vector3r terms(1, arm[1], arm[2]);
+            sums += p.area * terms * terms.transpose();
+        }
+        return sums;
+    };
+    return moments(one).isApprox(moments(other), 1e-6);
+}
+
+Refinement::Limit::Limit(const JointKind& kind, int wanted) : columns_(kind.states->columns.unsynchronised().get()) {
+    const auto& columns = *columns_;
+    const auto& p = columns.law().properties();
+    const auto& first = kind.shapes->joints[0];
+    if (p.elastic || kind.attached || kind.shapes->refined[0].points) return;
+    const auto now = pointsOf(kind);
+    const bool row = isRow(now);
+    const int count = wanted ? wanted : row ? pointsOfRow : pointsOfSide;
+    const auto then = refinedPoints(first, now, count);
+    if (then.size() <= now.size() || !sameMoments(now, then)) return;
+    elasticLimit_ = columns.law().compression().elasticLimit;
+    const bool bonded = columns.column(Role::BondDamage, 0, 0) && (p.tensileStrength > 0 || p.cohesion > 0);
+    cracks_ = (elasticLimit_ == 0 || !row) && bonded;
+    if (elasticLimit_ == 0 && !cracks_) return;
+    points_ = count;
+    if (!cracks_) return;
+    const auto within = [&](double sigma, double tau) { return !yields(sigma / company, tau / company, 0); };
+    constexpr double most = 1e12, least = 1; // [Pa]
+    for (tension_ = most; tension_ > least && !within(tension_, 0);)
+        tension_ *= 0.5;
+    tension_ *= 0.5; // so that some shear stress is within, too
+    for (slip_ = most; slip_ > least && !within(tension_, slip_);)
+        slip_ *= 0.5;
+}
+
+bool Refinement::Limit::isReached(double part, double sigma, double a, double b) const {
+    const double squared = a * a + b * b, limit = part * elasticLimit_;
+    if (limit > 0 && columns_->law().squaredCapStress(sigma, squared) > limit * limit) return true;
+    return cracks_ && (sigma > tension_ || squared > slip_ * slip_) && yields(sigma / part, a / part, b / part);
+}
+
+bool Refinement::Limit::yields(double sigma, double a, double b) const {
+    const auto f = columns_->yieldingUnder(sigma, {a, b});
+    return f.tension > 0 || f.slip > 0;
+}
+
+// Whether a point of a joint has reached this part of the limit, or was beyond it already.
+bool Refinement::isDue(const JointKind& kind, const Limit& limit, double part, int j) const {
+    const auto& shapes = *kind.shapes;
+    const auto& columns = *kind.states->columns.unsynchronised();
+    if (shapes.converted[j]) return false;
+    for (int p = 0; p < shapes.points && !shapes.pointwise[j]; ++p) {
+        const auto& k = columns.stiffness();
+        const Vector3r jump = shapes.intactJumpAt(p, j);
+        if (limit.isReached(part, k.normal * jump[0], k.shear * jump[1], k.shear * jump[2])) return true;
+    }
+    for (int p = 0; p < shapes.points && shapes.pointwise[j]; ++p) {
+        const double a = *columns.shearStressA(p, j), b = *columns.shearStressB(p, j);
+        const double* damage = limit.cracks() ? columns.column(Role::BondDamage, p, j) : nullptr;
+        if ((damage && *damage > 0) || *columns.regime(p, j) == Regime::Crushing) return true;
+        if (limit.isReached(part, columns.stressIfClosed(p, j), a, b) &&
+            limit.isReached(part, columns.state(p, j).normalStress, a, b))
+            return true;
+    }
+    return false;
+}
+
+void Refinement::readLimits(const SceneContents& store) {
+    limits_.clear();
+    for (const auto& kind : store.kinds)
+        limits_.emplace_back(kind, store.loop->points);
+    revision_ = store.revision();
+    points_ = store.loop->points;
+}
+
+bool Refinement::look(SceneContents& store) {
+    changed_.clear();
+    if (store.revision() != revision_ || store.loop->points != points_) readLimits(store);
+    if (store.scene().iter % every != 0) return false;
+    std::map<std::pair<const JointShapes*, int>, int> due; // joints, and the points that they get
+    bool any = false;
+    for (std::size_t k = 0; k < store.kinds.size(); ++k) {
+        const auto& kind = store.kinds[k];
+        if (limits_[k].points() == 0) continue;
+        for (int j = 0; j < int(kind.shapes->joints.size()); ++j) {
+            if (!isDue(kind, limits_[k], company, j)) continue;
+            due[{kind.shapes.get(), j}] = limits_[k].points();
+            any = any || isDue(kind, limits_[k], share, j);
+        }
+    }
+    if (!any) return false;
+    const auto add = [](Changed& to, double sign) {
+        const auto& geom = *to.joint.geom;
+        for (int p = 0; p < geom.points(); ++p) {
+            const auto s = to.joint.phys->state(p);
+            const Vector3r stress =
+                Vector3r(s.normalStress, s.shearStress.a, s.shearStress.b) + geom.group->stressBesideLaw(p, geom.index);
+            to.forces.push_back({geom.offset(p), sign * geom.area(p) * stress});
+        }
+    };
+    for (const auto& joint : store.joints) { // in the host's order, so that the sum does not depend on addresses
+        const auto found = due.find({joint.geom->group.get(), joint.geom->index});
+        if (found != due.end()) {
+            Changed change{joint, {}, {}};
+            add(change, 1);
+            store.loop->refiningEnergy += refine(joint, found->second);
+            add(change, -1);
+            for (int p = 0; p < joint.geom->points(); ++p)
+                change.jumps.push_back(joint.geom->jump(p));
+            changed_.push_back(std::move(change));
+        }
+    }
+    return true;
+}
+
+void Refinement::count(SceneContents& store) {
+    for (const auto& change : changed_) {
+        const auto& geom = *change.joint.geom;
+        std::vector<Vector3r> moved;
+        for (int p = 0; p < geom.points(); ++p)
+            moved.push_back(geom.jump(p) - change.jumps[p]);
+        LinearOver jump(geom);
+        jump.fit(moved);
+        for (const auto& [place, force] : change.forces)
+            store.loop->refiningEnergy -= 0.5 * force.dot(jump.at(place));
+    }
+    changed_.clear();
+}
+
+bool Refinement::setPoints(SceneContents& store, const std::vector<int>& refined) {
+    std::vector<std::pair<const JointView*, int>> change; // joints and their new numbers of points
+    for (std::size_t n = 0; n < store.joints.size(); ++n) {
+        const auto& joint = store.joints[n];
+        const int count = refined[n];
+        if (count == joint.geom->refined().points) continue;
+        const bool fits = count == 0 || (count >= fewest && count <= most);
+        if (!fits || joint.geom->reference().attached) return false;
+        change.emplace_back(&joint, count);
+    }
+    for (const auto& [joint, count] : change) {
+        const auto& coarse = joint->geom->refined().coarse;
+        const auto first = coarse ? coarse : std::make_shared<const Points>(pointsOf(*joint->geom));
+        const SingleJointColumns fresh(*joint, count ? refinedPoints(joint->geom->reference(), *first, count) : *first);
+        fresh.shapes->refined[0] = {count, count ? first : nullptr};
+        fresh.attachTo(*joint);
+    }
+    return true;
+}
+
+} // namespace masonry

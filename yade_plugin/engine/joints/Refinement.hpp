@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// More points for joints between rigid blocks that are about to yield. While a joint is elastic, few points along it
+// say exactly what it does; where crushing or a crack begins and how far it reaches, only many do.
+// yade_plugin/README.md, Points where a joint yields, says what the new points take over.
+#pragma once
+#include "SceneContents.hpp"
+
+namespace masonry {
+
+class Refinement {
+public:
+    static constexpr int every = 10; // steps between two looks
+    // Part of the elastic limit of the cap, or of the strength, at which a joint gets its points.
+    static constexpr double share = 0.9;
+    // The part at which joints get theirs when another does: reading all joints of a scene again takes as long as some
+    // dozen steps.
+    static constexpr double company = 0.75;
+    // Points that a joint gets whose points stand in a row, unless JointLoop::points says.
+    static constexpr int pointsOfRow = 8;
+    static constexpr int pointsOfSide = 5; // the same along each side of a joint in space
+    static constexpr int fewest = 3;       // points along a side that have the true rotational stiffness
+    static constexpr int most = 100;       // points along a side
+
+    // Refines the joints of a scene that are about to yield, as JointLoop::points says, if this is a step to look at
+    // them. Joints with fewer than three points along a side keep them. Returns whether joints got points: SceneStore
+    // must then read them again.
+    bool look(SceneContents&);
+    // After the joints have made their step: counts what joints that were refined before it give or take by the forces
+    // of the step before, half of which act along this one.
+    void count(SceneContents&);
+
+    // Gives the joints of a scene the numbers of points along them in `refined`, one number a joint in the store's
+    // order; 0 stands for the points that a joint was made with. The state of a joint whose points change is that of a
+    // new one, and SceneStore must read the joints again. Returns false, and changes nothing, if a joint cannot have
+    // these points.
+    static bool setPoints(SceneContents&, const std::vector<int>& refined);
+
+private:
+    // Stresses of a kind of joints at which one of them gets its points: near the elastic limit of the cap, and, of
+    // joints in space and of those that cannot crush, near the first yield of the bond.
+    class Limit {
+    public:
+        Limit(const JointKind&, int wanted);
+        int points() const { return points_; } // along a side that a joint gets; 0: it keeps those that it has
+        bool cracks() const { return cracks_; }
+        bool isReached(double part, double normalStress, double shearStressA, double shearStressB) const;
+
+    private:
+        bool yields(double normalStress, double shearStressA, double shearStressB) const;
+
+        const LawColumns* columns_;
+        int points_ = 0;
+        double elasticLimit_ = 0; // in compression [Pa]; 0: none
+        bool cracks_ = false;     // whether the limits of its bond count
+        // Normal and shear stress [Pa] of the bond up to which the law need not be called.
+        double tension_ = 0, slip_ = 0;
+    };
+    void readLimits(const SceneContents&);
+    bool isDue(const JointKind&, const Limit&, double part, int joint) const;
+
+    // A joint that was refined in this step, with the forces at its points before and after that.
+    struct Changed {
+        JointView joint;
+        struct Force {
+            Vector3r place; // offset of a point [m]
+            Vector3r force; // at the points that there were, less that at the new ones, in the joint's axes [N]
+        };
+        std::vector<Force> forces;
+        std::vector<Vector3r> jumps; // of the new points before the step [m]
+    };
+
+    std::vector<Changed> changed_;
+    std::vector<Limit> limits_; // of the store's kinds
+    long revision_ = -1;        // SceneContents::revision() for which they were read
+    int points_ = 0;            // JointLoop::points for which they were read
+};
+
+} // namespace masonry
