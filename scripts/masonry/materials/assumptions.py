@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What of a masonry was assumed because it was not given, and what cannot be assumed.
+"""Which properties of a masonry have an effect, which were assumed because they were not given, and
+which cannot be assumed.
 
-A MasonryJoint and a MasonryMat note themselves which of their properties nobody has given
-(``assumed``): what is given when an object is made, set as an attribute or with ``set`` or
-``updateAttrs`` later, counts as given. ``brittleCoulomb`` and :func:`copied` keep the note. An
-object that YADE has loaded from a file has none: everything counts as given.
+A MasonryJoint and a MasonryMat note which of their properties were never given (``assumed``), when
+made, as an attribute, or with ``set`` or ``updateAttrs``. ``brittleCoulomb`` and :func:`copied`
+keep the note. An object that YADE has loaded from a file has none: everything counts as given.
 """
 
 from typing import Annotated, Any
@@ -15,11 +15,10 @@ from ..arguments import isA, listOf, validated
 from ..model.bodies import properties
 from ..model.engines import LAWS
 
-#: Descriptions of the properties by class and name.
+#: Descriptions of properties by class and name.
 DESCRIBED = {cls: {p["name"]: p for p in properties(cls)} for cls in (MasonryJoint, MasonryMat)}
 
-#: Where the default of a property is from, by class and name; the paper is that of
-#: yade_plugin/law/README.md.
+#: Sources of defaults by class and name; the paper: see yade_plugin/law/README.md.
 DEFAULTS = {cls: cls().assumed() for cls in DESCRIBED}
 
 #: Properties without a default that fits any masonry.
@@ -31,7 +30,7 @@ NEEDED = {
 #: Source of every property of a joint ``support`` that takes the bed joint.
 AS_BED = "as of the bed joint"
 
-#: What an entry of ``assumed`` says of such a joint.
+#: Source of such a joint in ``assumed``.
 SUPPORT = (
     "no joint 'support' was given: joints to platens take the bed joint, with its strength and"
     " friction"
@@ -57,20 +56,20 @@ TABLES = {"modeIFractureEnergy": "tensionTable", "modeIIFractureEnergy": "shearT
 
 
 def state(thing: Any, **sources: str) -> Any:
-    """Note of an object that these properties are assumed, with the source of each, and that all
-    others are given. Returns the object."""
+    """Note that these properties of an object are assumed, with their sources, and all others
+    given. Returns the object."""
     thing.assume(sources)
     return thing
 
 
 def copied(thing: Any) -> Any:
-    """Another material or joint with the same attributes and the same note."""
+    """A copy of a material or joint with its note."""
     made = type(thing)(**{k: v for k, v in thing.dict().items() if k != "id"})
     return state(made, **thing.assumed())
 
 
 def isDefault(thing: Any, name: str) -> bool:
-    """Whether a property has the default of its class because nobody has given it."""
+    """Whether a property has the default of its class."""
     return thing.assumed().get(name) == DEFAULTS[type(thing)][name]
 
 
@@ -96,9 +95,8 @@ def _things(masonry):
 
 
 def entriesOf(masonry: Any) -> list[dict[str, Any]]:
-    """The entry ``assumed`` of run.json: a list of dicts with ``name``, as
-    ``bed.residualFriction``, ``value``, ``unit`` and ``source``. Properties without an effect are
-    left out."""
+    """The entry ``assumed`` of run.json: dicts with ``name``, as ``bed.residualFriction``,
+    ``value``, ``unit`` and ``source``, of properties that have an effect."""
     found = []
     for name, thing in _things(masonry):
         sources, counted = thing.assumed(), effective(thing)
@@ -116,7 +114,7 @@ def entriesOf(masonry: Any) -> list[dict[str, Any]]:
 
 
 def missing(masonry: Any) -> list[str]:
-    """Sentences on properties that must be given, and are not."""
+    """Sentences on properties that must be given."""
     problems = []
     for name, thing in _things(masonry):
         kind, joint = type(thing), isinstance(thing, MasonryJoint)
@@ -140,10 +138,7 @@ def missing(masonry: Any) -> list[str]:
 def linesOf(
     entries: Annotated[list[dict[str, Any]], listOf(isA(dict), 0)], brief: bool
 ) -> list[str]:
-    """What a scene prints of its entries ``assumed``: lines of text.
-
-    :param brief: whether their number is enough
-    """
+    """What a scene prints of its entries ``assumed``: lines; ``brief``: their number alone."""
     if not entries:
         return []
     if brief:

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What building codes say of a masonry that they name: arguments for :func:`masonry`, each with its
-clause.
+"""Masonry of building codes: arguments for :func:`masonry`, each with its clause.
 
 ::
 
@@ -46,7 +45,7 @@ FVK0 = {
 #: Friction of bed joints, bound of fvk over fb, E over fk and G over E [-]: EN 1996-1-1:2005, 3.6.2
 #: and 3.7.
 FRICTION, MAX_SHEAR, STIFFNESS, SHEARING = 0.4, 0.065, 1000, 0.4
-#: The strongest units that equations (3.2), and (3.3) and (3.4), are for [Pa].
+#: Strongest units of equations (3.2), and of (3.3) and (3.4) [Pa].
 STRONGEST = {GENERAL: 75e6, THIN: 50e6}
 
 #: Confidence factor of a level of knowledge [-]: Circolare 7/2019, table C8.5.IV.
@@ -63,8 +62,7 @@ GRAVITY = 9.81  # [m/s²]
 
 
 class Row(NamedTuple):
-    """A row of table C8.5.I of Circolare 7/2019: least and largest value [Pa], of the weight
-    [N/m³]."""
+    """A row of table C8.5.I of Circolare 7/2019: ranges [Pa]; of the weight [N/m³]."""
 
     number: int
     fm: tuple[float, float]
@@ -88,7 +86,7 @@ TABLE = {
 
 
 def _mortar(value, context=None):
-    """The kind of a class of mortar, as its strength [MPa]."""
+    """Validator of a class of mortar; returns its strength [MPa]."""
     found = re.fullmatch(r"M(\d+(?:\.\d+)?)", value) if isinstance(value, str) else None
     if not found or not 1 <= float(found[1]) <= 20:
         raise ValueError(f"{value!r} must be a class of mortar from 'M1' to 'M20'")
@@ -96,7 +94,7 @@ def _mortar(value, context=None):
 
 
 def _arguments(clauses):
-    """The arguments of :func:`masonry`: each value, and all with their clauses."""
+    """The arguments of :func:`masonry`, with their clauses."""
     return {**{name: value for name, (value, _) in clauses.items()}, "clauses": clauses}
 
 

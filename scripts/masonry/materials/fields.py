@@ -2,15 +2,15 @@
 """Properties that vary from place to place, for :meth:`masonry.materials.Masonry.vary`. This
 module needs no YADE.
 
-Each function gives a function of x, y and z [m] that gives a factor on a property [-], 1 on the
-mean::
+Each function returns a function of x, y and z [m] whose value is a factor on a property [-], with
+the mean 1::
 
     cohesion = fields.lognormal(cov=0.2, length=0.5, seed=1)
     masonry = materials.calciumSilicate().vary("bed.cohesion", cohesion)
 
 A random field is the sum of :data:`WAVES` cosines with random directions, lengths and phases. Its
-values at two points a distance d apart have the correlation exp(-(d/length)²), as they stand before
-the exponential of a lognormal field.
+values at two points a distance d apart have the correlation exp(-(d/length)²), before the
+exponential of a lognormal field.
 """
 
 import math
@@ -22,7 +22,7 @@ import numpy as np
 from ..arguments import number, shown, validated, whole
 from .settings import Factor
 
-WAVES = 512  # cosines of a field: its moments are off by some 1/sqrt(WAVES) at most
+WAVES = 512  # cosines of a field: errors of its moments are some 1/sqrt(WAVES) at most
 
 
 def _standard(length, seed):
@@ -43,7 +43,6 @@ def _standard(length, seed):
     )
 
 
-#: What a random field takes: coefficient of variation, correlation length and seed.
 Cov = Annotated[float, number("", 0, 100, above=True)]
 Correlation = Annotated[float, number("m", 0, 1e6)]
 Seed = Annotated[int, whole()]
@@ -85,8 +84,7 @@ _TEXT = re.compile(
 
 
 def parts(text: str) -> tuple[Any, ...]:
-    """Names, kind, coefficient of variation, length [m] and seed of a field that is written as
-    :func:`read` takes it."""
+    """Names, kind, coefficient of variation, length [m] and seed of a field in a text."""
     found = _TEXT.fullmatch(text) if isinstance(text, str) else None
     names = found["names"].split("+") if found else []
     if not found or not all(re.fullmatch(r"[^.\s]+\.\w+", name) for name in names):
@@ -102,8 +100,7 @@ def parts(text: str) -> tuple[Any, ...]:
 
 
 def read(text: str) -> tuple[list[str], Factor]:
-    """The names of the properties and the function of a field that is written as the option
-    ``--field`` takes it.
+    """The names of the properties and the function of a field of the option ``--field``.
 
     :param text: for example
         ``bed.cohesion+bed.tensileStrength=lognormal(cov=0.3,length=0.5,seed=1)``
@@ -114,13 +111,12 @@ def read(text: str) -> tuple[list[str], Factor]:
 
 
 def written(kind: str, cov: float, length: float, seed: int) -> str:
-    """The part of the text that :func:`read` reads behind the names."""
+    """The text of a field behind the names."""
     return f"{kind}(cov={cov!r},length={length!r},seed={seed})"
 
 
 def ends(kind: str, cov: float, far: float) -> tuple[float, ...]:
-    """The factors of a field where its normal is so many standard deviations below and above its
-    mean [-]."""
+    """Factors of a field [-] where its normal is ``far`` standard deviations off its mean."""
     if kind == "lognormal":
         spread = math.sqrt(math.log1p(cov * cov))
         return tuple(math.exp(s * far * spread - spread**2 / 2) for s in (-1, 1))

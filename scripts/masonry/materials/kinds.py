@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Bricks and joints of a structure, which joint a pair of blocks gets, and what beams and floors
-are made of."""
+"""Bricks and joints of a structure, which joint a pair of blocks gets, and the materials of beams
+and floors."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ from ..bricks import Bricks
 from .settings import Factor, Property, Settable, applySettings, matching
 from .assumptions import AS_BED, copied, entriesOf, isDefault, missing, state
 
-FACTOR = number("", 0, above=True)  # the kind of what a variation gives
+FACTOR = number("", 0, above=True)  # validator of factors of a variation
 
-#: A joint whose normal is steeper than this is a bed joint: 45 degrees.
+#: A joint with a steeper normal is a bed joint: 45 degrees.
 STEEP = math.cos(math.radians(45))
 
 
@@ -38,8 +38,8 @@ _varied = matching(
 def withResidual(
     names: Names, joints: Annotated[dict[str, MasonryJoint], dictOf(_slides)]
 ) -> list[str]:
-    """Names of properties that change alike, and with them the residual friction of joints that
-    have one value of friction.
+    """Names of properties, with the residual friction of joints whose friction is among them and
+    has one value.
 
     :param names: as ``"bed.friction"``
     :param joints: dict of MasonryJoint by name
@@ -55,7 +55,7 @@ _pieces = matching(_fits, "what bricks.Beam or bricks.Floor gives")
 
 
 def _bearing(value, context=None):
-    """The kind of what is between a beam or a floor and the masonry below."""
+    """Validator of what is between a beam or a floor and the masonry below."""
     if isinstance(value, str) and value != "fixed":
         raise ValueError(f"{shown(value)} must be 'fixed', a friction [-] or None")
     if value is None or isinstance(value, str):
@@ -67,9 +67,7 @@ Modulus = Annotated[float, number("Pa", 0, 1e15, above=True)]
 Density = Annotated[float, number("kg/m³", 0, 1e6, above=True)]
 Poisson = Annotated[float, number("", -1, 0.5, above=True, below=True)]
 InPlane = Annotated[float, number("N/m", 0, 1e15, above=True)]  # a stiffness of a floor
-STIFFER = (
-    1e4  # how much stiffer than the pieces of a beam the joints are that stand for nothing else [-]
-)
+STIFFER = 1e4  # normal stiffness of the joints of a beam over that of its pieces [-]
 RIGID = 1e14  # Young's modulus of a piece that does not deform [Pa]
 
 
@@ -82,21 +80,20 @@ def withBeam(
     poisson: Poisson = 0.2,
     bearing: Annotated[float | str | None, _bearing] = None,
 ) -> Any:
-    """Say what a beam of :func:`masonry.bricks.Beam` is made of. It is elastic. Returns the same
-    masonry.
+    """Give the elastic material of a beam of :func:`masonry.bricks.Beam`. Returns the same masonry.
 
-    Its pieces are joined by the joint of its name, with the bending stiffness E I and the shear
-    stiffness 5/6 G A of the beam. Torsion has G (Iy + Iz), which is too stiff for flat sections.
+    Joints of its name connect its pieces, with the bending stiffness E I and the shear stiffness
+    5/6 G A of the beam. Torsion has G (Iy + Iz), which is too stiff for flat sections.
 
     :param beam: its pieces
     :param young: [Pa]; ``poisson``: [-]
     :param density: [kg/m³]
-    :param bearing: what is between it and masonry: None: a bed joint; a number: a dry joint of this
-        friction [-]; ``"fixed"``: an elastic joint. The joint is called NAME_bearing
+    :param bearing: the joint NAME_bearing between it and masonry: None: the bed joint; a number: a
+        dry joint of this friction [-]; ``"fixed"``: an elastic joint
     """
     name, pitch = _newKind(masonry, "withBeam", beam)
     shear = young / (2 * (1 + poisson))
-    # in series with the pieces, whose elasticity is lumped into their joints: E / l, and 5/6 G / l
+    # in series with the lumped elasticity of the pieces: E / l, and 5/6 G / l
     glue = MasonryJoint(
         name=name,
         elastic=True,
@@ -116,23 +113,20 @@ def withFloor(
     across: InPlane | None = None,
     bearing: Annotated[float | str | None, _bearing] = 0.5,
 ) -> Any:
-    """Say what a floor of :func:`masonry.bricks.Floor` is. It shears elastically in its plane.
-    Returns the same masonry.
+    """Give the properties of a floor of :func:`masonry.bricks.Floor`, which shears elastically in
+    its plane. Returns the same masonry.
 
     :param floor: its strips
-    :param shear: shear stiffness G t of its plane [N/m]: a square floor of which one edge is held
-        moves by V / (G t) when a force V acts along the other one
+    :param shear: shear stiffness G t of its plane [N/m]: a square floor with one edge held moves by
+        V / (G t) under a force V along the opposite edge
     :param mass: with what lies on it [kg/m²]
-    :param across: stiffness E t across the strips [N/m]; None: ten times ``shear``, which is
-        assumed
-    :param bearing: as in :meth:`withBeam`; the default, a friction of 0.5, is of joists that lie on
-        masonry
+    :param across: stiffness E t across the strips [N/m]; None: ten times ``shear``, assumed
+    :param bearing: as in :meth:`withBeam`; the default, friction 0.5, is of joists on masonry
     """
     name, pitch = _newKind(masonry, "withFloor", floor)
     low, high = floor[0].low, floor[0].high
     height = high[2] - low[2]
-    # strips are nearly rigid, so their joints have all of the stiffness: forces are G t / pitch
-    # times the slip
+    # strips are rigid, so the forces of their joints are G t / pitch times the slip
     area = pitch * height
     stiff = dict(normalStiffness=(across or 10 * shear) / area, shearStiffness=shear / area)
     glue = MasonryJoint(name=name, elastic=True, **stiff)
@@ -149,7 +143,7 @@ def withFloor(
 
 
 def _newKind(masonry, word, pieces):
-    """The kind of the pieces of a beam or a floor, and the distance of their middles [m]. Raises
+    """The kind of pieces of a beam or a floor, and the distance of their middles [m]. Raises
     Refused."""
     kinds, problems = sorted({block.kind for block in pieces}), []
     name = kinds[0]
@@ -177,19 +171,19 @@ def _take(masonry, name, unit, glue, bearing):
 
 
 def slipping(friction: float) -> dict[str, Any]:
-    """Properties of a joint that has friction alone."""
+    """Properties of a joint with friction alone."""
     return dict(
         tensileStrength=0, cohesion=0, friction=friction, residualFriction=friction, cap=False
     )
 
 
 def _isBeam(masonry, name):
-    """Whether a name is that of a beam: pieces of a floor do not deform."""
+    """Whether a name is that of a beam; pieces of a floor are rigid."""
     return name in masonry.stiff and masonry.units[name].young < RIGID
 
 
 class _OfBeam(Settable):
-    """What ``--set`` changes of a beam: its material. The stiffness of its joints follows."""
+    """Material of a beam for ``--set``; the stiffness of its joints follows."""
 
     WORD = "beam"
     known = {
@@ -218,38 +212,36 @@ class Masonry:
 
     A pair of blocks gets the joint ``support`` if one of them is a platen, ``crack`` if they are
     pieces of one brick, that of a beam or floor (:meth:`withBeam`, :meth:`withFloor`) if they are
-    pieces of one, and ``NAME_bearing`` if one of them is; else ``bed`` or ``head``. It is a bed
-    joint if its normal is less than 45 degrees off the vertical. Joints between two parts of a
-    structure, such as the wythes of a wall, get ``collar`` if there is one. Without ``head`` all
-    are bed joints.
+    pieces of one, and ``NAME_bearing`` if one of them is; ``collar``, if there is one, between two
+    parts of a structure, such as the wythes of a wall; else ``bed`` if its normal is less than 45
+    degrees off the vertical, or there is no ``head``; else ``head``.
 
-    Properties that were not given have the default of their class. A scene prints them once, and
-    run.json has them under ``assumed``; :mod:`masonry.materials.assumptions` says what counts
-    as given. These must be given: the density of units, and strengths (tensileStrength, cohesion,
-    friction, and compressiveStrength unless cap=False) of joints that are not elastic.
+    Properties that were not given have the default of their class and are noted
+    (:mod:`masonry.materials.assumptions`). These must be given: the density of units, and strengths
+    (tensileStrength, cohesion, friction, and compressiveStrength unless cap=False) of joints that
+    are not elastic.
 
     :param unit: MasonryMat of the bricks
-    :param joints: dict of MasonryJoint by these names; ``bed`` must be there. ``support`` takes the
-        bed joint if it is missing, with its strength and friction, and follows what ``--set`` says
-        of it; a random field of the bed joint leaves it as it is
+    :param joints: dict of MasonryJoint by these names; ``bed`` must be there. A missing ``support``
+        is the bed joint, with its strength and friction, also after ``--set``, but without its
+        random field
     :param units: dict of MasonryMat by the ``kind`` of a block, for example ``{"lintel":
-        concrete}``; bricks, lintels, voussoirs and blocks that are not in it are of the unit
-    :param choose: function (block1, block2, geom) of your own, of the records of two bricks or None
-        for a platen; it returns the name of a joint, or None for the rule above
-    :param brief: whether a scene prints only how many properties are assumed, as for a published
-        set
+        concrete}``; other bricks, lintels, voussoirs and blocks are of the unit
+    :param choose: function (block1, block2, geom) of the records of two bricks, or None for a
+        platen; it returns the name of a joint, or None for the rule above
+    :param brief: whether a scene prints only how many properties are assumed
     """
 
     unit: Annotated[MasonryMat, isA(MasonryMat)]
     joints: Annotated[dict, dictOf(isA(MasonryJoint), "bed")]
     units: Annotated[dict, dictOf(isA(MasonryMat))] = field(default_factory=dict)
     choose: Callable[..., str | None] | None = None
-    #: What :meth:`vary` was given: joint, property, function and step.
+    #: of :meth:`vary`: joint, property, function and step
     varied: Annotated[list, _varied] = field(default_factory=list)
     brief: bool = False
-    #: Height of a course for which the stiffness of the joints was made [m]; None: for any.
+    #: height of a course for which the joints were made [m]; None: any
     course: Annotated[float, number("m", 0, above=True)] | None = None
-    #: Kinds of blocks that are rigid also with ``--blocks deformable``: pieces of beams and floors.
+    #: kinds of blocks that are always rigid: pieces of beams and floors
     stiff: Annotated[frozenset, isA(frozenset)] = frozenset()
 
     def __post_init__(self):
@@ -263,7 +255,7 @@ class Masonry:
             self.joints["support"] = state(support, **dict.fromkeys(names, AS_BED))
 
     def _follow(self):
-        """Give a support joint that takes the bed joint what the bed joint has now."""
+        """Give a support joint that is the bed joint the present values of that."""
         support, bed = self.joints["support"], self.joints["bed"]
         sources = support.assumed()
         support.updateAttrs({n: getattr(bed, n) for n, s in sources.items() if s == AS_BED})
@@ -292,17 +284,12 @@ class Masonry:
     ) -> Masonry:
         """Let a property change from place to place. Returns the same masonry.
 
-        Values are rounded to steps of a share, so that many joints are of one kind and cost no more
-        than uniform ones.
-
         :param name: joint and property, for example ``"bed.cohesion"``, or a list of these that
-            change alike. Strengths are tied to each other: the tensile strength must be at most
-            cohesion over friction
+            change alike. The tensile strength must be at most cohesion over friction everywhere
         :param value: function of the x, y and z [m] of a joint's middle that gives a factor on the
-            property [-];
-            :mod:`masonry.materials.fields` has random ones
-        :param step: width of the steps, relative to the value; at most half of it is the error of
-            rounding
+            property [-]; :mod:`masonry.materials.fields` has random ones
+        :param step: values are rounded to steps of this ratio, so that many joints share one and
+            cost no more than uniform ones [-]
         """
         found, problems = [], []
         for one in [name] if isinstance(name, str) else name:
@@ -333,10 +320,9 @@ class Masonry:
 
     @validated
     def variant(self, args: Annotated[Any, _options], connectors: Any = None) -> Masonry:
-        """A copy for the options ``--joints`` and ``--field``; this one stays as it is.
+        """A copy for the options ``--joints`` and ``--field``.
 
-        :param connectors: names of ties, springs and fibre layers of the scene, whose fields are
-            none of the joints, or None
+        :param connectors: names of ties, springs and fibre layers, whose fields are not of joints
         """
         joints = {name: copied(joint) for name, joint in self.joints.items()}
         if args.joints == "brittle":
@@ -362,10 +348,8 @@ class Masonry:
         return own
 
     def rule(self, blocks: dict[int, Any]) -> Callable[..., MasonryJoint | None]:
-        """The rule of :func:`masonry.model.connecting.connect`.
-
-        A monolithic joint joins the two blocks of one brick. Others get the same joint that is not
-        monolithic.
+        """The rule of :func:`masonry.model.connecting.connect`. A joint is monolithic between the
+        two blocks of one brick alone.
 
         :param blocks: records of the bricks by body id
         """
@@ -414,7 +398,7 @@ class Masonry:
         return "bed" if steep else "head"
 
     def _at(self, name, joint, geom):
-        """The joint of a kind with the properties that it has at a place."""
+        """A joint with its properties at a place."""
         steps, values, centres = {}, {}, geom.centres
         centre = [sum(c[i] for c in centres) / len(centres) for i in range(3)]
         for kind, attribute, value, step in self.varied:
@@ -440,8 +424,7 @@ class Masonry:
 
 
 def byName(joints: Iterable[MasonryJoint], brittle: bool) -> dict[str, MasonryJoint]:
-    """Joints as a dict by name. If ``brittle``, those that are not elastic become brittle Coulomb
-    slip joints."""
+    """Joints by name; ``brittle``: as Coulomb slip joints, unless they are elastic."""
     return {j.name: _brittle(j) if brittle else j for j in joints}
 
 

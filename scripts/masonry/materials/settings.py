@@ -13,10 +13,7 @@ Factor = Callable[[float, float, float], float]
 
 
 class Property(NamedTuple):
-    """A property of what is no joint: its unit and its bounds.
-
-    :param above: whether it must be above ``low``, not at least
-    """
+    """Unit and bounds of a property of something settable; ``above``: it must be above ``low``."""
 
     unit: str
     low: float
@@ -25,23 +22,22 @@ class Property(NamedTuple):
 
     @property
     def kind(self) -> Callable[..., Any]:
-        """The kind of its values, as in :mod:`masonry.arguments`."""
+        """The validator of its values."""
         return number(self.unit, self.low, self.high, above=self.above)
 
 
 class Settable:
-    """What ``--set`` and ``--field`` change beside joints; what can vary has ``place()``, where it
-    is [m]."""
+    """What ``--set`` and ``--field`` change beside joints; where it can vary, ``place()`` [m]."""
 
-    WORD = "thing"  # what it is, in messages
+    WORD = "thing"  # in messages
     known: Any = {}  # its properties by name: Property
 
     def values(self):
-        """Their present values; None: it was not given."""
+        """Present values; None: not given."""
         return {name: getattr(self, name) for name in self.known}
 
     def copied(self):
-        """Another one, whose changes leave this one as it is."""
+        """A copy."""
         return copy.copy(self)
 
     def problems(self):
@@ -49,7 +45,7 @@ class Settable:
         return []
 
     def take(self, values):
-        """Take values that were checked, by property."""
+        """Take checked values, by property."""
         vars(self).update(values)
 
     def updateAttrs(self, values):
@@ -76,7 +72,7 @@ class Settable:
         self.vary(name, factor)
 
     def vary(self, name, factor):
-        """Multiply a property that was given by the value of a field where this is."""
+        """Multiply a property by the value of a field at its place."""
         self.updateAttrs({name: self.values()[name] * factor(*self.place())})
 
 
@@ -92,16 +88,15 @@ def matching(fits, what):
 
 
 def valuesOf(thing):
-    """The properties of a joint, or of what is :class:`Settable`, with their values."""
+    """Values by property, of a joint or something settable."""
     return thing.values() if isinstance(thing, Settable) else thing.dict()
 
 
 def scatterAll(connectors, names, factor):
-    """Let properties of ties, springs and fibre layers vary by a field. Raises ValueError with all
-    problems.
+    """Let properties vary by a field. Raises ValueError with all problems.
 
     :param connectors: ties, springs and fibre layers by name
-    :param names: as ``"wire.strength"``; those of joints are left alone
+    :param names: as ``"wire.strength"``; those of joints are skipped
     :param factor: :data:`Factor`
     """
     problems = []
@@ -139,8 +134,7 @@ def setting(text):
 
 
 def applySettings(joints, settings):
-    """Give joints, and what is settable beside them, the values of ``--set``. Raises Refused with
-    all problems at once.
+    """Set values of ``--set``. Raises Refused with all problems.
 
     :param joints: MasonryJoint and :class:`Settable` by name
     :param settings: list of (joint, property, text of the value)
@@ -181,14 +175,13 @@ def applySettings(joints, settings):
     refuse(problems)
 
 
-#: What the text of a value must be, by its type, where that is no number.
+#: What values must be that are no numbers, by type.
 KINDS = {bool: "on or off", list: "rows as ratio:damage,ratio:damage,..."}
 SWITCH = {"on": True, "true": True, "1": True, "off": False, "false": False, "0": False}
 
 
 def _value(text, example):
-    """The value that the text of a setting stands for, of the kind of ``example``. Raises
-    ValueError if it is not one."""
+    """The value of a text, of the type of ``example``. Raises ValueError."""
     if isinstance(example, bool):
         if text.lower() not in SWITCH:
             raise ValueError(text)

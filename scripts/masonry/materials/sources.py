@@ -25,7 +25,7 @@ DRY_GRANITE_MASONRY = {100: 3.287e9, 175: 4.068e9, 250: 4.722e9}
 
 
 def tested(value: Any, context: Any = None) -> Any:
-    """The kind of a vertical load of the tests [kN]."""
+    """Validator of a vertical load of the tests [kN]."""
     if not isNumber(value) or value not in DRY_GRANITE_MASONRY:
         levels = ", ".join(map(str, DRY_GRANITE_MASONRY))
         raise ValueError(f"{shown(value)} kN was not tested, there are {levels}")
@@ -59,16 +59,13 @@ def dry(
     poisson: Poisson | None = None,
 ) -> Masonry:
     """Stones with dry joints that do not crush: no tension, no cohesion, Coulomb friction without
-    dilatancy.
-
-    What is not given is assumed, and a scene says so.
+    dilatancy. A scene says what is assumed.
 
     :param friction: [-]; default 0.7, usual for rough stone
-    :param normalStiffness: of the joints [Pa/m], default 5e9; ``shearStiffness`` by default 0.4 of
-        it
+    :param normalStiffness: of the joints [Pa/m], default 5e9; ``shearStiffness`` [Pa/m]: default
+        0.4 of it
     :param density: of the stones [kg/m³], default 2600; ``young`` [Pa], default 20e9, and
-        ``poisson`` [-], default 0.2, count for deformable stones. Rigid ones have them lumped into
-        the joints
+        ``poisson`` [-], default 0.2, which rigid stones have lumped into the joints
     """
     ofStone = dict(density=density, young=young, poisson=poisson)
     given = dict(ofStone, friction=friction, normalStiffness=normalStiffness)
@@ -102,8 +99,7 @@ def calciumSilicateUnit() -> MasonryMat:
 
 DECIDED = "assumed by calciumSilicateJoints(); the paper gives no value"
 
-#: What the paper does not say of bed and head joints, and what it does not say of the crack joints
-#: of a brick.
+#: Properties that the paper does not give, of bed and head joints and of crack joints.
 CALCIUM_SILICATE_ASSUMED = (
     "residualCohesion residualFriction dilatancy residualStrengthRatio "
     "modeIFractureEnergy modeIIFractureEnergy capNormal capShear capLinear"
@@ -118,9 +114,8 @@ CRACK_ASSUMED = (
 def calciumSilicateJoints(brittle: bool = False) -> dict[str, MasonryJoint]:
     """Support, bed, head and crack joints of the calcium-silicate walls, as a dict by name.
 
-    Pairs of units get the first of support, bed and head that fits. The crack joint is for the
-    halves of one brick, and no pair of units gets it by itself: its joint set is one that no unit
-    has, so it needs a rule of :func:`connect`.
+    Pairs of units get the first of support, bed and head that fits. The crack joint, of the halves
+    of one brick, has a joint set that no unit has, so it needs a rule of :func:`connect`.
 
     Strengths, friction, compressive fracture energy and peak ratio are those of the paper's table
     2. Stiffnesses follow from its eq. (26) with a mortar 10 mm thick.
@@ -128,15 +123,14 @@ def calciumSilicateJoints(brittle: bool = False) -> dict[str, MasonryJoint]:
     The paper gives no value for these, and yade_plugin/law/README.md (parameters; crack surfaces)
     says why they were chosen: residual cohesion 0, one value of friction, no dilatancy, a residual
     compressive strength of 0.2 of the peak, fracture energies of 16 J/m² in mode I and 160 J/m² in
-    mode II, the shape of the cap, and all of the brick's crack surface, which is ten times as stiff
-    as a bed joint: in series with rigid half bricks of modulus E and length L, that leaves 0.99
-    E/L.
+    mode II, the shape of the cap, and the brick's crack surface, ten times as stiff as a bed joint:
+    in series with rigid half bricks of modulus E and length L, that leaves 0.99 E/L.
 
-    With eq. (26) the masonry is stiffer than the moduli of table 2 say: 4079 MPa across its bed
-    joints and 4507 MPa across its head joints, not 3174 and 2212 MPa. The closure at the
-    compressive strength is 1.54 mm for the bed joint and 1.21 mm for the head joint.
+    With eq. (26) the masonry is stiffer than in table 2: 4079 MPa across its bed joints and 4507
+    MPa across its head joints, not 3174 and 2212 MPa. The closure at the compressive strength is
+    1.54 mm for the bed joint and 1.21 mm for the head joint.
 
-    :param brittle: whether to give the brittle Coulomb slip joints instead, for comparison
+    :param brittle: whether they are brittle Coulomb slip joints instead
     """
     bed = MasonryJoint(name="bed", jointSet="brick", direction=BED_DIRECTION)
     head = MasonryJoint(name="head", jointSet="brick", direction=HEAD_DIRECTION)
@@ -166,8 +160,7 @@ def graniteUnit() -> MasonryMat:
     """Sawn granite block of the dry-joint walls of Vasconcelos and Lourenço (2009).
 
     Young's modulus is that of the data of Vanin et al. (2017), doi 10.1007/s10518-017-0188-5.
-    Poisson's ratio 0.2 and density 2600 kg/m³ are not in the data; they are assumed, as usual for
-    granite.
+    Poisson's ratio 0.2 and density 2600 kg/m³ are assumed, as usual for granite.
     """
     unit = MasonryMat(label="granite", young=20.2e9, poisson=0.2, density=2600)
     unit.jointSet = "granite"
@@ -181,17 +174,15 @@ def dryGraniteJoints(
 ) -> dict[str, MasonryJoint]:
     """Support, bed and head joints of the dry-joint granite walls, as a dict by name.
 
-    The joints have no tensile strength and no cohesion. Their normal stiffness kn is what is
-    missing between block and masonry, with one joint a course: 1/kn = height (1/Em - 1/E). The
-    modulus Em of the masonry at the load level and E of the block are from the data of Vanin et al.
-    (2017). These are assumed, since they are not in the data: friction 0.65, shear stiffness 0.4
-    kn, no dilatancy, and head joints and joints to the support and to the loading block like bed
-    joints. Crushing (the masonry's strength is 73 MPa) and cracks in the blocks are not modelled.
+    The joints have no tensile strength and no cohesion. With one joint a course, their normal
+    stiffness is 1/kn = height (1/Em - 1/E), with the modulus Em of the masonry at the load level
+    and E of the block in the data of Vanin et al. (2017). Assumed are friction 0.65, shear
+    stiffness 0.4 kn, no dilatancy, and head joints and joints to platens like bed joints. Crushing
+    (the masonry's strength is 73 MPa) and cracks in the blocks are not modelled.
 
     :param level: vertical load of the test [kN], a key of DRY_GRANITE_MASONRY
     :param height: of a course [m]
-    :param brittle: whether to give brittle Coulomb slip joints instead; they are the same here,
-        where nothing softens
+    :param brittle: whether they are brittle Coulomb slip joints, which are the same here
     """
     young = graniteUnit().young
     stiffness = 1 / (height * (1 / DRY_GRANITE_MASONRY[level] - 1 / young))
@@ -209,8 +200,7 @@ def dryGraniteJoints(
 
 
 def loadingBlock() -> MasonryMat:
-    """A block that supports or loads a wall, section 4.1 of the paper: so stiff that only its joint
-    gives way."""
+    """A platen, section 4.1 of the paper: so stiff that only its joint gives way."""
     return state(
         MasonryMat(label="loading block", young=1e16, poisson=0.0, density=1800, jointSet="support")
     )
