@@ -2,10 +2,10 @@
 """Finds the YADE of this machine in plain Python, and starts it when it is first imported.
 
 The program ``yade`` puts the folder of YADE's modules on ``sys.path``; ``/usr/bin/python3`` does
-not. After ``import masonry`` this module does it as soon as anything imports ``yade``, so what reads
-results stays as quick as without YADE. YADE starts without ports, without a change of ``sys.argv``,
-with one thread unless ``OMP_NUM_THREADS`` says another number, and without its lines on the
-terminal. The classes of the plugin are registered at once.
+not. After ``import masonry`` this module does it as soon as anything imports ``yade``, so what
+reads results stays as quick as without YADE. YADE starts without ports, without a change of
+``sys.argv``, with one thread unless ``OMP_NUM_THREADS`` says another number, and without its lines
+on the terminal. The classes of the plugin are registered at once.
 """
 
 import contextlib

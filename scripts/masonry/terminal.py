@@ -19,7 +19,8 @@ _CONTROL = re.compile(r"[\x00-\x08\x0b-\x1f\x7f-\x9f\u200e\u200f\u2028-\u202e\u2
 
 
 def withoutMarkup(text):
-    """A text with control characters written out, as ``\\x1b``: a file must not steer a terminal."""
+    """A text with control characters written out, as ``\\x1b``: a file must not steer a
+    terminal."""
     return _CONTROL.sub(lambda found: ascii(found[0])[1:-1], str(text))
 
 
@@ -29,8 +30,8 @@ _listeners = []  # of the present run
 
 
 def say(text, stream=None, noted=True):
-    """Print a text, as :func:`withoutMarkup` writes it. A terminal that is gone or a log that is full
-    is no reason to stop a run.
+    """Print a text, as :func:`withoutMarkup` writes it. A terminal that is gone or a log that is
+    full is no reason to stop a run.
 
     The run that listens writes notes and warnings to run.json, also those from before it began.
 

@@ -107,8 +107,8 @@ class Painting:
         self.polygons.append((places, points, looks))
 
     def blocks(self, places, alike, colours=None):
-        """The faces of a :class:`masonry.bricks.geometry.SameTopologyBatch` that are seen, in colours
-        on which light falls from the viewer and from above; None: where blocks stood."""
+        """The faces of a :class:`masonry.bricks.geometry.SameTopologyBatch` that are seen, in
+        colours on which light falls from the viewer and from above; None: where blocks stood."""
         for n, face in enumerate(alike.faces):
             normals = alike.normals[:, n]
             seen = normals @ self.towards > LEVEL

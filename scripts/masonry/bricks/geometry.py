@@ -10,8 +10,8 @@ import numpy as np
 
 from ..arguments import Numbers, items, shown
 
-#: Largest gap or overlap of faces that share a joint over the diagonal of the smaller block. This and
-#: the next three bounds are the plugin's (yade_plugin/blocks/FaceContact.hpp).
+#: Largest gap or overlap of faces that share a joint over the diagonal of the smaller block. This
+#: and the bounds below but FLAT are the plugin's (yade_plugin/blocks/FaceContact.hpp).
 COINCIDENT = 1e-4
 
 #: Largest distance of a corner from the plane of its face over the diagonal of the block, as of

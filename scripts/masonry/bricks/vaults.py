@@ -34,8 +34,8 @@ def Arch(
         Arch(thickness=0.3, depth=0.5, stones=27, radius=2.0)                        # half a circle
         Arch(thickness=0.2, depth=0.3, stones=15, span=3.0, angle=90, skewback=0.3)  # segmental
 
-    The inner springings lie at (0, 0, 0) and (span, 0, 0). Corners of the voussoirs lie on the inner
-    and outer circle; their edges are straight.
+    The inner springings lie at (0, 0, 0) and (span, 0, 0). Corners of the voussoirs lie on the
+    inner and outer circle; their edges are straight.
 
     :param thickness: of the ring, between inner and outer circle [m]
     :param depth: along y [m]

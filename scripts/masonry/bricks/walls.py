@@ -275,8 +275,8 @@ def _counted(name, unit, joint, height, courses, problems, times, **sizes):
     ValueError with all problems, also given ones.
 
     :param times: walls of all these lengths
-    :param sizes: by name the length [m], the multiple of units that it must be, and the least number
-        of units
+    :param sizes: by name the length [m], the multiple of units that it must be, and the least
+        number of units
     """
     if joint >= min(unit[0], unit[2]):
         raise ValueError(

@@ -73,8 +73,8 @@ def engines(
         MasonryJointLoop and MasonryIntegrator
     :param dampingKind: ``"combined"`` or ``"local"``; None: combined, with functors local, the only
         one of NewtonIntegrator. Combined damping takes energy from vibration and hardly brakes a
-        steady motion. Local damping, eq. (3) of the paper, brakes steady motion, so a mechanism that
-        turns slowly seems stronger than it is
+        steady motion. Local damping, eq. (3) of the paper, brakes steady motion, so a mechanism
+        that turns slowly seems stronger than it is
     :param connectors: MasonryTies and MasonrySprings engines
     :param contacts: MasonryContacts of the blocks that no joint connects, if there are some
     """

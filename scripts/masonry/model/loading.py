@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Loads: displacement-controlled groups, presses, dead loads, wind; and the point whose displacement
-is recorded."""
+"""Loads: displacement-controlled groups, presses, dead loads, wind; and the point whose
+displacement is recorded."""
 
 from dataclasses import dataclass
 from typing import Any

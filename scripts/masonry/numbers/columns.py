@@ -98,8 +98,8 @@ def _energies(names):
 CRACKS = Column(
     "largest_crack",
     "mm",
-    "largest opening of a point of any joint, without slide, 0 if none is open; looked for every 300"
-    " steps or more",
+    "largest opening of a point of any joint, without slide, 0 if none is open; looked for every"
+    " 300 steps or more",
     lambda r: r.structure.widest,
 )
 

@@ -46,8 +46,8 @@ def quasiStatic(top: Numbers, base: Numbers, weight: float = SHEAR) -> list[floa
 
 
 def stiffness(displacement: Numbers, force: Numbers, ramp: int = 0) -> float:
-    """Initial stiffness of a push [force/displacement]: the line through its beginning that fits its
-    first part best.
+    """Initial stiffness of a push [force/displacement]: the line through its beginning that fits
+    its first part best.
 
     The first part begins where the velocity of the drive has grown, because before that a wave
     passes through the structure. It ends at the first row with a quarter of the largest force and

@@ -121,8 +121,8 @@ def StoneWall(
 
 @validated
 def leastTrace(bricks: Annotated[Any, isA(Bricks)]) -> float:
-    """The line of minimum trace of a wall along x, the shortest line through its joints from foot to
-    top, over its height [-]: 1 if a straight vertical joint goes through, more with interlocking
+    """The line of minimum trace of a wall along x, the shortest line through its joints from foot
+    to top, over its height [-]: 1 if a straight vertical joint goes through, more with interlocking
     stones, inf if a course is one stone."""
     from scipy.sparse import csr_array
     from scipy.sparse.csgraph import dijkstra
