@@ -153,7 +153,7 @@ class Solids:
                 if not batch.fit[0]:
                     raise ValueError(
                         "its corners lie so near to one another, or to one plane, that its faces"
-                        " are not to be told"
+                        " cannot be found"
                     )
                 fit = batch.fit
                 self.groups.append(
