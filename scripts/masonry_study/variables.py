@@ -138,8 +138,8 @@ class Choice:
         return {"kind": "choice", **asdict(self)}
 
 
-def _chosen(value, first=None):
-    """The kind of a value of a choice."""
+def _chosen(value, context=None):
+    """Validator of a value of a choice."""
     if isinstance(value, bool):
         return value
     if isinstance(value, str):

@@ -87,8 +87,8 @@ TABLE = {
 }  # fmt: skip
 
 
-def _mortar(value, first=None):
-    """The kind of a class of mortar, as its strength [MPa]."""
+def _mortar(value, context=None):
+    """Validator of a class of mortar, as its strength [MPa]."""
     found = re.fullmatch(r"M(\d+(?:\.\d+)?)", value) if isinstance(value, str) else None
     if not found or not 1 <= float(found[1]) <= 20:
         raise ValueError(f"{value!r} must be a class of mortar from 'M1' to 'M20'")

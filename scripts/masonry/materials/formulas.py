@@ -58,8 +58,8 @@ EnergyOfBrick = Annotated[float, number("J/m²", 0.1, 1e6)]
 Mortar = Annotated[float, number("m", 0, 0.1)]
 
 
-def _ofMortar(value, first=None):
-    """The kind of an argument that is never right."""
+def _ofMortar(value, context=None):
+    """Validator of an argument that accepts no value: its error says what to give instead."""
     raise ValueError(
         "is the strength of the mortar in EN 1996 and on data sheets: give fc, the mean strength of"
         " the masonry, or fk; materials.en1996 finds it from unit and mortar"

@@ -54,8 +54,8 @@ _fits = lambda value: isinstance(value, Bricks) and len(value)
 _pieces = such(_fits, "what bricks.Beam or bricks.Floor gives")
 
 
-def _bearing(value, first=None):
-    """The kind of what is between a beam or a floor and the masonry below."""
+def _bearing(value, context=None):
+    """Validator of what is between a beam or a floor and the masonry below."""
     if isinstance(value, str) and value != "fixed":
         raise ValueError(f"{shown(value)} must be 'fixed', a friction [-] or None")
     if value is None or isinstance(value, str):

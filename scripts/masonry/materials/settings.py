@@ -25,7 +25,7 @@ class Property(NamedTuple):
 
     @property
     def kind(self) -> Callable[..., Any]:
-        """The kind of its values, as in :mod:`masonry.arguments`."""
+        """Validator of its values, as in :mod:`masonry.arguments`."""
         return number(self.unit, self.low, self.high, above=self.above)
 
 
@@ -81,9 +81,9 @@ class Settable:
 
 
 def such(fits, what):
-    """The kind of what fits a function, and is called so where it must be."""
+    """Validator of values for which ``fits`` is true; ``what`` names them in the error."""
 
-    def take(value, first=None):
+    def take(value, context=None):
         if not fits(value):
             raise ValueError(f"{shown(value)} must be {what}")
         return value

@@ -24,8 +24,8 @@ def calciumSilicate() -> Masonry:
 DRY_GRANITE_MASONRY = {100: 3.287e9, 175: 4.068e9, 250: 4.722e9}
 
 
-def tested(value: Any, first: Any = None) -> Any:
-    """The kind of a vertical load of the tests [kN]."""
+def tested(value: Any, context: Any = None) -> Any:
+    """Validator of a vertical load of the tests [kN]."""
     if not isNumber(value) or value not in DRY_GRANITE_MASONRY:
         levels = ", ".join(map(str, DRY_GRANITE_MASONRY))
         raise ValueError(f"{shown(value)} kN was not tested, there are {levels}")

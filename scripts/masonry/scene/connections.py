@@ -17,12 +17,12 @@ from .ties import MOST, OF_OVERLAY, OF_TIE, End, Overlay, Spring, Tie
 from .script import describes
 
 
-def _end(value, first):
-    """The kind of an end: a target of the scene, or a brick as in
+def _end(value, context):
+    """Validator of an end: a target of the scene, or a brick as in
     :func:`masonry.scene.targets.brick`."""
     if not isinstance(value, Target):
-        return brick(value, first)
-    if not isOwn(value, first):
+        return brick(value, context)
+    if not isOwn(value, context):
         raise ValueError(f"{value.name!r}, which is of another scene, must be of this one")
     return value
 
@@ -97,8 +97,8 @@ def tie(
     return _take(description, "tie", made, problems)
 
 
-def _springs(value, first=None):
-    """The kind of the stiffnesses of springs along or about three axes, of which none is
+def _springs(value, context=None):
+    """Validator of the stiffnesses of springs along or about three axes, of which none is
     negative."""
     found = numbers("", MOST)(value)
     if min(found) < 0:

@@ -49,8 +49,8 @@ def isThree(value: Any) -> bool:
     return three and all(isinstance(one, (str, os.PathLike)) for one in value)
 
 
-def record(value: Any, first: Any = None) -> Any:
-    """The kind of a record: a list of accelerations, the path of a file, or a list of three
+def record(value: Any, context: Any = None) -> Any:
+    """Validator of a record: a list of accelerations, the path of a file, or a list of three
     paths."""
     if isinstance(value, (str, os.PathLike)):
         return path(value)

@@ -22,8 +22,8 @@ Coordinate = Annotated[float, number("m", -1e6, 1e6)]
 Point = Annotated[Numbers, numbers("m", 1e6)]
 
 
-def stiffnesses(value: Any, first: Any = None) -> Any:
-    """The kind of the stiffnesses of springs: a dict from axes to numbers above 0."""
+def stiffnesses(value: Any, context: Any = None) -> Any:
+    """Validator of the stiffnesses of springs: a dict from axes to numbers above 0."""
     found = byName(number("N/m or N m", 0, MOST, above=True))(value)
     unknown = [axis for axis in found if axis not in ("x", "y", "z", "X", "Y", "Z")]
     if unknown or not found:

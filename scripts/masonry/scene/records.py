@@ -15,8 +15,8 @@ from .targets import AnyTarget, BrickAt, Drift, JointRecord, Part
 from .script import describes
 
 
-def _nameOrNothing(value, first=None):
-    """The kind of a name, or of an empty text."""
+def _nameOrNothing(value, context=None):
+    """Validator of a name, or of an empty text."""
     return value if isinstance(value, str) and not value else nameOf(value)
 
 

@@ -56,16 +56,16 @@ from .targets import Target
 from .script import SHAKES, Call, Script, either
 
 
-def _ofFolder(value, first=None):
-    """The kind of a name of a scene, which names a folder, too."""
+def _ofFolder(value, context=None):
+    """Validator of a name of a scene, which names a folder, too."""
     fine = isinstance(value, str) and value.strip(". ") and value.isprintable()
     if not fine or "/" in value or len(value.encode()) > LONGEST_NAME:
         raise ValueError(f"{shown(value)} must be a text that can name a folder")
     return value
 
 
-def _blocksOf(value, first=None):
-    """The kind of the bricks of a scene."""
+def _blocksOf(value, context=None):
+    """Validator of the bricks of a scene."""
     try:
         found = list(value)
         found[0].corners[0][2]

@@ -180,11 +180,11 @@ def isOwn(target: Any, first: Any) -> bool:
 
 
 def _target(what, fits):
-    """The kind of a target of the scene for which a function is true."""
+    """Validator of a target of the scene for which a function is true."""
 
-    def take(value, first):
+    def take(value, context):
         known = isinstance(value, Target)
-        own = known and isOwn(value, first)
+        own = known and isOwn(value, context)
         if not (own and fits(value)):
             got = repr(value.name) if known else shown(value)
             other = ", which is of another scene" if known and not own else ""
@@ -194,21 +194,21 @@ def _target(what, fits):
     return take
 
 
-def _recordedJoint(value, first):
-    """The kind of a joint of the scene, as :meth:`masonry.scene.scene.Scene.joint` gave it."""
-    if not any(value is one for one in _descriptionOf(first).joints):
+def _recordedJoint(value, context):
+    """Validator of a joint of the scene, as :meth:`masonry.scene.scene.Scene.joint` gave it."""
+    if not any(value is one for one in _descriptionOf(context).joints):
         raise ValueError(f"{shown(value)} must be a joint of this scene, as joint() gave it")
     return value
 
 
-def _part(value, first):
-    """The kind of the name of a part of the bricks."""
-    return oneOf(*sorted({block.part for block in _descriptionOf(first).bricks}))(value)
+def _part(value, context):
+    """Validator of the name of a part of the bricks."""
+    return oneOf(*sorted({block.part for block in _descriptionOf(context).bricks}))(value)
 
 
-def brick(value: Any, first: Any) -> Any:
-    """The kind of a brick: its index, a point in it or near it [m], or the block itself."""
-    _descriptionOf(first).find(value)
+def brick(value: Any, context: Any) -> Any:
+    """Validator of a brick: its index, a point in it or near it [m], or the block itself."""
+    _descriptionOf(context).find(value)
     return value
 
 

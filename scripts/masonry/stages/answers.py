@@ -92,8 +92,8 @@ def _searchText(answers, what):
     return f"{texts[0]}{stages}; {texts[1].partition(': ')[2]}"
 
 
-def finding(value: Any, first: Any = None) -> Any:
-    """The kind of a number that was found, or None or what is not a number if it was not."""
+def finding(value: Any, context: Any = None) -> Any:
+    """Validator of a number that was found, or None or what is not a number if it was not."""
     missing = value is None or isinstance(value, float) and math.isnan(value)
     return None if missing else float(number()(value))
 
