@@ -31,7 +31,7 @@ def meaning(kind):
     anything."""
     said = _refusal(kind, ODD)
     if said is None:
-        found = re.match(r"(?:The kind|Validator) of (.*?)\.?$", inspect.getdoc(kind) or "", re.S)
+        found = re.match(r"Validator of (.*?)\.?$", inspect.getdoc(kind) or "", re.S)
         return " ".join(found[1].split()) if found else ""
     text = said.partition(" must be ")[2]
     inside = _refusal(kind, [ODD, ODD, ODD])

@@ -12,37 +12,34 @@ A scene of one's own is bricks, materials and stages::
     scene.push(top, 10)              # [mm]
     scene.finish()
 
-``help()`` of its rooms leads on, and each of them names its modules:
+``help()`` of its rooms names their modules:
 
 - :mod:`masonry.bricks`: walls, openings, bonds, corners, arches, vaults, blocks from files
 - :mod:`masonry.materials`: masonry of one's own, published parameter sets, random fields
 - :mod:`masonry.scene`: ``Scene``, its platens, loads, records, options; :mod:`masonry.stages`: the
   stages of a test
-- :mod:`masonry.run`: a run: checkpoints, results, presets, rows of a table
+- :mod:`masonry.run`: checkpoints, results, presets, rows of a table
 - :mod:`masonry.numbers`: numbers of a run from its files
 - :mod:`masonry.model`: ``addBlock``, ``engines``, ``connect``, for scenes that are built body by
   body; the 3-D view
 
-Beside it lie four packages that read its results or run it, the wings (:mod:`masonry.wings`):
+Beside it lie four packages, the wings (:mod:`masonry.wings`):
 
 - :mod:`masonry_view`: figures, report, the structure in 3-D, ParaView
 - :mod:`masonry_limit`: limit analysis, the bound beside every run
 - :mod:`masonry_capacity`: bilinear curves, the demand of an earthquake, N-V domains
 - :mod:`masonry_study`: one scene, run many times with values that vary
 
-``masonry.numbers``, ``masonry.bricks``, the wings but for ``masonry_limit``, and what they import
-work without YADE.
+``masonry.numbers``, ``masonry.bricks``, and the wings but for ``masonry_limit`` work without YADE.
 
-Import it from a script of ``yade``, of plain Python or from a notebook: where YADE does not run
-yet, it starts when something is first used that needs it (:mod:`masonry.host`). The classes
-that are then registered in YADE (``masonry.classes``) are also in ``yade.wrapper``; their manual is
-``help(masonry.MasonryJoint)``, ``help(masonry.MasonryMat)`` and so on.
+Import it from a script of ``yade``, of plain Python or from a notebook: YADE starts when something
+is first used that needs it (:mod:`masonry.host`). The classes of the plugin (``masonry.classes``)
+are also in ``yade.wrapper``; ``help(masonry.MasonryJoint)`` and so on is their manual.
 """
 
 import sys
 
-# "python3 -m masonry_view.figures" searches the present folder first, and would run a file csv.py
-# or token.py that lies there.
+# "python3 -m masonry_view.figures" would run a file csv.py or token.py of the present folder.
 if sys.argv[:1] == ["-m"] and not sys.flags.safe_path:
     del sys.path[0]
 
@@ -56,8 +53,7 @@ from typing import TYPE_CHECKING
 # YADE ends without it, and cron jobs and containers may have none.
 os.environ.setdefault("HOME", os.path.expanduser("~"))
 
-# YADE does not search the folder of its script for modules. It comes last, so that nothing in it
-# hides another module.
+# YADE does not search the folder of its script, which comes last so that it hides no module.
 if hasattr(sys, "yade_argv") and sys.argv and os.path.isfile(sys.argv[0]):
     sys.path.append(os.path.dirname(os.path.abspath(sys.argv[0])))
 
@@ -66,18 +62,16 @@ def _hasPlugin(folder):
     return bool(glob.glob(os.path.join(glob.escape(folder), "_masonry*.so")))
 
 
-# In plain Python the folder of a script comes first. Scripts of a clone of the project lie beside
-# its sources, which have no plugin: then the installed package is used, as in YADE.
+# In plain Python the folder of a script comes first. Beside scripts of a clone lie its sources,
+# which have no plugin: then the installed package is used, as in YADE.
 if not _hasPlugin(__path__[0]):
     _others = (os.path.join(_entry, "masonry") for _entry in sys.path)
     __path__[:0] = [_folder for _folder in _others if _hasPlugin(_folder)][:1]
 
-#: The version of the project, which the plugin, run.json, checkpoints and the Debian package have
-#: from this line.
+#: The version of the plugin, run.json, checkpoints and the Debian package.
 __version__ = "3.0.0"
 
-#: What the package hands on under a short name: modules, and names of modules. They are loaded when
-#: one is used first.
+#: Short names of modules, and of what is in modules, which are loaded when they are first used.
 _MODULES = {
     "bricks": "bricks",
     "fields": "materials.fields",
@@ -102,7 +96,7 @@ _NAMES = {
     "saveCheckpoint": "run.checkpoints",
     "touchingPairs": "model.connecting",
 }
-#: What is there when the plugin is registered in YADE, beside the classes.
+#: What a registered plugin has beside its classes.
 _OF_PLUGIN = ["classes", "commit", "criticalTimeStep"]
 #: Rooms and modules of this package that work without YADE.
 _WITHOUT_YADE = """
@@ -176,15 +170,14 @@ def __dir__():
 
 
 def _start():
-    """Start YADE, if it does not run in this process yet, and register the classes of the plugin.
-    Raises ImportError."""
+    """Start YADE if it does not run, and register the plugin. Raises ImportError."""
     importlib.import_module("yade")
     if _OF_PLUGIN[0] not in globals():
         _register()
 
 
 def _register():
-    """Register the classes of the plugin in the YADE of this process. Raises ImportError."""
+    """Register the plugin in the YADE of this process. Raises ImportError."""
     from . import memory
     from .terminal import say
 
@@ -228,8 +221,8 @@ def _register():
 
 
 def _started():
-    """What is done when YADE was imported after this package. A plugin that does not fit leaves
-    YADE as it is: the error comes when the plugin is used."""
+    """Register the plugin after an import of YADE. The error of one that does not fit comes when
+    it is used."""
     with contextlib.suppress(ImportError):
         _register()
 

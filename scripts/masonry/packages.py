@@ -2,6 +2,7 @@
 """Debian's packages that only a part of the project needs. ``scripts/setup.sh`` installs those of
 a run, with ``--tests`` also those of studies and tests."""
 
+import contextlib
 import importlib
 import importlib.util
 import sys
@@ -25,27 +26,17 @@ class Missing(Refused, ImportError):
 
 def needed(name):
     """Import a module of :data:`NEEDED_FOR`. Raises Missing."""
-    try:
-        return importlib.import_module(name)
-    except ModuleNotFoundError as error:
-        if error.name != name:
-            raise
-    raise _missing(name)
+    promised(name)
+    return importlib.import_module(name)
 
 
 def promised(name):
     """Check that a module of :data:`NEEDED_FOR` is there, without importing it. Raises Missing."""
-    try:
-        found = name in sys.modules or importlib.util.find_spec(name)
-    except ModuleNotFoundError:  # of a finder that forbids it
-        found = None
-    if not found:
-        raise _missing(name) from None
-
-
-def _missing(name):
+    with contextlib.suppress(ModuleNotFoundError):  # of a finder that forbids it
+        if sys.modules.get(name) or importlib.util.find_spec(name):
+            return
     package, what = NEEDED_FOR[name]
-    return Missing(
+    raise Missing(
         f"{what} the Python module {name}, which is not installed: "
         f"apt-get install --no-install-recommends {package}"
     )

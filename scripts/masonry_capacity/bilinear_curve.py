@@ -435,8 +435,8 @@ def pushover(directory: FilePath, column: str | None = None) -> Pushover:
         return Pushover(str(directory), data, moved, data.carried(), notes)
 
 
-def _pushOf(value, first=None):
-    """The kind of what :func:`pushover` read, or of a folder of results."""
+def _pushOf(value, context=None):
+    """Validator of what :func:`pushover` read, or of a folder of results."""
     return value if isinstance(value, Pushover) else path(value)
 
 

@@ -16,7 +16,7 @@ import re
 
 from masonry.run import batch
 from masonry import folders
-from masonry.errors import Refused, refuse
+from masonry.errors import Refused
 from masonry.numbers.files import filesOf, readWhole
 from masonry.numbers.quantities import measures
 from masonry.run.lock import isLocked

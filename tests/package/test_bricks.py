@@ -493,7 +493,7 @@ def test_cuts_by_any_planes_leave_convex_pieces_that_fill_the_wall(normal, share
     cut = wall.cut(point, normal, own).cut((0.2, 0.05, 0.1), (0.3, 1, 0.2), own)
     problems = cut.problems()
     # planes that pass a corner as near as round-off leave a piece that is named
-    assume(not any("faces are not to be told" in p for p in problems))
+    assume(not any("faces cannot be found" in p for p in problems))
     bad = [p for p in problems if "sliver" not in p and "odd size" not in p]
     assert bad == []
     # a corner as near to a plane as COINCIDENT of its brick's diagonal counts as lying in it

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Blocks from files of surface meshes: OBJ, OFF, STL, PLY, and JSON of COMPAS.
 
-PLY and binary STL are read by meshio. It loses the names of groups (OBJ) and of solids (STL as
-text), takes nothing but triangles (OFF) and knows no COMPAS, so these are read here.
+meshio reads PLY and binary STL; it loses the names of groups (OBJ) and of solids (STL as text),
+takes triangles alone (OFF) and knows no COMPAS.
 """
 
 import json
@@ -21,12 +21,12 @@ from .checks import components, where
 from .geometry import FLAT
 from .stones.mortar import closed
 
-#: Points of one solid are the same if they are no further apart than this share of its size; STL as
-#: bytes, and text of six digits, round by less.
+#: Distance of points that are the same over the size of the solid [-]; STL as bytes, and text of
+#: six digits, round by less.
 SAME = 1e-6
 
-#: Faces of two solids that touch coincide if the angle between them about an edge is below this
-#: [rad]. Single precision turns the smallest faces by less, and no solid has so sharp an edge.
+#: Angle about an edge between coinciding faces of two solids [rad]. Single precision turns the
+#: smallest faces by less, and no solid has so sharp an edge.
 COINCIDE = 1e-3
 
 #: A surface as a file has it: name, points (n, 3), and faces, tuples of point numbers.
@@ -44,19 +44,16 @@ def fromFile(
     brick of its own.
 
     Formats: ``.obj`` (each ``g`` or ``o`` is a group), ``.off``, ``.stl`` (as text, each ``solid``
-    is a group, or as bytes), ``.ply``, and ``.json`` of COMPAS: a mesh, or anything that holds
-    meshes, such as an assembly. Solids in one group are distinguished, also where they touch. Each
-    group gives a part its name; files without groups give their own. Faces run counter-clockwise
-    seen from outside, or all of them clockwise.
+    is a group, or as bytes), ``.ply``, and ``.json`` of COMPAS with meshes. Solids in one group may
+    touch. Parts have the names of groups, or of the file. Faces run counter-clockwise seen from
+    outside, or all of them clockwise.
 
     :param scale: metres in one unit of the file; 0.001 if it is in millimetres
     :param kind: kind of the blocks
     :param mortar: largest thickness of the mortar between two faces that look at each other within
-        20° [m]: they move to its middle, with all faces in line with them; 0: solids meet as they
-        are
-    :raises ValueError: for a file that cannot be read, and with every solid that is open, not
-        convex or has a bent face; each is named by its group and its number there, with the face
-        and its place
+        20° [m]: they move to its middle, with all faces in line with them; 0: none
+    :raises ValueError: with every solid that is open, not convex or has a bent face, by its group
+        and number, with the face and its place
     """
     problems = []
     surfaces = readBy(_READERS, path)
@@ -80,7 +77,7 @@ def fromFile(
     return Bricks(blocks)
 
 
-#: What reading a file that is damaged may raise.
+#: Errors of damaged files.
 MISREAD = OSError, SyntaxError, ValueError, LookupError, TypeError, AttributeError
 
 
@@ -88,7 +85,7 @@ MISREAD = OSError, SyntaxError, ValueError, LookupError, TypeError, AttributeErr
 
 
 def readBy(readers: dict[str, Any], path: FilePath, *more: Any) -> list[Any]:
-    """A list of what the reader for the ending of a file finds in it. Raises ValueError."""
+    """What the reader for the ending of a file finds in it. Raises ValueError."""
     ending = os.path.splitext(path)[1].lower()
     if ending not in readers:
         raise ValueError(f"{path}: must end with one of {', '.join(readers)}")
@@ -105,7 +102,7 @@ def _plain(path):
 
 
 def _lines(path):
-    """Words of each line of a text that has any, without comments, with the number of the line."""
+    """Number and words of each line of a text, without comments."""
     with open(path, encoding="utf-8", errors="replace") as file:
         text = file.read().replace("\\\n", " ")
     for number, line in enumerate(text.splitlines(), 1):
@@ -243,8 +240,7 @@ def _readJson(path):
 
 
 def _meshes(data, name):
-    """Every dictionary with the vertices and faces of a COMPAS mesh, with the name that it or its
-    holder has."""
+    """Every COMPAS mesh, with the name of it or its holder."""
     if isinstance(data, dict):
         own = data.get("attributes")
         own = own.get("name") if isinstance(own, dict) else None
@@ -298,7 +294,7 @@ def _solids(surface, scale, problems):
     if not faces:
         problems.append(f"{name}: no faces")
         return
-    # All faces may run clockwise; then the volume that they enclose comes out negative.
+    # if all faces run clockwise, their volume is negative
     about = points[used].mean(axis=0)
     volume = sum(
         np.dot(points[f[0]] - about, np.cross(points[a] - about, points[b] - about))
@@ -328,7 +324,7 @@ def _solids(surface, scale, problems):
 
 
 def _merged(points, used):
-    """For each point the number of the first one that is at the same place."""
+    """For each point the number of the first one at its place."""
     from scipy.spatial import cKDTree
 
     merge = np.arange(len(points))
@@ -339,11 +335,10 @@ def _merged(points, used):
 
 
 def _mates(points, faces):
-    """Which faces of one solid share an edge: pairs of their numbers. And the edges without a
-    second face.
+    """Pairs of faces of a solid that share an edge, and edges without a second face.
 
-    Where solids touch, an edge has more than two faces. Of these the first that one meets on the
-    way from a face through the inside of its solid is the one of the same solid.
+    Where solids touch, an edge has more than two faces: the first one on the way from a face
+    through the inside of its solid is of the same solid.
     """
     edges = defaultdict(list)
     for n, face in enumerate(faces):
@@ -377,8 +372,8 @@ def _mates(points, faces):
 
 
 def _turn(into, inside, other):
-    """Angle from one face to another about their edge through the inside of the solid; a whole turn
-    if they coincide."""
+    """Angle between faces about their edge through the inside of the solid; a whole turn if they
+    coincide."""
     angle = math.atan2(np.dot(other, inside), np.dot(other, into))
     return angle if angle > COINCIDE else angle + 2 * math.pi
 
@@ -391,8 +386,8 @@ def _normal(polygon):
 
 
 def _corners(points, faces, numbers, members, solid, problems):
-    """Corners of one solid if it is convex, else None and a sentence. Points inside a face or an
-    edge are left out."""
+    """Corners of a convex solid, without points inside a face or an edge; of another one None and
+    a sentence."""
     used = sorted({n for face in members for n in faces[face]})
     own = points[used]
     width = FLAT * np.linalg.norm(np.ptp(own, axis=0))
@@ -401,7 +396,7 @@ def _corners(points, faces, numbers, members, solid, problems):
         polygon = points[list(faces[face])]
         normal, middle = _normal(polygon), polygon.mean(axis=0)
         if not normal.any():
-            continue  # a face without area, as some programs write for T-shaped edges
+            continue  # of no area, as some programs write for T-shaped edges
         bent = np.abs((polygon - middle) @ normal).max()
         place = where(middle)
         if bent > width:

@@ -38,7 +38,7 @@ Coordinate = Annotated[float, number("m", -FARTHEST, FARTHEST)]
 Point = Annotated[Numbers, vector("m", FARTHEST)]
 
 
-def sides(value: Any, first: Any = None) -> tuple[float, ...]:
+def sides(value: Any, context: Any = None) -> tuple[float, ...]:
     """Validator of the length, thickness and height of a block."""
     with contextlib.suppress(TypeError, ValueError):
         length, thickness, height = map(get_args(Length)[1], items(value))
@@ -48,7 +48,7 @@ def sides(value: Any, first: Any = None) -> tuple[float, ...]:
     )
 
 
-def corner(value: Any, first: Any = None) -> tuple[float, ...]:
+def corner(value: Any, context: Any = None) -> tuple[float, ...]:
     """Validator of a corner of a box, which may be infinitely far away."""
     found = items(value) or ()
     if len(found) != 3 or not all(isNumber(v) and v == v for v in found):

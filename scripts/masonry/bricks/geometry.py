@@ -149,15 +149,15 @@ class Solids:
         """Group solids with the same number of corners by their faces."""
         while len(index):
             try:
-                alike = SameTopologyBatch(index, corners, hull(corners[0]))
-                if not alike.fit[0]:
+                batch = SameTopologyBatch(index, corners, hull(corners[0]))
+                if not batch.fit[0]:
                     raise ValueError(
                         "its corners lie so near to one another, or to one plane, that its faces"
-                        " are not to be told"
+                        " cannot be found"
                     )
-                fit = alike.fit
+                fit = batch.fit
                 self.groups.append(
-                    alike if fit.all() else SameTopologyBatch(index[fit], corners[fit], alike.faces)
+                    batch if fit.all() else SameTopologyBatch(index[fit], corners[fit], batch.faces)
                 )
             except ValueError as error:
                 self.problems[int(index[0])] = str(error)

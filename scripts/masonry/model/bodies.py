@@ -78,7 +78,7 @@ def addBlock(
 
 def placeBlock(vertices: Sequence[Any], material: Any, inPlane: bool, color: Any = PALE) -> int:
     """:func:`addBlock` without checks of types."""
-    points = [vector(v, f"block: corner {n} [m]") for n, v in enumerate(vertices)]
+    points = [Vector3(*v) for v in vertices]
     length, thickness = _extent(points)
     if not thickness > THINNEST * length:
         raise ValueError(

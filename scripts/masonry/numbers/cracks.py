@@ -1,10 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Where joints are cracked, open, slid or crushed, and how a wall gave way: numbers of its joints
-at one moment.
+"""Where joints are cracked, open, slid or crushed, and how a wall gave way.
 
-Joints are given as a frame, a dict of arrays: of a file for ParaView
-(:func:`masonry.numbers.frames.readFrame`), or of a scene that stands in YADE
-(``MasonryVtkRecorder().joints()``). Figures and numbers have their thresholds from here.
+Joints are a frame, a dict of arrays, of a file (:func:`masonry.numbers.frames.readFrame`) or of a
+scene in YADE (``MasonryVtkRecorder().joints()``).
 """
 
 import math
@@ -12,21 +10,20 @@ from typing import Any, Sequence
 
 import numpy as np
 
-CRACK = 0.05e-3  # [m] opening or slide from which a joint is cracked
-CRUSHED = 0.5e-3  # [m] plastic closure from which a joint is crushed
-DAMAGED = 0.05  # [-] damage in tension or shear from which a joint is cracked
+CRACK = 0.05e-3  # opening or slide of a cracked joint [m]
+CRUSHED = 0.5e-3  # plastic closure of a crushed joint [m]
+DAMAGED = 0.05  # damage in tension or shear of a cracked joint [-]
 CRACK_SURFACE = "crack"  # the kind of joint between the halves of a brick
-NEAR = 3  # courses to either side of the diagonal: joints within them are near it
-# courses at base and top: joints there do not count for the diagonal, since they crack by rocking
-OUTER = 2
+NEAR = 3  # courses to either side of the diagonal that are near it
+OUTER = 2  # courses at base and top that do not count for the diagonal, as they crack by rocking
 
 
 def widths(frame: dict[str, Any]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """How far every subcontact is open or slid.
 
-    :returns: three arrays: the larger of opening and slide [m]; whether it is open, that is,
-        cracked more by opening than by half of its slide; and whether it is cracked: damaged in
-        tension or shear, and open or slid by more than CRACK
+    :returns: three arrays: the larger of opening and slide [m]; whether it is open, by more than
+        CRACK and half of its slide; and whether it is cracked: damaged in tension or shear, and
+        open or slid by more than CRACK
     """
     slide = np.linalg.norm(frame["slide"], axis=1)
     opened = frame["opening"] > np.maximum(CRACK, 0.5 * slide)
@@ -38,9 +35,9 @@ def widths(frame: dict[str, Any]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 def widest(joints: Any) -> tuple[float, Any, Any, dict[str, float]]:
     """The widest crack: the largest opening of a point of any joint, without its slide.
 
-    :param joints: of each an identifier, the groups to which it belongs, the openings of its points
-        [m], negative where it is closed, and the points [m]
-    :returns: opening [m], point and identifier, 0.0, None and None if no joint is open; and the
+    :param joints: of each an identifier, its groups, the openings of its points [m], negative where
+        it is closed, and the points [m]
+    :returns: opening [m], point and identifier (0.0, None and None if no joint is open), and the
         largest opening of every group [m]
     """
     found, groups = (0.0, None, None), {}
@@ -52,9 +49,8 @@ def widest(joints: Any) -> tuple[float, Any, Any, dict[str, float]]:
     return *found, groups
 
 
-#: Damage visible on walls by the width of its cracks [mm]: classes 0 to 5 with their names, of
-#: Burland, Broms and De Mello (1977) and BRE Digest 251, which also say how easily each is
-#: repaired.
+#: Classes 0 to 5 of visible damage by the width of cracks [mm] (Burland, Broms and De Mello 1977,
+#: BRE Digest 251).
 CLASSES = {
     0.1: "negligible",
     1: "very slight",
@@ -66,10 +62,7 @@ CLASSES = {
 
 
 def damageClass(width: float) -> int:
-    """The damage class of a crack, 0 to 5 (:data:`CLASSES`).
-
-    :param width: [mm]
-    """
+    """The damage class of a crack by its width [mm], 0 to 5 (:data:`CLASSES`)."""
     return sum(width > limit for limit in CLASSES)
 
 
@@ -78,7 +71,7 @@ def crushed(frame: dict[str, Any]) -> np.ndarray:
     return frame["crushing"] > CRUSHED
 
 
-#: The arrays of a frame from which a pattern is found, beside its cells.
+#: Arrays of a frame for a pattern, beside its cells.
 NEEDED = [
     "area",
     "bodies",
@@ -97,16 +90,13 @@ def layOut(
 ) -> tuple[dict[str, Any], dict[str, np.ndarray]]:
     """Joints of a frame on the grid of the brickwork.
 
-    :param frame: of the joints
     :param wall: the entry ``wall`` of run.json
-    :returns: two dicts of arrays, from the base up and from left to right. The first is of bed
-        joints, its arrays have the shape (courses - 1, half units). The second is of upright
-        joints, which are head joints and cracks of bricks, its arrays have the shape (courses, half
-        units - 1). Each has ``opening`` and ``slide``, means over a joint [m]; ``shear``, the
-        energy that a joint dissipated in shear [J]; ``crushing``, the volume of plastic closure
-        [m³]; and ``past``, the area that closed past the peak of its compression curve [m²]. The
-        first has ``beds``, too, the same of all bed joints with those to the support and to the
-        loading block, (courses + 1, half units)
+    :returns: two dicts of arrays, from the base up and from left to right: of bed joints (courses -
+        1, half units), and of upright joints, which are head joints and cracks of bricks (courses,
+        half units - 1). Each has ``opening`` and ``slide``, means over a joint [m]; ``shear``,
+        dissipated energy [J]; ``crushing``, volume of plastic closure [m³]; and ``past``, area that
+        closed past the peak of its compression curve [m²]. The first has ``beds``, too, the same
+        with the bed joints to the support and to the loading block (courses + 1, half units)
     """
     half, height = wall["unit_m"][0] / 2, wall["unit_m"][2]
     left, foot = wall.get("corner_m", (0.0, 0.0))
@@ -144,7 +134,7 @@ def layOut(
 
 
 def centresOf(points: np.ndarray, cells: Sequence[np.ndarray]) -> np.ndarray:
-    """Means of the corners of every cell, an array (cells, 3) [m].
+    """Means of the corners of every cell (cells, 3) [m].
 
     :param points: corners (n, 3) [m]
     :param cells: the numbers of the corners of each
@@ -159,10 +149,9 @@ def diagonalReach(bed: np.ndarray, upright: np.ndarray) -> int:
     half units].
 
     A crack goes from an upright joint of a course to those of the course below, straight down or to
-    either side along cracked bed joints. It crosses some courses and some half units; its reach is
-    the smaller of the two numbers. A bed joint that is cracked from side to side reaches 0, and so
-    does a vertical split. A crack from corner to corner reaches nearly as far as the shorter side
-    of the wall.
+    either side along cracked bed joints. Its reach is the smaller number of courses and half units
+    that it crosses: 0 of a bed joint cracked from side to side and of a vertical split, nearly the
+    shorter side of the wall of a crack from corner to corner.
 
     :param bed: which bed joints are cracked, bool (courses - 1, columns)
     :param upright: which upright joints are cracked, bool (courses, columns - 1)
@@ -183,8 +172,8 @@ def diagonalReach(bed: np.ndarray, upright: np.ndarray) -> int:
 
 
 def acrossDiagonal(shape: Sequence[int], upright: bool) -> np.ndarray:
-    """Height of joints above the diagonal from corner to corner [courses]: an array, NaN in the
-    outer courses."""
+    """Height of joints above the diagonal from corner to corner [courses], NaN in the outer
+    courses."""
     rows, columns = np.indices(shape)
     level = rows + (0.5 if upright else 1.0)
     place = columns + (1.0 if upright else 0.5)
@@ -194,8 +183,7 @@ def acrossDiagonal(shape: Sequence[int], upright: bool) -> np.ndarray:
 
 
 def narrowestBand(positions: np.ndarray, weights: np.ndarray, share: float = 0.5) -> float:
-    """Width of the narrowest interval of ``positions`` that holds ``share`` of the sum of
-    ``weights``, which is above 0."""
+    """Width of the narrowest interval of positions with a share of the sum of weights, above 0."""
     order = np.argsort(positions)
     positions, held = positions[order], np.append(0, np.cumsum(weights[order]))
     # up to the first position at which enough is held since each start
@@ -205,22 +193,20 @@ def narrowestBand(positions: np.ndarray, weights: np.ndarray, share: float = 0.5
 
 
 def diagonal(bed: dict[str, np.ndarray], upright: dict[str, np.ndarray]) -> dict[str, Any]:
-    """Numbers of the diagonal crack; ``bed`` and ``upright`` as in :func:`layOut`. A wall so low
-    that it has no inner joints, or no inner course, has no numbers of them, and one whose inner
-    joints lost no energy has no band.
+    """Numbers of the diagonal crack; ``bed`` and ``upright`` as in :func:`layOut`. A number without
+    inner joints (outside the two lowest and two highest courses), or without their energy, is left
+    out.
 
-    - diagonal_energy_share [-]: of the energy lost in shear by inner joints, what joints near the
-      corner-to-corner diagonal lost: within three courses of it; inner are all but those of the two
-      lowest and two highest courses
-    - diagonal_joint_share [-]: of the inner joints, those that are near: what the energy share
-      would be if the whole wall sheared alike
-    - diagonal_band_courses: height of the narrowest band parallel to the diagonal that holds half
-      of that energy; small for one localised crack, large for several or for a crack that follows a
-      bed joint
+    - diagonal_energy_share [-]: of the energy lost in shear by inner joints, that of joints within
+      three courses of the corner-to-corner diagonal
+    - diagonal_joint_share [-]: of the inner joints, those: the energy share if the whole wall
+      sheared alike
+    - diagonal_band_courses: height of the narrowest band parallel to the diagonal with half of that
+      energy; small for one localised crack, large for several or for one along a bed joint
     - diagonal_reach [courses, half units]: :func:`diagonalReach` of a stepped crack, whose upright
       joints are open and whose bed joints are open or slid, more than CRACK each
-    - parallel_cracks [-]: upright joints open more than CRACK in an inner course, on average: the
-      diagonal cracks that a horizontal line crosses
+    - parallel_cracks [-]: mean number of upright joints of an inner course open more than CRACK:
+      the diagonal cracks that a horizontal line crosses
     """
     energies = bed["shear"], upright["shear"]
     places = [acrossDiagonal(e.shape, e is energies[1]) for e in energies]
@@ -241,15 +227,13 @@ def diagonal(bed: dict[str, np.ndarray], upright: dict[str, np.ndarray]) -> dict
 
 
 def flexure(bed: dict[str, np.ndarray]) -> dict[str, Any]:
-    """Numbers of the flexural cracks, in the lower half of the wall (base) and in the upper one
-    (top).
-
-    A flexural crack enters a wall at its side, so the bed joints at both ends of a course tell.
+    """Numbers of the flexural cracks in the lower half of the wall (base) and in the upper one
+    (top), which enter a wall at the ends of its bed joints.
 
     - flexural_cracks_base, _top: bed joints open more than CRACK at a side of the wall
-    - flexural_opening_base_mm, _top_mm: of the widest of them
-    - flexural_course_base, _top: courses between the widest and the base, or the top; not of a wall
-      of one course
+    - flexural_opening_base_mm, _top_mm: of the widest
+    - flexural_course_base, _top: courses from the widest to the base, or the top; not of a wall of
+      one course
     """
     side = np.maximum(bed["opening"][:, 0], bed["opening"][:, -1])
     middle = (len(side) + 1) // 2
@@ -265,12 +249,10 @@ def flexure(bed: dict[str, np.ndarray]) -> dict[str, Any]:
 def crushing(bed: dict[str, np.ndarray]) -> dict[str, Any]:
     """Numbers of crushing in the bed joints.
 
-    - crushed_volume_cm3: plastic closure integrated over the wall's bed joints
-    - crushed_share_toe, crushed_share_top_left [-]: of it, what lies in the quarter of the length
-      and of the height at the bottom right, and at the top left; 1/16 each if the wall crushed
-      evenly; 0 if nothing crushed
-    - past_peak_area_cm2: bed joints that closed past the peak of their compression curve, whole
-      wall
+    - crushed_volume_cm3: integral of the plastic closure
+    - crushed_share_toe, crushed_share_top_left [-]: of it, in the quarter of the length and of the
+      height at the bottom right, and at the top left; 1/16 each if evenly crushed; 0 if not crushed
+    - past_peak_area_cm2: area that closed past the peak of its compression curve
     """
     volume = bed["crushing"]
     high, long = (n // 4 for n in volume.shape)
@@ -285,13 +267,13 @@ def crushing(bed: dict[str, np.ndarray]) -> dict[str, Any]:
 
 
 def sliding(bed: dict[str, np.ndarray]) -> dict[str, Any]:
-    """Numbers of the bed joint, from side to side of the wall, in which most energy was lost in
-    shear; those to the support and to the loading block are bed joints, too.
+    """Numbers of the bed joint, from side to side of the wall, with most energy lost in shear, also
+    of those to the support and to the loading block.
 
-    - sliding_course: courses between it and the base
-    - sliding_energy_share [-]: of the energy lost in shear by all bed joints, what it lost
-    - slid_share [-]: of its length, what slid more than CRACK
-    - slid_mm: its slide, the median over its length
+    - sliding_course: courses from the base
+    - sliding_energy_share [-]: of the energy lost in shear by all bed joints
+    - slid_share [-]: of its length, that slid more than CRACK
+    - slid_mm: median slide over its length
     """
     energy, slide = bed["beds"]["shear"].sum(axis=1), bed["beds"]["slide"]
     course, whole = int(energy.argmax()), energy.sum()
@@ -309,7 +291,7 @@ def patternNumbers(bed: dict[str, np.ndarray], upright: dict[str, np.ndarray]) -
     return {name: np.asarray(value).item() for name, value in found.items()}
 
 
-#: The numbers of a pattern, by the functions that find them.
+#: Numbers of a pattern, and the functions that find them.
 MEASURED = {
     **dict.fromkeys(
         (
@@ -340,11 +322,10 @@ MEASURED = {
 
 def pattern(frame: dict[str, Any], wall: dict[str, Any], looped: bool = False) -> dict[str, Any]:
     """Numbers of the crack pattern of a wall, seen from the side from which it is pushed to the
-    right; ``frame``, of which the arrays NEEDED are enough, and ``wall`` as in :func:`layOut`.
+    right; ``frame``, with the arrays NEEDED, and ``wall`` as in :func:`layOut`.
 
-    :param looped: whether the wall was pushed back, too: then the numbers of the diagonal and of
-        crushing are there once more, of the wall that is seen from behind, with ``_mirrored`` at
-        the end of the name
+    :param looped: whether the wall was pushed back, too: then there are also the numbers of the
+        diagonal and of crushing of the wall seen from behind, with ``_mirrored`` at the end
     """
     bed, upright = layOut(frame, wall)
     if wall.get("pushed_towards", 1) < 0:
@@ -357,8 +338,7 @@ def pattern(frame: dict[str, Any], wall: dict[str, Any], looped: bool = False) -
     return found
 
 
-#: Of a wall that slides along a bed joint: share of that joint's length that slid, and of the
-#: energy in shear [-].
+#: Shares of the length and of the energy in shear of a sliding bed joint [-].
 SLID = 0.9, 0.5
 
 
@@ -368,29 +348,24 @@ def failureMode(
     grows: bool = False,
     lost: bool = False,
 ) -> str:
-    """A plain name of how a wall gave way, from its crack pattern at the end. The first that
-    applies is given:
+    """How a wall gave way, from its crack pattern at the end: the first name that applies.
 
     - ``none yet``: the force of the push still grows at its end
-    - ``bed sliding``: one bed joint slid along nine tenths of the wall's length, by more than bed
-      joints opened at its sides, and lost half of the energy that bed joints lost in shear
+    - ``bed sliding``: one bed joint slid along nine tenths of the length of the wall, by more than
+      bed joints opened at its sides, and lost half of the energy of bed joints in shear
     - ``diagonal cracking``: a stepped crack reaches over half of the shorter side of the wall, in
       courses or half units
     - ``toe crushing``: bed joints of more than one half unit closed past the peak of their
       compression curve
     - ``rocking``: a bed joint opened at a side of the wall by more than CRACK, and by more than bed
       joints slid
-    - ``partial cracking``: bed joints opened or slid by more than CRACK, but none of the above
-      applies
-    - ``other``: the wall has lost force, and none of the above applies
+    - ``partial cracking``: bed joints opened or slid by more than CRACK
+    - ``other``: the wall has lost force
     - ``none``: the wall is not cracked, and has lost no force
-
-    A wall that has several of these has the name of one: the numbers beside it tell of the others.
 
     :param numbers: of :func:`patternNumbers`
     :param wall: the entry ``wall`` of run.json
-    :param grows: as in :func:`masonry.numbers.curves.stillGrows`; of a wall that follows a history
-        False
+    :param grows: see :func:`masonry.numbers.curves.stillGrows`; False of a history
     :param lost: whether the force of the push has fallen after its peak
     """
     if grows:
@@ -411,8 +386,7 @@ def failureMode(
 
 
 def mirrored(joints: dict[str, Any]) -> dict[str, Any]:
-    """The joints of :func:`layOut` of a wall that is seen from behind: what fell to the right falls
-    to the left."""
+    """The joints of :func:`layOut` of a wall seen from behind."""
     return {
         name: mirrored(values) if name == "beds" else values[:, ::-1]
         for name, values in joints.items()

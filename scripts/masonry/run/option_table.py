@@ -78,8 +78,8 @@ def asOption(name: str) -> str:
 FEWEST = 3  # points along a side: two give three times the true rotational stiffness, one none
 
 
-def points(value: Any, first: Any = None) -> str:
-    """The kind of ``--points``: one number of points, or two, the second not above the first."""
+def points(value: Any, context: Any = None) -> str:
+    """Validator of ``--points``: one number of points, or two, the second not above the first."""
     along = whole(FEWEST, 100)
     numbers = [along(int(n) if n.isdecimal() else n) for n in str(value).split(",")]
     if len(numbers) > 2:
@@ -91,16 +91,16 @@ def points(value: Any, first: Any = None) -> str:
     return value
 
 
-def massScaling(value: Any, first: Any = None) -> Any:
-    """The kind of ``--mass-scaling``: a number, or ``auto``."""
+def massScaling(value: Any, context: Any = None) -> Any:
+    """Validator of ``--mass-scaling``: a number, or ``auto``."""
     return value if value == "auto" else number("", 0, 1e6)(value)
 
 
 vars(massScaling).update(of=float)
 
 
-def folder(value: Any, first: Any = None) -> str:
-    """The kind of the name of a folder or a file."""
+def folder(value: Any, context: Any = None) -> str:
+    """Validator of the name of a folder or a file."""
     if not (isinstance(value, str) and value.strip()):
         raise ValueError("must not be empty")
     try:

@@ -195,8 +195,8 @@ def press(scene: Any, platen: MovingPlaten, stress: Stress, longest: Duration | 
     return _putOn(scene, "press", made, longest)
 
 
-def together(value, first):
-    """The kind of loads that grow together: a dict from targets to forces [N] or, of platens,
+def together(value, context):
+    """Validator of loads that grow together: a dict from targets to forces [N] or, of platens,
     stresses [Pa]."""
     if not isinstance(value, dict):
         raise ValueError(
@@ -204,7 +204,7 @@ def together(value, first):
         )
     kinds = {True: (MovingPlaten, Stress), False: (Loaded, Force)}
     return {
-        validatorOf(target)(one, first): validatorOf(load)(amount, first)  # type: ignore[misc]
+        validatorOf(target)(one, context): validatorOf(load)(amount, context)  # type: ignore[misc]
         for one, amount in value.items()
         for target, load in [kinds[isNumber(amount)]]
     }

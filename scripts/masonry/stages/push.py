@@ -50,19 +50,19 @@ LONGEST = 20  # the longest first period of which the shape is looked for, over 
 FREE = 1e-12  # least share of a block in a pattern [-]
 
 
-def pushed(value: Any, first: Any = None) -> Any:
-    """The kind of what is pushed: a target, a dict from targets to shares, the name of a pattern,
+def pushed(value: Any, context: Any = None) -> Any:
+    """Validator of what is pushed: a target, a dict from targets to shares, the name of a pattern,
     or a function of the place."""
     if isinstance(value, dict) and value:
         for target, share in value.items():
-            kindOfLoaded(target, first)
+            kindOfLoaded(target, context)
             if not isNumber(share) or not 0 < asFloat(share) < 1e9:
                 raise ValueError(
                     f"{shown(share)}, the share of {target.name}, must be a number above 0"
                 )
         return value
     if isinstance(value, Target):
-        return kindOfLoaded(value, first)
+        return kindOfLoaded(value, context)
     if callable(value) or value in PATTERNS:
         return value
     names = ", ".join(map(repr, PATTERNS))

@@ -1,10 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Walls of stones as they are drawn, with mortar between them: gaps are closed to the middle of the
-mortar.
+"""Walls of drawn stones, which meet in the middle of the mortar between them.
 
-Closely spaced points a little inside the outlines are the points of a Voronoi diagram, in which the
-cells of one stone make up what belongs to it. Joints are lines between two stones. They are
-straightened together, so that both stones keep the same line.
+Closely spaced points a little inside the outlines are those of a Voronoi diagram, whose cells make
+up the stones. The joints between two stones are straightened.
 """
 
 import math
@@ -22,20 +20,16 @@ from .polygons import area, convexParts, crossing, inside, withoutStraight
 from .drawings import read
 from .joint_lines import straightened
 
-#: Over the tolerance [-]: distance of the points along an outline.
-SPACING = 0.25
-
-VOID = -1  # the label of what is no stone
-
-MOST_POINTS = 2_000_000
+SPACING = 0.25  # of points along an outline, over the tolerance [-]
+VOID = -1  # label outside stones
+MAX_POINTS = 2_000_000
 
 
 class DrawnWall(Bricks):
-    """The wall that :func:`fromOutlines` makes: a :class:`Bricks` that knows its mortar.
+    """The wall of :func:`fromOutlines`, which knows its mortar.
 
-    :ivar mortar: mean thickness of the mortar between stones, by length of joint [m]
-    :ivar unit: mean length of the stones as they are drawn, thickness of the wall, and mean height
-        of the stones [m]
+    :ivar mortar: mean thickness of the mortar, by length of joint [m]
+    :ivar unit: mean length of the drawn stones, thickness of the wall, and their mean height [m]
     """
 
     def __init__(self, blocks: Any, mortar: float, unit: Any, points: Any) -> None:
@@ -49,28 +43,24 @@ class DrawnWall(Bricks):
         self._boxes = np.array([(tree.mins, tree.maxes) for tree in self._trees])
 
     def thickness(self, x: float, y: float, z: float) -> float:
-        """Thickness of the mortar at a place of a joint [m]: the distances of the two nearest
-        stones together; where stones touch, a quarter of the tolerance."""
+        """Thickness of the mortar at a place of a joint [m]: the sum of the distances of the two
+        nearest stones, at least a quarter of the tolerance."""
         place = x, z
         beyond = np.maximum(self._boxes[:, 0] - place, place - self._boxes[:, 1])
         near = np.argsort(np.linalg.norm(np.maximum(beyond, 0), axis=1))[:8]
         return max(sum(sorted(self._distance(n, place) for n in near)[:2]), self._step)
 
     def _distance(self, stone, place):
-        """Distance from an outline, a piece of which lies along each of its points."""
+        """Distance from an outline, of which a piece lies along each point."""
         k = self._trees[stone].query(place)[1]
         arm, normal = place - self._trees[stone].data[k], self._normals[stone][k]
         beside = abs(float(np.cross(normal, arm)))
         return math.hypot(float(arm @ normal), max(beside - self._step / 2, 0.0))
 
     def withMortar(self, masonry: Any) -> Any:
-        """Let the joints of a :class:`masonry.materials.Masonry` be as stiff as the mortar is
-        thin. Returns the same masonry.
-
-        Its properties are those of a joint of the mean thickness. At another one, t, the stiffness
-        has the factor mean/t; strengths are the same, and so are strains, so the compressive
-        fracture energy has the factor t/mean.
-        """
+        """Scale the joints of a :class:`masonry.materials.Masonry`, which are those of the mean
+        thickness, by their thickness t, and return it: stiffness by mean/t, compressive fracture
+        energy by t/mean, so that strengths and strains are the same."""
         thinner = lambda *place: self.mortar / self.thickness(*place)
         for name in (n for n in ("bed", "head") if n in masonry.joints):
             masonry.vary([f"{name}.normalStiffness", f"{name}.shearStiffness"], thinner)
@@ -96,25 +86,21 @@ def fromOutlines(
     origin: a :class:`Bricks`.
 
     Formats: ``.dxf`` (closed polylines, and curves), ``.svg`` (polygon, rect, and paths of straight
-    lines), ``.geojson`` (polygons), and ``.csv`` with rows of name, x, z. The plane of the drawing
-    is that of the wall. Stones meet in the middle of the mortar between them, and reach to the
-    sides of the box around all of them where they are no farther from it than twice ``mortar``.
-    Where a ball of the radius ``mortar`` has space there is no mortar, but a window, a door, or the
-    air around the wall. At a step of the box, as of a gable, stones get tongues of up to
-    ``mortar``. Stones that are not convex are several blocks of one brick, whose joint is
-    ``crack``.
+    lines), ``.geojson`` (polygons), and ``.csv`` with rows of name, x, z. Stones meet in the middle
+    of the mortar, and reach to the sides of the box around all of them within twice ``mortar``.
+    Where a ball of the radius ``mortar`` has space there is a window, a door, or the air around the
+    wall. At a step of the box, as of a gable, stones get tongues of up to ``mortar``. Concave
+    stones are several blocks of one brick, whose joint is ``crack``.
 
     :param thickness: of the wall [m]
     :param mortar: largest thickness of a joint [m]
     :param scale: metres in one unit of the file
-    :param tolerance: largest distance by which a joint moves when short ones are closed, again when
-        lines are straightened, and again when stones become convex [m]; None: a quarter of
-        ``mortar``
+    :param tolerance: largest distance by which a joint moves when short ones are closed, lines
+        straightened, and stones made convex, each [m]; None: a quarter of ``mortar``
     :param layer: layer of a DXF file, or id or label of a group of an SVG file; None: all
     :param mend: whether to close open outlines, to leave out stones thinner than two tolerances,
-        and to share overlaps in halves. Each is named in a note
-    :raises ValueError: for a file that cannot be read, and with everything that is wrong with an
-        outline, with its place
+        and to share overlaps in halves, with notes
+    :raises ValueError: with all problems and their places
     """
     fine = mortar / 4 if tolerance is None else tolerance
     drawn = read(str(path), layer)
@@ -153,8 +139,7 @@ def _at(ring):
 
 
 def _checked(path, drawn, fine, mend):
-    """The outlines that are stones, counter-clockwise. Raises ValueError, or with `mend` says what
-    was mended."""
+    """The outlines of stones, counter-clockwise. Raises ValueError, or prints what was mended."""
     fatal, found, kept = [], [], []
     for outline in drawn:
         ring = outline.ring
@@ -186,8 +171,7 @@ def _checked(path, drawn, fine, mend):
 
 
 def _overlapping(stone, others, fine, found):
-    """Add sentences on what a stone shares with others; returns whether it lies within one, which
-    swallows it."""
+    """Add sentences on overlaps of a stone; returns whether it lies within another one."""
     ring = stone.ring
     points, normals = _along(ring, fine)
     points = points - fine / 2 * normals  # two equal outlines lie within each other
@@ -221,17 +205,16 @@ def _overlapping(stone, others, fine, found):
     return False
 
 
-#: Points on outlines (n, 2), the normals outwards there, the numbers of their stones, and their
-#: distance [m].
+#: Points on outlines (n, 2), outward normals, numbers of stones, and distance [m].
 _Points = namedtuple("_Points", "places normals stones step")
 
-#: Sides of cells that part two labels: their ends, numbers of places (n, 2), the labels left and
-#: right of them, and the mean thickness of the mortar [m].
+#: Sides of cells between two labels: numbers of the places at their ends (n, 2), labels left and
+#: right, and mean thickness of the mortar [m].
 _Cells = namedtuple("_Cells", "places ends labels mortar")
 
 
 def _along(ring, step):
-    """Points along an outline, and the normals outwards there."""
+    """Points along an outline, and outward normals."""
     places, normals = [], []
     for a, b in zip(ring, np.roll(ring, -1, axis=0)):
         count = int(np.ceil(np.hypot(*(b - a)) / step))
@@ -243,12 +226,12 @@ def _along(ring, step):
 
 def _sampled(stones, step):
     length = sum(np.linalg.norm(s.ring - np.roll(s.ring, 1, axis=0), axis=1).sum() for s in stones)
-    if length / step > MOST_POINTS:
+    if length / step > MAX_POINTS:
         refuse(
             "fromOutlines",
             [
                 f"outlines of {length:.3g} m and a tolerance of {step / SPACING:g} m need more than"
-                f" {MOST_POINTS} points: is scale, metres in one unit of the file, right?"
+                f" {MAX_POINTS} points: is scale, metres in one unit of the file, right?"
             ],
         )
     found = [_along(stone.ring, step) for stone in stones]
@@ -263,8 +246,7 @@ def _within(places, ring):
 
 
 def _grown(points, stones, radius):
-    """Cells of the stones. Where a ball of a radius that rolls along the outlines touches them,
-    they are at the air."""
+    """Cells of the stones, which are at the air where a ball that rolls along them finds space."""
     from scipy.spatial import Voronoi, cKDTree
 
     places, normals, _, inset = points
