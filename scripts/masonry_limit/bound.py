@@ -267,8 +267,8 @@ class Bound:
         views: dict[str, Any] | None = None,
     ) -> None:
         """Write the mechanism: ``mechanism.json``, of which ``/usr/bin/python3 -m
-        masonry_view.figures`` draws mechanism.png, and, for ParaView, ``mechanism_blocks.vtu`` and
-        ``mechanism_joints.vtu``.
+        masonry_view.figures`` draws mechanism.png, and ``mechanism_blocks.vtu`` and
+        ``mechanism_joints.vtu`` for ParaView.
 
         :param title: of the figure
         :param parts: dict of name -> ids of bodies, a panel each; None: all in one
