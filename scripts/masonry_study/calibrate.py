@@ -225,10 +225,8 @@ class Calibration:
             model = Surrogate(x[inside], y[inside], low, high)
             sample = self._drawn(model)
             off = (model.errors / self.errors).max()
-            say(
-                f"round {turn + 1}: the error of the surrogate is at most {off:.2g} of that of the"
-                " test"
-            )
+            what = f"the error of the surrogate is at most {off:.2g} of that of the test"
+            say(f"round {turn + 1}: {what}")
             least, most = np.quantile(sample, (TAIL, 1 - TAIL), axis=0)
             margin = MARGIN * (most - least)
             least, most = np.maximum(least - margin, low), np.minimum(most + margin, high)

@@ -71,10 +71,10 @@ def test_the_surrogate_is_openturns_kriging_and_knows_its_error():
         model = designed(act, [(0, 1)] * 2, 30)
         return model.errors, np.sqrt(np.mean((model(x) - act(x)) ** 2, axis=0))
 
-    told, made = errors(bent)
-    assert (made < 3 * told + 1e-9).all() and (told < 0.02).all()
-    told, made = errors(lambda x: np.round(3 * bent(x)))
-    assert made == approx(told, rel=0.6) and (told > 0.1).all()
+    estimated, actual = errors(bent)
+    assert (actual < 3 * estimated + 1e-9).all() and (estimated < 0.02).all()
+    estimated, actual = errors(lambda x: np.round(3 * bent(x)))
+    assert actual == approx(estimated, rel=0.6) and (estimated > 0.1).all()
 
 
 def test_the_same_number_in_all_rows_tells_nothing():
