@@ -14,17 +14,16 @@
 A bilinear curve is elastic with the stiffness K up to the yield force Vy, and keeps that force up
 to the ultimate displacement du. There are two rules:
 
-- ``masonry``, a convention of tests on masonry walls and of no code in particular: K is the secant
-  stiffness at 0.7 of the peak, du is where the force has fallen to 0.8 of the peak, and Vy is the
-  force for which both curves have the same area up to du.
+- ``masonry``, a convention of tests on masonry walls and of no code: K is the secant stiffness at
+  0.7 of the peak, du is where the force has fallen to 0.8 of the peak, and Vy is the force for
+  which both curves have the same area up to du.
 - ``en1998``: EN 1998-1:2004, annex B.3, equation (B.6). Vy is the force at which the plastic
   mechanism forms, at the displacement dm, and dy = 2 (dm - E/Vy), where E is the area under the
-  curve up to dm. Annex B leaves it to its user when the mechanism forms; here that is at the peak,
-  if nothing else is given. It has no rule for du, which is that of ``masonry``.
+  curve up to dm. Annex B leaves it to its user when the mechanism forms: here at the peak, if
+  nothing else is given. It has no rule for du, which is that of ``masonry``.
 
-The curve of a run is the force that both ends carry at once: in every row of curve.csv the smaller
-of the force at the supports and that at the loaded point, so its peak is ``peak_at_both_ends_kN``
-of run.json.
+The force of a run is what both ends carry at once: in every row of curve.csv the smaller of the
+force at the supports and that at the loaded point, so the peak is ``peak_at_both_ends_kN``.
 """
 
 import math
@@ -263,7 +262,7 @@ def bilinear(
     :param fall: share of the peak to which the force falls at the ultimate displacement, between 0
         and 1 [-]
     :param mechanism: of ``en1998``, displacement at which the plastic mechanism forms [mm]; None:
-        that of the peak
+        at the peak
     :param pulse: a fall that is over within this displacement, or begins within it of the end, may
         be a wave that passes through the structure, and does not count [mm]
     :raises Refused: if there is no such curve: it is empty, goes back, does not begin at zero, has
@@ -402,8 +401,8 @@ def pushover(directory: FilePath, column: str | None = None) -> Pushover:
     """Read the curve of the push of a run.
 
     :param directory: folder of results
-    :param column: of curve.csv whose displacement the curve has, for example ``roof_x_mm``, from
-        where the push began; None: that of the pushed point
+    :param column: of curve.csv, for example ``roof_x_mm``, whose displacement from where the push
+        began the curve has; None: that of the pushed point
     :raises Refused: if the run has no push, was interrupted, failed, or goes along a history
     """
     data = RunData.read(directory, column)
@@ -457,8 +456,7 @@ def ofRun(
 
     :param directory: folder of results, or what :func:`pushover` read of it; other parameters as in
         :func:`bilinear`
-    :raises Refused: if the run has no whole push, or its curve has no bilinear one; the message
-        names the folder
+    :raises Refused: if the run has no whole push, or its curve has no bilinear one
     """
     push = directory if isinstance(directory, Pushover) else pushover(directory)
     try:
@@ -482,15 +480,14 @@ def drifts(
     height: Height | None = None,
     fall: Share = FALL,
 ) -> list[Number]:
-    """Drifts of the push of a run [mrad] at the first crack, at the peak, where the force has
-    fallen to a share of the peak, and at the collapse: displacement of the masonry over its height.
+    """Drifts of the push of a run [mrad], displacement of the masonry over its height, at the first
+    crack, at the peak, where the force has fallen to a share of the peak, and at the collapse.
 
     :param directory: folder of results, or what :func:`pushover` read of it
     :param height: of the point whose displacement is recorded above the base [m], for drifts of
         that point; None: those of the masonry, of which run.json has the height
     :param fall: as in :func:`bilinear`
-    :returns: four numbers; one that the run does not have has the value None and a note that says
-        why
+    :returns: four numbers; a missing one has the value None and a note that says why
     :raises Refused: if the run has no whole push, or if there is no height
     """
     push = directory if isinstance(directory, Pushover) else pushover(directory)

@@ -63,9 +63,9 @@ class Domain:
     notes: list[str]
 
     def shear(self, normal: float) -> float:
-        """The bound of the shear force under a normal force [kN], between two of the domain by a
-        line. A domain is convex, so limit analysis for this normal force itself would give as much
-        or more.
+        """The bound of the shear force under a normal force [kN], interpolated between two of the
+        domain. A domain is convex, so limit analysis for this normal force itself would give as
+        much or more.
 
         :param normal: [kN]
         :raises Refused: if the domain does not reach so far
@@ -91,8 +91,8 @@ def runPoint(directory: FilePath) -> RunPoint:
     """Normal force and shear force at the peak of the push of a run.
 
     The normal force is the sum of the vertical forces on all that is held, at the row of the peak.
-    A wall whose curve.csv does not have them, in running bond and pressed by a platen that moves
-    freely up and down, has that of its precompression and weight.
+    A wall in running bond whose curve.csv does not have them, pressed by a platen that moves freely
+    up and down, has that of its precompression and weight.
 
     :param directory: folder of results
     :raises Refused: if the run has no whole push, or if its normal force is not known

@@ -279,10 +279,9 @@ def demand(
 ) -> Demand:
     """The target displacement that a spectrum demands of a structure, EN 1998-1:2004, annex B.
 
-    :param curve: bilinear curve of the structure, of :func:`masonry_capacity.bilinear_curve.ofRun`;
-        the annex has its rule ``en1998``
-    :param system: :class:`Equivalent`
-    :param spectrum: :class:`masonry_capacity.spectra.Spectrum`
+    :param curve: bilinear curve of the structure; the annex has the rule ``en1998``
+    :param system: of :func:`equivalent`, :func:`ofMasses` or :func:`ofRun`
+    :param spectrum: of :func:`masonry_capacity.elastic` or :func:`masonry_capacity.readSpectrum`
     :param limited: whether the target displacement is at most 3 det*, which annex B allows; else it
         is what equation (B.10) gives, which is more where the period is short
     :raises Refused: if the spectrum does not have the period of the structure
@@ -370,12 +369,11 @@ def iterated(
     limited: bool = False,
 ) -> Demand:
     """The target displacement by the iterative procedure of EN 1998-1:2004, annex B: the plastic
-    mechanism forms at the target displacement itself, which is found again until both agree.
+    mechanism forms at the target displacement, which is found again until both agree. Where the
+    procedure leads nowhere, a note says so, and the result is that of its last round.
 
-    :param push: of :func:`masonry_capacity.bilinear_curve.pushover`; other parameters as in
-        :func:`demand`
-    :raises Refused: as in :func:`demand`. Where the procedure leads nowhere, a note says so, and
-        the result is that of its last round
+    :param push: of :func:`masonry_capacity.bilinear_curve.pushover`; other parameters and errors as
+        in :func:`demand`
     """
     found = demand(bilinearOf(push, "en1998"), system, spectrum, limited)
     for _ in range(ROUNDS):

@@ -49,7 +49,7 @@ def assess(
     :param spectrum: of :func:`masonry_capacity.elastic` or :func:`masonry_capacity.readSpectrum`;
         None: no demand
     :param system: of :func:`masonry_capacity.equivalent` or :func:`masonry_capacity.ofMasses`;
-        None: that which the script of the run gives, :func:`masonry_capacity.ofRun`
+        None: that of the run, :func:`masonry_capacity.ofRun`
     :param rule: of the bilinear curve, and ``mechanism``: as in
         :func:`masonry_capacity.bilinear_curve.bilinear`
     :param limited: as in :func:`masonry_capacity.demand`
@@ -58,9 +58,8 @@ def assess(
     :param height: as in :func:`masonry_capacity.bilinear_curve.drifts`
     :param out: folder of both files; None: ``directory``
     :param column: as in :func:`masonry_capacity.bilinear_curve.pushover`
-    :returns: dict with ``scene``, ``title``, ``rule``, ``numbers`` (a list of dicts as in
-        :class:`masonry_capacity.bilinear_curve.Number`), ``notes``, and with a spectrum
-        ``spectrum``, ``holds``, ``verdict`` and ``assumed``
+    :returns: dict with ``scene``, ``title``, ``rule``, ``numbers`` (a list of dicts), ``notes``,
+        and with a spectrum ``spectrum``, ``holds``, ``verdict`` and ``assumed``
     :raises Refused: if the run has no whole push, or if something is missing for the demand;
         nothing is written then
     """

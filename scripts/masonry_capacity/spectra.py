@@ -150,8 +150,8 @@ def readSpectrum(
     unit: Annotated[str, oneOf(*UNITS)],
     corner: Annotated[float, number("s", 0, 1000, above=True)] | None = None,
 ) -> Spectrum:
-    """A spectrum from a file of two columns: period [s] and acceleration. Between its rows it is a
-    line.
+    """A spectrum from a file of two columns, period [s] and acceleration, between whose rows it is
+    interpolated.
 
     Columns are apart by commas, semicolons, tabs or blanks; lines that begin with # and a first
     line of names are left out.

@@ -4,6 +4,8 @@
 #: By how much a run may be above its bound [-]: joints of finite stiffness, and displacements that
 #: are not small.
 TOLERANCE = 0.02
+#: Entries of run.json with the bounds of a push: there, and back.
+PUSH_KEYS = "bound_base_shear_kN", "negative_bound_base_shear_kN"
 
 
 class Answers:
@@ -36,8 +38,7 @@ class Answers:
             return {}
         found = {"bounds": list(self.entries.values())}
         known = {what: e for what, e in self.entries.items() if "factor" in e}
-        signs = (1, "bound_base_shear_kN"), (-1, "negative_bound_base_shear_kN")
-        for what, (sign, key) in zip(pushes, signs):
+        for what, key, sign in zip(pushes, PUSH_KEYS, (1, -1)):
             if what in known:
                 found[key] = sign * known[what]["factor"]
         leans = [e["factor"] for e in known.values() if e["unit"] in ("g", "")]
@@ -48,16 +49,14 @@ class Answers:
     def linesOfPush(self, pushes):
         """Horizontal lines of curve.png, for a push. Parameters as in :meth:`inRunJson`."""
         found = self.inRunJson(pushes)
-        for key in ("bound_base_shear_kN", "negative_bound_base_shear_kN"):
+        for key in PUSH_KEYS:
             if key in found:
-                text = f"limit analysis: {abs(found[key]):.1f} kN at most"
-                yield {"y": found[key], "text": text}
+                yield {"y": found[key], "text": f"limit analysis: {abs(found[key]):.1f} kN at most"}
 
     def linesOfGrowth(self, name):
         """Horizontal lines of curve.png, for a load of this name that grows."""
         entry = self.entries.get(name, {})
-        words = {"factor": "at most", "without_dilatancy": "without dilatancy"}
-        for key, text in words.items():
+        for key, text in (("factor", "at most"), ("without_dilatancy", "without dilatancy")):
             if key in entry:
                 what = f"limit analysis: {entry[key]:.4g} {entry['unit']} {text}"
                 yield {"y": entry[key], "text": " ".join(what.split())}

@@ -130,8 +130,8 @@ class Assembly:
 
     def smallest(self, live: np.ndarray, dead: np.ndarray) -> Bound:
         """The smallest factor with which a load keeps the structure at rest, for example the least
-        reaction of a support that settles. Its mechanism is that in which the structure follows the
-        support. Parameters as in :meth:`largest`.
+        reaction of a support that settles; in its mechanism the structure follows the support.
+        Parameters as in :meth:`largest`.
         """
         return self._bound(live, dead, -1)
 
@@ -161,8 +161,8 @@ class Assembly:
         of Gilbert, Casapulla and Ahmed, "Limit analysis of masonry block structures with
         non-associative frictional joints using linear programming", Computers and Structures 84,
         2006). The same is done without friction in head joints, and with joints that lose their
-        friction where nothing presses them, and the smallest result is taken. It is a collapse of
-        such joints, and often the least, but no proof that there is none below.
+        friction where nothing presses them, and the smallest result is taken: a collapse of such
+        joints, often the least, but no proof that there is none below.
 
         :returns: a bound whose ``settled`` says whether normal forces came to repeat themselves
         """

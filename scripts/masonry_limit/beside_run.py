@@ -27,20 +27,21 @@ from .search import Load, search
 
 #: Up to this many joints the bound is computed without being asked for; it takes seconds.
 MAX_JOINTS = 3000
-#: Time that limit analysis may take for a load, if nobody asked for it, if somebody did, and if it
-#: is done beside a run that still takes steps [s]. A run that has come to its end, or to a
-#: checkpoint, waits until the first of them is over.
+#: Time that limit analysis may take for a load, if nobody asked for it, if somebody did, and beside
+#: a run that still takes steps [s]. At the end of a run, or at a checkpoint, the first of them
+#: counts.
 TIME_LIMIT_AUTOMATIC, TIME_LIMIT_REQUESTED, TIME_LIMIT_BACKGROUND = 10.0, 600.0, 120.0
 MESSAGE_DELAY = 0.3  # waits for a background task longer than this are reported [s]
-#: The note of a bound that was not found when the run was interrupted. One that goes on in the same
+#: Note of a bound that was not found when the run was interrupted. One that goes on in the same
 #: stage looks for it again.
 NOTE_INTERRUPTED = "limit analysis: the run was interrupted before its end; scene.bound() finds it"
-#: The note of one that was not found when the run came to its end, or to a checkpoint.
+#: Note of a bound that was not found when the run came to its end, or to a checkpoint.
 NOTE_TIMED_OUT = "limit analysis: it was not solved in time; scene.bound() takes its time"
 
 
 class Bounds(Answers):
-    """The bounds of a scene that is built in YADE.
+    """The bounds of a scene that is built in YADE. Methods for one kind of load return its entry of
+    run.json, and pass ``how`` to :meth:`find`.
 
     :param model: :class:`masonry.model.structure.Structure`
     :param state: :class:`masonry.run.run_state.RunState`
@@ -57,47 +58,43 @@ class Bounds(Answers):
         self.model, self.auxiliary = model, auxiliary
         #: what was found last, in this process: limit.Bound and its entry
         self.last = None
-        # the task beside the run, which finds a bound, then the files of its mechanism; the load
-        # whose bound it finds, and since when [s]
+        # the task beside the run, which finds a bound and the files of its mechanism; the load, and
+        # since when [s]
         self._task, self._looksFor, self._since = None, "", 0.0
         self.endless = set()  # names of loads under which nothing gives way
 
     def push(self, target, direction, both=False, **how):
-        """Find the bound of a push [kN], without what acts beside it. Returns its entry of
-        run.json, the last one if there are two.
+        """Find the bound of a push [kN], without what acts beside it; of two the last entry is
+        returned.
 
         :param target: what is pushed, or a :class:`masonry.model.loading.Pattern`
         :param direction: unit vector of the push; ``both``: whether it goes back, too
-        :param how: as in :meth:`find`
         """
         for along in (direction, -1 * direction) if both else (direction,):
-            load = Load(
-                nameOfPush(target, along), "kN", _pushOf(target, along), pushed=(target, direction)
-            )
-            entry = self.find(load, **how)
+            name, live = nameOfPush(target, along), _pushOf(target, along)
+            entry = self.find(Load(name, "kN", live, pushed=(target, direction)), **how)
         return entry
 
     def domain(self, target, normals, direction, **how):
-        """Find the bounds of a push under several normal forces. Returns their entries of run.json.
+        """Find the bounds of a push under several normal forces: a list of entries.
 
         :param target: a platen with a press, whose vertical force is replaced
         :param normals: with which it presses on what is below, its weight included [kN]
         :param direction: unit vector of the push, horizontal
-        :param how: as in :meth:`find`
         """
-        names = [nameInDomain(target, direction, normal) for normal in normals]
-        live = _pushOf(target, direction)
-        of = dict(unit="kN", live=live, pushed=(target, direction))
-        pushes = [Load(n, pressed=(target, k), **of) for n, k in zip(names, normals)]
-        return [self.find(push, **how) for push in pushes]
+        of = dict(unit="kN", live=_pushOf(target, direction), pushed=(target, direction))
+        entries = []
+        for normal in normals:
+            name = nameInDomain(target, direction, normal)
+            entries.append(self.find(Load(name, pressed=(target, normal), **of), **how))
+        return entries
 
     def lean(self, towards, tilts=False, **how):
-        """Find the bound of a horizontal acceleration [g]. Returns its entry of run.json.
+        """Find the bound of a horizontal acceleration [g].
 
         :param towards: unit vector
         :param tilts: whether gravity turns, and does not grow; the factor is then the horizontal
             over the vertical part
-        :param how: as in :meth:`find`
         """
         scaled = GRAVITY / self.model.args.density_scaling
         # of a tilt, the weight is that of the scene at every angle
@@ -108,12 +105,11 @@ class Bounds(Answers):
         return self.find(Load(name, unit, live, tilts, gravity=down), **how)
 
     def forces(self, what, unit, forces, **how):
-        """Find the bound of forces that grow together. Returns its entry of run.json.
+        """Find the bound of forces that grow together.
 
         :param what: name of the load
         :param unit: of its factor
         :param forces: pairs of a MasonryLoad and its force at a factor of 1 [N]
-        :param how: as in :meth:`find`
         """
         acting = [(load.body, load.point, force) for load, force in forces]
         live = lambda a: loads.sumOf(a, acting)
@@ -141,10 +137,8 @@ class Bounds(Answers):
             entry["pressed_kN"] = load.pressed[1]
         self.endless.discard(what)
         if state.supportsMoved:
-            entry["note"] = (
-                "no limit analysis: supports have moved, and joints that are open would be taken as"
-                " closed"
-            )
+            why = "supports have moved, and joints that are open would be taken as closed"
+            entry["note"] = f"no limit analysis: {why}"
             return entry
         count = len(model.interactions)
         if count > MAX_JOINTS and not lowerUpTo:
@@ -215,8 +209,8 @@ class Bounds(Answers):
         yield files
 
     def take(self, wait, givesUp=lambda: False):
-        """Take the bound that is found beside the run, if it is there; ``wait`` says whether to
-        wait for it, and ``givesUp`` while it is waited for whether to do without it."""
+        """Take the bound that is found beside the run, if it is there. ``wait`` says whether to
+        wait for it, and ``givesUp``, meanwhile, whether to do without it."""
         task, what = self._task, self._looksFor
         if not what or not (wait or task.ready()):
             return
@@ -248,9 +242,8 @@ class Bounds(Answers):
     # -- files -------------------------------------------------------------------------------------
 
     def write(self, directory, wait=True):
-        """Write the mechanism that was found last: mechanism.json, which is drawn later, and two
-        files for ParaView. ``wait`` says whether to wait for those that are made beside the
-        run."""
+        """Write the files of the mechanism that was found last. ``wait`` says whether to wait for
+        those that are made beside the run."""
         if self._task:
             self._writeMade(directory, wait)
         elif self.last:

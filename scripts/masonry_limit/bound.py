@@ -126,7 +126,7 @@ class Bound:
         }
 
     def _takes(self, *kinds):
-        """Whether strengths take power of the mechanism, all together."""
+        """Whether strengths together take power of the mechanism."""
         powers = self.powers
         return sum(powers[kind] for kind in kinds) > SLIDES * powers["loads"]
 
@@ -180,10 +180,8 @@ class Bound:
             what = "joints that slip do not open"
             if not self.settled:
                 what += f"; {100 * self.overstressed:.1g} % of the forces are above friction"
-        return (
-            f"limit analysis: {load} {self.factor:.4g} {unit} ({what}); joints:"
-            f" {counts or 'none moves'}"
-        )
+        joints = counts or "none moves"
+        return f"limit analysis: {load} {self.factor:.4g} {unit} ({what}); joints: {joints}"
 
     def _counts(self):
         """How many joints do what in the mechanism."""
@@ -218,11 +216,8 @@ class Bound:
 
     def frames(self) -> tuple[dict[str, Any], dict[str, Any]]:
         """The mechanism as frames of blocks and joints, as :func:`masonry.numbers.frames.readFrame`
-        gives those of a run.
-
-        It is scaled so that the corner that moves most moves by :data:`SHOWN` of the structure's
-        size.
-        """
+        gives those of a run, scaled so that the corner that moves most moves by :data:`SHOWN` of
+        the structure's size."""
         a = self.assembly
         sizes = [len(c) for c in a.corners]
         numbers, points = np.repeat(np.arange(len(sizes)), sizes), np.concatenate(a.corners)
@@ -272,8 +267,8 @@ class Bound:
         views: dict[str, Any] | None = None,
     ) -> None:
         """Write the mechanism: ``mechanism.json``, of which ``/usr/bin/python3 -m
-        masonry_view.figures`` draws mechanism.png, and, for ParaView, ``mechanism_blocks.vtu`` and
-        ``mechanism_joints.vtu``.
+        masonry_view.figures`` draws mechanism.png, and ``mechanism_blocks.vtu`` and
+        ``mechanism_joints.vtu`` for ParaView.
 
         :param title: of the figure
         :param parts: dict of name -> ids of bodies, a panel each; None: all in one
@@ -282,10 +277,9 @@ class Bound:
         """
         blocks, joints = self.frames()
         entries = dict(title=title, parts=parts or {}, views=views or {})
+        entries.update(blocks=blocks, joints=joints)
         with replaced(os.path.join(directory, FILE), "w") as file:
-            json.dump(
-                {**entries, "blocks": blocks, "joints": joints}, file, default=np.ndarray.tolist
-            )
+            json.dump(entries, file, default=np.ndarray.tolist)
         self._saveForParaView(directory, blocks, joints)
 
     def _saveForParaView(self, directory, blocks, joints):
@@ -301,11 +295,10 @@ class Bound:
         for number, (first, *others) in enumerate(joints["cells"]):
             fans += [(first, *two) for two in zip(others, others[1:])]
             owner += [number] * (len(others) - 1)
-        names = ("opening", "slide", "crushing", "normal", "damage_tension", "damage_shear")
+        names = "opening slide crushing normal damage_tension damage_shear".split()
         values = {"body": [np.array(body)]}, {n: [joints[n][owner]] for n in names}
         found = zip(MECHANISM, (blocks, joints), (faces, fans), values)
         for name, frame, triangles, ofCells in found:
             moves = {n: v for n, v in frame.items() if n.endswith("displacement")}
-            cells = [("triangle", np.array(triangles))]
-            mesh = Mesh(frame["points"], cells, moves, ofCells)
+            mesh = Mesh(frame["points"], [("triangle", np.array(triangles))], moves, ofCells)
             mesh.write(os.path.join(directory, name))

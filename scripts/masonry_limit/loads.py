@@ -12,9 +12,7 @@ from masonry.model import arrays
 
 def forces(model, assembly, pushed=None, pressed=None):
     """Presses, dead loads and wind with their whole; points that drives hold become props.
-
-    :param pushed: target or pattern, and direction, of a push, whose own drive is no prop, or None
-    :param pressed: target and normal force [kN] that replaces its press, or None
+    ``pushed`` and ``pressed`` are those of a :class:`masonry_limit.search.Load`.
     """
     loads = np.zeros_like(assembly.held, float)
     for load in arrays.deadLoads(model):

@@ -109,11 +109,10 @@ class Programme:
         a, c = self.assembly, self.assembly.contacts
         joint, at, area = c.joint[which], c.at[which], c.area[which] / self.force
         one, two = a.tangents[joint].swapaxes(0, 1)
-        low, high = -a.tension[joint] * area, a.crushing[joint] * area
-        columns = self._new(len(which), low, high)
+        columns = self._new(len(which), -a.tension[joint] * area, a.crushing[joint] * area)
         self._parts.append((which, columns, 1, 0))
         self._forces(joint, at, a.normals[joint], columns)
-        # what shares a shear strength: in the plane all points of a joint, in space a point
+        # in the plane all points of a joint share a shear strength
         shared = joint if a.plane else which
         groups, first, group = np.unique(shared, return_index=True, return_inverse=True)
         strength = np.bincount(group, a.cohesion[joint] * area)
@@ -122,8 +121,8 @@ class Programme:
             pressed, share = fixed
             pressed = np.maximum(pressed[groups] / self.force, 0)
             strength, slope = strength + (1 - share) * slope * pressed, share * slope
-        # the force along the joint is a sum of forces to the corners of a polygon, and their sum is
-        # below the strength
+        # the force along the joint is made of forces to corners of a polygon, with a sum below the
+        # strength
         limits = len(self.limits) + np.arange(len(first))
         self.limits = np.append(self.limits, strength)
         self._unequal.append((limits[group], columns, -slope[group]))

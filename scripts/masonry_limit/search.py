@@ -42,21 +42,19 @@ class Load:
 
 @dataclass
 class Found:
-    """What was found of a load: what its entry of run.json gets, lines to say, whether nothing
-    gives way, and the :class:`masonry_limit.Bound`."""
+    """What was found of a load."""
 
-    entry: dict[str, Any] = field(default_factory=dict)
-    lines: list[str] = field(default_factory=list)
-    endless: bool = False
-    bound: Any = None
+    entry: dict[str, Any] = field(default_factory=dict)  #: what its entry of run.json gets
+    lines: list[str] = field(default_factory=list)  #: to say
+    endless: bool = False  #: whether nothing gives way
+    bound: Any = None  #: :class:`masonry_limit.Bound`
 
 
 def search(model, load, lowerUpTo, seconds):
-    """Find the bound of a :class:`Load`: :class:`Found`.
+    """Find the bound of a :class:`Load`, within some seconds: :class:`Found`.
 
     :param lowerUpTo: up to so many joints a collapse without dilatancy is looked for, too, if the
         bound is not exact
-    :param seconds: that it may take
     """
     found = Found()
     try:

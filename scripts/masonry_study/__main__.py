@@ -95,8 +95,7 @@ def main(words):
         if isinstance(study, Calibration):
             if args.slurm or args.prepare:
                 raise Refused("a calibration runs here: --slurm and --prepare are of studies")
-            for line in study.find(args.out, near, args.jobs).lines():
-                say(line)
+            say("\n".join(study.find(args.out, near, args.jobs).lines()))
             return 0
         folder = begin(study, args.out, near)
         if args.slurm:

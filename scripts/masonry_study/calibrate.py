@@ -64,11 +64,11 @@ class Specimen:
     :param scene: as in :class:`masonry_study.Study`
     :param measured: the curve as ``"FILE:X:Y"``, a table and two of its columns, FILE from the
         calibration's file on; or a dict of columns of ``study.csv`` -> (value, standard deviation)
-    :param error: of a curve: standard deviation of Y, in its unit: of the measurement, or of the
-        mean of several specimens
+    :param error: of a curve: standard deviation of Y, of the measurement or of the mean of several
+        specimens
     :param columns: of ``curve.csv`` that X and Y are
-    :param count: at how many points, evenly spaced along X, the curve is compared. Their errors are
-        taken as independent
+    :param count: at how many points, evenly spaced along X, the curve is compared, with errors that
+        are taken as independent
     :param options: of the scene, as in :class:`masonry_study.Study`
     :raises Refused: with all problems at once
     """
@@ -225,10 +225,8 @@ class Calibration:
             model = Surrogate(x[inside], y[inside], low, high)
             sample = self._drawn(model)
             off = (model.errors / self.errors).max()
-            say(
-                f"round {turn + 1}: the error of the surrogate is at most {off:.2g} of that of the"
-                " test"
-            )
+            what = f"the error of the surrogate is at most {off:.2g} of that of the test"
+            say(f"round {turn + 1}: {what}")
             least, most = np.quantile(sample, (TAIL, 1 - TAIL), axis=0)
             margin = MARGIN * (most - least)
             least, most = np.maximum(least - margin, low), np.minimum(most + margin, high)

@@ -171,7 +171,6 @@ def _fingerprint(path, what=""):
 
 
 def parser():
-    """What the program takes."""
     p = argparse.ArgumentParser(
         prog="python3 -P -m masonry_study.row", description="Run rows of a study."
     )

@@ -95,7 +95,7 @@ def shares(labels):
 
 def isLognormal(values):
     """Whether values, an array, can have a lognormal distribution."""
-    return len(values) >= 3 and values.min() > 0 and np.ptp(values) > 0
+    return len(values) >= 3 and values.min() > 0 and np.ptp(np.log(values)) > 1e-12
 
 
 def lognormal(values):
@@ -117,7 +117,7 @@ def fragility(capacities, demands):
     :param demands: an increasing sequence in the same unit
     :returns: three arrays: probability, low and high, one of each for every demand
     """
-    capacities = np.sort(_numbers(capacities, 1, "a fragility"))
+    capacities = np.sort(capacities)
     n = len(capacities)
     below = np.searchsorted(capacities, demands, side="right")
     tail = (1 - CONFIDENCE) / 2

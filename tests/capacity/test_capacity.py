@@ -4,6 +4,7 @@ run, and N-V domains."""
 
 from usual import *
 import masonry_capacity as capacity
+from masonry_capacity import bilinear, demand, elastic, equivalent
 from masonry_capacity import __main__ as program
 from test_bilinear import PUSH, WHOLE, curve, run
 from made_runs import writeRun
@@ -14,7 +15,7 @@ from made_runs import writeRun
 def test_the_spectrum_has_its_values_at_the_corners():
     """Type 1, ground B, agR 0.2 g, importance 1.2: ag S = 0.2 × 9.81 × 1.2 × 1.2 m/s², TB 0.15, TC
     0.5, TD 2 s."""
-    found = capacity.elastic(0.2, "g", type=1, ground="B", importance=1.2)
+    found = elastic(0.2, "g", type=1, ground="B", importance=1.2)
     top = 2.5 * 0.2 * 9.81 * 1.2 * 1.2
     assert found.corner == 0.5
     shares = {0: 0.4, 0.075: 0.7, 0.15: 1, 0.5: 1, 1.0: 0.5, 2.0: 0.25, 4.0: 1 / 16}
@@ -39,7 +40,7 @@ def test_the_spectrum_has_its_values_at_the_corners():
 )
 def test_grounds_have_the_corners_of_the_tables(type, ground, soil, corners):
     """The corners are where the plateau begins and ends, and where Se T² becomes constant."""
-    found = capacity.elastic(1.0, "m/s²", type=type, ground=ground)
+    found = elastic(1.0, "m/s²", type=type, ground=ground)
     tb, tc, td = corners
     at, top, e = found.acceleration, 2.5 * soil, 1e-6
     assert at(0) == approx(soil)
@@ -54,25 +55,25 @@ def test_damping_lowers_the_spectrum_as_far_as_055():
     """η = √(10/(5 + ξ)), 0.816 at 10 %, not below 0.55; the acceleration at the period 0 is that of
     the ground."""
     ground = dict(ag=1.0, unit="m/s²", type=1, ground="A")
-    usual = capacity.elastic(**ground)
+    usual = elastic(**ground)
     for damping, correction in (
         (5, 1),
         (10, math.sqrt(10 / 15)),
         (2, math.sqrt(10 / 7)),
         (40, 0.55),
     ):
-        found = capacity.elastic(**ground, damping=damping)
+        found = elastic(**ground, damping=damping)
         assert found.acceleration(0.3) == approx(correction * usual.acceleration(0.3))
         assert found.acceleration(0) == approx(1)
 
 
 def test_units_and_annexes():
     ground = dict(type=1, ground="C")
-    one = capacity.elastic(0.1, "g", **ground)
+    one = elastic(0.1, "g", **ground)
     for ag, unit in ((0.981, "m/s²"), (0.981, "m/s2"), (98.1, "cm/s²")):
-        other = capacity.elastic(ag, unit, **ground)
+        other = elastic(ag, unit, **ground)
         assert other.accelerations == approx(one.accelerations)
-    own = capacity.elastic(0.1, "g", **ground, parameters=(1.15, 0.2, 0.6, 2.0))
+    own = elastic(0.1, "g", **ground, parameters=(1.15, 0.2, 0.6, 2.0))
     assert own.accelerations == approx(one.accelerations)
     assert "given values" in own.source
 
@@ -90,12 +91,7 @@ def test_units_and_annexes():
 )
 def test_odd_spectra_are_refused(words, message):
     with raises(Refused, match=message):
-        capacity.elastic(**words)
-
-
-def test_a_spectrum_ends_at_four_seconds():
-    with raises(Refused, match="has no period of 4.5 s: it goes from 0 to 4 s"):
-        capacity.elastic(0.1, "g", type=1, ground="A").acceleration(4.5)
+        elastic(**words)
 
 
 @mark.parametrize("mark", [",", ";", "\t", "  "])
@@ -155,19 +151,23 @@ def test_odd_masses_are_refused(masses, shape, message):
         capacity.ofMasses(masses, shape)
 
 
+SYSTEM = [
+    {"name": "equivalent_mass", "value": 30e3, "unit": "kg"},
+    {"name": "participation_factor", "value": 1.0, "unit": "-"},
+]
+
+
 def test_a_run_says_its_system_or_what_is_missing():
-    mass = {"name": "equivalent_mass", "value": 30e3, "unit": "kg"}
-    gamma = {"name": "participation_factor", "value": 1.2, "unit": "-"}
-    found = capacity.ofRun({"answers": [mass, gamma]}, "results/wall")
-    assert (found.mass, found.gamma) == (30e3, 1.2)
-    with raises(
-        Refused, match="no equivalent_mass and no participation_factor, and neither is guessed"
+    mass, gamma = SYSTEM
+    found = capacity.ofRun({"answers": SYSTEM}, "results/wall")
+    assert (found.mass, found.gamma) == (30e3, 1.0)
+    for answers, message in (
+        ([], "no equivalent_mass and no participation_factor, and neither is guessed"),
+        ([mass, {**gamma, "value": None}], "results/wall: run.json has no participation_factor,"),
+        ([{**mass, "unit": "t"}, gamma], "has the unit 't', it must be in 'kg'"),
     ):
-        capacity.ofRun({})
-    with raises(Refused, match="results/wall: run.json has no participation_factor,"):
-        capacity.ofRun({"answers": [mass, {**gamma, "value": None}]}, "results/wall")
-    with raises(Refused, match="has the unit 't', it must be in 'kg'"):
-        capacity.ofRun({"answers": [{**mass, "unit": "t"}, gamma]})
+        with raises(Refused, match=message):
+            capacity.ofRun({"answers": answers}, "results/wall")
 
 
 # -- the target displacement -----------------------------------------------------------------------
@@ -177,17 +177,17 @@ def bilinearOf(stiffness, force, ultimate):
     """A bilinear curve [kN/mm, kN, mm] that falls at its end."""
     end = ultimate * (1 + 1e-9)
     points = (0, 0), (force / stiffness, force), (ultimate, force), (end, 0)
-    return capacity.bilinear(*curve(*points), "en1998")
+    return bilinear(*curve(*points), "en1998")
 
 
-GROUND_A = capacity.elastic(0.2, "g", type=1, ground="A")
+GROUND_A = elastic(0.2, "g", type=1, ground="A")
 
 
 def test_above_tc_displacements_are_equal():
     """10 kN/mm and 250 t: T* = 2π √(250/10000) = 0.9935 s, above TC = 0.4 s of ground A. Se = 2.5 ×
     1.962 × 0.4/0.9935 m/s², times (T*/2π)² = 0.025 s²."""
-    system = capacity.equivalent(250e3, 1.0)
-    found = capacity.demand(bilinearOf(10, 100, 90), system, GROUND_A)
+    system = equivalent(250e3, 1.0)
+    found = demand(bilinearOf(10, 100, 90), system, GROUND_A)
     period = 2 * math.pi * math.sqrt(0.025)
     moved = 1e3 * 2.5 * 1.962 * 0.4 / period * 0.025
     assert found.period == approx(period) and found.branch == "B.12"
@@ -203,7 +203,7 @@ def test_below_tc_they_are_not():
     """100 kN/mm, 100 kN and 100 t: T* = 0.1987 s on the plateau of ground A, Se 4.905 m/s², Fy*/m*
     1 m/s², qu 4.905; det* = 4.905 mm, dt* = det*/qu (1 + (qu - 1) TC/T*) with TC = 0.4 s."""
     made = bilinearOf(100, 100, 12)
-    found = capacity.demand(made, capacity.equivalent(100e3, 1.0), GROUND_A)
+    found = demand(made, equivalent(100e3, 1.0), GROUND_A)
     period = 2 * math.pi * math.sqrt(1e-3)
     assert found.period == approx(period) and found.branch == "B.10"
     assert found.reduction == approx(4.905)
@@ -212,7 +212,7 @@ def test_below_tc_they_are_not():
     assert found.targetDisplacement == approx(moved)
     assert found.holds and not any("3 det" in note for note in found.notes)
     # with a fifth of the mass qu is below 1, and the structure stays elastic
-    light = capacity.demand(made, capacity.equivalent(20e3, 1.0), GROUND_A)
+    light = demand(made, equivalent(20e3, 1.0), GROUND_A)
     assert light.branch == "B.9" and light.ductility == approx(light.reduction)
     assert light.targetDisplacement == light.elasticDisplacement < 1
     assert "the structure stays below its yield force" in light.notes
@@ -221,9 +221,9 @@ def test_below_tc_they_are_not():
 def test_the_least_of_the_annex_is_taken_only_if_it_is_asked_for():
     """T* = 0.0628 s, TC = 0.8 s: dt* of (B.10) is 12 times as much as TC/T* says, and more than 3
     det*."""
-    ground = capacity.elastic(0.2, "g", type=1, ground="D")
-    words = bilinearOf(100, 10, 12), capacity.equivalent(10e3, 1.0), ground
-    found, least = capacity.demand(*words), capacity.demand(*words, limited=True)
+    ground = elastic(0.2, "g", type=1, ground="D")
+    words = bilinearOf(100, 10, 12), equivalent(10e3, 1.0), ground
+    found, least = demand(*words), demand(*words, limited=True)
     assert found.equivalentDisplacement > 3 * found.elasticDisplacement
     assert (
         "lets the target displacement of the equivalent system be at most 3 det*" in found.notes[0]
@@ -233,44 +233,40 @@ def test_the_least_of_the_annex_is_taken_only_if_it_is_asked_for():
 
 
 strong = some.floats(1, 1e3)
-
-
-@given(
-    strong,
-    strong,
-    some.floats(1.0, 20),
-    strong,
-    some.sampled_from("ABCDE"),
-    some.sampled_from([1, 2]),
-    some.booleans(),
+spectra = some.fixed_dictionaries(
+    {"type": some.sampled_from([1, 2]), "ground": some.sampled_from("ABCDE")}
 )
+
+
+@given(strong, strong, some.floats(1.0, 20), strong, spectra, some.booleans())
 def test_the_spectrum_times_its_factor_demands_the_ultimate_displacement(
-    stiffness, force, ductility, tons, ground, type, limited
+    stiffness, force, ductility, tons, spectrum, limited
 ):
     made = bilinearOf(stiffness, force, ductility * force / stiffness * 1.001)
-    system = capacity.equivalent(1e3 * tons, 1.3)
-    if 2 * math.pi * math.sqrt(1e-3 * tons / stiffness) > 3.9:
-        return
-    spectrum = lambda ag: capacity.elastic(ag, "m/s²", type=type, ground=ground)
-    found = capacity.demand(made, system, spectrum(0.01), limited)
-    if 0.01 * found.scale > 25:
-        return
-    again = capacity.demand(made, system, spectrum(0.01 * found.scale), limited)
+    assume(2 * math.pi * math.sqrt(1e-3 * tons / stiffness) < 3.9)
+
+    def needs(ag):
+        of = elastic(ag, "m/s²", **spectrum)
+        return demand(made, equivalent(1e3 * tons, 1.3), of, limited)
+
+    found = needs(0.01)
+    assume(0.01 * found.scale < 25)
+    again = needs(0.01 * found.scale)
     assert again.targetDisplacement == approx(made.ultimateDisplacement, rel=1e-6)
     assert again.scale == approx(1, rel=1e-6)
 
 
 def test_what_does_not_hold_says_so_and_a_short_curve_is_not_known():
-    system = capacity.equivalent(100e3, 1.0)
-    found = capacity.demand(bilinearOf(100, 100, 5), system, GROUND_A)
+    system = equivalent(100e3, 1.0)
+    found = demand(bilinearOf(100, 100, 5), system, GROUND_A)
     assert found.holds is False and "does not reach the demand: 5 mm" in found.verdict()
-    short = capacity.bilinear(*curve((0, 0), (1, 100), (5, 100)), "en1998")
-    found = capacity.demand(short, system, GROUND_A)
+    short = bilinear(*curve((0, 0), (1, 100), (5, 100)), "en1998")
+    found = demand(short, system, GROUND_A)
     assert found.holds is None and found.verdict().startswith("not known: the demand is")
-    assert any("4.3.3.4.2.3(1)" in note for note in found.notes)
-    longer = capacity.bilinear(*curve((0, 0), (1, 100), (50, 100)), "en1998")
-    found = capacity.demand(longer, system, GROUND_A)
-    assert found.holds is True and not any("4.3.3.4.2.3" in note for note in found.notes)
+    assert "4.3.3.4.2.3(1)" in "".join(found.notes)
+    longer = bilinear(*curve((0, 0), (1, 100), (50, 100)), "en1998")
+    found = demand(longer, system, GROUND_A)
+    assert found.holds is True and "4.3.3.4.2.3" not in "".join(found.notes)
 
 
 @mark.parametrize("gamma", [2 / 3, 1.0, 1.5])
@@ -279,15 +275,15 @@ def test_the_curve_of_the_structure_is_compared_with_its_own_displacement(gamma)
     of EN 1998-1 wants a curve up to 1.5 dt. T* = 2π √(250/10000) s does not depend on Γ, so dt* is
     that of the test above TC.
     """
-    system = capacity.equivalent(250e3, gamma)
+    system = equivalent(250e3, gamma)
     moved = gamma * 1e3 * 2.5 * 1.962 * 0.4 / (2 * math.pi) * math.sqrt(0.025)
     for share in (0.97, 1.03):
-        found = capacity.demand(bilinearOf(10, 100, share * moved), system, GROUND_A)
+        found = demand(bilinearOf(10, 100, share * moved), system, GROUND_A)
         assert found.targetDisplacement == approx(moved)
         assert found.holds == (share > 1)
     for share in (1.47, 1.53):
-        short = capacity.bilinear(*curve((0, 0), (10, 100), (share * moved, 100)), "en1998")
-        notes = capacity.demand(short, system, GROUND_A).notes
+        short = bilinear(*curve((0, 0), (10, 100), (share * moved, 100)), "en1998")
+        notes = demand(short, system, GROUND_A).notes
         assert any("4.3.3.4.2.3(1)" in note for note in notes) == (share < 1.5)
 
 
@@ -298,8 +294,8 @@ def test_the_iteration_ends_where_the_mechanism_forms_at_the_target(tmp_path):
     force = 100 * (1 - np.exp(-moved / 5))
     force[-1] = 0
     push = capacity.pushover(run(tmp_path, moved, force))
-    system = capacity.equivalent(200e3, 1.0)
-    spectrum = capacity.elastic(0.05, "g", type=1, ground="C")
+    system = equivalent(200e3, 1.0)
+    spectrum = elastic(0.05, "g", type=1, ground="C")
     found = capacity.iterated(push, system, spectrum)
     at = found.targetDisplacement
     assert found.curve.mechanism == approx(at, rel=1e-3) and not found.notes
@@ -309,19 +305,19 @@ def test_the_iteration_ends_where_the_mechanism_forms_at_the_target(tmp_path):
     assert found.period == approx(period, rel=1e-3) and period > 0.6
     assert at == approx(spectrum.displacement(period), rel=1e-3)
     # with the mechanism at the peak, 60 mm, it is another one
-    atPeak = capacity.demand(capacity.bilinearOf(push, "en1998"), system, spectrum)
+    atPeak = demand(capacity.bilinearOf(push, "en1998"), system, spectrum)
     assert atPeak.targetDisplacement > 1.02 * at
 
 
 def test_an_iteration_that_leads_beyond_the_curve_says_so(tmp_path):
     push = capacity.pushover(run(tmp_path, *WHOLE))
-    spectrum = capacity.elastic(1.0, "g", type=1, ground="C")
-    found = capacity.iterated(push, capacity.equivalent(300e3, 1.0), spectrum)
+    spectrum = elastic(1.0, "g", type=1, ground="C")
+    found = capacity.iterated(push, equivalent(300e3, 1.0), spectrum)
     assert "was ended with a mechanism at 2 mm: the target displacement" in found.notes[0]
     folder = push.directory
     with raises(Refused, match="iterate: it is of the rule en1998 with a spectrum"):
         capacity.assess(folder, iterate=True)
-    again = capacity.assess(folder, spectrum, capacity.equivalent(300e3, 1.0), iterate=True)
+    again = capacity.assess(folder, spectrum, equivalent(300e3, 1.0), iterate=True)
     assert again["holds"] is False and found.notes[0] in again["notes"]
 
 
@@ -330,27 +326,20 @@ def test_a_period_beyond_the_spectrum_is_refused_with_its_equation():
         Refused,
         match=r"the equivalent period \(B.7\) is 6.283 s: the spectrum .* goes from 0 to 4 s",
     ):
-        capacity.demand(bilinearOf(1, 10, 90), capacity.equivalent(1e6, 1.0), GROUND_A)
+        demand(bilinearOf(1, 10, 90), equivalent(1e6, 1.0), GROUND_A)
 
 
 # -- files of a run --------------------------------------------------------------------------------
 
-SYSTEM = [
-    {"name": "equivalent_mass", "value": 30e3, "unit": "kg"},
-    {"name": "participation_factor", "value": 1.0, "unit": "-"},
-]
-
 
 def test_a_folder_gets_its_numbers_and_its_picture(tmp_path):
     folder = run(tmp_path, *WHOLE, recorded_height_m=2.5, answers=SYSTEM)
-    spectrum = capacity.elastic(0.2, "g", type=1, ground="B")
+    spectrum = elastic(0.2, "g", type=1, ground="B")
     found = capacity.assess(folder, spectrum)
     with open(tmp_path / "capacity.json") as file:
         assert json.load(file) == found
     assert (tmp_path / "capacity.png").read_bytes().startswith(b"\x89PNG")
-    expected = capacity.demand(
-        capacity.bilinearOf(folder, "en1998"), capacity.equivalent(30e3, 1.0), spectrum
-    )
+    expected = demand(capacity.bilinearOf(folder, "en1998"), equivalent(30e3, 1.0), spectrum)
     numbers = {one["name"]: one for one in found["numbers"]}
     assert numbers["target_displacement_mm"]["value"] == expected.targetDisplacement
     assert numbers["target_displacement_mm"]["unit"] == "mm"
@@ -370,7 +359,7 @@ def test_without_a_spectrum_there_is_the_bilinear_curve_alone(tmp_path):
 def test_what_is_missing_is_refused_before_anything_is_written(tmp_path):
     folder = run(tmp_path, *WHOLE)
     with raises(Refused, match="neither is guessed"):
-        capacity.assess(folder, capacity.elastic(0.2, "g", type=1, ground="B"))
+        capacity.assess(folder, elastic(0.2, "g", type=1, ground="B"))
     assert sorted(os.listdir(tmp_path)) == ["curve.csv", "run.json"]
 
 
@@ -454,7 +443,7 @@ def test_a_folder_that_has_no_curve_does_not_keep_the_others_from_theirs(tmp_pat
 )
 def test_damaged_files_give_a_sentence_or_are_left_alone(tmp_path, entries):
     folder = run(tmp_path, *WHOLE, **entries)
-    spectrum = capacity.elastic(0.2, "g", type=1, ground="B")
+    spectrum = elastic(0.2, "g", type=1, ground="B")
     with raises(Refused, match="not the files of a finished run|neither is guessed"):
         capacity.assess(folder, spectrum)
     with contextlib.suppress(Refused):

@@ -6,6 +6,7 @@ import masonry_limit as limit
 from masonry_limit import solver
 
 DENSITY = 2000.0  # [kg/m³]
+DOWN = 0, 0, -G
 
 
 def assembly(boxes, kind=None, plane=True):
@@ -14,7 +15,7 @@ def assembly(boxes, kind=None, plane=True):
     for low, size in boxes:
         addBlock(box(low, size), material, inPlane=plane)
     hold(0)
-    engines([kind or dry()], gravity=(0, 0, -G), inPlane=plane)
+    engines([kind or dry()], gravity=DOWN, inPlane=plane)
     connect()
     return limit.read()
 
@@ -26,7 +27,7 @@ def block(width, height, plane=True, kind=None):
 
 
 def sideways(a, direction=(1, 0, 0)):
-    return a.largest(a.weights(G * np.array(direction)), a.weights((0, 0, -G)))
+    return a.largest(a.weights(G * np.array(direction)), a.weights(DOWN))
 
 
 # -- closed forms ----------------------------------------------------------------------------------
@@ -54,7 +55,7 @@ def test_tension_cohesion_and_crushing_are_those_of_the_joint():
     bond = dry(0.5, tensileStrength=0.1e6, cohesion=0.3e6)
     area, weight = 0.25 * 0.3, 0.25 * 0.3 * 0.5 * DENSITY * G
     a = block(0.25, 0.5, True, bond)
-    dead, top = a.weights((0, 0, -G)), (0.125, 0.15, 0.5)
+    dead, top = a.weights(DOWN), (0.125, 0.15, 0.5)
     lifted = a.largest(a.force(1, (0, 0, 1), top), dead)
     assert lifted.factor == approx(weight + 0.1e6 * area, rel=1e-6)
     assert lifted.powers["tension"] == approx(0.1e6 * area, rel=1e-6)
@@ -80,7 +81,7 @@ def test_a_support_that_settles_keeps_its_least_reaction():
     a.held[1] = [False, True, False, True, True, True]
     a.__post_init__()
     weight = 0.3 * 0.2 * DENSITY * G
-    dead = a.weights((0, 0, -G))
+    dead = a.weights(DOWN)
     dead[1] = 0
     up = a.force(1, (0, 0, 1))
     # about the left and the right edge of the support at the left, with the reaction at an end of
@@ -106,7 +107,7 @@ def arch(stones, ratio, friction=0.7, end=math.pi):
     for a, b in zip(angles, angles[1:]):
         put(a, b)
     hold(put(angles[0], angles[0] - 0.1), put(angles[-1], angles[-1] + 0.1))
-    engines([dry(friction)], gravity=(0, 0, -G), inPlane=True)
+    engines([dry(friction)], gravity=DOWN, inPlane=True)
     connect()
     return limit.read()
 
@@ -203,7 +204,7 @@ def test_the_mechanism_takes_as_much_power_as_the_loads_give(plane, bond):
 
 def test_without_dilatancy_a_wall_carries_less_and_no_joint_is_above_its_friction():
     a = wall(6, 3, 0.5)
-    live, dead = a.weights((G, 0, 0)), a.weights((0, 0, -G))
+    live, dead = a.weights((G, 0, 0)), a.weights(DOWN)
     most = a.largest(live, dead)
     least = a.withoutDilatancy(live, dead)
     assert least.settled and not least.dilates
@@ -227,7 +228,7 @@ def test_a_bond_in_which_no_joint_slides_is_not_called_exact():
 
 def test_odd_loads_are_refused():
     a = block(0.25, 1.0)
-    dead = a.weights((0, 0, -G))
+    dead = a.weights(DOWN)
     for factor, message in (
         (0, "acts on no free block"),
         (math.nan, "has numbers that are not finite"),

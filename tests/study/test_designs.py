@@ -3,27 +3,35 @@
 rows."""
 
 from usual import *
-from masonry_study import Study, choice, lognormal, normal, uniform
+from masonry_study import Study, choice, field, lognormal, normal, uniform
 
 ot = pytest.importorskip("openturns", reason="python3-openturns is not installed")
 
-LAWS = {
-    "lognormal": (lognormal(0.11e6, 0.2), 0.11e6, 0.022e6),
-    "normal": (normal(0.43, 0.05), 0.43, 0.0215),
-    "uniform": (uniform(2.0, 5.0), 3.5, 3 / math.sqrt(12)),
-}
+DESIGNS = ["random", "latin", "sobol"]
+TWO = {"a.b": uniform(0, 1), "a.c": uniform(0, 1)}
 
 
-def column(name, what, **settings):
-    rows = Study("any", seed=3, vary={name: what}, **settings).rows()
-    return np.array([row[name] for row in rows])
+def rowsOf(vary, seed=3, **settings):
+    return Study("any", seed=seed, vary=vary, **settings).rows()
 
 
-@mark.parametrize("design", ["random", "latin", "sobol"])
-@mark.parametrize("law", LAWS)
-def test_values_have_the_moments_of_their_distribution(law, design):
-    what, mean, deviation = LAWS[law]
-    values = column("bed.cohesion", what, runs=1024, design=design)
+def columns(*of, **settings):
+    """The values in all rows of one or more names that vary."""
+    rows = rowsOf(*of, **settings)
+    return [np.array([row[name] for row in rows]) for name in of[0]]
+
+
+@mark.parametrize("design", DESIGNS)
+@mark.parametrize(
+    "what, mean, deviation",
+    [
+        (lognormal(0.11e6, 0.2), 0.11e6, 0.022e6),
+        (normal(0.43, 0.05), 0.43, 0.0215),
+        (uniform(2.0, 5.0), 3.5, 3 / math.sqrt(12)),
+    ],
+)
+def test_values_have_the_moments_of_their_distribution(what, mean, deviation, design):
+    [values] = columns({"bed.cohesion": what}, runs=1024, design=design)
     # the mean of 1,024 independent numbers is within four of its standard deviations; of the others
     # it is closer
     wide = 4 * deviation / 32 / (1 if design == "random" else 10)
@@ -34,7 +42,7 @@ def test_values_have_the_moments_of_their_distribution(law, design):
 @given(
     seed=some.integers(0, 2**31 - 1),
     runs=some.integers(1, 40),
-    design=some.sampled_from(["random", "latin", "sobol"]),
+    design=some.sampled_from(DESIGNS),
     low=some.floats(-1e3, 1e3),
     width=some.floats(1e-3, 1e3),
 )
@@ -77,50 +85,41 @@ def test_a_cut_distribution_is_the_rest(kind, size, mean, cov, ends, given, u):
 
 
 def test_another_seed_gives_other_rows_and_fields():
-    from masonry_study import field
-
     vary = {"bed.cohesion": lognormal(1.0, 0.2), "head.cohesion": field(cov=0.2)}
-    one, two = (Study("any", runs=50, seed=s, vary=vary).rows() for s in (1, 2))
-    for name in one[0].keys() - {"lean"}:
-        both = [row[name] for row in one + two]
-        assert len(set(both)) == 100, name
+    rows = [row for seed in (1, 2) for row in rowsOf(vary, seed, runs=50)]
+    for name in rows[0].keys() - {"lean"}:
+        assert len({row[name] for row in rows}) == 100, name
 
 
 def test_the_random_numbers_of_the_caller_are_left_alone():
     ot.RandomGenerator.SetSeed(5)
     expected = ot.RandomGenerator.Generate()
     ot.RandomGenerator.SetSeed(5)
-    Study("any", runs=20, seed=9, vary={"a.b": uniform(0, 1)}).rows()
+    rowsOf(TWO, runs=20)
     assert ot.RandomGenerator.Generate() == expected
 
 
 def test_every_stratum_of_a_latin_hypercube_has_one_row():
-    for name in ("a.b", "a.c"):
-        vary = {"a.b": uniform(0, 1), "a.c": uniform(0, 1)}
-        rows = Study("any", runs=64, seed=1, vary=vary, design="latin").rows()
-        assert sorted(int(64 * row[name]) for row in rows) == list(range(64))
+    for values in columns(TWO, runs=64, design="latin"):
+        assert sorted(map(int, 64 * values)) == list(range(64))
 
 
 def test_sobol_fills_the_square_evenly():
     """Moved by a random vector, the points still fill squares far more evenly than random ones
     do."""
-    vary = {"a.b": uniform(0, 1), "a.c": uniform(0, 1)}
 
     def unevenness(design):
-        rows = Study("any", runs=256, seed=1, vary=vary, design=design).rows()
-        counts, _, _ = np.histogram2d(*([r[n] for r in rows] for n in vary), bins=8)
-        return counts.std()
+        return np.histogram2d(*columns(TWO, runs=256, design=design), bins=8)[0].std()
 
     assert unevenness("sobol") < 0.6 * unevenness("random")
 
 
-@mark.parametrize("design", ["random", "latin", "sobol"])
+@mark.parametrize("design", DESIGNS)
 @mark.parametrize("rank", [0.5, -0.8])
 def test_correlated_numbers_have_rank_correlation_and_distributions(design, rank):
     vary = {"a.b": lognormal(2.0, 0.5), "t": choice("x", "y"), "a.c": uniform(0, 1)}
-    said = dict(runs=1000, seed=2, vary=vary, design=design)
-    rows = Study("any", correlation={("a.b", "a.c"): rank}, **said).rows()
-    one, two = (np.array([row[n] for row in rows]) for n in ("a.b", "a.c"))
+    correlation = {("a.b", "a.c"): rank}
+    one, _, two = columns(vary, runs=1000, design=design, correlation=correlation)
     ranks = [np.argsort(np.argsort(v)) for v in (one, two)]
     # the standard error of 1,000 rows is 0.03 at most
     assert np.corrcoef(*ranks)[0, 1] == approx(rank, abs=0.1)
@@ -132,11 +131,11 @@ def test_correlations_that_no_numbers_have_are_refused():
     vary = {f"a.{n}": uniform(0, 1) for n in "xyz"}
     pairs = {("a.x", "a.y"): 0.95, ("a.y", "a.z"): 0.95, ("a.x", "a.z"): -0.95}
     with raises(Refused, match="no numbers have all these correlations"):
-        Study("any", runs=5, vary=vary, correlation=pairs).rows()
+        rowsOf(vary, runs=5, correlation=pairs)
 
 
 def test_weights_of_a_choice():
-    values = column("joints", choice("softening", "brittle", weights=(3, 1)), runs=2000)
+    [values] = columns({"joints": choice("softening", "brittle", weights=(3, 1))}, runs=2000)
     # the standard error is 0.01
     assert np.mean(values == "brittle") == approx(0.25, abs=0.04)
 

@@ -5,7 +5,7 @@ cannot be found."""
 from usual import *
 from xml.etree import ElementTree
 from hypothesis import reject
-from scipy import special
+from scipy import special, stats
 from masonry_study.fragility import WIDEST, fit, nrml
 
 LEVELS = np.geomspace(0.2, 3, 8)
@@ -62,9 +62,8 @@ def test_intervals_hold_the_truth_as_often_as_they_say(records):
 def test_two_levels_have_a_closed_form():
     """Shares p and q at or below two levels: Φ⁻¹ of both is ln(level/θ)/β, which are two equations
     for θ and β."""
-    low, high = between([0.1] * 2 + [0.7] * 5 + [2] * 3, [0.5, 1.0])
-    found = fit(low, high)
-    p, q = special.ndtri(0.2), special.ndtri(0.7)
+    found = fit(*between([0.1] * 2 + [0.7] * 5 + [2] * 3, [0.5, 1.0]))
+    p, q = special.ndtri([0.2, 0.7])
     dispersion = math.log(2) / (q - p)
     assert found.dispersion.value == approx(dispersion, rel=1e-4)
     assert found.median.value == approx(math.exp(-dispersion * q), rel=1e-4)
@@ -76,8 +75,6 @@ def test_two_levels_have_a_closed_form():
 def test_fine_levels_give_the_interval_of_student():
     """With intensities that are known nearly exactly, the interval of ln θ is that of Student's t
     about the mean."""
-    from scipy import stats
-
     values = np.exp(0.4 * np.random.default_rng(3).standard_normal(8))
     found = fit(values * (1 - 1e-4), values * (1 + 1e-4))
     logs = np.log(values)
@@ -123,9 +120,8 @@ def test_intervals_hold_the_value_and_probabilities_grow(seed):
 )
 @settings(max_examples=60, deadline=None)
 def test_any_records_give_numbers_or_a_sentence(capacities, count):
-    low, high = between(capacities, np.geomspace(0.2, 3, count))
     try:
-        found = fit(low, high)
+        found = fit(*between(capacities, np.geomspace(0.2, 3, count)))
     except Refused as refused:
         assert "add" in str(refused) and "\n" not in str(refused)
     else:

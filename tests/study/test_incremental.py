@@ -15,6 +15,7 @@ from masonry_study.spectrum import spectralAcceleration
 from masonry.scene.ground import readRecord
 
 ROCKING = os.path.join(HERE, "rocking.py")
+inf = math.inf
 LEVELS = [0.2, 0.36, 0.6, 0.9]  # [g]
 PLAN = dict(design="ida", records=["*.txt"], levels=LEVELS)
 MOVED = "shake_2_largest_displacement_of_corner_x_mm"
@@ -57,7 +58,7 @@ def housner(seconds, level):
     rise, sinh = math.cosh(p * seconds) - 1, math.sinh(p * seconds)
     rest = (1 - beyond * rise) ** 2 - (beyond * sinh) ** 2
     falls = 2 * beyond * (beyond + 1) * rise >= 1
-    return (math.inf if falls else 1 - math.sqrt(rest)), falls
+    return (inf if falls else 1 - math.sqrt(rest)), falls
 
 
 @pytest.fixture(scope="module")
@@ -349,9 +350,6 @@ def fake(tmp_path, levels, names, found):
     return str(out)
 
 
-inf = math.inf
-
-
 @pytest.fixture
 def three(tmp_path):
     """A study of three records and levels, of which the first falls at 0.9 g, the second at 0.6 g
@@ -418,9 +416,7 @@ def test_quantiles_and_the_fitted_fragility_are_drawn(three, drawn):
 
 
 @given(
-    values=some.lists(
-        some.one_of(some.floats(0, 1e6), some.just(math.inf)), min_size=1, max_size=9
-    ),
+    values=some.lists(some.one_of(some.floats(0, 1e6), some.just(inf)), min_size=1, max_size=9),
     share=some.floats(0, 1),
 )
 @settings(max_examples=100)
@@ -433,19 +429,19 @@ def test_quantiles_are_those_of_numpy_where_all_is_finite(values, share):
     elif share * (len(values) - 1) <= len(finite) - 1:
         assert found == approx(np.interp(share * (len(values) - 1), range(len(finite)), finite))
     else:
-        assert found == math.inf
+        assert found == inf
 
 
 def test_between_levels_a_demand_changes_evenly_and_above_the_last_it_is_unknown():
-    at = lambda x: _between([0.2, 0.6, 1.0], [1.0, 5.0, math.inf], x)
+    at = lambda x: _between([0.2, 0.6, 1.0], [1.0, 5.0, inf], x)
     assert [at(0.1), at(0.2), at(0.4), at(0.6)] == approx([0.5, 1, 3, 5])
-    assert at(0.7) == at(1.0) == at(2.0) == math.inf
+    assert at(0.7) == at(1.0) == at(2.0) == inf
     assert math.isnan(_between([0.2, 0.6], [1.0, 5.0], 0.7))
     # what has fallen stays so, also if a higher level was run
-    made = object.__new__(Demands)
-    made.rows, made.stood = [([0.2, 0.6, 1.0], [1.0, math.inf, 1.0])], [[0.2, 1.0]]
-    assert made.intervals() == made.intervals(2.0) == ([0.2], [0.6])
-    assert _between([0.2, 0.6, 1.0], [math.inf, 1.0, 5.0], 0.8) == math.inf
+    rows = [([0.2, 0.6, 1.0], [1.0, inf, 1.0])]
+    made = SimpleNamespace(rows=rows, stood=[[0.2, 1.0]])
+    assert Demands.intervals(made) == Demands.intervals(made, 2.0) == ([0.2], [0.6])
+    assert _between([0.2, 0.6, 1.0], [inf, 1.0, 5.0], 0.8) == inf
 
 
 def test_the_usual_demand_is_that_of_the_largest_amount():

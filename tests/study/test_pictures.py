@@ -188,15 +188,13 @@ def test_bars_stand_for_the_numbers_with_the_largest_on_top(drawn):
 # -- a study's folder ------------------------------------------------------------------------------
 
 
-def writeStudy(folder, rows, measures, curves=0):
-    """A folder as gathering leaves it. Of ``rows`` and ``measures`` a cell that is empty has no
-    number."""
+def writeStudy(folder, measures, curves=0):
+    """A folder as gathering leaves it. Of ``measures`` a cell that is empty has no number."""
     lines = [["run", *NAMES, "status", *measures]]
-    times = ["run,status,host,run_seconds,job_seconds,commit,told"]
-    for n, (row, cells) in enumerate(zip(rows, zip(*measures.values())), 1):
+    generator = np.random.default_rng(10)
+    for n, cells in enumerate(zip(*measures.values()), 1):
         status = "ended" if any(cells) else "failed"
-        lines.append([f"{n:04d}", *map(repr, row), status, *cells])
-        times.append(f"{n:04d},{status},here,9,{10 + n % 2},,")
+        lines.append([f"{n:04d}", *map(str, generator.uniform(size=3)), status, *cells])
         run = folder / "rows" / f"{n:04d}"
         run.mkdir(parents=True)
         if n <= curves:
@@ -204,7 +202,6 @@ def writeStudy(folder, rows, measures, curves=0):
                 "displacement_mm,base_shear_kN\r\n0,0\r\n1,100\r\n3,80\r\n"
             )
     (folder / "study.csv").write_text("\n".join(map(",".join, lines)) + "\n")
-    (folder / "times.csv").write_text("\n".join(times) + "\n")
     return str(folder)
 
 
@@ -214,10 +211,9 @@ PEAKS15 = 100 + np.random.default_rng(10).uniform(-15, 25, 15)
 @pytest.fixture
 def study(tmp_path):
     """A study of 15 rows."""
-    rows = np.random.default_rng(10).uniform(0, 1, (15, 3)).tolist()
     modes = ["slides"] * 5 + ["rocks"] * 10
-    texts = [repr(float(peak)) for peak in PEAKS15]
-    return writeStudy(tmp_path / "accurate", rows, {"failure_mode": modes, PEAKS: texts}, curves=15)
+    measures = {"failure_mode": modes, PEAKS: [*map(str, PEAKS15)]}
+    return writeStudy(tmp_path / "accurate", measures, curves=15)
 
 
 def test_the_seed_of_a_random_field_is_no_input(study):
@@ -242,9 +238,8 @@ def test_the_report_tells_and_draws_all(study, capsys):
 
 
 def test_rows_that_failed_are_reported_and_left_out(tmp_path, capsys):
-    rows = np.random.default_rng(11).uniform(0, 1, (40, 3)).tolist()
-    peaks = {PEAKS: [repr(float(n)) if n % 4 else "" for n in range(40)]}
-    folder = writeStudy(tmp_path / "study", rows, peaks)
+    peaks = [str(n) if n % 4 else "" for n in range(40)]
+    folder = writeStudy(tmp_path / "study", {PEAKS: peaks})
     assert report.main([folder, "--no-pictures"]) == 0
     said = capsys.readouterr().out
     assert "30 of 40 rows" in said and "rows that have not ended: 10 failed" in said

@@ -119,7 +119,7 @@ def test_all_problems_are_reported_at_once(wrong, messages):
         (lambda: normal(1.0, 0.1, low=2), "low=2.: its ends leave 7.62e-24 of the"),
         (lambda: lognormal(1.0, 0.1, high=-1), "its ends leave 0 of the distribution"),
         (lambda: normal(-1.0, 0.1, high=-1.7), "its ends leave 1.28e-12 of the"),
-        (lambda: choice(), "at least one value"),
+        (choice, "at least one value"),
         (lambda: choice(1, 1), "has a value twice"),
         (lambda: choice(1, 2, weights=(1,)), "as many weights"),
         (lambda: field(uniform(1, 2)), "must be lognormal or normal"),

@@ -30,12 +30,12 @@ def write(folder, text=STUDY):
 def family(process):
     """Ids and command lines of a process and of all that it has started and that live."""
     listed = run("ps", "-e", "-o", "pid=,ppid=,args=").stdout
-    message = [line.split(None, 2) for line in listed.splitlines()]
+    every = [line.split(None, 2) for line in listed.splitlines()]
     found, more = set(), {str(process.pid)}
     while more:
         found |= more
-        more = {pid for pid, parent, _ in message if parent in found} - found
-    return {int(pid): args for pid, _, args in message if pid in found}
+        more = {pid for pid, parent, _ in every if parent in found} - found
+    return {int(pid): args for pid, _, args in every if pid in found}
 
 
 @pytest.fixture(scope="module")
@@ -208,10 +208,8 @@ study = Study({SMALL!r}, runs=20, seed=1, options={{"until": 1, "dance": 3}}, va
     for sentence in (
         "dance: the scene has no such option",
         "color: the scene has no such option",
-        (
-            "bed.friction: normal(mean=0.43, cov=0.5) gives impossible values in 2.3 % of all rows:"
-            " it must be at least 0"
-        ),
+        "bed.friction: normal(mean=0.43, cov=0.5) gives impossible values in 2.3 % of all rows:",
+        "it must be at least 0; low=",
         "support.cohesion: support joints of the scene are linear elastic and ignore it",
         "bed.stickiness: a MasonryJoint has no such property",
         "no joint 'wall', there are ",
@@ -239,22 +237,17 @@ scene.finish()
 
 
 def test_a_scene_that_ignores_what_varies_is_refused(tmp_path):
-    text = (
-        "from masonry_study import *\nstudy = Study('scene.py', vary={'bed.friction': [0.4, 0.5]},"
-        " design='grid')"
-    )
-    for scene, name, message in (
-        (DEAF, "bed", "takes no options from the command line"),
-        (
-            DEAF.replace("arguments=[]", "until=1"),
-            "head",
-            "head.friction: the scene has no head joint and would ignore it",
-        ),
-        ("print('hello')", "bed", "no masonry.Scene began a stage"),
-        ("import masonry\n1 / 0", "bed", "ZeroDivisionError: division by zero"),
+    vary = {"head.friction": [0.4, 0.5]}
+    text = f"from masonry_study import *\nstudy = Study('scene.py', vary={vary}, design='grid')"
+    ignored = "head.friction: the scene has no head joint and would ignore it"
+    for scene, message in (
+        (DEAF, "takes no options from the command line"),
+        (DEAF.replace("arguments=[]", "until=1"), ignored),
+        ("print('hello')", "no masonry.Scene began a stage"),
+        ("import masonry\n1 / 0", "ZeroDivisionError: division by zero"),
     ):
         (tmp_path / "scene.py").write_text(scene)
-        assert message in refused(tmp_path, text.replace("bed", name))
+        assert message in refused(tmp_path, text)
 
 
 def test_another_study_in_the_folder_is_refused(whole, tmp_path):
@@ -266,12 +259,13 @@ def test_another_study_in_the_folder_is_refused(whole, tmp_path):
     said = ("holds another study", "seed is 1, not 2", '"cov": 0.05}', '"cov": 0.06}')
     assert all(part in process.stderr for part in said), process.stderr
     assert before == {path: path.read_bytes() for path in out.glob("*.*")}
-    (tmp_path / "mine").mkdir()
-    (tmp_path / "mine" / "letter.txt").write_text("expensive")
-    process = study(path, "--out", tmp_path / "mine")
+    mine = tmp_path / "mine"
+    mine.mkdir()
+    (mine / "letter.txt").write_text("expensive")
+    process = study(path, "--out", mine)
     assert process.returncode == 2
     assert "is not empty (letter.txt) and holds no study" in process.stderr
-    assert os.listdir(tmp_path / "mine") == ["letter.txt"]
+    assert os.listdir(mine) == ["letter.txt"]
 
 
 # -- a folder that somebody else has packed --------------------------------------------------------
@@ -312,7 +306,7 @@ def test_a_changed_scene_is_another_study(packed):
 def test_a_table_that_no_study_draws_is_refused(packed, pattern, text):
     again, out = packed
     table, whole = out / "table.txt", read(out, "table.txt")
-    table.write_text(re.sub(pattern, text, table.read_text()))
+    table.write_text(re.sub(pattern, text, whole.decode()))
     shutil.rmtree(out / "rows" / "0003")
     before = contents(out)
     process = again()
