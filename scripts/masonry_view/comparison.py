@@ -175,11 +175,8 @@ def _draw(out, tests, curves, names, labels, title):
 
 
 def _names(directories, measured):
-    """Short names of runs and measured curves, as much of the ends of their paths as tells them
-    apart.
-
-    Measured curves of one file have the name of their second column, too.
-    """
+    """Names of runs and measured curves: as much of the ends of their paths as tells them apart,
+    and for measured curves of one file their second column."""
     files = [text.rsplit(":", 2) for text in measured]
     paths = [*directories, *(f[0] for f in files)]
     parts = [os.path.abspath(path).split(os.sep) for path in paths]

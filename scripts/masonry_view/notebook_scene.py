@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""A scene in a notebook: what is built, or what has come out of it, and its curve as arrays."""
+"""A scene in a notebook, and its curve as arrays."""
 
 import tempfile
 

@@ -1,9 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Runs in the window of ParaView, and in a browser without ParaView. No YADE is needed.
-
-``scripts/view.py`` is the program. In ParaView's own Python works
-:mod:`masonry_view.paraview_macro`.
-"""
+"""Runs in the window of ParaView, in whose Python :mod:`masonry_view.paraview_macro` works, and in a
+browser: the program ``scripts/view.py``. No YADE is needed."""
 
 import argparse
 import json
@@ -16,18 +13,15 @@ from typing import Any, Sequence
 
 import numpy as np
 
-from masonry import folders
 from masonry.arguments import FilePath
 from masonry.errors import Refused
-from masonry.terminal import say
-from . import page, painting
+from . import page, pages, painting
 from masonry.numbers.cracks import CRACK, DAMAGED
 from masonry.numbers.files import filesOf, program, readCurve, readRun
 from masonry.numbers.frames import frameAt, frameTimes
 from .model import GROUND, OPEN, PLATEN, Model
 
-#: Folder into which python3-paraview can be unpacked where it cannot be installed beside
-#: python3-vtk9.
+#: Where python3-paraview can be unpacked, since it cannot be installed beside python3-vtk9.
 UNPACKED = os.path.expanduser("~/.local/share/masonry/paraview")
 SIZE = 1500, 1000  # of ParaView's views [pixels]
 
@@ -152,41 +146,6 @@ def inParaView(directories: Sequence[FilePath], at: Any, magnification: float | 
         subprocess.run([path, "--script=" + macro], env={**elsewhere, "MASONRY_VIEW": viewFile})
 
 
-def _writable(path, directory):
-    """The path of a page to write: as it was given, or view.html in the folder of the run.
-
-    :raises Refused: if it has another ending, or if it is a folder or in a folder that is not there
-    """
-    if path is None:
-        folders.check(directory)
-        path = os.path.join(directory, "view.html")
-    if os.path.isdir(path):
-        raise Refused(f"{path} is a folder; name a file that ends in .html or .htm")
-    if not path.lower().endswith((".html", ".htm")):
-        raise Refused(f"{path} must end in .html or .htm")
-    if not os.path.isdir(os.path.dirname(path) or "."):
-        raise Refused(f"cannot write {path}: there is no folder {os.path.dirname(path)}")
-    return path
-
-
-def _handOn(args):
-    """--html: a page that needs no ParaView."""
-    if len(args.result) > 1:
-        raise Refused(
-            "--html writes one page of one run; start view.py again for other files or runs"
-        )
-    if args.frame is not None and args.at is not None:
-        raise Refused("--frame and --at both name a frame; give one of them")
-    (directory,) = args.result
-    number = args.frame if args.at is None else frameNear(directory, args.at)
-    try:
-        path = _writable(args.html, directory)
-        page.write(directory, path, number, args.magnify)
-        say(f"{path}: {os.path.getsize(path) / 1e6:.2f} MB; any browser opens it")
-    except OSError as problem:
-        raise Refused(f"cannot write {path}: {problem.strerror}") from None
-
-
 @program
 def main(words: Sequence[str] | None = None) -> None:
     """The program ``scripts/view.py``."""
@@ -199,21 +158,14 @@ def main(words: Sequence[str] | None = None) -> None:
         metavar="FILE",
         nargs="?",
         default=False,
-        help=(
-            "a page that any browser shows in 3-D, without ParaView and without a network"
-            " (view.html in the folder of results)"
-        ),
-    )
-    parser.add_argument(
-        "--frame", metavar="N", type=int, help="frame to show first in --html, from 0"
+        help="a page that any browser shows in 3-D, without ParaView and without a network"
+        " (view.html in the folder of results)",
     )
     parser.add_argument(
         "--at", metavar="PLACE", help="frame to show: 12, 12mm or 0.5s; else the last one"
     )
     parser.add_argument(
-        "--magnify",
-        type=float,
-        help="magnification of displacements; else chosen for each run",
+        "--magnify", type=float, help="magnification of displacements; else chosen for each run"
     )
     args = parser.parse_args(words)
     if args.magnify is not None and not 0 <= args.magnify < float("inf"):
@@ -221,8 +173,13 @@ def main(words: Sequence[str] | None = None) -> None:
     for directory in args.result:
         readRun(directory)
     with filesOf(", ".join(args.result)):
-        if args.html is not False:
-            return _handOn(args)
-        if args.frame is not None:
-            raise Refused("--frame is for --html; --at names a frame for ParaView")
-        inParaView(args.result, args.at, args.magnify)
+        if args.html is False:
+            return inParaView(args.result, args.at, args.magnify)
+        if len(args.result) > 1:
+            raise Refused(
+                "--html writes one page of one run; start view.py again for other files or runs"
+            )
+        (directory,) = args.result
+        number = args.at and frameNear(directory, args.at)
+        make = lambda: page.page(directory, number, args.magnify)
+        pages.save(make, args.html, directory, "view.html")

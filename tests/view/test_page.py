@@ -111,7 +111,10 @@ def test_blocks_and_joints_stand_where_the_run_says(opened, comp4):
         )
         shown = np.flatnonzero(joints.kind[k][joints.owner])
         corners = np.concatenate(
-            [(joints.corners + side)[shown] for side in joints.displacements(k)]
+            [
+                (joints.corners + model.displacementsOf(k, block, joints.corners))[shown]
+                for block in joints.between[joints.owner].T
+            ]
         )
         for one in corners[:: max(1, len(corners) // 50)]:
             assert np.abs(faces - one).max(axis=1).min() < 1e-5

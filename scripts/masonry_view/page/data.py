@@ -21,8 +21,7 @@ from ..views import courseOf
 
 
 class _Arrays:
-    """Arrays on their way to a page one after the other, and what the page must know to read
-    them."""
+    """The arrays of a page in one row of bytes, and what the page must know to read them."""
 
     def __init__(self):
         self.known, self.bytes = {}, b""
@@ -46,8 +45,7 @@ class _Arrays:
         self.bytes += values.tobytes() + bytes(-values.nbytes % 4)
 
     def addRounded(self, name, values, kind="i2", levels=32767):
-        """Append numbers of frames, as displacements and rotations, rounded to so many steps up to
-        the largest."""
+        """Append numbers of frames, rounded to so many steps up to the largest."""
         step = float(np.abs(values).max(initial=0.0)) / levels or 1.0
         self.add(name, np.rint(values / step), kind, step, frames=True)
 
@@ -145,8 +143,7 @@ def _head(model, magnification, curve):
 
 
 def _addTies(arrays, model):
-    """The bars between blocks: both ends of each, how they move, and 0 elastic, 1 has yielded, 2
-    broken."""
+    """Add the ties: both ends of each, how they move, and 0 elastic, 1 yielded, 2 broken."""
     if not model.run.get("ties"):
         return
     frames = [readFrame(model.directory, "connectors", n) for n in model.numbers]
@@ -160,8 +157,7 @@ def _addTies(arrays, model):
 
 
 def nice(value):
-    """The smallest number, of two digits at most and a power of ten, that is not below a value and
-    has round quarters."""
+    """The smallest number of two digits at most with round quarters that is not below a value."""
     power = 10.0 ** np.floor(np.log10(value))
     steps = (1, 1.2, 1.6, 2, 2.4, 2.8, 3.2, 4, 5, 6, 8, 10)
     return float(next(s * power for s in steps if s * power >= value * (1 - 1e-9)))

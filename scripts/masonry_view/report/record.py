@@ -3,7 +3,6 @@
 
 import base64
 import csv
-import datetime
 import functools
 import math
 import os
@@ -172,18 +171,6 @@ class Record:
             return None
         return "data:image/png;base64," + base64.b64encode(data).decode()
 
-    def date(self):
-        """When the run ended, and where that is from."""
-        date = self.run.get("date")
-        if isinstance(date, str):
-            return date.replace("T", " ").replace("Z", " UTC"), "run.json: date"
-        try:
-            seconds = os.stat(os.path.join(self.directory, "run.json")).st_mtime
-        except OSError:
-            return "not known", "run.json has no date"
-        when = datetime.datetime.fromtimestamp(seconds, datetime.timezone.utc)
-        return when.strftime("%Y-%m-%d %H:%M:%S UTC"), "time of the file run.json"
-
     @functools.cached_property
     def data(self):
         """What the numbers of the run are found from: rows whose forces are no finite numbers are
@@ -227,12 +214,6 @@ class Record:
     def _bare(self, refused):
         """The text of a refusal without the folder at its beginning."""
         return str(refused).removeprefix(f"{self.directory}: ")
-
-
-def entriesOf(run, key):
-    """Those entries of a list of run.json that can be used."""
-    found = run.get(key)
-    return [one for one in found if isinstance(one, dict)] if isinstance(found, list) else []
 
 
 def _finite(text):
