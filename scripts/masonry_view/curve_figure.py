@@ -95,7 +95,7 @@ def figureOf(run: dict[str, Any], data: dict[str, Any], directory: FilePath) -> 
         return figure
     figure = drawing.empty(7, 7)
     top, bottom = figure.subplots(2, 1, sharex=not looped, height_ratios=[3, 2])
-    _curves(top, spec, data, x)
+    _curves(top, spec, data)
     top.set_title(run["title"])
     label = spec["x"]["label"]
     if looped:
@@ -116,7 +116,7 @@ def panelOf(spec: dict[str, Any], data: dict[str, Any], ideal: Any = None) -> An
     """
     figure = drawing.empty(7, 4.2)
     axes = figure.subplots()
-    _curves(axes, spec, data, data[spec["x"]["column"]], ideal)
+    _curves(axes, spec, data, ideal)
     axes.set_xlabel(spec["x"]["label"])
     figure.tight_layout()
     return figure
@@ -139,9 +139,9 @@ def _energies(axes, x, label, stack, work):
     drawing.finish(axes, label, "energy since the first row [J]", fontsize=8)
 
 
-def _curves(axes, spec, data, x, ideal=None):
+def _curves(axes, spec, data, ideal=None):
     """The upper panel of curve.png."""
-    looped = spec["looped"]
+    looped, x = spec["looped"], data[spec["x"]["column"]]
     first = data[spec["y"][0]["column"]]
     for n, axis in enumerate(spec["y"]):
         wide = (0.7, 0.4) if looped else (1.2, 0.6)

@@ -4,16 +4,16 @@
 The page (:mod:`masonry_view.page`), the report and ParaView's window show this.
 """
 
-import os
 from typing import NamedTuple
 
 import numpy as np
 
 from masonry.errors import Refused
 from masonry.numbers.cracks import CRACK, DAMAGED, centresOf, crushed, widths
-from .curve_figure import plan, unitOf
+from .curve_figure import bare, plan, unitOf
 from masonry.numbers.files import filesOf, readCurve, readRun
 from masonry.numbers.frames import framePaths, frameTimes, readFrame, readSurfaces
+from masonry.terminal import plain
 from .views import REACH, magnificationOf, viewOf
 
 SHARP = np.cos(np.radians(20))  # of the angle from which an edge of a block is drawn
@@ -66,8 +66,7 @@ class Model:
         """
         self.directory, self.run = directory, readRun(directory)
         with filesOf(directory):
-            name = os.path.basename(os.path.abspath(directory))
-            self.title = str(self.run.get("title") or name)
+            self.title = plain(self.run.get("title") or directory)
             times = self._times()
             self.count = count = len(times)
             if number is not None and not 0 <= number < count:
@@ -223,15 +222,13 @@ class Model:
         found = []
         for time in self.times:
             values = []
-            if spec and "time_s" in data:
-                for axis in (spec["x"], *spec["y"]):
-                    if axis["column"] == "time_s":
-                        continue
+            for axis in (spec["x"], *spec["y"]) if spec and "time_s" in data else ():
+                if axis["column"] != "time_s":
                     unit = unitOf(axis if axis is spec["x"] else {**axis, "label": spec["y_label"]})
-                    name = axis["label"].rsplit(" [", 1)[0]
                     value = np.interp(time, data["time_s"], data[axis["column"]])
-                    values.append(f"{name}: {value:.4g} {unit}")
-            found.append({"time": time, "stage": self._stage(time, data), "values": values})
+                    values.append(plain(f"{bare(axis['label'])}: {value:.4g} {unit}"))
+            stage = self._stage(time, data)
+            found.append({"time": time, "stage": stage and plain(stage), "values": values})
         return found
 
     def _stage(self, time, data):
@@ -372,12 +369,12 @@ def sharpEdges(triangles, normals):
 
 
 # frames times blocks; reading them takes seconds, and they take some 12 bytes each in a page
-MOST_PLACES = 80_000
-FEWEST = 10  # frames that are shown all the same
+MAX_PLACES = 80_000
+MIN_FRAMES = 10  # frames that are shown all the same
 
 
 def chosenFrames(count, blocks):
     """Numbers of the frames of a long or large run that are shown: evenly spaced, with the first
     and the last."""
-    many = max(FEWEST, MOST_PLACES // max(blocks, 1))
+    many = max(MIN_FRAMES, MAX_PLACES // max(blocks, 1))
     return sorted({round(n) for n in np.linspace(0, count - 1, min(count, many))})

@@ -21,7 +21,7 @@ SHADES = {
     "ground": "#a3ad98",
 }
 CRACKS, CRUSHED = {"open": "#d62728", "slid": "#1f77b4"}, "#101010"
-MOST = 5e-3  # [m] closure from which the sign of a crushed point is no larger
+MAX_CLOSURE = 5e-3  # [m] closure from which the sign of a crushed point is no larger
 #: Lines of ties by their state.
 TIES = {"elastic": ("#333333", "-"), "yielded": ("#ff7f0e", "-"), "broken": ("#9467bd", ":")}
 
@@ -35,7 +35,7 @@ def rgb(colour):
 FACES = np.rint([0.45 * rgb(c) + 0.55 * rgb(SHADES["brick"]) for c in CRACKS.values()])
 #: Kinds of joints after those of CRACKS: seams, and what is only crushed.
 SEAM, NONE = 2, 3
-FAR = 1e9  # beyond all blocks [m]
+BEYOND_ALL = 1e9  # beyond all blocks [m]
 
 
 def fromBackToFront(solids, sight):
@@ -50,7 +50,7 @@ def fromBackToFront(solids, sight):
     seen, boxes = solids.padded("corners") @ sight.T, copy.copy(solids)
     boxes.low, boxes.high = seen.min(axis=1), seen.max(axis=1)
     depth, slack = (boxes.low + boxes.high)[:, 2].tolist(), 1e-3 * np.median(boxes.high - boxes.low)
-    boxes.low[:, 2], boxes.high[:, 2] = -FAR, FAR  # pictures overlap at any depth
+    boxes.low[:, 2], boxes.high[:, 2] = -BEYOND_ALL, BEYOND_ALL  # pictures overlap at any depth
     pairs = boxes.nearPairs(np.full(solids.count, -slack / 2))
     after = [[] for _ in range(solids.count)]
     facing = solids.padded("normals")[pairs] @ sight[2] * [[[1]], [[-1]]]
@@ -155,7 +155,9 @@ class Painting:
         wide = np.where(kinds < SEAM, self.bold, 2 * self.thin)
         self.add(places[line], ends[line], None, edge[line], wide[line])
         self.spots += zip(
-            places[spot], ends[spot].mean(axis=1), 12 + 8e3 * np.minimum(closures[spot], MOST)
+            places[spot],
+            ends[spot].mean(axis=1),
+            12 + 8e3 * np.minimum(closures[spot], MAX_CLOSURE),
         )
 
     def finish(self, axes, flat, legend):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Runs in the window of ParaView, in whose Python :mod:`masonry_view.paraview_macro` works, and in a
+"""A run in the window of ParaView, in whose Python :mod:`masonry_view.paraview_macro` works, or in a
 browser: the program ``scripts/view.py``. No YADE is needed."""
 
 import argparse
@@ -19,11 +19,12 @@ from . import page, pages, painting
 from masonry.numbers.cracks import CRACK, DAMAGED
 from masonry.numbers.files import filesOf, program, readCurve, readRun
 from masonry.numbers.frames import frameAt, frameTimes
+from .curve_figure import unitOf
 from .model import GROUND, OPEN, PLATEN, Model
 
 #: Where python3-paraview can be unpacked, since it cannot be installed beside python3-vtk9.
 UNPACKED = os.path.expanduser("~/.local/share/masonry/paraview")
-SIZE = 1500, 1000  # of ParaView's views [pixels]
+SIZE = 1500, 1000  # of ParaView's view [pixels]
 
 MISSING = f"""ParaView is not there. As root:
   apt-get install --no-install-recommends paraview
@@ -52,7 +53,7 @@ def frameNear(directory: FilePath, at: Any) -> int:
             raise Refused(f"{directory}: its x is not known; give --at a time as 0.5s")
         data = readCurve(directory)
         x = np.array(data[axis["column"]])
-        own = axis["column"].rsplit("_", 1)[-1]
+        own = unitOf(axis)
         if unit not in ("", own):
             raise Refused(f"--at: '{at}' must be in {own} or in s")
         reached = np.flatnonzero(x >= value if value >= x[0] else x <= value)
@@ -70,14 +71,11 @@ def frameNear(directory: FilePath, at: Any) -> int:
     return frameAt(directory, value)
 
 
-def sceneOf(
-    directory: FilePath, number: int, magnification: float | None, shape: float
-) -> dict[str, Any]:
-    """What ParaView shall show of a run: an entry ``runs`` for :mod:`masonry_view.paraview_macro`.
+def sceneOf(directory: FilePath, number: int, magnification: float | None) -> dict[str, Any]:
+    """What ParaView shall show of a run, for :mod:`masonry_view.paraview_macro`.
 
-    :param number: of the frame after which camera, magnification and the range of colours are
-        chosen
-    :param shape: width of the view over its height
+    :param number: of the frame that is shown, after which camera, magnification and the range of
+        colours are chosen
     """
     model = Model(directory, number)
     sight = model.sight(magnification)
@@ -86,7 +84,7 @@ def sceneOf(
     right = np.cross((0, 0, 1), towards) / np.hypot(*towards[:2])
     axes = np.array([right, np.cross(towards, right)])
     middle, extent = 0.5 * (sight.low + sight.high), sight.high - sight.low
-    wide, tall = np.abs(axes) @ extent
+    (wide, tall), shape = np.abs(axes) @ extent, SIZE[0] / SIZE[1]
     half = 0.5 * max(1.4 * tall, 1.5 * wide / shape)
     middle = middle + 0.1 * half * shape * right  # the legend stands at the right
     opening = model.joints.opening[0][(model.joints.kind[0] & OPEN) > 0]
@@ -112,24 +110,19 @@ def sceneOf(
         "middle": middle.tolist(),
         "towards": towards.tolist(),
         "half_height": float(half),
+        "time": model.times[0],
+        "size": SIZE,
     }
 
 
-def inParaView(directories: Sequence[FilePath], at: Any, magnification: float | None) -> None:
-    """Show runs side by side in ParaView's window.
+def inParaView(directory: FilePath, at: Any, magnification: float | None) -> None:
+    """Show a run in ParaView's window.
 
     :param at: the frame, as in :func:`frameNear`
-    :param magnification: of displacements; None: chosen for each run
+    :param magnification: of displacements; None: chosen for the run
     :raises Refused: if ParaView is missing
     """
-    numbers = [frameNear(d, at) for d in directories]
-    shape = SIZE[0] / len(directories) / SIZE[1]
-    runs = [sceneOf(d, n, magnification, shape) for d, n in zip(directories, numbers)]
-    # one scale of colours for all
-    widest = max(run["widest_mm"] for run in runs)
-    for run in runs:
-        run["widest_mm"] = widest
-    job = {"runs": runs, "time": frameTimes(directories[0])[numbers[0]], "size": SIZE}
+    scene = sceneOf(directory, frameNear(directory, at), magnification)
     path = shutil.which("paraview")
     if not path:
         raise Refused(MISSING)
@@ -138,7 +131,7 @@ def inParaView(directories: Sequence[FilePath], at: Any, magnification: float | 
     with tempfile.TemporaryDirectory() as folder:
         viewFile = os.path.join(folder, "view.json")
         with open(viewFile, "w") as file:
-            json.dump(job, file)
+            json.dump(scene, file)
         # PYTHONPATH and PYTHONHOME are of another Python
         elsewhere = {k: v for k, v in os.environ.items() if k not in ("PYTHONPATH", "PYTHONHOME")}
         if os.path.isdir(modules):
@@ -150,9 +143,9 @@ def inParaView(directories: Sequence[FilePath], at: Any, magnification: float | 
 def main(words: Sequence[str] | None = None) -> None:
     """The program ``scripts/view.py``."""
     parser = argparse.ArgumentParser(
-        description="Open runs in ParaView, or write one for a browser."
+        description="Open a run in ParaView, or write it for a browser."
     )
-    parser.add_argument("result", nargs="+", help="folder of results")
+    parser.add_argument("result", help="folder of results")
     parser.add_argument(
         "--html",
         metavar="FILE",
@@ -165,21 +158,16 @@ def main(words: Sequence[str] | None = None) -> None:
         "--at", metavar="PLACE", help="frame to show: 12, 12mm or 0.5s; else the last one"
     )
     parser.add_argument(
-        "--magnify", type=float, help="magnification of displacements; else chosen for each run"
+        "--magnify", type=float, help="magnification of displacements; else chosen for the run"
     )
     args = parser.parse_args(words)
     if args.magnify is not None and not 0 <= args.magnify < float("inf"):
         raise Refused(f"--magnify: {args.magnify:g} must be at least 0")
-    for directory in args.result:
-        readRun(directory)
-    with filesOf(", ".join(args.result)):
+    directory = args.result
+    readRun(directory)
+    with filesOf(directory):
         if args.html is False:
-            return inParaView(args.result, args.at, args.magnify)
-        if len(args.result) > 1:
-            raise Refused(
-                "--html writes one page of one run; start view.py again for other files or runs"
-            )
-        (directory,) = args.result
+            return inParaView(directory, args.at, args.magnify)
         number = args.at and frameNear(directory, args.at)
         make = lambda: page.page(directory, number, args.magnify)
         pages.save(make, args.html, directory, "view.html")

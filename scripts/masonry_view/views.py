@@ -9,7 +9,7 @@ from masonry.numbers.cracks import widths
 #: Magnifications of displacements in cracks.png, the usual one first, as in figure 6 of the paper
 #: (see yade_plugin/law/README.md).
 MAGNIFICATIONS = 30, 20, 10, 5, 2, 1
-FARTHEST = 0.25  # largest drawn displacement over the size of the structure
+MAX_DISPLACEMENT = 0.25  # largest drawn displacement over the size of the structure
 OVERLAP = 0.25  # how far blocks overlap at most where a joint closed, over the height of a course
 #: From where a structure is seen in space, in plan beside its front and over the ground [°].
 ASIDE, ABOVE = 32, 24
@@ -22,7 +22,7 @@ REACH = 1.5  # how far what moved is in a picture, over the size of what was bui
 View = namedtuple("View", "right up towards start labels name")
 
 
-def viewOf(points, normals, areas, sight=None):
+def viewOf(points, normals, areas, direction=None):
     """The :class:`View` of a part, chosen by its shape.
 
     If no joint looks along one horizontal direction, as in an arch or a wall of one wythe at any
@@ -33,7 +33,7 @@ def viewOf(points, normals, areas, sight=None):
     :param points: corners of its blocks, an array of (x, y, z) [m]
     :param normals: unit normals of its joints, an array
     :param areas: areas of these joints [m²]
-    :param sight: direction of sight (x, y, z), if the user gave one
+    :param direction: of sight (x, y, z), if the user gave one
     """
     from scipy.spatial import ConvexHull
 
@@ -52,8 +52,8 @@ def viewOf(points, normals, areas, sight=None):
     towardsX = abs(across[0]) > abs(along[0])
     if second > 1.05 * first or second > first / 1.05 and towardsX:
         first, second, along, across = second, first, across, along
-    if sight is not None:
-        return _viewFrom(-np.array(sight, float) / np.linalg.norm(sight), points, False)
+    if direction is not None:
+        return _viewFrom(-np.array(direction, float) / np.linalg.norm(direction), points, False)
     total = areas.sum()
     stands = lambda side: areas @ (normals[:, :2] @ side) ** 2 < 1e-6 * total
     standing = [side for side in (across, along) if total and stands(side)]
@@ -122,7 +122,7 @@ def magnificationOf(joints, moved, blocks):
     size = np.ptp(np.concatenate(blocks), axis=0).max()
     far = np.linalg.norm(moved, axis=1).max()
     closed, most = max(-joints["opening"].min(), 0), OVERLAP * courseOf(blocks)
-    fits = lambda m: m * far <= FARTHEST * size and m * closed <= most
+    fits = lambda m: m * far <= MAX_DISPLACEMENT * size and m * closed <= most
     return next(filter(fits, MAGNIFICATIONS), 1)
 
 

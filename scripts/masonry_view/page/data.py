@@ -11,7 +11,6 @@ import zlib
 
 import numpy as np
 
-from masonry.terminal import plain
 from .. import painting
 from masonry.numbers.cracks import CRACK, CRUSHED, DAMAGED
 from masonry.numbers.files import filesOf
@@ -73,17 +72,9 @@ def dataOfModel(model, number=None, magnification=None, curve=None):
     with filesOf(model.directory):
         head = _head(model, magnification, curve)
         _addTies(arrays, model)
-    for name, kind in (
-        ("points", "f4"),
-        ("owner", "u4"),
-        ("triangles", "u4"),
-        ("edges", "u4"),
-        ("bodies", "u4"),
-        ("looks", "u1"),
-        ("centres", "f4"),
-        ("free", "u4"),
-    ):
-        arrays.add(name, getattr(model, name), kind)
+    kinds = {"points": "f4", "looks": "u1", "centres": "f4"}
+    for name in "points owner triangles edges bodies looks centres free".split():
+        arrays.add(name, getattr(model, name), kinds.get(name, "u4"))
     for name in ("shift", "turn", "moved"):
         arrays.addRounded(name, getattr(model, name))
     arrays.add("jointPoints", joints.corners, "f4")
@@ -114,15 +105,8 @@ def _head(model, magnification, curve):
     """What is said about a run, and how it is seen first."""
     sight = model.sight(magnification)
     return {
-        "title": plain(model.title),
-        "frames": [
-            {
-                "time": one["time"],
-                "stage": one["stage"] and plain(one["stage"]),
-                "values": list(map(plain, one["values"])),
-            }
-            for one in model.captions(curve)
-        ],
+        "title": model.title,
+        "frames": model.captions(curve),
         "magnification": sight.magnification,
         "low": sight.low.tolist(),
         "high": sight.high.tolist(),
@@ -151,9 +135,8 @@ def _addTies(arrays, model):
     ends = np.concatenate([frames[0]["cells"][n] for n in bars])
     arrays.add("tiePoints", frames[0]["points"][ends], "f4")
     arrays.addRounded("tieMoved", np.array([one["displacement"][ends] for one in frames]))
-    arrays.add(
-        "tieCondition", np.array([one["condition"][bars] for one in frames]), "u1", frames=True
-    )
+    conditions = np.array([one["condition"][bars] for one in frames])
+    arrays.add("tieCondition", conditions, "u1", frames=True)
 
 
 def nice(value):

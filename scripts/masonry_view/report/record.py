@@ -23,19 +23,17 @@ from ..page.data import dataOfModel
 from masonry.numbers.run_data import BASE, MOVED, TOP, RunData
 from .pieces import written
 
-MOST_NAMES = 12  # of blocks in the drawing
+MAX_NAMES = 12  # of blocks in the drawing
 LARGEST_PICTURE = 600e3  # [bytes] of a figure that goes into a report
 
 
 class Record:
-    """The files of a run."""
+    """The files of a run. Raises Refused if the folder has no run.json."""
 
     def __init__(self, directory):
-        """Read a folder of results. Raises Refused if it has no run.json."""
         self.directory = os.fspath(directory)
         self.run = readRun(directory)  #: its entries
-        name = os.path.basename(os.path.abspath(self.directory))
-        self.title = str(self.run.get("title") or self.run.get("scene") or name)
+        self.title = str(self.run.get("title") or self.directory)
         #: sentences on what is damaged or missing in the files
         self.problems = []
         #: arrays of curve.csv by name; what is no finite number there is NaN. Empty without rows
@@ -100,11 +98,6 @@ class Record:
         good = np.isfinite([self.columns[name][rows] for name in shown[:2]]).all(axis=0)
         self.spec, self.rows = spec, rows[good]
 
-    def column(self, name):
-        """A column in the rows that the figure shows, or None."""
-        values = self.columns.get(name)
-        return None if values is None else values[self.rows]
-
     def _frames(self):
         try:
             with filesOf(self.directory):
@@ -136,7 +129,7 @@ class Record:
         targets = self.run.get("targets") or []
         for one in targets:
             structure.shades[one["body"]] = "held" if one.get("held") else "loaded or watched"
-            if len(targets) <= MOST_NAMES:
+            if len(targets) <= MAX_NAMES:
                 structure.names[one["body"]] = str(one["name"])
         size = " × ".join(written(float(v), 3) for v in high - low)
         about = f"The {len(bricks):,} units of the masonry as built, {size} m"
@@ -145,8 +138,7 @@ class Record:
         return drawn, f"{about} (x × y × z)."
 
     def _whole(self, structure):
-        """A structure whose bricks are whole that the model has in halves: those on both sides of a
-        crack surface."""
+        """A structure in which the halves of bricks on both sides of a crack surface are one."""
         kinds = self.run.get("kinds") or []
         if CRACK_SURFACE in kinds:
             joints = readFrame(self.directory, "joints", 0, ["bodies", "kind"])
@@ -173,8 +165,7 @@ class Record:
 
     @functools.cached_property
     def data(self):
-        """What the numbers of the run are found from: rows whose forces are no finite numbers are
-        left out."""
+        """What these numbers are found from, without rows whose forces are not finite."""
         data = RunData(self.run, self.columns.get)
         known = [self.columns[h] for h in (MOVED, BASE, TOP) if h in self.columns]
         with filesOf(self.directory):
@@ -184,7 +175,7 @@ class Record:
 
     @functools.cached_property
     def numbers(self):
-        """All numbers of the run, by their entries in run.json."""
+        """Numbers of the run, by their entries in run.json."""
         return quantities.known(self.data)
 
     @property
@@ -200,7 +191,7 @@ class Record:
     @functools.cached_property
     def ideals(self):
         """The bilinear curve of the push by every rule of :mod:`masonry_capacity.bilinear_curve`,
-        or a text that says why there is none."""
+        or why there is none."""
         push, found = None, {}
         for rule in bilinear_curve.RULES:
             try:

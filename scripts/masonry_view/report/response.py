@@ -24,7 +24,7 @@ from .pieces import (
 )
 from .structure import firstUpper, nameOf, sought, valueOf
 
-MOST_ANSWERS = 12  # in the table of what stages found; all are in a folded one
+MAX_ANSWERS = 12  # in the table of what stages found; all are in a folded one
 NOISE = 1e-6  # of the largest force of a column: what is below is round-off
 
 
@@ -199,7 +199,7 @@ def _answers(run):
     caption = "What the stages were run for. Source: run.json: answers"
     every = [line(a, nameOf(a)) for a in run["answers"]]
     whole = table(heads, every, caption, "answers")
-    if len(every) <= MOST_ANSWERS:
+    if len(every) <= MAX_ANSWERS:
         yield whole
         return
     found = [line(a, what) for a, what in sought(run)]

@@ -68,8 +68,8 @@ OF_UNITS = (
     ),
     ("density of the units", "density_kg_per_m3", 1, "kg/m³", "Mass of a brick over its volume."),
 )
-MOST_WORDS = 12  # of a script that are shown at once
-MOST_LEADING = 3  # answers at the head of a report
+MAX_WORDS = 12  # of a script that are shown at once
+MAX_LEADING = 3  # answers at the head of a report
 OLDER = "The run was made by an older version of the plugin, whose run.json does not say this."
 
 
@@ -108,7 +108,7 @@ def head(record):
     lead = quantities.headline({**run, **record.numbers})
     lead = lead or "; ".join(f"{what} {valueOf(one)}" for one, what in sought(run))
     answers = [f"{nameOf(a)} {valueOf(a)}" for a in answersOf(run)]
-    if lead := lead or "; ".join(answers[-MOST_LEADING:]):
+    if lead := lead or "; ".join(answers[-MAX_LEADING:]):
         yield note(f"{firstUpper(lead)}.", "lead")
     if warnings := run["warnings"] + record.problems:
         more = f", and {len(warnings) - 1} more" if len(warnings) > 1 else ""
@@ -310,7 +310,7 @@ def loaded(record):
         "Stresses are in Pa, forces in N, lengths in m, and displacements of pushes and supports in"
         " mm; help(masonry.Scene) describes the words. Source: run.json: script."
     )
-    title, few = "The words of the script, in their order", len(script) <= MOST_WORDS
+    title, few = "The words of the script, in their order", len(script) <= MAX_WORDS
     yield folded(title, listed(script, kind="script"), about, opened=few)
     options = [
         f"{name} {_said(value)} {run['option_units'].get(name, '')}".strip()

@@ -65,24 +65,18 @@ def trust(record):
             " Source: run.json: preset."
         )
     unknown = [
-        (
-            "Whether the model fits real masonry of this kind: validation/README.md of the project"
-            " compares it with tests and closed forms."
-        ),
-        (
-            "What the scatter of the material does: studies run a scene many times with properties"
-            " that vary."
-        ),
+        "Whether the model fits real masonry of this kind: validation/README.md of the project"
+        " compares it with tests and closed forms.",
+        "What the scatter of the material does: studies run a scene many times with properties that"
+        " vary.",
     ]
     if "accuracy" not in run:
-        unknown.insert(
-            0,
-            (
-                "How far rate, mesh and points of joints change the result: one run does not tell."
-                " --accuracy 2 finds it for peak and work of a push."
-            ),
+        text = (
+            "How far rate, mesh and points of joints change the result: one run does not tell."
+            " --accuracy 2 finds it for peak and work of a push."
         )
-    if run.get("assumed"):
+        unknown.insert(0, text)
+    if run["assumed"]:
         unknown.append(
             "What the properties change that were assumed; the table of what was built lists them."
         )
