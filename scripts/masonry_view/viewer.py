@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""A run in the window of ParaView, in whose Python :mod:`masonry_view.paraview_macro` works, or in a
-browser: the program ``scripts/view.py``. No YADE is needed."""
+"""A run in ParaView, in whose Python :mod:`masonry_view.paraview_macro` works, or in a browser: the
+program ``scripts/view.py``. No YADE is needed."""
 
 import argparse
 import json

@@ -60,8 +60,7 @@ class Record:
             return {}
         heads, *lines = [*csv.reader(text.splitlines())] or [[]]
         rows = [[*map(_finite, line)] for line in lines if len(line) == len(heads)]
-        torn = len(lines) - len(rows)
-        if torn:
+        if torn := len(lines) - len(rows):
             self.problems.append(
                 f"curve.csv: {torn:,} lines do not have a number for every column, and are left out"
                 " of this report"
@@ -70,8 +69,7 @@ class Record:
             return {}
         found = dict(zip(heads, np.array(rows, float).T))
         for name, values in found.items():
-            bad = np.isnan(values).sum()
-            if bad:
+            if bad := np.isnan(values).sum():
                 self.problems.append(
                     f"curve.csv: {bad:,} of {len(values):,} values of {name} are no finite numbers,"
                     " and are left out of this report"
@@ -102,7 +100,7 @@ class Record:
         try:
             with filesOf(self.directory):
                 model = Model(self.directory, chosen=chosenFrames)
-                self.elevation = self._drawing(model)
+                self.elevation = self._drawing()
                 self.picture = dataOfModel(model, curve=self.columns)
                 number = elevation.frameOfCracks(self.run, self.directory)
                 self.whenCracked = elevation.whenOf(self.run, self.directory, number)
@@ -115,13 +113,12 @@ class Record:
         else:
             self.frameTimes, self.frameCount = model.times, model.count
 
-    def _drawing(self, model):
+    def _drawing(self):
         """What was built as SVG, and a sentence on it."""
         blocks = readFrame(self.directory, "blocks", 0, elevation.NEEDED)
         # it is seen from the front, also where cracks.png looks askew
         run = {**self.run, "views": {}}
-        structure = elevation.structureOf(run, blocks, None, self.directory)
-        structure = self._whole(structure)
+        structure = self._whole(elevation.structureOf(run, blocks, None, self.directory))
         bricks = [b for b in structure.corners if b not in structure.shades]
         low, high = (
             f(blocks["points"][structure.points(bricks)], axis=0) for f in (np.min, np.max)
