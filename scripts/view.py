@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Runs in the window of ParaView, in a ready state, or in a browser.
+"""A run in the window of ParaView, in a ready state, or in a browser.
 
-/usr/bin/python3 scripts/view.py results/wall_comp4
-/usr/bin/python3 scripts/view.py results/wall_comp4 --at 12mm
-/usr/bin/python3 scripts/view.py results/wall_comp4 --html wall.html
+    /usr/bin/python3 scripts/view.py results/wall_comp4
+    /usr/bin/python3 scripts/view.py results/wall_comp4 --at 12mm
+    /usr/bin/python3 scripts/view.py results/wall_comp4 --html wall.html
 """
 
 from masonry_view.viewer import main

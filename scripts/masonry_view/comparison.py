@@ -13,7 +13,7 @@ from masonry.arguments import FilePath
 from masonry.errors import Refused
 from masonry.terminal import say
 from masonry.numbers import drawing
-from masonry.numbers.files import program, readCurve, readRun
+from masonry.numbers.files import program, readCurve, readRun, readText
 
 #: Colours that differ in print, also for those who do not tell red from green (Okabe and Ito,
 #: 2008), and dashes.
@@ -36,13 +36,7 @@ def readMeasured(text: str) -> tuple[np.ndarray, np.ndarray, list[str]]:
             " from 1"
         )
     path, *wanted = parts
-    try:
-        with open(path, newline="", encoding="utf-8-sig") as f:
-            lines = f.read().splitlines()
-    except OSError as error:
-        raise Refused(f"cannot read {path}: {error.strerror}") from None
-    except UnicodeDecodeError:
-        raise Refused(f"cannot read {path}: it is no text") from None
+    lines = readText(path).removeprefix("\ufeff").splitlines()
     lines = [line for line in lines if line.strip() and not line.startswith("#")]
     if len(lines) < 3:
         raise Refused(f"{path}: there must be a line of names and two of numbers")
@@ -82,14 +76,7 @@ def readRuns(
     """
     curves, labels = [], None
     for directory in directories:
-        data = readCurve(directory)
-        try:
-            run = readRun(directory)
-        except Refused:
-            if not (x and y):
-                raise
-            run = {}
-        spec = run.get("figure")
+        data, spec = readCurve(directory), readRun(directory).get("figure")
         if not spec and not (x and y):
             raise Refused(
                 f'{directory}: run.json has no entry "figure": name the columns by --x and --y'
@@ -161,11 +148,10 @@ def _draw(out, tests, curves, names, labels, title):
     with drawing.picture(out, 7, 4.6, 150) as figure:
         axes = figure.subplots()
         for n, (a, b, _) in enumerate(tests):
-            look = dict(color="0.15", lw=1.0, ls=DASHES[n % 4], zorder=1.5)
+            look = dict(color="0.15", lw=1.0, ls=DASHES[n % len(DASHES)], zorder=1.5)
             axes.plot(a, b, **look, label=names[len(curves) + n])
         for n, (a, b) in enumerate(curves):
-            colour = COLOURS[n % len(COLOURS)]
-            dash = DASHES[n // len(COLOURS) % len(DASHES)]
+            colour, dash = COLOURS[n % len(COLOURS)], DASHES[n // len(COLOURS) % len(DASHES)]
             axes.plot(a, b, color=colour, lw=1.3, ls=dash, label=names[n], zorder=2)
         for low, high, line in ((*axes.get_xlim(), axes.axvline), (*axes.get_ylim(), axes.axhline)):
             if low < -0.05 * high < 0:  # both sides are more than a margin
@@ -175,11 +161,8 @@ def _draw(out, tests, curves, names, labels, title):
 
 
 def _names(directories, measured):
-    """Short names of runs and measured curves, as much of the ends of their paths as tells them
-    apart.
-
-    Measured curves of one file have the name of their second column, too.
-    """
+    """Names of runs and measured curves: as much of the ends of their paths as tells them apart,
+    and for measured curves of one file their second column."""
     files = [text.rsplit(":", 2) for text in measured]
     paths = [*directories, *(f[0] for f in files)]
     parts = [os.path.abspath(path).split(os.sep) for path in paths]
@@ -207,10 +190,8 @@ def main(words: Sequence[str] | None = None) -> None:
         action="append",
         default=[],
         metavar="FILE:X:Y",
-        help=(
-            "a measured curve: a file and the names of its two columns, or their numbers from 1;"
-            " may be repeated"
-        ),
+        help="a measured curve: a file and the names of its two columns, or their numbers from 1;"
+        " may be repeated",
     )
     parser.add_argument("--x", metavar="COLUMN", help="column of curve.csv; else that of curve.png")
     parser.add_argument(
@@ -220,10 +201,8 @@ def main(words: Sequence[str] | None = None) -> None:
         "--label",
         action="append",
         default=[],
-        help=(
-            "name of a curve, in the order of the folders and then of the CSV files; may be"
-            " repeated"
-        ),
+        help="name of a curve, in the order of the folders and then of the CSV files; may be"
+        " repeated",
     )
     parser.add_argument("--title", default="", help="of the picture")
     parser.add_argument(

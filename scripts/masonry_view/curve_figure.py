@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""curve.png: what the entry ``figure`` of run.json says, and the energies. This module needs no
-YADE."""
+"""curve.png: what the entry ``figure`` of run.json says, and the energies."""
 
 import os
 import re
@@ -17,8 +16,8 @@ LINES = ["black", "tab:orange", "tab:green", "tab:purple", "tab:brown", "tab:cya
 
 
 def plan(run: dict[str, Any], data: dict[str, Any], directory: FilePath) -> dict[str, Any]:
-    """The entry ``figure`` of run.json, with all that may be left out. Raises Refused for one that
-    cannot be drawn.
+    """The entry ``figure`` of run.json, with all that may be left out. Raises Refused if it cannot
+    be drawn.
 
     :param run: what :func:`masonry.numbers.files.readRun` returns
     :param data: what :func:`masonry.numbers.files.readCurve` returns
@@ -44,9 +43,9 @@ def plan(run: dict[str, Any], data: dict[str, Any], directory: FilePath) -> dict
 
 def energies(data: dict[str, Any]) -> tuple[dict[str, Any], Any]:
     """Energies to draw, since the first row: a dict of name -> values [J], and the work done, or
-    None if there is none. One row alone has none.
+    None.
 
-    :param data: dict of column name -> array; what has an energy ends in ``_J``
+    :param data: dict of column name -> array; columns of energies end in ``_J``
     """
     since = {k[:-2]: v - v[0] for k, v in data.items() if k[-2:] == "_J" and len(v) > 1}
     work = [since.pop(name) for name in ("external", "gravity") if name in since]
@@ -74,11 +73,10 @@ def curve(directory: FilePath) -> None:
 
 
 def figureOf(run: dict[str, Any], data: dict[str, Any], directory: FilePath) -> Any:
-    """The figure of curve.png, to be drawn and saved in :func:`masonry.numbers.drawing.style`.
-    Raises Refused.
+    """The figure of curve.png, for use in :func:`masonry.numbers.drawing.style`. Raises Refused.
 
     Loops have axes through zero and their envelope in bold, and their energies are drawn over the
-    length of the way. Without energies there is no panel of them.
+    length of the way.
 
     :param run: entries of run.json: ``figure`` and ``title``
     :param data: dict of column name -> numbers
@@ -97,7 +95,7 @@ def figureOf(run: dict[str, Any], data: dict[str, Any], directory: FilePath) -> 
         return figure
     figure = drawing.empty(7, 7)
     top, bottom = figure.subplots(2, 1, sharex=not looped, height_ratios=[3, 2])
-    _curves(top, spec, data, x)
+    _curves(top, spec, data)
     top.set_title(run["title"])
     label = spec["x"]["label"]
     if looped:
@@ -118,7 +116,7 @@ def panelOf(spec: dict[str, Any], data: dict[str, Any], ideal: Any = None) -> An
     """
     figure = drawing.empty(7, 4.2)
     axes = figure.subplots()
-    _curves(axes, spec, data, data[spec["x"]["column"]], ideal)
+    _curves(axes, spec, data, ideal)
     axes.set_xlabel(spec["x"]["label"])
     figure.tight_layout()
     return figure
@@ -141,9 +139,9 @@ def _energies(axes, x, label, stack, work):
     drawing.finish(axes, label, "energy since the first row [J]", fontsize=8)
 
 
-def _curves(axes, spec, data, x, ideal=None):
+def _curves(axes, spec, data, ideal=None):
     """The upper panel of curve.png."""
-    looped = spec["looped"]
+    looped, x = spec["looped"], data[spec["x"]["column"]]
     first = data[spec["y"][0]["column"]]
     for n, axis in enumerate(spec["y"]):
         wide = (0.7, 0.4) if looped else (1.2, 0.6)
@@ -182,8 +180,8 @@ def _curves(axes, spec, data, x, ideal=None):
 
 
 def limits(spec: dict[str, Any], data: dict[str, Any]) -> tuple[float, float]:
-    """Range of the upper panel that has all of the first curve, and of the others what is more than
-    single swings."""
+    """Range of the upper panel, which has all of the first curve, and of the others all but single
+    swings."""
     columns = [data[axis["column"]] for axis in spec["y"]]
     marks = [thing["y"] for key in ("marks", "bounds") for thing in spec[key]]
     low = min([np.nanmin(columns[0]), *(np.nanquantile(c, 0.01) for c in columns), *marks])

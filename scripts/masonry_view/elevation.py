@@ -21,8 +21,8 @@ from .painting import MORTAR, NONE, SHADES, TIES, Painting, fromBackToFront, rgb
 from .views import FROM_ABOVE, IN_SPACE, REACH, courseOf, magnificationOf, scaleText
 from .views import spaceViewOf, viewOf
 
-#: A block of a part is in an elevation if it reaches into the depth of the façade by this share of
-#: its own depth or of the façade's; what belongs to no part, as a platen, if it touches this depth.
+#: Share of its own depth, or of the façade's, by which a block of a part in an elevation reaches
+#: into the façade; what belongs to no part, as a platen, need only touch it.
 INSIDE = 0.25
 
 #: Arrays of frames of blocks and of joints that are drawn.
@@ -84,8 +84,7 @@ class Structure:
         return np.concatenate([self.corners[body] for body in bodies])
 
     def outer(self, body):
-        """Numbers of the points of a block that are corners of it, of as many as a deformable unit
-        has."""
+        """Numbers of the points of a block that are corners; a deformable unit has more."""
         own = self.corners[body]
         if len(own) <= 8:
             return own
@@ -128,9 +127,8 @@ class Elevation:
     in space.
 
     :param view: a :class:`masonry_view.views.View`; ``bodies``: ids of the blocks that are drawn
-    :param members: of these, the ones of the façade, of which it is said whether they moved across
-        it
-    :param moment: what is said of it if it is not that of the other elevations
+    :param members: those of the façade, of which it is said whether they moved across it
+    :param moment: said of it if the other elevations show another one
     """
 
     def __init__(self, structure, name, view, bodies, members=(), moment=""):
@@ -151,8 +149,7 @@ class Elevation:
         return (points - self.view.start) @ self.to
 
     def box(self, magnification):
-        """Two corners of what is drawn: all of it, but for what flew away, with room for the scale
-        below."""
+        """Two corners of what is drawn but for what flew away, with room for the scale below."""
         flat = self.flat(self.structure.blocks["points"][self.nodes])
         now = flat + magnification * self.structure.moved[self.nodes] @ self.to
         low, high = flat.min(axis=0), flat.max(axis=0)
@@ -166,7 +163,7 @@ class Elevation:
         """Draw it.
 
         :param magnification: of displacements; 0: as built
-        :param scale: length of a metre on paper [1/72 inch], by which lines are as thin as needed
+        :param scale: length of a metre on paper [1/72 inch], which sets the widths of lines
         """
         from matplotlib.collections import LineCollection, PolyCollection
 
@@ -245,8 +242,8 @@ class Elevation:
 
 
 def elevationsOf(structure):
-    """One elevation for each façade: the largest parts first, and none for a part that is seen in
-    another one's or is held."""
+    """One elevation for each façade; none for a part that is held, or seen in that of a larger
+    one."""
     stands = lambda part: any(structure.shades.get(body) != "held" for body in part)
     parts = {n: part for n, part in structure.parts.items() if stands(part)} or {
         "": list(structure.corners)
@@ -282,15 +279,13 @@ def _facade(structure, name, members):
 
 
 def figureOf(structure, title, magnification=None, later=None):
-    """A figure of all façades in one scale, to be drawn and saved in
-    :func:`masonry.numbers.drawing.style`: the deformed structure, magnified, over the undeformed
-    one, with its cracks. What moves across a façade, is seen from above or falls is seen in space,
-    too.
+    """A figure of all façades in one scale, for use in :func:`masonry.numbers.drawing.style`: the
+    magnified deformed structure over the undeformed one, with its cracks. What moves across a
+    façade, is seen from above or falls is seen in space, too.
 
     :param title: above it; ``{}`` in it is what is said of the magnification
-    :param magnification: of displacements; 0: the structure as it is built; None: as in
-        :func:`magnificationOf`
-    :param later: a moment, and the structure at that moment, which is drawn true to scale; or None
+    :param magnification: 0: as built; None: that of :func:`magnificationOf`
+    :param later: a moment and the structure then, drawn true to scale; or None
     """
     elevations = elevationsOf(structure)
     if magnification is None:
@@ -347,8 +342,7 @@ def _cells(sizes, columns):
 
 
 def _scale(sizes, columns):
-    """The largest scale with which elevations of these sizes [m] stand on a page in so many columns
-    [inch/m]."""
+    """The largest scale with which they stand on a page in so many columns [inch/m]."""
     wides, highs = _cells(sizes, columns)
     most = 7.2 if len(sizes) == 1 else 10.0 - 0.85 * columns
     return min(most / sum(wides), (9.5 - 0.75 * len(highs)) / sum(highs))
@@ -387,11 +381,11 @@ def structureOf(run, blocks, joints, directory):
 
 
 def cracksOf(run, blocks, joints, when, directory, later=None):
-    """The figure of cracks.png. Cracks are red, joints that slid are blue, and crushed spots are
-    black. Raises Refused.
+    """The figure of cracks.png: open joints red, slid ones blue, crushed spots black. Raises
+    Refused.
 
-    :param when: text that names the moment of the frame; ``later`` is as in :func:`figureOf`, the
-        others as in :func:`structureOf`
+    :param when: names the moment of the frame; ``later`` is as in :func:`figureOf`, the others as
+        in :func:`structureOf`
     """
     limits = f"open or slid more than {1e3 * CRACK:g} mm, crushed more than {1e3 * CRUSHED:g} mm"
     title = f"{run['title']}\n{when}\n{{}}; {limits}"
@@ -399,10 +393,8 @@ def cracksOf(run, blocks, joints, when, directory, later=None):
 
 
 def cracksOfRun(run, directory):
-    """The figure of cracks.png of a run; if it followed a collapse, with its end beside it.
-
-    :param run: entries of run.json
-    """
+    """The figure of cracks.png of a run with these entries of run.json; of a collapse with its end
+    beside it."""
     frames = lambda n: [readFrame(directory, kind, n, NEEDED) for kind in ("blocks", "joints")]
     last, chosen, later = len(frameTimes(directory)) - 1, frameOfCracks(run, directory), None
     if chosen != last:
@@ -419,8 +411,7 @@ def cracks(directory):
         drawing.save(figure, os.path.join(directory, "cracks.png"), 110)
 
 
-#: What is said of the moments that a run that followed a collapse names, by their names among its
-#: answers.
+#: What is said of the moments of a collapse, by their names among the answers of the run.
 MOMENTS = {
     "noticed_at": "when the collapse was noticed",
     "first_fall": "when the first block had fallen",
@@ -428,19 +419,15 @@ MOMENTS = {
 
 
 def _moments(run, directory):
-    """Numbers of the frames nearest to the moments of a collapse, and what they are, the first one
-    first."""
+    """Numbers of the frames nearest to the moments of a collapse, and what they are, in order."""
     times = {a["name"]: a["value"] for a in run.get("answers") or [] if a["stage"] == "fall"}
     found = sorted((times[name], text) for name, text in MOMENTS.items() if name in times)
     return [(frameAt(directory, time), text) for time, text in found]
 
 
 def frameOfCracks(run, directory):
-    """Number of the frame whose cracks are drawn, from 0: the last one, or, of a run that followed
-    a collapse to the ground, that when the collapse was noticed or the first block had fallen.
-
-    :param run: entries of run.json
-    """
+    """Number of the frame whose cracks are drawn, from 0: the last one, or that when a collapse was
+    noticed or the first block had fallen; ``run``: entries of run.json."""
     moments = _moments(run, directory)
     return moments[0][0] if moments else len(frameTimes(directory)) - 1
 

@@ -3,15 +3,13 @@
 
 ``/usr/bin/python3 -m masonry_view.figures results/wall_comp4`` draws curve.png, if there are
 ParaView files cracks.png, and if there is a mechanism of limit analysis mechanism.png. From a
-script, also one of YADE, ``masonry_view.figures.draw(folder)`` does the same. This module needs no
-YADE, and loads neither VTK nor a display, so it does no harm to the process that calls it.
+script, also one of YADE, ``masonry_view.figures.draw(folder)`` does the same. This module loads
+neither YADE nor VTK nor a display.
 
-What curve.png shows is said by the entry ``figure`` of run.json, and what the panels of cracks.png
-are by ``parts``; see
-:mod:`masonry.run.results`.
+The entries ``figure`` and ``parts`` of run.json say what curve.png and the panels of cracks.png
+show; see :mod:`masonry.run.results`.
 """
 
-import contextlib
 import glob
 import os
 import sys
@@ -26,14 +24,15 @@ from masonry.numbers.files import filesOf, onFolder, readWhole
 
 def hasRows(directory: FilePath) -> bool:
     """Whether a run has rows; limit analysis alone has none."""
-    with contextlib.suppress(OSError):  # what is wrong is said when the curve is drawn
+    try:
         return len(readWhole(os.path.join(directory, "curve.csv")).splitlines()) > 1
-    return True
+    except OSError:
+        return True  # what is wrong is said when the curve is drawn
 
 
 def drawRun(directory: FilePath) -> None:
-    """Draw curve.png and cracks.png, if the files of a run allow it. Raises Refused if something is
-    wrong with them, or with the folder."""
+    """Draw curve.png and cracks.png, as far as there are files for them. Raises Refused if
+    something is wrong with them, or with the folder."""
     memory.reserve()
     folders.check(directory)
     with filesOf(directory):

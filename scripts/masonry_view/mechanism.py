@@ -7,13 +7,15 @@ import os
 import numpy as np
 from masonry.errors import Refused
 from masonry.numbers import drawing
+from masonry.numbers.cracks import CRACK_SURFACE
 from masonry.numbers.files import filesOf, readText
 
-from .elevation import Structure, figureOf
+from .elevation import figureOf, structureOf
 
 FILE, FIGURE = "mechanism.json", "mechanism.png"
 DPI = 90
-SEAM = 1  # number of the kind of joints that are crack surfaces
+#: Kinds of joints by their numbers in the file.
+KINDS = "", CRACK_SURFACE
 
 
 def isThere(directory):
@@ -25,22 +27,13 @@ def draw(directory):
     """Draw the mechanism in the style of the crack figure. Raises Refused."""
     path = os.path.join(directory, FILE)
     try:
-        found = json.loads(readText(path))
+        found = {"kinds": KINDS, **json.loads(readText(path))}
     except ValueError as error:
         raise Refused(f"{path}: {error}") from None
-    with filesOf(directory):
-        _draw(found, os.path.join(directory, FIGURE))
-
-
-def _draw(found, path):
-    blocks, joints = (_asFrame(found[name]) for name in ("blocks", "joints"))
-    masonry = {body for part in found["parts"].values() for body in part}
-    shades = {int(b): "platen" for b in blocks["body"] if masonry and b not in masonry}
-    with drawing.style():
-        structure = Structure(
-            blocks, joints, found["parts"], shades, viewDirections=found["views"], seams=(SEAM,)
-        )
-        drawing.save(figureOf(structure, found["title"], 1), path, DPI)
+    with filesOf(directory), drawing.style():
+        blocks, joints = (_asFrame(found[name]) for name in ("blocks", "joints"))
+        figure = figureOf(structureOf(found, blocks, joints, directory), found["title"], 1)
+        drawing.save(figure, os.path.join(directory, FIGURE), DPI)
 
 
 def _asFrame(entries):

@@ -4,16 +4,16 @@
 The page (:mod:`masonry_view.page`), the report and ParaView's window show this.
 """
 
-import os
 from typing import NamedTuple
 
 import numpy as np
 
 from masonry.errors import Refused
 from masonry.numbers.cracks import CRACK, DAMAGED, centresOf, crushed, widths
-from .curve_figure import plan, unitOf
+from .curve_figure import bare, plan, unitOf
 from masonry.numbers.files import filesOf, readCurve, readRun
 from masonry.numbers.frames import framePaths, frameTimes, readFrame, readSurfaces
+from masonry.terminal import withoutMarkup
 from .views import REACH, magnificationOf, viewOf
 
 SHARP = np.cos(np.radians(20))  # of the angle from which an edge of a block is drawn
@@ -41,39 +41,32 @@ class Model:
     - ``run``, ``title``: run.json and its title; ``times``: of the frames [s]; ``numbers``: of the
       frames that were read, from 0; ``count``: of all frames of the run
     - ``points`` (N, 3): corners and nodes as built [m]; ``owner`` (N): number of the block of each
-    - ``bodies`` (B): ids of the bodies of the blocks; ``centres`` (B, 3): means of their points [m]
-    - ``looks`` (B): PLATEN (also supports and the like), BRICK or GROUND
-    - ``framed`` (N): whether a point is to be in the picture, and not one of the ground on which
-      blocks fall
-    - ``triangles`` (n, 3): surfaces of the blocks, seen from outside counter-clockwise, and
-      ``edges`` (n, 2): their edges, both as numbers of points
-    - ``rigid`` (B): whether a block is rigid
-    - ``shift`` (F, B, 3): displacement of the centre of every rigid block [m], and ``turn`` (F, B,
-      3): its rotation as a vector along the axis, of the length of the angle [rad]; zero for
-      deformable units
+    - ``bodies`` (B): ids of the blocks; ``centres`` (B, 3): means of their points [m]; ``looks``
+      (B): PLATEN (also supports and the like), BRICK or GROUND; ``rigid`` (B): whether it is rigid
+    - ``framed`` (N): whether a point is in the picture: none of the ground on which blocks fall
+    - ``triangles`` (n, 3): surfaces of the blocks, counter-clockwise from outside, and ``edges``
+      (n, 2): their edges, both as numbers of points
+    - ``shift``, ``turn`` (F, B, 3): displacement of the centre of every rigid block [m], and its
+      rotation vector [rad]; zero for deformable units
     - ``free``: numbers of the points of deformable units; ``moved`` (F, len(free), 3): their
-      displacements [m]
-    - ``farthest`` (F): largest displacement of a point [m]
+      displacements [m]; ``farthest`` (F): largest displacement of a point [m]
     - ``joints``: :class:`Joints`
 
-    If run.json names a ``reference_body``, as the ground of a shaken structure, its displacement is
+    The displacement of a ``reference_body`` in run.json, as the ground of a shaken structure, is
     taken off all others.
     """
 
     def __init__(self, directory, number=None, chosen=None):
-        """Read a run.
-
+        """
         :param directory: folder of results
         :param number: of the only frame to read, from 0; None: all
         :param chosen: function of the number of frames and of the number of blocks that gives the
             numbers of the frames to read; None: all
-        :raises Refused: if the folder has no frames, if they are damaged or of an older version, or
-            without that frame
+        :raises Refused: if the folder has no frames, if they are damaged, or without that frame
         """
         self.directory, self.run = directory, readRun(directory)
         with filesOf(directory):
-            name = os.path.basename(os.path.abspath(directory))
-            self.title = str(self.run.get("title") or name)
+            self.title = withoutMarkup(self.run.get("title") or directory)
             times = self._times()
             self.count = count = len(times)
             if number is not None and not 0 <= number < count:
@@ -90,11 +83,8 @@ class Model:
             self._move()
 
     def _times(self):
-        """Times of the frames, as joints.pvd lists them [s]. Raises Refused with the reason if
-        there is none.
-
-        A run that was killed can have written a frame more, which is not shown.
-        """
+        """Times of the frames that joints.pvd lists [s]; a run that was killed can have written one
+        more. Raises Refused with the reason if there is none."""
         options = self.run.get("options") or {}
         try:
             counts = [len(framePaths(self.directory, k)) for k in ("blocks", "joints")]
@@ -157,16 +147,6 @@ class Model:
             blocks, joints = (
                 readFrame(self.directory, kind, number, names) for kind, names in needed
             )
-            if "rotation" not in blocks:
-                raise Refused(
-                    f"{self.directory}: its frames were written by an older version of the plugin,"
-                    " which did not say how blocks turn; run the scene again"
-                )
-            if len(blocks["displacement"]) != len(self.points):
-                raise Refused(
-                    f"{self.directory}: frame {number} has other blocks than frame"
-                    f" {self.numbers[0]}"
-                )
             for frame in (blocks, joints):
                 for name, values in frame.items():
                     if name != "cells" and not np.isfinite(values).all():
@@ -193,24 +173,22 @@ class Model:
         return np.column_stack(sums) / np.bincount(self.owner)[:, None]
 
     def displacements(self, k):
-        """Displacements of all points in the k-th of the frames that were read, an array (N, 3)
-        [m]."""
+        """Displacements of all points in the k-th of the frames that were read (N, 3) [m]."""
         found = self.displacementsOf(k, self.owner, self.points)
         found[self.free] = self.moved[k]
         return found
 
     def displacementsOf(self, k, block, points):
-        """Displacements of points (n, 3) in the k-th frame, each of which moves with the rigid
-        block of a number (n) [m]."""
+        """Displacements of points (n, 3) that move with rigid blocks of these numbers (n), in the
+        k-th frame [m]."""
         arms = points - self.centres[block]
         return self.shift[k][block] + turned(self.turn[k][block], arms)
 
     def sight(self, magnification=None):
-        """The :class:`Sight` in which all is in the picture in the last of the frames that were
-        read, rubble too, but for what flew away.
+        """The :class:`Sight` of the last of the frames that were read, with all in it but for what
+        flew away.
 
-        :param magnification: of displacements; None: as in
-            :func:`masonry_view.views.magnificationOf`
+        :param magnification: None: that of :func:`masonry_view.views.magnificationOf`
         """
         needed = "area damage_shear damage_tension normal opening slide".split()
         joints = readFrame(self.directory, "joints", self.numbers[-1], needed)
@@ -231,8 +209,8 @@ class Model:
         )
 
     def captions(self, curve=None):
-        """What is shown beside every frame: a list of dicts with ``time``, ``stage``, or None, and
-        ``values``, a list of texts as "supports: 92.1 kN" of the columns that curve.png shows.
+        """What is shown beside every frame: dicts with ``time``, ``stage``, or None, and
+        ``values``, texts as "supports: 92.1 kN" of the columns that curve.png shows.
 
         :param curve: columns of curve.csv; None: they are read
         """
@@ -244,20 +222,18 @@ class Model:
         found = []
         for time in self.times:
             values = []
-            if spec and "time_s" in data:
-                for axis in (spec["x"], *spec["y"]):
-                    if axis["column"] == "time_s":
-                        continue
+            for axis in (spec["x"], *spec["y"]) if spec and "time_s" in data else ():
+                if axis["column"] != "time_s":
                     unit = unitOf(axis if axis is spec["x"] else {**axis, "label": spec["y_label"]})
-                    name = axis["label"].rsplit(" [", 1)[0]
                     value = np.interp(time, data["time_s"], data[axis["column"]])
-                    values.append(f"{name}: {value:.4g} {unit}")
-            found.append({"time": time, "stage": self._stage(time, data), "values": values})
+                    values.append(withoutMarkup(f"{bare(axis['label'])}: {value:.4g} {unit}"))
+            stage = self._stage(time, data)
+            found.append({"time": time, "stage": stage and withoutMarkup(stage), "values": values})
         return found
 
     def _stage(self, time, data):
-        """Name of the stage to which a time belongs, or None if the files do not tell, as after a
-        change of the time step."""
+        """Name of the stage of a time; None if the files do not tell, as after a change of the time
+        step."""
         stages, step = self.run.get("stages"), self.run.get("time_step_s")
         if not stages or not step or "time_s" not in data:
             return None
@@ -273,19 +249,18 @@ PAIR, POINT = 16, 24  # bytes of two numbers of bodies, and of a point
 
 
 class Joints:
-    """What the joints of a run do in the frames of a :class:`Model`: all of their points that
-    crack, slide or crush in one of them. P points, with n corners of their parts of the joints.
-    What a joint that gets other points during the run does is with those that it had in each frame.
+    """Points of the joints of a :class:`Model` that crack, slide or crush in one of its frames. P
+    points, with n corners of their parts of the joints. A joint that gets other points during the
+    run has in each frame those of that time.
 
-    - ``corners`` (n, 3): corners as built [m]; ``owner`` (n): the point of a joint that each
-      belongs to
+    - ``corners`` (n, 3): as built [m]; ``owner`` (n): number of the point of each
     - ``between`` (P, 2): numbers of the two blocks
     - ``opening``, ``slide``, ``closure`` (F, P): opening, length of the slide, plastic closure [m];
       ``damage`` (F, P) in tension or shear, the larger [-]
     - ``kind`` (F, P): OPEN or SLID as :func:`masonry.numbers.cracks.widths` finds it, plus
       CRUSHED_TOO, or 0
     - ``moved`` (2, F, n, 3): displacements of the corners with the first and with the second block
-      [m]; None if both blocks of all points are rigid, since they move with these then
+      [m]; None if all of these blocks are rigid
     - ``count``: how many points joints have in the last frame
     """
 
@@ -301,10 +276,7 @@ class Joints:
         self.needed += [] if model.rigid.all() else SIDES
 
     def add(self, frame, still):
-        """Add the joints of the next frame.
-
-        :param still: displacement that is taken off all others [m]
-        """
+        """Add the joints of the next frame; ``still`` is taken off all displacements [m]."""
         points, cells, known = frame["points"], frame["cells"], self._numbers
         if self._last is None or not np.array_equal(self._last[0], points):
             corners = points[np.concatenate(cells)].tobytes()
@@ -366,22 +338,14 @@ class Joints:
                         self.moved[:, k, starts[n] : starts[n + 1]] = moved[:, cell]
         del self._numbers, self._frames, self._last
 
-    def displacements(self, k):
-        """Displacements of all corners with the first and with the second block in the k-th frame,
-        an array (2, n, 3) [m]."""
-        if self.moved is not None:
-            return self.moved[:, k]
-        of = self._model.displacementsOf
-        return np.array([of(k, self.between[self.owner, n], self.corners) for n in (0, 1)])
-
 
 #: From where on a value of a joint is drawn; the same for all frames.
 LEAST = {"opening": CRACK, "slide": CRACK, "closure": CRACK, "damage": DAMAGED}
 
 
 def turned(turn, arms):
-    """How far arms move when they are turned by rotation vectors: arrays (n, 3), without a loss of
-    digits at small angles."""
+    """How far arms move that rotation vectors turn: arrays (n, 3), with all digits at small
+    angles."""
     angle = np.linalg.norm(turn, axis=1)[:, None]
     half = np.sinc(angle / (2 * np.pi))  # sin(angle/2) / (angle/2)
     first = np.cross(turn, arms)
@@ -389,12 +353,9 @@ def turned(turn, arms):
 
 
 def sharpEdges(triangles, normals):
-    """Edges of surfaces at which they bend by more than 20°, or end: an array (n, 2) of point
-    numbers.
+    """Edges at which surfaces bend by more than 20°, or end: point numbers (n, 2).
 
-    :param triangles: numbers of corners (n, 3); two triangles share an edge if they share both of
-        its points
-    :param normals: of the triangles, of any length (n, 3)
+    :param triangles: numbers of corners (n, 3); ``normals``: theirs, of any length (n, 3)
     """
     sides = np.sort(triangles[:, [(0, 1), (1, 2), (2, 0)]].reshape(-1, 2), axis=1)
     faces = np.repeat(normals / np.linalg.norm(normals, axis=1)[:, None], 3, axis=0)
@@ -408,12 +369,12 @@ def sharpEdges(triangles, normals):
 
 
 # frames times blocks; reading them takes seconds, and they take some 12 bytes each in a page
-MOST_PLACES = 80_000
-FEWEST = 10  # frames that are shown all the same, if there are as many
+MAX_PLACES = 80_000
+MIN_FRAMES = 10  # frames that are shown all the same
 
 
 def chosenFrames(count, blocks):
-    """Numbers of the frames of a long or large run that are shown, the first and the last among
-    them, evenly spaced."""
-    many = max(FEWEST, MOST_PLACES // max(blocks, 1))
+    """Numbers of the frames of a long or large run that are shown: evenly spaced, with the first
+    and the last."""
+    many = max(MIN_FRAMES, MAX_PLACES // max(blocks, 1))
     return sorted({round(n) for n in np.linspace(0, count - 1, min(count, many))})

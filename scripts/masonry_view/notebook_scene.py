@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""A scene in a notebook: what is built, or what has come out of it, and its curve as arrays."""
+"""A scene in a notebook, and its curve as arrays."""
 
 import tempfile
 
@@ -15,15 +15,10 @@ from yade.wrapper import MasonryVtkRecorder
 from .elevation import Structure, cracksOf, figureOf
 from .notebook import RunFolder, curveOf, folded, picture, resultsOf, table, titled
 
-MOST_COUNTED = 20_000  # blocks whose joints are counted before the scene is built
+MAX_COUNTED = 20_000  # blocks whose joints are counted before the scene is built
 #: Properties of joints and units that the table shows.
 OF_JOINTS = (
-    "normalStiffness",
-    "shearStiffness",
-    "tensileStrength",
-    "cohesion",
-    "friction",
-    "compressiveStrength",
+    "normalStiffness shearStiffness tensileStrength cohesion friction compressiveStrength".split()
 )
 OF_UNITS = "density", "young", "poisson"
 
@@ -53,11 +48,10 @@ def asHtml(scene):
         return _built(scene)
     if scene.finished and scene.results.begun and not scene.running.interrupted:
         return RunFolder(scene.results.directory)._repr_html_()
-    if scene.finished or scene.isGone:
-        title = f"{scene.description.title}: {_state(scene)}"
-        parts = [curve(scene)._repr_html_()] if scene.results.rows else []
-        return titled(title, *parts)
-    return _standing(scene)
+    if not (scene.finished or scene.isGone):
+        return _standing(scene)
+    parts = [curve(scene)._repr_html_()] if scene.results.rows else []
+    return titled(f"{scene.description.title}: {_state(scene)}", *parts)
 
 
 def _state(scene):
@@ -130,7 +124,7 @@ def _counted(description):
     """Rows of the table: what is built, with the number of its joints."""
     yield from facts.sizes(description)
     bricks = Bricks(description.bricks)
-    if len(bricks) <= MOST_COUNTED:
+    if len(bricks) <= MAX_COUNTED:
         platens = any(target.box for target in description.targets.values())
         count = f"{len(bricks.joints()):,} between blocks"
         yield "joints", count + "; platens are not counted" * platens

@@ -4,9 +4,10 @@ script."""
 
 import os
 
-from masonry.terminal import withoutMarkup
-from masonry.folders import replaced
+from masonry.errors import Refused
+from masonry.folders import check, replaced
 from masonry.packages import needed
+from masonry.terminal import say, withoutMarkup
 
 #: What a whole page may do: run what stands in it. The browser refuses every request to a network.
 POLICY = "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data:"
@@ -42,6 +43,28 @@ def write(path, text):
     link."""
     with replaced(path, encoding="utf-8") as file:
         file.write(text)
+
+
+def save(makePage, path, directory, name):
+    """Write a page for the user of a program, and say so. Raises Refused if it cannot be written.
+
+    :param makePage: function that returns the page; it is called if the path is fine
+    :param path: of a file that ends in .html or .htm; None: ``name`` in the folder of the run
+    """
+    if path is None:
+        check(directory)
+        path = os.path.join(directory, name)
+    if os.path.isdir(path):
+        raise Refused(f"{path} is a folder; name a file that ends in .html or .htm")
+    if not path.lower().endswith((".html", ".htm")):
+        raise Refused(f"{path} must end in .html or .htm")
+    if not os.path.isdir(os.path.dirname(path) or "."):
+        raise Refused(f"cannot write {path}: there is no folder {os.path.dirname(path)}")
+    try:
+        write(path, makePage())
+    except OSError as problem:
+        raise Refused(f"cannot write {path}: {problem.strerror}") from None
+    say(f"{path}: {os.path.getsize(path) / 1e6:.2f} MB; any browser opens it")
 
 
 def asScript(code):

@@ -21,7 +21,7 @@ SHADES = {
     "ground": "#a3ad98",
 }
 CRACKS, CRUSHED = {"open": "#d62728", "slid": "#1f77b4"}, "#101010"
-MOST = 5e-3  # [m] closure from which the sign of a crushed point is no larger
+MAX_CLOSURE = 5e-3  # [m] closure from which the sign of a crushed point is no larger
 #: Lines of ties by their state.
 TIES = {"elastic": ("#333333", "-"), "yielded": ("#ff7f0e", "-"), "broken": ("#9467bd", ":")}
 
@@ -35,25 +35,22 @@ def rgb(colour):
 FACES = np.rint([0.45 * rgb(c) + 0.55 * rgb(SHADES["brick"]) for c in CRACKS.values()])
 #: Kinds of joints after those of CRACKS: seams, and what is only crushed.
 SEAM, NONE = 2, 3
-FAR = 1e9  # beyond all blocks [m]
+BEYOND_ALL = 1e9  # beyond all blocks [m]
 
 
 def fromBackToFront(solids, sight):
-    """Numbers of convex blocks in the order in which they are drawn, so that each hides what is
-    behind it.
+    """Numbers of convex blocks in the order in which they are drawn.
 
-    Of two blocks whose pictures overlap, that is in front which lies on the viewer's side of a face
-    that parts them. Where these answers go in a circle, the block that is farthest away comes
-    first.
+    If a face separates two overlapping blocks, the one on the viewer's side is drawn later. Cycles
+    are broken at the farthest block.
 
     :param solids: :class:`masonry.bricks.geometry.Solids`
-    :param sight: unit vectors of the picture: right, up and towards the viewer, the rows of an
-        array
+    :param sight: unit vectors to the right, up and towards the viewer, rows of an array
     """
     seen, boxes = solids.padded("corners") @ sight.T, copy.copy(solids)
     boxes.low, boxes.high = seen.min(axis=1), seen.max(axis=1)
     depth, slack = (boxes.low + boxes.high)[:, 2].tolist(), 1e-3 * np.median(boxes.high - boxes.low)
-    boxes.low[:, 2], boxes.high[:, 2] = -FAR, FAR  # pictures overlap at any depth
+    boxes.low[:, 2], boxes.high[:, 2] = -BEYOND_ALL, BEYOND_ALL  # pictures overlap at any depth
     pairs = boxes.nearPairs(np.full(solids.count, -slack / 2))
     after = [[] for _ in range(solids.count)]
     facing = solids.padded("normals")[pairs] @ sight[2] * [[[1]], [[-1]]]
@@ -82,11 +79,10 @@ def fromBackToFront(solids, sight):
 
 
 class Painting:
-    """Polygons and lines, which have two corners, from the back to the front, and where joints are
-    crushed.
+    """Polygons and lines from the back to the front, and where joints are crushed.
 
-    :param towards: unit vector to the viewer; ``thin`` and ``bold``: widths of the lines of blocks
-        and cracks [1/72 inch]
+    :param towards: unit vector to the viewer; ``thin``, ``bold``: widths of the lines of blocks and
+        cracks [1/72 inch]
     """
 
     def __init__(self, towards, thin, bold):
@@ -94,10 +90,10 @@ class Painting:
         self.polygons, self.spots, self.kinds = [], [], set()
 
     def add(self, places, points, fill, edge, wide):
-        """Polygons, or lines, of corners in space (n, corners, 3) [m].
+        """Add polygons, or lines, of corners in space (n, corners, 3) [m].
 
         :param places: numbers that grow to the front; of equal ones, what comes later is in front
-        :param fill: colours (n, 3), one for all, or None, as ``edge``
+        :param fill: colours (n, 3), one for all, or None, as ``edge``; ``wide``: the edge
         """
         looks = np.zeros((len(points), 9))
         looks[:, 8] = wide
@@ -107,8 +103,8 @@ class Painting:
         self.polygons.append((places, points, looks))
 
     def blocks(self, places, alike, colours=None):
-        """The faces of a :class:`masonry.bricks.geometry.SameTopologyBatch` that are seen, in
-        colours on which light falls from the viewer and from above; None: where blocks stood."""
+        """Add the visible faces of blocks (:class:`masonry.bricks.geometry.SameTopologyBatch`), lit from the
+        viewer and from above; without colours, where blocks stood."""
         for n, face in enumerate(alike.faces):
             normals = alike.normals[:, n]
             seen = normals @ self.towards > LEVEL
@@ -121,13 +117,12 @@ class Painting:
         return np.rint(np.minimum(1, light)[:, None] * colours)
 
     def cracks(self, places, crack, built, now, colours):
-        """Joints that are open, slid or crushed: their faces that are seen, and their edges on
-        other faces of their blocks, from which the edges of seams are taken away.
+        """Add open, slid or crushed joints: their visible faces, and their edges on other faces of
+        their blocks; edges of seams are painted over.
 
         :param places: of all blocks; ``colours``: theirs
-        :param crack: arrays of the numbers of the blocks and of what
-            :meth:`masonry_view.elevation.Structure.cracks` gives, but at the end the corners as
-            drawn
+        :param crack: an entry of :attr:`masonry_view.elevation.Structure.cracks`, but with numbers
+            of blocks, and at the end the corners as drawn
         :param built: :class:`masonry.bricks.geometry.Solids` as built; ``now``: as drawn
         """
         block, joint, kinds, closures, corners, drawn = crack
@@ -160,14 +155,16 @@ class Painting:
         wide = np.where(kinds < SEAM, self.bold, 2 * self.thin)
         self.add(places[line], ends[line], None, edge[line], wide[line])
         self.spots += zip(
-            places[spot], ends[spot].mean(axis=1), 12 + 8e3 * np.minimum(closures[spot], MOST)
+            places[spot],
+            ends[spot].mean(axis=1),
+            12 + 8e3 * np.minimum(closures[spot], MAX_CLOSURE),
         )
 
     def finish(self, axes, flat, legend):
-        """Put it into axes, with names for the legend.
+        """Put all into axes, with names for the legend.
 
         :param flat: function of points in space that gives their places in the picture
-        :param legend: whether cracks are in it
+        :param legend: whether it names cracks
         """
         from matplotlib.collections import LineCollection, PolyCollection
 

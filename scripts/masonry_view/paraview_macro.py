@@ -1,14 +1,11 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Shows runs in ParaView: a macro for its Python, which needs nothing of this project.
+"""Shows a run in ParaView: a macro for its Python, which needs nothing of this project.
 scripts/view.py starts it in ParaView's window with the environment variable MASONRY_VIEW, the path
-of a JSON file:
-
-- ``runs``: of each its ``folder``, ``title``, ``magnification`` of displacements, ``ground``: ids
-  of the bodies of the ground, ``platens``: those of all other bodies that are no masonry,
-  ``widest_mm``: opening at the end of the colours, ``crack`` [m] and ``damaged`` [-] as in
-  masonry.numbers.cracks, ``colours`` by name, and the camera: ``middle``, ``towards`` the viewer
-  and ``half_height`` [m]
-- ``time``: of the frame that is shown [s]; ``size``: of all views together [pixels]
+of a JSON file: ``folder``, ``title``, ``magnification`` of displacements, ``ground``: ids of the
+bodies of the ground, ``platens``: those of all other bodies that are no masonry, ``widest_mm``:
+opening at the end of the colours, ``crack`` [m] and ``damaged`` [-] as in masonry.numbers.cracks,
+``colours`` by name, ``bounds`` of the scale, the camera: ``middle``, ``towards`` the viewer and
+``half_height`` [m], ``time`` of the frame that is shown [s], and ``size`` of the view [pixels].
 """
 
 import json
@@ -116,22 +113,17 @@ def build(view, run):
 
 def main():
     with open(os.environ["MASONRY_VIEW"]) as file:
-        job = json.load(file)
+        run = json.load(file)
     pv._DisableFirstRenderCameraReset()
-    (wide, high), runs = job["size"], job["runs"]
-    layout, place = pv.CreateLayout(name="masonry"), 0
-    layout.SetSize(wide, high)
-    for n, run in enumerate(runs):
-        view = pv.CreateView("RenderView")
-        view.ViewSize = wide // len(runs), high
-        pv.AssignViewToLayout(view=view, layout=layout, hint=place)
-        pv.SetActiveView(view)
-        build(view, run)
-        if n + 1 < len(runs):
-            place = layout.SplitHorizontal(layout.GetViewLocation(view), 1 / (len(runs) - n)) + 1
+    layout, view = pv.CreateLayout(name="masonry"), pv.CreateView("RenderView")
+    layout.SetSize(*run["size"])
+    view.ViewSize = run["size"]
+    pv.AssignViewToLayout(view=view, layout=layout, hint=0)
+    pv.SetActiveView(view)
+    build(view, run)
     animation = pv.GetAnimationScene()
     animation.UpdateAnimationUsingDataTimeSteps()
-    animation.AnimationTime = job["time"]
+    animation.AnimationTime = run["time"]
     pv.RenderAllViews()
 
 

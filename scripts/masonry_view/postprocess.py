@@ -3,12 +3,11 @@
 
     python3 -P -m masonry_view.postprocess
 
-A run starts it early: it loads what it needs while the run goes on. Then it reads the folder from
-the standard input, up to a zero byte, when the files of the run are there. It draws figures in two
-copies of the process, curve.png and cracks.png in one and mechanism.png in the other, makes the
-report meanwhile, and writes report.html when the figures are there. It ends without a word if it is
-given no folder. Errors that nobody expects go to the standard output, as JSON: pairs of a note and
-a traceback.
+A run starts it early, so that it loads what it needs while the run goes on. When the files of the
+run are there, it reads the folder from the standard input, up to a zero byte, or ends if that is
+empty. It draws curve.png and cracks.png in a copy of the process, mechanism.png in another, makes
+the report meanwhile, and writes report.html when the figures are there. Errors that nobody expects
+go to the standard output, as JSON: pairs of a note and a traceback.
 """
 
 import contextlib
@@ -35,7 +34,7 @@ STDIN = 0
 
 
 def _load():
-    """Draw a figure that nobody sees: the first one of a process loads most of matplotlib."""
+    """Draw a figure that nobody sees, which loads most of matplotlib."""
     with contextlib.suppress(Exception):  # what is wrong is said when something is drawn
         with style():
             figure = empty(1, 1)
@@ -44,7 +43,7 @@ def _load():
             for kind in ("png", "svg"):
                 figure.savefig(io.BytesIO(), format=kind)
         import jinja2, scipy.spatial  # noqa: F401, E401
-    gc.freeze()  # garbage is no longer looked for among what has been loaded
+    gc.freeze()  # no garbage is looked for among what has been loaded
 
 
 def _folder():
@@ -58,7 +57,7 @@ def _folder():
 
 
 def _tasks(folder):
-    """Begin to draw in copies of the process, whose results are those of :func:`_tried`."""
+    """Begin to draw in copies of the process, which return what :func:`_tried` does."""
     try:
         needed("matplotlib")
     except Missing as missing:

@@ -1,9 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Runs in the window of ParaView, and in a browser without ParaView. No YADE is needed.
-
-``scripts/view.py`` is the program. In ParaView's own Python works
-:mod:`masonry_view.paraview_macro`.
-"""
+"""A run in ParaView, in whose Python :mod:`masonry_view.paraview_macro` works, or in a browser: the
+program ``scripts/view.py``. No YADE is needed."""
 
 import argparse
 import json
@@ -16,20 +13,18 @@ from typing import Any, Sequence
 
 import numpy as np
 
-from masonry import folders
 from masonry.arguments import FilePath
 from masonry.errors import Refused
-from masonry.terminal import say
-from . import page, painting
+from . import page, pages, painting
 from masonry.numbers.cracks import CRACK, DAMAGED
 from masonry.numbers.files import filesOf, program, readCurve, readRun
 from masonry.numbers.frames import frameAt, frameTimes
+from .curve_figure import unitOf
 from .model import GROUND, OPEN, PLATEN, Model
 
-#: Folder into which python3-paraview can be unpacked where it cannot be installed beside
-#: python3-vtk9.
+#: Where python3-paraview can be unpacked, since it cannot be installed beside python3-vtk9.
 UNPACKED = os.path.expanduser("~/.local/share/masonry/paraview")
-SIZE = 1500, 1000  # of ParaView's views [pixels]
+SIZE = 1500, 1000  # of ParaView's view [pixels]
 
 MISSING = f"""ParaView is not there. As root:
   apt-get install --no-install-recommends paraview
@@ -58,7 +53,7 @@ def frameNear(directory: FilePath, at: Any) -> int:
             raise Refused(f"{directory}: its x is not known; give --at a time as 0.5s")
         data = readCurve(directory)
         x = np.array(data[axis["column"]])
-        own = axis["column"].rsplit("_", 1)[-1]
+        own = unitOf(axis)
         if unit not in ("", own):
             raise Refused(f"--at: '{at}' must be in {own} or in s")
         reached = np.flatnonzero(x >= value if value >= x[0] else x <= value)
@@ -76,14 +71,11 @@ def frameNear(directory: FilePath, at: Any) -> int:
     return frameAt(directory, value)
 
 
-def sceneOf(
-    directory: FilePath, number: int, magnification: float | None, shape: float
-) -> dict[str, Any]:
-    """What ParaView shall show of a run: an entry ``runs`` for :mod:`masonry_view.paraview_macro`.
+def sceneOf(directory: FilePath, number: int, magnification: float | None) -> dict[str, Any]:
+    """What ParaView shall show of a run, for :mod:`masonry_view.paraview_macro`.
 
-    :param number: of the frame after which camera, magnification and the range of colours are
-        chosen
-    :param shape: width of the view over its height
+    :param number: of the frame that is shown, after which camera, magnification and the range of
+        colours are chosen
     """
     model = Model(directory, number)
     sight = model.sight(magnification)
@@ -92,7 +84,7 @@ def sceneOf(
     right = np.cross((0, 0, 1), towards) / np.hypot(*towards[:2])
     axes = np.array([right, np.cross(towards, right)])
     middle, extent = 0.5 * (sight.low + sight.high), sight.high - sight.low
-    wide, tall = np.abs(axes) @ extent
+    (wide, tall), shape = np.abs(axes) @ extent, SIZE[0] / SIZE[1]
     half = 0.5 * max(1.4 * tall, 1.5 * wide / shape)
     middle = middle + 0.1 * half * shape * right  # the legend stands at the right
     opening = model.joints.opening[0][(model.joints.kind[0] & OPEN) > 0]
@@ -118,24 +110,19 @@ def sceneOf(
         "middle": middle.tolist(),
         "towards": towards.tolist(),
         "half_height": float(half),
+        "time": model.times[0],
+        "size": SIZE,
     }
 
 
-def inParaView(directories: Sequence[FilePath], at: Any, magnification: float | None) -> None:
-    """Show runs side by side in ParaView's window.
+def inParaView(directory: FilePath, at: Any, magnification: float | None) -> None:
+    """Show a run in ParaView's window.
 
     :param at: the frame, as in :func:`frameNear`
-    :param magnification: of displacements; None: chosen for each run
+    :param magnification: of displacements; None: chosen for the run
     :raises Refused: if ParaView is missing
     """
-    numbers = [frameNear(d, at) for d in directories]
-    shape = SIZE[0] / len(directories) / SIZE[1]
-    runs = [sceneOf(d, n, magnification, shape) for d, n in zip(directories, numbers)]
-    # one scale of colours for all
-    widest = max(run["widest_mm"] for run in runs)
-    for run in runs:
-        run["widest_mm"] = widest
-    job = {"runs": runs, "time": frameTimes(directories[0])[numbers[0]], "size": SIZE}
+    scene = sceneOf(directory, frameNear(directory, at), magnification)
     path = shutil.which("paraview")
     if not path:
         raise Refused(MISSING)
@@ -144,7 +131,7 @@ def inParaView(directories: Sequence[FilePath], at: Any, magnification: float | 
     with tempfile.TemporaryDirectory() as folder:
         viewFile = os.path.join(folder, "view.json")
         with open(viewFile, "w") as file:
-            json.dump(job, file)
+            json.dump(scene, file)
         # PYTHONPATH and PYTHONHOME are of another Python
         elsewhere = {k: v for k, v in os.environ.items() if k not in ("PYTHONPATH", "PYTHONHOME")}
         if os.path.isdir(modules):
@@ -152,77 +139,35 @@ def inParaView(directories: Sequence[FilePath], at: Any, magnification: float | 
         subprocess.run([path, "--script=" + macro], env={**elsewhere, "MASONRY_VIEW": viewFile})
 
 
-def _writable(path, directory):
-    """The path of a page to write: as it was given, or view.html in the folder of the run.
-
-    :raises Refused: if it has another ending, or if it is a folder or in a folder that is not there
-    """
-    if path is None:
-        folders.check(directory)
-        path = os.path.join(directory, "view.html")
-    if os.path.isdir(path):
-        raise Refused(f"{path} is a folder; name a file that ends in .html or .htm")
-    if not path.lower().endswith((".html", ".htm")):
-        raise Refused(f"{path} must end in .html or .htm")
-    if not os.path.isdir(os.path.dirname(path) or "."):
-        raise Refused(f"cannot write {path}: there is no folder {os.path.dirname(path)}")
-    return path
-
-
-def _handOn(args):
-    """--html: a page that needs no ParaView."""
-    if len(args.result) > 1:
-        raise Refused(
-            "--html writes one page of one run; start view.py again for other files or runs"
-        )
-    if args.frame is not None and args.at is not None:
-        raise Refused("--frame and --at both name a frame; give one of them")
-    (directory,) = args.result
-    number = args.frame if args.at is None else frameNear(directory, args.at)
-    try:
-        path = _writable(args.html, directory)
-        page.write(directory, path, number, args.magnify)
-        say(f"{path}: {os.path.getsize(path) / 1e6:.2f} MB; any browser opens it")
-    except OSError as problem:
-        raise Refused(f"cannot write {path}: {problem.strerror}") from None
-
-
 @program
 def main(words: Sequence[str] | None = None) -> None:
     """The program ``scripts/view.py``."""
     parser = argparse.ArgumentParser(
-        description="Open runs in ParaView, or write one for a browser."
+        description="Open a run in ParaView, or write it for a browser."
     )
-    parser.add_argument("result", nargs="+", help="folder of results")
+    parser.add_argument("result", help="folder of results")
     parser.add_argument(
         "--html",
         metavar="FILE",
         nargs="?",
         default=False,
-        help=(
-            "a page that any browser shows in 3-D, without ParaView and without a network"
-            " (view.html in the folder of results)"
-        ),
-    )
-    parser.add_argument(
-        "--frame", metavar="N", type=int, help="frame to show first in --html, from 0"
+        help="a page that any browser shows in 3-D, without ParaView and without a network"
+        " (view.html in the folder of results)",
     )
     parser.add_argument(
         "--at", metavar="PLACE", help="frame to show: 12, 12mm or 0.5s; else the last one"
     )
     parser.add_argument(
-        "--magnify",
-        type=float,
-        help="magnification of displacements; else chosen for each run",
+        "--magnify", type=float, help="magnification of displacements; else chosen for the run"
     )
     args = parser.parse_args(words)
     if args.magnify is not None and not 0 <= args.magnify < float("inf"):
         raise Refused(f"--magnify: {args.magnify:g} must be at least 0")
-    for directory in args.result:
-        readRun(directory)
-    with filesOf(", ".join(args.result)):
-        if args.html is not False:
-            return _handOn(args)
-        if args.frame is not None:
-            raise Refused("--frame is for --html; --at names a frame for ParaView")
-        inParaView(args.result, args.at, args.magnify)
+    directory = args.result
+    readRun(directory)
+    with filesOf(directory):
+        if args.html is False:
+            return inParaView(directory, args.at, args.magnify)
+        number = args.at and frameNear(directory, args.at)
+        make = lambda: page.page(directory, number, args.magnify)
+        pages.save(make, args.html, directory, "view.html")

@@ -9,7 +9,7 @@ from masonry.numbers.cracks import widths
 #: Magnifications of displacements in cracks.png, the usual one first, as in figure 6 of the paper
 #: (see yade_plugin/law/README.md).
 MAGNIFICATIONS = 30, 20, 10, 5, 2, 1
-FARTHEST = 0.25  # largest drawn displacement over the size of the structure
+MAX_DISPLACEMENT = 0.25  # largest drawn displacement over the size of the structure
 OVERLAP = 0.25  # how far blocks overlap at most where a joint closed, over the height of a course
 #: From where a structure is seen in space, in plan beside its front and over the ground [°].
 ASIDE, ABOVE = 32, 24
@@ -17,25 +17,23 @@ ASIDE, ABOVE = 32, 24
 FROM_ABOVE, IN_SPACE = "from above", "in space"
 LEVEL = 1e-3  # cosine below which a face stands along the line of sight
 REACH = 1.5  # how far what moved is in a picture, over the size of what was built
-#: How a part is seen. ``right`` and ``up`` are unit vectors of the picture, ``towards`` is that to
-#: the viewer; ``labels`` are those of the axes, and ``name`` says where the viewer stands. A point
-#: p lies at ((p - start)·right, (p - start)·up).
+#: How a part is seen: unit vectors to the right, up and towards the viewer, labels of the axes, and
+#: where the viewer stands. A point p lies at ((p - start)·right, (p - start)·up).
 View = namedtuple("View", "right up towards start labels name")
 
 
-def viewOf(points, normals, areas, sight=None):
-    """The view of a part: a :class:`View`, chosen by its shape.
+def viewOf(points, normals, areas, direction=None):
+    """The :class:`View` of a part, chosen by its shape.
 
-    If all joints stand across one horizontal direction, as those of a wall of one wythe at any
-    angle in plan and those of an arch do, the part is seen along this direction. Else it is seen
-    along the short side of the smallest rectangle around its plan, or from above if it is wider
-    than high, as a dome or a vault is. What is up stays up; from above, x is to the right and y is
-    up.
+    If no joint looks along one horizontal direction, as in an arch or a wall of one wythe at any
+    angle in plan, the part is seen along it; else along the short side of the smallest rectangle
+    around its plan, or from above if it is wider than high, as a dome or a vault is. What is up
+    stays up; from above, y is up.
 
     :param points: corners of its blocks, an array of (x, y, z) [m]
     :param normals: unit normals of its joints, an array
     :param areas: areas of these joints [m²]
-    :param sight: direction of sight (x, y, z), if the user gave one
+    :param direction: of sight (x, y, z), if the user gave one
     """
     from scipy.spatial import ConvexHull
 
@@ -54,8 +52,8 @@ def viewOf(points, normals, areas, sight=None):
     towardsX = abs(across[0]) > abs(along[0])
     if second > 1.05 * first or second > first / 1.05 and towardsX:
         first, second, along, across = second, first, across, along
-    if sight is not None:
-        return _viewFrom(-np.array(sight, float) / np.linalg.norm(sight), points, False)
+    if direction is not None:
+        return _viewFrom(-np.array(direction, float) / np.linalg.norm(direction), points, False)
     total = areas.sum()
     stands = lambda side: areas @ (normals[:, :2] @ side) ** 2 < 1e-6 * total
     standing = [side for side in (across, along) if total and stands(side)]
@@ -65,10 +63,10 @@ def viewOf(points, normals, areas, sight=None):
 
 
 def spaceViewOf(front, points, moved):
-    """The view of a structure in space, from above: from the side to which it moved, so that what
-    fell lies in front, and beside the front where most of it moved.
+    """The view of a structure from above at the side to which it moved, so that what fell lies in
+    front, and turned to where most of it moved.
 
-    :param front: direction to the viewer of the part that shows it, as :func:`viewOf` gives it
+    :param front: ``towards`` of the view of the part that shows it
     :param points: as built (n, 3) [m]; ``moved``: their displacements (n, 3) [m]
     """
     side = front[:2] if abs(front[2]) < 0.9 else np.array([0, -1.0])
@@ -112,9 +110,8 @@ def _viewFrom(away, points, either):
 
 
 def magnificationOf(joints, moved, blocks):
-    """How much displacements are magnified: as usual, or less where blocks would be drawn far away
-    or over each other, and not at all where no joint is cracked, as rigid motion and elastic
-    shortening alone would then be drawn.
+    """How much displacements are magnified: as usual, less where blocks would be drawn far away or
+    over each other, and not at all where no joint is cracked.
 
     :param joints: the frame of the joints, or None
     :param moved: displacements of points of the blocks (n, 3) [m]
@@ -125,21 +122,19 @@ def magnificationOf(joints, moved, blocks):
     size = np.ptp(np.concatenate(blocks), axis=0).max()
     far = np.linalg.norm(moved, axis=1).max()
     closed, most = max(-joints["opening"].min(), 0), OVERLAP * courseOf(blocks)
-    fits = lambda m: m * far <= FARTHEST * size and m * closed <= most
+    fits = lambda m: m * far <= MAX_DISPLACEMENT * size and m * closed <= most
     return next(filter(fits, MAGNIFICATIONS), 1)
 
 
 def courseOf(blocks):
-    """The usual height of a block [m]: the median of their shortest sides, of arrays of their
-    corners (n, 3) [m]."""
+    """The median of the shortest sides of blocks [m], of arrays of their corners (n, 3) [m]."""
     starts, points = np.cumsum([0, *map(len, blocks)])[:-1], np.concatenate(blocks)
     high, low = (end.reduceat(points, starts) for end in (np.maximum, np.minimum))
     return float(np.median((high - low).min(axis=1)))
 
 
 def scaleText(joints, magnification):
-    """What a picture says of its magnification and, where no joint of a frame is cracked, of
-    that."""
+    """What a picture says of its magnification, and where no joint of a frame is cracked."""
     parted = "" if widths(joints)[2].any() else "no joint is cracked, "
     return parted + (
         "true to scale" if magnification == 1 else f"displacements × {magnification:g}"

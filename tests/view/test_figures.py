@@ -127,7 +127,7 @@ def test_a_low_arch_is_seen_from_its_side_and_a_dome_from_above():
 
 
 def test_the_direction_of_sight_can_be_reported():
-    view = viewOf(boxPoints(3, 0.1, 2.5), np.eye(3), np.ones(3), sight=(0, -2, 0))
+    view = viewOf(boxPoints(3, 0.1, 2.5), np.eye(3), np.ones(3), direction=(0, -2, 0))
     assert view.towards == approx([0, 1, 0])
     assert view.right == approx([-1, 0, 0])
 
@@ -229,6 +229,10 @@ def couplet(scene, folder, **message):
     """A brick that is pulled off another one, and the folder of its results."""
     box((0, 0, 0), (L, T, H))
     pull(scene, folder, box((0, 0, H), (L, T, 2 * H)), (0, 0, 1.0))
+    return writeShort(folder, **message)
+
+
+def writeShort(folder, **message):
     return writeRun(folder, ["time_s", "f_kN"], [[0, 0], [1, 1]], **message)
 
 
@@ -320,8 +324,7 @@ def test_an_open_joint_is_drawn_on_the_faces_of_both_blocks(scene, tmp_path, dra
             box((m * L, n * T, 0), ((m + 1) * L, (n + 1) * T, H))
     lintel = box((0, 0, H), (2 * L, 2 * T, 3 * H))
     pull(scene, tmp_path, lintel, (0, 0, 1.0))
-    writeRun(tmp_path, ["time_s", "f_kN"], [[0, 0], [1, 1]])
-    elevation.cracks(tmp_path)
+    elevation.cracks(writeShort(tmp_path))
     figure = drawn["cracks.png"]
     (axes,) = figure.axes
     lines = crackLines(axes)
@@ -339,7 +342,7 @@ def test_the_seam_in_a_brick_of_two_halves_is_no_mortar_joint(scene, tmp_path, d
     box((0, 0, 0), (L, T, H))
     pull(scene, tmp_path, box((L, 0, 0), (2 * L, T, H)), (1.0, 0, 0), most=1e-6)
     for kinds, places in ((["bed"], 0), (["crack"], 1)):
-        elevation.cracks(writeRun(tmp_path, ["time_s", "f_kN"], [[0, 0], [1, 1]], kinds=kinds))
+        elevation.cracks(writeShort(tmp_path, kinds=kinds))
         (axes,) = drawn["cracks.png"].axes
         seams = [shape for shape, _, edge in polygonsOf(axes) if edge == SHADES["brick"]]
         assert len({tuple(shape[:, 0].round(4)) for shape in seams}) == places
@@ -351,7 +354,7 @@ def test_drawn_blocks_overlap_by_their_closure_and_no_more(scene, tmp_path, draw
     closes."""
     lower = box((0, 0, 0), (3 * L, T, H))
     pull(scene, tmp_path, box((L, 0, H), (2 * L, T, 2 * H)), (1.0, 0, -0.02))
-    folder = writeRun(tmp_path, ["time_s", "f_kN"], [[0, 0], [1, 1]])
+    folder = writeShort(tmp_path)
     elevation.cracks(folder)
     (axes,), title = drawn["cracks.png"].axes, drawn["cracks.png"]._suptitle.get_text()
     assert "displacements ×" in title, title
@@ -374,9 +377,10 @@ def test_a_corner_has_an_elevation_for_each_wall_and_what_parts_them_is_seen_in_
     side = [box((0, T, 0), (T, T + 4 * L, high))]
     pull(scene, tmp_path, side[0], (0, 1.0, 0))
     parts = {"front": front, "side": side}
-    folder = writeRun(tmp_path, ["time_s", "f_kN"], [[0, 0], [1, 1]], parts=parts)
-    elevation.cracks(folder)
-    panels = {axes.get_title().split(" ")[0]: axes for axes in drawn["cracks.png"].axes}
+    draw = lambda **message: elevation.cracks(writeShort(tmp_path, parts=parts, **message))
+    named = lambda: {axes.get_title().split(" ")[0]: axes for axes in drawn["cracks.png"].axes}
+    draw()
+    panels = named()
     assert [panels[n].get_xlabel() for n in parts] == ["x [m]", "y [m]"]
     assert "viewer" not in panels["side"].get_title()
     lines = crackLines(panels["side"])["open"]
@@ -386,10 +390,8 @@ def test_a_corner_has_an_elevation_for_each_wall_and_what_parts_them_is_seen_in_
     assert not crackFaces(panels["front"])  # which looks away from the viewer
 
     # a ground that has moved with everything is taken off
-    message = json.load(open(os.path.join(folder, "run.json")))
-    json.dump({**message, "reference_body": side[0]}, open(os.path.join(folder, "run.json"), "w"))
-    elevation.cracks(folder)
-    panels = {axes.get_title().split(" ")[0]: axes for axes in drawn["cracks.png"].axes}
+    draw(reference_body=side[0])
+    panels = named()
     assert "moved up to 2 mm towards the viewer" in panels["front"].get_title()
     # the points of the joint, five a side, on the block whose face looks to the viewer
     assert len(crackFaces(panels["in"])) == 25 and not panels["in"].axison

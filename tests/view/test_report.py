@@ -10,7 +10,7 @@ from masonry_view import report
 from masonry.run.drawing_program import DrawingProgram
 from small_wall import SMALL, carryOut, parsed
 
-MOST = 3e6  # [bytes] of the report of COMP-4
+MAX_BYTES = 3e6  # [bytes] of the report of COMP-4
 
 
 def test_a_run_leaves_its_report_beside_its_figures(tmp_path):
@@ -89,7 +89,7 @@ class TestInABrowser:
     def test_it_opens_without_a_request_or_an_error_and_is_small(self, opened, pushed):
         assert opened.requests == ["file://" + pushed]
         assert opened.problems == []
-        assert os.path.getsize(pushed) < MOST
+        assert os.path.getsize(pushed) < MAX_BYTES
         text = opened.value("document.body.innerText")
         assert "TUD-COMP-4" in text and "is not whole" not in text
         assert re.search(r"Peak 11\d(\.\d)? kN at \d\.\d+ mm", text.replace("\u00a0", " "))

@@ -22,11 +22,10 @@ def test_the_window_is_opened_on_the_macro(wall, monkeypatch):
     monkeypatch.setattr(viewer.shutil, "which", lambda name: "/bin/true")
     monkeypatch.setattr(viewer.subprocess, "run", run)
     assert viewer.main([wall, "--at", "3mm", "--magnify", "7"]) == 0
-    (((program, script), job),) = called
+    (((program, script), run),) = called
     assert program == "/bin/true" and script.endswith("paraview_macro.py")
-    (run,) = job["runs"]
     assert run["folder"] == wall and run["magnification"] == 7
-    assert job["time"] in viewer.frameTimes(wall)
+    assert run["time"] in viewer.frameTimes(wall)
 
 
 def test_places_in_a_run(wall):
@@ -51,13 +50,12 @@ def test_places_in_a_run(wall):
 def test_without_paraview_the_packages_are_named(wall, monkeypatch):
     monkeypatch.setattr(viewer.shutil, "which", lambda name: None)
     with pytest.raises(Refused, match="apt-get install --no-install-recommends paraview"):
-        viewer.inParaView([wall], None, None)
+        viewer.inParaView(wall, None, None)
 
 
 @pytest.mark.parametrize(
     "words, message",
     [
-        (["nowhere"], "cannot read nowhere/run.json: No such file"),
         (["RUN", "--at", "x"], "--at: 'x' must be a number"),
         (["RUN", "--magnify", "-1"], "--magnify: -1 must be at least 0"),
     ],
@@ -67,9 +65,3 @@ def test_what_cannot_be_shown(wall, monkeypatch, tmp_path, capsys, words, messag
     assert viewer.main([wall if w == "RUN" else w for w in words]) == 2
     assert message in capsys.readouterr().err
     assert not os.listdir(tmp_path)
-
-
-def test_it_needs_no_yade():
-    code = "import sys, masonry_view.viewer; print({'yade', 'vtk'} & {*sys.modules})"
-    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
-    assert run.stdout.strip() == "set()", run.stderr

@@ -11,7 +11,6 @@ import zlib
 
 import numpy as np
 
-from masonry.terminal import withoutMarkup
 from .. import painting
 from masonry.numbers.cracks import CRACK, CRUSHED, DAMAGED
 from masonry.numbers.files import filesOf
@@ -21,8 +20,7 @@ from ..views import courseOf
 
 
 class _Arrays:
-    """Arrays on their way to a page one after the other, and what the page must know to read
-    them."""
+    """The arrays of a page in one row of bytes, and what the page must know to read them."""
 
     def __init__(self):
         self.known, self.bytes = {}, b""
@@ -46,8 +44,7 @@ class _Arrays:
         self.bytes += values.tobytes() + bytes(-values.nbytes % 4)
 
     def addRounded(self, name, values, kind="i2", levels=32767):
-        """Append numbers of frames, as displacements and rotations, rounded to so many steps up to
-        the largest."""
+        """Append numbers of frames, rounded to so many steps up to the largest."""
         step = float(np.abs(values).max(initial=0.0)) / levels or 1.0
         self.add(name, np.rint(values / step), kind, step, frames=True)
 
@@ -75,17 +72,9 @@ def dataOfModel(model, number=None, magnification=None, curve=None):
     with filesOf(model.directory):
         head = _head(model, magnification, curve)
         _addTies(arrays, model)
-    for name, kind in (
-        ("points", "f4"),
-        ("owner", "u4"),
-        ("triangles", "u4"),
-        ("edges", "u4"),
-        ("bodies", "u4"),
-        ("looks", "u1"),
-        ("centres", "f4"),
-        ("free", "u4"),
-    ):
-        arrays.add(name, getattr(model, name), kind)
+    kinds = {"points": "f4", "looks": "u1", "centres": "f4"}
+    for name in "points owner triangles edges bodies looks centres free".split():
+        arrays.add(name, getattr(model, name), kinds.get(name, "u4"))
     for name in ("shift", "turn", "moved"):
         arrays.addRounded(name, getattr(model, name))
     arrays.add("jointPoints", joints.corners, "f4")
@@ -116,15 +105,8 @@ def _head(model, magnification, curve):
     """What is said about a run, and how it is seen first."""
     sight = model.sight(magnification)
     return {
-        "title": withoutMarkup(model.title),
-        "frames": [
-            {
-                "time": one["time"],
-                "stage": one["stage"] and withoutMarkup(one["stage"]),
-                "values": list(map(withoutMarkup, one["values"])),
-            }
-            for one in model.captions(curve)
-        ],
+        "title": model.title,
+        "frames": model.captions(curve),
         "magnification": sight.magnification,
         "low": sight.low.tolist(),
         "high": sight.high.tolist(),
@@ -145,8 +127,7 @@ def _head(model, magnification, curve):
 
 
 def _addTies(arrays, model):
-    """The bars between blocks: both ends of each, how they move, and 0 elastic, 1 has yielded, 2
-    broken."""
+    """Add the ties: both ends of each, how they move, and 0 elastic, 1 yielded, 2 broken."""
     if not model.run.get("ties"):
         return
     frames = [readFrame(model.directory, "connectors", n) for n in model.numbers]
@@ -154,14 +135,12 @@ def _addTies(arrays, model):
     ends = np.concatenate([frames[0]["cells"][n] for n in bars])
     arrays.add("tiePoints", frames[0]["points"][ends], "f4")
     arrays.addRounded("tieMoved", np.array([one["displacement"][ends] for one in frames]))
-    arrays.add(
-        "tieCondition", np.array([one["condition"][bars] for one in frames]), "u1", frames=True
-    )
+    conditions = np.array([one["condition"][bars] for one in frames])
+    arrays.add("tieCondition", conditions, "u1", frames=True)
 
 
 def nice(value):
-    """The smallest number, of two digits at most and a power of ten, that is not below a value and
-    has round quarters."""
+    """The smallest number of two digits at most with round quarters that is not below a value."""
     power = 10.0 ** np.floor(np.log10(value))
     steps = (1, 1.2, 1.6, 2, 2.4, 2.8, 3.2, 4, 5, 6, 8, 10)
     return float(next(s * power for s in steps if s * power >= value * (1 - 1e-9)))

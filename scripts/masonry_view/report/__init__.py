@@ -7,15 +7,14 @@ No YADE is needed.
 
 A run writes it at its end, but with ``--lean`` and when it is interrupted. From a script::
 
-    from masonry.numbers import report
+    from masonry_view import report
 
     report.write(report.read("results/wall_comp4"), "wall.html")
 
-What stands in it comes from curve.csv, run.json, the frames for ParaView, cracks.png and
-mechanism.png of the folder; every number has its unit, what it is, and its source. What the files
-do not have is said to be missing, with the reason. The turning picture is that of
-:mod:`masonry_view.page`, and needs the Debian package libjs-three; without it the report has a
-sentence in its place.
+Its sources are curve.csv, run.json, the frames for ParaView, cracks.png and mechanism.png; every
+number has its unit, what it is, and its source. What the files lack is said to be missing, with the
+reason. The turning picture is that of :mod:`masonry_view.page`; without the Debian package
+libjs-three a sentence stands in its place.
 """
 
 from masonry.arguments import FilePath, validated
@@ -65,8 +64,7 @@ def page(record: Record) -> str:
     return rendered(
         "report/report.html",
         title=record.title,
-        facts=structure.facts(record),
-        head=_made(structure.head, record),
+        head=_made(structure.origin, record) + _made(structure.head, record),
         parts=parts,
         image=record.image,
         library=library,
@@ -81,12 +79,10 @@ def _library(record):
         try:
             return three()
         except Refused as missing:
-            record.picture, record.missing = (
-                None,
-                (
-                    "three.js is not installed, which draws it. The Debian package is libjs-three;"
-                    f" then python3 -m masonry_view.report writes the report again. {missing}"
-                ),
+            record.picture = None
+            record.missing = (
+                "three.js is not installed, which draws it. The Debian package is libjs-three;"
+                f" then python3 -m masonry_view.report writes the report again. {missing}"
             )
     return [], ""
 

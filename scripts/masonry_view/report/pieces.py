@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Pieces of a report, which its template turns into HTML, and numbers as a person writes them."""
+"""Pieces of a report, which its template turns into HTML, and numbers as people write them."""
 
 import math
 from typing import Any, NamedTuple
@@ -17,8 +17,7 @@ def isNumber(value):
 
 
 def written(value, digits=DIGITS):
-    """A number as a person writes it, with so many significant digits; what is no finite number is
-    "not known"."""
+    """A number in so many significant digits; what is no finite number is "not known"."""
     if not isNumber(value):
         return UNKNOWN
     if isinstance(value, int) and abs(value) < 1e15:
@@ -52,11 +51,32 @@ class Badged(NamedTuple):
 
 
 class Piece(NamedTuple):
-    """What stands in a part of a report: ``form`` names a macro of ``report.html``, and ``about``
-    are its arguments."""
+    """What stands in a part of a report: a macro of ``report.html`` and its arguments, of which the
+    macro says what they are."""
 
     form: str
-    about: dict[str, Any]
+    given: tuple[Any, ...]
+    named: dict[str, Any]
+
+
+def _form(name):
+    """A function that takes the arguments of a macro and returns a :class:`Piece`."""
+    return lambda *given, **named: Piece(name, given, named)
+
+
+facts, figure, listed, note, table, turning = map(
+    _form, ("facts", "figure", "listed", "note", "table", "turning")
+)
+
+
+def folded(title, *inside, **named):
+    """Pieces that are seen after a click on their title."""
+    return Piece("folded", (title, inside), named)
+
+
+def missing(text):
+    """A sentence in place of what a report would have and the run has not."""
+    return note(text, "missing")
 
 
 def numbers(rows, caption):
@@ -67,51 +87,4 @@ def numbers(rows, caption):
         if value == UNKNOWN and row.note:
             value = "none"
         lines.append((row.name, value, f"{row.meaning} {row.note}".strip(), row.source))
-    head = ("quantity", "value", "what it is", "source")
-    return table(head, lines, caption, "numbers")
-
-
-def table(heads, lines, caption, kind=""):
-    """A table with a caption; lines are sequences of cells, texts or :class:`Badged`, the first of
-    which is the head of its line."""
-    return Piece(
-        "table",
-        {"heads": heads, "lines": list(map(tuple, lines)), "caption": caption, "kind": kind},
-    )
-
-
-def note(text, kind="note", strong=""):
-    """A paragraph; ``kind`` is ``note``, ``lead``, ``warning`` or ``missing``.
-
-    :param strong: what stands before the text in bold
-    """
-    return Piece("note", {"text": text, "kind": kind, "strong": strong})
-
-
-def missing(text):
-    """A sentence in place of what a report would have and the run has not."""
-    return note(text, "missing")
-
-
-def figure(picture, caption, alt="", frames=""):
-    """A picture, SVG or the name of a figure of the folder, with its caption. If there is no such
-    figure, the page has neither.
-
-    :param alt: what it shows, for those who do not see it
-    :param frames: places of the frames of the 3-D picture on it, "x,y x,y"
-    """
-    return Piece(
-        "figure", {"picture": picture, "caption": caption, "alt": alt or caption, "frames": frames}
-    )
-
-
-def folded(title, *inside, kind="", opened=False):
-    """What is seen after a click on its title, and on paper; of the kind ``screen`` not on paper.
-    ``opened``: it is seen at once, and a click hides it."""
-    return Piece("folded", {"title": title, "inside": inside, "kind": kind, "opened": opened})
-
-
-def listed(texts, title="", kind=""):
-    """A list with bullets below a title; of the kind ``script`` code without bullets, and
-    ``warning``."""
-    return Piece("listed", {"texts": list(texts), "title": title, "kind": kind})
+    return table(("quantity", "value", "what it is", "source"), lines, caption, "numbers")

@@ -3,7 +3,6 @@
 
 import base64
 import csv
-import datetime
 import functools
 import math
 import os
@@ -24,19 +23,17 @@ from ..page.data import dataOfModel
 from masonry.numbers.run_data import BASE, MOVED, TOP, RunData
 from .pieces import written
 
-MOST_NAMES = 12  # of blocks in the drawing
+MAX_NAMES = 12  # of blocks in the drawing
 LARGEST_PICTURE = 600e3  # [bytes] of a figure that goes into a report
 
 
 class Record:
-    """The files of a run."""
+    """The files of a run. Raises Refused if the folder has no run.json."""
 
     def __init__(self, directory):
-        """Read a folder of results. Raises Refused if it has no run.json."""
         self.directory = os.fspath(directory)
         self.run = readRun(directory)  #: its entries
-        name = os.path.basename(os.path.abspath(self.directory))
-        self.title = str(self.run.get("title") or self.run.get("scene") or name)
+        self.title = str(self.run.get("title") or self.directory)
         #: sentences on what is damaged or missing in the files
         self.problems = []
         #: arrays of curve.csv by name; what is no finite number there is NaN. Empty without rows
@@ -63,8 +60,7 @@ class Record:
             return {}
         heads, *lines = [*csv.reader(text.splitlines())] or [[]]
         rows = [[*map(_finite, line)] for line in lines if len(line) == len(heads)]
-        torn = len(lines) - len(rows)
-        if torn:
+        if torn := len(lines) - len(rows):
             self.problems.append(
                 f"curve.csv: {torn:,} lines do not have a number for every column, and are left out"
                 " of this report"
@@ -73,8 +69,7 @@ class Record:
             return {}
         found = dict(zip(heads, np.array(rows, float).T))
         for name, values in found.items():
-            bad = np.isnan(values).sum()
-            if bad:
+            if bad := np.isnan(values).sum():
                 self.problems.append(
                     f"curve.csv: {bad:,} of {len(values):,} values of {name} are no finite numbers,"
                     " and are left out of this report"
@@ -101,16 +96,11 @@ class Record:
         good = np.isfinite([self.columns[name][rows] for name in shown[:2]]).all(axis=0)
         self.spec, self.rows = spec, rows[good]
 
-    def column(self, name):
-        """A column in the rows that the figure shows, or None."""
-        values = self.columns.get(name)
-        return None if values is None else values[self.rows]
-
     def _frames(self):
         try:
             with filesOf(self.directory):
                 model = Model(self.directory, chosen=chosenFrames)
-                self.elevation = self._drawing(model)
+                self.elevation = self._drawing()
                 self.picture = dataOfModel(model, curve=self.columns)
                 number = elevation.frameOfCracks(self.run, self.directory)
                 self.whenCracked = elevation.whenOf(self.run, self.directory, number)
@@ -123,13 +113,12 @@ class Record:
         else:
             self.frameTimes, self.frameCount = model.times, model.count
 
-    def _drawing(self, model):
+    def _drawing(self):
         """What was built as SVG, and a sentence on it."""
         blocks = readFrame(self.directory, "blocks", 0, elevation.NEEDED)
         # it is seen from the front, also where cracks.png looks askew
         run = {**self.run, "views": {}}
-        structure = elevation.structureOf(run, blocks, None, self.directory)
-        structure = self._whole(structure)
+        structure = self._whole(elevation.structureOf(run, blocks, None, self.directory))
         bricks = [b for b in structure.corners if b not in structure.shades]
         low, high = (
             f(blocks["points"][structure.points(bricks)], axis=0) for f in (np.min, np.max)
@@ -137,7 +126,7 @@ class Record:
         targets = self.run.get("targets") or []
         for one in targets:
             structure.shades[one["body"]] = "held" if one.get("held") else "loaded or watched"
-            if len(targets) <= MOST_NAMES:
+            if len(targets) <= MAX_NAMES:
                 structure.names[one["body"]] = str(one["name"])
         size = " × ".join(written(float(v), 3) for v in high - low)
         about = f"The {len(bricks):,} units of the masonry as built, {size} m"
@@ -146,8 +135,7 @@ class Record:
         return drawn, f"{about} (x × y × z)."
 
     def _whole(self, structure):
-        """A structure whose bricks are whole that the model has in halves: those on both sides of a
-        crack surface."""
+        """A structure in which the halves of bricks on both sides of a crack surface are one."""
         kinds = self.run.get("kinds") or []
         if CRACK_SURFACE in kinds:
             joints = readFrame(self.directory, "joints", 0, ["bodies", "kind"])
@@ -172,22 +160,9 @@ class Record:
             return None
         return "data:image/png;base64," + base64.b64encode(data).decode()
 
-    def date(self):
-        """When the run ended, and where that is from."""
-        date = self.run.get("date")
-        if isinstance(date, str):
-            return date.replace("T", " ").replace("Z", " UTC"), "run.json: date"
-        try:
-            seconds = os.stat(os.path.join(self.directory, "run.json")).st_mtime
-        except OSError:
-            return "not known", "run.json has no date"
-        when = datetime.datetime.fromtimestamp(seconds, datetime.timezone.utc)
-        return when.strftime("%Y-%m-%d %H:%M:%S UTC"), "time of the file run.json"
-
     @functools.cached_property
     def data(self):
-        """What the numbers of the run are found from: rows whose forces are no finite numbers are
-        left out."""
+        """What these numbers are found from, without rows whose forces are not finite."""
         data = RunData(self.run, self.columns.get)
         known = [self.columns[h] for h in (MOVED, BASE, TOP) if h in self.columns]
         with filesOf(self.directory):
@@ -197,7 +172,7 @@ class Record:
 
     @functools.cached_property
     def numbers(self):
-        """All numbers of the run, by their entries in run.json."""
+        """Numbers of the run, by their entries in run.json."""
         return quantities.known(self.data)
 
     @property
@@ -213,7 +188,7 @@ class Record:
     @functools.cached_property
     def ideals(self):
         """The bilinear curve of the push by every rule of :mod:`masonry_capacity.bilinear_curve`,
-        or a text that says why there is none."""
+        or why there is none."""
         push, found = None, {}
         for rule in bilinear_curve.RULES:
             try:
@@ -227,12 +202,6 @@ class Record:
     def _bare(self, refused):
         """The text of a refusal without the folder at its beginning."""
         return str(refused).removeprefix(f"{self.directory}: ")
-
-
-def entriesOf(run, key):
-    """Those entries of a list of run.json that can be used."""
-    found = run.get(key)
-    return [one for one in found if isinstance(one, dict)] if isinstance(found, list) else []
 
 
 def _finite(text):

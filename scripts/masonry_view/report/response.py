@@ -22,10 +22,9 @@ from .pieces import (
     withUnit,
     written,
 )
-from .record import entriesOf
 from .structure import firstUpper, nameOf, sought, valueOf
 
-MOST_ANSWERS = 12  # in the table of what stages found; all are in a folded one
+MAX_ANSWERS = 12  # in the table of what stages found; all are in a folded one
 NOISE = 1e-6  # of the largest force of a column: what is below is round-off
 
 
@@ -35,18 +34,17 @@ def curve(record):
     if spec is None or not len(record.rows):
         why = "; ".join(p for p in record.problems if "curve" in p)
         raise Refused(f"There is no curve: {why or 'the run has no rows'}.")
-    x = record.column(spec["x"]["column"])
     data = {name: values[record.rows] for name, values in record.columns.items()}
+    x, y = data[spec["x"]["column"]], data[spec["y"][0]["column"]]
     ideal, line = record.ideals["masonry"], None
     if not isinstance(ideal, str):
         dy, du, force = ideal.yieldDisplacement, ideal.ultimateDisplacement, ideal.yieldForce
         line = [0, dy, du], [0, force, force]
     with drawing.style():
         drawn = curve_figure.panelOf(spec, data, line)
-        y = data[spec["y"][0]["column"]]
-        about = _aboutCurve(spec, y)
-        frames = drawing.placesOn(drawn, _places(record, x, y))
+        frames = drawing.placesOn(drawn, _places(record, data, x, y))
         svg = drawing.svg(drawn, "curve")
+    about = _aboutCurve(spec, y)
     sources = ", ".join([spec["x"]["column"], *(axis["column"] for axis in spec["y"])])
     text = f"{about} Source: curve.csv: {sources}."
     if record.picture and frames:
@@ -63,10 +61,8 @@ def curve(record):
             " capacity.png."
         ),
     )
-    loads = [stage.get("load") for stage in entriesOf(record.run, "stages")]
-    pushes = [
-        n for n, load in enumerate(loads, 1) if isinstance(load, list) and load[:1] == ["push"]
-    ]
+    loads = [stage.get("load") or [""] for stage in record.run["stages"]]
+    pushes = [number for number, load in enumerate(loads, 1) if load[0] == "push"]
     if len(pushes) > 1:
         numbered = ", ".join(map(str, pushes))
         yield note(
@@ -101,8 +97,8 @@ def _ideal(record):
     lines = []
     for name, what in OF_IDEAL.items():
         values, meanings = dict.fromkeys(ideals, "none"), {}
-        for rule in known:
-            one = known[rule][name]
+        for rule, numbersOfRule in known.items():
+            one = numbersOfRule[name]
             value = withUnit(one.value, one.unit)
             # its curve ends before the force has fallen
             values[rule] = Badged(value, "not reached") if one.note else value
@@ -115,31 +111,27 @@ def _ideal(record):
     )
     yield table(heads, lines, caption, "ideal")
     notes = [n for one in good.values() for n in one.notes]
-    notes += [
-        f"{bilinear_curve.RULES[rule]}: none, because {ideals[rule]}"
-        for rule in ideals
-        if rule not in good
-    ]
+    failed = {rule: why for rule, why in ideals.items() if rule not in good}
+    notes += [f"{bilinear_curve.RULES[rule]}: none, because {why}" for rule, why in failed.items()]
     for text in dict.fromkeys(notes):
         yield note(f"{firstUpper(text)}.")
 
 
 def _aboutCurve(spec, y):
     """What the curve shows, in a sentence for those who do not see it."""
-    label = str(spec["y_label"])
-    unit = unitOf({"label": label, "column": spec["y"][0]["column"]})
+    label, first = spec["y_label"], spec["y"][0]
+    unit = unitOf({"label": label, "column": first["column"]})
     return (
-        f"{firstUpper(label)}, {spec['y'][0]['label']}, over {spec['x']['label']}: {len(y):,} rows,"
+        f"{firstUpper(label)}, {first['label']}, over {spec['x']['label']}: {len(y):,} rows,"
         f" from {withUnit(float(y.min()), unit)} to {withUnit(float(y.max()), unit)}."
     )
 
 
-def _places(record, x, y):
+def _places(record, data, x, y):
     """Where the frames of the 3-D picture are on the curve."""
-    times = record.column("time_s")
-    if times is None or not record.picture:
+    if "time_s" not in data or not record.picture:
         return []
-    rows = [int(np.nanargmin(np.abs(times - t))) for t in record.frameTimes]
+    rows = [int(np.nanargmin(np.abs(data["time_s"] - t))) for t in record.frameTimes]
     return [(float(x[n]), float(y[n])) for n in rows]
 
 
@@ -148,9 +140,8 @@ def found(record):
     for."""
     if record.isPush:
         yield from _states(record)
-        yield numbers(
-            quantities.shown(record.numbers, "push", "loops", "one way"), "Numbers of the push"
-        )
+        shown = quantities.shown(record.numbers, "push", "loops", "one way")
+        yield numbers(shown, "Numbers of the push")
     else:
         yield missing("The run has no push, so there are no drifts at a peak or at a first crack.")
     yield from _drifts(record)
@@ -162,15 +153,12 @@ def _states(record):
     data, entries, lines = record.data, record.numbers, []
     for state in quantities.STATES:
         moved, meaning = entries.get(state.displacement), state.meaning
-        found = ["none"] * 3
         if isNumber(moved):
+            drift = withUnit(entries.get(state.drift), "mrad")
             carried = data.at(data.carried(), data.place(state.find))
-            found = [
-                withUnit(moved, "mm"),
-                withUnit(entries.get(state.drift), "mrad"),
-                withUnit(carried, "kN"),
-            ]
+            found = withUnit(moved, "mm"), drift, withUnit(carried, "kN")
         else:
+            found = ["none"] * 3
             meaning += f" Here: {state.missing}."
         lines.append((state.name, *found, meaning, f"run.json: {state.displacement}"))
     heads = ("state", "displacement", "drift", "force at both ends", "what it is", "source")
@@ -189,41 +177,29 @@ def _states(record):
 
 
 def _drifts(record):
-    meanings = record.run.get("columns") or {}
     rows = []
-    for name in record.run.get("recorded_drifts") or []:
+    for name in record.run["recorded_drifts"]:
         values = record.columns.get(name, np.zeros(0))
         values = values[np.isfinite(values)]
         if len(values):
-            largest = float(max(values, key=abs))
-            rows.append(
-                quantities.Number(
-                    f"largest {name.removesuffix('_mrad')}",
-                    largest,
-                    "mrad",
-                    f"Of all rows the one with the largest size: {bare(meanings.get(name))}.",
-                    f"curve.csv: {name}",
-                )
-            )
+            largest, what = float(max(values, key=abs)), bare(record.run["columns"][name])
+            meaning = f"Of all rows the one with the largest size: {what}."
+            head, source = f"largest {name.removesuffix('_mrad')}", f"curve.csv: {name}"
+            rows.append(quantities.Number(head, largest, "mrad", meaning, source))
     if rows:
         yield numbers(rows, "Drifts that were recorded")
 
 
 def _answers(run):
-    answers = entriesOf(run, "answers")
-    if not answers:
+    if not run.get("answers"):
         yield note("No stage was run for a number. Source: run.json: answers.")
         return
-    line = lambda a, what: (
-        f"{a.get('number')}, {a.get('stage')}: {what}",
-        valueOf(a),
-        str(a.get("how", "")),
-    )
+    line = lambda a, what: (f"{a['number']}, {a['stage']}: {what}", valueOf(a), a["how"])
     heads = ("stage and number", "value", "how it was found")
     caption = "What the stages were run for. Source: run.json: answers"
-    every = [line(a, nameOf(a)) for a in answers]
+    every = [line(a, nameOf(a)) for a in run["answers"]]
     whole = table(heads, every, caption, "answers")
-    if len(every) <= MOST_ANSWERS:
+    if len(every) <= MAX_ANSWERS:
         yield whole
         return
     found = [line(a, what) for a, what in sought(run)]
@@ -233,60 +209,29 @@ def _answers(run):
 
 
 WHAT_JOINTS_DO = {"opens": "open", "slides": "slide", "crushes": "crush"}
+EXACT = "what rigid blocks carry exactly"
+UPPER = (
+    "an upper bound: joints that slide are taken to open as friction tells, and no joint loses"
+    " strength"
+)
+#: Further factors of a bound, by their entries.
+FURTHER = {
+    "open_joints_slip": "with open head joints that slip",
+    "without_dilatancy": "a collapse in which joints slip without opening",
+}
 
 
 def bound(record):
     """The bound by limit analysis."""
-    entries = entriesOf(record.run, "bounds")
-    if not entries:
+    if not record.run.get("bounds"):
         raise Refused(
             "There is no bound: limit analysis is made where a structure is pushed, leans or tilts,"
             " of up to 3,000 joints, and not with --lean. Source: run.json: bounds."
         )
-    lines = []
-    for one in entries:
-        if not isNumber(one.get("factor")):
-            lines.append((one.get("load", "?"), "none", "", one.get("note", "not known")))
-            continue
-        unit = one.get("unit") or "-"
-        joints = ", ".join(
-            f"{count} {WHAT_JOINTS_DO.get(what, what)}"
-            for what, count in (one.get("joints") or {}).items()
-            if count
-        )
-        kind = (
-            "what rigid blocks carry exactly"
-            if one.get("exact")
-            else (
-                "an upper bound: joints that slide are taken to open as friction tells, and no"
-                " joint loses strength"
-            )
-        )
-        further = [
-            f"{what}: {withUnit(one[key], unit)}"
-            for key, what in (
-                ("open_joints_slip", "with open head joints that slip"),
-                ("without_dilatancy", "a collapse in which joints slip without opening"),
-            )
-            if isNumber(one.get(key))
-        ]
-        lines.append(
-            (
-                one.get("load", "?"),
-                withUnit(one["factor"], unit),
-                joints or "–",
-                "; ".join([kind, *further]),
-            )
-        )
     heads = ("load", "factor", "joints of the mechanism", "what it is")
-    yield table(
-        heads,
-        lines,
-        (
-            "Limit analysis of the same blocks, rigid and with small displacements. Source:"
-            " run.json: bounds"
-        ),
-    )
+    caption = "Limit analysis of the same blocks, rigid and with small displacements."
+    lines = [_boundLine(one) for one in record.run["bounds"]]
+    yield table(heads, lines, f"{caption} Source: run.json: bounds")
     run, rows = record.numbers, []
     for side, what in (
         ("", "peak over bound"),
@@ -294,15 +239,9 @@ def bound(record):
     ):
         peak, limit = f"{side}peak_at_both_ends_kN", f"{side}bound_base_shear_kN"
         if isNumber(run.get(peak)) and isNumber(run.get(limit)) and run[limit]:
-            rows.append(
-                quantities.Number(
-                    what,
-                    abs(run[peak] / run[limit]),
-                    "-",
-                    "Of an upper bound it cannot be much above 1; a run warns where it is.",
-                    f"run.json: {peak}, {limit}",
-                )
-            )
+            ratio, source = abs(run[peak] / run[limit]), f"run.json: {peak}, {limit}"
+            meaning = "Of an upper bound it cannot be much above 1; a run warns where it is."
+            rows.append(quantities.Number(what, ratio, "-", meaning, source))
     if rows:
         yield numbers(rows, "The run beside its bound")
     yield figure(
@@ -310,8 +249,19 @@ def bound(record):
     )
 
 
+def _boundLine(one):
+    """The line of a bound in the table."""
+    if not isNumber(one.get("factor")):
+        return one["load"], "none", "", one["note"]
+    unit = one["unit"] or "-"
+    joints = [f"{count} {WHAT_JOINTS_DO[what]}" for what, count in one["joints"].items() if count]
+    about = [EXACT if one["exact"] else UPPER]
+    about += [f"{w}: {withUnit(one[k], unit)}" for k, w in FURTHER.items() if isNumber(one.get(k))]
+    return one["load"], withUnit(one["factor"], unit), ", ".join(joints) or "–", "; ".join(about)
+
+
 def energy(record):
-    """Where the work went: a table, a bar and a chart."""
+    """Where the work went: a table and a chart."""
     # a figure may show its rows in another order
     rows = np.arange(record.rows.min(), record.rows.max() + 1) if len(record.rows) else record.rows
     columns = {n: v[rows] for n, v in record.columns.items() if n.endswith("_J")}
@@ -333,23 +283,19 @@ def energy(record):
     line = lambda what, value, source: (what, withUnit(value, "J"), part(value), source)
     own = lambda n: line(known[n[:-2]][0], change(n), f"curve.csv: {n}")
     stored = sum(map(change, elastic))
-    lines = [*map(own, inputs)]
-    lines.append(line("all that was put in", total, "sum of these"))
-    lines.append(line("elastic energy of all parts", stored, f"curve.csv: {', '.join(elastic)}"))
-    lines += map(own, spent)
+    lines = [
+        *map(own, inputs),
+        line("all that was put in", total, "sum of these"),
+        line("elastic energy of all parts", stored, f"curve.csv: {', '.join(elastic)}"),
+        *map(own, spent),
+    ]
     rest = total - stored - sum(map(change, spent))
-    lines.append(
-        ("what is missing in the balance", withUnit(rest, "J", 2), part(rest), "difference")
-    )
-    since = "from the first to the last row that the curve shows"
-    yield table(
-        ("energy", "change", "share of what was put in", "source"),
-        lines,
-        f"Where the work went, {since}",
-        "energy",
-    )
+    missed = "what is missing in the balance", withUnit(rest, "J", 2), part(rest), "difference"
+    heads = ("energy", "change", "share of what was put in", "source")
+    caption = "Where the work went, from the first to the last row that the curve shows"
+    yield table(heads, [*lines, missed], caption, "energy")
     if record.spec and (np.diff(record.rows) > 0).all():
-        x, label = record.columns[record.spec["x"]["column"]][rows], str(record.spec["x"]["label"])
+        x, label = record.columns[record.spec["x"]["column"]][rows], record.spec["x"]["label"]
     else:
         x, label = rows, "number of the row"
     x = x[finite]
@@ -383,11 +329,8 @@ def cycles(record):
     heads = [f"{name} [{'%' if key == 'damping' else unit}]" for key, name, unit, *_ in columns]
     lines = []
     for n, one in enumerate(entries, start=1):
-        cells = [
-            100 * one[key] if key == "damping" and isNumber(one.get(key)) else one.get(key)
-            for key, *_ in columns
-        ]
-        lines.append((n, *(written(v) for v in cells)))
+        one = {**one, "damping": one["damping"] and 100 * one["damping"]}
+        lines.append((n, *(written(one[key]) for key, *_ in columns)))
     yield table(("cycle", *heads), lines, "Cycles. Source: run.json: cycles", "cycles")
     yield note(ABOUT_CYCLES)
 
@@ -395,15 +338,12 @@ def cycles(record):
 def base(record):
     """Normal force, shear force and moment: of the sections that were recorded, else forces on what
     is held."""
-    sections = record.run.get("recorded_sections") or []
-    names = [n for n in sections if n in record.columns]
+    names = [n for n in record.run["recorded_sections"] if n in record.columns]
     if names:
         yield _forces(record, names, "Forces of the sections that were recorded")
         return
-    held = record.run.get("held") or []
-    reactions = [
-        n for one in held for axis in "xyz" if (n := f"{one}_force_{axis}_kN") in record.columns
-    ]
+    reactions = [f"{one}_force_{axis}_kN" for one in record.run["held"] for axis in "xyz"]
+    reactions = [name for name in reactions if name in record.columns]
     yield missing(
         "The moment at the base is not known: no section was recorded. scene.section(z) in the"
         " script records the normal force, the shear force and the moment of a horizontal section."
@@ -415,7 +355,6 @@ def base(record):
 
 
 def _forces(record, names, caption):
-    meanings = record.run.get("columns") or {}
     places = {"first row": record.rows[0]}
     if record.isPush and record.data.rows:
         places["at the peak"] = record.data.rows[record.data.peak()]
@@ -429,8 +368,7 @@ def _forces(record, names, caption):
         least = NOISE * max(map(abs, ends))
         every = [*values[list(places.values())], *ends]
         texts = ["≈ 0" if abs(v) < least else withUnit(float(v), unit) for v in every]
-        lines.append(
-            (name.removesuffix("_" + unit), *texts, bare(meanings.get(name)), f"curve.csv: {name}")
-        )
+        meaning = bare(record.run["columns"][name])
+        lines.append((name.removesuffix("_" + unit), *texts, meaning, f"curve.csv: {name}"))
     heads = ("force", *places, "smallest", "largest", "what it is", "source")
     return table(heads, lines, caption, "forces")

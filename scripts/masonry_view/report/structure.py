@@ -6,6 +6,7 @@ from masonry.numbers import quantities
 
 from .pieces import (
     Badged,
+    facts,
     figure,
     folded,
     isNumber,
@@ -17,7 +18,6 @@ from .pieces import (
     withUnit,
     written,
 )
-from .record import entriesOf
 
 #: Units in which properties are shown, and the factor from SI units.
 SHOWN = {
@@ -35,28 +35,43 @@ COUNTS = {
     "refined_joints": "joints that got more points",
     "nodes": "nodes of deformable units",
 }
-MOST_WORDS = 12  # of a script that are shown at once
-MOST_LEADING = 3  # answers at the head of a report
+#: Properties of units: name, entry of run.json, factor, unit that is shown, meaning.
+OF_UNITS = (
+    (
+        "Young's modulus of the units",
+        "young_Pa",
+        1e-6,
+        "MPa",
+        "Elastic modulus of the material of the bricks; rigid units have theirs in the stiffness of"
+        " their joints.",
+    ),
+    (
+        "Poisson's ratio of the units",
+        "poisson",
+        1,
+        "-",
+        "Lateral over longitudinal strain of the material of the bricks.",
+    ),
+    ("density of the units", "density_kg_per_m3", 1, "kg/m³", "Mass of a brick over its volume."),
+)
+MAX_WORDS = 12  # of a script that are shown at once
+MAX_LEADING = 3  # answers at the head of a report
 OLDER = "The run was made by an older version of the plugin, whose run.json does not say this."
 
 
-def facts(record):
-    """Name, value and source of what stands below the title."""
+def origin(record):
+    """What stands below the title: names, values and their entries in run.json."""
     run = record.run
-    when, whence = record.date()
-    known = run.get("versions")
+    ended = run["date"].replace("T", " ").replace("Z", " UTC")
     names = {"masonry": "masonry", "yade": "YADE", "python": "Python"}
-    made = [
-        f"{name} {known[key]}"
-        for key, name in names.items()
-        if isinstance(known, dict) and key in known
+    versions = ", ".join(f"{name} {run['versions'][key]}" for key, name in names.items())
+    lines = [
+        ("scene", run["scene"], "scene"),
+        ("run ended", ended, "date"),
+        ("versions", versions, "versions"),
+        ("commit", run["commit"], "commit"),
     ]
-    return [
-        ("scene", str(run.get("scene", "not known")), "run.json: scene"),
-        ("run ended", when, whence),
-        ("versions", ", ".join(made) or "not known", "run.json: versions"),
-        ("commit", str(run.get("commit", "not known")), "run.json: commit"),
-    ]
+    yield facts(lines)
 
 
 def head(record):
@@ -78,13 +93,10 @@ def head(record):
         yield note("The run has no rows: it took no time steps, or ended before there was one.")
     lead = quantities.headline({**run, **record.numbers})
     lead = lead or "; ".join(f"{what} {valueOf(one)}" for one, what in sought(run))
-    if not lead:
-        answers = [a for a in entriesOf(run, "answers") if isNumber(a.get("value"))]
-        lead = "; ".join(f"{nameOf(a)} {valueOf(a)}" for a in answers[-MOST_LEADING:])
-    if lead:
+    answers = [f"{nameOf(a)} {valueOf(a)}" for a in answersOf(run)]
+    if lead := lead or "; ".join(answers[-MAX_LEADING:]):
         yield note(f"{firstUpper(lead)}.", "lead")
-    warnings = [str(w) for w in run.get("warnings") or []] + record.problems
-    if warnings:
+    if warnings := run["warnings"] + record.problems:
         more = f", and {len(warnings) - 1} more" if len(warnings) > 1 else ""
         yield note(
             f"{warnings[0]}{more}. The part “How far to trust it” has all.", "warning", "Warning:"
@@ -95,38 +107,39 @@ def firstUpper(text):
     return text[:1].upper() + text[1:]
 
 
+def answersOf(run):
+    """The answers of the stages that were found."""
+    return [one for one in run.get("answers") or [] if isNumber(one["value"])]
+
+
 def nameOf(answer):
     """The name of an answer in words."""
-    return str(answer.get("name")).replace("_", " ")
+    return answer["name"].replace("_", " ")
 
 
 def valueOf(answer):
     """An answer with its uncertainty and unit."""
-    if not isNumber(answer.get("value")):
+    if not isNumber(answer["value"]):
         return "not found"
-    text, unit = written(answer["value"]), answer.get("unit", "-")
-    if isNumber(answer.get("uncertainty")):
+    text = written(answer["value"])
+    if isNumber(answer["uncertainty"]):
         text += f" ± {written(answer['uncertainty'], 2)}"
-    return text if unit == "-" else f"{text}\u00a0{unit}"
+    return text if answer["unit"] == "-" else f"{text}\u00a0{answer['unit']}"
 
 
 def sought(run):
     """The largest load that was held and the smallest that was not, as answers, of a run that
-    looked for one load."""
-    loads, found = quantities.loadsOf(run.get("stages") or []), []
-    ones = [
-        a
-        for a in entriesOf(run, "answers")
-        if a.get("name") in ("factor_held", "factor_not_held") and isNumber(a.get("value"))
-    ]
-    if len({(a.get("stage"), a.get("unit"), loads.get(a.get("number"))) for a in ones}) != 1:
+    looked for one load: pairs of an answer and what it is."""
+    loads = quantities.loadsOf(run["stages"])
+    ones = [a for a in answersOf(run) if a["name"] in ("factor_held", "factor_not_held")]
+    if len({(a["stage"], a["unit"], loads.get(a["number"])) for a in ones}) != 1:
         return []
+    found = []
     for name, choose, what in (
         ("factor_held", max, "largest load that was held"),
         ("factor_not_held", min, "smallest load that was not held"),
     ):
-        alike = [a for a in ones if a["name"] == name]
-        if alike:
+        if alike := [a for a in ones if a["name"] == name]:
             found.append((choose(alike, key=lambda a: a["value"]), what))
     return found
 
@@ -138,13 +151,12 @@ def built(record):
         yield figure(*record.elevation)
     else:
         yield missing(f"There is no drawing of what was built: {record.missing}")
-    built = run.get("built") or []
+    built = run.get("built") or []  # not with --lean
     rows = [(name, text, "run.json: built") for name, text in built]
     for key, what in COUNTS.items():
         if run.get(key) and not (key == "units" and built):
             rows.append((what, written(run[key]), f"run.json: {key}"))
-    kinds = run.get("joints_by_kind")
-    if kinds:
+    if kinds := run.get("joints_by_kind"):
         text = ", ".join(f"{written(count)} {name}" for name, count in kinds.items())
         rows.append(("joints by kind", text, "run.json: joints_by_kind"))
     yield table(("what", "how much", "source"), rows, "Counts and sizes")
@@ -154,43 +166,12 @@ def built(record):
 
 
 def _units(run):
-    unit = run.get("unit_material")
-    if not unit:
-        return
-    assumed = _namesOf(run)
-    rows = (
-        (
-            "Young's modulus of the units",
-            "young_Pa",
-            1e-6,
-            "MPa",
-            (
-                "Elastic modulus of the material of the bricks; rigid units have theirs in the"
-                " stiffness of their joints."
-            ),
-        ),
-        (
-            "Poisson's ratio of the units",
-            "poisson",
-            1,
-            "-",
-            "Lateral over longitudinal strain of the material of the bricks.",
-        ),
-        (
-            "density of the units",
-            "density_kg_per_m3",
-            1,
-            "kg/m³",
-            "Mass of a brick over its volume.",
-        ),
-    )
-    found = []
-    for what, key, factor, shown, meaning in rows:
-        value = factor * unit[key] if isNumber(unit.get(key)) else None
+    assumed, found = _namesOf(run), []
+    for what, key, factor, unit, meaning in OF_UNITS:
+        value = factor * run["unit_material"][key]
         named = _marked(what, f"unit.{key.partition('_')[0]}" in assumed)
-        found.append(
-            quantities.Number(named, value, shown, meaning, f"run.json: unit_material.{key}")
-        )
+        source = f"run.json: unit_material.{key}"
+        found.append(quantities.Number(named, value, unit, meaning, source))
     yield numbers(found, "Units")
 
 
@@ -258,11 +239,10 @@ def _assumed(run):
         return
     groups = {}
     for one in entries:
-        kind, _, name = str(one.get("name", "?")).partition(".")
-        found = groups.setdefault((kind, str(one.get("source", "not known"))), [])
-        value = one.get("value")
+        kind, _, name = one["name"].partition(".")
+        found, value = groups.setdefault((kind, one["source"]), []), one.get("value")
         if isNumber(value):
-            unit, factor = SHOWN.get(one.get("unit"), (one.get("unit", "-"), 1))
+            unit, factor = SHOWN.get(one["unit"], (one["unit"], 1))
             found.append(f"{name}\u00a0{withUnit(factor * value, unit)}")
         else:
             found.append(" ".join(filter(None, (name, str(value or "")))))
@@ -277,55 +257,34 @@ def _assumed(run):
 def loaded(record):
     """How it was held and loaded: targets, stages, the words of the script, and the options."""
     run = record.run
-    pairs = run.get("held_and_loaded")
-    if pairs:
-        yield table(
-            ("what", "how it is held and loaded before the first stage"),
-            pairs,
-            "Supports and dead loads. Source: run.json: held_and_loaded",
-        )
+    if pairs := run.get("held_and_loaded"):
+        heads = "what", "how it is held and loaded before the first stage"
+        yield table(heads, pairs, "Supports and dead loads. Source: run.json: held_and_loaded")
     else:
-        held = ", ".join(map(str, run.get("held") or [])) or "nothing"
-        yield note(f"Held: {held}. Source: run.json: held.")
+        yield note(f"Held: {', '.join(run['held']) or 'nothing'}. Source: run.json: held.")
     yield from _connections(run)
-    lines = []
-    answers = [a for a in entriesOf(run, "answers") if isNumber(a.get("value"))]
-    for number, stage in enumerate(entriesOf(run, "stages"), start=1):
-        load = [str(one) for one in (stage.get("load") or [])[1:2] if one]
-        found = [f"{nameOf(a)} {valueOf(a)}" for a in answers if a.get("number") == number]
-        lines.append(
-            (
-                number,
-                stage.get("stage", "?"),
-                ", ".join(load) or "–",
-                written(stage.get("steps")),
-                "; ".join(found) or "–",
-            )
-        )
+    lines, loads = [], quantities.loadsOf(run["stages"])
+    for number, stage in enumerate(run["stages"], start=1):
+        found = [f"{nameOf(a)} {valueOf(a)}" for a in answersOf(run) if a["number"] == number]
+        load, steps = loads.get(number) or "–", written(stage["steps"])
+        lines.append((number, stage["stage"], load, steps, "; ".join(found) or "–"))
     if lines:
-        yield table(
-            ("number", "stage", "load", "time steps", "what it found"),
-            lines,
-            "Stages in their order. Source: run.json: stages, answers",
-            "stages",
-        )
-    words = [w for w in run.get("script") or [] if isinstance(w, list) and len(w) == 2]
-    if words:
-        script = listed((spoken(*word) for word in words), kind="script")
-        about = note(
-            "Stresses are in Pa, forces in N, lengths in m, and displacements of pushes and"
-            " supports in mm; help(masonry.Scene) describes the words. Source: run.json: script."
-        )
-        title, few = "The words of the script, in their order", len(words) <= MOST_WORDS
-        yield folded(title, script, about, opened=few)
-    options = run.get("options")
-    if isinstance(options, dict):
-        units = run.get("option_units") or {}
-        text = "; ".join(
-            f"{name} {_said(value)} {units.get(name, '')}".strip()
-            for name, value in options.items()
-        )
-        yield folded("All options of the run", note(f"{text}. Source: run.json: options."))
+        heads = "number", "stage", "load", "time steps", "what it found"
+        caption = "Stages in their order. Source: run.json: stages, answers"
+        yield table(heads, lines, caption, "stages")
+    script = [spoken(*command) for command in run["script"]]
+    about = note(
+        "Stresses are in Pa, forces in N, lengths in m, and displacements of pushes and supports in"
+        " mm; help(masonry.Scene) describes the words. Source: run.json: script."
+    )
+    title, few = "The words of the script, in their order", len(script) <= MAX_WORDS
+    yield folded(title, listed(script, kind="script"), about, opened=few)
+    options = [
+        f"{name} {_said(value)} {run['option_units'].get(name, '')}".strip()
+        for name, value in run["options"].items()
+    ]
+    about = note(f"{'; '.join(options)}. Source: run.json: options.")
+    yield folded("All options of the run", about)
 
 
 #: Units at the end of names in entries of ties and springs, the longest first.
@@ -336,15 +295,12 @@ def _connections(run):
     """Ties, springs and layers of fibres, if run.json has some."""
     for key in ("ties", "springs", "overlays"):
         lines = [
-            (one.get("name", "?"), "; ".join(_named(n, v) for n, v in one.items() if n != "name"))
-            for one in entriesOf(run, key)
+            (one["name"], "; ".join(_named(n, v) for n, v in one.items() if n != "name"))
+            for one in run.get(key) or []
         ]
         if lines:
-            yield table(
-                ("name", "what it is, and its state at the end"),
-                lines,
-                f"{key.capitalize()}. Source: run.json: {key}",
-            )
+            heads = "name", "what it is, and its state at the end"
+            yield table(heads, lines, f"{key.capitalize()}. Source: run.json: {key}")
 
 
 def _named(name, value):
@@ -352,18 +308,14 @@ def _named(name, value):
     ends = ((ending, unit) for ending, unit in ENDINGS if name.endswith(ending))
     ending, unit = next(ends, ("", ""))
     words = name.removesuffix(ending).replace("_", " ")
-    return f"{words} {_values(value)} {unit}".strip()
-
-
-def _values(value):
-    if isinstance(value, list):
-        return "(" + ", ".join(map(_values, value)) + ")"
-    return _said(value)
+    return f"{words} {_said(value)} {unit}".strip()
 
 
 def _said(value):
-    if value is None or value == [] or value == "":
+    if value in (None, [], ""):
         return "–"
+    if isinstance(value, list):
+        return f"({', '.join(map(_said, value))})"
     if isinstance(value, bool):
         return "yes" if value else "no"
     return written(value, 6) if isNumber(value) else str(value)
@@ -371,8 +323,6 @@ def _said(value):
 
 def spoken(word, arguments):
     """A word of a script as it was said, without the arguments that are nothing."""
-    if not isinstance(arguments, dict):
-        return f"{word}({arguments})"
     given = {n: v for n, v in arguments.items() if v not in (None, False, "", [], {})}
     return f"{word}({', '.join(f'{n}={_short(v)}' for n, v in given.items())})"
 

@@ -4,8 +4,6 @@
 from masonry.numbers import quantities
 
 from .pieces import (
-    UNKNOWN,
-    Piece,
     figure,
     isNumber,
     listed,
@@ -13,16 +11,16 @@ from .pieces import (
     note,
     numbers,
     table,
+    turning,
     withUnit,
     written,
 )
-from .record import entriesOf
 
 
 def pictures(record):
     """The turning picture, and the cracks at the end."""
     if record.picture:
-        yield Piece("turning", {"picture": record.picture})
+        yield turning(record.picture)
         shown, count = len(record.frameTimes), record.frameCount
         text = (
             "The sliders are for the frame and for the magnification of displacements; joints are"
@@ -37,75 +35,48 @@ def pictures(record):
         yield note(text)
     else:
         yield missing(f"There is no turning picture: {record.missing}")
-    yield figure(
-        "cracks.png",
-        (
-            f"Cracks {record.whenCracked}: open joints red, slid joints blue, crushed joints black."
-            " Source: cracks.png."
-        ),
-    )
+    colours = "open joints red, slid joints blue, crushed joints black"
+    yield figure("cracks.png", f"Cracks {record.whenCracked}: {colours}. Source: cracks.png.")
 
 
 def trust(record):
     """How far to trust it: errors that the run knows of itself, promises, warnings, and what is not
     known."""
     run = record.run
-    warnings = run.get("warnings")
-    sentences = [str(w) for w in warnings or []] + record.problems
-    if sentences:
+    if sentences := run["warnings"] + record.problems:
         yield listed(sentences, "Warnings", "warning")
-    elif warnings is None:
-        yield missing("run.json of this older version does not list the warnings of the run.")
     else:
         yield note("The run has no warnings. Source: run.json: warnings.")
     yield from _said(run)
     rows = quantities.shown(record.numbers, "every", "cost")
     step, limit = run.get("time_step_s"), run.get("time_step_limit_s")
     if isNumber(step) and isNumber(limit) and limit > 0:
-        rows.append(
-            quantities.Number(
-                "time step",
-                1e6 * step,
-                "µs",
-                f"{written(100 * step / limit, 3)} % of the largest stable one.",
-                "run.json: time_step_s, time_step_limit_s",
-            )
-        )
+        share, source = written(100 * step / limit, 3), "run.json: time_step_s, time_step_limit_s"
+        about = f"{share} % of the largest stable one."
+        rows.append(quantities.Number("time step", 1e6 * step, "µs", about, source))
     if rows:
         yield numbers(rows, "What the run knows of its own errors")
     yield from _accuracy(run)
-    preset = run.get("preset")
-    if isinstance(preset, dict):
-        promise = (
-            run.get("preset_note")
-            or f"preset {preset.get('name')}: run.json of this older version does not say what it"
-            " promises"
-        )
-        yield note(f"The {promise}. Source: run.json: preset_note.")
+    if run["preset"]:
+        yield note(f"The {run['preset_note']}. Source: run.json: preset_note.")
     elif "accuracy" not in run:
         yield note(
             "No preset and no --accuracy was chosen, so no error of peak or work is promised."
             " Source: run.json: preset."
         )
     unknown = [
-        (
-            "Whether the model fits real masonry of this kind: validation/README.md of the project"
-            " compares it with tests and closed forms."
-        ),
-        (
-            "What the scatter of the material does: studies run a scene many times with properties"
-            " that vary."
-        ),
+        "Whether the model fits real masonry of this kind: validation/README.md of the project"
+        " compares it with tests and closed forms.",
+        "What the scatter of the material does: studies run a scene many times with properties that"
+        " vary.",
     ]
     if "accuracy" not in run:
-        unknown.insert(
-            0,
-            (
-                "How far rate, mesh and points of joints change the result: one run does not tell."
-                " --accuracy 2 finds it for peak and work of a push."
-            ),
+        text = (
+            "How far rate, mesh and points of joints change the result: one run does not tell."
+            " --accuracy 2 finds it for peak and work of a push."
         )
-    if run.get("assumed"):
+        unknown.insert(0, text)
+    if run["assumed"]:
         unknown.append(
             "What the properties change that were assumed; the table of what was built lists them."
         )
@@ -113,24 +84,19 @@ def trust(record):
 
 
 def _said(run):
-    when = lambda one: (
-        str(one.get("stage") or "before the first stage"),
-        withUnit(one.get("time_s"), "s"),
-    )
-    rows = [(*when(one), str(one.get("text", UNKNOWN))) for one in entriesOf(run, "notes")]
+    rows = [
+        (one["stage"] or "before the first stage", withUnit(one["time_s"], "s"), one["text"])
+        for one in run["notes"]
+    ]
     if rows:
-        yield table(
-            ("stage", "time in the scene", "text"),
-            rows,
-            "What the run said. Source: run.json: notes",
-            "notes",
-        )
+        heads = "stage", "time in the scene", "text"
+        yield table(heads, rows, "What the run said. Source: run.json: notes", "notes")
 
 
 def _accuracy(run):
     """The ± of --accuracy."""
     found = run.get("accuracy")
-    if not isinstance(found, dict):
+    if not found:
         return
     lines = [
         (
@@ -141,17 +107,13 @@ def _accuracy(run):
         )
         for q in found["quantities"]
     ]
-    yield table(
-        ("quantity", "value", "half-width", "its parts by their sources"),
-        lines,
-        (
-            f"Accuracy, asked for: {written(found['asked_percent'])} %, by {found['fidelity']} and"
-            f" {len(found['companions'])} runs beside it. Source: run.json: accuracy"
-        ),
+    asked = written(found["asked_percent"])
+    heads = "quantity", "value", "half-width", "its parts by their sources"
+    caption = (
+        f"Accuracy, asked for: {asked} %, by {found['fidelity']} and {len(found['companions'])}"
+        " runs beside it. Source: run.json: accuracy"
     )
-    if not found.get("reached", True):
-        yield note(
-            f"The {written(found['asked_percent'])} % are not reached: the ± is what was found.",
-            kind="warning",
-        )
+    yield table(heads, lines, caption)
+    if not found["reached"]:
+        yield note(f"The {asked} % are not reached: the ± is what was found.", "warning")
     yield note(f"The ± does not cover {found['not_covered']}.")
