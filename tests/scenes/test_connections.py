@@ -199,8 +199,6 @@ def test_what_makes_no_sense_is_refused(tmp_path, word, settings, text):
 
 
 def test_no_energy_is_made_by_ties_in_a_shaken_wall(tmp_path):
-    """Bars that slacken, yield and tighten again under a strong motion: the balance closes, and
-    what is lost never falls."""
     scene = standing(tmp_path, WALL, plane=False)
     rng = np.random.default_rng(5)
     for n in range(8):
@@ -290,20 +288,9 @@ def test_ends_that_a_script_moves_are_where_it_moved_them(tmp_path):
     }
     with refused("stiffness must have a number for each of the 2 connectors, got 1"):
         engine.updateAttrs(twice)
-    of = {
-        "stiffness": [1e3] * 2,
-        "strength": [1e300] * 2,
-        "breaking": [1e300] * 2,
-        "compression": [0] * 2,
-        "rest": [0.0] * 2,
-    }
-    engine.updateAttrs({**twice, **of})
-    O.step()
-    assert engine.elongations[1] == engine.elongations[0] == tie.elongation
 
 
 def test_ties_pull_the_same_with_functors(tmp_path):
-    """Both ways to run the joints give the same forces at the same displacements."""
     found = []
     for functors in (False, True):
         scene = standing(tmp_path / str(functors), WALL, functors=functors)
@@ -329,8 +316,6 @@ def test_bricks_at_ties_of_deformable_walls_are_said_to_be_rigid(tmp_path, capsy
 
 
 def test_frames_have_ties_and_springs(tmp_path):
-    """The file of a frame for ParaView, and the page that draws it, against what the engines
-    say."""
     scene = lean(tmp_path, WALL)
     scene.args.lean = False
     scene.platen("bottom", springs={"x": 1e7})
