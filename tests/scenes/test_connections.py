@@ -288,6 +288,16 @@ def test_ends_that_a_script_moves_are_where_it_moved_them(tmp_path):
     }
     with refused("stiffness must have a number for each of the 2 connectors, got 1"):
         engine.updateAttrs(twice)
+    of = {
+        "stiffness": [1e3] * 2,
+        "strength": [1e300] * 2,
+        "breaking": [1e300] * 2,
+        "compression": [0] * 2,
+        "rest": [0.0] * 2,
+    }
+    engine.updateAttrs({**twice, **of})
+    O.step()
+    assert engine.elongations[1] == engine.elongations[0] == tie.elongation
 
 
 def test_ties_pull_the_same_with_functors(tmp_path):
