@@ -8,7 +8,7 @@ polyhedra = mark.skipif(not hasattr(yade.wrapper, "Polyhedra"), reason="this YAD
 
 
 def samples():
-    """Corners of many blocks: boxes, turned boxes, voussoirs, prisms and random ones, of at most 14
+    """Corners of many blocks: boxes, turned boxes, prisms and random ones, of at most 14
     points."""
     rng = random.Random(15)
     place = lambda: [rng.uniform(-3, 3) for _ in range(3)]
@@ -19,13 +19,6 @@ def samples():
         turn = Quaternion(*[rng.gauss(0, 1) for _ in range(4)]).normalized()
         shift = Vector3(*place())
         yield [turn * p + shift for p in box((0, 0, 0), size())]
-    for _ in range(40):
-        near, thick = rng.uniform(0.5, 5), rng.uniform(0.05, 1)
-        wide, one = rng.uniform(0.1, 1), rng.uniform(0, 3)
-        angles = one, one + rng.uniform(0.02, 0.5)
-        rays = [Vector3(math.cos(a), 0, math.sin(a)) for a in angles]
-        edges = [r * ray for r in (near, near + thick) for ray in rays]
-        yield [edge + Vector3(0, y, 0) for edge in edges for y in (0, wide)]
     for corners in (3, 4, 5, 6, 7):
         angles = [2 * math.pi * i / corners for i in range(corners)]
         rays = [Vector3(math.cos(a), math.sin(a), 0) for a in angles]
@@ -58,7 +51,7 @@ def test_a_block_has_every_bit_of_a_polyhedra_of_the_same_points():
 def test_a_block_has_the_same_bits_wherever_its_memory_lies():
     """Prisms over regular polygons, whose faces CGAL divides as it likes, and clouds of points."""
     dice, made = random.Random(1), {}
-    several = [*list(samples())[120:125], *(cloud(dice, 40) for _ in range(5))]
+    several = [*list(samples())[80:85], *(cloud(dice, 40) for _ in range(5))]
     for _ in range(60):
         for n, points in enumerate(several):
             # what is free of the memory decides which of two addresses is the lower
@@ -176,7 +169,6 @@ def test_a_joint_may_lie_between_both_kinds_of_body():
 
 @polyhedra
 def test_a_scene_with_the_functor_for_polyhedra_goes_on_working():
-    """Engines as users wrote them when there was no MasonryBlock."""
     material = MasonryMat(density=1800)
     for course in range(2):
         addPolyhedra(box((0, 0, UNIT[2] * course)), material)

@@ -45,8 +45,6 @@ def test_a_class_stands_in_yade_with_docs_keywords_and_dict(name):
 
 
 def test_every_member_of_the_joint_properties_is_described_once():
-    """Adding a property is its member and its description: none is forgotten, none is described
-    twice."""
     path = os.path.join(ROOT, "yade_plugin", "law", "common", "JointProperties.hpp")
     header = open(path).read()
     struct = header[header.index("struct JointProperties {") :]

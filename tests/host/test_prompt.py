@@ -395,7 +395,6 @@ def test_a_misspelt_property_is_an_error_that_names_the_right_one(name):
 
 @mark.slow
 def test_every_property_of_an_object_of_no_scene_can_be_read_and_set_to_what_it_is():
-    """In a YADE of its own: MasonryJointPhys().yielding of commit 0e9b866 ends the process."""
     code = """
 import masonry
 for cls in masonry.classes:

@@ -21,7 +21,6 @@ def frame(request, tmp_path):
 
 
 def test_joints_without_a_file_are_those_of_the_file(frame):
-    """What is measured of a run that leaves no frames is measured of the same numbers."""
     _, folder, recorder = frame
     ofFile, now = readFrame(folder, "joints"), asFrame(recorder.joints())
     assert ofFile.keys() == now.keys()

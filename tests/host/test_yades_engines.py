@@ -72,8 +72,6 @@ def test_work_that_is_not_counted_is_said_and_ends_no_run(capfd, functors, place
 
 @mark.slow
 def test_tables_tags_plots_and_timing_are_those_of_yade(tmp_path, monkeypatch):
-    """A value of a table of yade-batch reaches the scene and O.tags; a PyRunner fills yade.plot;
-    and yade.timing knows each engine of ours."""
     table = tmp_path / "table"
     table.write_text("friction\n0.3\n0.4\n", encoding="utf-8")
     monkeypatch.setenv("YADE_BATCH", f"{table}:3")

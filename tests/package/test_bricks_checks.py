@@ -164,8 +164,7 @@ def test_a_sliver_and_a_narrow_joint_are_reported():
 
 
 def test_ten_thousand_blocks_take_seconds():
-    """The bound is that of the brief, 5 s on one core, in CPU time so that a busy machine does not
-    fail it."""
+    """In CPU time, so that a busy machine does not fail it."""
     for made in (Wall(11, 8.1), Wall(11, 8.1).turned(10, "x").turned(20)):
         start = time.process_time()
         assert len(made) == 10_000 and made.problems() == []

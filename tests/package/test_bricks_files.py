@@ -205,7 +205,6 @@ def test_a_file_without_solids_is_refused(tmp_path, name, text, said):
 @settings(max_examples=150)
 @given(some.data())
 def test_a_damaged_file_is_read_or_refused(tmp_path_factory, data):
-    """A character of a good file is replaced or left out: either blocks come out, or ValueError."""
     name = data.draw(some.sampled_from(sorted(FORMATS.keys() - {"bytes.stl"})))
     path = tmp_path_factory.mktemp("damaged") / name
     FORMATS[name](path, stack(2, (0.4, 0.2, 0.1)))

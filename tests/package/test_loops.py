@@ -40,19 +40,8 @@ def test_an_ellipse_has_the_damping_that_drew_it(amplitude, stiffness, damping):
 def test_a_slider_with_a_spring_draws_a_parallelogram():
     # spring 10 kN/mm, slips at 20 kN, amplitude 5 mm: W = 4 Fy (A - Fy/K) = 240 J, and after 5 mm
     # it is free at 3 mm
-    moved, force = path(
-        (0, 0),
-        (2, 20),
-        (5, 20),
-        (1, -20),
-        (-5, -20),
-        (-1, 20),
-        (5, 20),
-        (1, -20),
-        (-5, -20),
-        (-1, 20),
-        (0, 20),
-    )
+    loop = (5, 20), (1, -20), (-5, -20), (-1, 20)
+    moved, force = path((0, 0), (2, 20), *loop, *loop, (0, 20))
     first, second = loops.cycles(moved, force, threshold=0.1)
     assert second.work_J == approx(240, rel=1e-9)
     # The first begins without force: it lacks the triangle of 2 mm and 20 kN that it has not

@@ -56,8 +56,6 @@ def test_a_stray_row_is_found_and_a_turning_point_is_not():
 
 @mark.parametrize("wall", measured.walls())
 def test_the_history_file_is_that_of_the_loops(wall):
-    """reference/history_*.csv is what measured.py --write makes; it turns at every row and reaches
-    the extremes."""
     with open(measured.historyPath(wall)) as f:
         assert f.read() == measured.historyText(wall)
     history, (moved, _, _) = measured.history(wall), measured.curve(wall)

@@ -199,8 +199,6 @@ def test_what_makes_no_sense_is_refused(tmp_path, word, settings, text):
 
 
 def test_no_energy_is_made_by_ties_in_a_shaken_wall(tmp_path):
-    """Bars that slacken, yield and tighten again under a strong motion: the balance closes, and
-    what is lost never falls."""
     scene = standing(tmp_path, WALL, plane=False)
     rng = np.random.default_rng(5)
     for n in range(8):
@@ -303,7 +301,6 @@ def test_ends_that_a_script_moves_are_where_it_moved_them(tmp_path):
 
 
 def test_ties_pull_the_same_with_functors(tmp_path):
-    """Both ways to run the joints give the same forces at the same displacements."""
     found = []
     for functors in (False, True):
         scene = standing(tmp_path / str(functors), WALL, functors=functors)
@@ -329,8 +326,6 @@ def test_bricks_at_ties_of_deformable_walls_are_said_to_be_rigid(tmp_path, capsy
 
 
 def test_frames_have_ties_and_springs(tmp_path):
-    """The file of a frame for ParaView, and the page that draws it, against what the engines
-    say."""
     scene = lean(tmp_path, WALL)
     scene.args.lean = False
     scene.platen("bottom", springs={"x": 1e7})

@@ -118,7 +118,6 @@ def test_cracks_are_those_of_the_moment_when_the_collapse_was_noticed(fallen):
 
 
 def test_an_acceleration_that_the_column_bears_leaves_it_as_without_follow(tmp_path):
-    """A scene in which no joint is handed over has the same bits."""
     found = []
     for collapse in ("end", "follow"):
         scene = column(tmp_path, collapse=collapse)
@@ -130,7 +129,6 @@ def test_an_acceleration_that_the_column_bears_leaves_it_as_without_follow(tmp_p
 
 
 def test_a_shaken_wall_goes_on_while_its_top_falls(tmp_path):
-    """The record ends as it would, the stones below stay, and the fall is reported."""
     scene = column(tmp_path)
     scene.settle()
     pulse = [0, 12.0, 12.0, 12.0, 0, -12.0, -12.0, 0] + 20 * [0.0]

@@ -175,7 +175,6 @@ def test_what_is_no_checkpoint_is_refused_at_once(finished, capsys):
 
 
 def test_odd_names_and_terminals_end_in_order(tmp_path):
-    """A folder that is not UTF-8, and a terminal that has no µ and no m³."""
     plain = dict(os.environ, PYTHONIOENCODING="ascii:strict")
     words = ("--quick", "--lean", "--out", tmp_path / "r")
     report = runProgram("couplet", *words, env=plain, text=False)

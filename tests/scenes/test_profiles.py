@@ -34,7 +34,6 @@ def test_a_rigid_beam_follows_supports_that_move_on_a_slope(tmp_path):
 
 
 def test_a_lost_pier_leaves_its_load_to_the_others(tmp_path):
-    """The middle one of three sinks away: each of the outer ones carries half."""
     scene, footings, _ = footed(tmp_path, 3)
     scene.move([footings[1]], z=-5)
     scene.settle()

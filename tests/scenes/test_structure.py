@@ -316,7 +316,6 @@ def test_what_moves_in_its_plane_is_seen_there_also_if_it_is_deep(tmp_path, plan
 
 
 def test_a_wall_that_a_push_lets_go_swings_back_and_has_not_fallen(tmp_path):
-    """Its numbers are those of the push, and what happens afterwards is none of them."""
     runs = []
     for lets in (False, True):
         wall = bricks.Wall(1.0, 1.5, unit=(0.25, 0.12, 0.1), halves=False)

@@ -63,8 +63,6 @@ def test_a_variation_changes_joints_within_their_bounds(row):
 
 @mark.parametrize("axis", [a for a in stability.AXES if "COMP-4" not in a])
 def test_walls_at_the_extremes_are_stable_or_stopped_with_a_reason(axis):
-    """Of the stability map: rigid units at both ends of each axis, deformable ones in its
-    middle."""
     points = stability.AXES[axis]
     ends = (0, -2) if axis == "size / usual" else (0, -1)
     runs = [(points[end], "rigid") for end in ends]
