@@ -421,32 +421,33 @@ template <bool plane> void ScaledStep<plane>::predict() {
     for (int k = 0; k < s.count; ++k) {
         const auto& unit = s.units[k];
         auto& sum = sums[k];
-        s.eachNode(k, [&](const Lanes* x, int n, Lanes*) {
-            const double mass = unit.matrix.masses[n];
-            Lanes momentum[directions], impulse[directions], grown[directions];
-            for (int d = 0; d < directions; ++d) {
-                const int row = 3 * n + s.direction[d];
-                momentum[d] = s.free[d] ? mass * *at(unit.velocities + row, s.part) : zero;
-                const Lanes force = *at(unit.forces + row, s.part) + s.weightOf(k, n, d);
-                impulse[d] = s.free[d] ? 0.5 * s.m.dt * force : zero;
-                grown[d] = s.free[d] ? force - *at(unit.lastForces + row, s.part) : zero;
-                sum.first[d] += mass * x[d];
-                sum.velocity.sum[d] += momentum[d];
-                sum.half.sum[d] += impulse[d];
-                sum.forceChange.sum[d] += grown[d];
-            }
-            sum.mass += mass;
-            if constexpr (plane)
-                sum.second[0] += mass * (x[0] * x[0] + x[1] * x[1]);
-            else
-                for (int i = 0; i < 3; ++i) {
-                    sum.second[i] += mass * x[i] * x[i];
-                    sum.second[3 + i] += mass * x[(i + 1) % 3] * x[(i + 2) % 3];
+        s.eachNode(
+            k, [&](const Lanes* x, int n, Lanes*) __attribute__((always_inline)) {
+                const double mass = unit.matrix.masses[n];
+                Lanes momentum[directions], impulse[directions], grown[directions];
+                for (int d = 0; d < directions; ++d) {
+                    const int row = 3 * n + s.direction[d];
+                    momentum[d] = s.free[d] ? mass * *at(unit.velocities + row, s.part) : zero;
+                    const Lanes force = *at(unit.forces + row, s.part) + s.weightOf(k, n, d);
+                    impulse[d] = s.free[d] ? 0.5 * s.m.dt * force : zero;
+                    grown[d] = s.free[d] ? force - *at(unit.lastForces + row, s.part) : zero;
+                    sum.first[d] += mass * x[d];
+                    sum.velocity.sum[d] += momentum[d];
+                    sum.half.sum[d] += impulse[d];
+                    sum.forceChange.sum[d] += grown[d];
                 }
-            addCross<plane>(x, momentum, sum.velocity.about);
-            addCross<plane>(x, impulse, sum.half.about);
-            addCross<plane>(x, grown, sum.forceChange.about);
-        });
+                sum.mass += mass;
+                if constexpr (plane)
+                    sum.second[0] += mass * (x[0] * x[0] + x[1] * x[1]);
+                else
+                    for (int i = 0; i < 3; ++i) {
+                        sum.second[i] += mass * x[i] * x[i];
+                        sum.second[3 + i] += mass * x[(i + 1) % 3] * x[(i + 2) % 3];
+                    }
+                addCross<plane>(x, momentum, sum.velocity.about);
+                addCross<plane>(x, impulse, sum.half.about);
+                addCross<plane>(x, grown, sum.forceChange.about);
+            });
     }
     Vector halves[2], forceChanges[2];
     for (int k = 0; k < s.count; ++k) {
@@ -471,40 +472,42 @@ template <bool plane> void ScaledStep<plane>::filter() {
         const auto& unit = s.units[k];
         const Motion before = old[k], change = half[k], scaledChange = halfScaled[k], ofForces = forceChange[k];
         Vector rigid = {}, others = {};
-        s.eachNode(k, [&](const Lanes* x, int n, Lanes* keep) {
-            const double mass = unit.matrix.masses[n];
-            Lanes takenRigid[directions], takenRest[directions];
-            for (int d = 0; d < directions; ++d) {
-                takenRigid[d] = takenRest[d] = zero;
-                if (!s.free[d]) continue;
-                const int row = 3 * n + s.direction[d];
-                const Lanes force = *at(unit.forces + row, s.part) + s.weightOf(k, n, d);
-                Lanes* last = at(unit.lastForces + row, s.part);
-                const Lanes grown = Block::at(ofForces, x, d);
-                const Lanes signs[2] = {s.m.combined ? sign(grown) : zero,
-                                        s.m.combined ? sign((force - *last) / mass - grown) : zero};
-                *last = force;
-                // Changes of velocity in half a step, and velocities without damping: of the rigid part and the rest.
-                const Lanes changes[2] = {Block::at(scaledChange, x, d),
-                                          s.share * (0.5 * (s.m.dt / mass) * force - Block::at(change, x, d))};
-                const Lanes oldRigid = Block::at(before, x, d);
-                const Lanes undamped[2] = {oldRigid + changes[0],
-                                           *at(unit.velocities + row, s.part) - oldRigid + changes[1]};
-                const auto taken = [&](int i) {
-                    const Lanes reach = s.alpha * (changes[i] < zero ? -changes[i] : changes[i]);
-                    return dampingTaken(Lanes(0.5 * undamped[i]), reach, signs[i]);
-                };
-                const Lanes first = taken(0), second = taken(1);
-                keep[3 * d] = undamped[0] + undamped[1];
-                keep[3 * d + 1] = second;
-                takenRigid[d] = mass * first;
-                takenRest[d] = mass * second;
-                rigid.sum[d] += takenRigid[d];
-                others.sum[d] += takenRest[d];
-            }
-            addCross<plane>(x, takenRigid, rigid.about);
-            addCross<plane>(x, takenRest, others.about);
-        });
+        s.eachNode(
+            k, [&](const Lanes* x, int n, Lanes* keep) __attribute__((always_inline)) {
+                const double mass = unit.matrix.masses[n];
+                Lanes takenRigid[directions], takenRest[directions];
+                for (int d = 0; d < directions; ++d) {
+                    takenRigid[d] = takenRest[d] = zero;
+                    if (!s.free[d]) continue;
+                    const int row = 3 * n + s.direction[d];
+                    const Lanes force = *at(unit.forces + row, s.part) + s.weightOf(k, n, d);
+                    Lanes* last = at(unit.lastForces + row, s.part);
+                    const Lanes grown = Block::at(ofForces, x, d);
+                    const Lanes signs[2] = {s.m.combined ? sign(grown) : zero,
+                                            s.m.combined ? sign((force - *last) / mass - grown) : zero};
+                    *last = force;
+                    // Changes of velocity in half a step, and velocities without damping: of the rigid part and the
+                    // rest.
+                    const Lanes changes[2] = {Block::at(scaledChange, x, d),
+                                              s.share * (0.5 * (s.m.dt / mass) * force - Block::at(change, x, d))};
+                    const Lanes oldRigid = Block::at(before, x, d);
+                    const Lanes undamped[2] = {oldRigid + changes[0],
+                                               *at(unit.velocities + row, s.part) - oldRigid + changes[1]};
+                    const auto taken = [&](int i) {
+                        const Lanes reach = s.alpha * (changes[i] < zero ? -changes[i] : changes[i]);
+                        return dampingTaken(Lanes(0.5 * undamped[i]), reach, signs[i]);
+                    };
+                    const Lanes first = taken(0), second = taken(1);
+                    keep[3 * d] = undamped[0] + undamped[1];
+                    keep[3 * d + 1] = second;
+                    takenRigid[d] = mass * first;
+                    takenRest[d] = mass * second;
+                    rigid.sum[d] += takenRigid[d];
+                    others.sum[d] += takenRest[d];
+                }
+                addCross<plane>(x, takenRigid, rigid.about);
+                addCross<plane>(x, takenRest, others.about);
+            });
         ofRigid[k] = rigid;
         ofRest[k] = others;
     }
@@ -523,33 +526,34 @@ template <bool plane> void ScaledStep<plane>::correct() {
         Vector mean = {}, now = {};
         Lanes kinetic = zero, gravityWork = zero, damping = zero, pending = zero, before = zero, after = zero;
         Lanes moved[3] = {zero, zero, zero};
-        s.eachNode(k, [&](const Lanes* x, int n, Lanes* keep) {
-            const double mass = unit.matrix.masses[n];
-            Lanes momentum[directions], afterwards[directions];
-            for (int d = 0; d < directions; ++d) {
-                momentum[d] = afterwards[d] = zero;
-                const int row = 3 * n + s.direction[d];
-                *at(unit.forces + row, s.part) = zero;
-                if (!s.free[d]) continue;
-                const Lanes previous = *at(unit.velocities + row, s.part);
-                const Lanes taken = keep[3 * d + 1];
-                const Lanes middle = keep[3 * d] - Block::at(ofDamped, x, d) - (taken - Block::at(ofOthers, x, d));
-                const Lanes next = 2 * (middle - s.steady * middle) - previous;
-                gravityWork += s.weightOf(k, n, d) * *at(unit.displacements + row, s.part);
-                damping += mass * taken * previous;
-                pending += mass * taken * next;
-                before += mass * middle * previous;
-                after += mass * middle * next;
-                kinetic += mass * previous * next;
-                keep[3 * d] = next;
-                momentum[d] = mass * middle;
-                afterwards[d] = mass * next;
-                mean.sum[d] += momentum[d];
-                now.sum[d] += afterwards[d];
-            }
-            addCross<plane>(x, momentum, mean.about);
-            addCross<plane>(x, afterwards, now.about);
-        });
+        s.eachNode(
+            k, [&](const Lanes* x, int n, Lanes* keep) __attribute__((always_inline)) {
+                const double mass = unit.matrix.masses[n];
+                Lanes momentum[directions], afterwards[directions];
+                for (int d = 0; d < directions; ++d) {
+                    momentum[d] = afterwards[d] = zero;
+                    const int row = 3 * n + s.direction[d];
+                    *at(unit.forces + row, s.part) = zero;
+                    if (!s.free[d]) continue;
+                    const Lanes previous = *at(unit.velocities + row, s.part);
+                    const Lanes taken = keep[3 * d + 1];
+                    const Lanes middle = keep[3 * d] - Block::at(ofDamped, x, d) - (taken - Block::at(ofOthers, x, d));
+                    const Lanes next = 2 * (middle - s.steady * middle) - previous;
+                    gravityWork += s.weightOf(k, n, d) * *at(unit.displacements + row, s.part);
+                    damping += mass * taken * previous;
+                    pending += mass * taken * next;
+                    before += mass * middle * previous;
+                    after += mass * middle * next;
+                    kinetic += mass * previous * next;
+                    keep[3 * d] = next;
+                    momentum[d] = mass * middle;
+                    afterwards[d] = mass * next;
+                    mean.sum[d] += momentum[d];
+                    now.sum[d] += afterwards[d];
+                }
+                addCross<plane>(x, momentum, mean.about);
+                addCross<plane>(x, afterwards, now.about);
+            });
         means[k] = mean;
         nows[k] = now;
         kinetics[k] = kinetic;
