@@ -380,7 +380,7 @@ class _Search:
         return (low + high) // 2 if wide and low + 1 < high else None
 
     def _guess(self, factors):
-        """Number of the last kept state before the structure leaves rest, where the search begins."""
+        """Number of the last kept state before the structure leaves rest."""
         speeds = [speed for _, _, speed in self.at.rows]
         n = len(speeds) - 1
         while n > 0 and speeds[n] > SETTING_OFF * statistics.median(speeds[:n]):
