@@ -98,7 +98,7 @@ def _windOn(scene, pressure, towards, part):
     sign = math.copysign(1, pressure)
     forces = windForces(scene.description, 1e3 * sign, Vector3(*towards), part, "wind")
     # suction has the engines of a pressure on the same faces, so that one replaces the other
-    return _inkPa(_onFaces(scene, forces, "wind", towards, part), pressure)
+    return _inKilopascals(_onFaces(scene, forces, "wind", towards, part), pressure)
 
 
 def _pressureOn(scene, value, towards, part, normal):
@@ -108,12 +108,13 @@ def _pressureOn(scene, value, towards, part, normal):
     return _onFaces(scene, forces, kind, towards, part)
 
 
-def _evenOn(scene, value, *on):
+def _evenOn(scene, value, towards, part, normal):
     """The load of a pressure that is the same everywhere and not 0, in kPa. Raises ValueError."""
-    return _inkPa(_pressureOn(scene, math.copysign(1e3, value), *on), value)
+    one = _pressureOn(scene, math.copysign(1e3, value), towards, part, normal)
+    return _inKilopascals(one, value)
 
 
-def _inkPa(load, value):
+def _inKilopascals(load, value):
     """A load of 1 kPa, of which a pressure [Pa] is the whole."""
     load.unit, load.most = "kPa", 1e-3 * abs(value)
     load.towards *= math.copysign(1, value)

@@ -380,7 +380,7 @@ class _Search:
         return (low + high) // 2 if wide and low + 1 < high else None
 
     def _guess(self, factors):
-        """Number of the last kept state before the structure leaves rest: the search begins there."""
+        """Number of the last kept state before the structure leaves rest."""
         speeds = [speed for _, _, speed in self.at.rows]
         n = len(speeds) - 1
         while n > 0 and speeds[n] > SETTING_OFF * statistics.median(speeds[:n]):
@@ -426,7 +426,7 @@ class _Search:
                 return Reason.MOVING
 
     def _accelerates(self, speed):
-        """Whether the fastest block is fast, and twice as fast as in the first half of the trial."""
+        """Whether the fastest block is fast, and twice as fast as in the first half of the wait."""
         trial = self.at.trial
         checks = trial.steps // EVERY
         if checks & (checks - 1) == 0:
