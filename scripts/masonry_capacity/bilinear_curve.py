@@ -44,17 +44,17 @@ from masonry.numbers.run_data import BASE, FALL, MOVED, TOP, RunData
 
 SECANT = 0.7  # of the peak: where the secant stiffness is taken
 #: What a curve may begin with, of the peak and of the displacement there [-].
-BEGIN = 0.01
+MAX_START_RATIO = 0.01
 #: By how much of its largest displacement a push may go back [-].
-BACK = 0.02
+MAX_REVERSAL = 0.02
 #: A curve that still grows in the last tenth of its displacement with more than this share of its
 #: stiffness has no peak [-].
-GROWS = 0.05
+MAX_END_SLOPE = 0.05
 #: A plateau is above this share of the peak [-], and makes the mechanism of annex B.3 uncertain if
 #: it begins before this share of the displacement at the peak [-].
-PLATEAU, LONG = 0.95, 0.5
+PLATEAU, PLATEAU_START = 0.95, 0.5
 #: Round-off, relative [-].
-SMALL = 1e-9
+ROUND_OFF = 1e-9
 
 CONVENTION = "a convention for masonry walls"
 #: The rules, and where each comes from.
@@ -203,16 +203,18 @@ def _checked(moved, force):
             f" largest force is {peak:.4g} kN"
         )
     back = float((np.maximum.accumulate(moved) - moved).max())
-    if back > BACK * reach:
+    if back > MAX_REVERSAL * reach:
         raise Refused(
             f"the displacement goes back by {back:.4g} mm: the curve is of cycles or of several"
             " pushes, and a bilinear curve is of one push"
         )
     at = int(force.argmax())
-    if abs(force[0]) > BEGIN * peak or abs(moved[0]) > BEGIN * max(moved[at], 0):
+    if abs(force[0]) > MAX_START_RATIO * peak or abs(moved[0]) > MAX_START_RATIO * max(
+        moved[at], 0
+    ):
         raise Refused(
             f"the curve begins with {force[0]:.4g} kN at {moved[0]:.4g} mm: a bilinear curve is of"
-            f" a push that begins at rest, with at most {100 * BEGIN:g} % of the peak,"
+            f" a push that begins at rest, with at most {100 * MAX_START_RATIO:g} % of the peak,"
             f" {peak:.4g} kN, and of the displacement there, {moved[at]:.4g} mm"
         )
     return np.maximum.accumulate(moved), force
@@ -235,10 +237,10 @@ def _checkPeak(moved, force, stiffness):
     start = float(np.interp(0.9 * end, moved, force))
     slope = (float(force[-1]) - start) / (0.1 * end)
     highest = float(force.max())
-    if highest <= 1.001 * float(force[-3:].max()) and slope > GROWS * stiffness:
+    if highest <= 1.001 * float(force[-3:].max()) and slope > MAX_END_SLOPE * stiffness:
         raise Refused(
             f"the curve has no peak: its force still grows at its end, {end:.4g} mm, with"
-            f" {slope:.3g} kN/mm, which is more than {100 * GROWS:g} % of its stiffness,"
+            f" {slope:.3g} kN/mm, which is more than {100 * MAX_END_SLOPE:g} % of its stiffness,"
             f" {stiffness:.3g} kN/mm; push farther"
         )
 
@@ -287,7 +289,7 @@ def bilinear(
         stiffness, yieldForce = _annexB(moved, forces, forms, end)
         if mechanism is None:
             notes += _onPlateau(moved, forces, forms, stiffness)
-    if yieldForce > peak * (1 + SMALL):
+    if yieldForce > peak * (1 + ROUND_OFF):
         notes.append(
             f"the yield force is above the peak, {peak:.4g} kN: the curve lies far above its secant"
             f" at {secant:g} of the peak; one at a smaller share (secant=) has a lower yield force"
@@ -334,14 +336,14 @@ def _end(moved, force, at, fall, pulse):
 
 def _annexB(moved, force, forms, end):
     """Stiffness and yield force by equation (B.6), for a mechanism that forms at a displacement."""
-    if forms > end * (1 + SMALL):
+    if forms > end * (1 + ROUND_OFF):
         raise Refused(
             f"the plastic mechanism forms at {forms:.4g} mm, which is beyond the ultimate"
             f" displacement, {end:.4g} mm"
         )
     work, yieldForce = _area(moved, force, forms)
     yields = 2 * (forms - work / yieldForce) if yieldForce > 0 else -1.0
-    if not 0 < yields <= forms * (1 + SMALL):
+    if not 0 < yields <= forms * (1 + ROUND_OFF):
         raise Refused(
             "equation (B.6) of EN 1998-1:2004 gives no yield displacement between 0 and"
             f" {forms:.4g} mm, where the mechanism forms with {yieldForce:.4g} kN: the area up to"
@@ -356,7 +358,7 @@ def _onPlateau(moved, force, forms, stiffness):
     early = _reached(moved, force, PLATEAU * float(force.max()))
     work, highest = _area(moved, force, early)
     yields = 2 * (early - work / highest)
-    if early > LONG * forms or yields <= 0:
+    if early > PLATEAU_START * forms or yields <= 0:
         return []
     return [
         f"the force is above {PLATEAU:g} of its peak from {early:.4g} mm on, and the peak is at"
@@ -370,7 +372,7 @@ def _equalArea(stiffness, end, area):
     """The plateau Vy whose curve has this area up to its end: the smaller root of Vy end - Vy²/(2
     K) = area."""
     rest = end * end - 2 * area / stiffness
-    if rest < -SMALL * end * end:
+    if rest < -ROUND_OFF * end * end:
         raise Refused(
             f"no bilinear curve with the stiffness {stiffness:.4g} kN/mm has the area of the curve"
             f" up to {end:.4g} mm, {area:.4g} J: the whole triangle has"

@@ -23,7 +23,7 @@ MASS, GAMMA = ("equivalent_mass", "kg"), ("participation_factor", "-")
 ANNEX = "EN 1998-1:2004, annex B"
 #: Rounds of :func:`iterated` at most, and the difference of two target displacements at which it
 #: ends [-].
-ROUNDS, SAME = 50, 1e-4
+MAX_ROUNDS, SAME_DISPLACEMENT = 50, 1e-4
 #: The largest ratio of the target displacement to that of the elastic system that annex B asks for
 #: [-].
 MAX_ELASTIC_RATIO = 3.0
@@ -376,9 +376,9 @@ def iterated(
         in :func:`demand`
     """
     found = demand(bilinearOf(push, "en1998"), system, spectrum, limited)
-    for _ in range(ROUNDS):
+    for _ in range(MAX_ROUNDS):
         target, before = found.targetDisplacement, found.curve
-        if abs(target - before.mechanism) <= SAME * target:
+        if abs(target - before.mechanism) <= SAME_DISPLACEMENT * target:
             return found
         if target > before.ultimateDisplacement:
             return _notIterated(

@@ -13,9 +13,9 @@ from masonry.folders import replaced
 from masonry.packages import needed
 from .programme import FACETS
 
-SLIDES = 1e-4  # share of the power of a mechanism that is friction, from which its joints slide [-]
+SLIDING_POWER = 1e-4  # share of friction in the power from which joints of a mechanism slide [-]
 # less than this share of the largest motion between two blocks of the mechanism is not listed [-]
-GIVES = 0.02
+MIN_MOTION_RATIO = 0.02
 
 LOST = "cohesion", "tension", "crushing"  # strengths that a joint can lose
 FILE = "mechanism.json"  # of which a figure is drawn
@@ -128,7 +128,7 @@ class Bound:
     def _takes(self, *kinds):
         """Whether strengths together take power of the mechanism."""
         powers = self.powers
-        return sum(powers[kind] for kind in kinds) > SLIDES * powers["loads"]
+        return sum(powers[kind] for kind in kinds) > SLIDING_POWER * powers["loads"]
 
     @property
     def slides(self) -> bool:
@@ -156,7 +156,7 @@ class Bound:
         states = np.full(len(a.pairs), "rests", dtype="<U7")
         opening, slide = self.jumps(c.joint, c.at)
         speed = np.linalg.norm(slide, axis=1)
-        least = GIVES * max(np.abs(opening).max(initial=0), speed.max(initial=0))
+        least = MIN_MOTION_RATIO * max(np.abs(opening).max(initial=0), speed.max(initial=0))
         states[c.joint[(-opening > least) & np.isfinite(a.crushing[c.joint])]] = "crushes"
         states[c.joint[speed > least]] = "slides"
         # what slides as friction tells opens by the friction coefficient of it

@@ -9,8 +9,8 @@ from . import solver
 from .solver import SolverTimeout, Unsolved
 
 FACETS = 8  # of a friction cone
-SHARE = 12  # entries of the load by which a copy of the factor is multiplied
-KEPT = 1e-6  # how well equilibrium and strength must be kept, relative to the largest force
+ENTRIES_PER_COPY = 12  # of the load that a copy of the factor multiplies
+MAX_RESIDUAL = 1e-6  # of equilibrium and strength, relative to the largest force [-]
 
 
 class Programme:
@@ -27,14 +27,14 @@ class Programme:
 
     def factor(self, load, most):
         """The factor on a load. A variable that acts on many blocks would couple them all in the
-        solver, so there is one copy for every :data:`SHARE` entries of the load, and each copy
-        equals the one before.
+        solver, so there is one copy for every :data:`ENTRIES_PER_COPY` entries of the load, and
+        each copy equals the one before.
 
         :param load: entries of equilibrium, in units
         :param most: largest value; None: none
         """
         rows = np.flatnonzero(load)
-        copies = np.arange(len(rows)) // SHARE
+        copies = np.arange(len(rows)) // ENTRIES_PER_COPY
         columns = self._new(copies[-1] + 1, -np.inf, np.inf if most is None else most)
         self._equal.append((rows, columns[copies], load[rows]))
         links = int(self.rows.max()) + 1 + np.arange(copies[-1])
@@ -157,7 +157,7 @@ class Programme:
         values, dual = solver.solve(whole, limits, seconds)
         over = whole @ values - sides
         off, over = np.abs(over[:count]).max(), over[count:].max(initial=0)
-        if max(off, over) > KEPT * max(1, np.abs(values).max()):
+        if max(off, over) > MAX_RESIDUAL * max(1, np.abs(values).max()):
             raise Unsolved(
                 f"its solution misses equilibrium by {off:.1g} and strength by {over:.1g} of a"
                 " block's usual load"

@@ -16,12 +16,12 @@ import numpy as np
 
 from masonry.errors import Refused
 
-LOOSENED = 8  # rounds in which joints without pressure lose their friction, at most
-ROUNDS = 60  # in which friction is replaced by a cohesion, at most
+LOOSENING_ROUNDS = 8  # in which joints without pressure lose their friction, at most
+COHESION_ROUNDS = 60  # in which friction is replaced by a cohesion, at most
 SAME_FACTOR = 1e-3  # relative change of the factor at which these end [-]
-UNPRESSED = 1e-6  # force on a joint over the largest, below which it is open [-]
-UPRIGHT = 0.5  # cosine between the dead loads and the normal below which a joint is a head joint
-MISSED = 0.02  # share of a mechanism's power that the friction it misses may have [-]
+OPEN_FORCE_RATIO = 1e-6  # force on a joint over the largest, below which it is open [-]
+HEAD_JOINT_COSINE = 0.5  # between dead loads and normal, below which a joint is a head joint
+MAX_MISSING_POWER = 0.02  # of the friction that a mechanism misses, over its power [-]
 
 
 def loosened(assembly, live, dead):
@@ -29,7 +29,7 @@ def loosened(assembly, live, dead):
     joints first, as a Bound; None if there is none.
     """
     smooth, least = _smooth(assembly, dead), None
-    for _ in range(LOOSENED if smooth else 0):
+    for _ in range(LOOSENING_ROUNDS if smooth else 0):
         try:
             bound = smooth.associated(live, dead)
         except Refused:  # without that friction it does not stand, or time is over
@@ -38,7 +38,7 @@ def loosened(assembly, live, dead):
             least = bound
         joint = assembly.contacts.joint
         pressed = np.bincount(joint, bound.normal, len(assembly.pairs))
-        friction = np.where(pressed < UNPRESSED * pressed.max(), 0, smooth.friction)
+        friction = np.where(pressed < OPEN_FORCE_RATIO * pressed.max(), 0, smooth.friction)
         if (friction == smooth.friction).all():
             break
         smooth = replace(assembly, friction=friction)
@@ -67,7 +67,7 @@ def repeated(assembly, live, dead):
     the last round."""
     bound = assembly.associated(live, dead)
     pressed, factor, slope = bound.compressed, bound.factor, 0.3
-    for _ in range(ROUNDS):
+    for _ in range(COHESION_ROUNDS):
         slope = max(1e-3, slope * 0.7)
         try:
             following = assembly.associated(live, dead, (pressed, slope), turns=2)
@@ -88,7 +88,7 @@ def _smooth(assembly, dead):
     down = np.where(assembly.held[:, :3], 0, dead[:, :3]).sum(axis=0)
     if not down.any():
         return None
-    head = np.abs(assembly.normals @ (down / np.linalg.norm(down))) < UPRIGHT
+    head = np.abs(assembly.normals @ (down / np.linalg.norm(down))) < HEAD_JOINT_COSINE
     smooth = replace(assembly, friction=np.where(head, 0, assembly.friction))
     return smooth if head.any() else None
 
@@ -100,4 +100,4 @@ def _belongs(assembly, bound):
     speed = np.linalg.norm(bound.jumps(c.joint, c.at)[1], axis=1)
     friction = (assembly.friction - bound.assembly.friction)[c.joint]
     missing = (friction * np.maximum(bound.normal, 0) * speed).sum()
-    return missing <= MISSED * bound.powers["loads"]
+    return missing <= MAX_MISSING_POWER * bound.powers["loads"]

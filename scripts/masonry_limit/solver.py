@@ -18,7 +18,7 @@ from masonry.errors import Refused
 
 LIBRARY = "libClp.so.1"
 INTERIOR_POINT, NO_PRESOLVE = 4, 1  # numbers of these choices in ClpSolve.hpp of Clp
-MISSED = 1e-7  # largest error of a row in a solution
+ROW_TOLERANCE = 1e-7  # largest error of a row in a solution
 STOPPED = 3  # the status of Clp when it has reached its time limit
 LONGEST = 1e9  # time limit that Clp takes [s]
 GRACE = 1.0  # time between the end of the solver's own limit and that of its process [s]
@@ -85,9 +85,11 @@ def _solved(whole, limits, seconds):
         # Without its scaling, the solution may miss rows by more than the tolerance. The simplex
         # method mends that.
         found = values("Clp_primalRowSolution", count)
-        if not ((arrays[-2] - MISSED <= found) & (found <= arrays[-1] + MISSED)).all():
+        if not (
+            (arrays[-2] - ROW_TOLERANCE <= found) & (found <= arrays[-1] + ROW_TOLERANCE)
+        ).all():
             clp.Clp_scaling(model, 0)
-            clp.Clp_setPrimalTolerance(model, ctypes.c_double(0.01 * MISSED))
+            clp.Clp_setPrimalTolerance(model, ctypes.c_double(0.01 * ROW_TOLERANCE))
             clp.Clp_primal(model, 0)
     status = clp.Clp_status(model)
     if status == STOPPED:

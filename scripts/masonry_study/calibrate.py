@@ -45,16 +45,16 @@ BEGIN = 0.1  # steps of the first chain over the ranges [-]
 # Gilks (1996)
 STEP = 2.38
 STARTS = 2000  # points of which the most likely one begins the first chain
-FINE = 0.5  # error of the surrogate over that of the test that needs no other round or check [-]
+MAX_ERROR_RATIO = 0.5  # of the surrogate to the test, beyond which rounds and checks go on [-]
 CHECKS = 4  # runs with the means of the draws that may be added to the rows
 MAX_VOLUME_RATIO = 0.5  # of another round to the last one; a larger one does not pay
 TAIL, MARGIN = 0.005, 0.25  # what a next round has outside, and its margin over width
 ENDS = 0.025, 0.975  # quantiles of an interval and of a band
 #: Deviation of the draws over that of the range from which the test does not tell a property [-].
-UNKNOWN = 0.8
-DOUBT = 0.01  # probability below which the difference of scene and test is no chance
-NEAR = 0.01  # distance of an interval to the end of a range, over the range [-]
-TOGETHER = 0.9  # correlation from which two properties are known only together [-]
+MAX_SPREAD = 0.8
+MIN_PROBABILITY = 0.01  # below which the difference of scene and test is no chance [-]
+END_DISTANCE = 0.01  # distance of an interval to the end of a range, over the range [-]
+MAX_CORRELATION = 0.9  # beyond which two properties are known only together [-]
 RESULT, PICTURE = "calibration.json", "calibration.png"  # in the folder
 
 
@@ -230,7 +230,7 @@ class Calibration:
             least, most = np.quantile(sample, (TAIL, 1 - TAIL), axis=0)
             margin = MARGIN * (most - least)
             least, most = np.maximum(least - margin, low), np.minimum(most + margin, high)
-            if off <= FINE or np.prod((most - least) / (high - low)) > MAX_VOLUME_RATIO:
+            if off <= MAX_ERROR_RATIO or np.prod((most - least) / (high - low)) > MAX_VOLUME_RATIO:
                 break
             low, high = least, most
         return model, sample
@@ -241,7 +241,7 @@ class Calibration:
         for turn in range(1, CHECKS + 2):
             x, run = self._best(f"check{turn}", sample)
             off = np.max(np.abs(run - model(x)) / self.errors, initial=0)
-            if off <= FINE or turn > CHECKS:
+            if off <= MAX_ERROR_RATIO or turn > CHECKS:
                 break
             say(
                 f"check {turn}: at the means of the draws the surrogate is off by {off:.2g} of the"
@@ -403,17 +403,17 @@ class Found:
         """Sentences on what speaks against the intervals."""
         of, found, matrix = self.calibration, [], self.correlation
         off = (self.run - of.values) / np.hypot(of.errors, self.model.errors)
-        if not len(off) or stats.chi2.sf((off**2).sum(), off.size) < DOUBT:
+        if not len(off) or stats.chi2.sf((off**2).sum(), off.size) < MIN_PROBABILITY:
             found.append(
                 "a run with these values does not follow the test within its errors: do not use"
                 " them"
             )
         missed = np.abs(self.run - self.model(self.sample.mean(axis=0)[None]))
-        if (missed > FINE * of.errors).any():
+        if (missed > MAX_ERROR_RATIO * of.errors).any():
             found.append("the surrogate differs from a run with these values: give more runs")
         for n, (name, low, high) in enumerate(zip(of.names, *self.intervals)):
-            near = NEAR * (of.high[n] - of.low[n])
-            if self.spread[n] >= UNKNOWN:
+            near = END_DISTANCE * (of.high[n] - of.low[n])
+            if self.spread[n] >= MAX_SPREAD:
                 found.append(f"{name}: the test does not tell it")
             elif low < of.low[n] + near or high > of.high[n] - near:
                 found.append(
@@ -423,7 +423,7 @@ class Found:
                 f"{of.names[m]} and {name}: the test tells them only together, with a correlation"
                 f" of {matrix[n, m]:.2f}"
                 for m in range(n)
-                if abs(matrix[n, m]) > TOGETHER
+                if abs(matrix[n, m]) > MAX_CORRELATION
             ]
         return found
 

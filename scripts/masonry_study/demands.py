@@ -76,7 +76,7 @@ class Demands:
         records are known."""
         values = self.at(intensity)
         values = np.sort(values[~np.isnan(values)])
-        known = len(values) >= fragility.FEWEST
+        known = len(values) >= fragility.MIN_RECORDS
         return [_quantile(values, share) if known else math.nan for share in shares]
 
     def intervals(self, limit=None):

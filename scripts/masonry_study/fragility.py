@@ -39,10 +39,10 @@ from masonry.arguments import Numbers
 from masonry.errors import Refused
 from .statistics import CONFIDENCE, Interval
 
-FEWEST = 3  # records
-WIDEST = 10.0  # dispersion beyond which the data do not bound it [-]
+MIN_RECORDS = 3  # records
+MAX_DISPERSION = 10.0  # beyond which the data do not bound it [-]
 RAYS = 360  # along which the edge of the likely values is found
-NOTHING = 1e-6  # of the value of a = 1/β at the maximum: smaller is 0
+MIN_SLOPE_RATIO = 1e-6  # of the value of a = 1/β at the maximum: smaller is 0
 
 
 @dataclass(frozen=True)
@@ -99,7 +99,7 @@ def fit(low: Numbers, high: Numbers) -> Fit:
         options=dict(xatol=1e-10, fatol=1e-12, maxiter=5000, maxfev=5000),
     )
     mean, spread = float(found.x[0]), math.exp(found.x[1])
-    if spread > WIDEST:
+    if spread > MAX_DISPERSION:
         raise Refused(
             "no fragility: the records reach the limit at their lowest level or not at all, so the"
             " dispersion has no bound; add lower and higher levels"
@@ -108,7 +108,7 @@ def fit(low: Numbers, high: Numbers) -> Fit:
     drop = n * math.log1p(t * t / (n - 1))  # the module says why
     a, b = edge = _edge(likelihood, 1 / spread, mean / spread, drop)
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-        open = a <= NOTHING / spread
+        open = a <= MIN_SLOPE_RATIO / spread
         medians = np.exp(np.where(open, np.sign(b) * math.inf, b / a))
         spreads = np.where(open, math.inf, 1 / a)
     median = Interval(math.exp(mean), float(medians.min()), float(medians.max()))
@@ -153,8 +153,8 @@ def nrml(fits: dict[str, Fit], measure: str, state: str, what: str, highest: flo
 
 def _check(low, high):
     n = len(low)
-    if n < FEWEST:
-        raise Refused(f"a fragility needs {FEWEST} records or more, there are {n}")
+    if n < MIN_RECORDS:
+        raise Refused(f"a fragility needs {MIN_RECORDS} records or more, there are {n}")
     if not np.isfinite(high).any():
         raise Refused(
             f"no fragility: at none of the {n} records is the limit reached; add higher levels"
@@ -190,7 +190,7 @@ def _edge(likelihood, a, b, drop):
     shape = _shape(likelihood, a, b)
     angles = np.linspace(0, 2 * math.pi, RAYS, endpoint=False)
     rays = shape @ np.array([np.cos(angles), np.sin(angles)])
-    least = NOTHING * a
+    least = MIN_SLOPE_RATIO * a
 
     def outside(radius):
         at = a + radius * rays[0]

@@ -18,17 +18,17 @@ from . import statistics
 DPI = 200
 BAND = 0.05, 0.95  # quantiles between which a fan is shaded
 POINTS = 400  # along the axis of a fan, and of a fragility curve
-SMALL = {"font.size": 8, "axes.titlesize": 9, "legend.fontsize": 7.5}
-SMALL["axes.axisbelow"] = True
+STYLE = {"font.size": 8, "axes.titlesize": 9, "legend.fontsize": 7.5}
+STYLE["axes.axisbelow"] = True
 POINT, LINE = COLOURS[:2]
-SHARES = [POINT, *COLOURS[2:], "#F0E442"]  # colours of the parts of bars
+PART_COLOURS = [POINT, *COLOURS[2:], "#F0E442"]  # of bars
 BAND_STYLE = dict(color=POINT, alpha=0.2, lw=0)
 BAND_LABEL = f"{100 * statistics.CONFIDENCE:g} % confidence"
 ABOVE = dict(loc="lower center", bbox_to_anchor=(0.5, 1.01))  # of a legend
 
 
 def _picture(path, width, height):
-    return drawing.picture(path, width, height, DPI, SMALL)
+    return drawing.picture(path, width, height, DPI, STYLE)
 
 
 # -- one property against another ------------------------------------------------------------------
@@ -151,7 +151,7 @@ def histogram(path, values, label, modes=None):
             bins=np.histogram_bin_edges(values, _bins(values)),
             density=True,
             stacked=True,
-            color=[SHARES[n % len(SHARES)] for n in range(len(named))],
+            color=[PART_COLOURS[n % len(PART_COLOURS)] for n in range(len(named))],
             alpha=0.5,
             label=shares if len(named) > 1 else named,
         )

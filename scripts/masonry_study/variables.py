@@ -49,7 +49,9 @@ class Distribution:
 
     def beyond(self, low: float | None, high: float | None) -> float:
         """Probability of a value below ``low`` or above ``high``; None is no bound [-]."""
-        return 1.0 - self.law().computeProbability(_interval(low, high))
+        law = self.law()
+        below = 0.0 if low is None else law.computeCDF(low)
+        return below + (0.0 if high is None else law.computeComplementaryCDF(high))
 
     def describe(self) -> dict[str, Any]:
         return {"kind": self.kind, **dict(self.parameters)}

@@ -6,7 +6,7 @@ from usual import *
 from xml.etree import ElementTree
 from hypothesis import reject
 from scipy import special, stats
-from masonry_study.fragility import WIDEST, fit, nrml
+from masonry_study.fragility import MAX_DISPERSION, fit, nrml
 
 LEVELS = np.geomspace(0.2, 3, 8)
 
@@ -126,7 +126,7 @@ def test_any_records_give_numbers_or_a_sentence(capacities, count):
         assert "add" in str(refused) and "\n" not in str(refused)
     else:
         assert 0 < found.median.value < math.inf
-        assert 0 < found.dispersion.value <= WIDEST
+        assert 0 < found.dispersion.value <= MAX_DISPERSION
         assert 0 <= found.median.low <= found.median.value <= found.median.high
 
 
