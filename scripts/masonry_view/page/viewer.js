@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // The picture of a run in a page: every element of the class masonry-view gets one, of the data inside it, which
-// masonry/read/page/data.py has written. It draws with three.js, which must be loaded before, and asks the network nothing.
+// data.py beside this file has written. It draws with three.js, which must be loaded before, and asks the network nothing.
 "use strict";
 
 (function () {

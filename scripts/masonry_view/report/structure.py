@@ -308,14 +308,18 @@ def _named(name, value):
     ends = ((ending, unit) for ending, unit in ENDINGS if name.endswith(ending))
     ending, unit = next(ends, ("", ""))
     words = name.removesuffix(ending).replace("_", " ")
-    return f"{words} {_said(value)} {unit}".strip()
+    return f"{words} {_values(value)} {unit}".strip()
+
+
+def _values(value):
+    if isinstance(value, list):
+        return f"({', '.join(map(_values, value))})"
+    return _said(value)
 
 
 def _said(value):
     if value in (None, [], ""):
         return "–"
-    if isinstance(value, list):
-        return f"({', '.join(map(_said, value))})"
     if isinstance(value, bool):
         return "yes" if value else "no"
     return written(value, 6) if isNumber(value) else str(value)
