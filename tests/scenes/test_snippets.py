@@ -43,12 +43,12 @@ REASONS = {
     r".*validation/\w+/?\w*\.py": (
         "minutes or hours; tests/scenes/test_validation.py and its like run parts of them"
     ),
-    r".*(masonry\.study|masonry\.study\.report) (validation|results/validation)/": (
+    r".*masonry_study(\.report)? (validation|results/validation)/": (
         "minutes or hours: a study of validation/"
     ),
     r".*wall_comp4\.py --accuracy": "minutes: tests/scenes/test_accuracy.py has a small wall",
     r".*check_host\.py (FOLDER|libyade)": "needs an unpacked YADE of another release",
-    r".*-m masonry\.capacity": "a tenth of a push has no peak: tests/capacity/test_capacity.py",
+    r".*-m masonry_capacity": "a tenth of a push has no peak: tests/capacity/test_capacity.py",
     r"jupyter": "opens a browser",
     r"unshare": "needs namespaces of users, which containers may refuse",
 }
