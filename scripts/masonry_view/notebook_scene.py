@@ -9,7 +9,7 @@ from masonry.errors import Refused
 from masonry.model.bodies import units
 from masonry.numbers import columns, drawing
 from masonry.numbers.frames import readFrame
-from masonry.scene import facts
+from masonry.scene import summary
 from yade.wrapper import MasonryVtkRecorder
 
 from . import cells
@@ -92,7 +92,7 @@ def _built(scene):
     return cells.titled(
         f"{description.title}: before its first stage",
         drawn,
-        cells.table([*_counted(description), *facts.held(description)]),
+        cells.table([*_counted(description), *summary.held(description)]),
         cells.folded("materials", _materials(scene)),
     )
 
@@ -133,7 +133,7 @@ def _shade(target):
 
 def _counted(description):
     """Rows of the table: what is built, with the number of its joints."""
-    yield from facts.sizes(description)
+    yield from summary.sizes(description)
     bricks = Bricks(description.bricks)
     if len(bricks) <= MOST_COUNTED:
         platens = any(target.box for target in description.targets.values())

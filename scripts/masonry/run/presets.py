@@ -23,7 +23,7 @@ BOUND = "bound"  # the preset of limit analysis alone, without a run: see masonr
 PROMISE = dict(peak_error=0.06, work_error=0.07, walls=44, missed=1)
 
 #: The walls on which ``fast`` was measured: the least and the largest value of each property that
-#: :func:`masonry.scene.facts.properties` finds. All were pushed once, in their plane.
+#: :func:`masonry.scene.summary.properties` finds. All were pushed once, in their plane.
 RANGE: dict[str, tuple[float, float]] = {
     "length over height": (0.27, 3.4),
     "courses": (6, 34),
@@ -157,7 +157,7 @@ def fidelityOf(args):
 def outsideOf(properties):
     """Sentences on properties in which a scene is unlike the walls on which ``fast`` was measured.
 
-    :param properties: values by name, as :func:`masonry.scene.facts.properties` gives them; None:
+    :param properties: values by name, as :func:`masonry.scene.summary.properties` gives them; None:
         it moves in space
     """
     if properties is None:

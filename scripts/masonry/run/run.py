@@ -85,7 +85,7 @@ class Run:
         """Open the folder, and read the checkpoint of a run that is resumed. No file is written
         yet.
 
-        :param properties: of the scene, as :func:`masonry.scene.facts.properties` gives them
+        :param properties: of the scene, as :func:`masonry.scene.summary.properties` gives them
         """
         args, heads = self.args, [column.head for column in columns]
         folder = args.out or os.path.join("results", self.name)

@@ -44,10 +44,10 @@ from ..run.results import Results
 from ..run.run import Run
 from ..stages import STAGES, answers, bounding, gravity, prepare, rest
 from ..stages.bounds import boundsOf, takeFound
-from . import connections, contact, facts, loads, options, platens, records
+from . import connections, contact, loads, options, platens, records, summary
 from .description import Description
 from ..materials import Masonry, linesOf, loadingBlock
-from .outcome import Outcome
+from .outcome import ResultSummary
 from .resuming import State, resume
 from .targets import Target
 from .script import SHAKES, Call, Script, either
@@ -268,10 +268,10 @@ class Scene:
         records.viewAlongY(description)
         self.columns = description.columns(model, bool(args.history))
         self.model = model
-        self.running.open(self.columns, facts.properties(description, self.masonry))
+        self.running.open(self.columns, summary.properties(description, self.masonry))
         self.bounds = boundsOf(self)
         self.running.takeFound = functools.partial(takeFound, self)
-        self.outcome = Outcome(self)
+        self.outcome = ResultSummary(self)
         with self.running.clock("setup"), self.running.breakable(), withoutCollector():
             model.build(loadingBlock())
             # engines that stages had made before the checkpoint
@@ -280,7 +280,7 @@ class Scene:
                 begun = begun or word in names
                 if begun:
                     prepare(self, word, arguments)
-        facts.noteCourse(description)
+        summary.noteCourse(description)
         self.running.start(model, self.outcome.space(), State(self))
         Scene.present = self
         atexit.register(self._remind)
