@@ -127,7 +127,7 @@ class ResultSummary:
             recorded_drifts=self._columnsOf(description.drifts, "mrad"),
             recorded_sections=self._columnsOf(description.sections, "kN", "kNm"),
             **self._connections(),
-            script=shortened(scene.script.words),
+            script=shortened(scene.script.commands),
             **self._summary,
             **dict(scene.bounds.inRunJson(self.pushes)),
         )
@@ -180,7 +180,7 @@ class ResultSummary:
         if math.isfinite(scene.factor):
             run["factor"] = scene.factor
         run.update(self._connections())
-        if not scene.only:
+        if not scene.limitAnalysisOnly:
             run.update(self._cracks())
         data = self.data
         if self.pushed:

@@ -110,7 +110,7 @@ def saidBefore(scene, word, **arguments):
     if not scene.running.takesUp:
         return False
     scene.script.compare(scene.running.scriptBefore)
-    return len(scene.script.words) <= len(scene.running.scriptBefore)
+    return len(scene.script.commands) <= len(scene.running.scriptBefore)
 
 
 def resume(scene: Any) -> Any:

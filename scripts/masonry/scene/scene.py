@@ -139,7 +139,7 @@ class Scene:
         self.calls = []  # every command that was given
         self.staging = False  # a stage is being carried out
         self.bracketing = False  # bracket() looks for a load, so no collapse is followed
-        self.running = Run(name, arguments, self.script.words)
+        self.running = Run(name, arguments, self.script.commands)
         self.model: Any = None  # until it is built, and so are the next two
         self.bounds: Any = None
         self.outcome: Any = None
@@ -154,7 +154,7 @@ class Scene:
         self.loadUnit = "-"  # of the load that a stage put on or let grow last
         self.grown = False  # presses and dead loads act whole
         #: there is no run, but limit analysis
-        self.only = arguments.preset == BOUND
+        self.limitAnalysisOnly = arguments.preset == BOUND
         self._entered = False  # a ``with`` block ends it
 
     platen, watch, handle = platens.platen, platens.watch, platens.handle
@@ -303,7 +303,11 @@ class Scene:
         self.finished = True
         if not error and not self.model:
             return False
-        if not (error or self.only or any(word in SHAKES for word, _ in self.script.words)):
+        if not (
+            error
+            or self.limitAnalysisOnly
+            or any(word in SHAKES for word, _ in self.script.commands)
+        ):
             for option, default in (("record", None), ("scale", 1)):
                 if getattr(self.args, option, default) != default:
                     say(f"warning: --{option} was not used: the scene was not shaken")

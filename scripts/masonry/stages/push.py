@@ -304,7 +304,7 @@ def _drive(scene, name, target, direction, rate, continued, control, **aim):
     findBound(scene, "push", pushed, direction, bool(args.history))
     names = [nameOfPush(pushed, sign * direction) for sign in (1, -1)]
     running.note("push", *names, counted)
-    if not scene.only:
+    if not scene.limitAnalysisOnly:
         drivePush(scene, name, args, began, continued)
         loading.stopDrives()
     return DONE

@@ -126,7 +126,7 @@ def _carryOut(scene, act, traits, args, settings):
                 " to its last state at rest"
             )
             return COLLAPSED
-        if scene.only and not traits.bounded:
+        if scene.limitAnalysisOnly and not traits.bounded:
             say(f"note: --preset bound: no run, {name} is left out")
             return DONE
         before = running.entered
@@ -159,7 +159,7 @@ def _carryOut(scene, act, traits, args, settings):
     except BaseException as error:
         if before is not None and running.entered == before:
             # it has done nothing, and a run that goes on need not say it again
-            scene.script.words.pop()
+            scene.script.commands.pop()
         return scene.failed(error)
 
 
@@ -216,7 +216,7 @@ def _answer(scene, name, traits, before):
     """Keep the answers of a stage that was carried out now, and not before the run was resumed;
     ``before``: how many stages the run had entered before it."""
     running = scene.running
-    if scene.only or before is None or running.entered == before:
+    if scene.limitAnalysisOnly or before is None or running.entered == before:
         return
     results, first = running.results, running.at.stages[before][3]
     rows = lambda head: results.column(head)[first:] if head in results.columns else []
