@@ -60,7 +60,12 @@ ACCURACY = ["--accuracy", "20", "--lean"]
         ("run.frames", "Frames._write = fails", "a frame for ParaView", []),
         ("run.frames", "Frames._write = fails; SLOW_FRAME = -1", "a frame for ParaView", []),
         ("run.accuracy", "answers = fails", "--accuracy", ACCURACY),
-        ("scene.outcome", "if inCompanion: ResultSummary.summarise = fails", "--accuracy", ACCURACY),
+        (
+            "scene.outcome",
+            "if inCompanion: ResultSummary.summarise = fails",
+            "--accuracy",
+            ACCURACY,
+        ),
     ],
 )
 def test_an_error_beside_a_run_is_a_note_and_its_traceback_a_log(
