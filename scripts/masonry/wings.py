@@ -24,8 +24,8 @@ PUBLIC = """
     materials.settings memory model.arrays model.bodies model.load_names numbers.columns
     numbers.cracks numbers.curves numbers.drawing numbers.files numbers.frames numbers.loops
     numbers.quantities numbers.run_data packages run.batch run.drawing_program run.lock
-    run.progress scene.accelerograms scene.facts scene.ground scene.options
-    scene.parsing terminal units wings
+    run.progress scene.accelerograms scene.ground scene.options scene.parsing
+    scene.summary terminal units wings
 """.split()
 
 

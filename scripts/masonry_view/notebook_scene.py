@@ -9,7 +9,7 @@ from masonry.errors import Refused
 from masonry.model.bodies import units
 from masonry.numbers import columns
 from masonry.numbers.frames import readFrame
-from masonry.scene import facts
+from masonry.scene import summary
 from yade.wrapper import MasonryVtkRecorder
 
 from .elevation import Structure, cracksOf, figureOf
@@ -81,7 +81,7 @@ def _built(scene):
     return titled(
         f"{description.title}: before its first stage",
         picture(draws),
-        table([*_counted(description), *facts.held(description)]),
+        table([*_counted(description), *summary.held(description)]),
         folded("materials", _materials(scene)),
     )
 
@@ -122,7 +122,7 @@ def _shade(target):
 
 def _counted(description):
     """Rows of the table: what is built, with the number of its joints."""
-    yield from facts.sizes(description)
+    yield from summary.sizes(description)
     bricks = Bricks(description.bricks)
     if len(bricks) <= MAX_COUNTED:
         platens = any(target.box for target in description.targets.values())

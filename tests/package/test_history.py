@@ -5,9 +5,9 @@ from usual import *
 import hashlib
 import itertools
 from masonry.scene import history, options
-from masonry.scene.history import Target
+from masonry.scene.history import PathPoint
 
-amplitude = some.floats(history.LEAST, history.MOST)
+amplitude = some.floats(history.MIN_AMPLITUDE, history.MAX_DISPLACEMENT)
 piece = some.tuples(amplitude, some.integers(1, 20))
 pieces = some.lists(piece, min_size=1, max_size=8)
 
@@ -54,7 +54,7 @@ def test_any_text_is_refused_in_words_or_is_a_history(text):
         assert all(piece in text for piece in message.split("'")[1::2])
     else:
         assert all(map(math.isfinite, found["points_mm"]))
-        assert history.pathLength(found["points_mm"]) >= 4 * history.LEAST
+        assert history.pathLength(found["points_mm"]) >= 4 * history.MIN_AMPLITUDE
 
 
 @mark.parametrize(
@@ -143,10 +143,10 @@ def test_no_more_than_ten_problems_of_a_file_are_reported(tmp_path):
 def test_the_drive_brakes_where_it_turns_and_passes_the_rest():
     points = [1, -1, 0, 2, -2, 0]
     ways, brakes = [1, -1, 1, 1, -1, 1], [1, -1, 2, 2, -2, None]
-    expected = [Target(*three) for three in zip(points, ways, brakes)]
+    expected = [PathPoint(*three) for three in zip(points, ways, brakes)]
     assert history.targets(points) == expected
     ends = [(1, 1, 2), (2, 1, 2), (2, 1, 2), (1.5, -1, 1.5)]
-    assert history.targets([1, 2, 2, 1.5], True) == [Target(*three) for three in ends]
+    assert history.targets([1, 2, 2, 1.5], True) == [PathPoint(*three) for three in ends]
 
 
 @given(some.lists(some.integers(-2, 2).map(float), min_size=1, max_size=30))

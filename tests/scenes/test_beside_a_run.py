@@ -72,7 +72,7 @@ ACCURACY = ["--accuracy", "20", "--lean"]
         ("masonry.run.accuracy", "answers = fails", "--accuracy", ACCURACY),
         (
             "masonry.scene.outcome",
-            "if inCompanion: Outcome.summarise = fails",
+            "if inCompanion: ResultSummary.summarise = fails",
             "--accuracy",
             ACCURACY,
         ),

@@ -247,37 +247,37 @@ class DataSheet:
     clauses: Annotated[dict[str, Any], isA(dict)] | None = None
 
     @property
-    def nu(self):
+    def nu(self) -> float:
         """Poisson's ratio of the bricks [-]."""
         return 0.2 if self.poisson is None else self.poisson
 
     @property
-    def shearing(self):
+    def shearing(self) -> float:
         """E/G of the bricks [-]."""
         return 2 * (1 + self.nu)
 
     @property
-    def height(self):
+    def height(self) -> float:
         """Distance from one bed joint to the next [m]."""
         return self.unit[2] + self.joint
 
     @property
-    def length(self):
+    def length(self) -> float:
         """Distance from one head joint to the next [m]."""
         return self.unit[0] + self.joint
 
     @property
-    def compressive(self):
+    def compressive(self) -> Any:
         """Mean compressive strength of the masonry [Pa], or None."""
         return self.fc or self.fk and MEAN * self.fk
 
     @property
-    def wrench(self):
+    def wrench(self) -> float:
         """Flexural over direct tensile strength of the bond [-]."""
         return WRENCH if self.bond_ratio is None else self.bond_ratio
 
     @property
-    def tensile(self):
+    def tensile(self) -> Any:
         """Direct tensile strength of the bed joints [Pa], or None."""
         return self.ft if self.bond_wrench is None else self.bond_wrench / self.wrench
 

@@ -52,7 +52,7 @@ def _end(run, scene, error):
         reportRefusal(error)
     if isinstance(error, MemoryError):
         error = Unwritable(FULL)
-    if isinstance(error, Interrupted) and scene.only and scene.bounds.entries:
+    if isinstance(error, Interrupted) and scene.limitAnalysisOnly and scene.bounds.entries:
         run.beginWriting()  # the bounds that were found are what was computed
     if not run.advanced:
         return _beforeSteps(run, error)

@@ -23,7 +23,7 @@ BOUND = "bound"  # the preset of limit analysis alone, without a run: see masonr
 PROMISE = dict(peak_error=0.06, work_error=0.07, walls=44, missed=1)
 
 #: The walls on which ``fast`` was measured, pushed once in their plane: least and largest value of
-#: each property of :func:`masonry.scene.facts.properties`.
+#: each property of :func:`masonry.scene.summary.properties`.
 RANGE: dict[str, tuple[float, float]] = {
     "length over height": (0.27, 3.4),
     "courses": (6, 34),
@@ -148,7 +148,7 @@ def fidelityOf(args):
 def outsideOf(properties):
     """Sentences on properties in which a scene is unlike the walls on which ``fast`` was measured.
 
-    :param properties: :func:`masonry.scene.facts.properties`; None: it moves in space
+    :param properties: :func:`masonry.scene.summary.properties`; None: it moves in space
     """
     if properties is None:
         return ["it moves in space, and they were pushed in their plane"]

@@ -77,7 +77,7 @@ class Run:
         """Open the folder, and read the checkpoint of a run that is resumed. No file is written
         yet.
 
-        :param properties: :func:`masonry.scene.facts.properties`
+        :param properties: :func:`masonry.scene.summary.properties`
         """
         args, heads = self.args, [column.head for column in columns]
         folder = args.out or os.path.join("results", self.name)

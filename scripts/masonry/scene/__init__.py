@@ -14,7 +14,7 @@
 - :mod:`masonry.scene.options`: the options of the command line, which :mod:`masonry.scene.parsing`
   reads, with those that the script gives to ``Scene``
 - :mod:`masonry.scene.outcome`: what comes out, and what curve.png shows;
-  :mod:`masonry.scene.facts`: what a scene is, in words
+  :mod:`masonry.scene.summary`: what a scene is, in words
 - :mod:`masonry.scene.script`: the commands of a script, as data; :mod:`masonry.scene.resuming`:
   what a resumed run finds in place of the stages that were over
 """

@@ -18,7 +18,7 @@ from collections import namedtuple
 
 from ..errors import firstOf
 
-LEAST, MOST = 0.02, 1000.0  # [mm] bounds of an amplitude; a row of curve.csv is 0.01 mm
+MIN_AMPLITUDE, MAX_DISPLACEMENT = 0.02, 1000.0  # [mm]; a row of curve.csv is 0.01 mm
 # [mm] within which a wall is at zero: more than a history misses, less than any amplitude
 AT_ZERO = 0.015
 # of the largest displacement of a file: smaller excursions may be noise of the measurement
@@ -28,7 +28,7 @@ COLUMN = "displacement_mm"  # of a file
 
 #: A point of a history: its displacement [mm]; the direction to it, 1 or -1; and the displacement
 #: at which the drive turns or stops next, for which it brakes, or None if it does not [mm].
-Target = namedtuple("Target", "displacement direction brake")
+PathPoint = namedtuple("PathPoint", "displacement direction brake")
 
 
 def parse(text):
@@ -67,8 +67,11 @@ def _readList(text):
             other = ", and no file has this name" if piece == text else ""
             problems.append(f"'{piece}' is no amplitude in mm such as 2 or 2x3{other}")
             continue
-        if not LEAST <= amplitude <= MOST:
-            problems.append(f"'{piece}': the amplitude must be from {LEAST:g} to {MOST:g} mm")
+        if not MIN_AMPLITUDE <= amplitude <= MAX_DISPLACEMENT:
+            problems.append(
+                f"'{piece}': the amplitude must be from {MIN_AMPLITUDE:g} to"
+                f" {MAX_DISPLACEMENT:g} mm"
+            )
         if times and not (count.isdecimal() and count.isascii() and int(count) >= 1):
             problems.append(f"'{piece}': the number of cycles must be a whole number, at least 1")
         elif not problems:
@@ -113,21 +116,23 @@ def _column(lines, path):
         except ValueError:
             problems.append(f"{where}: '{text}' is not a number")
             continue
-        if not abs(points[-1]) <= MOST:
-            problems.append(f"{where}: {text} mm must be from {-MOST:g} to {MOST:g} mm")
+        if not abs(points[-1]) <= MAX_DISPLACEMENT:
+            problems.append(
+                f"{where}: {text} mm must be from {-MAX_DISPLACEMENT:g} to {MAX_DISPLACEMENT:g} mm"
+            )
     _refuse(problems)
     if len(points) < 2:
         raise ValueError(
             f"{path}: it has {len(points)} displacements, a history needs two at least"
         )
-    if max(map(abs, points)) < LEAST:
-        raise ValueError(f"{path}: no displacement is {LEAST:g} mm or more")
+    if max(map(abs, points)) < MIN_AMPLITUDE:
+        raise ValueError(f"{path}: no displacement is {MIN_AMPLITUDE:g} mm or more")
     return points
 
 
 def targets(points, stops=False, start=0.0):
-    """The points of a history as the drive sees them: a list of :class:`Target`. One that repeats
-    the one before lies in the same direction.
+    """The points of a history as the drive sees them: a list of :class:`PathPoint`. A repeated one
+    lies in the same direction as the one before.
 
     :param points: displacements [mm]
     :param stops: whether the drive brakes for the last point
@@ -141,7 +146,7 @@ def targets(points, stops=False, start=0.0):
     for point, direction in zip(reversed(points), reversed(directions)):
         if direction != after:
             brake = point
-        found.append(Target(point, direction, brake))
+        found.append(PathPoint(point, direction, brake))
         after = direction
     return found[::-1]
 

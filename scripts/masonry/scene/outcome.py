@@ -21,7 +21,7 @@ from ..numbers.frames import asFrame
 from ..numbers.run_data import RunData
 from ..run import accuracy
 from ..run.option_table import UNITS
-from . import facts, history
+from . import history, summary
 from ..run.drawing_program import DrawingProgram
 from ..stages import pushing
 from ..stages.answers import answersText
@@ -31,7 +31,7 @@ REPORT = 2e6  # [bytes] of report.html, of which three.js takes nearly half
 MAX_NUMBERS = 24  # of a list that the script said, as run.json has it
 
 
-class Outcome:
+class ResultSummary:
     """What comes out of a :class:`masonry.scene.scene.Scene` that stands in YADE."""
 
     def __init__(self, scene):
@@ -39,10 +39,10 @@ class Outcome:
         self.description, self.args = scene.description, scene.args
         self.results = scene.running.results
         self.drawing = DrawingProgram()
-        self._facts = {}  # entries of run.json on what is built and held before the first stage
+        self._summary = {}  # entries of run.json on what is built and held before the first stage
         if not self.args.lean:
-            of = {"built": facts.sizes, "held_and_loaded": facts.held}
-            self._facts = {n: [*map(list, f(self.description))] for n, f in of.items()}
+            of = {"built": summary.sizes, "held_and_loaded": summary.held}
+            self._summary = {n: [*map(list, f(self.description))] for n, f in of.items()}
 
     @property
     def pushed(self):
@@ -127,8 +127,8 @@ class Outcome:
             recorded_drifts=self._columnsOf(description.drifts, "mrad"),
             recorded_sections=self._columnsOf(description.sections, "kN", "kNm"),
             **self._connections(),
-            script=shortened(scene.script.words),
-            **self._facts,
+            script=shortened(scene.script.commands),
+            **self._summary,
             **dict(scene.bounds.inRunJson(self.pushes)),
         )
         views = {"views": description.views} if description.views else {}
@@ -140,7 +140,7 @@ class Outcome:
         return {}
 
     def _wall(self):
-        wall = self.pushed and facts.wallOf(self.description, self.model.loading)
+        wall = self.pushed and summary.wallOf(self.description, self.model.loading)
         return {"wall": wall} if wall else {}
 
     def _columnsOf(self, records, *units):
@@ -180,7 +180,7 @@ class Outcome:
         if math.isfinite(scene.factor):
             run["factor"] = scene.factor
         run.update(self._connections())
-        if not scene.only:
+        if not scene.limitAnalysisOnly:
             run.update(self._cracks())
         data = self.data
         if self.pushed:

@@ -10,7 +10,7 @@ rest it is the weight of these blocks and the loads on them.
 
 import itertools
 from dataclasses import dataclass
-from typing import Annotated, Any, Callable
+from typing import Annotated, Any, Callable, Iterator
 
 from yade import O, Vector3
 
@@ -42,7 +42,7 @@ class Section:
     interactions: tuple | list = ()  # YADE's, of its joints, when the scene is built
     _read: tuple = (None, None)  # the last reading, and its forces
 
-    def join(self, structure):
+    def join(self, structure: Any) -> None:
         """Find its joints in a :class:`masonry.model.structure.Structure` in YADE. Raises Refused
         if there are none."""
         description = structure.description
@@ -79,7 +79,7 @@ class Section:
         # a joint to a platen is of the part of its brick
         return self.part in (None, self._parts.get(upper, self._parts.get(lower)))
 
-    def forces(self):
+    def forces(self) -> tuple[Any, Any]:
         """Force [N] and moment about the middle [N m] of what is above on what is below: two
         vectors."""
         if not self.interactions:
@@ -99,7 +99,7 @@ class Section:
                 force, moment = force + sign * on, moment + sign * (arm.cross(on) + turning)
         return force, moment
 
-    def columns(self, plane):
+    def columns(self, plane: bool) -> Iterator[Column]:
         """What is recorded of it; ``scene.section`` has the signs."""
         at = f"the section at z = {self.z:g} m{f' of part {self.part}' if self.part else ''}"
         about = "({})".format(", ".join(f"{v:g}" for v in self.middle))

@@ -13,7 +13,7 @@ def saidBefore(scene, word, **arguments):
     if not scene.running.isResumed:
         return False
     scene.script.compare(scene.running.scriptBefore)
-    return len(scene.script.words) <= len(scene.running.scriptBefore)
+    return len(scene.script.commands) <= len(scene.running.scriptBefore)
 
 
 def resume(scene: Any) -> Any:

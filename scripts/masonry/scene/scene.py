@@ -45,10 +45,10 @@ from ..run.results import Results
 from ..run.run import Run
 from ..stages import STAGES, answers, bounding, gravity, prepare, rest
 from ..stages.bounds import boundsOf, takeFound
-from . import connections, contact, facts, loads, options, platens, records
+from . import connections, contact, loads, options, platens, records, summary
 from .description import Description
 from ..materials import Masonry, linesOf, loadingBlock
-from .outcome import Outcome
+from .outcome import ResultSummary
 from .resuming import resume
 from .targets import Target
 from .script import SHAKES, Call, Script, either
@@ -139,7 +139,7 @@ class Scene:
         self.script = Script()
         self.calls = []  # every command that was given
         self.bracketing = False  # bracket() looks for a load, so no collapse is followed
-        self.running = Run(name, arguments, self.script.words)
+        self.running = Run(name, arguments, self.script.commands)
         self.model: Any = None  # until it is built, and so are the next two
         self.bounds: Any = None
         self.outcome: Any = None
@@ -154,7 +154,7 @@ class Scene:
         self.loadUnit = "-"  # of the load that a stage put on or let grow last
         self.grown = False  # presses and dead loads act whole
         #: there is no run, but limit analysis
-        self.only = arguments.preset == BOUND
+        self.limitAnalysisOnly = arguments.preset == BOUND
         self._entered = False  # a ``with`` block ends it
 
     platen, watch, handle = platens.platen, platens.watch, platens.handle
@@ -268,10 +268,10 @@ class Scene:
         records.viewAlongY(description)
         self.columns = description.columns(model, bool(args.history))
         self.model = model
-        self.running.open(self.columns, facts.properties(description, self.masonry))
+        self.running.open(self.columns, summary.properties(description, self.masonry))
         self.bounds = boundsOf(self)
         self.running.takeFound = functools.partial(takeFound, self)
-        self.outcome = Outcome(self)
+        self.outcome = ResultSummary(self)
         with self.running.clock("setup"), self.running.breakable(), withoutCollector():
             model.build(loadingBlock())
             # engines that stages had made before the checkpoint
@@ -280,7 +280,7 @@ class Scene:
                 begun = begun or word in names
                 if begun:
                     prepare(self, word, arguments)
-        facts.noteCourse(description)
+        summary.noteCourse(description)
         self.running.start(model, self.outcome.space(), SceneState(self))
         Scene.present = self
         atexit.register(self._remind)
@@ -303,7 +303,11 @@ class Scene:
         self.finished = True
         if not error and not self.model:
             return False
-        if not (error or self.only or any(word in SHAKES for word, _ in self.script.words)):
+        if not (
+            error
+            or self.limitAnalysisOnly
+            or any(word in SHAKES for word, _ in self.script.commands)
+        ):
             for option, default in (("record", None), ("scale", 1)):
                 if getattr(self.args, option, default) != default:
                     say(f"warning: --{option} was not used: the scene was not shaken")

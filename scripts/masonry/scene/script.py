@@ -122,12 +122,12 @@ def asData(value):
 class Script:
     """The commands that the script has given so far.
 
-    ``words`` is a list of pairs: the name of a command, and its arguments as a dict of data. A
+    ``commands`` is a list of pairs: the name of a command, and its arguments as a dict of data. A
     checkpoint keeps it.
     """
 
     def __init__(self):
-        self.words = []
+        self.commands = []
         self._extendable = []  # for each command, the arguments that set its end
 
     def note(self, act, first, args, settings):
@@ -136,24 +136,24 @@ class Script:
 
     def add(self, word, arguments, extendable=()):
         """Add a command and its arguments as data; ``extendable`` names those that set its end."""
-        self.words.append([word, arguments])
+        self.commands.append([word, arguments])
         self._extendable.append(set(extendable))
 
-    def isFirst(self, words):
+    def isFirst(self, kinds):
         """Whether the last command is the first of some kinds that the script gives."""
-        *before, (last, _) = self.words
-        return last in words and not any(word in words for word, _ in before)
+        *before, (last, _) = self.commands
+        return last in kinds and not any(command in kinds for command, _ in before)
 
     def compare(self, before):
         """Refuse a script that differs from that of the run that is resumed. Returns whether it
         goes farther.
 
-        :param before: ``words`` of that run, up to its checkpoint. The last stage among them may
+        :param before: ``commands`` of that run, up to its checkpoint. The last stage among them may
             go farther now
         """
         last = max((n for n, (word, _) in enumerate(before) if word != RESULT), default=-1)
         extended = False
-        for at, (was, now) in enumerate(zip(before, self.words)):
+        for at, (was, now) in enumerate(zip(before, self.commands)):
             if was == now:
                 continue
             (name, old), (other, new) = was, now

@@ -116,7 +116,7 @@ def result(
         raise ValueError(f"result {name}: it comes after the first stage")
     scene.calls.append(Call(result, (name, value, unit, how), {}))
     state, before = scene.running.state, scene.running.scriptBefore
-    later = [word for word, _ in before[len(scene.script.words) + 1 :]]
+    later = [word for word, _ in before[len(scene.script.commands) + 1 :]]
     if saidBefore(scene, RESULT, name=name) and any(w != RESULT for w in later):
         return  # it was found in the state of that time
     kept = [one for one in state.answers.get(OWN, []) if one["name"] != name]

@@ -12,7 +12,7 @@ SOON = 1.0  # [s] in which a run that is interrupted waits for its bound
 
 def boundsOf(scene):
     """The bounds of a scene. Raises NotInstalled if a run of limit analysis alone has no wing."""
-    if scene.only or wings.isInstalled("--preset bound"):
+    if scene.limitAnalysisOnly or wings.isInstalled("--preset bound"):
         bounds, running = wings.find("--preset bound"), scene.running
         return bounds(scene.model, running.state, running.auxiliary)
     return wings.Absent()
@@ -38,8 +38,8 @@ def findBound(scene, kind, *load):
     """Find the bound of a stage, which pushes or leans."""
     bounds = scene.bounds
     resumed = scene.running.resumedHere and scene.running.isResumed
-    if scene.args.lean and not scene.only or resumed and not bounds.isGivenUp():
+    if scene.args.lean and not scene.limitAnalysisOnly or resumed and not bounds.isGivenUp():
         return  # in a stage that goes on it was found when that began
-    lowerUpTo = bounds.SMALL * scene.only
+    lowerUpTo = bounds.SMALL * scene.limitAnalysisOnly
     with scene.running.auxiliary("limit analysis"):
-        findBy(scene, kind, *load, lowerUpTo=lowerUpTo, background=not scene.only)
+        findBy(scene, kind, *load, lowerUpTo=lowerUpTo, background=not scene.limitAnalysisOnly)

@@ -275,12 +275,12 @@ def grow(
 
 def _putOn(scene, name, made, longest):
     made.replaces, before = True, made.now()
-    if scene.only:  # what it replaces is no load beside it
+    if scene.limitAnalysisOnly:  # what it replaces is no load beside it
         made.put(made.at(before, 0.0))
-    if scene.only or not any(before):
+    if scene.limitAnalysisOnly or not any(before):
         _findBound(scene, made)
     ended = putOn(scene, name, made, longest)
-    if scene.only and ended != AT_REST:
+    if scene.limitAnalysisOnly and ended != AT_REST:
         made.put(before)
     return ended
 

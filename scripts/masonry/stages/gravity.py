@@ -176,7 +176,7 @@ def putOn(scene, name, load, longest, over=0.0):
     :param longest: [s]; None: :data:`masonry.stages.growing.TRIAL`, and longer on soft springs
     :param over: time in which it grows at least [s]
     """
-    if scene.only:
+    if scene.limitAnalysisOnly:
         carried = scene.bounds.entries.get(load.name, {}).get("factor", 0.0)
         if load.name not in scene.bounds.endless and load.most > carried:
             return MOVING

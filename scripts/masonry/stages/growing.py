@@ -124,7 +124,7 @@ def grow(scene, name, load, duration, within=WITHIN):
     :param duration: [s], with true masses
     :param within: width of the bracket, over its upper end [-]
     """
-    if scene.only:
+    if scene.limitAnalysisOnly:
         return DONE
     running, scene.loadUnit = scene.running, load.unit
     running.note("growth", load.name)

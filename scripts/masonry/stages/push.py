@@ -35,7 +35,7 @@ from ..numbers import curves
 from ..numbers.run_data import BASE, MOVED, TOP, RunData
 from ..model.load_names import nameOfPush
 from .bounds import findBound
-from ..scene.history import CYCLES, MOST, parse
+from ..scene.history import CYCLES, MAX_DISPLACEMENT, parse
 from ..run.option_table import Rate
 from ..scene.targets import AnyTarget, Target, kindOfLoaded
 from ..scene.script import PUSHES
@@ -193,7 +193,7 @@ def peaks(scene, rows):
 def push(
     scene: Any,
     target: Pushed,
-    until: Annotated[float, number("mm", 0, MOST, above=True)] | None = None,
+    until: Annotated[float, number("mm", 0, MAX_DISPLACEMENT, above=True)] | None = None,
     direction: Direction = (1, 0, 0),
     rate: Rate | None = None,
     continued: bool = False,
@@ -228,7 +228,7 @@ def push(
 def cycle(
     scene: Any,
     target: Pushed,
-    amplitudes: Annotated[Numbers, listOf(number("mm or %", 1e-6, MOST))],
+    amplitudes: Annotated[Numbers, listOf(number("mm or %", 1e-6, MAX_DISPLACEMENT))],
     repeats: Annotated[int, whole(1, CYCLES)] = 1,
     direction: Direction = (1, 0, 0),
     rate: Rate | None = None,
@@ -295,7 +295,7 @@ def _drive(scene, name, target, direction, rate, continued, control, **aim):
     findBound(scene, "push", pushed, direction, bool(args.history))
     names = [nameOfPush(pushed, sign * direction) for sign in (1, -1)]
     running.note("push", *names, counted)
-    if not scene.only:
+    if not scene.limitAnalysisOnly:
         drivePush(scene, name, args, began, continued)
         loading.stopDrives()
     return DONE
@@ -316,8 +316,8 @@ def _argumentsOf(scene, name, until=None, history=None):
             raise Refused(f"{name}: {error}") from None
     elif until is None:
         raise Refused(
-            f"{name}: until None must be above 0 and at most {MOST:g} mm; the direction says"
-            " where to"
+            f"{name}: until None must be above 0 and at most {MAX_DISPLACEMENT:g} mm; the direction"
+            " says where to"
         )
     elif until < SHORT * scene.share:
         say(f"warning: {name}: until {until:g} mm: is it in mm, not m?")

@@ -89,7 +89,7 @@ def settle(
     :param record: whether its end is a row of curve.csv
     :returns: ``AT_REST``; ``MOVING`` if it is not at rest by then, or buckles; ``COLLAPSED``
     """
-    if scene.only:
+    if scene.limitAnalysisOnly:
         scene.model.loading.grow(1.0)
         scene.grown = True
         return AT_REST
@@ -174,11 +174,11 @@ def stepBack(scene: Any) -> None:
     """Take the scene back to its last state at rest, also after a collapse, with the load that was
     held then, also by a growth or a bracket. Rows of curve.csv stay."""
     with scene.noted(stepBack):
-        if scene.only:
+        if scene.limitAnalysisOnly:
             return
         running, model = scene.running, scene.model
         known = model is not None and model.atRest is not None
-        before, at = running.scriptBefore, len(scene.script.words)
+        before, at = running.scriptBefore, len(scene.script.commands)
         if running.isResumed and at < len(before):  # it had none yet
             known = before[at][1].get("known", known)
         isEarlier = saidBefore(scene, "stepBack", known=known)

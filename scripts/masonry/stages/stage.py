@@ -125,7 +125,7 @@ class _Command:
         except BaseException as error:
             if self.running.entered == self.before:
                 # it has done nothing, and a run that goes on need not say it again
-                scene.script.words.pop()
+                scene.script.commands.pop()
             return scene.failed(error)
 
     def check(self, args, settings):
@@ -160,7 +160,7 @@ class _Command:
             return SkipReason.PROBED
         if scene.collapsed:
             return SkipReason.FALLEN
-        if scene.only and not self.traits.bounded:
+        if scene.limitAnalysisOnly and not self.traits.bounded:
             return SkipReason.BOUND_ONLY
         ended = str(self.before + 1) in running.state.ended
         if self._isBefore() and ended and not extended:
@@ -268,7 +268,7 @@ class _Command:
     def _answer(self):
         """Keep the answers of the stage, if it was not carried out before the run was resumed."""
         scene, running = self.scene, self.running
-        if scene.only or running.entered == self.before:
+        if scene.limitAnalysisOnly or running.entered == self.before:
             return
         results, first = running.results, running.state.stages[self.before]["first_row"]
         rows = lambda head: results.column(head)[first:] if head in results.columns else []

@@ -10,7 +10,7 @@ from yade import O, Vector3
 from ..arguments import Freedoms, number, orFunction
 from ..model.motion import SWUNG
 from ..errors import Refused, checkPlane
-from ..scene.history import MOST
+from ..scene.history import MAX_DISPLACEMENT
 from ..scene.loads import Force
 from ..scene.pressures import atPlace
 from ..run.option_table import Rate
@@ -20,7 +20,7 @@ from .answers import DONE, Answer
 from .stage import Timed, stage, timed
 
 ROWS = 2000  # of curve.csv while a block is driven over a distance
-millimetres = number("mm", -MOST, MOST)  # the kind of a displacement
+millimetres = number("mm", -MAX_DISPLACEMENT, MAX_DISPLACEMENT)  # validator of a displacement
 Along = Annotated[Union[float, Callable[[float, float, float], float]], orFunction(millimetres)]
 Distance = Annotated[Union[float, Callable[[], float]], orFunction(millimetres)]
 

@@ -95,12 +95,12 @@ def travel(
     """
     engines, loading = placed(scene, along), scene.model.loading
     down = Vector3(0, 0, -force)
-    if scene.only or len(scene.model.interactions) <= scene.bounds.SMALL:
+    if scene.limitAnalysisOnly or len(scene.model.interactions) <= scene.bounds.SMALL:
         for engine in engines:  # before the load comes
             where = ", ".join(f"{v:.4g}" for v in engine.point)
             live = [(engine, Vector3(0, 0, -1e3))]
             findBound(scene, "forces", f"{TRAVELS}({where}) m", "kN", live)
-    if scene.only:
+    if scene.limitAnalysisOnly:
         return DONE
     at = scene.running.stage("travel", Travelling())
     places = lambda: [1e3 * engine.displacement()[2] for engine in engines]

@@ -13,20 +13,20 @@ MAX_SIZES = 4  # of blocks that are listed
 
 def sizes(description):
     """What is built: pairs of texts, what and how much."""
-    found = summary(Bricks(description.bricks))
-    kinds = ", ".join(f"{count} {kind}" for kind, count in found["kinds"].items())
+    counts = summary(Bricks(description.bricks))
+    kinds = ", ".join(f"{count} {kind}" for kind, count in counts["kinds"].items())
     by = lambda low, high, unit: " × ".join(f"{unit * (b - a):.4g}" for a, b in zip(low, high))
     blocks = collections.Counter(by(b.low, b.high, 1e3) for b in description.bricks)
     most = blocks.most_common(MAX_SIZES)
     sizes = "; ".join(f"{count} of {text} mm" for text, count in most)
-    size = by(found["low_m"], found["high_m"], 1)
-    yield "blocks", f"{found['blocks']:,} in {found['bricks']:,} bricks ({kinds})"
-    if len(found["parts"]) > 1:
-        parts = found["parts"].items()
+    size = by(counts["low_m"], counts["high_m"], 1)
+    yield "blocks", f"{counts['blocks']:,} in {counts['bricks']:,} bricks ({kinds})"
+    if len(counts["parts"]) > 1:
+        parts = counts["parts"].items()
         yield "parts", ", ".join(f"{name}: {count:,} blocks" for name, count in parts)
-    if found["courses"]:
-        yield "courses", f"{found['courses']}"
-    yield "size", f"{size} m (x × y × z), {found['volume_m3']:.4g} m³"
+    if counts["courses"]:
+        yield "courses", f"{counts['courses']}"
+    yield "size", f"{size} m (x × y × z), {counts['volume_m3']:.4g} m³"
     yield "sizes of blocks", sizes + "; and others" * (len(blocks) > len(most))
     yield "moves", "in the x-z plane" if description.plane else "in space"
     yield "block model", "deformable" if description.deformable else "rigid"
