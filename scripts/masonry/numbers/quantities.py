@@ -89,8 +89,8 @@ class Quantity:
     @property
     def unit(self) -> str:
         """``"-"`` if it has none."""
-        endings = {u.translate(str.maketrans({"/": "_per_", "²": "2", "³": "3"})): u for u in UNITS}
-        found = (unit for end, unit in endings.items() if self.key.endswith(f"_{end}"))
+        ends = lambda unit: unit.replace("/", "_per_").replace("²", "2").replace("³", "3")
+        found = (unit for unit in UNITS if self.key.endswith(f"_{ends(unit)}"))
         return self.ownUnit or next(found, "-")
 
     def shown(self, value):
@@ -205,6 +205,10 @@ GROUPS: dict[str, tuple[str, Callable[[RunData], bool]]] = {
         lambda d: False,
     ),
 }
+
+
+def _ofPattern(key):
+    return lambda data: data.pattern[key]
 
 
 Q = Quantity
@@ -511,7 +515,7 @@ QUANTITIES: tuple[Quantity, ...] = (
             "",
             f"See {where}.",
             where,
-            lambda d, key=key: d.pattern[key],
+            _ofPattern(key),
             group="wall",
         )
         for (key, where) in cracks.MEASURED.items()
