@@ -103,8 +103,8 @@ class Painting:
         self.polygons.append((places, points, looks))
 
     def blocks(self, places, alike, colours=None):
-        """Add the visible faces of blocks (:class:`masonry.bricks.geometry.SameTopologyBatch`), lit from the
-        viewer and from above; without colours, where blocks stood."""
+        """Add the visible faces of blocks (:class:`masonry.bricks.geometry.SameTopologyBatch`), lit
+        from the viewer and from above; without colours, where blocks stood."""
         for n, face in enumerate(alike.faces):
             normals = alike.normals[:, n]
             seen = normals @ self.towards > LEVEL

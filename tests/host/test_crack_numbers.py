@@ -155,12 +155,12 @@ def test_the_line_of_loads_that_were_put_on_goes_from_rest_up_to_the_largest():
     loads = [("push", "a"), ("lean", "b"), ("lean", "b"), ("lean", "c"), ("lean", "b")]
     factors = [0, 0, 0.1, 0.3, 0.2, 0.2, 0.7, 0.7, 0.9, 0.9]
     at = SimpleNamespace(
-        stages=[["", 0, 0.0, 2 * n] for n in range(len(loads))],
+        stages=[{"first_row": 2 * n} for n in range(len(loads))],
         answers={str(n): [{"value": v}] for n, v in enumerate([1, 0.3, 0.2, 0.7, None], 1)},
     )
     results = SimpleNamespace(column=lambda head: factors, rows=factors)
     numbered = [(n, [*load, ""]) for n, load in enumerate(loads, 1)]
-    scene = SimpleNamespace(running=SimpleNamespace(at=at))
+    scene = SimpleNamespace(running=SimpleNamespace(state=at))
     outcome = SimpleNamespace(scene=scene, results=results, loads=numbered)
     # the end of the push, then those of what was held, by the load
     assert restsUnder(outcome, "b") == [1, 5, 3]

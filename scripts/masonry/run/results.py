@@ -78,9 +78,9 @@ or None:
 - ``accuracy``, ``peak_half_width_kN``, ``work_half_width_J``: of --accuracy:
   :meth:`masonry.run.accuracy.AuxiliaryRuns.report`
 - ``wall``: of a whole wall in running bond that a platen pushes, for measures of its cracks
-  (:func:`masonry.scene.summary.wallOf`): ``corner_m``, x and z of its lower left corner; ``unit_m``,
-  length, thickness and height of a unit; heights are above the base, and ``load_height_m`` is None
-  if the platen cannot turn
+  (:func:`masonry.scene.summary.wallOf`): ``corner_m``, x and z of its lower left corner;
+  ``unit_m``, length, thickness and height of a unit; heights are above the base, and
+  ``load_height_m`` is None if the platen cannot turn
 - ``history``: of a push that follows one: ``text`` of the option; ``points``, ``turning_points``:
   how many; ``path_mm``: length of the way; ``noise_mm``: up to which an excursion is no half cycle;
   ``amplitudes_mm``: pairs of an amplitude and its number of cycles, or ``file`` and the ``sha256``
