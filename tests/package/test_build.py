@@ -34,4 +34,6 @@ def test_an_installation_leaves_no_module_of_an_earlier_version(tmp_path):
         assert len(found) == 5
         for package in found:
             assert modulesIn(package) == modulesIn(os.path.join(ROOT, "scripts", package.name))
+            assert not (package / "gone").exists()  # its bytecode alone would be a package
             (package / "gone.py").write_text("")
+            (package / "gone" / "__pycache__").mkdir(parents=True, exist_ok=True)

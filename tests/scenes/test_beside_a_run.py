@@ -61,7 +61,7 @@ ACCURACY = ["--accuracy", "20", "--lean"]
         ("masonry_view.curve_figure", "curve = fails", "the figures", []),
         ("masonry_view.figures", "drawRun = kills", "the figures", []),
         ("masonry_view.report", "read = kills", "figures and report", []),
-        ("masonry_view.report.structure", "facts = fails", "the report", []),
+        ("masonry_view.report", "page = fails", "the report", []),
         ("masonry.run.frame_writer", "Frames._write = fails", "a frame for ParaView", []),
         (
             "masonry.run.frame_writer",

@@ -6,6 +6,7 @@ The build makes a second module that holds it, which is used here in the place o
 """
 
 from hosted import *
+import glob
 import masonry
 from masonry.numbers.frames import readFrame
 from test_checkpoints import files
@@ -88,10 +89,12 @@ print("DONE")
 
 @pytest.fixture(scope="module")
 def environment(tmp_path_factory):
-    """The package with the module that holds one law more."""
+    """The core and its wings, with the module that holds one law more."""
     folder = tmp_path_factory.mktemp("packages")
-    package = shutil.copytree(os.path.dirname(masonry.__file__), folder / "masonry")
-    shutil.copy(os.path.join(BUILD, "coulomb", "_masonry.so"), package)
+    package = os.path.dirname(masonry.__file__)
+    for path in glob.glob(glob.escape(package) + "*"):
+        shutil.copytree(path, folder / os.path.basename(path))
+    shutil.copy(os.path.join(BUILD, "coulomb", "_masonry.so"), folder / "masonry")
     return {**os.environ, "PYTHONPATH": str(folder)}
 
 

@@ -162,7 +162,7 @@ def test_figures_and_measures_show_both_sides(looped, monkeypatch, capsys):
         assert low < data[name].min() < 0 < data[name].max() < high
     lines = {line.get_label(): line for line in top.lines}
     assert lines["envelope"].get_linewidth() > lines["supports"].get_linewidth()
-    assert len(shown) == 2  # and cracks.png
+    assert len(shown) == 3  # and cracks.png, mechanism.png
 
     numbers = measure.measure(str(looped))
     assert numbers["cycle_count"] == 4 and numbers["largest_amplitude_mm"] > 1.99

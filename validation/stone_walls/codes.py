@@ -20,7 +20,7 @@ import math
 import os
 from dataclasses import dataclass
 
-from masonry.materials.codes import LOCAL_FRICTION, MOST_SHEAR
+from masonry.materials.codes import LOCAL_FRICTION, MAX_SHEAR
 from masonry.materials.codes import TABLE as SAID
 from rules import ROWS
 
@@ -187,7 +187,7 @@ def eurocode(wall: Wall) -> Prediction:
     """
     cohesion = wall.tau0 if wall.fv0 is None else wall.fv0
     strengths = {"flexure": flexure(wall, 1.15)} | sliding(
-        wall, cohesion, CODE_FRICTION, MOST_SHEAR
+        wall, cohesion, CODE_FRICTION, MAX_SHEAR
     )
     shear = 4 / 3 * 0.004
     drifts = {
@@ -211,7 +211,7 @@ def eurocodeDraft(wall: Wall) -> Prediction:
     if wall.fv0 is None:
         strengths["shear"] = diagonal(wall, 1.5 * wall.tau0)
     else:
-        strengths |= sliding(wall, wall.fv0, LOCAL_FRICTION, MOST_SHEAR)
+        strengths |= sliding(wall, wall.fv0, LOCAL_FRICTION, MAX_SHEAR)
         strengths["shear"] = min(strengths.get("shear", math.inf), stepped(wall, wall.fv0))
     drifts = {
         "flexure": 0.01 * (1 - wall.stress / wall.strength),
@@ -240,7 +240,7 @@ def italian(wall: Wall) -> Prediction:
     if wall.fv0 is None:
         strengths["shear"] = diagonal(wall, 1.5 * wall.tau0)
     else:
-        strengths |= sliding(wall, wall.fv0, CODE_FRICTION, MOST_SHEAR / 0.7)
+        strengths |= sliding(wall, wall.fv0, CODE_FRICTION, MAX_SHEAR / 0.7)
         strengths["shear"] = min(strengths.get("shear", math.inf), stepped(wall, wall.fv0))
     return smallest(strengths, {"flexure": 0.010, "shear": 0.005, "sliding": 0.005})
 
