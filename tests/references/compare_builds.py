@@ -46,7 +46,8 @@ SCRIPTS = os.path.abspath(os.path.join(os.path.dirname(__file__), "..", "..", "s
 EXCLUDED_FILES = "*.html *.log *.py mechanism.json run.lock times.csv".split()
 EXCLUDED_ENTRIES = {"made by"} | set(
     "commit date effective_properties files host masonry microseconds_per_step"
-    " nanoseconds_per_subcontact_step properties_of_laws resumed_at_s scene_sha256 seconds steps_by_threads wall_clock_s".split()
+    " nanoseconds_per_subcontact_step properties_of_laws resumed_at_s"
+    " scene_sha256 seconds steps_by_threads wall_clock_s".split()
 )
 MODULE = re.compile(r"\bmasonry(_\w+)?(\.\w+)+")
 
