@@ -34,7 +34,7 @@ def test_the_package_is_of_this_version_and_has_each_file(package):
     kept = [
         os.path.relpath(path, sources)
         for path in glob.glob(f"{glob.escape(sources)}/masonry*/**/*", recursive=True)
-        if os.path.isfile(path) and not path.endswith((".pyc", ".so"))
+        if os.path.isfile(path) and not path.endswith((".md", ".pyc", ".so"))
     ]
     missing = [one for one in kept if not (modules / one).exists()]
     assert len(kept) > 100 and missing == []
