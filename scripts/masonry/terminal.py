@@ -18,8 +18,8 @@ for _stream in (sys.stdout, sys.stderr):
 _CONTROL = re.compile(r"[\x00-\x08\x0b-\x1f\x7f-\x9f\u200e\u200f\u2028-\u202e\u2066-\u2069]")
 
 
-def withoutMarkup(text):
-    """A text with control characters written out, as ``\\x1b``: a file must not steer a
+def escapeControls(text):
+    """Write out the control characters of a text, as ``\\x1b``: a file must not steer a
     terminal."""
     return _CONTROL.sub(lambda found: ascii(found[0])[1:-1], str(text))
 
@@ -30,14 +30,14 @@ _listeners = []  # of the present run
 
 
 def say(text, stream=None, noted=True):
-    """Print a text, as :func:`withoutMarkup` writes it. A terminal that is gone or a log that is
+    """Print a text, as :func:`escapeControls` writes it. A terminal that is gone or a log that is
     full is no reason to stop a run.
 
     The run that listens writes notes and warnings to run.json, also those from before it began.
 
     :param noted: False: a note that is kept elsewhere
     """
-    text = withoutMarkup(text)
+    text = escapeControls(text)
     if noted and text.startswith(NOTED):
         for listener in _listeners or [_pending.append]:
             listener(text)

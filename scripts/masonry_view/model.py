@@ -13,7 +13,7 @@ from masonry.numbers.cracks import CRACK, DAMAGED, centresOf, crushed, widths
 from .curve_figure import bare, plan, unitOf
 from masonry.numbers.files import filesOf, readCurve, readRun
 from masonry.numbers.frames import framePaths, frameTimes, readFrame, readSurfaces
-from masonry.terminal import withoutMarkup
+from masonry.terminal import escapeControls
 from .views import REACH, magnificationOf, viewOf
 
 SHARP = np.cos(np.radians(20))  # of the angle from which an edge of a block is drawn
@@ -66,7 +66,7 @@ class Model:
         """
         self.directory, self.run = directory, readRun(directory)
         with filesOf(directory):
-            self.title = withoutMarkup(self.run.get("title") or directory)
+            self.title = escapeControls(self.run.get("title") or directory)
             times = self._times()
             self.count = count = len(times)
             if number is not None and not 0 <= number < count:
@@ -226,9 +226,9 @@ class Model:
                 if axis["column"] != "time_s":
                     unit = unitOf(axis if axis is spec["x"] else {**axis, "label": spec["y_label"]})
                     value = np.interp(time, data["time_s"], data[axis["column"]])
-                    values.append(withoutMarkup(f"{bare(axis['label'])}: {value:.4g} {unit}"))
+                    values.append(escapeControls(f"{bare(axis['label'])}: {value:.4g} {unit}"))
             stage = self._stage(time, data)
-            found.append({"time": time, "stage": stage and withoutMarkup(stage), "values": values})
+            found.append({"time": time, "stage": stage and escapeControls(stage), "values": values})
         return found
 
     def _stage(self, time, data):

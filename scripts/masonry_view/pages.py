@@ -7,7 +7,7 @@ import os
 from masonry.errors import Refused
 from masonry.folders import check, replaced
 from masonry.packages import needed
-from masonry.terminal import say, withoutMarkup
+from masonry.terminal import say, escapeControls
 
 #: What a whole page may do: run what stands in it. The browser refuses every request to a network.
 POLICY = "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data:"
@@ -26,7 +26,7 @@ def rendered(path, **values):
         loader=jinja2.FileSystemLoader(here),
         autoescape=True,
         undefined=jinja2.StrictUndefined,
-        finalize=lambda value: withoutMarkup(value) if type(value) is str else value,
+        finalize=lambda value: escapeControls(value) if type(value) is str else value,
         trim_blocks=True,
         lstrip_blocks=True,
     )

@@ -10,7 +10,7 @@ import re
 from ..arguments import asFloat, flag, isNumber, oneOf, shown
 from ..background import reportRefusal
 from ..errors import NotResumed, Refused, refuse
-from ..terminal import say, withoutMarkup
+from ..terminal import say, escapeControls
 from ..run import batch
 from ..run.checkpoints import Saved
 from ..run.option_table import OPTIONS, asOption, optionsWith
@@ -72,7 +72,7 @@ class Parser(argparse.ArgumentParser):
             return action.default
 
     def _print_message(self, message, file=None):
-        super()._print_message(withoutMarkup(message or ""), file)
+        super()._print_message(escapeControls(message or ""), file)
 
     def error(self, message):
         refused = Refused("\n".join([*self.problems, message]))
