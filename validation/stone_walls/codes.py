@@ -186,9 +186,7 @@ def eurocode(wall: Wall) -> Prediction:
     Drift capacities of near collapse are 4/3 of 0.008 H0/L in flexure and of 0.004 in shear.
     """
     cohesion = wall.tau0 if wall.fv0 is None else wall.fv0
-    strengths = {"flexure": flexure(wall, 1.15)} | sliding(
-        wall, cohesion, CODE_FRICTION, MAX_SHEAR
-    )
+    strengths = {"flexure": flexure(wall, 1.15)} | sliding(wall, cohesion, CODE_FRICTION, MAX_SHEAR)
     shear = 4 / 3 * 0.004
     drifts = {
         "flexure": 4 / 3 * 0.008 * wall.span / wall.length,
