@@ -25,7 +25,7 @@ PUBLIC = """
     numbers.cracks numbers.curves numbers.drawing numbers.files numbers.frames numbers.loops
     numbers.quantities numbers.run_data packages run.batch run.drawing_program run.lock
     run.progress scene.accelerograms scene.ground scene.options scene.parsing
-    scene.summary terminal units wings
+    scene.summary terminal texts units wings
 """.split()
 
 

@@ -2,7 +2,6 @@
 """Elastic response spectra: those of EN 1998-1:2004, and any that a file has."""
 
 import math
-import re
 from dataclasses import dataclass
 from typing import Annotated, Any
 
@@ -11,7 +10,7 @@ import numpy as np
 from masonry.arguments import FilePath, Numbers, listOf, number, oneOf, validated, whole
 from masonry.units import ACCELERATION_UNITS, GRAVITY
 from masonry.errors import Refused
-from masonry.numbers.files import readText
+from masonry.texts import TextFile
 
 #: Units of accelerations in m/s², those with a raised 2 also as a keyboard writes them.
 UNITS = {
@@ -153,39 +152,29 @@ def readSpectrum(
     """A spectrum from a file of two columns, period [s] and acceleration, between whose rows it is
     interpolated.
 
-    Columns are apart by commas, semicolons, tabs or blanks; lines that begin with # and a first
-    line of names are left out.
+    Columns, comments and heads are as in :mod:`masonry.texts`.
 
     :param unit: of the accelerations: ``"g"``, ``"m/s²"`` or ``"cm/s²"``
     :param corner: TC, the upper limit of the periods with constant acceleration, which the target
         displacement needs [s]
     :raises Refused: if the file cannot be read, is no such table, or if the corner is missing
     """
+    file = TextFile(path)
     rows: list[list[float]] = []
-    names = False
-    text = readText(path).removeprefix("\ufeff")  # which some editors write
-    for count, line in enumerate(text.splitlines(), 1):
-        cells = re.split(r"[,;\s]+", line.strip().strip(",;"))
-        if not cells[0] or cells[0].startswith("#"):
-            continue
-        try:
-            row = [float(cell) for cell in cells]
-        except ValueError as error:
-            if not rows and not names:
-                names = True
-                continue
-            raise Refused(f"{path}, line {count}: {error}") from None
-        if len(row) != 2 or not all(map(math.isfinite, row)) or min(row) < 0:
-            raise Refused(
-                f"{path}, line {count}: it must have a period [s] and an acceleration, neither"
-                f" below zero, has {line.strip()[:60]!r}"
+    for row in file.table(columns=2).rows:
+        cells = [cell for cell in row.cells if cell]
+        found = [file.number(cell, row.line) for cell in cells]
+        if len(found) != 2 or min(found) < 0:
+            raise file.refused(
+                "it must have a period [s] and an acceleration, neither below zero, has"
+                f" {' '.join(cells)[:60]!r}",
+                row.line,
             )
-        if rows and row[0] <= rows[-1][0]:
-            raise Refused(
-                f"{path}, line {count}: periods must grow, {row[0]:g} s comes after"
-                f" {rows[-1][0]:g} s"
+        if rows and found[0] <= rows[-1][0]:
+            raise file.refused(
+                f"periods must grow, {found[0]:g} s comes after {rows[-1][0]:g} s", row.line
             )
-        rows.append(row)
+        rows.append(found)
     if len(rows) < 2:
         raise Refused(f"{path}: there must be two rows at least")
     periods, accelerations = np.array(rows).T * [[1], [UNITS[unit]]]

@@ -2,8 +2,6 @@
 """Curves of several runs and of measured CSV files over each other, in one picture."""
 
 import argparse
-import csv
-import math
 import os
 from typing import Any, Sequence
 
@@ -13,7 +11,8 @@ from masonry.arguments import FilePath
 from masonry.errors import Refused
 from masonry.terminal import say
 from masonry.numbers import drawing
-from masonry.numbers.files import program, readCurve, readRun, readText
+from masonry.numbers.files import program, readCurve, readRun
+from masonry.texts import TextFile
 
 #: Colours that differ in print, also for those who do not tell red from green (Okabe and Ito,
 #: 2008), and dashes.
@@ -24,8 +23,9 @@ DASHES = ["-", (0, (6, 2)), (0, (4, 1.5, 1, 1.5)), (0, (1.2, 1.2))]
 def readMeasured(text: str) -> tuple[np.ndarray, np.ndarray, list[str]]:
     """A measured curve of ``FILE:X:Y``: its two columns as arrays, and their names.
 
-    The file has a line of column names and then numbers, with commas, semicolons or tabs between
-    them. X and Y are names of columns, or their numbers from 1. Empty cells are left out.
+    Columns, comments and decimal commas are as in :mod:`masonry.texts`; one of the lines before
+    the numbers has the names of the columns. X and Y are such names, or numbers from 1. Rows with
+    an empty cell or NaN are left out.
 
     :raises Refused: if the text, the file or a column is not as it must be
     """
@@ -36,32 +36,29 @@ def readMeasured(text: str) -> tuple[np.ndarray, np.ndarray, list[str]]:
             " from 1"
         )
     path, *wanted = parts
-    lines = readText(path).removeprefix("\ufeff").splitlines()
-    lines = [line for line in lines if line.strip() and not line.startswith("#")]
-    if len(lines) < 3:
-        raise Refused(f"{path}: there must be a line of names and two of numbers")
-    mark = max(",;\t", key=lines[0].count)
-    names = [name.strip() for name in next(csv.reader(lines[:1], delimiter=mark))]
-    numbered = {str(n + 1): n for n in range(len(names))}
+    file = TextFile(path)
+    table = file.table()
+    if not table.rows:
+        raise Refused(f"{path}: there is no row of numbers")
+    width = len(table.rows[0].cells)
+    heads = [row.cells for row in table.heads if len(row.cells) == width]
+    names = next((h for h in heads if set(wanted) & set(h)), heads[-1] if heads else [])
+    numbered = {str(n + 1): n for n in range(width)}
     for name in wanted:
         if name not in names and name not in numbered:
-            raise Refused(f"{path}: there is no column {name}, there are {', '.join(names)}")
+            raise Refused(
+                f"{path}: there is no column {name}, there are {', '.join(names or numbered)}"
+            )
     places = [names.index(n) if n in names else numbered[n] for n in wanted]
     rows = []
-    for number, row in enumerate(csv.reader(lines[1:], delimiter=mark), start=2):
-        cells = [row[p].strip() if p < len(row) else "" for p in places]
-        if not all(cells):
-            continue
-        try:
-            rows.append([float(cell) for cell in cells])
-            if not all(map(math.isfinite, rows[-1])):
-                raise ValueError("a number is not finite")
-        except ValueError as error:
-            raise Refused(f"{path}, row {number}: {error}") from None
+    for row in table.rows:
+        cells = [row.cells[p] if p < len(row.cells) else "" for p in places]
+        if all(cell and cell.lower() != "nan" for cell in cells):
+            rows.append([file.number(cell, row.line) for cell in cells])
     if len(rows) < 2:
         raise Refused(f"{path}: fewer than two rows have both columns")
     x, y = np.array(rows).T
-    return x, y, [names[p] for p in places]
+    return x, y, [names[p] if names else str(p + 1) for p in places]
 
 
 def readRuns(

@@ -24,7 +24,7 @@ WINGS = {
 FLOORS = [
     (
         "arguments auxiliary background errors folders host memory moved notebook packages terminal"
-        " units wings"
+        " texts units wings"
     ).split(),
     ["bricks"],
     ["numbers"],

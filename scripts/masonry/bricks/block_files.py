@@ -15,6 +15,7 @@ from typing import Annotated, Any
 import numpy as np
 
 from ..arguments import FilePath, number, validated
+from ..errors import Refused
 from ..packages import needed
 from .blocks import FARTHEST, Block, Bricks, refuse
 from .checks import components, where
@@ -93,6 +94,8 @@ def readBy(readers: dict[str, Any], path: FilePath, *more: Any) -> list[Any]:
         raise ValueError(f"{path}: no such file")
     try:
         return list(readers[ending](path, *more))
+    except Refused:
+        raise
     except MISREAD as error:
         raise ValueError(f"{path}: cannot be read: {error}") from None
 

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Ground motion: records of acceleration, and viscous damping for it. This module needs no YADE."""
 
+import glob
 import math
 import os
 from typing import Annotated, Any
@@ -9,8 +10,10 @@ import numpy as np
 
 from ..arguments import listOf, number, path, validated
 from ..errors import Refused
+from ..terminal import say
 from . import accelerograms
-from .accelerograms import UNEVEN, UNITS
+from .accelerograms.text_columns import UNEVEN
+from .accelerograms.unit_words import UNITS
 
 
 Frequency = Annotated[float, number("Hz", 0, 1e6, above=True)]
@@ -38,6 +41,8 @@ LOWEST_PEAK, HIGHEST_PEAK = 1.5, 30.0
 #: Bounds of a peak [m/s²], several times the largest that was measured, and of the time between
 #: samples [s].
 LARGEST_PEAK, COARSEST = 200.0, 0.5
+#: How much longer the longest component of a record may be than the shortest one [-].
+LONGER = 0.05
 #: Values that stand for a missing sample, in any unit.
 MISSING = [-999.0, -9999.0, -99999.0]
 
@@ -49,12 +54,46 @@ def isThree(value: Any) -> bool:
 
 
 def record(value: Any, context: Any = None) -> Any:
-    """Validator of a record: a list of accelerations, the path of a file, or three paths."""
+    """Validator of a record: a list of accelerations, the path of a file, three paths, or a pattern
+    of three files, as in :func:`threeFiles`."""
     if isinstance(value, (str, os.PathLike)):
         return path(value)
     if isThree(value):
         return [path(one) for one in value]
     return listOf(number("m/s²", -1e6, 1e6), 2)(value)
+
+
+def threeFiles(pattern: str) -> list[str]:
+    """The three components that a pattern such as ``"AKT0131103111446.*"`` finds, by their names:
+    two horizontal ones in the order of the alphabet (EW before NS), then the vertical one, whose
+    name goes on with U, V, Z or D behind what all have in common. Raises Refused."""
+    found = sorted(glob.glob(pattern))
+    start = len(os.path.commonprefix(found))
+    vertical = [one for one in found if one[start : start + 1].upper() in tuple("UVZD")]
+    if len(found) != 3 or len(vertical) != 1:
+        raise Refused(
+            f"{pattern}: {len(found)} files, {len(vertical)} of them vertical (U, V, Z or D behind"
+            " the common part of their names): there must be three with one vertical"
+        )
+    return [one for one in found if one not in vertical] + vertical
+
+
+def _joined(paths, parts):
+    """Three components (samples, time between them) as samples of three. Those of one station may
+    differ by a few samples; the shorter ones go on with zeros."""
+    lengths = [len(values) for values, _ in parts]
+    steps = {step for _, step in parts}
+    alike = all(np.ndim(values) == 1 for values, _ in parts) and len(steps) == 1
+    if not alike or max(lengths) > (1 + LONGER) * min(lengths):
+        sizes = ", ".join(f"{len(values)} samples every {step:g} s" for values, step in parts)
+        raise Refused(
+            f"{', '.join(map(str, paths))}: components of a record must be alike, not {sizes}"
+        )
+    if min(lengths) < max(lengths):
+        counts = ", ".join(map(str, lengths))
+        say(f"note: record: components of {counts} samples; the shorter ones end with zeros")
+    columns = [values + [0.0] * (max(lengths) - len(values)) for values, _ in parts]
+    return [list(sample) for sample in zip(*columns)], steps.pop()
 
 
 def readRecord(
@@ -75,15 +114,12 @@ def readRecord(
     """
     if unit not in (None, *UNITS):
         raise Refused(f"unit must be one of {', '.join(UNITS)}, got {unit!r}")
+    if isinstance(accelerations, (str, os.PathLike)) and not os.path.exists(accelerations):
+        if glob.has_magic(os.fspath(accelerations)):
+            accelerations = threeFiles(os.fspath(accelerations))
     if isThree(accelerations):
         parts = [readRecord(one, every, scale, unit) for one in accelerations]
-        if len({(len(values), step) for values, step in parts}) > 1:
-            sizes = ", ".join(f"{len(values)} samples every {step:g} s" for values, step in parts)
-            raise Refused(
-                f"{', '.join(map(str, accelerations))}: components of a record must be alike, not"
-                f" {sizes}"
-            )
-        return np.transpose([values for values, _ in parts]).tolist(), parts[0][1]
+        return _joined(accelerations, parts)
     if isinstance(accelerations, (str, os.PathLike)):
         named, found = accelerations, accelerograms.read(accelerations)
         of = found.every
@@ -92,6 +128,11 @@ def readRecord(
         if None not in (unit, found.unit) and unit != found.unit:
             raise Refused(f"{named}: it is in {found.unit}, not in {unit}")
         every, unit = of or every, found.unit or unit
+        if found.flowing and (every is None or unit is None):
+            raise Refused(
+                f"{named}: its lines have several samples, and nothing says that they are"
+                " accelerations one after the other: say every= and unit="
+            )
         accelerations = found.values
     values = np.asarray(accelerations, float)
     if len(values) < 2 or not np.isfinite(values).all():

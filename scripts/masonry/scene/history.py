@@ -10,13 +10,12 @@ displacements [mm] that are reached in turn, from 0 on, in straight lines. Besid
 - ``file`` and ``sha256`` of a file: its path, and the fingerprint of its contents.
 """
 
-import csv
 import hashlib
-import io
 import os
 from collections import namedtuple
 
 from ..errors import firstOf
+from ..texts import TextFile, finite
 
 MIN_AMPLITUDE, MAX_DISPLACEMENT = 0.02, 1000.0  # [mm]; a row of curve.csv is 0.01 mm
 # [mm] within which a wall is at zero: more than a history misses, less than any amplitude
@@ -45,13 +44,6 @@ def parse(text):
     return _readFile(text) if named or os.path.isfile(text) else _readList(text)
 
 
-def _number(text):
-    """The number that a text stands for. Python's own 1_000 is not one. Raises ValueError."""
-    if "_" in text:
-        raise ValueError(text)
-    return float(text)
-
-
 def _refuse(problems):
     if problems:
         raise ValueError("; ".join(firstOf(problems)))
@@ -62,7 +54,7 @@ def _readList(text):
     for piece in text.split(","):
         number, times, count = piece.strip().partition("x")
         try:
-            amplitude = _number(number)
+            amplitude = finite(number)
         except ValueError:
             other = ", and no file has this name" if piece == text else ""
             problems.append(f"'{piece}' is no amplitude in mm such as 2 or 2x3{other}")
@@ -85,36 +77,32 @@ def _readList(text):
 
 
 def _readFile(path):
-    try:
-        with open(path, "rb") as f:
-            data = f.read()
-        content = data.decode("utf-8-sig")
-    except OSError as error:
-        raise ValueError(f"cannot read {path}: {error.strerror}") from None
-    except UnicodeDecodeError:
-        raise ValueError(f"cannot read {path}: it is no text in UTF-8") from None
-    lines = csv.reader(io.StringIO(content, newline=""), strict=True)
-    try:
-        points = _column(lines, path)
-    except csv.Error as error:
-        raise ValueError(f"{path}, line {lines.line_num}: {error}") from None
-    found = {"text": path, "file": os.path.abspath(path)}
-    return {**found, "sha256": hashlib.sha256(data).hexdigest(), "points_mm": points}
+    file = TextFile(path)
+    return {
+        "text": path,
+        "file": os.path.abspath(path),
+        "sha256": hashlib.sha256(file.content).hexdigest(),
+        "points_mm": _column(file),
+    }
 
 
-def _column(lines, path):
-    """The displacements of a file [mm], from its lines as lists of texts."""
-    heads = [head.strip() for head in next(lines, [])]
-    if heads.count(COLUMN) != 1:
-        found = ", ".join(heads) or "nothing"
-        raise ValueError(f"{path}: its first line must name one column {COLUMN}, it has {found}")
-    at, problems, points = heads.index(COLUMN), [], []
-    for line in filter(None, lines):
-        text, where = "".join(line[at : at + 1]).strip(), f"{path}, line {lines.line_num}"
+def _column(file):
+    """The displacements of a file [mm]."""
+    table, path = file.table(), file.path
+    named = [k for k, row in enumerate(table.heads) if row.cells.count(COLUMN) == 1]
+    if not named:
+        found = ", ".join(table.heads[-1].cells) if table.heads else "no names"
+        raise ValueError(
+            f"{path}: a line before its numbers must name one column {COLUMN}, it has {found}"
+        )
+    at = table.heads[named[0]].cells.index(COLUMN)
+    problems, points = [], []
+    for row in table.heads[named[0] + 1 :] + table.rows:
+        text, where = "".join(row.cells[at : at + 1]), f"{path}, line {row.line}"
         try:
-            points.append(_number(text))
-        except ValueError:
-            problems.append(f"{where}: '{text}' is not a number")
+            points.append(finite(text))
+        except ValueError as error:
+            problems.append(f"{where}: {error}")
             continue
         if not abs(points[-1]) <= MAX_DISPLACEMENT:
             problems.append(

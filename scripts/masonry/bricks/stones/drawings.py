@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Closed outlines of a drawing: DXF, SVG, GeoJSON, or CSV with rows of name, x and z."""
 
-import csv
 import json
 import os
 import re
@@ -13,6 +12,7 @@ from xml.etree import ElementTree
 import numpy as np
 
 from ...packages import needed
+from ...texts import TextFile
 from ..block_files import readBy
 
 #: Sagitta of the chords that stand for the curves of a DXF file, over the size of the curve [-].
@@ -61,17 +61,23 @@ def read(path: str, layer: str | None) -> list[Outline]:
 
 
 def _csv(path, layer):
-    rows = defaultdict(list)
-    with open(path, newline="", encoding="utf-8-sig") as file:
-        for number, row in enumerate(csv.reader(file), 1):
-            try:
-                name, x, z = row[0].strip(), float(row[1]), float(row[2])
-            except (IndexError, ValueError):
-                if number == 1 or not row:
-                    continue  # the heads of the columns
-                raise ValueError(f"line {number}: {','.join(row)!r} is not name,x,z") from None
-            rows[name].append((x, z))
-    return [Outline(name, ring) for name, ring in rows.items()]
+    file = TextFile(path)
+    table, order = file.table(), (0, 1, 2)
+    if table.heads:
+        names = [cell.lower() for cell in table.heads[-1].cells]
+        up = "z" if "z" in names else "y"
+        if len(set(names)) != 3 or not {"x", up} < set(names):
+            raise file.refused(
+                f"the columns {', '.join(names)} must be a name, x and z", table.heads[-1].line
+            )
+        order = *(k for k in range(3) if names[k] not in ("x", up)), *map(names.index, ("x", up))
+    rings = defaultdict(list)
+    for row in table.rows:
+        if len(row.cells) != 3:
+            raise file.refused(f"{', '.join(row.cells)} is not name,x,z", row.line)
+        name, x, z = (row.cells[k] for k in order)
+        rings[name].append((file.number(x, row.line), file.number(z, row.line)))
+    return [Outline(name, ring) for name, ring in rings.items()]
 
 
 def _geoJson(path, layer):
