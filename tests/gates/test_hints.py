@@ -21,7 +21,8 @@ PUBLIC = """
     masonry.numbers.loops
     masonry.materials.assumptions masonry.materials.codes masonry.materials.fields
     masonry.materials.formulas masonry.materials.kinds masonry.materials.sources
-    masonry.scene.accelerograms masonry.scene.connections masonry.scene.ground masonry.scene.loads
+    masonry.scene.accelerograms.__init__ masonry.scene.connections masonry.scene.ground
+    masonry.scene.loads
     masonry.scene.platens masonry.scene.records masonry.scene.scene masonry.scene.targets
     masonry_capacity.bilinear_curve masonry_capacity.domains masonry_capacity.figure
     masonry_capacity.n2 masonry_capacity.report masonry_capacity.spectra

@@ -234,10 +234,19 @@ def commas(lines, mark=";"):
 @mark.parametrize(
     "text, factor",
     [
-        *((f"# {said}\n" + "\n".join(TIMED), 0.01) for said in (
-            "unit: cm/s2", "units: cm/s2", "Units = gal", "unit cm/s2", "acceleration (cm/s2)",
-            "Acceleration unit: cm/s^2", "time [s]  acceleration [cm/s2]", "units: s, cm/sec^2",
-        )),
+        *(
+            (f"# {said}\n" + "\n".join(TIMED), 0.01)
+            for said in (
+                "unit: cm/s2",
+                "units: cm/s2",
+                "Units = gal",
+                "unit cm/s2",
+                "acceleration (cm/s2)",
+                "Acceleration unit: cm/s^2",
+                "time [s]  acceleration [cm/s2]",
+                "units: s, cm/sec^2",
+            )
+        ),
         ("# units: g\n" + "\n".join(TIMED), G),
         ("time_s,acceleration_ms2\n" + "\n".join(TIMED).replace(" ", ","), 1),
         ("acc [g],time [s]\n" + "\n".join(",".join(line.split()[::-1]) for line in TIMED), G),
@@ -253,7 +262,7 @@ def commas(lines, mark=";"):
         ("\n".join(f"{n / 256:.4f} {a}" for n, a in enumerate(WAVE)), 1),
         (peer(WAVE, "DT= .1D-01").replace("UNITS OF G", "(CM/S/S)"), 0.01),
     ],
-)  # fmt: skip
+)
 def test_the_peculiarities_of_peoples_files(tmp_path, text, factor):
     values, every = readRecord(file(tmp_path, text), None)
     assert values == approx([factor * a for a in WAVE], abs=1e-12)

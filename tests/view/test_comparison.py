@@ -43,6 +43,24 @@ def test_runs_and_measured_curves_lie_over_each_other(tmp_path, drawn):
     assert axes.get_ylim()[0] < -5
 
 
+@mark.parametrize(
+    "text, x, y",
+    [
+        ("d;F\n0,0;0,0\n0,5;10,2\n1,0;15,3\n", [0, 0.5, 1], [0, 10.2, 15.3]),
+        ("d,F\n0,0\n1,5\nNaN,NaN\n-1,-5\n", [0, 1, -1], [0, 5, -5]),
+        (
+            "Test unit,WS1\nReference,Somebody (2009)\nd,F\n[mm],[kN]\n0,0\n1.2,25\nNaN,NaN\n-1.1,2\n",
+            [0, 1.2, -1.1],
+            [0, 25, 2],
+        ),
+    ],
+)
+def test_measured_curves_as_people_have_them(tmp_path, text, x, y):
+    (tmp_path / "test.csv").write_text(text)
+    found = comparison.readMeasured(f"{tmp_path / 'test.csv'}:d:F")
+    assert (found[0].tolist(), found[1].tolist(), found[2]) == (x, y, ["d", "F"])
+
+
 def test_columns_of_older_runs_can_be_named(tmp_path, drawn):
     folder = writeRun(tmp_path, ["time_s", "top_mm"], [[0, 1], [1, -2]])
     with raises(Refused, match="name the columns by --x and --y"):
@@ -58,8 +76,8 @@ def test_columns_of_older_runs_can_be_named(tmp_path, drawn):
         (["--csv", "nowhere.csv:1:2"], "cannot read nowhere.csv: No such file"),
         (["--csv", "t.csv:a:c"], "t.csv: there is no column c, there are a, b"),
         (["--csv", "t.csv:1:3"], "t.csv: there is no column 3"),
-        (["--csv", "bad.csv:a:b"], "bad.csv, row 3: could not convert string to float"),
-        (["--csv", "nan.csv:a:b"], "nan.csv, row 3: a number is not finite"),
+        (["--csv", "bad.csv:a:b"], "bad.csv, line 3: 'x' is not a number"),
+        (["--csv", "nan.csv:a:b"], "nan.csv: fewer than two rows have both columns"),
         (["--csv", "t.csv:a:b", "--out", "p.bmp"], "p.bmp must end in .png"),
         (["--csv", "t.csv:a:b", "--label", "1", "--label", "2"], "2 labels for 1 curves"),
         (["--csv", "t.csv:a:b", "--out", "no/p.png"], "cannot write no/p.png: No such"),

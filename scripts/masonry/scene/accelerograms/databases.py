@@ -21,6 +21,7 @@ A file of three components gives them as two horizontal ones in its order, then 
 """
 
 import re
+from typing import Any
 
 from ...arguments import shown
 from ...texts import TextFile
@@ -72,17 +73,18 @@ def peer(file: TextFile, at: int):
             raise file.refused(str(error), line) from None
     count = re.search(r"\bNPTS\s*=\s*(\d+)", head, re.I)
     every = re.search(rf"\bDT\s*=\s*{_NUMBER}", head, re.I)
-    both = re.match(rf"\s*(\d+)\s*,?\s+{_NUMBER}\s*,?\s+NPTS\s*,\s*DT\b", head, re.I)
-    if count and every:
-        both = ..., count[1], every[1]
-    elif not both:
+    if both := re.match(rf"\s*(\d+)\s*,?\s+{_NUMBER}\s*,?\s+NPTS\s*,\s*DT\b", head, re.I):
+        expected, step = both.groups()
+    elif count and every:
+        expected, step = count[1], every[1]
+    else:
         raise file.refused(
             "the line must have NPTS and DT, as in NPTS= 4000, DT= .0050 SEC, and is"
             f" {shown(head.strip())}",
             at,
         )
-    step = interval(file, both[2], at)
-    return _counted(file, _samples(file, at + 1), int(both[1]), "NPTS", at), step, unit
+    samples = _counted(file, _samples(file, at + 1), int(expected), "NPTS", at)
+    return samples, interval(file, step, at), unit
 
 
 def esm(file: TextFile, at: int):
@@ -127,11 +129,11 @@ def knet(file: TextFile, at: int):
         if key.startswith("Memo"):
             begins = line + 1
             break
-    keys = "Sampling Freq(Hz)", "Duration Time(s)", "Scale Factor"
+    keys = "Sampling Freq(Hz)", "Scale Factor"
     missing = [key for key in keys if not known.get(key, ("", 0))[0]]
     if missing or begins is None:
         raise file.refused(f"its header must have {', '.join(missing or ['Memo.'])}")
-    (rate, rateLine), (duration, line), (scale, scaleLine) = (known[key] for key in keys)
+    (rate, rateLine), (scale, scaleLine) = (known[key] for key in keys)
     factor = re.fullmatch(rf"{_NUMBER}\s*\(gal\)\s*/\s*{_NUMBER}", scale, re.I)
     frequency = file.number(re.sub(r"\s*Hz$", "", rate, flags=re.I), rateLine)
     if not factor or not float(factor[2]) > 0:
@@ -139,7 +141,9 @@ def knet(file: TextFile, at: int):
     if not frequency > 0:
         raise file.refused(f"Sampling Freq(Hz) {shown(rate)} must be above 0", rateLine)
     counts = _samples(file, begins)
-    _counted(file, counts, round(file.number(duration, line) * frequency), "duration × rate", line)
+    duration, line = known.get("Duration Time(s)", ("", 0))
+    expected = round(file.number(duration, line) * frequency) if duration else len(counts)
+    _counted(file, counts, expected, "duration × rate", line)
     offset = sum(counts) / len(counts)
     gal = float(factor[1]) / float(factor[2])
     return [(count - offset) * gal for count in counts], 1 / frequency, "cm/s²"
@@ -260,7 +264,7 @@ def geonet(file: TextFile, at: int):
 
 #: By its name: what a line of a format's header has, among how many first lines, and its reader, of
 #: the file and that line.
-READERS = {
+READERS: dict[str, tuple[str, int, Any]] = {
     "COSMOS": (r"acceleration.*\(format v", 1, cosmos),
     "CSMIP": (r"points of accel data equally spaced", 100, csmip),
     "GeoNet": (r"corrected accelerogram.*GNS Science", 1, geonet),

@@ -62,11 +62,10 @@ def read(file: TextFile) -> tuple[list[Any], float | None, str | None, bool]:
                 f"its times are {every:g} s apart, and it says every: {said.every:g} s"
             )
         said.every = every
+    samples: list[Any] = [row[0] for row in values]
     if width > 2:
-        values = [[row[k] for k in said.axes] for row in values]
-    else:
-        values = [row[0] for row in values]
-    return values, said.every, said.unit, False
+        samples = [[row[k] for k in said.axes] for row in values]
+    return samples, said.every, said.unit, False
 
 
 class _Said:
