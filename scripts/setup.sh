@@ -20,14 +20,15 @@ case $release in
             "packages may have other names, and its YADE may be refused." >&2 ;;
 esac
 # Python's numpy, scipy and matplotlib and the libraries of VTK come with yade, so figures and bounds need little more.
-runs=(yade python3-jinja2 python3-matplotlib python3-numpy python3-scipy python3-meshio coinor-libclp1)
+runs=(yade python3-jinja2 python3-matplotlib python3-numpy python3-scipy python3-meshio python3-svgelements python3-ezdxf
+    coinor-libclp1)
 builds=(cmake g++ make libboost-python-dev libboost-serialization-dev libeigen3-dev libcgal-dev libgl-dev python3-dev)
 tests=OFF target=masonry_module_fit packages=("${runs[@]}" "${builds[@]}")
 case "${1:-}" in
     "") ;;
     --tests)
         tests=ON target=all
-        packages+=(python3-pytest python3-hypothesis python3-openturns python3-ezdxf python3-vtk9 doctest-dev git "${@:2}")
+        packages+=(python3-pytest python3-hypothesis python3-openturns python3-vtk9 doctest-dev git "${@:2}")
         ;;
     --with) packages+=("${@:2}") ;;
     --no-build) packages=("${runs[@]}") ;;

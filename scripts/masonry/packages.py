@@ -16,6 +16,7 @@ NEEDED_FOR = {
     "matplotlib": ("python3-matplotlib", "figures need"),
     "meshio": ("python3-meshio", "PLY files and a bound's mechanism for ParaView need"),
     "openturns": ("python3-openturns", "distributions and designs of studies need"),
+    "svgelements": ("python3-svgelements", "SVG files need"),
     "scipy": ("python3-scipy", "bricks and bounds need"),
 }
 

@@ -93,7 +93,9 @@ def test_a_history_takes_the_place_of_until(capsys):
 
 def test_a_file_gives_its_displacements_and_leaves_other_columns_alone(tmp_path):
     path = tmp_path / "measured.csv"
-    data = "\ufeff# of test 5\r\ntime_s, displacement_mm ,note\r\n0,0,a\r\n1,0.5,\r\n\r\n2,-1e0,x\r\n"
+    data = (
+        "\ufeff# of test 5\r\ntime_s, displacement_mm ,note\r\n0,0,a\r\n1,0.5,\r\n\r\n2,-1e0,x\r\n"
+    )
     path.write_bytes(data.encode())
     found = parse("--history", str(path)).history
     assert found["points_mm"] == [0, 0.5, -1]

@@ -2,6 +2,8 @@
 """Drawn stones become a wall whose joints lie in the middle of the mortar, whatever file they come
 from."""
 
+import json
+import math
 from collections import Counter
 
 from hosted import *
@@ -219,20 +221,33 @@ def test_paths_of_svg_in_groups(tmp_path):
 @mark.parametrize(
     "name, text, what",
     [
-        (
-            "a.svg",
-            '<svg><path id="p" d="M 0 0 C 1 1 2 2 3 3 Z"/></svg>',
-            "path p has the command 'C', a curve",
-        ),
-        ("a.svg", '<svg><circle id="p" r="1"/></svg>', "circle p is a curve"),
-        (
-            "a.svg",
-            '<svg><g transform="rotate(3)"><rect width="1" height="1"/></g></svg>',
-            "rotate is not known",
-        ),
         ("a.svg", "<svg>", "cannot be read"),
         ("a.csv", "1,0,0\n1,1,1\n1,1,0\n1,0,1", r"1 crosses itself near \(0.500, 0.500\) m"),
         ("a.csv", "s,0,0\ns,1", "line 2"),
+        ("a.csv", "s,0,O\ns,1,0\ns,1,1", "line 1: 'O' is not a number"),
+        ("a.csv", "s,0,0\ns,0,0\ns,0,0", "outline s has not three corners"),
+        ("a.csv", "s,x,y,z\ns,0,0,0", "the columns s, x, y, z must be a name, x and z"),
+        ("a.svg", '<svg><rect width="50%" height="2"/></svg>', "width '50%' is no length"),
+        ("a.svg", '<svg><rect width="1e300" height="1e300"/></svg>', "more than 2000000 points"),
+        ("a.svg", '<svg><rect id="r" width="-1" height="1"/></svg>', "rect r: its width or height"),
+        ("a.svg", '<svg><polygon id="p" points="0,0 1,0 1"/></svg>', "p: its points are not pairs"),
+        ("a.svg", '<svg><path id="p" d="M0,0 L4"/></svg>', "path p: 'L' takes 2 numbers each"),
+        ("a.svg", '<svg><path id="p" d="M0,0 K4"/></svg>', "path p has the command 'K'"),
+        ("a.svg", "<svg><text>9</text></svg>", "no outlines, only 1 text"),
+        ("a.geojson", f'{{"type": "Polygon", "coordinates": [{"["*2000}]}}', "cannot be read"),
+        ("a.geojson", '{"type": "Polygon", "coordinates": [[[null, 0]]]}', "corner 0 is no place"),
+        ("a.geojson", '{"type": "Polygon", "coordinates": []}', "feature 0 has no ring"),
+        ("a.geojson", '{"type": "Feature", "geometry": null}', "1 features without geometry"),
+        (
+            "a.geojson",
+            '{"type": "Polygon", "coordinates": [[[7.1, 46], [7.101, 46], [7.1, 46.001]]]}',
+            "is in degrees of longitude and latitude",
+        ),
+        (
+            "a.geojson",
+            '{"type": "Polygon", "coordinates": [[[0,0,0],[9,0,0],[9,9,0],[0,9,5]]]}',
+            "the drawing is not in one plane",
+        ),
         ("a.csv", "stone,x,z", "no outlines"),
         ("a.geojson", '{"type": "Point", "coordinates": [0, 0]}', "feature 0 is a Point"),
         ("a.dxf", "nonsense", "cannot be read"),
@@ -243,6 +258,170 @@ def test_what_is_refused(tmp_path, name, text, what):
     (tmp_path / name).write_text(text)
     with raises(ValueError, match=what):
         bricks.fromOutlines(tmp_path / name, thickness=0.2, mortar=0.02)
+
+
+WIDTH, HEIGHT = 480, 280
+PLACES = [(500 * i, 300 * j) for j in range(3) for i in range(3)]
+
+
+def outline(x=0, z=0):
+    return [(x, z), (x + WIDTH, z), (x + WIDTH, z + HEIGHT), (x, z + HEIGHT)]
+
+
+def asInsert(space, place):
+    space.add_blockref("STONE", place)
+
+
+def asMirroredInsert(space, place):
+    x, z = place
+    space.add_blockref("STONE", (x + WIDTH, z), dxfattribs=dict(xscale=-1))
+
+
+def asLines(space, place):
+    ring = outline(*place)
+    for one, other in zip(ring, ring[1:] + ring[:1]):
+        space.add_line(other, one)
+
+
+def asLineAndPolyline(space, place):
+    ring = outline(*place)
+    space.add_lwpolyline(ring)
+    space.add_line(ring[0], ring[-1])
+
+
+def asHatch(space, place):
+    space.add_hatch().paths.add_polyline_path(outline(*place), is_closed=True)
+
+
+def asFilledOutline(space, place):
+    space.add_lwpolyline(outline(*place), close=True)
+    asHatch(space, place)
+
+
+def asFace(space, place):
+    space.add_3dface([(*point, 0) for point in outline(*place)])
+
+
+def asSolid(space, place):
+    a, b, c, d = outline(*place)
+    space.add_solid([a, b, d, c])
+
+
+@mark.parametrize(
+    "draw",
+    [
+        *(asInsert, asMirroredInsert, asLines, asLineAndPolyline),
+        *(asHatch, asFilledOutline, asFace, asSolid),
+    ],
+)
+@mark.parametrize("unit, scale", [(4, None), (0, 0.001)])
+def test_entities_of_dxf_that_draw_one_stone(tmp_path, capsys, draw, unit, scale):
+    document = ezdxf.new("R2010")
+    document.units = unit
+    space = document.modelspace()
+    document.blocks.new("STONE").add_lwpolyline(outline(), close=True)
+    document.layers.add("off").off()
+    for place in PLACES[:8]:
+        space.add_lwpolyline(outline(*place), close=True)
+    draw(space, PLACES[8])
+    space.add_text("a wall")
+    space.add_lwpolyline(outline(3000, 0), close=True, dxfattribs=dict(layer="off"))
+    document.saveas(tmp_path / "a.dxf")
+    wall = bricks.fromOutlines(tmp_path / "a.dxf", thickness=0.3, mortar=0.025, scale=scale)
+    assert len({block.brick for block in wall}) == 9
+    assert wall.volume == approx(1.48 * 0.88 * 0.3)
+    assert "left out: 1 LWPOLYLINE in hidden layers, 1 TEXT" in capsys.readouterr().out
+
+
+def test_what_dxf_has_of_a_wall_and_cannot_be_read_is_named(tmp_path):
+    document = ezdxf.new("R2010")
+    document.modelspace().add_lwpolyline(outline(), close=True)
+    document.modelspace().add_mesh()
+    document.saveas(tmp_path / "a.dxf")
+    with raises(ValueError, match="1 MESH would be left out: make them outlines"):
+        bricks.fromOutlines(tmp_path / "a.dxf", thickness=0.3, mortar=0.025)
+
+
+RECTS = "".join(
+    f'<rect id="r{n}" x="{x}" y="{z}" width="480" height="280"/>' for n, (x, z) in enumerate(PLACES)
+)
+
+
+@mark.parametrize(
+    "body, head",
+    [
+        (RECTS, 'width="1480mm" viewBox="0 0 1480 880"'),
+        (RECTS.replace('width="480"', 'width="480px"'), ""),
+        (f'<g transform="rotate(90)">{RECTS}</g>', ""),
+        (f'<g style="display:none">{RECTS.replace("480", "9")}</g>{RECTS}', ""),
+        (f'<g visibility="hidden">{RECTS.replace("480", "9")}</g>{RECTS}', ""),
+        (f'<symbol id="s">{RECTS}</symbol><use xlink:href="#s"/>', ""),
+        (f'<defs>{RECTS}</defs>{"".join(f"""<use href="#r{n}"/>""" for n in range(9))}', ""),
+        (f'<svg x="7" y="8">{RECTS}</svg>', ""),
+        (
+            "".join(
+                f'<line x1="{a}" y1="{b}" x2="{c}" y2="{d}"/>'
+                for x, z in PLACES
+                for (a, b), (c, d) in zip(outline(x, z), outline(x, z)[1:] + outline(x, z)[:1])
+            ),
+            "",
+        ),
+        (RECTS.replace('width="480"', 'width="480" rx="0"'), ""),
+    ],
+)
+def test_elements_of_svg_that_draw_nine_stones(tmp_path, body, head):
+    names = 'xmlns="http://www.w3.org/2000/svg" xmlns:xlink="http://www.w3.org/1999/xlink"'
+    (tmp_path / "a.svg").write_text(f"<svg {names} {head}>{body}<text>a wall</text></svg>")
+    scale = None if head else 0.001
+    wall = bricks.fromOutlines(tmp_path / "a.svg", thickness=0.3, mortar=0.025, scale=scale)
+    assert len({block.brick for block in wall}) == 9
+    assert wall.volume == approx(1.48 * 0.88 * 0.3)
+
+
+def test_curves_of_svg_are_chords(tmp_path):
+    (tmp_path / "a.svg").write_text('<svg><circle id="c" r="1"/></svg>')
+    wall = bricks.fromOutlines(tmp_path / "a.svg", thickness=1, mortar=0.02, tolerance=0.001)
+    assert wall.volume == approx(math.pi, rel=0.01)  # flat where it meets its box
+
+
+def test_a_wall_in_space_is_that_in_its_plane(tmp_path):
+    plane = tmp_path / "plane.geojson"
+    asGeoJson(plane, [0.001 * np.array(outline(*place), float) for place in PLACES])
+    data = json.loads(plane.read_text())
+    for feature in data["features"]:
+        for ring in feature["geometry"]["coordinates"]:
+            ring[:] = [[4e5 + 0.6 * x, 5e6 + 0.8 * x, 400 + z] for x, z in ring]
+    (tmp_path / "space.geojson").write_text(json.dumps(data))
+    made = [
+        bricks.fromOutlines(tmp_path / f"{name}.geojson", thickness=0.3, mortar=0.025)
+        for name in ("plane", "space")
+    ]
+    assert [len(wall.joints()) for wall in made] == [12, 12]
+    for one, other in zip(*made):
+        assert np.array(other.corners).mean(axis=0) == approx(np.array(one.corners).mean(axis=0))
+
+
+@mark.parametrize("flip", [(-1, 1), (1, -1), (-1, -1)])
+@mark.parametrize("seed", [3, 5])
+def test_a_mirrored_drawing_gives_the_mirrored_wall(tmp_path, flip, seed):
+    """Also in another order of stones and corners, and in mm."""
+    wall = bricks.StoneWall(1.5, 1.0, (0.3, 0.2, 0.2), "irregular", seed=seed)
+    rings = drawn(wall, 0.015)
+    asCsv(tmp_path / "one.csv", rings)
+    asCsv(tmp_path / "other.csv", [np.roll(1000 * ring * flip, 2, axis=0) for ring in rings[::-1]])
+    one, other = (
+        bricks.fromOutlines(tmp_path / f"{name}.csv", thickness=0.2, mortar=0.02, scale=scale)
+        for name, scale in (("one", 1), ("other", 0.001))
+    )
+    size = np.array([one.length, 0, one.height])
+    keep, sign = np.array([flip[0], 1, flip[1]]) < 0, np.array([flip[0], 1, flip[1]])
+    expected = sorted(
+        sorted(tuple(np.round(np.where(keep, size, 0) + sign * c, 7)) for c in block.corners)
+        for block in one
+    )
+    found = sorted(sorted(tuple(np.round(c, 7)) for c in block.corners) for block in other)
+    assert len(found) == len(expected)
+    assert np.array(sum(found, [])) == approx(np.array(sum(expected, [])), abs=1e-6)
 
 
 @given(some.lists(some.floats(0.3, 1.0), min_size=4, max_size=14))

@@ -79,7 +79,7 @@ def fromFile(
 
 
 #: Errors of damaged files.
-MISREAD = OSError, SyntaxError, ValueError, LookupError, TypeError, AttributeError
+MISREAD = OSError, SyntaxError, ValueError, LookupError, TypeError, AttributeError, RecursionError
 
 
 # -- formats ---------------------------------------------------------------------------------------
@@ -93,7 +93,7 @@ def readBy(readers: dict[str, Any], path: FilePath, *more: Any) -> list[Any]:
     if not os.path.isfile(path):
         raise ValueError(f"{path}: no such file")
     try:
-        return list(readers[ending](path, *more))
+        return list(readers[ending](path, *more) or ())
     except Refused:
         raise
     except MISREAD as error:

@@ -23,6 +23,8 @@ from .joint_lines import straightened
 SPACING = 0.25  # of points along an outline, over the tolerance [-]
 VOID = -1  # label outside stones
 MAX_POINTS = 2_000_000
+FAR = 10  # sizes of a drawing that it may be away from its origin without a note
+SKEWED = 1e-9  # third moment of the stones, over the size, from which on a drawing is one-sided
 
 
 class DrawnWall(Bricks):
@@ -76,7 +78,7 @@ def fromOutlines(
     path: FilePath,
     thickness: Length,
     mortar: Annotated[float, number("m", 1e-4, 1)],
-    scale: Annotated[float, number("m", 0, 1e6, above=True)] = 1.0,
+    scale: Annotated[float, number("m", 0, 1e6, above=True)] | None = None,
     tolerance: Annotated[float, number("m", 1e-5, 1)] | None = None,
     layer: str | None = None,
     mend: bool = False,
@@ -85,16 +87,20 @@ def fromOutlines(
     """A wall of the stones of a drawing or an orthophoto, its lower left front corner at the
     origin: a :class:`Bricks`.
 
-    Formats: ``.dxf`` (closed polylines, and curves), ``.svg`` (polygon, rect, and paths of straight
-    lines), ``.geojson`` (polygons), and ``.csv`` with rows of name, x, z. Stones meet in the middle
-    of the mortar, and reach to the sides of the box around all of them within twice ``mortar``.
-    Where a ball of the radius ``mortar`` has space there is a window, a door, or the air around the
-    wall. At a step of the box, as of a gable, stones get tongues of up to ``mortar``. Concave
-    stones are several blocks of one brick, whose joint is ``crack``.
+    Formats: ``.dxf`` (every closed curve, filled areas, and lines and arcs that close to one; in
+    blocks too; not on hidden layers), ``.svg`` (all shapes, also of ``use``), ``.geojson``
+    (polygons), and ``.csv`` with rows of name, x, z. The second axis of a drawing is upwards; one
+    in a plane in space is turned into it. Texts and the like are left out with a note, anything
+    else that cannot be read is an error. Stones meet in the middle of the mortar, and reach to the
+    sides of the box around all of them within twice ``mortar``. Where a ball of the radius
+    ``mortar`` has space there is a window, a door, or the air around the wall. At a step of the
+    box, as of a gable, stones get tongues of up to ``mortar``. Concave stones are several blocks of
+    one brick, whose joint is ``crack``. A mirrored drawing gives the mirrored wall.
 
     :param thickness: of the wall [m]
     :param mortar: largest thickness of a joint [m]
-    :param scale: metres in one unit of the file
+    :param scale: metres in one unit of the file; None: what the file says (``$INSUNITS`` of DXF,
+        the width of SVG in mm or the like), else 1
     :param tolerance: largest distance by which a joint moves when short ones are closed, lines
         straightened, and stones made convex, each [m]; None: a quarter of ``mortar``
     :param layer: layer of a DXF file, or id or label of a group of an SVG file; None: all
@@ -103,16 +109,22 @@ def fromOutlines(
     :raises ValueError: with all problems and their places
     """
     fine = mortar / 4 if tolerance is None else tolerance
-    drawn = read(str(path), layer)
+    drawing = read(str(path), layer)
+    scale = _scale(scale, drawing.unit)
+    drawn = drawing.outlines
     corner = np.min([o.ring.min(axis=0) for o in drawn], axis=0)
     for outline in drawn:
         outline.ring = (outline.ring - corner) * scale
+    if (far := abs(corner).max() * scale) > FAR * np.max([o.ring.max() for o in drawn]):
+        say(f"note: fromOutlines: the drawing is {far:.6g} m from its origin; it is moved there")
+    _limit(drawn, SPACING * fine)
     stones = _checked(str(path), drawn, fine, mend)
+    back = _mirrored(stones)
     points = _sampled(stones, SPACING * fine)
     cells = _grown(points, stones, mortar)
     rings, places, holes = straightened(cells, fine)
     for hole in holes:
-        size = " x ".join(f"{a:.3g}" for a in np.ptp(hole, axis=0))
+        size, hole = " x ".join(f"{a:.3g}" for a in np.ptp(hole, axis=0)), back(hole)
         say(
             f"note: fromOutlines: a hole of {size} m near {_at(hole)}; one in the mortar closes"
             " with a larger mortar="
@@ -122,16 +134,48 @@ def fromOutlines(
         ring = withoutStraight(places[rings[n]]) if n in rings else []
         if len(ring) < 3 or crossing(ring) is not None:
             problems.append(
-                f"{stone.name} near {_at(stone.ring)}: nothing is left of it, or it crosses itself,"
+                f"{stone.name} near {_at(back(stone.ring))}: nothing is left of it, or it crosses itself,"
                 f" at a tolerance of {fine:g} m"
             )
             continue
         for face in convexParts(ring):
-            blocks.append(Block(prism(face.tolist(), 0.0, thickness), n, part))
+            blocks.append(Block(prism(back(face).tolist(), 0.0, thickness), n, part))
     refuse(str(path), problems)
     sizes = np.mean([np.ptp(s.ring, axis=0) for s in stones], axis=0)
     unit = float(sizes[0]), thickness, float(sizes[1])
+    normals = back(points.normals) - back(0 * points.normals)
+    points = points._replace(places=back(points.places), normals=normals)
     return DrawnWall(blocks, cells.mortar, unit, points)
+
+
+def _scale(scale, unit):
+    """Metres in one unit of a file that says its unit or not. What the user says counts."""
+    if scale is None:
+        return unit or 1.0
+    if unit and abs(scale / unit - 1) > 0.01:
+        say(f"note: fromOutlines: the file says {unit:g} m for its unit; scale={scale:g} counts")
+    return scale
+
+
+def _mirrored(stones):
+    """Mirror stones so that most of them are near the left and the lower side, in place, and begin
+    each outline at its leftmost corner: what follows then gives a drawing and its mirror image the
+    same wall. Returns the function that mirrors points back, in their order."""
+    size = np.max([stone.ring.max(axis=0) for stone in stones], axis=0)
+    areas = np.array([area(stone.ring) for stone in stones])
+    middles = np.array([(stone.ring.min(axis=0) + stone.ring.max(axis=0)) / 2 for stone in stones])
+    away = middles - np.average(middles, axis=0, weights=areas)
+    turned = np.average(away**3, axis=0, weights=areas) < -SKEWED * size**3
+
+    def back(points):
+        return np.where(turned, size - points, points)
+
+    for stone in stones:
+        ring = back(stone.ring)
+        if turned.sum() == 1:
+            ring = ring[::-1]
+        stone.ring = np.roll(ring, -np.lexsort(ring.T[::-1])[0], axis=0)
+    return back
 
 
 def _at(ring):
@@ -224,9 +268,10 @@ def _along(ring, step):
     return np.concatenate(places), np.concatenate(normals)
 
 
-def _sampled(stones, step):
+def _limit(stones, step):
+    """Refuse outlines that need too many points."""
     length = sum(np.linalg.norm(s.ring - np.roll(s.ring, 1, axis=0), axis=1).sum() for s in stones)
-    if length / step > MAX_POINTS:
+    if not length / step <= MAX_POINTS:
         refuse(
             "fromOutlines",
             [
@@ -234,6 +279,9 @@ def _sampled(stones, step):
                 f" {MAX_POINTS} points: is scale, metres in one unit of the file, right?"
             ],
         )
+
+
+def _sampled(stones, step):
     found = [_along(stone.ring, step) for stone in stones]
     numbers = np.repeat(np.arange(len(stones)), [len(p) for p, _ in found])
     return _Points(*map(np.concatenate, zip(*found)), numbers, step)

@@ -64,7 +64,8 @@ def read(path: FilePath) -> Accelerogram:
             # names of ESM are in capitals, the others in any letters
             flags = 0 if kind == "ESM" else re.I
             if re.search(begins, text, flags) and not text.lstrip().startswith("#"):
-                return Accelerogram(*reader(file, line), kind)
+                values, every, unit = reader(file, line)
+                return Accelerogram(values, every, unit, kind)
     values, every, unit, flowing = text_columns.read(file)
     return Accelerogram(values, every, unit, "text", flowing)
 
