@@ -54,6 +54,7 @@ Architecture: $architecture
 Maintainer: $name <$address>
 Installed-Size: $(du -sk "$root/usr" | cut -f 1)
 Depends: yade (= $yade), python3 (>= $python), python3 (<< $next), python3-jinja2, python3-matplotlib, python3-meshio, python3-numpy, python3-scipy, coinor-libclp1, $libraries
+Recommends: python3-ezdxf, python3-svgelements
 Suggests: libjs-three, python3-openturns, slurm-client
 Section: science
 Priority: optional

@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Blocks from files of every format, and what is refused in them."""
 
+import struct
+
 from usual import *
 
 from masonry.bricks import Arch, Bricks, Dome, Wall, fromFile, stack
-from masonry.bricks.geometry import hull
+from masonry.bricks.geometry import boxCorners, hull
 import meshio
 
 #: 27 blocks: a wall whose blocks touch at faces of different size, an arch, and a keystone with
@@ -114,15 +116,101 @@ def test_every_format_gives_the_blocks_that_were_written(tmp_path, name):
     assert read.volume == approx(MODEL.volume, rel=1e-5)
     assert [j[:2] for j in read.joints()] == [j[:2] for j in MODEL.joints()]
     named = name in ("grouped.obj", "text.stl", "assembly.json")
-    assert read[5].part == ("block 5" if named else name.split(".")[0])
+    assert read[5].part == ("block" if named else name.split(".")[0])
     assert {b.kind for b in read} == {"block"}
 
 
 def test_objects_of_obj_are_groups_and_millimetres_are_scaled(tmp_path):
     writeObj(tmp_path / "a.obj", stack(2, (400.0, 200.0, 100.0)), "o")
     read = fromFile(tmp_path / "a.obj", scale=0.001, kind="brick")
-    assert read.high == approx((0.4, 0.2, 0.2)) and read[1].part == "block 1"
+    assert read.high == approx((0.4, 0.2, 0.2)) and read[1].part == "block"
     assert {b.kind for b in read} == {"brick"}
+
+
+@mark.parametrize(
+    "names, parts",
+    [
+        (("Stone#1", "Stone#2"), ("Stone", "Stone")),
+        (("Mesh_0", "pier"), ("Mesh_0", "pier")),
+        (("1", "2"), ("1", "2")),
+        (("a 1", "a 1"), ("a 1", "a 1")),
+    ],
+)
+def test_groups_of_one_stone_each_are_one_part(tmp_path, names, parts):
+    text = ""
+    for n, (name, block) in enumerate(zip(names, stack(2, (0.4, 0.2, 0.1)))):
+        text += f"o {name}\n" + "".join(f"v {x} {y} {z}\n" for x, y, z in block.corners)
+        text += "".join(
+            "f " + " ".join(str(8 * n + k + 1) for k in face) + "\n"
+            for face in hull(np.array(block.corners))
+        )
+    (tmp_path / "a.obj").write_text(text)
+    assert tuple(block.part for block in fromFile(tmp_path / "a.obj")) == parts
+
+
+@given(angles=some.tuples(*2 * [some.floats(0, 1.5)]), digits=some.sampled_from([3, 4]))
+@settings(max_examples=40, deadline=None)
+def test_stones_in_space_with_few_decimals_have_plane_faces(tmp_path_factory, angles, digits):
+    (c, s), (k, t) = [(math.cos(a), math.sin(a)) for a in angles]
+    turn = np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]]) @ [[1, 0, 0], [0, k, -t], [0, t, k]]
+    box = np.array(boxCorners((0, 0, 0), (0.6, 0.4, 0.3))) @ turn.T
+    path = tmp_path_factory.mktemp("round") / "a.obj"
+    lines = [f"v {x:.{digits}f} {y:.{digits}f} {z:.{digits}f}" for x, y, z in box]
+    faces = ["f " + " ".join(str(n + 1) for n in face) for face in hull(box)]
+    path.write_text("\n".join(lines + faces))
+    [block] = fromFile(path)
+    assert len(block.corners) == 8
+    assert np.array(sorted(block.corners)) == approx(
+        np.array(sorted(map(tuple, box.tolist()))), abs=2 * 10.0**-digits
+    )
+    with raises(ValueError, match="bent by .* m, not plane|reaches"):
+        twisted = box.copy()
+        twisted[0] += 0.02
+        path.write_text("\n".join([f"v {x:.6f} {y:.6f} {z:.6f}" for x, y, z in twisted] + faces))
+        fromFile(path)
+
+
+def plyBytes(listed="vertex_indices", colours=(), order="<"):
+    corners = boxCorners((0, 0, 0), (1, 1, 1))
+    triangles = [(f[0], a, b) for f in hull(np.array(corners)) for a, b in zip(f[1:], f[2:])]
+    name = {"<": "little", ">": "big"}[order]
+    head = [f"ply\nformat binary_{name}_endian 1.0\ncomment by hand\nelement vertex 8"]
+    head += [f"property float {axis}" for axis in "xyz"]
+    head += [f"element face {len(triangles)}", f"property list uchar int {listed}"]
+    head += [f"property uchar {colour}" for colour in colours]
+    body = b"".join(struct.pack(f"{order}3f", *p) for p in corners)
+    body += b"".join(struct.pack(f"{order}B3i", 3, *t) + bytes(len(colours)) for t in triangles)
+    return "\n".join([*head, "end_header\n"]).encode() + body
+
+
+def stlBytes(more=b"", title=b"made by CAD"):
+    corners = boxCorners((0, 0, 0), (1, 1, 1))
+    triangles = [(f[0], a, b) for f in hull(np.array(corners)) for a, b in zip(f[1:], f[2:])]
+    flat = [[c for n in t for c in corners[n]] for t in triangles]
+    body = b"".join(struct.pack("<12fH", 0, 0, 0, *points, 0) for points in flat)
+    return title.ljust(80) + struct.pack("<I", len(flat)) + body + more
+
+
+@mark.parametrize(
+    "name, content",
+    [
+        ("a.ply", plyBytes()),
+        ("a.ply", plyBytes("vertex_index")),
+        ("a.ply", plyBytes(colours=("red", "green", "blue"))),
+        ("a.ply", plyBytes(order=">")),
+        ("a.stl", stlBytes()),
+        ("a.stl", stlBytes(b"\0\0")),
+        ("a.stl", stlBytes(title=b"solid made by CAD")),
+    ],
+)
+def test_files_as_programs_write_them(tmp_path, name, content):
+    (tmp_path / name).write_bytes(content)
+    [block] = fromFile(tmp_path / name)
+    assert (block.low, block.high) == ((0, 0, 0), (1, 1, 1))
+    (tmp_path / name).write_bytes(content[:-20])
+    with raises(ValueError) as refused:
+        fromFile(tmp_path / name)
+    assert str(refused.value).isprintable()
 
 
 def test_faces_may_all_run_clockwise(tmp_path):
@@ -185,7 +273,7 @@ def test_what_is_no_convex_solid_is_refused(tmp_path, points, faces, said):
         ("a.stl", "hello", "neither text that starts with solid"),
         ("a.stl", "solid a\nvertex 0 0 0\nendsolid", "a facet without three points"),
         ("a.stl", "solid a\nvertex 0 0 0", "solid a has no end"),
-        ("a.ply", "hello", "meshio: "),
+        ("a.ply", "hello", "does not start with ply"),
         ("a.ply", "ply\n", "its head has no end"),
         ("a.json", "{", "cannot be read"),
         ("a.json", "{}", "no mesh"),

@@ -1,14 +1,19 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Blocks from files of surface meshes: OBJ, OFF, STL, PLY, and JSON of COMPAS.
 
-meshio reads PLY and binary STL; it loses the names of groups (OBJ) and of solids (STL as text),
-takes triangles alone (OFF) and knows no COMPAS.
+The formats are read here: meshio refuses PLY whose faces have colours or are called vertex_index,
+loses the names of groups (OBJ) and of solids (STL as text), takes triangles alone (OFF), and knows
+no COMPAS.
 """
 
 import json
 import math
 import os
-from collections import defaultdict, namedtuple
+import re
+import struct
+from collections import Counter, defaultdict
+from dataclasses import dataclass
+from decimal import Decimal
 
 from typing import Annotated, Any
 
@@ -16,7 +21,8 @@ import numpy as np
 
 from ..arguments import FilePath, number, validated
 from ..errors import Refused
-from ..packages import needed
+from ..terminal import say
+from ..texts import TextFile
 from .blocks import FARTHEST, Block, Bricks, refuse
 from .checks import components, where
 from .geometry import FLAT
@@ -30,8 +36,23 @@ SAME = 1e-6
 #: smallest faces by less, and no solid has so sharp an edge.
 COINCIDE = 1e-3
 
-#: A surface as a file has it: name, points (n, 3), and faces, tuples of point numbers.
-_Surface = namedtuple("_Surface", "name points faces")
+#: Largest share of a solid's smallest side by which rounded numbers may bend its faces [-].
+ROUNDED = 0.02
+
+
+@dataclass
+class _Surface:
+    """A surface as a file has it.
+
+    :ivar points: (n, 3)
+    :ivar faces: tuples of point numbers
+    :ivar digits: decimals of the numbers of the points, of the one that has most; None: bytes
+    """
+
+    name: str
+    points: Any
+    faces: list[tuple[int, ...]]
+    digits: int | None = None
 
 
 @validated
@@ -40,30 +61,40 @@ def fromFile(
     scale: Annotated[float, number("m", 0, 1e6, above=True)] = 1.0,
     kind: str = "block",
     mortar: Annotated[float, number("m", 0, 1)] = 0.0,
+    tolerance: Annotated[float, number("m", 0, 1)] | None = None,
 ) -> Bricks:
     """Blocks from a file, one for each closed convex surface in it: a :class:`Bricks`, each block a
     brick of its own.
 
     Formats: ``.obj`` (each ``g`` or ``o`` is a group), ``.off``, ``.stl`` (as text, each ``solid``
     is a group, or as bytes), ``.ply``, and ``.json`` of COMPAS with meshes. Solids in one group may
-    touch. Parts have the names of groups, or of the file. Faces run counter-clockwise seen from
-    outside, or all of them clockwise.
+    touch. Parts have the names of groups, or of the file; groups of one solid each whose names differ
+    in a number at their end alone are one part. Faces run counter-clockwise seen from outside, or
+    all of them clockwise. Where rounded numbers bend a face, it is made plane, with a note.
 
     :param scale: metres in one unit of the file; 0.001 if it is in millimetres
     :param kind: kind of the blocks
     :param mortar: largest thickness of the mortar between two faces that look at each other within
         20° [m]: they move to its middle, with all faces in line with them; 0: none
+    :param tolerance: how far corners may be from the planes of their faces [m]; None: as the last
+        digit of the file's numbers rounds them
     :raises ValueError: with every solid that is open, not convex or has a bent face, by its group
         and number, with the face and its place
     """
-    problems = []
+    problems, moved = [], []
     surfaces = readBy(_READERS, path)
     solids = [
         (surface.name, corners)
         for surface in surfaces
-        for corners in _solids(surface, scale, problems)
+        for corners in _solids(surface, scale, tolerance, problems, moved)
     ]
+    if moved and not problems:
+        say(
+            f"note: fromFile: {len(moved)} of {len(solids)} solids have bent faces, as rounded"
+            f" numbers make them; their corners move by up to {max(moved):.2g} m"
+        )
     names, bodies = zip(*solids) if solids else ((), ())
+    names = _parts(names)
     if mortar and not problems:
         bodies = closed(bodies, mortar, problems)
     blocks = []
@@ -78,8 +109,20 @@ def fromFile(
     return Bricks(blocks)
 
 
+def _parts(names):
+    """The parts of solids of some groups: of groups of one solid each whose names differ in a
+    number at their end alone, what they have in common."""
+    counts = Counter(names)
+    stems = {name: re.sub(r"[\s_.#:-]*\d+$", "", name) for name in counts if counts[name] == 1}
+    alike = Counter(stem for stem in stems.values() if stem)
+    return [stems[name] if name in stems and alike[stems[name]] > 1 else name for name in names]
+
+
 #: Errors of damaged files.
-MISREAD = OSError, SyntaxError, ValueError, LookupError, TypeError, AttributeError, RecursionError
+MISREAD = (
+    *(OSError, SyntaxError, ValueError, LookupError, TypeError, AttributeError),
+    *(RecursionError, struct.error, OverflowError),
+)
 
 
 # -- formats ---------------------------------------------------------------------------------------
@@ -104,22 +147,27 @@ def _plain(path):
     return os.path.splitext(os.path.basename(path))[0]
 
 
-def _lines(path):
-    """Number and words of each line of a text, without comments."""
-    with open(path, encoding="utf-8", errors="replace") as file:
-        text = file.read().replace("\\\n", " ")
-    for number, line in enumerate(text.splitlines(), 1):
-        words = line.split("#")[0].split()
+def _words(path):
+    """Number and words of each line of a text, without what follows a # at its beginning or behind
+    a blank."""
+    lines, joined = TextFile(path).lines, ""
+    for number, line in enumerate(lines, 1):
+        if line.endswith("\\") and number < len(lines):
+            joined += line[:-1] + " "
+            continue
+        words = re.split(r"(?:^|\s)#", joined + line)[0].split()
+        joined = ""
         if words:
             yield number, words
 
 
 def _readObj(path):
-    points, groups, name = [], defaultdict(list), _plain(path)
-    for number, words in _lines(path):
+    points, groups, name, digits = [], defaultdict(list), _plain(path), 0
+    for number, words in _words(path):
         what = words[0]
         if what == "v":
             points.append(_point(words[1:4], number))
+            digits = max(digits, _decimals(words[1:4]))
         elif what in ("g", "o"):
             name = " ".join(words[1:]) or _plain(path)
         elif what == "f":
@@ -133,7 +181,12 @@ def _readObj(path):
                     )
                 face.append(n)
             groups[name].append(tuple(face))
-    return [_Surface(name, np.array(points), faces) for name, faces in groups.items()]
+    return [_Surface(name, np.array(points), faces, digits) for name, faces in groups.items()]
+
+
+def _decimals(words):
+    """Decimals of the numbers of a point, of the one that has most."""
+    return max(-Decimal(word).as_tuple().exponent for word in words)
 
 
 def _point(words, number):
@@ -147,7 +200,7 @@ def _point(words, number):
 
 
 def _readOff(path):
-    (_, (word, *head)), *lines = [*_lines(path)] or [(0, [""])]
+    (_, (word, *head)), *lines = [*_words(path)] or [(0, [""])]
     if not word.endswith("OFF"):
         raise ValueError("does not start with OFF")
     if word != "OFF":
@@ -164,74 +217,148 @@ def _readOff(path):
         if len(face) != int(words[0]) or not all(0 <= n < count for n in face):
             raise ValueError(f"line {number}: a face with points {face} of {count}")
         found.append(face)
-    yield _Surface(_plain(path), np.array(points), found)
+    digits = max((_decimals(words[:3]) for _, words in lines[:count]), default=0)
+    yield _Surface(_plain(path), np.array(points), found, digits)
+
+
+#: A triangle of STL as bytes.
+_TRIANGLE = np.dtype([("normal", "<3f4"), ("points", "<9f4"), ("more", "<u2")])
 
 
 def _readStl(path):
-    size = os.path.getsize(path)
     with open(path, "rb") as file:
-        head = file.read(84)
-    count = int.from_bytes(head[80:84], "little")
-    if len(head) == 84 and size == 84 + 50 * count:
-        yield from _byMeshio(path)
+        content = file.read()
+    isText = content[:80].lstrip()[:5].lower() == b"solid" and re.search(
+        rb"\b(?:facet|vertex|endsolid)\b", content[:2000], re.I
+    )
+    if not isText:
+        count = int.from_bytes(content[80:84], "little")
+        if not 0 < count <= (len(content) - 84) // _TRIANGLE.itemsize:
+            raise ValueError(
+                f"neither text that starts with solid, nor bytes of the {count} triangles that it"
+                " says it has"
+            )
+        triangles = np.frombuffer(content, _TRIANGLE, count, 84)
+        points = triangles["points"].astype(float).reshape(-1, 3)
+        yield _Surface(_plain(path), _finite(points), _triples(points))
         return
-    if not head.lstrip().startswith(b"solid"):
-        raise ValueError(f"neither text that starts with solid, nor bytes of {count} triangles")
     points, name = None, ""
-    for number, words in _lines(path):
+    for number, words in _words(path):
         what = words[0].lower()
         if what == "solid":
-            name, points = " ".join(words[1:]) or _plain(path), []
+            name, points, digits = " ".join(words[1:]) or _plain(path), [], 0
         elif what == "vertex" and points is not None:
             points.append(_point(words[1:4], number))
+            digits = max(digits, _decimals(words[1:4]))
         elif what == "endsolid" and points is not None:
             if len(points) % 3:
                 raise ValueError(f"line {number}: solid {name} has a facet without three points")
-            faces = [(n, n + 1, n + 2) for n in range(0, len(points), 3)]
-            if faces:
-                yield _Surface(name, np.array(points), faces)
+            if points:
+                yield _Surface(name, np.array(points), _triples(points), digits)
             points = None
     if points is not None:
         raise ValueError(f"solid {name} has no end")
 
 
-def _byMeshio(path):
-    meshio = needed("meshio")  # takes a second, and few scenes need it
+def _triples(points):
+    return [(n, n + 1, n + 2) for n in range(0, len(points), 3)]
+
+
+def _finite(points):
+    if not np.isfinite(points).all():
+        raise ValueError("points must be three finite numbers each")
+    return points
+
+
+#: Types of numbers in PLY files; the older names and those with their size.
+_TYPES = dict(zip("char uchar short ushort int uint float double".split(), "bBhHiIfd"))
+_TYPES |= dict(zip("int8 uint8 int16 uint16 int32 uint32 float32 float64".split(), "bBhHiIfd"))
+_ORDERS = {"binary_little_endian": "<", "binary_big_endian": ">", "ascii": ""}
+
+
+def _readPly(path):
     with open(path, "rb") as file:
         content = file.read()
-    # meshio would look for it without end
-    if content.startswith(b"ply") and b"end_header" not in content:
-        raise ValueError("its head has no end")
-    try:
-        mesh = meshio.read(path)
-    except (Exception, SystemExit) as error:  # meshio ends the program for some files
-        raise ValueError(f"meshio: {error or type(error).__name__}") from None
-    points = np.asarray(mesh.points, float)
-    if points.ndim != 2 or points.shape[1] != 3 or not np.isfinite(points).all():
-        raise ValueError("points must be three finite numbers each")
-    faces = []
-    for cells in mesh.cells:
-        if cells.type not in ("triangle", "quad", "polygon"):
-            raise ValueError(f"cells of type {cells.type} are no faces")
-        faces += [tuple(int(n) for n in face) for face in cells.data]
+    head, end, body = content.partition(b"end_header")
+    lines = head.decode("latin-1").split("\n")
+    if lines[0].strip() != "ply" or not end:
+        raise ValueError("does not start with ply, or its head has no end")
+    body = body[body.index(b"\n") + 1 :]
+    order, elements = None, []
+    for words in filter(None, map(str.split, lines[1:])):
+        if words[0] == "format":
+            order = _ORDERS[words[1]]
+        elif words[0] == "element":
+            elements.append((words[1], int(words[2]), []))
+        elif words[0] == "property":
+            types = [_TYPES[word] for word in words[1 + (words[1] == "list") : -1]]
+            elements[-1][2].append((words[-1], types))
+    if order is None:
+        raise ValueError("its head has no format")
+    take = _asciiNumbers(body) if not order else _binaryNumbers(body, order)
+    points, faces = np.zeros((0, 3)), []
+    for name, count, properties in elements:
+        if not 0 <= count <= len(body):
+            raise ValueError(f"{count} of {name} in {len(body)} bytes")
+        rows = [
+            {key: take(types) for key, types in properties} if properties else {}
+            for _ in range(count)
+        ]
+        if name == "vertex":
+            points = _finite(np.array([[row[axis] for axis in "xyz"] for row in rows], float))
+        elif name == "face":
+            listed = next(key for key, types in properties if key.startswith("vertex_ind"))
+            faces = [tuple(map(int, row[listed])) for row in rows]
     if any(not 0 <= n < len(points) for face in faces for n in face):
         raise ValueError(f"a face has a point that is none of the {len(points)}")
-    yield _Surface(_plain(path), points, faces)
+    yield _Surface(_plain(path), points.reshape(-1, 3), faces)
+
+
+def _asciiNumbers(body):
+    """Function that takes the next number, or list of numbers, of a text."""
+    words = iter(body.split())
+
+    def take(types):
+        try:
+            first = float(next(words))
+            return first if len(types) == 1 else [float(next(words)) for _ in range(int(first))]
+        except StopIteration:
+            raise ValueError("it ends before its last number") from None
+
+    return take
+
+
+def _binaryNumbers(body, order):
+    """Function that takes the next number, or list of numbers, of bytes."""
+    at = 0
+
+    def take(types):
+        nonlocal at
+        count = 1
+        if len(types) == 2:
+            [count] = struct.unpack_from(order + types[0], body, at)
+            at += struct.calcsize(types[0])
+        numbers = struct.unpack_from(f"{order}{count}{types[-1]}", body, at)
+        at += count * struct.calcsize(types[-1])
+        return numbers[0] if len(types) == 1 else numbers
+
+    return take
 
 
 def _readJson(path):
-    with open(path, encoding="utf-8") as file:
-        data = json.load(file)
+    data = json.loads("\n".join(TextFile(path).lines))
     found = list(_meshes(data, ""))
     if not found:
         raise ValueError("no mesh: nothing with both vertex and face")
     for n, (name, mesh) in enumerate(found):
         defaults = mesh.get("default_vertex_attributes") or mesh.get("dva") or {}
         keys = {key: k for k, key in enumerate(mesh["vertex"])}
-        points = []
+        points, digits = [], 0
         for key, vertex in mesh["vertex"].items():
             point = [vertex.get(axis, defaults.get(axis, 0.0)) for axis in "xyz"]
-            points.append(_point([str(x) for x in point], f"of vertex {key}"))
+            words = [str(x) for x in point]
+            points.append(_point(words, f"of vertex {key}"))
+            digits = max(digits, _decimals(words))
         faces = []
         for key, face in mesh["face"].items():
             missing = [v for v in face if str(v) not in keys]
@@ -239,7 +366,7 @@ def _readJson(path):
                 raise ValueError(f"face {key} has a vertex {missing[0]} that is none")
             faces.append(tuple(keys[str(v)] for v in face))
         name = name or (f"{_plain(path)} {n}" if len(found) > 1 else _plain(path))
-        yield _Surface(name, np.array(points), faces)
+        yield _Surface(name, np.array(points), faces, digits)
 
 
 def _meshes(data, name):
@@ -261,7 +388,7 @@ _READERS = {
     ".obj": _readObj,
     ".off": _readOff,
     ".stl": _readStl,
-    ".ply": _byMeshio,
+    ".ply": _readPly,
     ".json": _readJson,
 }
 
@@ -269,7 +396,7 @@ _READERS = {
 # -- from surfaces to solids -----------------------------------------------------------------------
 
 
-def _solids(surface, scale, problems):
+def _solids(surface, scale, tolerance, problems, moved):
     """Corners of each convex solid of a surface."""
     name = surface.name
     if not len(surface.points):
@@ -317,12 +444,16 @@ def _solids(surface, scale, problems):
         problems.append(f"{name}: {len(open_) - 3} more such edges")
     if open_:
         return
+    if tolerance is None:  # the diagonal of half a unit in three coordinates, at two ends
+        tolerance = (
+            3**0.5 * 10.0**-surface.digits * scale if surface.digits is not None else 0.0
+        )
     solids = defaultdict(list)
     for face, first in enumerate(components(len(faces), mates)):
         solids[first].append(face)
     for n, members in enumerate(solids.values()):
         solid = f"{name}, solid {n}"
-        if corners := _corners(points, faces, numbers, members, solid, problems):
+        if corners := _corners(points, faces, numbers, members, solid, tolerance, problems, moved):
             yield corners
 
 
@@ -388,39 +519,64 @@ def _normal(polygon):
     return normal / length if length > 0 else normal
 
 
-def _corners(points, faces, numbers, members, solid, problems):
+def _corners(points, faces, numbers, members, solid, tolerance, problems, moved):
     """Corners of a convex solid, without points inside a face or an edge; of another one None and
-    a sentence."""
+    a sentence. ``moved`` takes how far corners were moved to make faces plane [m]."""
     used = sorted({n for face in members for n in faces[face]})
     own = points[used]
-    width = FLAT * np.linalg.norm(np.ptp(own, axis=0))
-    planes, meeting = [], defaultdict(set)
-    for face in members:
-        polygon = points[list(faces[face])]
-        normal, middle = _normal(polygon), polygon.mean(axis=0)
-        if not normal.any():
-            continue  # of no area, as some programs write for T-shaped edges
-        bent = np.abs((polygon - middle) @ normal).max()
-        place = where(middle)
-        if bent > width:
+    exact = FLAT * np.linalg.norm(np.ptp(own, axis=0))
+    polygons = {face: points[list(faces[face])] for face in members}
+    # a face of no area, as some programs write for T-shaped edges, has no plane
+    planes = {face: (_normal(polygon), polygon.mean(axis=0)) for face, polygon in polygons.items()}
+    planes = {face: plane for face, plane in planes.items() if plane[0].any()}
+    bends = {f: np.abs((polygons[f] - at) @ normal).max() for f, (normal, at) in planes.items()}
+    beyond = {face: ((own - at) @ normal).max() for face, (normal, at) in planes.items()}
+    isExact = max(0.0, *bends.values(), *beyond.values()) <= exact
+    thinnest = min([np.ptp(own @ normal) for normal, _ in planes.values()], default=0.0)
+    width = exact if isExact else max(exact, min(tolerance, ROUNDED * thinnest))
+    for face in planes:
+        place = where(planes[face][1])
+        if bends[face] > width:
             problems.append(
-                f"{solid}, face {numbers[face]} at {place}: bent by {bent:.3g} m, not plane"
+                f"{solid}, face {numbers[face]} at {place}: bent by {bends[face]:.3g} m, not plane"
             )
             return None
-        beyond = ((own - middle) @ normal).max()
-        if beyond > width:
+        if beyond[face] > width:
             problems.append(
-                f"{solid}, face {numbers[face]} at {place}: the solid reaches {beyond:.3g} m beyond"
-                " its plane, so it is not convex"
+                f"{solid}, face {numbers[face]} at {place}: the solid reaches"
+                f" {beyond[face]:.3g} m beyond its plane, so it is not convex"
             )
             return None
-        alike = lambda n, at: n @ normal > 1 - 1e-6 and abs((middle - at) @ n) <= width
-        k = next((k for k, plane in enumerate(planes) if alike(*plane)), len(planes))
-        planes[k:] = planes[k:] or [(normal, middle)]
+    # cosine of the angle between planes that are one
+    same = 1 - 1e-6 if isExact else math.cos(4 * width / max(thinnest, 1e-300))
+    merged, meeting = [], defaultdict(set)
+    for face, (normal, middle) in planes.items():
+        alike = lambda n, at: n @ normal > same and abs((middle - at) @ n) <= width
+        k = next((k for k, plane in enumerate(merged) if alike(*plane)), len(merged))
+        merged[k:] = merged[k:] or [(normal, middle)]
         for n in faces[face]:
             meeting[n].add(k)
-    if len(planes) < 4:
-        problems.append(f"{solid}: only {len(planes)} planes, so no volume")
+    if len(merged) < 4:
+        problems.append(f"{solid}: only {len(merged)} planes, so no volume")
         return None
-    corners = (points[n] for n in used if len(meeting[n]) >= 3)
-    return tuple(tuple(map(float, corner)) for corner in corners)
+    corners = [n for n in used if len(meeting[n]) >= 3]
+    places = points[corners]
+    if not isExact:
+        places = _onPlanes(points, corners, meeting, len(merged))
+        moved.append(float(np.linalg.norm(places - points[corners], axis=1).max()))
+    return tuple(tuple(map(float, corner)) for corner in places)
+
+
+def _onPlanes(points, corners, meeting, count):
+    """Corners of a solid at the intersections of the planes of least squares through those of each
+    face."""
+    of = [[n for n in corners if k in meeting[n]] for k in range(count)]
+    middles = np.array([points[members].mean(axis=0) for members in of])
+    normals = np.array([np.linalg.svd(points[m] - middle)[2][2] for m, middle in zip(of, middles)])
+    offsets = (normals * middles).sum(axis=1)
+    found = []
+    for n in corners:
+        mine = sorted(meeting[n])
+        away = offsets[mine] - normals[mine] @ points[n]
+        found.append(points[n] + np.linalg.lstsq(normals[mine], away, rcond=1e-3)[0])
+    return np.array(found)
