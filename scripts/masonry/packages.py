@@ -14,7 +14,7 @@ NEEDED_FOR = {
     "ezdxf": ("python3-ezdxf", "DXF files need"),
     "jinja2": ("python3-jinja2", "reports and pages need"),
     "matplotlib": ("python3-matplotlib", "figures need"),
-    "meshio": ("python3-meshio", "PLY files and a bound's mechanism for ParaView need"),
+    "meshio": ("python3-meshio", "the mechanism of a bound for ParaView needs"),
     "openturns": ("python3-openturns", "distributions and designs of studies need"),
     "svgelements": ("python3-svgelements", "SVG files need"),
     "scipy": ("python3-scipy", "bricks and bounds need"),

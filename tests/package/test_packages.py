@@ -44,8 +44,11 @@ def sentence(module):
         ("jinja2", "from masonry_view import pages; pages.rendered('page/page.html')"),
         ("matplotlib", "from masonry.numbers import drawing; drawing.empty(1, 1)"),
         (
-            "meshio",
-            "open('a.ply', 'w').write('ply'); from masonry import bricks; bricks.fromFile('a.ply')",
+            "svgelements",
+            (
+                "open('a.svg', 'w').write('<svg/>'); from masonry import bricks;"
+                " bricks.fromOutlines('a.svg', 1, 0.1)"
+            ),
         ),
         ("openturns", "from masonry_study import lognormal; lognormal(1, 0.1).law()"),
         ("scipy", "from masonry import bricks"),
@@ -88,5 +91,5 @@ def test_the_setup_of_a_run_and_of_tests_installs_every_package_that_is_named():
     setup = open(os.path.join(ROOT, "scripts", "setup.sh")).read()
     run, tests = setup.split("    --tests)\n")
     for package, _ in packages.NEEDED_FOR.values():
-        listed = tests if package in ("python3-openturns", "python3-ezdxf") else run
+        listed = tests if package == "python3-openturns" else run
         assert re.search(rf"\b{package}\b", listed), package
