@@ -2,6 +2,7 @@
 """The description of a study, and the table of its rows."""
 
 import hashlib
+import itertools
 import math
 import os
 import pathlib
@@ -37,7 +38,8 @@ class Study:
         ``"grid"``: all combinations of the lists, or ``"ida"``, incremental dynamic analysis: the
         scene is shaken by records that grow in strength until it falls. What varies beside that is
         drawn once for every record
-    :param correlation: dict of pairs of names -> rank correlation of two distributions [-]
+    :param correlation: dict of pairs of names -> rank correlation of two distributions [-]; of a
+        tuple of properties its key, or one of them
     :param records: of an ``"ida"``: files as in :mod:`masonry.scene.accelerograms`, with paths from
         the study's file on, or patterns of files such as ``"records/*.AT2"``, or triples of files,
         of three components that act at once
@@ -61,7 +63,7 @@ class Study:
         seed: Annotated[int, whole(0, 2**31 - 1)] = 0,
         vary: Annotated[dict[Any, Any], isA(dict)] | None = None,
         design: Annotated[str, oneOf(*designs.DESIGNS)] = "random",
-        correlation: Annotated[dict[tuple[str, str], float], isA(dict)] | None = None,
+        correlation: Annotated[dict[tuple[Any, Any], float], isA(dict)] | None = None,
         records: FilePath | Sequence[FilePath | Sequence[FilePath]] | None = None,
         levels: Sequence[float] | None = None,
         scales: Sequence[float] | None = None,
@@ -138,18 +140,17 @@ class Study:
 
     def _correlate(self, correlation):
         """Take correlations. Yields what is wrong with them."""
-        joined = lambda key: "+".join(key) if isinstance(key, tuple) else key
         for pair, value in correlation.items():
             if not isinstance(pair, tuple) or len(pair) != 2:
                 yield f"correlation {pair!r}: must be of two names"
                 continue
-            one, two = map(joined, pair)
+            one, two = map(self._columnOf, pair)
             wrong = [reason for n in (one, two) if (reason := self._uncorrelated(n))]
             if one == two:
                 wrong.append("the two names are the same")
             if not isinstance(value, (int, float)) or not -1 < value < 1:
                 wrong.append("it must be above -1 and below 1")
-            if (two, one) in self.correlation:
+            if {(one, two), (two, one)} & {*self.correlation}:
                 wrong.append("given twice")
             yield from (f"correlation {pair!r} = {value!r}: {why}" for why in wrong)
             if not wrong:
@@ -157,17 +158,24 @@ class Study:
 
     def _uncorrelated(self, name):
         """Why a name can have no correlation, or nothing."""
-        if isinstance(self.vary.get(name), Distribution):
+        if name not in self.vary:
+            return f"{name} does not vary"
+        what = self.vary[name]
+        if isinstance(what, Distribution):
             return ""
-        for column, what in self.vary.items():
-            names = tuple(namesOf(column))
-            if name not in (column, *names):
-                continue
-            if isinstance(what, Distribution):
-                return f"{name} varies with others: name it by its key in vary, {names}"
-            kind = type(what).__name__.lower()
-            return f"{name} is a {kind}; only distributions have a correlation"
-        return f"{name} does not vary"
+        form = type(what).__name__.lower()
+        return f"{name} varies as a {form}; only distributions have a correlation"
+
+    def _columnOf(self, key):
+        """The column of ``vary`` that a key of it, or one of the names of a tuple, stands for; the
+        key itself if none has it."""
+        names = key if isinstance(key, tuple) else (key,)
+        columns = {c: {*namesOf(c)} for c in self.vary}
+        # a distribution first: a field and what it is about have the same names
+        order = sorted(columns, key=lambda c: not isinstance(self.vary[c], Distribution))
+        exact = (c for c in order if columns[c] == {*names})
+        within = (c for c in order if len(names) == 1 and key in columns[c])
+        return next(itertools.chain(exact, within), "+".join(map(str, names)))
 
     # -- what follows ------------------------------------------------------------------------------
 
