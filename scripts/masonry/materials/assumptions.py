@@ -14,6 +14,7 @@ from yade.wrapper import MasonryJoint, MasonryMat
 from ..arguments import isA, listOf, validated
 from ..model.bodies import properties
 from ..model.engines import LAWS
+from ..numbers.quantities import BY_CODE
 
 #: Descriptions of properties by class and name.
 DESCRIBED = {cls: {p["name"]: p for p in properties(cls)} for cls in (MasonryJoint, MasonryMat)}
@@ -134,6 +135,11 @@ def missing(masonry: Any) -> list[str]:
     return problems
 
 
+def isByCode(entry: dict[str, Any]) -> bool:
+    """Whether the value of an entry ``assumed`` is that of a code."""
+    return entry["source"].startswith(BY_CODE)
+
+
 @validated
 def linesOf(
     entries: Annotated[list[dict[str, Any]], listOf(isA(dict), 0)], brief: bool
@@ -142,20 +148,27 @@ def linesOf(
     if not entries:
         return []
     if brief:
+        byCode = sum(map(isByCode, entries))
+        others = f", and {byCode} given by a code" if byCode else ""
         return [
-            f"note: {len(entries)} properties of the materials are assumed; run.json lists them"
-            " (assumed)"
+            f"note: {len(entries) - byCode} properties of the materials are assumed{others};"
+            " run.json lists them (assumed)"
         ]
     kinds = {}
-    for entry in entries:
+    for entry in sorted(entries, key=isByCode, reverse=True):
         kind, _, what = entry["name"].rpartition(".")
         if kind:
             value, unit = entry["value"], entry["unit"].strip("-")
             text = f"{value:.4g}" if isinstance(value, float) else str(value)
             what = f"{what} {text} {unit}".rstrip()
         kinds.setdefault((what, entry["source"]), []).append(kind)
-    lines = ["assumed, because it was not given (run.json: assumed):"]
+    lines = []
     for (what, source), joints in kinds.items():
+        title = (
+            "given by a code" if source.startswith(BY_CODE) else "assumed, because it was not given"
+        )
+        title += " (run.json: assumed):"
+        lines += [title] * (title not in lines)
         of = f"{', '.join(joints)}: " if joints != [""] else ""
-        lines.append(f"  {of}{what}  ({source})")
+        lines.append(f"  {of}{what}  ({source.removeprefix(BY_CODE)})")
     return lines

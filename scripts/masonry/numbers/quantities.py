@@ -20,6 +20,8 @@ from .run_data import BASE, FALL, MASONRY, MOVED, TOP, RunData
 
 #: A push with a larger dynamic imbalance is too fast: its peak is off by 1 to 5 % and more [-].
 IMBALANCE = 0.1
+#: How the source of a property in ``assumed`` begins whose value a code gives.
+BY_CODE = "by a code: "
 
 #: Energies of the balance by their names in curve.csv, without the unit: what each is, and whether
 #: it is put in, stored or spent.
@@ -727,17 +729,18 @@ def measures(run):
     return {name: run[name] for name in names if name in run}
 
 
-def headline(run, end=False):
+def headline(run, end=False, grows=False):
     """The peak of a push and its bound in a line, from the entries of run.json; empty without a
     push.
 
     :param end: whether the force at the end stands in place of the bound
+    :param grows: whether the force still grows at the end, so that it has no peak
     """
     at = lambda force, moved: f"{run[force]:.4g} kN at {run[moved]:.4g} mm"
     keys = ("peak_at_both_ends_kN", "displacement_at_peak_mm")
     if run.get(keys[0]) is None or run.get(keys[1]) is None:
         return ""
-    text = f"peak {at(*keys)}"
+    text = f"{'no peak: the force grows to' if grows else 'peak'} {at(*keys)}"
     if run.get("negative_peak_at_both_ends_kN") is not None:
         other = at("negative_peak_at_both_ends_kN", "displacement_at_negative_peak_mm")
         text = f"{len(run['cycles'])} cycles, peaks {at(*keys)} and {other}"
