@@ -307,6 +307,18 @@ def test_a_platen_below_edges_alone_is_refused(tmp_path):
         standing(tmp_path, dome)
 
 
+@mark.parametrize("where, levels", [("bottom", (0.0, -0.3)), ("top", (0.9, 0.0))])
+def test_a_platen_is_at_the_side_of_its_part(tmp_path, where, levels):
+    """A wall beside a road that lies deeper; each of them has a platen at its own side."""
+    wall = bricks.Wall(0.88, 0.9, (0.44, 0.3, 0.3), halves=False)
+    road = bricks.stack(1, (2.0, 0.3, 0.3), part="road").moved(1.5, 0, -0.3)
+    scene = lean(tmp_path, wall + road, plane=False)
+    for part, level in zip(("wall", "road"), levels):
+        target = scene.platen(where, part=part, name=f"{part}_side")
+        low, high = target.box
+        assert (high if where == "bottom" else low)[2] == approx(level)
+
+
 @mark.parametrize("plane", [True, False], ids=["plane", "space"])
 def test_what_moves_in_its_plane_is_seen_there_also_if_it_is_deep(tmp_path, plane):
     scene = standing(tmp_path, bricks.stack(2, (0.3, 1.0, 0.5)), plane=plane)

@@ -550,6 +550,7 @@ def test_what_ended_a_run_and_what_it_lacks_is_said(tmp_path, changed, text):
     assert text in " ".join(page(folder(tmp_path, **changed)).said().split())
 
 
+@mark.filterwarnings("error")
 def test_numbers_that_are_not_finite_and_torn_lines_are_named_and_drawn_around(tmp_path):
     columns = {n: v.copy() for n, v in COLUMNS.items()}
     columns["base_shear_kN"][7] = math.nan
@@ -619,6 +620,7 @@ def test_sections_have_normal_force_shear_and_moment(tmp_path):
 # -- damaged and hostile files ---------------------------------------------------------------------
 
 
+@mark.filterwarnings("error")
 def test_what_stands_in_files_is_text_in_the_report(tmp_path):
     plain = report.page(report.read(folder(tmp_path)))
 
