@@ -59,6 +59,18 @@ def nearest(name, names):
     return f", did you mean {close[0]!r}?" if close else ""
 
 
+class ByName(dict):
+    """A dict by names. A name that it does not have raises Refused with those that it has."""
+
+    def __init__(self, what: str) -> None:
+        super().__init__()
+        self.what = what
+
+    def __missing__(self, name):
+        there = ", ".join(map(str, self)) or "none"
+        raise Refused(f"no {self.what} {name!r}{nearest(name, self)}; there are {there}")
+
+
 # -- validators ------------------------------------------------------------------------------------
 
 

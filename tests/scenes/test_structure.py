@@ -307,6 +307,15 @@ def test_a_platen_below_edges_alone_is_refused(tmp_path):
         standing(tmp_path, dome)
 
 
+def test_a_name_that_is_not_there_is_refused_with_those_that_are(tmp_path):
+    scene = standing(tmp_path, THREE)
+    scene.settle()
+    with raises(Refused, match="no target 'bas', did you mean 'base'.; there are base"):
+        scene.targets["bas"]
+    with raises(Refused, match="no column 'time', did you mean 'time_s'.; there are time_s,"):
+        scene.results.column("time")
+
+
 @mark.parametrize("where, levels", [("bottom", (0.0, -0.3)), ("top", (0.9, 0.0))])
 def test_a_platen_is_at_the_side_of_its_part(tmp_path, where, levels):
     """A wall beside a road that lies deeper; each of them has a platen at its own side."""

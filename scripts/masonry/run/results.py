@@ -100,6 +100,7 @@ import time
 
 from .. import folders
 from ..auxiliary import addToLog
+from ..arguments import nearest
 from ..errors import Refused
 from ..terminal import say
 from ..numbers import quantities
@@ -289,7 +290,11 @@ class Results:
             say(f"warning: {text} some {1e-6 * likely:.1f} MB")
 
     def column(self, name):
-        """All values of a column so far."""
+        """All values of a column so far. Raises Refused if there is no such column."""
+        if name not in self.columns:
+            there = ", ".join(self.columns)
+            close = nearest(name, self.columns)
+            raise Refused(f"curve.csv: no column {name!r}{close}; there are {there}")
         i = self.columns.index(name)
         return [row[i] for row in self.rows]
 
