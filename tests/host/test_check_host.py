@@ -26,7 +26,7 @@ def test_the_yade_that_is_installed_fits_as_its_own_version(capsys):
 
 
 @mark.parametrize("name", ["libyade.deb", "folder", "damaged"])
-def test_what_cannot_be_read_is_told_from_what_does_not_fit(tmp_path, name):
+def test_what_cannot_be_read_has_a_status_of_its_own(tmp_path, name):
     (tmp_path / "libyade.deb").write_bytes(b"!<arch>\ndebian-binary   \xff")
     (tmp_path / "folder").mkdir()
     (tmp_path / "damaged").mkdir()

@@ -517,6 +517,7 @@ def test_several_pushes_are_named(tmp_path):
             "Collapsed: brick 5 falls",
         ),
         ({"interrupted": True}, "The run was interrupted."),
+        ({"error": "half \ud800 a character"}, "The run ended by an error: half ? a character"),
         (
             {"error": "the run has left finite numbers"},
             "The run ended by an error: the run has left finite numbers",

@@ -3,10 +3,15 @@
 running bond."""
 
 import collections
+import math
 import statistics
 
+import numpy as np
+
 from ..bricks import Bricks, summary
+from ..materials import loadingBlock
 from ..terminal import say
+from ..units import GRAVITY
 
 MAX_SIZES = 4  # of blocks that are listed
 
@@ -72,6 +77,14 @@ def held(description):
         if target.drives:
             what.append(f"a drive holds it along {', '.join(target.drives)}")
         yield target.name, "; ".join(what)
+    if boxes := {t.name: t.box for t in description.targets.values() if t.box and t.joined}:
+        block = loadingBlock()
+        weigh = lambda low, high: 1e-3 * GRAVITY * block.density * math.prod(np.subtract(high, low))
+        weights = ", ".join(f"{name} {weigh(*box):.4g} kN" for name, box in boxes.items())
+        yield "weight and stiffness of platens", (
+            f"{weights}; {block.density:g} kg/m³, Young's modulus {1e-9 * block.young:g} GPa, so"
+            " that only their joints (support) give way"
+        )
     if description.winds:
         force = [sum(w.force[i] for w in description.winds) for i in range(3)]
         yield "pressure on faces", "({:.4g}, {:.4g}, {:.4g}) N in all".format(*force)

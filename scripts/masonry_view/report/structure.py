@@ -54,7 +54,7 @@ OF_UNITS = (
     ),
     ("density of the units", "density_kg_per_m3", 1, "kg/m³", "Mass of a brick over its volume."),
 )
-MAX_WORDS = 12  # of a script that are shown at once
+MAX_COMMANDS = 12  # of a script that are shown at once
 MAX_LEADING = 3  # answers at the head of a report
 OLDER = "The run was made by an older version of the plugin, whose run.json does not say this."
 
@@ -270,7 +270,7 @@ def _assumed(run):
 
 
 def loaded(record):
-    """How it was held and loaded: targets, stages, the words of the script, and the options."""
+    """How it was held and loaded: targets, stages, the commands of the script, and the options."""
     run = record.run
     if pairs := run.get("held_and_loaded"):
         heads = "what", "how it is held and loaded before the first stage"
@@ -290,9 +290,9 @@ def loaded(record):
     script = [spoken(*command) for command in run["script"]]
     about = note(
         "Stresses are in Pa, forces in N, lengths in m, and displacements of pushes and supports in"
-        " mm; help(masonry.Scene) describes the words. Source: run.json: script."
+        " mm; help(masonry.Scene) describes the commands. Source: run.json: script."
     )
-    title, few = "The words of the script, in their order", len(script) <= MAX_WORDS
+    title, few = "The commands of the script, in their order", len(script) <= MAX_COMMANDS
     yield folded(title, listed(script, kind="script"), about, opened=few)
     options = [
         f"{name.replace('_', ' ')}: {_said(value)} {run['option_units'].get(name, '')}".strip()
@@ -347,7 +347,7 @@ def _said(value):
 
 
 def spoken(word, arguments):
-    """A word of a script as it was said, without the arguments that are nothing."""
+    """A command of a script as it was given, without the arguments that are nothing."""
     given = {n: v for n, v in arguments.items() if v not in (None, False, "", [], {})}
     return f"{word}({', '.join(f'{n}={_short(v)}' for n, v in given.items())})"
 
