@@ -2,7 +2,6 @@
 """The description of a study, and the table of its rows."""
 
 import hashlib
-import itertools
 import math
 import os
 import pathlib
@@ -167,15 +166,11 @@ class Study:
         return f"{name} varies as a {form}; only distributions have a correlation"
 
     def _columnOf(self, key):
-        """The column of ``vary`` that a key of it, or one of the names of a tuple, stands for; the
-        key itself if none has it."""
-        names = key if isinstance(key, tuple) else (key,)
-        columns = {c: {*namesOf(c)} for c in self.vary}
-        # a distribution first: a field and what it is about have the same names
-        order = sorted(columns, key=lambda c: not isinstance(self.vary[c], Distribution))
-        exact = (c for c in order if columns[c] == {*names})
-        within = (c for c in order if len(names) == 1 and key in columns[c])
-        return next(itertools.chain(exact, within), "+".join(map(str, names)))
+        """The column of ``vary`` that a key of it, or one of its names, stands for."""
+        names = namesOf(key) if isinstance(key, str) else key
+        fits = [column for column in self.vary if {*names} <= {*namesOf(column)}]
+        isField = lambda column: isinstance(self.vary[column], Field)
+        return min(fits, key=isField, default="+".join(map(str, names)))
 
     # -- what follows ------------------------------------------------------------------------------
 

@@ -116,6 +116,7 @@ RUN = {
             "value": 1800.0,
             "unit": "kg/m³",
             "source": "by a code: table C8.5.I",
+            "by_code": True,
         },
     ],
     "versions": {"yade": "2023.02a", "python": "3.11.2", "masonry": "3.0.0"},

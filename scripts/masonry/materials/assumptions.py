@@ -14,7 +14,6 @@ from yade.wrapper import MasonryJoint, MasonryMat
 from ..arguments import isA, listOf, validated
 from ..model.bodies import properties
 from ..model.engines import LAWS
-from ..numbers.quantities import BY_CODE
 
 #: Descriptions of properties by class and name.
 DESCRIBED = {cls: {p["name"]: p for p in properties(cls)} for cls in (MasonryJoint, MasonryMat)}
@@ -27,6 +26,9 @@ NEEDED = {
     MasonryMat: ["density"],
     MasonryJoint: ["tensileStrength", "cohesion", "friction", "compressiveStrength"],
 }
+
+#: How the source of a property begins whose value a code gives.
+BY_CODE = "by a code: "
 
 #: Source of every property of a joint ``support`` that takes the bed joint.
 AS_BED = "as of the bed joint"
@@ -102,7 +104,8 @@ def entriesOf(masonry: Any) -> list[dict[str, Any]]:
     for name, thing in _things(masonry):
         sources, counted = thing.assumed(), effective(thing)
         if AS_BED in sources.values():
-            found.append({"name": name, "value": "bed", "unit": "", "source": SUPPORT})
+            entry = {"name": name, "value": "bed", "unit": ""}
+            found.append({**entry, "source": SUPPORT, "by_code": False})
         for one, p in DESCRIBED[type(thing)].items():
             source, value = sources.get(one, AS_BED), getattr(thing, one)
             if source == AS_BED or isinstance(value, str):
@@ -110,7 +113,7 @@ def entriesOf(masonry: Any) -> list[dict[str, Any]]:
             switched = isinstance(value, bool) and not isDefault(thing, one)
             if switched or one in counted:
                 entry = {"name": f"{name}.{one}", "value": value, "unit": p["unit"]}
-                found.append({**entry, "source": source})
+                found.append({**entry, "source": source, "by_code": source.startswith(BY_CODE)})
     return found
 
 
@@ -135,11 +138,6 @@ def missing(masonry: Any) -> list[str]:
     return problems
 
 
-def isByCode(entry: dict[str, Any]) -> bool:
-    """Whether the value of an entry ``assumed`` is that of a code."""
-    return entry["source"].startswith(BY_CODE)
-
-
 @validated
 def linesOf(
     entries: Annotated[list[dict[str, Any]], listOf(isA(dict), 0)], brief: bool
@@ -147,28 +145,27 @@ def linesOf(
     """What a scene prints of its entries ``assumed``: lines; ``brief``: their number alone."""
     if not entries:
         return []
+    byCode = [entry for entry in entries if entry["by_code"]]
     if brief:
-        byCode = sum(map(isByCode, entries))
-        others = f", and {byCode} given by a code" if byCode else ""
+        others = f", and {len(byCode)} given by a code" if byCode else ""
         return [
-            f"note: {len(entries) - byCode} properties of the materials are assumed{others};"
+            f"note: {len(entries) - len(byCode)} properties of the materials are assumed{others};"
             " run.json lists them (assumed)"
         ]
-    kinds = {}
-    for entry in sorted(entries, key=isByCode, reverse=True):
-        kind, _, what = entry["name"].rpartition(".")
-        if kind:
-            value, unit = entry["value"], entry["unit"].strip("-")
-            text = f"{value:.4g}" if isinstance(value, float) else str(value)
-            what = f"{what} {text} {unit}".rstrip()
-        kinds.setdefault((what, entry["source"]), []).append(kind)
+    assumed = [entry for entry in entries if not entry["by_code"]]
+    titles = {"given by a code": byCode, "assumed, because it was not given": assumed}
     lines = []
-    for (what, source), joints in kinds.items():
-        title = (
-            "given by a code" if source.startswith(BY_CODE) else "assumed, because it was not given"
-        )
-        title += " (run.json: assumed):"
-        lines += [title] * (title not in lines)
-        of = f"{', '.join(joints)}: " if joints != [""] else ""
-        lines.append(f"  {of}{what}  ({source.removeprefix(BY_CODE)})")
+    for title, entries in titles.items():
+        lines += [f"{title} (run.json: assumed):"] * bool(entries)
+        kinds = {}
+        for entry in entries:
+            kind, _, what = entry["name"].rpartition(".")
+            if kind:
+                value, unit = entry["value"], entry["unit"].strip("-")
+                text = f"{value:.4g}" if isinstance(value, float) else str(value)
+                what = f"{what} {text} {unit}".rstrip()
+            kinds.setdefault((what, entry["source"]), []).append(kind)
+        for (what, source), joints in kinds.items():
+            of = f"{', '.join(joints)}: " if joints != [""] else ""
+            lines.append(f"  {of}{what}  ({source.removeprefix(BY_CODE)})")
     return lines

@@ -11,8 +11,7 @@ from ..arguments import isA, number, validated
 from ..errors import refuse
 from ..terminal import say
 from ..bricks.blocks import Sides
-from ..numbers.quantities import BY_CODE
-from .assumptions import state
+from .assumptions import BY_CODE, state
 from .codes import MEAN
 from .kinds import Masonry
 

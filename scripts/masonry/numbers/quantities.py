@@ -20,8 +20,6 @@ from .run_data import BASE, FALL, MASONRY, MOVED, TOP, RunData
 
 #: A push with a larger dynamic imbalance is too fast: its peak is off by 1 to 5 % and more [-].
 IMBALANCE = 0.1
-#: How the source of a property in ``assumed`` begins whose value a code gives.
-BY_CODE = "by a code: "
 
 #: Energies of the balance by their names in curve.csv, without the unit: what each is, and whether
 #: it is put in, stored or spent.

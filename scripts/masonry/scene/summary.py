@@ -6,8 +6,6 @@ import collections
 import math
 import statistics
 
-import numpy as np
-
 from ..bricks import Bricks, summary
 from ..materials import loadingBlock
 from ..terminal import say
@@ -77,14 +75,12 @@ def held(description):
         if target.drives:
             what.append(f"a drive holds it along {', '.join(target.drives)}")
         yield target.name, "; ".join(what)
-    if boxes := {t.name: t.box for t in description.targets.values() if t.box and t.joined}:
-        block = loadingBlock()
-        weigh = lambda low, high: 1e-3 * GRAVITY * block.density * math.prod(np.subtract(high, low))
-        weights = ", ".join(f"{name} {weigh(*box):.4g} kN" for name, box in boxes.items())
-        yield "weight and stiffness of platens", (
-            f"{weights}; {block.density:g} kg/m³, Young's modulus {1e-9 * block.young:g} GPa, so"
-            " that only their joints (support) give way"
-        )
+    platens = [t for t in description.targets.values() if t.box and t.joined]
+    if platens:
+        weight = 1e-3 * GRAVITY * loadingBlock().density
+        of = lambda low, high: weight * math.prod(b - a for a, b in zip(low, high))
+        weights = ", ".join(f"{t.name} {of(*t.box):.4g} kN" for t in platens)
+        yield "weight of platens", f"{weights}; they are rigid: only their support joints give way"
     if description.winds:
         force = [sum(w.force[i] for w in description.winds) for i in range(3)]
         yield "pressure on faces", "({:.4g}, {:.4g}, {:.4g}) N in all".format(*force)

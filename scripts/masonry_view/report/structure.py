@@ -191,11 +191,7 @@ def _marked(text, badge):
 def _badges(run):
     """What stands beside properties that were not given, by their names; those of the support are
     those of the bed joint where it takes these."""
-    badge = (
-        lambda one: "by a code"
-        if str(one.get("source")).startswith(quantities.BY_CODE)
-        else "assumed"
-    )
+    badge = lambda one: "by a code" if one.get("by_code") else "assumed"
     found = {str(one.get("name")): badge(one) for one in run.get("assumed") or []}
     if "support" in found:
         ofBed = {n: text for n, text in found.items() if n.startswith("bed.")}
