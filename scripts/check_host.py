@@ -8,8 +8,8 @@
 
 Compared are the virtual functions and the size of each class of Yade.hpp, and the functions that
 the plugin calls, with the tables of the YADE versions that the plugin knows. Needs binutils, which
-g++ brings. The exit status is 0 if the plugin fits, 1 if it does not, and 2 if the package cannot be
-read.
+g++ brings. The exit status is 0 if the plugin fits, 1 if it does not, and 2 if the package cannot
+be read.
 """
 
 import functools

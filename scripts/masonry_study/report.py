@@ -89,9 +89,8 @@ def statuses(record):
     fast = record.cells.get("too_fast", []).count("True")
     if fast:
         yield (
-            f"note: {fast} of {len(record)} rows were pushed too fast: more than"
-            f" {100 * IMBALANCE:g} % of their force does not reach the supports, and their peaks are"
-            " off by 1 to 5 % and more. They are in the numbers above; give a lower rate"
+            f"note: {fast} of {len(record)} rows, all in the numbers above, were pushed too fast:"
+            f" over {100 * IMBALANCE:g} % of the force does not reach the supports; lower the rate"
         )
     counts = Counter(text for text in record.cells["status"] if text != "ended")
     if counts:
@@ -119,9 +118,8 @@ def draw(record, measure):
         shares = {"shapley.png": (sensitivity.shapley, pictures.shapley)}
         tied = ", ".join(f"{one} and {two} by {rank:.2f}" for (one, two), rank in pairs.items())
         yield (
-            f"note: correlated by rank are {tied}: what they explain together is no property's"
-            " own. Shapley effects, which divide it evenly, stand in place of Sobol indices; a"
-            " correlation of ranks has what a property tells alone"
+            f"note: correlated by rank are {tied}: Shapley effects, which divide evenly what these"
+            " explain together, stand in place of Sobol indices"
         )
     fields = [name for name in record.varied if name.startswith(batch.FIELD)]
     rest = "random fields\nand what is not followed" if fields else "what is not followed"

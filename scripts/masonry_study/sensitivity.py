@@ -101,27 +101,15 @@ def sobol(inputs, output, seed=1):
     """
     inputs, x, y = _varying(inputs, output)
     n = len(x)
-    problems = [*_unfit("Sobol indices", x, y)]
-    refuse(
-        problems
-        + [
-            f"Sobol indices need independent properties, {one} and {two} have a rank correlation"
-            f" of {rank:.2f}"
-            for (one, two), rank in dependent(inputs).items()
-        ]
-    )
+    tied = dependent(inputs).items()
+    apart = "Sobol indices need independent properties, {} and {} have a rank correlation of {:.2f}"
+    refuse([*_unfit("Sobol indices", x, y), *(apart.format(*pair, rank) for pair, rank in tied)])
     y = (y - y.mean()) / y.std()
     powers = _polynomials(_ranks(x), y)
-    terms = _terms(powers, _ranks(x))
-    coefficients = np.linalg.lstsq(terms, y, rcond=None)[0]
-    explained = _explained(terms, y)
-
-    def again(rows):
-        return _shares(
-            powers, np.linalg.lstsq(_terms(powers, _ranks(x[rows])), y[rows], rcond=None)[0]
-        )
-
-    ends = _withIntervals(_shares(powers, coefficients), again, n, seed, explained)
+    fit = lambda terms, y: _shares(powers, np.linalg.lstsq(terms, y, rcond=None)[0])
+    sharesOf = lambda rows: fit(_terms(powers, _ranks(x[rows])), y[rows])
+    explained = _explained(_terms(powers, _ranks(x)), y)
+    ends = explained * _withIntervals(sharesOf, n, seed)
     found = {n: Indices(Interval(*f), Interval(*t)) for n, f, t in zip(inputs, *ends)}
     found = dict(sorted(found.items(), key=lambda item: -item[1].total.value))
     return Sobol(explained, found)
@@ -131,14 +119,12 @@ def shapley(inputs, output, seed=1):
     """Shapley effects, the shares of the variance of properties that may depend on each other: a
     :class:`Shapley`.
 
-    What two properties explain together is divided evenly among them, whether they act together or
-    are drawn together (A. B. Owen and C. Prieur, "On Shapley value for measuring importance of
-    dependent inputs", SIAM/ASA J. Uncertainty Quantification 5 (2017)). The model is linear in the
-    normal scores of the ranks, for which the effects are means of R² over all orders of the
-    properties; studies draw correlated properties with normal scores. Intervals as in
-    :func:`sobol`.
+    What two properties explain together is divided evenly among them (A. B. Owen and C. Prieur, "On
+    Shapley value for measuring importance of dependent inputs", SIAM/ASA J. Uncertainty
+    Quantification 5 (2017)). The model is linear in the normal scores of the ranks, with which
+    studies draw correlated properties; the effects are then means over all orders of the properties
+    of what each adds to R². Parameters and intervals as in :func:`sobol`.
 
-    :param inputs: as in :func:`effects`; ``output`` and ``seed`` as in :func:`sobol`
     :raises Refused: if there are fewer than ten rows a property, or more than MAX_PROPERTIES
     """
     inputs, x, y = _varying(inputs, output)
@@ -148,9 +134,8 @@ def shapley(inputs, output, seed=1):
         raise Refused(f"Shapley effects: {k} properties, there must be at most {MAX_PROPERTIES}")
     scores = lambda rows: stats.norm.ppf(_ranks(x[rows]))
     explained = _explained(np.column_stack([np.ones(n), scores(slice(None))]), y)
-    again = lambda rows: _meanShares(np.corrcoef(scores(rows).T, y[rows]))
-    shares = again(np.arange(n))
-    ends = _withIntervals(shares / (shares.sum() or 1), again, n, seed, explained)
+    sharesOf = lambda rows: _meanShares(np.corrcoef(scores(rows).T, y[rows]))
+    ends = explained * _withIntervals(sharesOf, n, seed)
     found = {name: Interval(*one) for name, one in zip(inputs, ends)}
     return Shapley(explained, dict(sorted(found.items(), key=lambda item: -item[1].value)))
 
@@ -179,35 +164,32 @@ def _explained(terms, y):
     return max(0.0, 1 - errors @ errors / (len(y) * y.var()))
 
 
-def _withIntervals(shares, again, n, seed, explained):
-    """Shares of what is explained as shares of all: an array whose last axis has value, low, high.
+def _withIntervals(sharesOf, n, seed):
+    """Shares, an array whose last axis has value, low and high.
 
-    :param again: function of the numbers of some rows that gives their shares
+    :param sharesOf: function of the numbers of some of the n rows
     """
-    generator = np.random.default_rng(seed)
-    resampled = [again(generator.integers(n, size=n)) for _ in range(RESAMPLES)]
+    generator, shares = np.random.default_rng(seed), sharesOf(np.arange(n))
+    resampled = [sharesOf(generator.integers(n, size=n)) for _ in range(RESAMPLES)]
     half = stats.norm.ppf((1 + CONFIDENCE) / 2) * np.std(resampled, axis=0)
-    low, high = np.clip([shares - half, shares + half], 0, 1)
-    return explained * np.stack([shares, low, high], axis=-1)
+    return np.stack([shares, *np.clip([shares - half, shares + half], 0, 1)], axis=-1)
 
 
 def _meanShares(matrix):
-    """Of every input the growth of R² by it, the mean over all orders of the inputs.
+    """Of every input its share in R², the mean over all orders of the inputs of what it adds.
 
     :param matrix: correlations of the inputs and, at the end, the output
     """
     k = len(matrix) - 1
-    subsets = [s for size in range(k + 1) for s in itertools.combinations(range(k), size)]
-    explained = {}
-    for one in subsets:
+    found, explained = np.zeros(k), {}
+    for one in (s for size in range(k + 1) for s in itertools.combinations(range(k), size)):
         own = matrix[list(one), -1]
         explained[one] = own @ np.linalg.pinv(matrix[np.ix_(one, one)]) @ own if one else 0.0
-    found = np.zeros(k)
-    for one in subsets:
-        weight = 1 / (k * math.comb(k - 1, len(one))) if len(one) < k else 0.0
-        for i in {*range(k)} - {*one}:
-            found[i] += weight * (explained[tuple(sorted((*one, i)))] - explained[one])
-    return found
+        for i in one:
+            before = tuple(n for n in one if n != i)
+            added = explained[one] - explained[before]
+            found[i] += added / (k * math.comb(k - 1, len(before)))
+    return found / (found.sum() or 1)
 
 
 def _unfit(what, x, y):
