@@ -76,8 +76,8 @@ class ByName(dict):
 
 def isNumber(value):
     """Whether a value is a real number. True and False are not."""
-    kind = type(value)
-    return kind is float or kind is not bool and isinstance(value, Real)
+    own = type(value)
+    return own is float or own is not bool and isinstance(value, Real)
 
 
 def asFloat(value):
@@ -357,7 +357,7 @@ def validatorOf(hint: Any) -> Validator | None:
 
 
 class _WithoutKinds(ast.NodeTransformer):
-    """Leaves of ``Annotated[type, kind]`` the type."""
+    """Leaves of ``Annotated[type, validator]`` the type."""
 
     def visit_Subscript(self, node):
         self.generic_visit(node)
@@ -366,7 +366,7 @@ class _WithoutKinds(ast.NodeTransformer):
 
 
 def typeOf(hint: Any) -> Any:
-    """A type hint, perhaps a text, without its kinds."""
+    """A type hint, perhaps a text, without its validators."""
     if isinstance(hint, str):
         return ast.unparse(_WithoutKinds().visit(ast.parse(hint)))
     if get_origin(hint) is Annotated:
@@ -381,7 +381,7 @@ def typeOf(hint: Any) -> Any:
 def validated(act: F) -> F:
     """Let a function, or a class, check its arguments by the validators of its hints.
 
-    A function gets ``kinds``, which returns these by name, and ``checked``, a function of its
+    A function gets ``validators``, which returns these by name, and ``checked``, a function of its
     positional and its named arguments that gives both as validators return them.
 
     :raises Refused: from the function, with all problems
@@ -393,13 +393,13 @@ def validated(act: F) -> F:
     called = act.__qualname__.removesuffix(".__init__").rpartition(".")[2]
 
     @functools.cache  # its hints name classes that are made later
-    def kinds() -> dict[str, Validator]:
+    def validators() -> dict[str, Validator]:
         hints = get_type_hints(act, include_extras=True)
         hints.pop("return", None)
         return {n: found for n, hint in hints.items() if (found := validatorOf(hint))}
 
     def checked(args, settings):
-        return _checked(called, signature, kinds(), args, settings)
+        return _checked(called, signature, validators(), args, settings)
 
     @functools.wraps(act)
     def command(*args: Any, **settings: Any) -> Any:
@@ -408,11 +408,11 @@ def validated(act: F) -> F:
 
     parameters = [p.replace(annotation=typeOf(p.annotation)) for p in signature.parameters.values()]
     typed = signature.replace(parameters=parameters)  # what help() shows
-    vars(command).update(kinds=kinds, checked=checked, __signature__=typed)
+    vars(command).update(validators=validators, checked=checked, __signature__=typed)
     return cast(F, command)
 
 
-def _checked(command, signature, kinds, args, settings):
+def _checked(command, signature, validators, args, settings):
     parameters, problems = signature.parameters, []
     more = {n for n, p in parameters.items() if p.kind in (p.VAR_POSITIONAL, p.VAR_KEYWORD)}
     known = {n: v for n, v in settings.items() if more or n in parameters}
@@ -431,9 +431,9 @@ def _checked(command, signature, kinds, args, settings):
     missing = [n for n in needed if n not in {*given, *more}]
     if missing:
         problems.append(f"{command}: {', '.join(missing)} must be given")
-    for one in [n for n in given if n in kinds]:
+    for one in [n for n in given if n in validators]:
         many = parameters[one].kind is inspect.Parameter.VAR_POSITIONAL
-        validator = listOf(kinds[one], 0) if many else kinds[one]
+        validator = listOf(validators[one], 0) if many else validators[one]
         try:
             found = validator(given[one], context)
             given[one] = tuple(found) if many else found
