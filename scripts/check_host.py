@@ -8,7 +8,8 @@
 
 Compared are the virtual functions and the size of each class of Yade.hpp, and the functions that
 the plugin calls, with the tables of the YADE versions that the plugin knows. Needs binutils, which
-g++ brings.
+g++ brings. The exit status is 0 if the plugin fits, 1 if it does not, and 2 if the package cannot
+be read.
 """
 
 import functools
@@ -22,6 +23,7 @@ from itertools import zip_longest
 HOST = pathlib.Path(__file__).resolve().parents[1] / "yade_plugin" / "host"
 TABLES = HOST / "tables"
 WORD = 8  # [bytes]
+UNREADABLE = 2  # exit status
 HEAD = (
     2  # words before slot 0: the distance to the beginning of the object, and the type information
 )
@@ -39,8 +41,22 @@ SHORTER = [
 ]
 
 
+class Unreadable(Exception):
+    """What was given is no YADE that can be read."""
+
+
 def output(*command, text=None):
-    return subprocess.run(command, input=text, capture_output=True, text=True, check=True).stdout
+    """What a program prints. Raises Unreadable."""
+    try:
+        done = subprocess.run(command, input=text, capture_output=True, text=True)
+    except OSError as error:
+        raise Unreadable(f"cannot run {command[0]}: {error.strerror}") from None
+    except UnicodeDecodeError:
+        raise Unreadable(f"{command[-1]}: {command[0]} finds no text in it") from None
+    if done.returncode:
+        said = done.stderr.strip() or f"exit status {done.returncode}"
+        raise Unreadable(f"{command[0]} cannot read it: {said}")
+    return done.stdout
 
 
 def declaredClasses():
@@ -120,7 +136,7 @@ class Yade:
             key=lambda p: (p.parent.name != "yade-double", p),
         )
         if not core:
-            sys.exit(f"{folder}: no libyade.so in it")
+            raise Unreadable(f"{folder}: no libyade.so in it")
         paths = sorted(core[0].parent.glob("lib*.so"), key=lambda p: p.name != "libyade.so")
         libraries = [Library(str(path)) for path in paths]
         classes = {}
@@ -129,6 +145,8 @@ class Yade:
             size = next(filter(None, (one.sizeOf(name) for one in libraries)), None)
             if table:
                 classes[name] = size, table
+        if not classes:
+            raise Unreadable(f"{core[0]}: no class of YADE in it")
         symbols = set().union(*(library.symbols for library in libraries))
         return cls(version, classes, symbols)
 
@@ -200,7 +218,7 @@ def read(package):
     if not package.endswith(".deb"):
         return Yade.ofFolder(package, "this YADE")
     with tempfile.TemporaryDirectory() as folder:
-        subprocess.run(["dpkg-deb", "-x", package, folder], check=True)
+        output("dpkg-deb", "-x", package, folder)
         return Yade.ofFolder(folder, output("dpkg-deb", "-f", package, "Version").strip())
 
 
@@ -236,5 +254,10 @@ def main(package, *options):
 
 if __name__ == "__main__":
     if len(sys.argv) < 2 or not pathlib.Path(sys.argv[1]).exists():
-        sys.exit(__doc__)
-    main(*sys.argv[1:])
+        print(__doc__, file=sys.stderr)
+        sys.exit(UNREADABLE)
+    try:
+        main(*sys.argv[1:])
+    except Unreadable as error:
+        print(f"{sys.argv[1]}: {error}", file=sys.stderr)
+        sys.exit(UNREADABLE)

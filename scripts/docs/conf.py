@@ -9,7 +9,7 @@ from typing import Annotated, get_args, get_origin
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 
-import kinds
+import validators
 import masonry
 from docutils import nodes
 from masonry.stages import LATER
@@ -63,18 +63,18 @@ else:
     html_css_files = ["site.css"]
 
 
-def _kindsOf(word):
-    """The kinds of the arguments of a word, also under its decorators."""
-    while word and not hasattr(word, "kinds"):
-        word = getattr(word, "__wrapped__", None)
-    return word.kinds() if word else {}
+def _validatorsOf(command):
+    """The validators of the arguments of a command, also under its decorators."""
+    while command and not hasattr(command, "validators"):
+        command = getattr(command, "__wrapped__", None)
+    return command.validators() if command else {}
 
 
 def _withTypes(lines, checks):
     """A docstring with the type, unit and bounds of each argument, as its check has them."""
     text, types, more = "\n".join(lines), [], []
-    for one, kind in checks.items():
-        said = kinds.meaning(kind)
+    for one, validator in checks.items():
+        said = validators.meaning(validator)
         if f":param {one}:" not in text:
             more.append(f":param {one}: {said}")
         elif said:
@@ -96,14 +96,14 @@ def typesFromChecks(app, what, name, thing, options, lines):
     function = thing.__init__ if inspect.isclass(thing) else thing
     at = next((n for n, line in enumerate(lines) if line.startswith(AFTER)), len(lines))
     later = {stage.__name__: stage for stage in LATER}.get(name.rpartition(".")[2])
-    found = _withTypes(lines[:at], _kindsOf(function))
+    found = _withTypes(lines[:at], _validatorsOf(function))
     if at < len(lines):
-        found += ["", *_withTypes(lines[at:], _kindsOf(later))]
+        found += ["", *_withTypes(lines[at:], _validatorsOf(later))]
     lines[:] = found
 
 
 class ConstantDocumenter(DataDocumenter):
-    """A constant without its value where that holds functions, and a type with its kind in
+    """A constant without its value where that holds functions, and a type with its validator in
     words."""
 
     def should_suppress_value_header(self):
@@ -113,8 +113,8 @@ class ConstantDocumenter(DataDocumenter):
     def update_content(self, more_content):
         if get_origin(self.object) is not Annotated:
             return super().update_content(more_content)
-        hint, kind = get_args(self.object)[:2]
-        more_content.append(f"{restify(hint)}: {kinds.meaning(kind)}", "")
+        hint, validator = get_args(self.object)[:2]
+        more_content.append(f"{restify(hint)}: {validators.meaning(validator)}", "")
         super(GenericAliasMixin, self).update_content(more_content)
 
 

@@ -59,13 +59,25 @@ def nearest(name, names):
     return f", did you mean {close[0]!r}?" if close else ""
 
 
+class ByName(dict):
+    """A dict by names. A name that it does not have raises Refused with those that it has."""
+
+    def __init__(self, what: str) -> None:
+        super().__init__()
+        self.what = what
+
+    def __missing__(self, name):
+        there = ", ".join(map(str, self)) or "none"
+        raise Refused(f"no {self.what} {name!r}{nearest(name, self)}; there are {there}")
+
+
 # -- validators ------------------------------------------------------------------------------------
 
 
 def isNumber(value):
     """Whether a value is a real number. True and False are not."""
-    kind = type(value)
-    return kind is float or kind is not bool and isinstance(value, Real)
+    own = type(value)
+    return own is float or own is not bool and isinstance(value, Real)
 
 
 def asFloat(value):
@@ -345,7 +357,7 @@ def validatorOf(hint: Any) -> Validator | None:
 
 
 class _WithoutKinds(ast.NodeTransformer):
-    """Leaves of ``Annotated[type, kind]`` the type."""
+    """Leaves of ``Annotated[type, validator]`` the type."""
 
     def visit_Subscript(self, node):
         self.generic_visit(node)
@@ -354,7 +366,7 @@ class _WithoutKinds(ast.NodeTransformer):
 
 
 def typeOf(hint: Any) -> Any:
-    """A type hint, perhaps a text, without its kinds."""
+    """A type hint, perhaps a text, without its validators."""
     if isinstance(hint, str):
         return ast.unparse(_WithoutKinds().visit(ast.parse(hint)))
     if get_origin(hint) is Annotated:
@@ -369,7 +381,7 @@ def typeOf(hint: Any) -> Any:
 def validated(act: F) -> F:
     """Let a function, or a class, check its arguments by the validators of its hints.
 
-    A function gets ``kinds``, which returns these by name, and ``checked``, a function of its
+    A function gets ``validators``, which returns these by name, and ``checked``, a function of its
     positional and its named arguments that gives both as validators return them.
 
     :raises Refused: from the function, with all problems
@@ -381,13 +393,13 @@ def validated(act: F) -> F:
     called = act.__qualname__.removesuffix(".__init__").rpartition(".")[2]
 
     @functools.cache  # its hints name classes that are made later
-    def kinds() -> dict[str, Validator]:
+    def validators() -> dict[str, Validator]:
         hints = get_type_hints(act, include_extras=True)
         hints.pop("return", None)
         return {n: found for n, hint in hints.items() if (found := validatorOf(hint))}
 
     def checked(args, settings):
-        return _checked(called, signature, kinds(), args, settings)
+        return _checked(called, signature, validators(), args, settings)
 
     @functools.wraps(act)
     def command(*args: Any, **settings: Any) -> Any:
@@ -396,11 +408,11 @@ def validated(act: F) -> F:
 
     parameters = [p.replace(annotation=typeOf(p.annotation)) for p in signature.parameters.values()]
     typed = signature.replace(parameters=parameters)  # what help() shows
-    vars(command).update(kinds=kinds, checked=checked, __signature__=typed)
+    vars(command).update(validators=validators, checked=checked, __signature__=typed)
     return cast(F, command)
 
 
-def _checked(command, signature, kinds, args, settings):
+def _checked(command, signature, validators, args, settings):
     parameters, problems = signature.parameters, []
     more = {n for n, p in parameters.items() if p.kind in (p.VAR_POSITIONAL, p.VAR_KEYWORD)}
     known = {n: v for n, v in settings.items() if more or n in parameters}
@@ -419,9 +431,9 @@ def _checked(command, signature, kinds, args, settings):
     missing = [n for n in needed if n not in {*given, *more}]
     if missing:
         problems.append(f"{command}: {', '.join(missing)} must be given")
-    for one in [n for n in given if n in kinds]:
+    for one in [n for n in given if n in validators]:
         many = parameters[one].kind is inspect.Parameter.VAR_POSITIONAL
-        validator = listOf(kinds[one], 0) if many else kinds[one]
+        validator = listOf(validators[one], 0) if many else validators[one]
         try:
             found = validator(given[one], context)
             given[one] = tuple(found) if many else found

@@ -57,6 +57,8 @@ PLATEAU, PLATEAU_START = 0.95, 0.5
 ROUND_OFF = 1e-9
 
 CONVENTION = "a convention for masonry walls"
+WARNED = "the run warns: "  # how notes that repeat its warnings begin
+
 #: The rules, and where each comes from.
 RULES = {"masonry": CONVENTION, "en1998": "EN 1998-1:2004, annex B.3, equation (B.6)"}
 #: A rule, a share of the peak, the displacement at which the plastic mechanism forms, and the
@@ -426,12 +428,8 @@ def pushover(directory: FilePath, column: str | None = None) -> Pushover:
         if missing or not data.isPush:
             why = f": curve.csv has no column {', '.join(missing)}" if missing else ""
             raise Refused(f"{directory}: the run has no push{why}")
-        notes: tuple[str, ...] = ()
-        if run.get("too_fast"):
-            share = 100 * run["dynamic_imbalance"]
-            notes = (
-                f"the push was too fast: {share:.2g} % of the force did not reach the supports",
-            )
+        # what spoils the force of the run spoils stiffness and ductility, too
+        notes = tuple(f"{WARNED}{text}" for text in run.get("warnings") or ())
         moved = np.array(data[MOVED])
         return Pushover(str(directory), data, moved, data.carried(), notes)
 

@@ -44,6 +44,10 @@ BEGIN = 0.1  # steps of the first chain over the ranges [-]
 # step of a chain over the deviation of a draw and the root of the dimension: Gelman, Roberts and
 # Gilks (1996)
 STEP = 2.38
+# share of the variance that is no function of the properties: without it the covariance of long
+# lengths is singular, and their likelihood is round-off, another one on every machine [-]
+NUGGET = 1e-8
+LENGTHS = 0.1, 0.3, 1.0  # over the ranges, from which the search of the likeliest lengths begins
 STARTS = 2000  # points of which the most likely one begins the first chain
 MAX_ERROR_RATIO = 0.5  # of the surrogate to the test, beyond which rounds and checks go on [-]
 CHECKS = 4  # runs with the means of the draws that may be added to the rows
@@ -330,8 +334,11 @@ def _kriging(u, column):
         return np.zeros(size + 1), np.ones(size), np.zeros(len(u)), np.zeros(len(u))
     rows, values = ot.Sample(u), ot.Sample(column[:, None])
     smooth, flags = ot.SquaredExponential([1.0] * size, [1.0]), ot.Log.Flags()
+    smooth.setNuggetFactor(NUGGET)
     ot.Log.Show(flags & ~ot.Log.WARN)  # of the bounds of its search
     algorithm = ot.KrigingAlgorithm(rows, values, smooth, ot.LinearBasisFactory(size).build())
+    starts = ot.Sample([[length] * size for length in LENGTHS])
+    algorithm.setOptimizationAlgorithm(ot.MultiStart(ot.TNC(), starts))
     algorithm.run()
     ot.Log.Show(flags)
     result = algorithm.getResult()

@@ -5,6 +5,7 @@ Each function takes numbers and writes one PNG file. ``inputs`` is a dict of the
 property -> its values, one a row, and ``label`` says what the output is, with its unit in brackets.
 """
 
+import contextlib
 import itertools
 
 import numpy as np
@@ -100,24 +101,43 @@ def tornado(path, effects, label):
         right.set_xlabel("correlation of ranks [-]")
 
 
-def sobol(path, found, label):
-    """First and total Sobol indices with their intervals, largest on top."""
+def sobol(path, found, label, rest):
+    """First and total Sobol indices with their intervals, largest on top, and below the share of
+    the variance that they leave.
+
+    :param rest: what has that share
+    """
     indices = dict(reversed(found.indices.items()))
     first, total = zip(*indices.values())
-    with _picture(path, 6.0, 1.3 + 0.38 * len(first)) as figure:
-        axis = figure.subplots()
+    with _shares(path, f"{label}: Sobol indices", found.explained, indices, rest) as axis:
         style = dict(height=0.34, cap=2)
         text = "total, with all interactions"
         _bars(axis, indices, total, -0.18, color=LINE, label=text, **style)
         _bars(axis, indices, first, 0.18, color=POINT, label="first, alone", **style)
+        axis.legend(loc="lower right")
+
+
+def shapley(path, found, label, rest):
+    """Shapley effects with their intervals. Parameters as in :func:`sobol`."""
+    effects = dict(reversed(found.effects.items()))
+    title = f"{label}: Shapley effects of properties that depend on each other"
+    with _shares(path, title, found.explained, effects, rest) as axis:
+        _bars(axis, effects, [*effects.values()], color=POINT, height=0.65)
+
+
+@contextlib.contextmanager
+def _shares(path, title, explained, names, rest):
+    """A picture of shares of the variance, to whose axis bars of some names are added."""
+    with _picture(path, 6.0, 1.5 + 0.38 * len(names)) as figure:
+        axis = figure.subplots()
+        yield axis
+        axis.barh(-1, 1 - explained, color="0.6", height=0.65)
+        axis.set_yticks(range(-1, len(names)), [rest, *map(_shown, names)])
+        axis.set_ylim(-1.7, len(names) - 0.3)
         axis.set_xlim(0, 1.05)
         axis.set_xlabel("share of the variance [-]")
-        figure.suptitle(
-            f"{label}: Sobol indices,\nof a polynomial chaos that explains"
-            f" {100 * found.explained:.0f} % of the variance",
-            fontsize=9,
-        )
-        axis.legend(loc="lower right")
+        text = f"{title},\nof a surrogate that explains {100 * explained:.0f} % of the variance"
+        figure.suptitle(text, fontsize=9)
 
 
 def _bars(axis, names, intervals, shift=0.0, cap=2.5, **settings):

@@ -37,7 +37,8 @@ class Study:
         ``"grid"``: all combinations of the lists, or ``"ida"``, incremental dynamic analysis: the
         scene is shaken by records that grow in strength until it falls. What varies beside that is
         drawn once for every record
-    :param correlation: dict of pairs of names -> rank correlation of two distributions [-]
+    :param correlation: dict of pairs of names -> rank correlation of two distributions [-]; of a
+        tuple of properties its key, or one of them
     :param records: of an ``"ida"``: files as in :mod:`masonry.scene.accelerograms`, with paths from
         the study's file on, or patterns of files such as ``"records/*.AT2"``, or triples of files,
         of three components that act at once
@@ -61,7 +62,7 @@ class Study:
         seed: Annotated[int, whole(0, 2**31 - 1)] = 0,
         vary: Annotated[dict[Any, Any], isA(dict)] | None = None,
         design: Annotated[str, oneOf(*designs.DESIGNS)] = "random",
-        correlation: Annotated[dict[tuple[str, str], float], isA(dict)] | None = None,
+        correlation: Annotated[dict[tuple[Any, Any], float], isA(dict)] | None = None,
         records: FilePath | Sequence[FilePath | Sequence[FilePath]] | None = None,
         levels: Sequence[float] | None = None,
         scales: Sequence[float] | None = None,
@@ -138,18 +139,17 @@ class Study:
 
     def _correlate(self, correlation):
         """Take correlations. Yields what is wrong with them."""
-        joined = lambda key: "+".join(key) if isinstance(key, tuple) else key
         for pair, value in correlation.items():
             if not isinstance(pair, tuple) or len(pair) != 2:
                 yield f"correlation {pair!r}: must be of two names"
                 continue
-            one, two = map(joined, pair)
+            one, two = map(self._columnOf, pair)
             wrong = [reason for n in (one, two) if (reason := self._uncorrelated(n))]
             if one == two:
                 wrong.append("the two names are the same")
             if not isinstance(value, (int, float)) or not -1 < value < 1:
                 wrong.append("it must be above -1 and below 1")
-            if (two, one) in self.correlation:
+            if {(one, two), (two, one)} & {*self.correlation}:
                 wrong.append("given twice")
             yield from (f"correlation {pair!r} = {value!r}: {why}" for why in wrong)
             if not wrong:
@@ -157,17 +157,20 @@ class Study:
 
     def _uncorrelated(self, name):
         """Why a name can have no correlation, or nothing."""
-        if isinstance(self.vary.get(name), Distribution):
+        if name not in self.vary:
+            return f"{name} does not vary"
+        what = self.vary[name]
+        if isinstance(what, Distribution):
             return ""
-        for column, what in self.vary.items():
-            names = tuple(namesOf(column))
-            if name not in (column, *names):
-                continue
-            if isinstance(what, Distribution):
-                return f"{name} varies with others: name it by its key in vary, {names}"
-            kind = type(what).__name__.lower()
-            return f"{name} is a {kind}; only distributions have a correlation"
-        return f"{name} does not vary"
+        form = type(what).__name__.lower()
+        return f"{name} varies as a {form}; only distributions have a correlation"
+
+    def _columnOf(self, key):
+        """The column of ``vary`` that a key of it, or one of its names, stands for."""
+        names = namesOf(key) if isinstance(key, str) else key
+        fits = [column for column in self.vary if {*names} <= {*namesOf(column)}]
+        isField = lambda column: isinstance(self.vary[column], Field)
+        return min(fits, key=isField, default="+".join(map(str, names)))
 
     # -- what follows ------------------------------------------------------------------------------
 

@@ -51,6 +51,15 @@ class Record:
     def __len__(self):
         return len(self.cells["run"])
 
+    @property
+    def correlation(self):
+        """Rank correlations with which properties were drawn, by pairs of their columns; none if
+        the folder has no study.json."""
+        with contextlib.suppress(Refused):
+            study = Folder(self.directory).description()["study"]
+            return {(one, two): rank for one, two, rank in study.get("correlation", ())}
+        return {}
+
     def measure(self, default):
         """The measure that is reported if none is named: the usual one, or else the first answer of
         a stage or script."""

@@ -21,6 +21,8 @@ from masonry.errors import Refused
 from masonry.terminal import say
 from masonry.folders import check
 from masonry.numbers.files import program
+from masonry.numbers.quantities import IMBALANCE
+from masonry.run import batch
 from . import pictures, sensitivity, statistics
 from .demands import QUANTILES, Demands
 from .fragility import nrml as nrmlOf
@@ -83,7 +85,13 @@ def modes(record):
 
 
 def statuses(record):
-    """A line about rows that have no results, if there are any."""
+    """Lines about rows that have no results, or whose push was too fast, if there are any."""
+    fast = record.cells.get("too_fast", []).count("True")
+    if fast:
+        yield (
+            f"note: {fast} of {len(record)} rows, all in the numbers above, were pushed too fast:"
+            f" over {100 * IMBALANCE:g} % of the force does not reach the supports; lower the rate"
+        )
     counts = Counter(text for text in record.cells["status"] if text != "ended")
     if counts:
         names = (f"{n} {status or 'not run'}" for status, n in sorted(counts.items()))
@@ -104,11 +112,27 @@ def draw(record, measure):
             raise Refused("no row has a curve of " + " and ".join(CURVE))
         pictures.fan(path, curves, *map(label, CURVE))
 
-    effects, indices = sensitivity.effects, sensitivity.sobol
+    shares = {"sobol.png": (sensitivity.sobol, pictures.sobol)}
+    drawn = {pair: rank for pair, rank in record.correlation.items() if {*pair} <= {*inputs}}
+    if pairs := drawn or sensitivity.dependent(inputs):
+        shares = {"shapley.png": (sensitivity.shapley, pictures.shapley)}
+        tied = ", ".join(f"{one} and {two} by {rank:.2f}" for (one, two), rank in pairs.items())
+        yield (
+            f"note: correlated by rank are {tied}: Shapley effects, which divide evenly what these"
+            " explain together, stand in place of Sobol indices"
+        )
+    fields = [name for name in record.varied if name.startswith(batch.FIELD)]
+    rest = "random fields\nand what is not followed" if fields else "what is not followed"
+
+    def variance(path):
+        find, picture = shares[os.path.basename(path)]
+        picture(path, find(inputs, values), title, rest)
+
+    effects = sensitivity.effects
     makes = {
         "scatter.png": lambda path: pictures.scatter(path, inputs, values, title),
         "tornado.png": lambda path: pictures.tornado(path, effects(inputs, values), title),
-        "sobol.png": lambda path: pictures.sobol(path, indices(inputs, values), title),
+        **dict.fromkeys(shares, variance),
         "histogram.png": lambda path: pictures.histogram(path, values, title, modes),
         "fragility.png": lambda path: pictures.fragility(path, values, title),
         "curves.png": fan,

@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""How much every varied property decides: changes, rank correlations and Sobol indices.
+"""How much every varied property decides: changes, rank correlations, Sobol indices, and Shapley
+effects where properties depend on each other.
 
-Everything here is found from the rows that a study has, whatever their design, with varied
-properties that are drawn independently of each other. OpenTURNS fits the polynomials.
+Everything here is found from the rows that a study has, whatever their design. OpenTURNS fits the
+polynomials. All shares are of the whole variance: what random fields make, and what is not
+followed, has the rest.
 """
 
 import itertools
@@ -25,14 +27,18 @@ Effect = namedtuple("Effect", "change rank")
 #: makes alone, and the share that it makes alone and together with others.
 Indices = namedtuple("Indices", "first total")
 
-#: The variance that :func:`sobol` could explain [-], by leaving out each row in turn, and the
-#: indices by name.
+#: The share of the variance that :func:`sobol` could explain [-], by leaving out each row in turn,
+#: and the indices by name.
 Sobol = namedtuple("Sobol", "explained indices")
+
+#: The same share of :func:`shapley`, and its :class:`Interval` by name.
+Shapley = namedtuple("Shapley", "explained effects")
 
 SPAN = 0.05, 0.95  # quantiles of a property between which its change is given
 DEGREE = 9  # highest degree of a polynomial in one property
 HYPERBOLIC = 0.6  # norm that keeps products of high powers out
-RESAMPLES = 300  # of the rows, for the intervals of Sobol indices
+RESAMPLES = 300  # of the rows, for the intervals of Sobol indices and Shapley effects
+MAX_PROPERTIES = 12  # of Shapley effects, which need all their subsets
 DEPENDENT = (
     1e-4  # probability that independent properties are taken as dependent ones, over all pairs
 )
@@ -85,9 +91,8 @@ def sobol(inputs, output, seed=1):
 
     The rank of a property is uniform whatever its distribution; indices do not change by that.
     OpenTURNS chooses the polynomials by least angle regression, and the indices are sums of squares
-    of their coefficients. The intervals are those of RESAMPLES samples of the rows, drawn with
-    replacement and ranked again, with the same polynomials; what these leave out, ``explained``
-    tells.
+    of their coefficients, times the share ``explained``. The intervals are those of RESAMPLES
+    samples of the rows, drawn with replacement and ranked again, with the same polynomials.
 
     :param inputs: as in :func:`effects`, drawn independently of each other
     :param output: of every row
@@ -96,43 +101,104 @@ def sobol(inputs, output, seed=1):
     """
     inputs, x, y = _varying(inputs, output)
     n = len(x)
-    refuse([*_unfit(inputs, x, y)])
-    ranks = lambda rows: (stats.rankdata(x[rows], axis=0) - 0.5) / n
-    u = ranks(np.arange(n))
+    tied = dependent(inputs).items()
+    apart = "Sobol indices need independent properties, {} and {} have a rank correlation of {:.2f}"
+    refuse([*_unfit("Sobol indices", x, y), *(apart.format(*pair, rank) for pair, rank in tied)])
     y = (y - y.mean()) / y.std()
-    powers = _polynomials(u, y)
-    terms = _terms(powers, u)
-    coefficients = np.linalg.lstsq(terms, y, rcond=None)[0]
-    hat = np.einsum("ij,ji->i", terms, np.linalg.pinv(terms))
-    errors = (y - terms @ coefficients) / np.maximum(1 - hat, 1e-9)
-    shares = _shares(powers, coefficients)
-    generator, resampled = np.random.default_rng(seed), []
-    for _ in range(RESAMPLES):
-        rows = generator.integers(n, size=n)
-        again = np.linalg.lstsq(_terms(powers, ranks(rows)), y[rows], rcond=None)[0]
-        resampled.append(_shares(powers, again))
-    half = stats.norm.ppf((1 + CONFIDENCE) / 2) * np.std(resampled, axis=0)
-    low, high = np.clip([shares - half, shares + half], 0, 1)
-    ends = np.stack([shares, low, high], axis=-1)  # (first and total, names, 3)
+    powers = _polynomials(_ranks(x), y)
+    fit = lambda terms, y: _shares(powers, np.linalg.lstsq(terms, y, rcond=None)[0])
+    sharesOf = lambda rows: fit(_terms(powers, _ranks(x[rows])), y[rows])
+    explained = _explained(_terms(powers, _ranks(x)), y)
+    ends = explained * _withIntervals(sharesOf, n, seed)
     found = {n: Indices(Interval(*f), Interval(*t)) for n, f, t in zip(inputs, *ends)}
     found = dict(sorted(found.items(), key=lambda item: -item[1].total.value))
-    return Sobol(1 - errors @ errors / n, found)
+    return Sobol(explained, found)
 
 
-def _unfit(names, x, y):
-    """Sentences on why there are no Sobol indices of some rows."""
+def shapley(inputs, output, seed=1):
+    """Shapley effects, the shares of the variance of properties that may depend on each other: a
+    :class:`Shapley`.
+
+    What two properties explain together is divided evenly among them (A. B. Owen and C. Prieur, "On
+    Shapley value for measuring importance of dependent inputs", SIAM/ASA J. Uncertainty
+    Quantification 5 (2017)). The model is linear in the normal scores of the ranks, with which
+    studies draw correlated properties; the effects are then means over all orders of the properties
+    of what each adds to R². Parameters and intervals as in :func:`sobol`.
+
+    :raises Refused: if there are fewer than ten rows a property, or more than MAX_PROPERTIES
+    """
+    inputs, x, y = _varying(inputs, output)
+    n, k = x.shape
+    refuse([*_unfit("Shapley effects", x, y)])
+    if k > MAX_PROPERTIES:
+        raise Refused(f"Shapley effects: {k} properties, there must be at most {MAX_PROPERTIES}")
+    scores = lambda rows: stats.norm.ppf(_ranks(x[rows]))
+    explained = _explained(np.column_stack([np.ones(n), scores(slice(None))]), y)
+    sharesOf = lambda rows: _meanShares(np.corrcoef(scores(rows).T, y[rows]))
+    ends = explained * _withIntervals(sharesOf, n, seed)
+    found = {name: Interval(*one) for name, one in zip(inputs, ends)}
+    return Shapley(explained, dict(sorted(found.items(), key=lambda item: -item[1].value)))
+
+
+def dependent(inputs):
+    """Pairs of properties that are no independent draws, by their rank correlation [-]: a dict."""
+    kept = {name: values for name, values in inputs.items() if np.ptp(values) > 0}
+    found, pairs = {}, [*itertools.combinations(kept, 2)]
+    for one, two in pairs:
+        rank = stats.spearmanr(kept[one], kept[two])
+        if rank.pvalue < DEPENDENT / len(pairs):
+            found[one, two] = float(rank.statistic)
+    return found
+
+
+def _ranks(x):
+    """Ranks of the values of every column, between 0 and 1."""
+    return (stats.rankdata(x, axis=0) - 0.5) / len(x)
+
+
+def _explained(terms, y):
+    """The share of the variance that a regression explains, by leaving out each row in turn [-]; 0
+    if it is worse than the mean."""
+    hat = terms @ np.linalg.pinv(terms)
+    errors = (y - hat @ y) / np.maximum(1 - hat.diagonal(), 1e-9)
+    return max(0.0, 1 - errors @ errors / (len(y) * y.var()))
+
+
+def _withIntervals(sharesOf, n, seed):
+    """Shares, an array whose last axis has value, low and high.
+
+    :param sharesOf: function of the numbers of some of the n rows
+    """
+    generator, shares = np.random.default_rng(seed), sharesOf(np.arange(n))
+    resampled = [sharesOf(generator.integers(n, size=n)) for _ in range(RESAMPLES)]
+    half = stats.norm.ppf((1 + CONFIDENCE) / 2) * np.std(resampled, axis=0)
+    return np.stack([shares, *np.clip([shares - half, shares + half], 0, 1)], axis=-1)
+
+
+def _meanShares(matrix):
+    """Of every input its share in R², the mean over all orders of the inputs of what it adds.
+
+    :param matrix: correlations of the inputs and, at the end, the output
+    """
+    k = len(matrix) - 1
+    found, explained = np.zeros(k), {}
+    for one in (s for size in range(k + 1) for s in itertools.combinations(range(k), size)):
+        own = matrix[list(one), -1]
+        explained[one] = own @ np.linalg.pinv(matrix[np.ix_(one, one)]) @ own if one else 0.0
+        for i in one:
+            before = tuple(n for n in one if n != i)
+            added = explained[one] - explained[before]
+            found[i] += added / (k * math.comb(k - 1, len(before)))
+    return found / (found.sum() or 1)
+
+
+def _unfit(what, x, y):
+    """Sentences on why some rows have no shares of the variance."""
     n, k = x.shape
     if n < 10 * k:
-        yield f"Sobol indices of {k} properties need {10 * k} rows or more, there are {n}"
-    for (one, first), (two, second) in itertools.combinations(zip(names, x.T), 2):
-        found = stats.spearmanr(first, second)
-        if found.pvalue < 2 * DEPENDENT / (k * (k - 1)):
-            yield (
-                f"Sobol indices need independent properties, {one} and {two} have a rank"
-                f" correlation of {found.statistic:.2f}"
-            )
+        yield f"{what} of {k} properties need {10 * k} rows or more, there are {n}"
     if np.ptp(y) == 0:
-        yield "Sobol indices: all results are the same"
+        yield f"{what}: all results are the same"
 
 
 def _polynomials(u, y):

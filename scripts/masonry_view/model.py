@@ -190,7 +190,7 @@ class Model:
 
         :param magnification: None: that of :func:`masonry_view.views.magnificationOf`
         """
-        needed = "area damage_shear damage_tension normal opening slide".split()
+        needed = "area bodies damage_shear damage_tension normal opening slide".split()
         joints = readFrame(self.directory, "joints", self.numbers[-1], needed)
         points = self.points[self.framed]
         towards = viewOf(points, joints["normal"], joints["area"]).towards

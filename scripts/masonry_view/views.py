@@ -11,6 +11,7 @@ from masonry.numbers.cracks import widths
 MAGNIFICATIONS = 30, 20, 10, 5, 2, 1
 MAX_DISPLACEMENT = 0.25  # largest drawn displacement over the size of the structure
 OVERLAP = 0.25  # how far blocks overlap at most where a joint closed, over the height of a course
+MAX_GAP = 1.0  # how far a block is drawn away from all others at most, over the height of a course
 #: From where a structure is seen in space, in plan beside its front and over the ground [°].
 ASIDE, ABOVE = 32, 24
 #: Names of views that are not from the front.
@@ -110,8 +111,8 @@ def _viewFrom(away, points, either):
 
 
 def magnificationOf(joints, moved, blocks):
-    """How much displacements are magnified: as usual, less where blocks would be drawn far away or
-    over each other, and not at all where no joint is cracked.
+    """How much displacements are magnified: as usual, less where blocks would be drawn far away,
+    over each other or in the air, and not at all where no joint is cracked.
 
     :param joints: the frame of the joints, or None
     :param moved: displacements of points of the blocks (n, 3) [m]
@@ -121,9 +122,18 @@ def magnificationOf(joints, moved, blocks):
         return 1
     size = np.ptp(np.concatenate(blocks), axis=0).max()
     far = np.linalg.norm(moved, axis=1).max()
-    closed, most = max(-joints["opening"].min(), 0), OVERLAP * courseOf(blocks)
-    fits = lambda m: m * far <= MAX_DISPLACEMENT * size and m * closed <= most
+    closed, gap, course = max(-joints["opening"].min(), 0), _largestGap(joints), courseOf(blocks)
+    limits = (far, MAX_DISPLACEMENT * size), (closed, OVERLAP * course), (gap, MAX_GAP * course)
+    fits = lambda m: all(m * value <= most for value, most in limits)
     return next(filter(fits, MAGNIFICATIONS), 1)
+
+
+def _largestGap(joints):
+    """How far the loosest block is away from all its neighbours [m]: 0 if each touches one."""
+    bodies, index = np.unique(joints["bodies"], return_inverse=True)
+    gaps = np.full(len(bodies), np.inf)
+    np.minimum.at(gaps, index.reshape(-1), np.repeat(joints["opening"], 2))
+    return gaps.max()
 
 
 def courseOf(blocks):

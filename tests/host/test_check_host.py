@@ -25,6 +25,18 @@ def test_the_yade_that_is_installed_fits_as_its_own_version(capsys):
     assert end.value.code == 0 and f"fits: as {yade.config.version}" in said, said
 
 
+@mark.parametrize("name", ["libyade.deb", "folder", "damaged"])
+def test_what_cannot_be_read_has_a_status_of_its_own(tmp_path, name):
+    (tmp_path / "libyade.deb").write_bytes(b"!<arch>\ndebian-binary   \xff")
+    (tmp_path / "folder").mkdir()
+    (tmp_path / "damaged").mkdir()
+    (tmp_path / "damaged" / "libyade.so").write_bytes(b"\x7fELF\x02\x01\x01" + 40 * b"\xfe")
+    command = [sys.executable, PATH, str(tmp_path / name)]
+    done = subprocess.run(command, capture_output=True, text=True)
+    assert done.returncode == 2 and "Traceback" not in done.stderr
+    assert done.stderr.startswith(str(tmp_path / name)) and done.stdout == ""
+
+
 def test_three_releases_differ_in_what_is_known_of_them():
     """The function more in the shapes of 2026.1.0, two members of its integrator, and no Polyhedra
     without CGAL."""

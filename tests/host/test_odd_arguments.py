@@ -24,7 +24,7 @@ from masonry_view import measure, report
 from masonry_study import Study, variables
 
 sys.path.insert(1, os.path.join(ROOT, "scripts", "docs"))
-import kinds
+import validators
 
 SEED = int(os.environ.get("ODD_SEED", 1))
 DRAWN = 4  # values of each argument
@@ -533,14 +533,14 @@ def test_odd_values_are_refused_in_a_sentence_or_mean_something(folder, name):
 # -- every word is here ----------------------------------------------------------------------------
 
 
-def test_every_word_of_a_scene_has_an_example_and_kinds_of_all_its_arguments():
+def test_every_word_of_a_scene_has_an_example_and_validators_of_all_its_arguments():
     members = inspect.getmembers(Scene, lambda t: callable(t) and argumentsOf(t))
     words = {n for n, _ in members if not n.startswith("_")} - INTERNAL
     examples = {name.partition(",")[0] for name in WORDS}
     assert words == examples
     for name in examples:
-        act = inspect.unwrap(getattr(Scene, name), stop=lambda f: hasattr(f, "kinds"))
-        assert set(act.kinds()) == legalOf(name), name
+        act = inspect.unwrap(getattr(Scene, name), stop=lambda f: hasattr(f, "validators"))
+        assert set(act.validators()) == legalOf(name), name
 
 
 def test_every_function_that_scripts_call_has_an_example():
@@ -579,18 +579,18 @@ def test_every_function_that_scripts_call_has_an_example():
 # -- bounds ----------------------------------------------------------------------------------------
 
 
-def commandsWithKinds():
-    """Commands of a scene and functions of the package: tuples of name, argument and kind."""
+def commandsWithValidators():
+    """Commands of a scene and functions of the package: tuples of name, argument and validator."""
     commands = {n.partition(",")[0]: getattr(Scene, n.partition(",")[0]) for n in WORDS}
     commands.update({name: act for name, (act, *_) in CALLS.items()})
     for name, act in commands.items():
         act = vars(act)["__init__"] if isinstance(act, type) and "__init__" in vars(act) else act
-        act = inspect.unwrap(act, stop=lambda f: hasattr(f, "kinds"))
-        for argument, kind in act.kinds().items() if hasattr(act, "kinds") else ():
-            yield name, argument, kind
+        act = inspect.unwrap(act, stop=lambda f: hasattr(f, "validators"))
+        for argument, validator in act.validators().items() if hasattr(act, "validators") else ():
+            yield name, argument, validator
     for name, option in options.OPTIONS.items():
-        if hasattr(option.kind, "of"):
-            yield "option", name, option.kind
+        if hasattr(option.validator, "of"):
+            yield "option", name, option.validator
 
 
 def boundsOf(meant):
@@ -602,11 +602,11 @@ def boundsOf(meant):
     return {what: float(end) for what, end in ends}
 
 
-#: Numbers with bounds, each kind once: what takes it, what the manual says of it, and its bounds.
+#: Numbers with bounds, each validator once: what takes it, what the manual says of it, its bounds.
 BOUNDED = {
-    meant: (f"{name} {argument}", kind, boundsOf(meant))
-    for name, argument, kind in commandsWithKinds()
-    if re.search("number.*(at |above|below|from)", meant := kinds.meaning(kind))
+    meant: (f"{name} {argument}", validator, boundsOf(meant))
+    for name, argument, validator in commandsWithValidators()
+    if re.search("number.*(at |above|below|from)", meant := validators.meaning(validator))
     and not re.search("list|three|free|dict", meant)
 }
 LIES = {"at least": operator.ge, "above": operator.gt, "at most": operator.le, "below": operator.lt}
@@ -614,15 +614,15 @@ LIES = {"at least": operator.ge, "above": operator.gt, "at most": operator.le, "
 
 def takenWithinBounds(value, meant):
     """A value that lies within its bounds is taken; any other is refused with value and bound."""
-    where, kind, ends = BOUNDED[meant]
+    where, validator, ends = BOUNDED[meant]
     whole = "whole number" in meant
     number = isinstance(value, int) or isinstance(value, float) and not whole
     number = number and not isinstance(value, bool) and math.isfinite(value)
     if number and all(LIES[what](value, end) for what, end in ends.items()):
-        assert kind(value) == value, where
+        assert validator(value) == value, where
         return
     with raises(ValueError) as refused:
-        kind(value)
+        validator(value)
     said = str(refused.value)
     assert arguments.shown(value) in said and " must be " in said, where
     for end in ends.values():

@@ -293,7 +293,7 @@ def lines(run, folder):
     whether it waited for a figure."""
     text = (run.stdout + run.stderr).replace(str(folder.parent), "")
     kept = [n for n in text.splitlines() if not n.startswith(BANNER)]
-    kept = [re.sub(r"of \d+ µs, [\d.]+ s|^(yade|python3)\b", "", n) for n in kept]
+    kept = [re.sub(r"in \d+ µs; the run took [\d.]+ s|^(yade|python3)\b", "", n) for n in kept]
     return [n for n in kept if "steps/s" not in n and not n.startswith("waiting for ")]
 
 

@@ -319,6 +319,23 @@ def test_a_room_interlocks(unit, n, m, courses, halves):
     assert {b.part for b in house} == {"front", "right", "back", "left"}
 
 
+@mark.parametrize(
+    "build",
+    [
+        lambda **own: Wall(2.4, 1.6, openings=own.pop("front"), **own),
+        lambda **own: Corner(2.4, 2.4, 1.6, openings=own.pop("front"), **own),
+        lambda **own: Room(2.4, 2.4, 1.6, **own),
+        lambda unit, front: House(2.4, 2.4, [Storey(1.6, front=front)], unit=unit),
+    ],
+)
+@mark.parametrize("bearing", [0.2, 0.4])
+def test_round_off_of_a_lintel_is_no_sliver(build, bearing):
+    """Its end is at 0.8 + 0.8 + 0.4 m, that of a brick at 10 · 0.2 m."""
+    hole = Opening(0.8, 0.4, 0.8, 0.8, Lintel(bearing, 0.4))
+    blocks = build(unit=(0.8, 0.4, 0.4), front=[hole])
+    assert [b for b in blocks if b.kind == "lintel"] and not blocks.problems()
+
+
 def test_walls_that_meet_have_openings_of_their_own():
     hole = Opening(0.66, 0.405, 0.44, 0.405, Lintel(0.22, 0.162))
     corner = Corner(2.2, 2.2, 1.62, openings=[hole], openings2=[hole])

@@ -3,6 +3,7 @@
 
 from usual import *
 from masonry import materials
+from masonry.materials import assumptions
 from masonry.materials.codes import K, TABLE
 
 BRICK = dict(unit_E=40e9, unit=(0.24, 0.12, 0.065), joint=0.01)
@@ -84,6 +85,9 @@ def test_knowledge_and_confidence_decide_what_the_italian_table_says():
         materials.ntc2018("rubble", "LC3")
 
 
+HEADS = "given by a code", "assumed, because it was not given"
+
+
 @mark.parametrize("row", TABLE)
 @mark.parametrize("knowledge", ["LC1", "LC2"])
 def test_every_row_makes_masonry_whose_properties_name_their_clauses(row, knowledge):
@@ -94,6 +98,13 @@ def test_every_row_makes_masonry_whose_properties_name_their_clauses(row, knowle
     assert all(number in said[f"bed.{name}"] for name in of.split())
     assert number in said["unit.density"]
     assert "C8.7.1.3.1.1" in said["bed.friction"]
+    assert all(said[f"bed.{name}"].startswith("by a code: ") for name in of.split())
+    lines = assumptions.linesOf(made.assumed(), False)
+    code, assumed = (lines.index(f"{what} (run.json: assumed):") for what in HEADS)
+    assert code == 0 and all("table C8.5.I" in one or "C8.7.1" in one for one in lines[1:assumed])
+    brief = "\n".join(assumptions.linesOf(made.assumed(), True))
+    count = len([one for one in made.assumed() if "by a code" in one["source"]])
+    assert f"and {count} given by a code" in brief
 
 
 def test_a_value_of_the_users_own_has_no_clause():

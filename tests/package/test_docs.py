@@ -11,7 +11,7 @@ import urllib.parse
 DOCS = os.path.join(ROOT, "scripts", "docs")
 sys.path[:0] = [DOCS, os.path.join(ROOT, "tests", "gates")]
 
-import kinds
+import validators
 import notebooks
 import staging
 import tree
@@ -165,7 +165,7 @@ FLAGS = arguments.listOf(arguments.flag)
 
 
 @mark.parametrize(
-    ("kind", "text"),
+    ("validator", "text"),
     [
         (arguments.number("Pa", 0), "a number at least 0 Pa"),
         (arguments.orNone(arguments.number("s", 0)), "a number at least 0 s, or None"),
@@ -177,8 +177,8 @@ FLAGS = arguments.listOf(arguments.flag)
         (arguments.orFunction(arguments.flag), "True or False, or a function"),
     ],
 )
-def test_what_a_word_takes_is_what_its_check_says(kind, text):
-    assert kinds.meaning(kind) == text
+def test_what_a_word_takes_is_what_its_check_says(validator, text):
+    assert validators.meaning(validator) == text
 
 
 def test_links_lead_to_pages(tmp_path):

@@ -45,3 +45,10 @@ def test_a_scene_of_the_gallery(runScene, name):
     assert run["energy_balance_error"] < 0.01
     assert len(readCurve(out)["time_s"]) > 1
     assert {"curve.png", "cracks.png"} <= {*os.listdir(out)}
+
+
+@mark.long
+def test_a_table_of_runs_beside_bounds_needs_none(runScene):
+    """With --lean there is no limit analysis."""
+    process, _ = runScene("storeys", "--quick", "--rate", "100", "--lean")
+    assert len(re.findall(r"^ +[+-][xy] +-?\d+% +[\d.]+ g +none$", process.stdout, re.M)) == 6

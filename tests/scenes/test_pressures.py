@@ -133,6 +133,10 @@ def test_two_loads_in_proportion_tip_a_stack_at_the_factor_of_statics(tmp_path):
     assert bound["factor"] == approx(limit, rel=2e-3)
 
 
+#: Points on the arch: place and height [m].
+WATCHED = {"one": (0, 1.319), "two": (1, 1.571), "four": (3, 1.571), "five": (4, 1.319)}
+
+
 def bridge(folder, *words):
     """An arch under fill, five places on it, and its highest stone."""
     arch = bricks.Arch(0.25, 0.5, 15, span=4.0, angle=140)
@@ -142,6 +146,8 @@ def bridge(folder, *words):
         scene.hold(n)
     scene.pressure(lambda x, y, z: 18e3 * (2.2 - z), (0, 0, -1), normal=False)
     places = [(2 + x, 0.25, 9) for x in (-1.2, -0.6, 0, 0.6, 1.2)]
+    for name, (n, z) in WATCHED.items():
+        scene.watch((*places[n][:2], z), name=name)
     crown = scene.handle((2, 0.25, scene.description.high[2]), name="crown")
     scene.settle()
     assert scene.travel(2e3, places) == DONE
@@ -155,6 +161,12 @@ def test_an_axle_goes_over_an_arch_and_leaves_nothing(tmp_path):
     answers = {a["name"]: a["value"] for a in run["answers"]}
     assert answers["places_held"] == 5
     assert list(curve["load_factor"][-6:]) == [1, 2, 3, 4, 5, 0]
+    loaded = []
+    for n, name in enumerate(("one", "two", "crown", "four", "five"), 1):
+        moved = curve[f"{name}_z_mm"]
+        loaded.append(moved[-7 + n] - moved[-7])
+    assert answers["largest_displacement"] == approx(min(loaded), rel=0.01)
+    assert min(loaded) < 1.2 * max(loaded) < 0
     # what is elastic comes back
     assert answers["displacement_after"] < 0.05 * -answers["largest_displacement"]
     bounds = [b["factor"] for b in run["bounds"]]

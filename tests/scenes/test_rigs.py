@@ -36,6 +36,19 @@ def test_a_top_whose_force_is_kept_rises_when_the_pier_rocks(tmp_path):
     assert up[-1] - up[1] > 0.3
 
 
+def test_the_base_shear_of_a_push_is_all_that_the_push_meets(tmp_path):
+    """Also what the drive of an earlier push, which keeps its brick in place, carries of it."""
+    scene = standing(tmp_path, bricks.stack(4, (0.4, 0.3, 0.2)), materials.dry(), rate=10)
+    middle, top = scene.handle(1, name="middle"), scene.handle(3, name="top")
+    scene.settle()
+    scene.push(middle, 0.01)
+    scene.push(top, 0.05)
+    curve = scene.curve()
+    base, pushed = curve["base_shear_kN"][-1], curve["top_shear_kN"][-1]
+    assert base == approx(pushed, rel=0.02)
+    assert 0 < -curve["base_force_x_kN"][-1] < 0.9 * base
+
+
 @mark.parametrize("height", [0.5, 0.75])
 def test_the_moment_is_zero_where_the_drive_of_a_free_top_acts(tmp_path, height):
     point = (LENGTH / 2, THICKNESS / 2, height * HEIGHT)

@@ -8,6 +8,7 @@ tutorial are run by test_tutorial.py.
 """
 
 from hosted import *
+from masonry_capacity import bilinear_curve
 
 
 sys.path.insert(1, os.path.join(ROOT, "tests", "gates"))
@@ -94,6 +95,7 @@ ACCELERATION TIME SERIES IN UNITS OF G
 NPTS= 201, DT= .0050 SEC
 """
 SCENE = """
+from masonry_capacity import bilinear_curve
 from masonry import Scene, bricks, materials
 scene = Scene("panel", bricks.stack(2, (0.3, 0.3, 0.2)), materials.dry(friction=0.6))
 scene.platen("bottom")
@@ -214,3 +216,26 @@ def test_every_command_that_has_no_reason_runs(folder):
         "COUPLETS/calibration.png",
     ):
         assert (folder / path).exists()
+
+
+def test_the_page_of_a_wall_has_the_numbers_of_its_run(folder):
+    """Those of WALL.md, to the digits that stand there; errors of the balance are round-off."""
+    page = tree.read("scripts/WALL.md")
+    run = subprocess.run(
+        ["yade", "-n", "-x", "my_wall.py"], cwd=folder, capture_output=True, text=True, timeout=280
+    )
+    said = [" ".join(line.split()) for line in run.stdout.splitlines()]
+    printed = re.findall(r"^    (limit analysis: .*|pier: .*)$", page, re.M)
+    assert len(printed) == 2 and {*printed} <= {*said}
+    entries = json.loads((folder / "results" / "pier" / "run.json").read_text())
+    rows = dict(re.findall(r"^\| `(\w+)` \| (\S+) \|", page, re.M))
+    assert rows.pop("warnings") == "none" and entries["warnings"] == []
+    assert entries["energy_balance_error"] < 30 * float(rows.pop("energy_balance_error"))
+    capacity = bilinear_curve.ofRun(folder / "results" / "pier", "en1998")
+    entries.update(K=capacity.stiffness, Vy=capacity.yieldForce, du=capacity.ultimateDisplacement)
+    pattern = r"of (\S+) kN/mm, a yield force of (\S+) kN and an ultimate displacement of (\S+) mm"
+    rows.update(zip(("K", "Vy", "du"), re.search(pattern, page).groups()))
+    assert len(rows) == 6
+    for name, text in rows.items():
+        digits = len(text.replace(".", "").lstrip("0"))
+        assert f"{entries[name]:.{digits}g}" == text, name

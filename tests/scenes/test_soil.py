@@ -53,6 +53,21 @@ def test_the_slowest_period_is_that_of_rocking(tmp_path, length, height, place):
     assert scene.model.supports.slowest() == approx(expected, rel=0.03)
 
 
+@mark.parametrize("turned", [0, 90])
+def test_without_tension_the_slowest_period_is_about_the_longer_side(tmp_path, turned):
+    """T = 2π √(I/(k b²/12 - W h/2)), I = m (b²/12 + h²/3), of the shorter side b."""
+    length, height, thickness, stiffness = 4.0, 3.0, 1.0, 1e8
+    wall = bricks.Wall(length, height, (0.5, thickness, 0.25), halves=False).turned(turned)
+    scene = lean(tmp_path, wall, materials.dry(density=DENSITY), plane=False)
+    scene.platen("bottom", springs={"z": stiffness}, uplift=True, height=0.01)
+    scene.begin()
+    mass = DENSITY * length * height * thickness
+    inertia = mass * (thickness**2 / 12 + height**2 / 3)
+    turning = stiffness * thickness**2 / 12 - mass * G * height / 2
+    expected = 2 * math.pi * math.sqrt(inertia / turning)
+    assert scene.model.supports.slowest() == approx(expected, rel=0.03)
+
+
 @mark.parametrize("plane, slender", [(True, False), (False, True)])
 def test_a_thin_wall_is_slender_unless_it_stays_in_its_plane(plane, slender):
     box = SimpleNamespace(low=(0, 0, 0), high=(1.0, 0.125, 1.0), plane=plane)

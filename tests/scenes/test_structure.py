@@ -251,13 +251,12 @@ def test_wind_overturns_a_wall_at_the_pressure_of_statics(tmp_path):
     for share, ends in ((0.96, AT_REST), (1.04, COLLAPSED)):
         stiff = materials.dry(normalStiffness=2e12)
         scene = standing(tmp_path, blocks, stiff, plane=False)
-        area = scene.wind(share * limit, towards=(0, 1, 0))
-        assert area == approx(0.44 * 0.81)
+        pressed = share * limit * 0.44 * 0.81
+        assert scene.wind(share * limit, towards=(0, 1, 0)) == approx((0, pressed, 0), abs=1e-9)
         assert scene.settle(longest=4) == ends
         assert scene.model.energy.largestError < 1e-3
         if ends == AT_REST:
-            force = 1e-3 * share * limit * area
-            assert last(scene, "base_force_y_kN") == approx(force, rel=0.01)
+            assert last(scene, "base_force_y_kN") == approx(1e-3 * pressed, rel=0.01)
             letGo()
     with raises(SystemExit, match="1"):  # since it fell in settle()
         scene.finish()
@@ -306,6 +305,27 @@ def test_a_platen_below_edges_alone_is_refused(tmp_path):
     dome = bricks.Dome(3.0, 0.25, courses=4, stones=8, angle=90, oculus=0.4)
     with raises(ValueError, match="no horizontal side of a brick lies at the"):
         standing(tmp_path, dome)
+
+
+def test_a_name_that_is_not_there_is_refused_with_those_that_are(tmp_path):
+    scene = standing(tmp_path, THREE)
+    scene.settle()
+    with raises(Refused, match="no target 'bas', did you mean 'base'.; there are base"):
+        scene.targets["bas"]
+    with raises(Refused, match="no column 'time'; there are time_s,"):
+        scene.results.column("time")
+
+
+@mark.parametrize("where, levels", [("bottom", (0.0, -0.3)), ("top", (0.9, 0.0))])
+def test_a_platen_is_at_the_side_of_its_part(tmp_path, where, levels):
+    """A wall beside a road that lies deeper; each of them has a platen at its own side."""
+    wall = bricks.Wall(0.88, 0.9, (0.44, 0.3, 0.3), halves=False)
+    road = bricks.stack(1, (2.0, 0.3, 0.3), part="road").moved(1.5, 0, -0.3)
+    scene = lean(tmp_path, wall + road, plane=False)
+    for part, level in zip(("wall", "road"), levels):
+        target = scene.platen(where, part=part, name=f"{part}_side")
+        low, high = target.box
+        assert (high if where == "bottom" else low)[2] == approx(level)
 
 
 @mark.parametrize("plane", [True, False], ids=["plane", "space"])

@@ -201,6 +201,15 @@ def test_levels_scale_every_record_and_scales_leave_them(tmp_path):
     assert [r["scale"] for r in found] == [1.0, 2.5] * 3
 
 
+def test_the_intensity_of_a_row_is_that_of_its_record_as_it_is_scaled(tmp_path):
+    for own in (dict(levels=None, scales=[1, 2.5]), {}):
+        made = planned(tmp_path, **own)
+        chains = Chains(made.describe())
+        for n, (motion, scale) in enumerate(made.ida.rows(), 1):
+            peak = max(abs(scale * a) for a in motion.values) / 9.81
+            assert chains.intensity(n) == approx(peak, rel=1e-3)
+
+
 def test_a_spectral_acceleration_is_reached_by_every_record(tmp_path):
     made = planned(tmp_path, measure=Sa(0.5))
     for (motion, scale), level in zip(made.ida.rows(), LEVELS * 3):

@@ -59,6 +59,31 @@ def test_a_product_has_total_indices_above_its_first_ones():
     assert found[NAMES[2]].total.high < 0.05
 
 
+def test_indices_are_shares_of_the_whole_variance():
+    """Half of the variance is of a random field, of which no property tells anything."""
+    generator = np.random.default_rng(8)
+    x = uniforms(generator, 400, 0, 1)
+    y = math.sqrt(12) * x[NAMES[0]] + generator.standard_normal(400)
+    found = sensitivity.sobol(x, y)
+    assert found.explained == approx(0.5, abs=0.08)
+    assert found.indices[NAMES[0]].first.value == approx(0.5, abs=0.1)
+
+
+@mark.parametrize("rank", [0.0, 0.5, 0.9])
+def test_shapley_effects_of_two_tied_properties_are_the_closed_form(rank):
+    """y = 2 a + b, of normal numbers with a correlation: the squares of their own terms, and half
+    of what is common to both, 4 rho, plus rho² (1 - 4)/2 which the stronger one has lent (Owen and
+    Prieur, 2017, section 4). A third number tells nothing."""
+    generator = np.random.default_rng(9)
+    a, b, c = generator.standard_normal((3, 4000))
+    b = rank * a + math.sqrt(1 - rank**2) * b
+    found = sensitivity.shapley(dict(zip(NAMES, (a, b, c))), 2 * a + b)
+    variance, lent = 5 + 4 * rank, rank**2 * (4 - 1) / 2
+    shares = (4 + 2 * rank - lent) / variance, (1 + 2 * rank + lent) / variance, 0
+    assert [found.effects[name].value for name in NAMES] == approx(shares, abs=0.03)
+    assert sum(one.value for one in found.effects.values()) == approx(found.explained)
+
+
 def test_effects_are_the_changes_of_a_linear_model():
     generator = np.random.default_rng(4)
     x = uniforms(generator, 400, 0, 1)
@@ -97,6 +122,7 @@ def tied(n=40):
         (lambda: sensitivity.sobol(*tied()), "have a rank correlation of 1.00"),
         (lambda: sensitivity.sobol({"a": range(9)}, range(9)), "there are 9"),
         (lambda: sensitivity.sobol({"a": range(20)}, [1] * 20), "results are the same"),
+        (lambda: sensitivity.shapley({"a": range(9)}, range(9)), "there are 9"),
         (lambda: sensitivity.effects(*tied()), "cannot be told apart"),
         (lambda: sensitivity.effects({"a": [1, 2, 4]}, [1, 2, 3]), "4 rows or more"),
         (lambda: sensitivity.effects({"a": [1, 1]}, [1, 2]), "no property varies"),
@@ -173,16 +199,24 @@ def test_bars_stand_for_the_numbers_with_the_largest_on_top(drawn):
     y = 5 * x[NAMES[0]] - 9 * x[NAMES[1]]
     effects, found = sensitivity.effects(x, y), sensitivity.sobol(x, y)
     pictures.tornado("t.png", effects, PEAK)
-    pictures.sobol("i.png", found, PEAK)
+    pictures.sobol("i.png", found, PEAK, "the rest")
+    shapley = sensitivity.shapley(x, y)
+    pictures.shapley("s.png", shapley, PEAK, "the rest")
     left, _ = drawn["t.png"].axes
     widths = [bar.get_width() for bar in left.patches]
     assert widths == [e.change.value for e in effects.values()][::-1]
     assert left.get_yticklabels()[-1].get_text() == "bed: friction"
     (axis,) = drawn["i.png"].axes
     totals = [bar.get_width() for bar in axis.patches][:3]
-    names = [t.get_text().replace(": ", ".") for t in axis.get_yticklabels()]
+    names = [t.get_text().replace(": ", ".") for t in axis.get_yticklabels()][1:]
     assert totals == [found.indices[name].total.value for name in names]
     assert totals[-1] == max(totals)
+    (axis,) = drawn["s.png"].axes
+    assert [bar.get_width() for bar in axis.patches][2] == shapley.effects[NAMES[1]].value
+    for name, found in (("i.png", found), ("s.png", shapley)):
+        (axis,) = drawn[name].axes
+        assert axis.get_yticklabels()[0].get_text() == "the rest"
+        assert axis.patches[-1].get_width() == approx(1 - found.explained)
 
 
 # -- a study's folder ------------------------------------------------------------------------------
@@ -243,6 +277,27 @@ def test_rows_that_failed_are_reported_and_left_out(tmp_path, capsys):
     assert report.main([folder, "--no-pictures"]) == 0
     said = capsys.readouterr().out
     assert "30 of 40 rows" in said and "rows that have not ended: 10 failed" in said
+
+
+def test_rows_that_were_too_fast_are_counted(tmp_path, capsys):
+    fast = ["True"] * 4 + ["False"] * 20
+    measures = {PEAKS: [*map(str, range(100, 124))], "too_fast": fast}
+    folder = writeStudy(tmp_path / "study", measures)
+    assert report.main([folder, "--no-pictures"]) == 0
+    assert "4 of 24 rows, all in the numbers above, were pushed too fast" in " ".join(capsys.readouterr().out.split())
+
+
+def test_properties_that_were_drawn_with_a_correlation_have_shapley_effects(tmp_path, capsys):
+    """Also where the rows are so few that the correlation could be chance."""
+    folder = writeStudy(tmp_path / "study", {PEAKS: [*map(str, range(100, 140))]})
+    drawn = {"runs": 40, "vary": {}, "correlation": [["bed.cohesion", "bed.friction", 0.5]]}
+    for name, has, hasNot in (("shapley", "shapley", "sobol"), ("sobol", "sobol", "shapley")):
+        (tmp_path / "study" / "study.json").write_text(json.dumps({"script": "", "study": drawn}))
+        assert report.main([folder]) == 0
+        said = " ".join(capsys.readouterr().out.split())
+        assert f"{has}.png" in said and f"{hasNot}.png" not in said
+        assert ("bed.cohesion and bed.friction by 0.50" in said) == (has == "shapley")
+        drawn["correlation"] = []
 
 
 def test_what_is_no_study_is_refused_with_its_name(tmp_path, study, capsys):

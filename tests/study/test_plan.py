@@ -73,6 +73,7 @@ ONE = {"rate": [1]}
 BOTH = ("bed.friction", "bed.residualFriction")
 TIED = {BOTH: uniform(1, 2), "bed.cohesion": uniform(1, 2)}
 PAIR = {("bed.cohesion", "bed.friction"): -0.5}
+FIELD = {BOTH: uniform(1, 2), "bed.cohesion": field(cov=0.3)}
 
 
 @mark.parametrize(
@@ -90,12 +91,22 @@ PAIR = {("bed.cohesion", "bed.friction"): -0.5}
         (dict(runs=1, vary={"rate": {}}), "is no number, list, distribution"),
         (dict(runs=1, vary={"no-vtk": [True]}), "must be an option, with underscores"),
         (dict(runs=1, vary=ONE, correlation={("rate", "x"): 0.5}), "x does not vary"),
-        (dict(runs=1, vary=TIED, correlation=PAIR), "name it by its key"),
+        (dict(runs=1, vary=FIELD, correlation=PAIR), "bed.cohesion varies as a field; only"),
+        (
+            dict(runs=1, vary=TIED, correlation={**PAIR, ("bed.cohesion", BOTH): 0.5}),
+            "given twice",
+        ),
     ],
 )
 def test_a_wrong_study_is_refused(wrong, message):
     with raises(Refused, match=message):
         Study("any", **wrong)
+
+
+@mark.parametrize("key", ["bed.friction", "bed.residualFriction", BOTH, "+".join(BOTH)])
+def test_a_correlation_names_a_tuple_or_one_of_it(key):
+    study = Study("any", runs=1, vary=TIED, correlation={("bed.cohesion", key): -0.5})
+    assert study.correlation == {("bed.cohesion", "+".join(BOTH)): -0.5}
 
 
 @mark.parametrize(

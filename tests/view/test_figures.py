@@ -152,6 +152,7 @@ def jointFrame(opening, closed=0.0, slide=0.0):
         "slide": slide * np.eye(2, 3),
         "damage_tension": one,
         "damage_shear": one,
+        "bodies": np.array([[0, 1], [0, 1]]),
     }
 
 
@@ -166,6 +167,9 @@ def test_the_magnification_is_the_usual_one_unless_that_is_absurd():
     for closed in (1e-4, 1e-3, 5e-3):
         assert of(jointFrame(1e-3, closed), 5e-3) * closed <= H / 4
     assert of(jointFrame(0, 0, 1e-3), 12e-3) == MAGNIFICATIONS[0]
+    # a block in the air is drawn near to where it is
+    for gap in (1e-3, 5e-3, H / 4):
+        assert of(jointFrame(gap, -gap), 5e-3) == next(m for m in MAGNIFICATIONS if m * gap <= H)
 
 
 # -- what hides what -------------------------------------------------------------------------------

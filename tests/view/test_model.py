@@ -345,6 +345,7 @@ def cut(run):
         ),
         (lambda run: writeRun(run, reference_body=9), "names body 9, which is not in the frames"),
         (lambda run: writeRun(run, parts=[1, 2]), "not the files of a finished run"),
+        (lambda run: writeRun(run, parts={"a": [[1, 2], [3]]}), "not the files of a finished run"),
         (
             lambda run: writeRun(run, stages=[{"steps": 1}], time_step_s=3.0),
             "not the files of a finished run",

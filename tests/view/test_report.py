@@ -21,6 +21,10 @@ def test_a_run_leaves_its_report_beside_its_figures(tmp_path):
     assert re.fullmatch(r"\d{4}-\d\d-\d\dT\d\d:\d\d:\d\dZ", run["date"])
     assert run["warnings"] == [] or all(isinstance(w, str) for w in run["warnings"])
     assert ["base", "platen, held"] in run["held_and_loaded"]
+    weights = dict(run["held_and_loaded"])["weight of platens"]
+    # 1800 kg/m³, over the wall, 0.2 m high
+    area = SMALL.length * SMALL.unit[1]
+    assert weights.startswith(f"base {1.8 * 9.81 * 0.2 * area:.4g} kN, top ")
     assert [(t["name"], t["held"]) for t in run["targets"]] == [("base", True), ("top", False)]
     assert ">held<" in text and ">base<" in text  # in the drawing
     assert [word for word, _ in run["script"]] == ["platen", "platen", "press", "settle", "push"]

@@ -111,6 +111,13 @@ RUN = {
         },
         {"name": "bed.friction", "value": 0.43, "unit": "-", "source": "the paper gives no value"},
         {"name": "unit.young", "value": 4.8e9, "unit": "Pa", "source": "default"},
+        {
+            "name": "unit.density",
+            "value": 1800.0,
+            "unit": "kg/m³",
+            "source": "by a code: table C8.5.I",
+            "by_code": True,
+        },
     ],
     "versions": {"yade": "2023.02a", "python": "3.11.2", "masonry": "3.0.0"},
     "commit": "abc1234",
@@ -215,6 +222,7 @@ ROWS = {
     "compressiveStrength": ["MPa", "7.55", "–", "–"],
     "law": [None, "softening", "elastic: no strength is reached", "softening, cannot crush"],
     "Young's modulus of the unitsassumed": ["4,800 MPa"],
+    "density of the unitsby a code": ["1,800 kg/m³"],
     "bed": ["modeIFractureEnergy 0.016 N/mm, friction 0.43", "the paper gives no value"],
     "top": ["platen, held about y; pressed by 0.5 MPa"],
     "2": ["push", "top along x", "4,000", "peak 100 ± 1.5 kN"],
@@ -239,7 +247,7 @@ ROWS = {
 }
 #: Sentences that are somewhere on the page, and texts of its chart.
 SAID = """Peak 100 kN at 1 mm; limit analysis: at most 125 kN.
-until 4 mm; rate 20 mm/s; set –; preset –
+until: 4 mm; rate: 20 mm/s; set: –; preset: –
 The run has no warnings.
 one run does not tell
 no error of peak or work is promised
@@ -433,6 +441,14 @@ def test_without_rows_there_is_a_page_of_the_bound(tmp_path, columns):
     assert "There is no energy balance" in said
 
 
+#: Displacements of many points, beside which their values at the end stand.
+MANY = [
+    (f"{what}_{n}", value / (1 + (what != "largest_displacement")))
+    for n, value in enumerate((-4.0, 3.0, -7.0, 1.0))
+    for what in ("largest_displacement", "displacement")
+]
+
+
 def test_a_run_without_a_push_says_so(tmp_path):
     figure = {
         "x": axis("time_s", "time [s]"),
@@ -450,6 +466,18 @@ def test_a_run_without_a_push_says_so(tmp_path):
     assert "The run has no push, so there are no drifts" in said
     assert "There is no bound" in said
     assert "Largest displacement of top x −4 mm." in said
+    many = [answer("shake", 2, f"{n}_of_top_x", v, "mm") for n, v in MANY]
+    found = page(folder(tmp_path / "many", figure=figure, answers=many, stages=stages, **NO_PUSH))
+    assert "Largest displacement 2 of top x −7 mm." in found.said()
+    assert "Displacement 3 of top x" not in found.said()
+
+
+def test_a_push_whose_force_still_grows_has_no_peak_at_the_head(tmp_path):
+    n = np.linspace(0, 4, 401)
+    columns = {**COLUMNS, "displacement_mm": n, "base_shear_kN": 20 * n, "top_shear_kN": 20 * n}
+    found = dict(peak_at_both_ends_kN=80.0, displacement_at_peak_mm=4.0)
+    said = page(folder(tmp_path, columns=columns, **found)).said()
+    assert "No peak: the force grows to 80 kN at 4 mm" in " ".join(said.split())
 
 
 def test_the_search_for_a_load_leads_with_what_was_held_and_what_was_not(tmp_path):
@@ -490,12 +518,17 @@ def test_several_pushes_are_named(tmp_path):
             "Collapsed: brick 5 falls",
         ),
         ({"interrupted": True}, "The run was interrupted."),
+        ({"error": "half \ud800 a character"}, "The run ended by an error: half ? a character"),
         (
             {"error": "the run has left finite numbers"},
             "The run ended by an error: the run has left finite numbers",
         ),
         ({"warnings": ["the push is too fast"]}, "the push is too fast"),
-        ({"warnings": ...}, "is not whole, because run.json is damaged or of another version"),
+        ({"warnings": ...}, "is not whole: a file of the run is damaged or of another version"),
+        (
+            {"options": {"history": [1.0, 2.5], "set": ["bed.friction=0.5"], "no_vtk": False}},
+            "history: 1, 2.5; set: bed.friction=0.5; no vtk: no.",
+        ),
         ({"assumed": []}, "Nothing was assumed"),
         (
             {"recorded_height_m": None, "drift_at_first_crack_mrad": None},
@@ -519,6 +552,7 @@ def test_what_ended_a_run_and_what_it_lacks_is_said(tmp_path, changed, text):
     assert text in " ".join(page(folder(tmp_path, **changed)).said().split())
 
 
+@mark.filterwarnings("error")
 def test_numbers_that_are_not_finite_and_torn_lines_are_named_and_drawn_around(tmp_path):
     columns = {n: v.copy() for n, v in COLUMNS.items()}
     columns["base_shear_kN"][7] = math.nan
@@ -588,6 +622,7 @@ def test_sections_have_normal_force_shear_and_moment(tmp_path):
 # -- damaged and hostile files ---------------------------------------------------------------------
 
 
+@mark.filterwarnings("error")
 def test_what_stands_in_files_is_text_in_the_report(tmp_path):
     plain = report.page(report.read(folder(tmp_path)))
 

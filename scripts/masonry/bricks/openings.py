@@ -70,7 +70,7 @@ def opened(bricks, openings, unit, levels, ends, ys, part, crossed=None):
     holes, lintels = _holes(openings, unit, levels, ends, crossed, problems)
     refuse(part, problems)
     for _, hole in holes + lintels:  # lintels take the place of bricks, too
-        bricks = _without(bricks, hole)
+        bricks = _without(bricks, hole, WHOLE * unit[0])
     refuse(part, _slivers(bricks, holes + lintels, unit, levels))
     made = []
     for number, (_, (x0, z0, x1, z1)) in enumerate(lintels, _unused(bricks)):
@@ -108,6 +108,7 @@ def _holes(openings, unit, levels, ends, crossed, problems):
             box = (a, z1, b, upWall(z1 + lintel.height))
             lintels.append((f"the lintel of opening {n}", box))
     boxes = holes + lintels
+    near = WHOLE * unit[0]
     for n, (name, box) in enumerate(boxes):
         x0, _, x1, z1 = box
         if x0 < ends[0] or x1 > ends[1]:
@@ -118,28 +119,34 @@ def _holes(openings, unit, levels, ends, crossed, problems):
         if z1 > top:
             problems.append(f"{name} reaches up to {z1:g} m, off the wall of {top:g} m")
         for other, second in boxes[:n]:
-            if _overlap(box, second):
+            if _overlap(box, second, near):
                 problems.append(f"{other} and {name} overlap")
-        if crossed and x0 < crossed[1] and x1 > crossed[0]:
+        if crossed and x0 < crossed[1] - near and x1 > crossed[0] + near:
             problems.append(
                 f"{name} reaches into the junction, from x = {crossed[0]:g} to {crossed[1]:g} m"
             )
     return holes, lintels
 
 
-def _overlap(a, b):
-    return a[0] < b[2] and b[0] < a[2] and a[1] < b[3] and b[1] < a[3]
+def _overlap(a, b, near):
+    """Whether two boxes overlap by more than a length that counts as nothing."""
+    inside = lambda low, high: low + near < high
+    return all(inside(a[i], b[i + 2]) and inside(b[i], a[i + 2]) for i in (0, 1))
 
 
-def _without(bricks, hole):
-    """The bricks outside a hole. A brick at its edge is cut, an L into pieces of it."""
-    x0, z0, x1, z1 = hole
+def _without(bricks, hole, near):
+    """The bricks outside a hole. A brick at its edge is cut, an L into pieces of it.
+
+    :param near: distance of two edges that are one but for round-off [m]
+    """
     found, spare = [], _unused(bricks)
     for brick in bricks:
         (a, ya, c), (b, yb, d) = brick.low, brick.high
-        if not _overlap((a, c, b, d), hole):
+        if not _overlap((a, c, b, d), hole, near):
             found.append(brick)
             continue
+        edges = zip(hole, ((a, b), (c, d)) * 2)
+        x0, z0, x1, z1 = (next((e for e in ends if abs(e - v) <= near), v) for v, ends in edges)
         low, high = max(c, z0), min(d, z1)
         beds = [(a, c, b, z0)] if c < z0 else []
         beds += [(a, z1, b, d)] if d > z1 else []

@@ -27,6 +27,9 @@ NEEDED = {
     MasonryJoint: ["tensileStrength", "cohesion", "friction", "compressiveStrength"],
 }
 
+#: How the source of a property begins whose value a code gives.
+BY_CODE = "by a code: "
+
 #: Source of every property of a joint ``support`` that takes the bed joint.
 AS_BED = "as of the bed joint"
 
@@ -101,7 +104,8 @@ def entriesOf(masonry: Any) -> list[dict[str, Any]]:
     for name, thing in _things(masonry):
         sources, counted = thing.assumed(), effective(thing)
         if AS_BED in sources.values():
-            found.append({"name": name, "value": "bed", "unit": "", "source": SUPPORT})
+            entry = {"name": name, "value": "bed", "unit": ""}
+            found.append({**entry, "source": SUPPORT, "by_code": False})
         for one, p in DESCRIBED[type(thing)].items():
             source, value = sources.get(one, AS_BED), getattr(thing, one)
             if source == AS_BED or isinstance(value, str):
@@ -109,7 +113,7 @@ def entriesOf(masonry: Any) -> list[dict[str, Any]]:
             switched = isinstance(value, bool) and not isDefault(thing, one)
             if switched or one in counted:
                 entry = {"name": f"{name}.{one}", "value": value, "unit": p["unit"]}
-                found.append({**entry, "source": source})
+                found.append({**entry, "source": source, "by_code": source.startswith(BY_CODE)})
     return found
 
 
@@ -141,21 +145,27 @@ def linesOf(
     """What a scene prints of its entries ``assumed``: lines; ``brief``: their number alone."""
     if not entries:
         return []
+    byCode = [entry for entry in entries if entry["by_code"]]
     if brief:
+        others = f", and {len(byCode)} given by a code" if byCode else ""
         return [
-            f"note: {len(entries)} properties of the materials are assumed; run.json lists them"
-            " (assumed)"
+            f"note: {len(entries) - len(byCode)} properties of the materials are assumed{others};"
+            " run.json lists them (assumed)"
         ]
-    kinds = {}
-    for entry in entries:
-        kind, _, what = entry["name"].rpartition(".")
-        if kind:
-            value, unit = entry["value"], entry["unit"].strip("-")
-            text = f"{value:.4g}" if isinstance(value, float) else str(value)
-            what = f"{what} {text} {unit}".rstrip()
-        kinds.setdefault((what, entry["source"]), []).append(kind)
-    lines = ["assumed, because it was not given (run.json: assumed):"]
-    for (what, source), joints in kinds.items():
-        of = f"{', '.join(joints)}: " if joints != [""] else ""
-        lines.append(f"  {of}{what}  ({source})")
+    assumed = [entry for entry in entries if not entry["by_code"]]
+    titles = {"given by a code": byCode, "assumed, because it was not given": assumed}
+    lines = []
+    for title, entries in titles.items():
+        lines += [f"{title} (run.json: assumed):"] * bool(entries)
+        kinds = {}
+        for entry in entries:
+            kind, _, what = entry["name"].rpartition(".")
+            if kind:
+                value, unit = entry["value"], entry["unit"].strip("-")
+                text = f"{value:.4g}" if isinstance(value, float) else str(value)
+                what = f"{what} {text} {unit}".rstrip()
+            kinds.setdefault((what, entry["source"]), []).append(kind)
+        for (what, source), joints in kinds.items():
+            of = f"{', '.join(joints)}: " if joints != [""] else ""
+            lines.append(f"  {of}{what}  ({source.removeprefix(BY_CODE)})")
     return lines

@@ -11,7 +11,7 @@ from ..arguments import isA, number, validated
 from ..errors import refuse
 from ..terminal import say
 from ..bricks.blocks import Sides
-from .assumptions import state
+from .assumptions import BY_CODE, state
 from .codes import MEAN
 from .kinds import Masonry
 
@@ -308,7 +308,8 @@ class DataSheet:
         """Sources of properties whose value is that of a clause; ``names``: by the arguments."""
         given = {**vars(self), "fc": self.compressive}
         of = {n: (self.clauses or {}).get(n, (None, "")) for n in names}
-        return {names[n]: why for n, (value, why) in of.items() if value and given[n] == value}
+        stated = {n: why for n, (value, why) in of.items() if value and given[n] == value}
+        return {names[n]: BY_CODE + why for n, why in stated.items()}
 
 
 P = ParamSpec("P")

@@ -21,7 +21,7 @@ class Property(NamedTuple):
     above: bool = False
 
     @property
-    def kind(self) -> Callable[..., Any]:
+    def validator(self) -> Callable[..., Any]:
         """The validator of its values."""
         return number(self.unit, self.low, self.high, above=self.above)
 
@@ -53,7 +53,7 @@ class Settable:
         problems = []
         for name, value in values.items():
             try:
-                self.known[name].kind(value)
+                self.known[name].validator(value)
             except ValueError as error:
                 problems.append(f"{name} {error}")
         if not problems:

@@ -4,6 +4,7 @@
 import contextlib
 import io
 import os
+import warnings
 
 from ..folders import replaced
 from ..packages import needed
@@ -17,12 +18,17 @@ def empty(width, height):
     return Figure(figsize=(width, height))
 
 
+@contextlib.contextmanager
 def style(settings=()):
-    """A context with the settings of matplotlib of all figures, and more of them in a dict."""
-    needed("matplotlib")
-    import matplotlib.style
+    """A context with the settings of matplotlib of all figures, and more of them in a dict. Its
+    warnings, of glyphs that a font lacks and of labels that find no room, are for developers."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        needed("matplotlib")
+        import matplotlib.style
 
-    return matplotlib.style.context(["default", dict(settings)])
+        with matplotlib.style.context(["default", dict(settings)]):
+            yield
 
 
 @contextlib.contextmanager

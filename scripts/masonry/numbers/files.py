@@ -61,6 +61,8 @@ def readRun(directory: FilePath) -> dict[str, Any]:
         raise Refused(f"{path}: {error}") from None
     if not isinstance(run, dict):
         raise Refused(f"{path}: is no record of a run")
+    if "\\ud" in text.lower():  # halves of a character alone, which no file can have
+        run = json.loads(json.dumps(run, ensure_ascii=False).encode(errors="replace"))
     return run
 
 
@@ -69,7 +71,9 @@ def filesOf(directory: FilePath) -> Iterator[None]:
     """Turn what damaged files, or those of an unfinished run, lead to in a block into Refused."""
     try:
         yield
-    except (KeyError, IndexError, AttributeError, TypeError, SyntaxError) as problem:
+    except Refused:
+        raise
+    except (LookupError, AttributeError, TypeError, ValueError, SyntaxError) as problem:
         raise Refused(
             f"{directory}: these are not the files of a finished run ({type(problem).__name__}:"
             f" {problem})"

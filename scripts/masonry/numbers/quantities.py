@@ -727,17 +727,18 @@ def measures(run):
     return {name: run[name] for name in names if name in run}
 
 
-def headline(run, end=False):
+def headline(run, end=False, grows=False):
     """The peak of a push and its bound in a line, from the entries of run.json; empty without a
     push.
 
     :param end: whether the force at the end stands in place of the bound
+    :param grows: whether the force still grows at the end, so that it has no peak
     """
     at = lambda force, moved: f"{run[force]:.4g} kN at {run[moved]:.4g} mm"
     keys = ("peak_at_both_ends_kN", "displacement_at_peak_mm")
     if run.get(keys[0]) is None or run.get(keys[1]) is None:
         return ""
-    text = f"peak {at(*keys)}"
+    text = f"{'no peak: the force grows to' if grows else 'peak'} {at(*keys)}"
     if run.get("negative_peak_at_both_ends_kN") is not None:
         other = at("negative_peak_at_both_ends_kN", "displacement_at_negative_peak_mm")
         text = f"{len(run['cycles'])} cycles, peaks {at(*keys)} and {other}"

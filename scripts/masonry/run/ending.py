@@ -250,8 +250,9 @@ def _report(run, scene):
         for line in scene.outcome.report(entries):
             say(line)
         say(
-            f"{entries['steps']} steps of {entries.get('microseconds_per_step', 0):.0f} µs,"
-            f" {entries['wall_clock_s']:.1f} s in all; see {directory}"
+            f"{entries['steps']:,} steps, each computed in"
+            f" {entries.get('microseconds_per_step', 0):.0f} µs; the run took"
+            f" {entries['wall_clock_s']:.1f} s; see {directory}"
         )
     if remark := threads.remark():
         say(remark)

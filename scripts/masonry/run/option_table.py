@@ -16,7 +16,7 @@ class Option:
     """An option of all scenes."""
 
     name: str  # as Python has it: dt_fraction is --dt-fraction
-    kind: Validator = text  # of its values, as in masonry.arguments
+    validator: Validator = text  # of its values, as in masonry.arguments
     default: Any = None  # None: the scene says it, or there is none
     value: str | None = None  # what stands for its value in --help
     several: bool = False  # whether it can be given several times
@@ -34,7 +34,7 @@ class Option:
     @property
     def unit(self) -> str:
         """Its unit, or an empty text."""
-        return getattr(self.kind, "unit", "")
+        return getattr(self.validator, "unit", "")
 
     def addTo(self, parser: Any, read: Any = None) -> None:
         """Add it to a parser of argparse, or to a group of one.
@@ -42,26 +42,26 @@ class Option:
         :param read: function of a text in place of :func:`reading`
         """
         settings: dict[str, Any] = {"help": self.meaning, "default": self.default}
-        if self.kind is flag:
+        if self.validator is flag:
             settings.update(action="store_true", default=False)
-        elif hasattr(self.kind, "choices"):
-            settings.update(choices=[*self.kind.choices])
+        elif hasattr(self.validator, "choices"):
+            settings.update(choices=[*self.validator.choices])
         else:
-            settings.update(metavar=self.value, type=read or reading(self.kind))
+            settings.update(metavar=self.value, type=read or reading(self.validator))
         if self.several:
             settings.update(action="append", default=[])
         parser.add_argument(asOption(self.name), **settings)
 
 
-def reading(kind: Validator) -> Any:
-    """The function by which argparse reads values of a kind from texts."""
+def reading(validator: Validator) -> Any:
+    """The function by which argparse reads the values of a validator from texts."""
 
     def read(text):
         value = text
         with contextlib.suppress(ValueError):
-            value = getattr(kind, "of", str)(text)
+            value = getattr(validator, "of", str)(text)
         try:
-            return kind(value)
+            return validator(value)
         except ValueError as error:
             raise argparse.ArgumentTypeError(str(error)) from None
 
@@ -73,7 +73,7 @@ def asOption(name: str) -> str:
     return "--" + name.replace("_", "-")
 
 
-# -- kinds -----------------------------------------------------------------------------------------
+# -- validators ------------------------------------------------------------------------------------
 
 FEWEST = 3  # points along a side: two give three times the true rotational stiffness, one none
 

@@ -15,7 +15,8 @@ or None:
   kind of joint, the numbers among them that have an effect
 - ``unit_material``: ``young_Pa``, ``poisson`` and ``density_kg_per_m3`` of the bricks
 - ``assumed``: properties that were not given: ``name``, as ``bed.residualFriction``, ``value``,
-  ``unit`` and ``source``. The name ``support`` says that these joints take the bed joint
+  ``unit``, ``source`` and ``by_code``. The name ``support`` says that these joints take the bed
+  joint
 - ``units``: number of bricks or half bricks; ``nodes``: of deformable units; ``joint_count``,
   ``joints_by_kind``: of joints between blocks; ``subcontacts``: of points of joints at the
   beginning; ``refined_joints``: of joints of rigid units that got more points
@@ -289,7 +290,9 @@ class Results:
             say(f"warning: {text} some {1e-6 * likely:.1f} MB")
 
     def column(self, name):
-        """All values of a column so far."""
+        """All values of a column so far. Raises Refused if there is no such column."""
+        if name not in self.columns:
+            raise Refused(f"no column {name!r}; there are {', '.join(self.columns)}")
         i = self.columns.index(name)
         return [row[i] for row in self.rows]
 

@@ -6,7 +6,7 @@ from numbers import Integral
 
 import numpy as np
 
-from ..arguments import shown, vector
+from ..arguments import ByName, shown, vector
 from ..numbers import columns
 from ..units import GRAVITY
 from ..errors import Refused
@@ -46,7 +46,7 @@ class Description:
         inPlane = len({(min(one), max(one)) for one in y}) == 1
         self.plane = inPlane if plane is None else plane
         self.choice = choice  # heads of columns, None: all
-        self.targets = {}  # by name
+        self.targets = ByName("target")
         self._boxes = None, None  # bricks, and what _nearest() knows of them
         self.joints, self.drifts, self.sections = [], [], []  # that are recorded
         self.connectors = []  # ties and springs, records of masonry.scene.ties

@@ -117,13 +117,20 @@ def pressure(
         raise ValueError("pressure: it is 0 on all faces that look against it; places are in m")
     loaded = (f for f, size in zip(forces, sizes) if size > LEAST * largest)
     description.winds.extend(loaded)
+    return _sumOf(forces)
+
+
+def _sumOf(forces):
+    """The sum of forces on faces (x, y, z) [N]."""
     x, y, z = map(math.fsum, zip(*(one.force for one in forces)))
     return x, y, z
 
 
 @describes
 @validated
-def wind(description: Any, pressure: Pressure, towards: Level, part: Part | None = None) -> float:
+def wind(
+    description: Any, pressure: Pressure, towards: Level, part: Part | None = None
+) -> tuple[float, float, float]:
     """A pressure on the faces that look against a horizontal direction. It grows in :meth:`settle`,
     and stays.
 
@@ -133,9 +140,10 @@ def wind(description: Any, pressure: Pressure, towards: Level, part: Part | None
     :param pressure: [Pa]
     :param towards: direction in which the wind blows, horizontal
     :param part: name of a part of the bricks; None: all
+    :returns: the sum of the forces [N], as :meth:`pressure` does
     """
     towards = vector(towards, "wind: direction")
     doubtWind(pressure, "wind")
     forces = windForces(description, pressure, towards, part, "wind")
     description.winds.extend(forces)
-    return sum(math.hypot(*one.force) for one in forces) / abs(pressure)
+    return _sumOf(forces)

@@ -25,10 +25,10 @@ from ..materials.settings import scatterAll, setting
 #: The options of a scene: the table with the laws of the plugin and the presets.
 OPTIONS = {
     **option_table.OPTIONS,
-    "preset": replace(option_table.OPTIONS["preset"], kind=oneOf(BOUND, *PRESETS)),
+    "preset": replace(option_table.OPTIONS["preset"], validator=oneOf(BOUND, *PRESETS)),
     "joints": replace(
         option_table.OPTIONS["joints"],
-        kind=oneOf(*LAWS, "brittle"),
+        validator=oneOf(*LAWS, "brittle"),
         default=next(iter(LAWS)),
         meaning="; ".join([*(law["meaning"] for law in LAWS.values()), "brittle Coulomb slip"]),
     ),

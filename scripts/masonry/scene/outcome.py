@@ -277,7 +277,8 @@ class ResultSummary:
         yield from answersText(run["answers"], run.get("stages") or ())
         if "accuracy" in run:
             yield from accuracy.lines(run["accuracy"])
-        yield f"{name}: {quantities.headline(run, end=True) or run['ended']}"
+        grows = bool(self.pushed) and self.data.stillGrows
+        yield f"{name}: {quantities.headline(run, True, grows) or run['ended']}"
 
     def warnings(self, run):
         """Sentences on what the numbers suffer from, by the entries of run.json."""

@@ -58,7 +58,8 @@ def platen(
     :param point: (x, y, z) [m] on which loads act; None: the middle of the platen's outer side
     :param guided: axes along which the middle of the one at the top cannot move: ``"x"``, ``"y"``
         or ``"xy"``
-    :param part: name of the part of the bricks that the platen is over; None: over all
+    :param part: name of the part of the bricks on whose lower or upper side the platen is; None:
+        of all
     :param upTo: z of its outer side [m], in place of ``height``: where a testing machine pushes
     :param recorded: z of the point whose displacement is recorded [m], on the line through
         ``point``; None: that of ``point``
@@ -72,7 +73,7 @@ def platen(
         of the platen, on which it also turns
     """
     bottom, plane = where == "bottom", description.plane
-    level = description.low[2] if bottom else description.high[2]
+    level = _levelOf(description, bottom, part)
     springs = {**(springs or {})}
     problems = [*_problems(plane, bottom, rotation, guided, drive, springs)]
     if uplift and ("z" not in springs or {"X", "Y"} & {*springs}):
@@ -131,6 +132,12 @@ def _problems(plane, bottom, rotation, guided, drive, springs):
             yield f"{name} {value!r}: {IN_PLANE}"
 
 
+def _levelOf(description, bottom, part):
+    """Where a part, or all of the bricks, end below or above [m]."""
+    heights = [p[2] for b in description.bricks if part in (None, b.part) for p in b.corners]
+    return min(heights) if bottom else max(heights)
+
+
 def _sideAt(description, level, where, part):
     """Opposite corners (x, y) of what a part has at a level [m]. Raises ValueError."""
     near = 1e-6 * (1 + abs(level))
@@ -141,7 +148,7 @@ def _sideAt(description, level, where, part):
     ]
     touching = [p[:2] for corners in blocks for p in corners]
     if not touching:
-        raise ValueError(f"platen: part {part!r} does not reach the {where}, z = {level:g} m")
+        raise ValueError(f"platen: part {part!r} has no corner at the {where}, z = {level:g} m")
     low, high = ([*map(f, zip(*touching))] for f in (min, max))
     # bricks that stand on an edge share no face with a platen
     if any(a == b for a, b in zip(low, high)) or max(map(len, blocks)) < 3:

@@ -3,10 +3,13 @@
 running bond."""
 
 import collections
+import math
 import statistics
 
 from ..bricks import Bricks, summary
+from ..materials import loadingBlock
 from ..terminal import say
+from ..units import GRAVITY
 
 MAX_SIZES = 4  # of blocks that are listed
 
@@ -72,6 +75,12 @@ def held(description):
         if target.drives:
             what.append(f"a drive holds it along {', '.join(target.drives)}")
         yield target.name, "; ".join(what)
+    platens = [t for t in description.targets.values() if t.box and t.joined]
+    if platens:
+        weight = 1e-3 * GRAVITY * loadingBlock().density
+        of = lambda low, high: weight * math.prod(b - a for a, b in zip(low, high))
+        weights = ", ".join(f"{t.name} {of(*t.box):.4g} kN" for t in platens)
+        yield "weight of platens", f"{weights}; they are rigid: only their support joints give way"
     if description.winds:
         force = [sum(w.force[i] for w in description.winds) for i in range(3)]
         yield "pressure on faces", "({:.4g}, {:.4g}, {:.4g}) N in all".format(*force)

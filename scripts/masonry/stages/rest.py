@@ -144,7 +144,10 @@ def waitForRest(scene, at, longest, grow, over=0.0, record=True, buckling=False)
                 raise Collapsed("the platen has come down by half a course")
         running.show(
             at.done / most,
-            lambda: f"unbalanced {100 * missing:+.2f} %, kinetic/elastic {moving:.1e}",
+            lambda: (
+                f"{100 * missing:.2f} % of the loads not carried, kinetic energy {moving:.1e} of"
+                " the elastic"
+            ),
             at.quiet == CONSECUTIVE_CHECKS or at.done >= most,
         )
     if at.quiet < CONSECUTIVE_CHECKS:

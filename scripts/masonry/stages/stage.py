@@ -129,7 +129,7 @@ class _Command:
             return scene.failed(error)
 
     def check(self, args, settings):
-        """What the user says, as its kinds return it. Raises Refused."""
+        """What the user says, as its validators return it. Raises Refused."""
         scene = self.scene
         (_, *args), settings = self.act.checked((scene, *args), settings)
         if scene.args.accuracy and self.name not in STAGES:

@@ -98,8 +98,8 @@ def _made(part, record):
     except (LookupError, AttributeError, TypeError, ValueError, ArithmeticError) as problem:
         found.append(
             absent(
-                "This part is not whole, because run.json is damaged or of another version"
-                f" ({type(problem).__name__}: {problem})."
+                "This part is not whole: a file of the run is damaged or of another version, or the"
+                f" report has a fault of its own ({type(problem).__name__}: {problem})."
             )
         )
     return found

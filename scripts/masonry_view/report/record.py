@@ -119,7 +119,7 @@ class Record:
         # it is seen from the front, also where cracks.png looks askew
         run = {**self.run, "views": {}}
         structure = self._whole(elevation.structureOf(run, blocks, None, self.directory))
-        bricks = [b for b in structure.corners if b not in structure.shades]
+        bricks = [b for b in structure.corners if structure.shades.get(b, "held") == "held"]
         low, high = (
             f(blocks["points"][structure.points(bricks)], axis=0) for f in (np.min, np.max)
         )
@@ -129,7 +129,7 @@ class Record:
             if len(targets) <= MAX_NAMES:
                 structure.names[one["body"]] = str(one["name"])
         size = " × ".join(written(float(v), 3) for v in high - low)
-        about = f"The {len(bricks):,} units of the masonry as built, {size} m"
+        about = f"The {len(bricks):,} bricks or other blocks as built, {size} m"
         with drawing.style():
             drawn = drawing.svg(elevation.figureOf(structure, "", 0), "built")
         return drawn, f"{about} (x × y × z)."

@@ -110,7 +110,8 @@ def _ideal(record):
         " displacement_mm, base_shear_kN, top_shear_kN"
     )
     yield table(heads, lines, caption, "ideal")
-    notes = [n for one in good.values() for n in one.notes]
+    every = (n for one in good.values() for n in one.notes)
+    notes = [n for n in every if not n.startswith(bilinear_curve.WARNED)]  # they are at the head
     failed = {rule: why for rule, why in ideals.items() if rule not in good}
     notes += [f"{bilinear_curve.RULES[rule]}: none, because {why}" for rule, why in failed.items()]
     for text in dict.fromkeys(notes):

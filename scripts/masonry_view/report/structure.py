@@ -54,7 +54,7 @@ OF_UNITS = (
     ),
     ("density of the units", "density_kg_per_m3", 1, "kg/m³", "Mass of a brick over its volume."),
 )
-MAX_WORDS = 12  # of a script that are shown at once
+MAX_COMMANDS = 12  # of a script that are shown at once
 MAX_LEADING = 3  # answers at the head of a report
 OLDER = "The run was made by an older version of the plugin, whose run.json does not say this."
 
@@ -91,16 +91,25 @@ def head(record):
         yield note(f"The last stage ended: {run['ended']}.")
     else:
         yield note("The run has no rows: it took no time steps, or ended before there was one.")
-    lead = quantities.headline({**run, **record.numbers})
+    grows = record.isPush and record.data.stillGrows
+    lead = quantities.headline({**run, **record.numbers}, grows=grows)
     lead = lead or "; ".join(f"{what} {valueOf(one)}" for one, what in sought(run))
-    answers = [f"{nameOf(a)} {valueOf(a)}" for a in answersOf(run)]
-    if lead := lead or "; ".join(answers[-MAX_LEADING:]):
+    answers = [f"{nameOf(a)} {valueOf(a)}" for a in _leading(answersOf(run))]
+    if lead := lead or "; ".join(answers):
         yield note(f"{firstUpper(lead)}.", "lead")
     if warnings := run["warnings"] + record.problems:
         more = f", and {len(warnings) - 1} more" if len(warnings) > 1 else ""
         yield note(
             f"{warnings[0]}{more}. The part “How far to trust it” has all.", "warning", "Warning:"
         )
+
+
+def _leading(answers):
+    """The answers at the head: of many displacements the largest one, else the last answers."""
+    moved = [one for one in answers if one["name"].startswith("largest_displacement")]
+    if len(answers) > MAX_LEADING and moved:
+        return [max(moved, key=lambda one: abs(one["value"]))]
+    return answers[-MAX_LEADING:]
 
 
 def firstUpper(text):
@@ -166,26 +175,28 @@ def built(record):
 
 
 def _units(run):
-    assumed, found = _namesOf(run), []
+    assumed, found = _badges(run), []
     for what, key, factor, unit, meaning in OF_UNITS:
         value = factor * run["unit_material"][key]
-        named = _marked(what, f"unit.{key.partition('_')[0]}" in assumed)
+        named = _marked(what, assumed.get(f"unit.{key.partition('_')[0]}"))
         source = f"run.json: unit_material.{key}"
         found.append(quantities.Number(named, value, unit, meaning, source))
     yield numbers(found, "Units")
 
 
-def _marked(text, isAssumed):
-    return Badged(text, "assumed") if isAssumed else text
+def _marked(text, badge):
+    return Badged(text, badge) if badge else text
 
 
-def _namesOf(run):
-    """Names of the properties that were assumed; those of the support are those of the bed joint
-    where it takes these."""
-    names = {str(a.get("name")) for a in run.get("assumed") or []}
-    if "support" in names:
-        names |= {n.replace("bed.", "support.", 1) for n in names if n.startswith("bed.")}
-    return names
+def _badges(run):
+    """What stands beside properties that were not given, by their names; those of the support are
+    those of the bed joint where it takes these."""
+    badge = lambda one: "by a code" if one.get("by_code") else "assumed"
+    found = {str(one.get("name")): badge(one) for one in run.get("assumed") or []}
+    if "support" in found:
+        ofBed = {n: text for n, text in found.items() if n.startswith("bed.")}
+        found |= {n.replace("bed.", "support.", 1): text for n, text in ofBed.items()}
+    return found
 
 
 def _joints(run):
@@ -196,7 +207,7 @@ def _joints(run):
     units, meanings = run.get("joint_units") or {}, run.get("joint_meanings") or {}
     counted = run.get("joints_by_kind") or joints  # kinds without joints do not count
     joints = {kind: found for kind, found in joints.items() if kind in counted}
-    assumed, kinds = _namesOf(run), list(joints)
+    assumed, kinds = _badges(run), list(joints)
     shown, others = [], []
     for name in dict.fromkeys(n for p in joints.values() for n in p if n in units):
         meaning = str(meanings.get(name, "")).partition(". ")[0].rstrip(".")
@@ -206,7 +217,7 @@ def _joints(run):
         for kind in having:
             value = joints[kind].get(name)
             text = written(factor * value if isNumber(value) else None)
-            cells[kinds.index(kind)] = _marked(text, f"{kind}.{name}" in assumed)
+            cells[kinds.index(kind)] = _marked(text, assumed.get(f"{kind}.{name}"))
         used = any(joints[kind].get(name) for kind in having)
         (shown if used else others).append((meaning or name, unit, *cells))
     laws = [_lawOf(joints[kind]) for kind in kinds]
@@ -250,12 +261,12 @@ def _assumed(run):
     yield table(
         ("of", "property and value", "where it is from"),
         lines,
-        "What was not given, and is ASSUMED. Source: run.json: assumed",
+        "What was not given, and is BY A CODE or ASSUMED. Source: run.json: assumed",
     )
 
 
 def loaded(record):
-    """How it was held and loaded: targets, stages, the words of the script, and the options."""
+    """How it was held and loaded: targets, stages, the commands of the script, and the options."""
     run = record.run
     if pairs := run.get("held_and_loaded"):
         heads = "what", "how it is held and loaded before the first stage"
@@ -275,12 +286,12 @@ def loaded(record):
     script = [spoken(*command) for command in run["script"]]
     about = note(
         "Stresses are in Pa, forces in N, lengths in m, and displacements of pushes and supports in"
-        " mm; help(masonry.Scene) describes the words. Source: run.json: script."
+        " mm; help(masonry.Scene) describes the commands. Source: run.json: script."
     )
-    title, few = "The words of the script, in their order", len(script) <= MAX_WORDS
+    title, few = "The commands of the script, in their order", len(script) <= MAX_COMMANDS
     yield folded(title, listed(script, kind="script"), about, opened=few)
     options = [
-        f"{name} {_said(value)} {run['option_units'].get(name, '')}".strip()
+        f"{name.replace('_', ' ')}: {_said(value)} {run['option_units'].get(name, '')}".strip()
         for name, value in run["options"].items()
     ]
     about = note(f"{'; '.join(options)}. Source: run.json: options.")
@@ -312,21 +323,27 @@ def _named(name, value):
 
 
 def _values(value):
+    """An entry of a tie or a spring; a list is a vector."""
     if isinstance(value, list):
         return f"({', '.join(map(_values, value))})"
     return _said(value)
 
 
 def _said(value):
+    """A value in words, without the brackets and quotation marks of Python."""
     if value in (None, [], ""):
         return "–"
+    if isinstance(value, (list, tuple)):
+        return ", ".join(map(_said, value))
+    if isinstance(value, dict):
+        return ", ".join(f"{name} {_said(one)}" for name, one in value.items())
     if isinstance(value, bool):
         return "yes" if value else "no"
     return written(value, 6) if isNumber(value) else str(value)
 
 
 def spoken(word, arguments):
-    """A word of a script as it was said, without the arguments that are nothing."""
+    """A command of a script as it was given, without the arguments that are nothing."""
     given = {n: v for n, v in arguments.items() if v not in (None, False, "", [], {})}
     return f"{word}({', '.join(f'{n}={_short(v)}' for n, v in given.items())})"
 
