@@ -12,7 +12,7 @@ from yade import O
 
 from .. import notebook
 from ..arguments import number, validated
-from ..errors import Collapsed, NotAccurate
+from ..errors import Collapsed, NotAccurate, Refused
 from ..terminal import say
 from ..run import batch
 from ..run.accuracy import STAGES
@@ -136,6 +136,11 @@ class _Command:
             raise NotAccurate(
                 "--accuracy: it is about peak and work of a push, and this scene has the stage"
                 f" {self.name}; scenes with it have the stages {', '.join(STAGES)} alone"
+            )
+        if self.traits.dynamic and scene.args.density_scaling != 1:
+            raise Refused(
+                f"--density-scaling {scene.args.density_scaling:g}: {self.name} runs in real time,"
+                " with true masses"
             )
         if self.traits.check:
             self.traits.check(scene, *args, **settings)
