@@ -24,7 +24,7 @@ from ..scene.script import SHAKES
 from .gravity import sideways
 from .answers import COLLAPSED, DONE, Answer
 from .rest import settle
-from .stage import Duration, Time, Timed, stage, timed
+from .stage import Duration, Time, Timed, combines, stage, timed
 
 TABLE = "shakes.csv"
 LONGEST = 4.0  # [s]: the longest first period that is looked for
@@ -70,7 +70,23 @@ def inRealTime(scene, name, damping, massDamping=0.0, stiffnessDamping=0.0):
     return at
 
 
-@stage(options=("record", "scale"), dynamic=True, answers=displacements)
+def readable(scene, accelerations, every=None, direction=None, scale=1.0, unit=None, *_, **__):
+    """Raise Refused for a record that cannot be read, unless the command line replaces it."""
+    replaced = scene.args.record is not None and not any(
+        command in SHAKES for command, _ in scene.script.commands
+    )
+    if not (replaced or scene.running.isResumed):
+        _read(accelerations, every, scale, unit)
+
+
+def _read(*how):
+    try:
+        return readRecord(*how)
+    except Refused as refused:
+        raise Refused(f"shake: {refused}") from None
+
+
+@stage(options=("record", "scale"), dynamic=True, check=readable, answers=displacements)
 def shake(
     scene: Any,
     accelerations: Annotated[Numbers | FilePath | Sequence[FilePath], record],
@@ -117,10 +133,7 @@ def shake(
     if isFirst and args.record is not None:
         accelerations, every, scale, unit = batch.beside(args.record), None, 1.0, None
     scale *= args.scale if isFirst else 1
-    try:
-        values, every = readRecord(accelerations, every, scale, unit)
-    except Refused as refused:
-        raise Refused(f"shake: {refused}") from None
+    values, every = _read(accelerations, every, scale, unit)
     motions = components(values).tolist()
     for motion in motions:
         if doubt := drift(motion, every).sentence():
@@ -212,6 +225,7 @@ def period(scene: Any, direction: Level = (1, 0, 0)) -> str:
     return DONE
 
 
+@combines
 @validated
 def shakeAgain(
     scene: Any,
@@ -235,22 +249,22 @@ def shakeAgain(
     :raises ValueError: if there are not as many scales as records
     """
     if scene.args.record is not None or scene.args.scale != 1:
-        raise ValueError(
+        raise Refused(
             "shakeAgain: --record and --scale are for the one record of shake(); give records and"
             " scales here"
         )
     scales = [1.0] * len(records) if scales is None else scales
     if len(scales) != len(records):
-        raise ValueError(f"shakeAgain: {len(scales)} scales for {len(records)} records")
+        raise Refused(f"shakeAgain: {len(scales)} scales for {len(records)} records")
     ends, rows = [], []
+    read = [_read(one, every, s, how.get("unit"))[0] for one, s in zip(records, scales)]
     for count, (one, scale) in enumerate(zip(records, scales), 1):
         ends.append(shake(scene, one, every, direction, scale, **how))
         stages = [scene.running.entered]
         if ends[-1] != COLLAPSED and settle(scene, longest=longest) != COLLAPSED:
             period(scene, direction)
             stages.append(scene.running.entered)
-        values, _ = readRecord(one, every, scale, how.get("unit"))
-        peak = abs(scale) * float(np.abs(values).max())
+        peak = abs(scale) * float(np.abs(read[count - 1]).max())
         row = {"shake": count, "peak_m_per_s2": peak}
         for answer in scene.answers:
             if answer["number"] in stages:
