@@ -21,7 +21,7 @@ void MasonryContacts::lookAtFalls(SceneStore& store) {
     std::vector<int> loose;
     for (int body = 0; body < store.bodies.size(); ++body)
         if (store.bodies.has(body) && !held[std::size_t(body)]) loose.push_back(body);
-    falls_.look(store, loose, diameters());
+    falls_.look(store, loose, sizes(), store.gravity());
     if (dampsLoose) return;
     for (int body : loose)
         if (auto& state = store.bodies.state(body); state.isDamped) {

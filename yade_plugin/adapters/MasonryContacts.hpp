@@ -83,8 +83,9 @@ public:
                  "on the second, global axes.")
             .def("fallen", &MasonryContacts::fallen,
                  "Blocks that have come loose where joints are handed over, by their ids: a dict of id -> dict with "
-                 "since, when that was [s]; fell, when the block had turned by 60° or moved by its diameter since the "
-                 "reference state [s], None if it has not; most, its largest kinetic energy since then [J]; and at, "
+                 "since, when that was [s]; fell, when the block had turned by 60°, or moved by its diameter and come "
+                 "down by half its thickness, since the reference state [s], None if it has not; most, its largest "
+                 "kinetic energy since then [J]; and at, "
                  "when it had that [s]. Looked at every tenth step.");
     }
 

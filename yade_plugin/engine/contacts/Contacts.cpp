@@ -435,10 +435,10 @@ double Contacts::largestEigenvalue(const SceneContents& contents, bool anew) {
 
 double Contacts::largestDampingRatio() const { return std::sqrt(6) * dampingRatio(restitution); }
 
-std::vector<double> Contacts::diameters() const {
-    std::vector<double> found;
+std::vector<FallenBlocks::Size> Contacts::sizes() const {
+    std::vector<FallenBlocks::Size> found;
     for (const auto& block : blocks_)
-        found.push_back(2 * block.radius);
+        found.push_back({2 * block.radius, block.thickness});
     return found;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Contacts of rigid blocks that no joint connects, wherever they meet. An engine derives from it.
 #pragma once
+#include "FallenBlocks.hpp"
 #include "contact/BroadPhase.hpp"
 #include "contact/ContactPair.hpp"
 #include "engine/joints/SceneContents.hpp"
@@ -46,8 +47,8 @@ public:
     static constexpr int lookEvery = 10; // steps between two looks at joints and at bodies that wake
     // Whether a body is one of the blocks that can touch. It is known from the first step on.
     bool covers(int body) const { return std::binary_search(ids_.begin(), ids_.end(), body); }
-    // Twice the largest distance of a corner of a block from its centre [m]; 0 where it cannot touch. By id.
-    std::vector<double> diameters() const;
+    // Sizes of blocks by id; 0 where they cannot touch.
+    std::vector<FallenBlocks::Size> sizes() const;
     // Goes on from the next step where these joints stood, which have no forces any more (JointConversion). To be
     // called when the scene has been read again.
     void takeOver(const SceneContents&, const std::vector<Joint>&);
