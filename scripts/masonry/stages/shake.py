@@ -238,7 +238,8 @@ def shakeAgain(
 ) -> list[str]:
     """Shake a structure by one record after the other, as it was left by those before. After each
     it comes to rest, and its period and what remains are measured: stages :meth:`shake`,
-    :meth:`settle` and :meth:`period`. ``shakes.csv`` has a row for every record.
+    :meth:`settle` and :meth:`period`. ``shakes.csv`` has a row for every record, whose ``ended`` is
+    ``"at rest"``, or ``"moving"`` if it did not come to rest.
 
     :param records: of each what :meth:`shake` takes
     :param every: time between two samples [s], and ``direction``: as in :meth:`shake`
@@ -260,8 +261,10 @@ def shakeAgain(
     read = [_read(one, every, s, how.get("unit"))[0] for one, s in zip(records, scales)]
     for count, (one, scale) in enumerate(zip(records, scales), 1):
         ends.append(shake(scene, one, every, direction, scale, **how))
-        stages = [scene.running.entered]
-        if ends[-1] != COLLAPSED and settle(scene, longest=longest) != COLLAPSED:
+        stages, rests = [scene.running.entered], COLLAPSED
+        if ends[-1] != COLLAPSED:
+            rests = settle(scene, longest=longest)
+        if rests != COLLAPSED:
             period(scene, direction)
             stages.append(scene.running.entered)
         peak = abs(scale) * float(np.abs(read[count - 1]).max())
@@ -270,7 +273,7 @@ def shakeAgain(
             if answer["number"] in stages:
                 unit = "" if answer["unit"] == "-" else f"_{answer['unit']}"
                 row[answer["name"] + unit] = answer["value"]
-        rows.append({**row, "ended": scene.ended})
+        rows.append({**row, "ended": scene.ended if rests == COLLAPSED else rests})
         _write(scene, rows)
         if scene.collapsed:
             say(f"shakeAgain: the structure fell in record {count} of {len(records)}")
