@@ -114,6 +114,27 @@ scene.shakeAgain({records!r})
     file.write_text(script.replace("{folder}", str(tmp_path)))
     done = runProgram(str(file), "--out", str(tmp_path / "out"), "--lean", check=False)
     assert done.returncode == 2 and said in done.stderr and "Traceback" not in done.stderr
+    # before the first step, but a file may be made on the way
+    missing = said == "cannot read"
+    assert ("no such file yet" in done.stdout) == ("steps/s" in done.stdout) == missing
+
+
+def test_a_history_that_cannot_be_read_is_refused_before_the_first_step(tmp_path):
+    (tmp_path / "path.csv").write_text("displacement_mm\n1\nnan\n")
+    script = (
+        stopped.BEGIN
+        + """
+scene = Scene("refused", bricks.stack(2, (0.4, 0.2, 0.2)), materials.dry(friction=0.6))
+scene.platen("bottom")
+top, path = scene.platen("top"), "path.csv"
+scene.settle()
+scene.follow(top, path)
+"""
+    )
+    (tmp_path / "scene.py").write_text(script)
+    done = runProgram(str(tmp_path / "scene.py"), "--out", "out", check=False, cwd=tmp_path)
+    assert done.returncode == 2 and "line 7: follow: " in done.stderr, done.stderr
+    assert "steps/s" not in done.stdout and "Traceback" not in done.stderr
 
 
 def test_options_for_the_record_of_one_shake_are_refused(tmp_path):

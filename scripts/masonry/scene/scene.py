@@ -44,6 +44,7 @@ from ..run.presets import BOUND
 from ..run.results import Results
 from ..run.run import Run
 from ..stages import STAGES, answers, bounding, gravity, prepare, rest
+from ..stages.ahead import lookAhead
 from ..stages.bounds import boundsOf, takeFound
 from . import connections, contact, loads, options, platens, records, summary
 from .description import Description
@@ -259,6 +260,8 @@ class Scene:
         if self.model:
             return
         description, args = self.description, self.args
+        if not self.running.isResumed:
+            lookAhead(self)
         if description.contact and not description.ground():
             contact.addGround(description)
         model = Structure(description, self.masonry, args)

@@ -79,6 +79,13 @@ def readable(scene, accelerations, every=None, direction=None, scale=1.0, unit=N
         _read(accelerations, every, scale, unit)
 
 
+def readableAll(scene, records, every=None, direction=None, scales=None, longest=None, **how):
+    """Raise Refused for one of the records of :func:`shakeAgain` that cannot be read. Returns the
+    samples of all [m/s²]."""
+    scales = [1.0] * len(records) if scales is None else scales
+    return [_read(one, every, s, how.get("unit"))[0] for one, s in zip(records, scales)]
+
+
 def _read(*how):
     try:
         return readRecord(*how)
@@ -258,7 +265,7 @@ def shakeAgain(
     if len(scales) != len(records):
         raise Refused(f"shakeAgain: {len(scales)} scales for {len(records)} records")
     ends, rows = [], []
-    read = [_read(one, every, s, how.get("unit"))[0] for one, s in zip(records, scales)]
+    read = readableAll(scene, records, every, scales=scales, **how)
     for count, (one, scale) in enumerate(zip(records, scales), 1):
         ends.append(shake(scene, one, every, direction, scale, **how))
         stages, rests = [scene.running.entered], COLLAPSED
