@@ -11,7 +11,7 @@ LEAN = ["--lean", "--checkpoint-every", "0"]
 
 
 @mark.parametrize("scaling", [1, 25])
-def test_the_period_of_a_brick_between_two_joints_is_its_closed_form(tmp_path, scaling):
+def test_the_period_of_a_brick_between_two_joints_is_its_closed_form(tmp_path, scaling, capsys):
     """The joints above and below it turn it by opposite moments, so it only slides."""
     size, stones = (0.5, 0.1, 0.5), materials.calciumSilicate()  # [m]
     settings = dict(density_scaling=scaling, dt_fraction=0.1)
@@ -36,6 +36,7 @@ def test_the_period_of_a_brick_between_two_joints_is_its_closed_form(tmp_path, s
     [answer] = [a["value"] for a in run["answers"] if a["name"] == "first_period"]
     assert answer == approx(expected / scaling**0.5, rel=0.003)
     # the drive holds the top, whose joint is one of the two springs
+    assert "first period along it while the drive holds" in capsys.readouterr().out
     assert run["first_period_s"] == approx(expected / scaling**0.5, rel=0.003)
 
 

@@ -44,6 +44,11 @@ py::dict MasonryContacts::fallen() {
     return found;
 }
 
+Vector3r MasonryContacts::impulse(int body) {
+    const BetweenSteps still;
+    return impulseOn(body);
+}
+
 py::list MasonryContacts::pairs() {
     const BetweenSteps still;
     py::list found;

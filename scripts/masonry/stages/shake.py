@@ -225,7 +225,10 @@ def period(scene: Any, direction: Level = (1, 0, 0)) -> str:
     along = sideways(scene, direction, "period")
     # the first period [s], 0 if there is none, and the push over gravity
     at = scene.running.stage("period", SimpleNamespace(period=0.0, share=0.0))
-    slower = scene.args.density_scaling**0.5  # heavier blocks swing more slowly
+    scheme, slower = scene.model.scheme, scene.args.density_scaling**0.5  # heavy blocks swing so
+    if scheme.massScaling:
+        scheme.trueMasses("period")
+        scheme.chooseTimeStep()
     with scene.running.clock("setup"), scene.running.breakable():
         period, at.share = smallPeriod(scene.model, along, LONGEST * slower)
         at.period = (period or 0.0) / slower
