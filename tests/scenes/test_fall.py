@@ -260,15 +260,18 @@ def test_what_is_released_keeps_its_momentum_and_nothing_brakes_its_flight(tmp_p
         kinetic = max(fall["most"] for fall in scene.model.fallen().values())
         assert kinetic == approx(energy - braked, rel=0.01)
         [fall] = scene.model.fallen().values()
-        # what strikes the ground takes the momentum of the weight, whatever the time step
-        weight, last = O.bodies[block.body].state.mass * GRAVITY, O.bodies[block.body].state.vel[2]
-        lasted = column("time_s")[-1] - fall["since"]
-        impulse = -weight * (lasted + last / GRAVITY)
-        assert column("ground_impulse_z_Ns")[-1] == approx(impulse, rel=1e-2)
         if stage == "run":  # it strikes the ground after the time of a free fall
             lasts = math.sqrt(2 * 0.5 / G)
             assert fall["at"] - fall["since"] == approx(lasts, rel=0.02)
             assert fall["since"] < fall["fell"] < fall["at"]
+            # what strikes the ground takes the momentum of the weight, whatever the time step
+            weight, last = (
+                O.bodies[block.body].state.mass * GRAVITY,
+                O.bodies[block.body].state.vel[2],
+            )
+            lasted = column("time_s")[-1] - fall["since"]
+            impulse = -weight * (lasted + last / GRAVITY)
+            assert column("ground_impulse_z_Ns")[-1] == approx(impulse, rel=1e-2)
 
 
 def thrown(folder, speed, *words, reach=None):
