@@ -21,5 +21,5 @@ import pytest  # noqa: F401
 from conftest import BUILD, ROOT, ran, runProgram, scenePath  # noqa: F401
 from hypothesis import assume, given, settings  # noqa: F401
 from hypothesis import strategies as some  # noqa: F401
-from masonry.errors import Refused  # noqa: F401
+from masonry.errors import Refused, ScriptRefused  # noqa: F401
 from pytest import approx, mark, raises  # noqa: F401

@@ -15,7 +15,9 @@ import traceback
 from multiprocessing.connection import Pipe
 from typing import Any, Callable, Iterable
 
-from .errors import Interrupted, Refused
+from . import notebook
+from .errors import Interrupted, Refused, ScriptRefused
+from .terminal import say
 
 LONGEST_POLL = 60.0  # [s]
 LOOK_EVERY = 0.05  # [s] between looks at programs
@@ -154,6 +156,16 @@ class Program(subprocess.Popen[bytes]):
         self._refusal.seek(0)
         kind, _, reason = self._refusal.read().decode().partition("\n")
         return kind, reason
+
+
+def refuseScript(refused: Refused) -> Refused:
+    """Say what is refused, to the terminal and by :func:`reportRefusal`. Returns the error that
+    ends a script; a cell of a notebook shows the error itself."""
+    if isinstance(refused, ScriptRefused) or notebook.isHere():
+        return refused
+    reportRefusal(refused)
+    say(refused, sys.stderr)
+    return ScriptRefused(str(refused))
 
 
 def reportRefusal(refused: Refused) -> None:

@@ -6,13 +6,20 @@ class Refused(ValueError):
     """Input that cannot be run, with all problems at once. Nothing was changed."""
 
 
+class ScriptRefused(Refused, SystemExit):
+    """Refused input of a script, which the terminal shows already: where the script does not catch
+    it, the program ends with status 2 and without a traceback."""
+
+    code = 2
+
+
 IN_PLANE = "the scene is in the x-z plane; Scene(..., plane=False) is in space"
 
 
 def checkPlane(description, along, name):
-    """Raise ValueError for a vector with a part along y in a scene in the x-z plane."""
+    """Raise Refused for a vector with a part along y in a scene in the x-z plane."""
     if description.plane and along[1]:
-        raise ValueError(f"{name}: {IN_PLANE}")
+        raise Refused(f"{name}: {IN_PLANE}")
 
 
 def refuse(problems, begin="", between="\n"):

@@ -434,7 +434,7 @@ def said(name, change):
             act(**{**example, **change})
             return None
         except ValueError as refused:
-            assert type(refused) in (ValueError, Refused), repr(refused)
+            assert type(refused) in (ValueError, Refused, ScriptRefused), repr(refused)
             return str(refused)
         except FileNotFoundError as missing:
             assert name in ("loadCheckpoint", "readCheckpoint")  # as they promise

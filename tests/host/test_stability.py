@@ -104,6 +104,27 @@ def test_velocities_given_by_hand_are_no_motion_out_of_nothing_once_reported():
         assert imbalance() < 1e-3
 
 
+@FUNCTORS
+@mark.parametrize("blocked", ["", "Y"], ids=lambda b: b or "free")
+def test_a_spin_that_is_given_is_work_of_half_its_inertia_about_the_own_axes(functors, blocked):
+    """A plate that stands askew: about its own axes the inertia differs by twenty times. YADE turns
+    one that is held about an axis about the global ones."""
+    plate = O.bodies[addBlock(box((1, 0, 0), (0.4, 0.3, 0.02), IN_SPACE), unitMaterial())].state
+    pile()
+    engines([MasonryJoint(elastic=True)], damping=0, gravity=(0, 0, 0), functors=functors)
+    connect()
+    plate.blockedDOFs = blocked
+    run(10)
+    velocity = Vector3(1, 0, 3)
+    spin(plate, velocity)
+    energy().given()
+    axes = Quaternion.Identity if blocked else plate.ori.conjugate()
+    expected = 0.5 * sum(i * w**2 for i, w in zip(plate.inertia, axes * velocity))
+    assert balance()["external"] == approx(expected, rel=1e-12)
+    run(500)
+    assert imbalance() < 1e-3
+
+
 def test_numbers_that_are_not_finite_stop_the_run_and_are_named():
     panel()
     O.run(20, True)

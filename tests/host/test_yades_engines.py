@@ -58,16 +58,58 @@ def test_forces_motions_and_records_of_yades_engines_hold_beside_ours(tmp_path, 
     assert "warning" not in capfd.readouterr().err
 
 
+#: What YADE loads a body with, as a function that gives an engine, or None.
+LOADS = {
+    "permanent force": lambda b, f, m: O.forces.setPermF(b, f),
+    "permanent torque": lambda b, f, m: O.forces.setPermT(b, m),
+    "ForceEngine": lambda b, f, m: ForceEngine(ids=[b], force=f),
+    "TorqueEngine": lambda b, f, m: TorqueEngine(ids=[b], moment=m),
+    "addF of a PyRunner": lambda b, f, m: runner(lambda: O.forces.addF(b, f)),
+    "addT of a PyRunner": lambda b, f, m: runner(lambda: O.forces.addT(b, m)),
+}
+
+
+def runner(act):
+    """A PyRunner that calls a function in every step."""
+    builtins.act = act
+    return PyRunner(command="act()", iterPeriod=1)
+
+
+@mark.parametrize(
+    "load, functors",
+    [*((load, False) for load in LOADS), ("permanent force", True), ("permanent torque", True)],
+)
+def test_the_work_of_what_yade_loads_a_body_with_is_its_force_times_the_way(load, functors, capfd):
+    """On a free block, without gravity, so that it is the kinetic energy, too."""
+    free = addBlock(box((1, 0, 0)), unitMaterial())
+    pile()
+    engines([MasonryJoint(elastic=True)], damping=0, gravity=(0, 0, 0), functors=functors)
+    connect()
+    force, moment = Vector3(20, -10, 30), Vector3(0, 0.3, 0)
+    engine_, ours = LOADS[load](free, force, moment), list(O.engines)
+    O.engines = ours[:1] + [engine_] * (engine_ is not None) + ours[1:]
+    run(2000)
+    builtins.act = None
+    state = O.bodies[free].state
+    moved = force.dot(state.displ()) if "orque" not in load and "addT" not in load else 0
+    turned = 0 if moved else moment.dot(state.rot())
+    assert balance()["external"] == approx(moved + turned, rel=2e-3) and moved + turned > 1e-6
+    assert balance()["kinetic"] == approx(moved + turned, rel=2e-3)
+    assert imbalance() < 1e-9 and "warning" not in capfd.readouterr().err
+
+
 @mark.parametrize("functors, place", [(False, 2), (True, 1), (True, 2)])
-def test_work_that_is_not_counted_is_said_and_ends_no_run(capfd, functors, place):
+@mark.parametrize("by", ["ForceEngine", "PyRunner"])
+def test_work_that_is_not_counted_is_said_and_ends_no_run(capfd, functors, place, by):
     """Behind the loop of the joints, and with functors, forces of YADE's engines are not apart from
     those of joints."""
     block, weight = standing(0.5, functors=functors)
-    ours = list(O.engines)
-    O.engines = [*ours[:place], ForceEngine(ids=[block], force=(0.6 * weight, 0, 0)), *ours[place:]]
+    ours, force = list(O.engines), Vector3(0.6 * weight, 0, 0)
+    added = LOADS["ForceEngine" if by == "ForceEngine" else "addF of a PyRunner"]
+    O.engines = [*ours[:place], added(block, force, None), *ours[place:]]
     run(3000)
     assert O.bodies[block].state.displ()[0] > 1e-3
-    assert capfd.readouterr().err.count("the work of ForceEngine is not counted") == 1
+    assert capfd.readouterr().err.count(f"the work of {by} is not counted") == 1
 
 
 @mark.slow

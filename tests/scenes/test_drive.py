@@ -11,10 +11,11 @@ LEAN = ["--lean", "--checkpoint-every", "0"]
 
 
 @mark.parametrize("scaling", [1, 25])
-def test_the_period_of_a_brick_between_two_joints_is_its_closed_form(tmp_path, scaling):
+def test_the_period_of_a_brick_between_two_joints_is_its_closed_form(tmp_path, scaling, capsys):
     """The joints above and below it turn it by opposite moments, so it only slides."""
     size, stones = (0.5, 0.1, 0.5), materials.calciumSilicate()  # [m]
-    scene = standing(tmp_path, bricks.stack(1, size), stones, density_scaling=scaling)
+    settings = dict(density_scaling=scaling, dt_fraction=0.1)
+    scene = standing(tmp_path, bricks.stack(1, size), stones, **settings)
     top = scene.platen("top", rotation="held", drive="x")
     scene.press(top, 0.5e6)
     scene.settle()
@@ -22,12 +23,59 @@ def test_the_period_of_a_brick_between_two_joints_is_its_closed_form(tmp_path, s
     springs = sum(i.phys.shearStiffness * sum(i.geom.areas) for i in model.interactions)
     mass = size[0] * size[1] * size[2] * model.unit.density
     expected = 2 * math.pi * math.sqrt(mass / springs)
-    model.scheme.chooseTimeStep(0.2 * model.scheme.limit)
     before = saveScene("null")
     found = firstPeriod(model, Vector3.UnitX, 0.05)
     assert found == approx(expected, rel=0.003)
     assert saveScene("null") == before
     assert firstPeriod(model, Vector3.UnitX, 0.5 * expected) is None
+    # what a user reads are true seconds
+    scene.period()
+    scene.push(top, 0.01, rate=1)
+    scene.finish()
+    run = readRun(tmp_path)
+    [answer] = [a["value"] for a in run["answers"] if a["name"] == "first_period"]
+    assert answer == approx(expected / scaling**0.5, rel=0.003)
+    # the drive holds the top, whose joint is one of the two springs
+    assert "first period along it while the drive holds" in capsys.readouterr().out
+    assert run["first_period_s"] == approx(expected / scaling**0.5, rel=0.003)
+
+
+@mark.parametrize("stage, given", [("run", [1.0]), ("shake", [[1.0, 1.0], 0.01])])
+def test_what_runs_in_real_time_is_refused_with_scaled_masses(tmp_path, stage, given, capsys):
+    scene = standing(tmp_path, bricks.stack(1, (0.3,) * 3), None, "--density-scaling", "4")
+    with raises((Refused, SystemExit)) as end:
+        getattr(scene, stage)(*given)
+    said = str(end.value) + capsys.readouterr().err
+    assert f"--density-scaling 4: {stage} runs in real time, with true masses" in said
+    assert scene.model is None
+
+
+@BLOCKS
+@mark.parametrize("by", ["platen", "spring"])
+def test_nothing_is_damped_unasked_beside_springs(tmp_path, blocks, by):
+    """One spring sways two blocks and, with a platen, that one."""
+    made = standing if by == "spring" else lean
+    scene = made(
+        tmp_path, bricks.stack(2, (0.4, 0.4, 0.2)), materials.calciumSilicate(), blocks=blocks
+    )
+    if by == "platen":
+        scene.platen("bottom", springs={"x": 2e6})
+    else:
+        scene.spring(1, stiffness=(1e6, 0, 0))
+    scene.watch(1, name="top")
+    scene.settle(longest=4)
+    if by == "platen":
+        scene.period()
+        mass = 2 * 0.4 * 0.4 * 0.2 * scene.model.unit.density
+        mass += O.bodies[scene.targets["base"].body].state.mass
+        expected = 2 * math.pi * math.sqrt(mass / 2e6)
+        [answer] = [a["value"] for a in scene.answers if a["name"] == "first_period"]
+        assert answer == approx(expected, rel=0.01)
+    scene.shake([3.0] * 20, 0.005)
+    damping = scene.results.column("damping_J")
+    first = scene.running.state.stages[-1]["first_row"]
+    assert max(scene.results.column("kinetic_J")[first:]) > 1e-6
+    assert damping[-1] == approx(damping[first], abs=1e-12)
 
 
 #: A clamped wall that is pushed fast begins to crack within the first quarter of its peak, and then

@@ -259,3 +259,76 @@ def test_what_is_released_keeps_its_momentum_and_nothing_brakes_its_flight(tmp_p
         assert max(abs(v) for v in column("balance_error")) < 1e-3
         kinetic = max(fall["most"] for fall in scene.model.fallen().values())
         assert kinetic == approx(energy - braked, rel=0.01)
+        [fall] = scene.model.fallen().values()
+        if stage == "run":  # it strikes the ground after the time of a free fall
+            lasts = math.sqrt(2 * 0.5 / G)
+            assert fall["at"] - fall["since"] == approx(lasts, rel=0.02)
+            assert fall["since"] < fall["fell"] < fall["at"]
+            # what strikes the ground takes the momentum of the weight, whatever the time step
+            weight, last = (
+                O.bodies[block.body].state.mass * GRAVITY,
+                O.bodies[block.body].state.vel[2],
+            )
+            lasted = column("time_s")[-1] - fall["since"]
+            impulse = -weight * (lasted + last / GRAVITY)
+            assert column("ground_impulse_z_Ns")[-1] == approx(impulse, rel=1e-2)
+
+
+def thrown(folder, speed, *words, reach=None):
+    """The uppermost of three cubes gets a horizontal velocity [m/s], which takes it off."""
+    scene = following(folder, bricks.stack(3, (0.4,) * 3), materials.dry(0.6), *words)
+    scene.hold(0)
+    top = scene.watch(2, name="top")
+    scene.ground(0.0, reach=reach)
+    scene.settle()
+    O.bodies[top.body].state.vel = (speed, 0, 0)
+    scene.model.energy.given()
+    scene.run(4)
+    scene.finish()
+    return scene
+
+
+def test_what_leaves_the_ground_is_stopped_and_counted_apart(tmp_path, capsys):
+    scene = thrown(tmp_path, 14, reach=2.0)
+    assert "1 blocks have left the ground" in capsys.readouterr().out
+    assert scene.ended == "collapsed and at rest"
+    assert answer(scene, "left_the_ground") == answer(scene, "fallen_blocks") == 1
+    names = {a["name"] for a in scene.answers}
+    assert not names & {"rubble_reach", "rubble_height", "impact_energy"}
+    assert arrays(tmp_path)["top_z_mm"][-1] > -2000
+    assert imbalance() < 1e-3
+
+
+@mark.parametrize("speed", [3, 14])
+def test_the_ground_is_as_large_as_a_fall_needs_and_its_answers_hold_for_other_steps(
+    tmp_path, speed
+):
+    """The cube has the energy that it was given and that of its fall when it strikes, less what
+    friction took while it slid off; it slides no farther than both take it, v²/(2 μ g)."""
+    found = {}
+    for share in ("0.8", "0.4"):
+        scene = thrown(tmp_path / share, speed, "--dt-fraction", share)
+        assert scene.ended == "collapsed and at rest"
+        names = "impact_energy", "rubble_height", "fallen_mass"
+        found[share] = [answer(scene, name) for name in names]
+        begun = scene.running.state.stages[1]["first_row"]
+        found[share].append(answer(scene, "first_fall") - arrays(tmp_path / share)["time_s"][begun])
+        mass, reach = answer(scene, "fallen_mass"), answer(scene, "rubble_reach")
+        energy = mass * (0.5 * speed**2 + 0.8 * G)
+        assert 0.8 * energy < answer(scene, "impact_energy") < 1.001 * energy
+        assert 0.4 < reach < speed**2 / (2 * 0.6 * G) + 2 * speed + 2
+    assert found["0.4"] == approx(found["0.8"], rel=0.02)
+
+
+def test_what_slid_and_stands_has_not_fallen(tmp_path):
+    """A block slides 0.8 m over a slab, by Coulomb's law: v = (a - μ g) T, which μ g brakes."""
+    made = bricks.block((-3, -0.5, -0.2), (3, 0.5, 0), part="slab")
+    made += bricks.block((-0.2, -0.2, 0), (0.2, 0.2, 0.1), part="block")
+    scene = following(tmp_path, made, stones(0.3, 1e10))
+    scene.hold((0, 0, -0.1), name="slab")
+    scene.watch((0, 0, 0.05), name="block")
+    scene.settle()
+    assert scene.shake([6.0] * 51 + [0.0], 0.01, after=1.0) == DONE
+    slip = 0.5 * (6 - 0.3 * G) * 0.505**2 * 6 / (0.3 * G)
+    assert scene.results.column("block_x_mm")[-1] == approx(-1e3 * slip, rel=0.02)
+    assert scene.model.fallen() == {} and not scene.collapsed

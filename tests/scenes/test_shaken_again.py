@@ -57,7 +57,7 @@ def test_a_slab_slides_with_every_pulse_and_keeps_its_period(tmp_path, monkeypat
     swings = 2 * math.pi * math.sqrt(DENSITY * HIGH / STIFFNESS)
     assert numbers("first_period_s") == approx(swings, rel=0.05)
     assert [*numbers("peak_m_per_s2")] == [PULSE, PULSE / 2, PULSE]
-    assert {*rows["ended"]} == {"done"}
+    assert {*rows["ended"]} == {AT_REST}
     # stopped within the second record, the run goes on and leaves the same
     stop = stopped.signalled(signal.SIGTERM, round(0.5 * steps))
     assert stopped.carryOut(stopped.BEGIN + SCRIPT, "--out", "stopped", stop=stop)[0] == 130
@@ -74,9 +74,67 @@ def test_a_sequence_ends_with_the_record_in_which_the_structure_falls(tmp_path):
     records = [pulse(), pulse(), pulse()]
     settings = dict(every=EVERY, after=2.0, unit="m/s²")
     ends = scene.shakeAgain(records, scales=[0.1, 3, 1], **settings)
-    assert ends == table(tmp_path)["ended"] == [DONE, COLLAPSED]
+    assert ends == [DONE, COLLAPSED] and table(tmp_path)["ended"] == [AT_REST, COLLAPSED]
     with raises(ValueError, match="2 scales for 3 records"):
         scene.shakeAgain(records, scales=[1, 2])
+
+
+def test_what_still_moves_after_a_record_is_no_structure_at_rest(tmp_path):
+    scene = standing(tmp_path, bricks.stack(2, (0.1, 0.1, 0.4)), materials.dry(density=DENSITY))
+    scene.settle()
+    scene.shakeAgain([pulse()], every=EVERY, scales=[0.3], unit="m/s²", longest=0.01)
+    assert table(tmp_path)["ended"] == [MOVING]
+
+
+@mark.parametrize(
+    "wrong, said",
+    [
+        (["{folder}/none.txt"], "cannot read"),
+        (["{folder}/short.AT2"], "NPTS is 3, and the file has 2 values"),
+        ([[0.1, 0.2]], "every None s, the time between samples, must be above 0"),
+    ],
+)
+def test_a_record_that_cannot_be_read_ends_a_script_in_a_sentence(tmp_path, wrong, said):
+    """All records are read before the first one shakes."""
+    (tmp_path / "short.AT2").write_text(
+        "A\nB\nACCELERATION IN UNITS OF G\nNPTS= 3, DT= .005 SEC\n.1 .2\n"
+    )
+    (tmp_path / "fine.txt").write_text("# unit: g\n# every: 0.01 s\n0.1\n0.1\n")
+    records = ["{folder}/fine.txt", *wrong]
+    script = (
+        stopped.BEGIN
+        + f"""
+scene = Scene("refused", bricks.stack(2, (0.4, 0.2, 0.2)), materials.dry(friction=0.6))
+scene.platen("bottom")
+scene.settle()
+scene.shakeAgain({records!r})
+"""
+    )
+    file = tmp_path / "scene.py"
+    file.write_text(script.replace("{folder}", str(tmp_path)))
+    done = runProgram(str(file), "--out", str(tmp_path / "out"), "--lean", check=False)
+    assert done.returncode == 2 and said in done.stderr and "Traceback" not in done.stderr
+    # before the first step, but a file may be made on the way
+    missing = said == "cannot read"
+    assert ("no such file yet" in done.stdout) == ("steps/s" in done.stdout) == missing
+
+
+def test_a_history_that_cannot_be_read_is_refused_before_the_first_step(tmp_path):
+    (tmp_path / "path.csv").write_text("displacement_mm\n1\nnan\n")
+    script = (
+        stopped.BEGIN
+        + """
+scene = Scene("refused", bricks.stack(2, (0.4, 0.2, 0.2)), materials.dry(friction=0.6))
+scene.platen("bottom")
+top, path = scene.platen("top"), "path.csv"
+scene.settle()
+scene.follow(top, path)
+"""
+    )
+    (tmp_path / "scene.py").write_text(script)
+    done = runProgram(str(tmp_path / "scene.py"), "--out", "out", check=False, cwd=tmp_path)
+    assert done.returncode == 2 and "line 7: follow: " in done.stderr, done.stderr
+    assert "steps/s" not in done.stdout and "Traceback" not in done.stderr
 
 
 def test_options_for_the_record_of_one_shake_are_refused(tmp_path):

@@ -68,6 +68,22 @@ def test_without_tension_the_slowest_period_is_about_the_longer_side(tmp_path, t
     assert scene.model.supports.slowest() == approx(expected, rel=0.03)
 
 
+def test_the_period_is_that_of_small_motions_also_where_a_larger_one_lifts_off(tmp_path):
+    """A rigid tower on soil that takes no tension: T = 2π √(I/(k l²/12 - W h/2)). Under 0.05 g an
+    edge lifts off, and the period would be 8 % longer."""
+    side, high, below, soil = 3.6, 20.0, 0.2, 2e9  # [m], [m], [m], [N/m]
+    stone = materials.dry(0.9, density=1000, normalStiffness=1e12, young=1e15)
+    scene = lean(tmp_path, bricks.stack(1, (side, side, high)), stone)
+    scene.platen("bottom", springs={"z": soil}, uplift=True, height=below)
+    scene.settle()
+    scene.period()
+    middle = below + high / 2
+    inertia = 1000 * side**2 * high * ((side**2 + high**2) / 12 + middle**2)
+    stiffness = soil * side**2 / 12 - 1000 * side**2 * high * G * middle
+    [found] = [a["value"] for a in scene.answers if a["name"] == "first_period"]
+    assert found == approx(2 * math.pi * math.sqrt(inertia / stiffness), rel=0.01)
+
+
 @mark.parametrize("plane, slender", [(True, False), (False, True)])
 def test_a_thin_wall_is_slender_unless_it_stays_in_its_plane(plane, slender):
     box = SimpleNamespace(low=(0, 0, 0), high=(1.0, 0.125, 1.0), plane=plane)

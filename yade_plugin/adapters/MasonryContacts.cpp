@@ -21,7 +21,7 @@ void MasonryContacts::lookAtFalls(SceneStore& store) {
     std::vector<int> loose;
     for (int body = 0; body < store.bodies.size(); ++body)
         if (store.bodies.has(body) && !held[std::size_t(body)]) loose.push_back(body);
-    falls_.look(store, loose, diameters());
+    falls_.look(store, loose, sizes(), store.gravity());
     if (dampsLoose) return;
     for (int body : loose)
         if (auto& state = store.bodies.state(body); state.isDamped) {
@@ -42,6 +42,11 @@ py::dict MasonryContacts::fallen() {
         found[fall.body] = one;
     }
     return found;
+}
+
+Vector3r MasonryContacts::impulse(int body) {
+    const BetweenSteps still;
+    return impulseOn(body);
 }
 
 py::list MasonryContacts::pairs() {

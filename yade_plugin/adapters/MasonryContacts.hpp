@@ -81,10 +81,14 @@ public:
                  "Pairs of blocks between which a force acted in the last step, that is, which touch or have just "
                  "parted: a list of tuples of the ids of both, and the force [N] and the torque about its centre [N m] "
                  "on the second, global axes.")
+            .def("impulse", &MasonryContacts::impulse,
+                 "Impulse of all contacts so far on a body whose axes are all blocked, as the ground [N s], global "
+                 "axes. The force of an impact depends on stiffness and time step, and its impulse does not.")
             .def("fallen", &MasonryContacts::fallen,
                  "Blocks that have come loose where joints are handed over, by their ids: a dict of id -> dict with "
-                 "since, when that was [s]; fell, when the block had turned by 60° or moved by its diameter since the "
-                 "reference state [s], None if it has not; most, its largest kinetic energy since then [J]; and at, "
+                 "since, when that was [s]; fell, when the block had turned by 60°, or moved by its diameter and come "
+                 "down by half its thickness, since the reference state [s], None if it has not; most, its largest "
+                 "kinetic energy since then [J]; and at, "
                  "when it had that [s]. Looked at every tenth step.");
     }
 
@@ -97,6 +101,7 @@ public:
 private:
     int countTouching();
     Vector3r forceBetween(int id1, int id2);
+    Vector3r impulse(int body);
     py::dict fallen();
     py::list pairs();
     void lookAtFalls(SceneStore&);

@@ -12,6 +12,7 @@ from yade.wrapper import NewtonIntegrator
 from .. import _masonry
 from .._masonry import connected, dropFaces, neighbours, timeStepLimit
 from ..arguments import number, validated
+from ..errors import Refused
 from ..terminal import say
 from .bodies import properties, refuse
 from .engines import LAWS
@@ -66,7 +67,7 @@ def makeJoints(
     """:func:`connect` without its time step, for who chooses it by other rules."""
     loops = [e for e in O.engines if isinstance(e, (MasonryJointLoop, InteractionLoop))]
     if not loops:
-        raise ValueError(
+        raise Refused(
             "connect() needs the joints' engine in O.engines: call masonry.engines() first"
         )
     loop = loops[0]
@@ -76,7 +77,7 @@ def makeJoints(
         functors, ofPhysics = [loop.geometry], [loop.physics]
     geometry, physics = [*functors, None][0], [*ofPhysics, None][0]
     if geometry is None or physics is None:
-        raise ValueError(
+        raise Refused(
             f"{type(loop).__name__} has no geometry or no physics: call masonry.engines()"
         )
     before, pairs = geometry.tolerance, []
@@ -104,7 +105,7 @@ def _pairs(tolerance, allowGaps):
     pairs, misfits, sizes = neighbours(tolerance, keepFaces=True)
     for one in O.interactions.all():
         if isinstance(one.geom, MasonryJointGeom):
-            raise ValueError(
+            raise Refused(
                 f"bodies {one.id1} and {one.id2} have a joint: connect() is called once, when all"
                 " blocks are there"
             )
@@ -124,7 +125,7 @@ def _pairs(tolerance, allowGaps):
         ),
     )
     if not pairs:
-        raise ValueError(
+        raise Refused(
             f"no joint can be made: none of {len(O.bodies)} bodies shares a face with another"
             f" (tolerance {tolerance:g} of the smaller block's size)"
         )

@@ -21,7 +21,9 @@ from yade import O
 from .._masonry import loadScene, saveScene
 from ..units import GRAVITY
 
-SHARE = 0.05  # of gravity: the acceleration that acts in the measurement
+#: Shares of gravity: accelerations that act in the measurement, the next one if the period is
+#: another one under the next one, as of what lifts off; largest difference that is none [-].
+SHARES, ALIKE = (0.05, 5e-3, 5e-4, 5e-5, 5e-6), 0.01
 SAMPLE = 2e-5  # [s] between readings of the forces, at true masses
 FEWEST = 10  # readings in half a period, for half a per cent
 #: Duration of the first side over its half period, so that the difference has its zero [-].
@@ -32,14 +34,27 @@ BEYOND = 1.1, 2.0
 SMALL, LOOK, LONGEST, FIRST_LOOKS, FASTER = 1e-6, 5e-4, 5.0, 32, 1.1
 
 
-def firstPeriod(structure, direction, longest):
-    """The first period of a structure at rest along a direction [s], or None if none is found, in
-    the steps of a period or some more.
+def smallPeriod(structure, direction, longest):
+    """The first period of small vibrations, which a smaller push does not change, and the share of
+    gravity with which it was found [-]. Parameters as in :func:`firstPeriod`."""
+    found = firstPeriod(structure, direction, longest)
+    for share, smaller in zip(SHARES, SHARES[1:]):
+        other = firstPeriod(structure, direction, longest, smaller)
+        if found == other or found and other and abs(found - other) <= ALIKE * other:
+            return found, share
+        found = other
+    return found, smaller
+
+
+def firstPeriod(structure, direction, longest, share=SHARES[0]):
+    """The first period of a structure at rest along a direction in the time of the scene [s], or
+    None if none is found, in the steps of a period or some more.
 
     Drives hold, and nothing is damped. Afterwards the scene is as before, to the last bit.
 
     :param direction: unit vector
     :param longest: the longest period that is looked for [s]
+    :param share: of gravity, the acceleration that acts [-]
     """
     before = saveScene("null")
     every = max(1, int(SAMPLE * structure.args.density_scaling**0.5 / O.dt))
@@ -49,14 +64,14 @@ def firstPeriod(structure, direction, longest):
     try:
         for beyond in BEYOND:
             there, back, end = [], [], beyond * most
-            for momentum in _momenta(structure, direction, SHARE, every):
+            for momentum in _momenta(structure, direction, share, every):
                 there.append(momentum)
                 if momentum <= 0:
                     end = min(end, beyond * len(there))
                 if not math.isfinite(momentum) or len(there) >= end:
                     break
             loadScene(before)
-            for momentum in _momenta(structure, direction, -SHARE, every):
+            for momentum in _momenta(structure, direction, -share, every):
                 back.append(there[len(back)] - momentum)
                 if not back[-1] > 0 or len(back) >= min(most, len(there)):
                     break
@@ -90,7 +105,7 @@ def firstMode(structure, direction, longest):
     before, sides = saveScene("null"), []
     steps = round(0.5 * period / O.dt)
     try:
-        for share in (SHARE, -SHARE):
+        for share in (SHARES[0], -SHARES[0]):
             next(_momenta(structure, direction, share, steps))
             sides.append([body.state.pos.dot(direction) for body in O.bodies])
             loadScene(before)

@@ -43,11 +43,11 @@ class Scheme:
     def damp(self, damping, kind, massDamping=0.0, stiffnessDamping=0.0):
         """Choose the damping from now on; :meth:`chooseTimeStep` follows it.
 
-        :param damping: numerical damping constant of deformable units, else of rigid ones [-]
+        :param damping: numerical damping constant of rigid and deformable units [-]
         :param massDamping: viscous, of the motion [1/s]; ``stiffnessDamping``: of the joints [s]
         """
-        damped = self.zones or self.integrator
-        damped.damping, damped.dampingKind = damping, kind
+        for one in filter(None, (self.integrator, self.zones)):
+            one.damping, one.dampingKind = damping, kind
         self.integrator.massDamping = massDamping
         self.joints.stiffnessDamping = stiffnessDamping
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """A scene in YADE: its bodies, joints, loads and engines."""
 
-from yade import O
+from yade import O, Vector3
 from yade.wrapper import MasonryContacts, MasonryZones
 
 from ..errors import Collapsed, Refused
@@ -174,6 +174,22 @@ class Structure:
             return {}
         known = {b: one for b, one in self.contacts.fallen().items() if one["fell"] is not None}
         return {n: known[body] for n, body in enumerate(self.ids) if body in known}
+
+    def onGround(self, index):
+        """Whether a block has not gone past the edge of the ground."""
+        level = self.description.ground().box[1][2]
+        return O.bodies[self.ids[index]].state.pos[2] >= level
+
+    def stopLost(self):
+        """Stop the blocks that have gone past the edge of the ground where they are: nothing would
+        stop them."""
+        for index in self.fallen():
+            state = O.bodies[self.ids[index]].state
+            if not self.onGround(index) and state.blockedDOFs != "xyzXYZ":
+                state.vel = state.angVel = state.angMom = Vector3.Zero
+                state.blockedDOFs = "xyzXYZ"
+                self.supports.freeMass -= state.mass
+                self.energy.given()
 
     def checkFallen(self):
         """Raise Collapsed if a block has fallen, in a scene whose collapse is followed."""

@@ -317,9 +317,10 @@ QUANTITIES: tuple[Quantity, ...] = (
     ),
     Q(
         "first_period_s",
-        "first period along the push",
-        "First period of the structure along the push, measured as it began; None if none was"
-        " found.",
+        "first period along the push while the drive holds",
+        "First period of the structure along the push, measured as it began, while the drive held"
+        " the pushed point, or of the free structure if the push was a pattern; None if none was"
+        " found. period() measures that of the free structure.",
         "masonry.model.period",
     ),
     Q(

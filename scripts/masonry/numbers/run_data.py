@@ -137,7 +137,8 @@ class RunData:
         if not period or times is None or len(self.rows) < 2:
             return 0.0
         lasted = np.ptp([times[n] for n in self.rows])
-        return float(period * np.ptp(self[MOVED]) / lasted) if lasted > 0 else 0.0
+        slower = self.run.get("options", {}).get("density_scaling", 1) ** 0.5  # in the scene
+        return float(slower * period * np.ptp(self[MOVED]) / lasted) if lasted > 0 else 0.0
 
     @property
     def height(self) -> float | None:

@@ -12,7 +12,7 @@ import yade.config
 from .._masonry import commit, version
 from ..model import threads
 from ..numbers.columns import meanings
-from ..background import reportRefusal
+from ..background import refuseScript, reportRefusal
 from ..errors import Collapsed, Interrupted, Refused, Unwritable
 from ..terminal import say
 from ..memory import FULL
@@ -48,7 +48,7 @@ def _end(run, scene, error):
             run.beginWriting()
     except Refused as refused:
         error = refused
-    if isinstance(error, Refused):
+    if isinstance(error, Refused) and not run.advanced:
         reportRefusal(error)
     if isinstance(error, MemoryError):
         error = Unwritable(FULL)
@@ -77,7 +77,7 @@ def _end(run, scene, error):
             _finish(run, scene)
         except (Unwritable, MemoryError) as other:
             say(f"{other or FULL}; what was written before is kept", sys.stderr)
-        raise error
+        raise refuseScript(error) if isinstance(error, Refused) else error
     if stopped:
         run.results.run["error"] = str(stopped[0])
     over = run.args.lean and not stopped and not run.interrupted

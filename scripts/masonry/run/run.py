@@ -241,6 +241,8 @@ class Run:
                 raise Interrupted()
             if not state.left:
                 break
+        if self.model.contacts:
+            self.model.stopLost()
         if self.context.endsAtFall:
             self.model.checkFallen()
 

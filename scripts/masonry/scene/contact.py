@@ -2,9 +2,9 @@
 """Contact of blocks that have lost their joints, and the ground on which they fall."""
 
 import itertools
-from typing import Any
+from typing import Annotated, Any
 
-from ..arguments import Name, validated
+from ..arguments import Name, number, validated
 from .platens import Coordinate
 from ..errors import Refused
 from ..materials.settings import Property, Settable
@@ -14,8 +14,8 @@ from .script import describes
 RESTITUTION = 0.5  # [-] as in MasonryContacts
 FRICTION = 0.6  # [-] of masonry blocks with elastic joints
 #: Thickness of the ground, its reach beyond the structure, and the gap above it, over the height of
-#: what is built [-].
-THICKNESS, REACH, GAP = 0.5, 5.0, 1e-3
+#: what is built [-]. What comes down from there slides no farther if friction is 0.05.
+THICKNESS, REACH, GAP = 0.5, 20.0, 1e-3
 
 
 class Contact(Settable):
@@ -80,24 +80,31 @@ def problems(description, args):
 
 @describes
 @validated
-def ground(description: Any, level: Coordinate, name: Name | None = None) -> Target:
+def ground(
+    description: Any,
+    level: Coordinate,
+    name: Name | None = None,
+    reach: Annotated[float, number("m", 0, 1e4, above=True)] | None = None,
+) -> Target:
     """The ground on which blocks fall in a scene with ``collapse="follow"``: a wide block that is
-    held, without joints. Without this command it lies just below everything else.
+    held, without joints. Without this command it lies just below everything else. A block that
+    leaves it is stopped there, and counted apart.
 
     :param level: z of its upper side [m], at or below everything else
     :param name: in curve.csv; None: ground
+    :param reach: beyond the box around what is built, to all sides [m]; None: 20 times the height
     """
     if not description.contact:
         raise Refused("ground: only a scene with collapse='follow' has a ground")
     if description.ground():
         raise Refused("ground: the scene has its ground already")
-    return addGround(description, level, name or "ground")
+    return addGround(description, level, name or "ground", reach)
 
 
-def addGround(description, level=None, name=None):
+def addGround(description, level=None, name=None, reach=None):
     """Add the ground on which blocks fall.
 
-    :param level: as in :func:`ground`; None: just below everything else
+    :param level: as in :func:`ground`, as is ``reach``; None: just below everything else
     :param name: None: ground, or another one if a target has that name
     """
     targets = description.targets
@@ -111,7 +118,7 @@ def addGround(description, level=None, name=None):
             f"ground: level {top:g} m must be at most {lowest:g} m, where the lowest of what is"
             " built ends"
         )
-    reach = REACH * (description.high[2] - top)
+    reach = reach or REACH * (description.high[2] - top)
     low = [v - reach for v in description.low[:2]]
     high = [v + reach for v in description.high[:2]]
     middle = (0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1]), top)

@@ -119,7 +119,7 @@ class Description:
     def add(self, target):
         """Take a target. Raises ValueError if its name is taken."""
         if target.name in self.targets:
-            raise ValueError(
+            raise Refused(
                 f"there are two targets of the name {target.name!r}; give one of them another name"
             )
         self.targets[target.name] = target
@@ -173,7 +173,7 @@ class Description:
         count = len(self.bricks)
         if isinstance(where, Integral) and not isinstance(where, bool):
             if not -count <= where < count:
-                raise ValueError(f"{shown(where)}: there are {count} bricks, from 0")
+                raise Refused(f"{shown(where)}: there are {count} bricks, from 0")
             return int(where) % count, None
         for index, block in enumerate(self.bricks):
             if block is where:
@@ -181,13 +181,13 @@ class Description:
         try:
             point = tuple(float(v) for v in vector()(where))
         except ValueError:
-            raise ValueError(
+            raise Refused(
                 f"{shown(where)} must be a brick: its index, a point (x, y, z) [m], or the block"
                 " itself"
             ) from None
         index, away = self._nearest(point)
         if away > self.size(index):
-            raise ValueError(f"{point} m: no brick is near it, the nearest is {away:g} m away")
+            raise Refused(f"{point} m: no brick is near it, the nearest is {away:g} m away")
         return index, point
 
     def middle(self, index):

@@ -207,7 +207,7 @@ class ResultSummary:
         recorded, drift = (z - self.description.low[2] for z in heights)
         past = self.pushed.history
         return {
-            "first_period_s": period or None,
+            "first_period_s": period / self.args.density_scaling**0.5 or None,
             "base_weight": weight or curves.SHEAR,
             "velocity_grown_at_s": grown,
             "recorded_height_m": recorded if sways and recorded > 0 else None,

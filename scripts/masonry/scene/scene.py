@@ -33,7 +33,7 @@ from ..arguments import isA, listOf, number, oneOf, shown, text, validated
 from .. import notebook, stages, wings
 from ..model.structure import Structure
 from ..units import GRAVITY
-from ..errors import Interrupted
+from ..errors import Interrupted, Refused
 from ..terminal import say
 from ..memory import withoutCollector
 from ..bricks import Bricks
@@ -44,6 +44,7 @@ from ..run.presets import BOUND
 from ..run.results import Results
 from ..run.run import Run
 from ..stages import STAGES, answers, bounding, gravity, prepare, rest
+from ..stages.ahead import lookAhead
 from ..stages.bounds import boundsOf, takeFound
 from . import connections, contact, loads, options, platens, records, summary
 from .description import Description
@@ -58,7 +59,7 @@ def _ofFolder(value, context=None):
     """Validator of the name of a scene, which names a folder, too."""
     fine = isinstance(value, str) and value.strip(". ") and value.isprintable()
     if not fine or "/" in value or len(value.encode()) > LONGEST_NAME:
-        raise ValueError(f"{shown(value)} must be a text that can name a folder")
+        raise Refused(f"{shown(value)} must be a text that can name a folder")
     return value
 
 
@@ -68,7 +69,7 @@ def _blocksOf(value, context=None):
         found = list(value)
         found[0].corners[0][2]
     except Exception:  # of a class of the user's own
-        raise ValueError(
+        raise Refused(
             f"{shown(value)} must be a list of blocks, as masonry.bricks makes them"
         ) from None
     return found
@@ -236,9 +237,9 @@ class Scene:
     def checkOpen(self, name: str) -> None:
         """Raise ValueError if the scene is finished, or gone because another one was built."""
         if self.finished:
-            raise ValueError(f"{name}: the scene is finished")
+            raise Refused(f"{name}: the scene is finished")
         if self.model and self.isGone:
-            raise ValueError(
+            raise Refused(
                 f"{name}: scene {self.name} is gone, because another one was built since; finish"
                 " one scene before the next begins"
             )
@@ -259,6 +260,8 @@ class Scene:
         if self.model:
             return
         description, args = self.description, self.args
+        if not self.running.isResumed:
+            lookAhead(self)
         if description.contact and not description.ground():
             contact.addGround(description)
         model = Structure(description, self.masonry, args)

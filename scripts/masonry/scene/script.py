@@ -9,7 +9,8 @@ import math
 from dataclasses import dataclass
 from typing import Any, Callable, Concatenate, ParamSpec, Protocol, TypeVar, overload
 
-from ..errors import NotResumed
+from ..background import refuseScript
+from ..errors import NotResumed, Refused
 
 P = ParamSpec("P")
 Q = ParamSpec("Q")
@@ -44,10 +45,13 @@ def describes(act: Callable[Concatenate[Any, P], R]) -> Callable[Concatenate[Any
     @functools.wraps(act)
     def command(scene: Any, *args: P.args, **settings: P.kwargs) -> R:
         if scene.model:
-            raise ValueError(
+            raise Refused(
                 f"{act.__name__}() must come before the first stage: the scene is built already"
             )
-        record = act(scene.description, *args, **settings)
+        try:
+            record = act(scene.description, *args, **settings)
+        except Refused as refused:
+            raise refuseScript(refused) from None
         scene.calls.append(Call(command, args, settings, record))
         scene.script.note(act, scene, args, settings)
         return record

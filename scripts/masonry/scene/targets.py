@@ -50,6 +50,10 @@ class Target:
             yield Column(f"{name}_{axis}", "mm", what, moved)
             if self.fixed or axis in (self.freedom or ""):
                 yield force(axis, name, lambda r: 1e-3 * r.forces[name])
+            if not self.joined:
+                what = f"impulse so far of what strikes {name}, along {axis}"
+                of = lambda r, i=i: r.structure.contacts.impulse(self.body)[i]
+                yield Column(f"{name}_impulse_{axis}", "Ns", what, of)
         if self.brick is not None and self.loaded and not self.fixed:
             for axis in axes:
                 on = f"what loads, drives or holds {name}"

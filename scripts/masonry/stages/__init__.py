@@ -14,6 +14,7 @@
 - :mod:`masonry.stages.falling`: ``fall``, which follows a collapse
 - :mod:`masonry.stages.bounding`: the commands that ask for limit analysis;
   :mod:`masonry.stages.bounds`: what stages and a run ask of it
+- :mod:`masonry.stages.ahead`: files that the script names in stages to come
 - :mod:`masonry.stages.answers`: how stages end, and what they answer;
   :mod:`masonry.stages.stage`: what all share
 """

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Annotated, Any
 
 from ..arguments import Name, number, validated
+from ..errors import Refused
 from ..numbers import quantities
 from ..scene.resuming import saidBefore
 from ..scene.script import RESULT, Call
@@ -113,7 +114,7 @@ def result(
     :raises ValueError: with all problems
     """
     if not scene.model:
-        raise ValueError(f"result {name}: it comes after the first stage")
+        raise Refused(f"result {name}: it comes after the first stage")
     scene.calls.append(Call(result, (name, value, unit, how), {}))
     state, before = scene.running.state, scene.running.scriptBefore
     later = [word for word, _ in before[len(scene.script.commands) + 1 :]]

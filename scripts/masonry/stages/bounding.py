@@ -5,7 +5,7 @@ from typing import Annotated, Any
 
 from ..arguments import Direction, Level, Numbers, listOf, number, validated
 from ..model.bodies import vector
-from ..errors import Interrupted
+from ..errors import Interrupted, Refused
 from .. import wings
 from ..model.load_names import nameInDomain, nameOfLean, nameOfPush
 from .bounds import findBy
@@ -34,7 +34,7 @@ def bound(
     :returns: the entry of run.json: a dict with what :mod:`masonry.run.results` lists
     """
     if (target is None) == (towards is None):
-        raise ValueError("bound: give either target or towards")
+        raise Refused("bound: give either target or towards")
     wings.find("bound")
 
     def find():
@@ -75,7 +75,7 @@ def domain(
     """
     wings.find("domain")
     if target.pressed is None:
-        raise ValueError(
+        raise Refused(
             f"domain: {target.name} is not pressed: press({target.name}, ...) before the first"
             " stage says where the normal force acts"
         )
@@ -83,7 +83,7 @@ def domain(
     def find():
         isDriven = scene.model.loading.isDriven(target, "z")
         if "z" in (target.freedom or "") or isDriven:
-            raise ValueError(
+            raise Refused(
                 f"domain: {target.name} is held along z, so its normal force is no load that could"
                 " be replaced"
             )
@@ -105,7 +105,7 @@ def _inOrder(scene, find, command, *arguments):
             scene.begin()
             scene.bounds.take(True)
             if scene.collapsed:
-                raise ValueError(
+                raise Refused(
                     f"{command.__name__}: the structure has fallen; stepBack() goes back to its"
                     " last state at rest"
                 )

@@ -75,12 +75,12 @@ def followFall(scene: Any, tilted: bool) -> str:
             at.quiet == CONSECUTIVE_CHECKS or at.rows == most,
         )
     running.flush()
-    ground = box.ground().box[1][2]
-    past = sum(O.bodies[body].state.pos[2] < ground for body in model.ids)
+    past = sum(not model.onGround(index) for index in model.fallen())
     if past:
         say(
-            f"warning: {past} blocks have gone past the edge of the ground and fall on, so the"
-            " impact energy and the extent of the rubble mean nothing"
+            f"warning: {past} blocks have left the ground over its edge and were stopped there; the"
+            " rubble and the impact energy are those of all others; ground(level, reach=...) makes"
+            " it larger"
         )
     if at.quiet < CONSECUTIVE_CHECKS:
         say(
@@ -111,7 +111,10 @@ def answers(scene: Any, ended: str, begun: float) -> list[Answer]:
     masses = [O.bodies[body].state.mass for body in model.ids]
     mass = sum(masses[index] for index in fallen)
     when = "" if atRest else f"{ended}: "
-    what = "blocks that have turned by 60° or moved by their diameter since the scene was built"
+    what = (
+        "blocks that have turned by 60°, or moved by their diameter and come down by half their"
+        " thickness, since the scene was built"
+    )
     built = "since the scene was built"
     rest = "from then on until all was at rest"
     found = [
@@ -125,8 +128,18 @@ def answers(scene: Any, ended: str, begun: float) -> list[Answer]:
         ("noticed_at", "s", begun, f"when the collapse was noticed, {built}"),
         ("time_to_rest", "s", O.time - begun if atRest else None, rest),
     ]
+    first = min((one["fell"] for one in fallen.values()), default=None)
+    lost = [index for index in fallen if not model.onGround(index)]
+    if lost:
+        how = f"{when}fallen blocks that went over the edge of the ground and were stopped there"
+        found.append(("left_the_ground", "-", len(lost), f"{how}; what follows is without them"))
+    fallen = {index: one for index, one in fallen.items() if index not in lost}
+    if first is not None:
+        found.append(
+            ("first_fall", "s", first, f"when the first block had fallen, {built}"),
+        )
     if fallen:
-        first = min(one["fell"] for one in fallen.values())
+        mass = sum(masses[index] for index in fallen)
         energy = sum(one["most"] for one in fallen.values())
         bulk = sum(volume(model, index) for index in fallen)
         corners = [c for index in fallen for c in cornersNow(model, index)]
@@ -146,7 +159,6 @@ def answers(scene: Any, ended: str, begun: float) -> list[Answer]:
             ("rubble_height", "m", high[2] - ground, f"{lies}, above the ground"),
             ("rubble_reach", "m", reach, beside),
             ("impact_energy", "J", energy, f"{when}{loose}"),
-            ("first_fall", "s", first, f"when the first block had fallen, {built}"),
         ]
     return [Answer(*one) for one in found]
 

@@ -10,7 +10,7 @@ from yade import Vector3
 from ..arguments import Level, number, validated
 from ..model.loading import smooth
 from ..units import GRAVITY
-from ..errors import checkPlane
+from ..errors import Refused, checkPlane
 from ..model.load_names import nameOfLean
 from .bounds import findBound
 from .growing import TRIAL, WITHIN, Tried, ends, follow, found, grow
@@ -223,16 +223,16 @@ def bracket(
     :raises ValueError: if the structure does not carry ``low``, or carries ``high``
     """
     if not low < high:
-        raise ValueError(f"bracket: low {low} must be below high {high}")
+        raise Refused(f"bracket: low {low} must be below high {high}")
     if scene.collapsed:
         scene.stepBack()
     scene.bracketing = True
     try:
         if not carries(low):
             scene.stepBack()
-            raise ValueError(f"bracket: the structure does not carry {low:g}, the lower end")
+            raise Refused(f"bracket: the structure does not carry {low:g}, the lower end")
         if carries(high):
-            raise ValueError(f"bracket: the structure carries {high:g}, the upper end")
+            raise Refused(f"bracket: the structure carries {high:g}, the upper end")
         scene.stepBack()
         within = within if scene.share == 1 else max(within, 0.5)
         while high - low > within * high:

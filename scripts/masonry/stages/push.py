@@ -255,7 +255,16 @@ def cycle(
     return _drive(scene, "cycle", target, *how, history=text)
 
 
-@stage(bounded=True, extendable=("path",), options=OPTIONS, answers=peaks)
+def readableHistory(scene, target, path, *_, **__):
+    """Raise Refused for a history that cannot be read, unless the command line replaces it."""
+    if not (scene.args.until or scene.args.history or scene.running.isResumed):
+        try:
+            parse(str(path))
+        except ValueError as error:
+            raise Refused(f"follow: {error}") from None
+
+
+@stage(bounded=True, extendable=("path",), options=OPTIONS, check=readableHistory, answers=peaks)
 def follow(
     scene: Any,
     target: Pushed,

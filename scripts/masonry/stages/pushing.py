@@ -250,12 +250,14 @@ def _measuredPeriod(scene, name, args, longest):
             period = firstPeriod(scene.model, loading.direction, longest)
     finally:
         loading.push.driven = True
+    slower = args.density_scaling**0.5
+    held = "" if loading.push.damped else " while the drive holds"
     if period:
-        say(f"{name}: first period along it {1e3 * period:.3g} ms")
+        say(f"{name}: first period along it{held} {1e3 * period / slower:.3g} ms")
         return period
     say(
-        f"note: {name}: no first period up to {1e3 * longest:.3g} ms was found; the drive gets to"
-        f" its rate within {1e3 * rampTime(args):.3g} ms"
+        f"note: {name}: no first period up to {1e3 * longest / slower:.3g} ms was found; the drive"
+        f" gets to its rate within {1e3 * rampTime(args) / slower:.3g} ms"
     )
     return 0.0
 

@@ -186,7 +186,7 @@ def stepBack(scene: Any) -> None:
             known = before[at][1].get("known", known)
         isEarlier = saidBefore(scene, "stepBack", known=known)
         if not known:
-            raise ValueError("stepBack: the scene has not been at rest in this run of the script")
+            raise Refused("stepBack: the scene has not been at rest in this run of the script")
         running.collapsed, scene.ended = False, AT_REST
         scene.results.run.pop("collapse", None)
         if not isEarlier:

@@ -13,7 +13,7 @@ from yade import O, Vector3
 
 from ..arguments import FilePath, Level, Numbers, listOf, number, oneOf, validated
 from ..folders import replaced, writing
-from ..model.period import firstPeriod
+from ..model.period import smallPeriod
 from ..errors import Refused
 from ..terminal import say
 from ..run import batch
@@ -24,7 +24,7 @@ from ..scene.script import SHAKES
 from .gravity import sideways
 from .answers import COLLAPSED, DONE, Answer
 from .rest import settle
-from .stage import Duration, Time, Timed, stage, timed
+from .stage import Duration, Time, Timed, combines, stage, timed
 
 TABLE = "shakes.csv"
 LONGEST = 4.0  # [s]: the longest first period that is looked for
@@ -70,7 +70,30 @@ def inRealTime(scene, name, damping, massDamping=0.0, stiffnessDamping=0.0):
     return at
 
 
-@stage(options=("record", "scale"), dynamic=True, answers=displacements)
+def readable(scene, accelerations, every=None, direction=None, scale=1.0, unit=None, *_, **__):
+    """Raise Refused for a record that cannot be read, unless the command line replaces it."""
+    replaced = scene.args.record is not None and not any(
+        command in SHAKES for command, _ in scene.script.commands
+    )
+    if not (replaced or scene.running.isResumed):
+        _read(accelerations, every, scale, unit)
+
+
+def readableAll(scene, records, every=None, direction=None, scales=None, longest=None, **how):
+    """Raise Refused for one of the records of :func:`shakeAgain` that cannot be read. Returns the
+    samples of all [m/s²]."""
+    scales = [1.0] * len(records) if scales is None else scales
+    return [_read(one, every, s, how.get("unit"))[0] for one, s in zip(records, scales)]
+
+
+def _read(*how):
+    try:
+        return readRecord(*how)
+    except Refused as refused:
+        raise Refused(f"shake: {refused}") from None
+
+
+@stage(options=("record", "scale"), dynamic=True, check=readable, answers=displacements)
 def shake(
     scene: Any,
     accelerations: Annotated[Numbers | FilePath | Sequence[FilePath], record],
@@ -117,10 +140,7 @@ def shake(
     if isFirst and args.record is not None:
         accelerations, every, scale, unit = batch.beside(args.record), None, 1.0, None
     scale *= args.scale if isFirst else 1
-    try:
-        values, every = readRecord(accelerations, every, scale, unit)
-    except Refused as refused:
-        raise Refused(f"shake: {refused}") from None
+    values, every = _read(accelerations, every, scale, unit)
     motions = components(values).tolist()
     for motion in motions:
         if doubt := drift(motion, every).sentence():
@@ -129,8 +149,6 @@ def shake(
     if len(motions) == 3:
         left = Vector3.UnitZ.cross(axes[0])
         axes += [sideways(scene, left, "shake"), Vector3.UnitZ]
-    if args.density_scaling != 1:
-        raise Refused("--density-scaling: a scene that is shaken runs in real time")
     at = inRealTime(scene, "shake", damping, massDamping, stiffnessDamping)
     if O.dt > every:
         say(
@@ -181,8 +199,12 @@ def run(scene: Any, seconds: Duration, damping: Damping = 0.0) -> str:
 
 def remains(scene, rows):
     """The first period, what has moved since the scene was built, and the widest crack."""
-    looked = f"free vibration after a small push, at most {LONGEST:g} s"
-    yield Answer("first_period", "s", scene.running.memory.period or None, looked)
+    at = scene.running.memory
+    looked = (
+        f"free vibration after a push of {at.share:g} g, which a smaller one does not change; at"
+        f" most {LONGEST:g} s"
+    )
+    yield Answer("first_period", "s", at.period or None, looked)
     for target in scene.description.targets.values():
         moved = scene.model.supports.moved(target)[0]
         for i, axis in enumerate("xyz" if not target.fixed else ""):
@@ -195,17 +217,25 @@ def remains(scene, rows):
 @stage(answers=remains)
 def period(scene: Any, direction: Level = (1, 0, 0)) -> str:
     """Measure the first period of the structure, which is at rest, by its free vibration after a
-    small push (0.05 g), and what has moved since it was built. The scene stays as it is.
+    small push, and what has moved since it was built. The push is 0.05 g, and smaller where the
+    period depends on it, as where something lifts off. Drives hold. The scene stays as it is.
 
     :param direction: horizontal
     """
     along = sideways(scene, direction, "period")
-    at = scene.running.stage("period", SimpleNamespace(period=0.0))  # [s]; 0: none
+    # the first period [s], 0 if there is none, and the push over gravity
+    at = scene.running.stage("period", SimpleNamespace(period=0.0, share=0.0))
+    scheme, slower = scene.model.scheme, scene.args.density_scaling**0.5  # heavy blocks swing so
+    if scheme.massScaling:
+        scheme.trueMasses("period")
+        scheme.chooseTimeStep()
     with scene.running.clock("setup"), scene.running.breakable():
-        at.period = firstPeriod(scene.model, along, LONGEST) or 0.0
+        period, at.share = smallPeriod(scene.model, along, LONGEST * slower)
+        at.period = (period or 0.0) / slower
     return DONE
 
 
+@combines
 @validated
 def shakeAgain(
     scene: Any,
@@ -218,7 +248,8 @@ def shakeAgain(
 ) -> list[str]:
     """Shake a structure by one record after the other, as it was left by those before. After each
     it comes to rest, and its period and what remains are measured: stages :meth:`shake`,
-    :meth:`settle` and :meth:`period`. ``shakes.csv`` has a row for every record.
+    :meth:`settle` and :meth:`period`. ``shakes.csv`` has a row for every record, whose ``ended`` is
+    ``"at rest"``, or ``"moving"`` if it did not come to rest.
 
     :param records: of each what :meth:`shake` takes
     :param every: time between two samples [s], and ``direction``: as in :meth:`shake`
@@ -229,28 +260,30 @@ def shakeAgain(
     :raises ValueError: if there are not as many scales as records
     """
     if scene.args.record is not None or scene.args.scale != 1:
-        raise ValueError(
+        raise Refused(
             "shakeAgain: --record and --scale are for the one record of shake(); give records and"
             " scales here"
         )
     scales = [1.0] * len(records) if scales is None else scales
     if len(scales) != len(records):
-        raise ValueError(f"shakeAgain: {len(scales)} scales for {len(records)} records")
+        raise Refused(f"shakeAgain: {len(scales)} scales for {len(records)} records")
     ends, rows = [], []
+    read = readableAll(scene, records, every, scales=scales, **how)
     for count, (one, scale) in enumerate(zip(records, scales), 1):
         ends.append(shake(scene, one, every, direction, scale, **how))
-        stages = [scene.running.entered]
-        if ends[-1] != COLLAPSED and settle(scene, longest=longest) != COLLAPSED:
+        stages, rests = [scene.running.entered], COLLAPSED
+        if ends[-1] != COLLAPSED:
+            rests = settle(scene, longest=longest)
+        if rests != COLLAPSED:
             period(scene, direction)
             stages.append(scene.running.entered)
-        values, _ = readRecord(one, every, scale, how.get("unit"))
-        peak = abs(scale) * float(np.abs(values).max())
+        peak = abs(scale) * float(np.abs(read[count - 1]).max())
         row = {"shake": count, "peak_m_per_s2": peak}
         for answer in scene.answers:
             if answer["number"] in stages:
                 unit = "" if answer["unit"] == "-" else f"_{answer['unit']}"
                 row[answer["name"] + unit] = answer["value"]
-        rows.append({**row, "ended": scene.ended})
+        rows.append({**row, "ended": scene.ended if rests == COLLAPSED else rests})
         _write(scene, rows)
         if scene.collapsed:
             say(f"shakeAgain: the structure fell in record {count} of {len(records)}")

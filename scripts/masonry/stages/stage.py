@@ -6,13 +6,13 @@ import functools
 import os
 from dataclasses import dataclass
 from enum import Enum
-from typing import Annotated, Any, Callable, Concatenate, ParamSpec
+from typing import Annotated, Any, Callable, Concatenate, ParamSpec, TypeVar
 
 from yade import O
 
 from .. import notebook
 from ..arguments import number, validated
-from ..errors import Collapsed, NotAccurate
+from ..errors import Collapsed, NotAccurate, Refused
 from ..terminal import say
 from ..run import batch
 from ..run.accuracy import STAGES
@@ -31,6 +31,7 @@ Time = Annotated[float, number("s", 0, 86400)]
 Duration = Annotated[float, number("s", 0, 86400, above=True)]
 
 P = ParamSpec("P")
+R = TypeVar("R")
 #: A stage: a function of the scene and what the user says, which returns how it ended.
 Stage = Callable[Concatenate[Any, P], str]
 
@@ -86,6 +87,22 @@ def stage(**traits: Any) -> Callable[[Stage[P]], Stage[P]]:
     return made
 
 
+def combines(act: Callable[Concatenate[Any, P], R]) -> Callable[Concatenate[Any, P], R]:
+    """A command of several stages: what it refuses itself ends the run in order, as in a stage."""
+
+    @functools.wraps(act)
+    def command(scene: Any, *args: P.args, **settings: P.kwargs) -> R:
+        try:
+            return act(scene, *args, **settings)
+        except Refused as refused:
+            if notebook.isHere() or scene.finished:
+                raise
+            scene.failed(refused)
+            raise
+
+    return command
+
+
 class SkipReason(Enum):
     """Why a stage is left out."""
 
@@ -109,7 +126,7 @@ class _Command:
         scene.checkOpen(self.name)
         loaded = scene.description.loaded()
         if not scene.model and loaded and not self.traits.grows:
-            raise ValueError(
+            raise Refused(
                 f"{self.name}: the loads on {', '.join(loaded)} grow in settle(): call that first"
             )
         try:
@@ -136,6 +153,11 @@ class _Command:
             raise NotAccurate(
                 "--accuracy: it is about peak and work of a push, and this scene has the stage"
                 f" {self.name}; scenes with it have the stages {', '.join(STAGES)} alone"
+            )
+        if self.traits.dynamic and scene.args.density_scaling != 1:
+            raise Refused(
+                f"--density-scaling {scene.args.density_scaling:g}: {self.name} runs in real time,"
+                " with true masses"
             )
         if self.traits.check:
             self.traits.check(scene, *args, **settings)

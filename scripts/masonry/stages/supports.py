@@ -53,7 +53,7 @@ def letGo(scene, target, axes, force):
     if force is not None and any(drive and drive.others for drive in drives.values()):
         problems.append("release: force: a drive in a pattern moves several blocks")
     if problems:
-        raise ValueError("\n".join(problems))
+        raise Refused("\n".join(problems))
     for axis, drive in drives.items():
         if drive:
             drive.driven, drive.velocity = False, 0
@@ -98,7 +98,7 @@ def move(
     rate = 1e-3 * (scene.args.rate if rate is None else rate)
     distance = 1e-3 * max(path.norm() for path in paths)
     if not distance > 0:
-        raise ValueError("move: the displacement must not be zero")
+        raise Refused("move: the displacement must not be zero")
     ramp = min(rampTime(scene.args), distance / rate)
     duration = distance / rate + ramp
 
@@ -131,7 +131,7 @@ def _path(scene, target, along):
     path = scene.share * Vector3(*values)
     loose = [a for a, w in zip("xyz", path) if w and a not in target.freedom]
     if loose:
-        raise ValueError(f"move: {target.name} is not held along {', '.join(loose)}")
+        raise Refused(f"move: {target.name} is not held along {', '.join(loose)}")
     return path
 
 
@@ -171,7 +171,7 @@ def drive(
     """
     given = {a: v for a, v in zip("xyz", (x, y, z)) if callable(v) or v}
     if len(given) != 1 or [*given][0] not in target.drives:
-        raise ValueError(
+        raise Refused(
             "drive: give one displacement other than 0, along an axis that has a drive;"
             f" {_drivesOf(target)}"
         )
@@ -181,9 +181,9 @@ def drive(
         try:
             found = millimetres(value() if callable(value) else value)
         except ValueError as error:
-            raise ValueError(f"drive: {axis} {error}") from None
+            raise Refused(f"drive: {axis} {error}") from None
         if not found:
-            raise ValueError(f"drive: {axis} {found} mm must be other than 0")
+            raise Refused(f"drive: {axis} {found} mm must be other than 0")
         return 1e-3 * scene.share * found
 
     return _driveBy(scene, target, axis, distance)
@@ -213,7 +213,7 @@ def pressJoint(
     :param stress: [Pa], negative if it presses; one that crushes the joint is refused
     """
     if "z" not in target.drives:
-        raise ValueError(f"pressJoint: needs a drive along z; {_drivesOf(target)}")
+        raise Refused(f"pressJoint: needs a drive along z; {_drivesOf(target)}")
     distance = stress / joint.normalStiffness
     _driveBy(scene, target, "z", lambda: distance)
     if stress:

@@ -46,13 +46,7 @@ void Integrator::advance(yade::Scene& scene, BodyColumns& bodies, const std::vec
         load->eachBody([&](int body) { bodyAt(scene, body, ".body", ClassRole::Load); });
         load->workBefore(scene.dt, motionOf);
     }
-    const auto halfOfForeignWork = [&] {
-        double power = 0;
-        for (const auto& [body, force, torque] : foreign)
-            power += force.dot(bodies.state(body).vel) + torque.dot(bodies.state(body).angVel);
-        return 0.5 * scene.dt * power;
-    };
-    const double foreignWork = halfOfForeignWork();
+    const double foreignWork = halfWork(foreign, scene.dt, motionOf);
     // The pieces over which energies are summed up do not depend on the number of threads, so neither do the sums.
     constexpr int piece = RigidMotion::most;
     const int pieces = (count + piece - 1) / piece;
@@ -70,7 +64,7 @@ void Integrator::advance(yade::Scene& scene, BodyColumns& bodies, const std::vec
     }
     fallen = workOfGravity(fallen, gravity, moment, before);
     external += foreignWork;
-    pendingExternal += halfOfForeignWork();
+    pendingExternal += halfWork(foreign, scene.dt, motionOf);
     for (auto* load : loads)
         load->workAfter(scene.dt, motionOf);
 }

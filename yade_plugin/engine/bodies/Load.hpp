@@ -7,11 +7,21 @@ namespace masonry {
 
 using yade::Vector3r;
 
-// What engines of others load a rigid body with in a step, about its centre.
+// What engines of others and permanent forces load a rigid body with in a step, about its centre.
 struct ForeignForce {
     int body;
     Vector3r force, torque; // [N], [N m]
 };
+
+// Half of the work of these forces in a step [J]; `motionOf` gives `vel` and `angVel` of a body.
+template <class F> double halfWork(const std::vector<ForeignForce>& foreign, double dt, F&& motionOf) {
+    double power = 0;
+    for (const auto& [body, force, torque] : foreign) {
+        const auto& motion = motionOf(body);
+        power += force.dot(motion.vel) + torque.dot(motion.angVel);
+    }
+    return 0.5 * dt * power;
+}
 
 class Load {
 public:

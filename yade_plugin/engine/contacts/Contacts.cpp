@@ -239,14 +239,19 @@ void Contacts::act(SceneContents& contents) {
                       effects_[std::size_t(p)]);
     });
     const auto sums = contents.scene().forces().sums(all.size());
+    impulses_.resize(std::size_t(all.size()), Vector3r::Zero());
+    const auto strike = [&](int body, const Vector3r& force) {
+        sums.forces[body] += force;
+        if (isHeld(contents, body)) impulses_[std::size_t(body)] += contents.scene().dt * force;
+    };
     for (std::size_t p = 0; p < pairs_.size(); ++p) {
         const auto& effect = effects_[p];
         lostInFriction += effect.lost;
         lostInDamping += effect.damped;
         if (!effect.acts) continue;
         const auto& [force, torques] = effect.wrench;
-        sums.forces[pairs_[p].one] -= force;
-        sums.forces[pairs_[p].other] += force;
+        strike(pairs_[p].one, -force);
+        strike(pairs_[p].other, force);
         sums.torques[pairs_[p].one] += torques[0];
         sums.torques[pairs_[p].other] += torques[1];
     }
@@ -435,10 +440,10 @@ double Contacts::largestEigenvalue(const SceneContents& contents, bool anew) {
 
 double Contacts::largestDampingRatio() const { return std::sqrt(6) * dampingRatio(restitution); }
 
-std::vector<double> Contacts::diameters() const {
-    std::vector<double> found;
+std::vector<FallenBlocks::Size> Contacts::sizes() const {
+    std::vector<FallenBlocks::Size> found;
     for (const auto& block : blocks_)
-        found.push_back(2 * block.radius);
+        found.push_back({2 * block.radius, block.thickness});
     return found;
 }
 
@@ -461,10 +466,15 @@ Vector3r Contacts::forceOf(int id1, int id2) const {
     return Vector3r::Zero();
 }
 
+Vector3r Contacts::impulseOn(int body) const {
+    const auto b = std::size_t(body);
+    return b < impulses_.size() ? impulses_[b] : Vector3r(Vector3r::Zero());
+}
+
 void Contacts::visitState(StateNumbers& n) {
     std::vector<int> awake(awake_.begin(), awake_.end());
     effects_.resize(pairs_.size());
-    n(awake, changes_, pairs_, effects_);
+    n(awake, changes_, pairs_, effects_, impulses_);
     if (!n.back) return;
     if (effects_.size() != pairs_.size()) n.refuse();
     awake_ = {awake.begin(), awake.end()};

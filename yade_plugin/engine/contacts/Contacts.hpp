@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Contacts of rigid blocks that no joint connects, wherever they meet. An engine derives from it.
 #pragma once
+#include "FallenBlocks.hpp"
 #include "contact/BroadPhase.hpp"
 #include "contact/ContactPair.hpp"
 #include "engine/joints/SceneContents.hpp"
@@ -46,11 +47,13 @@ public:
     static constexpr int lookEvery = 10; // steps between two looks at joints and at bodies that wake
     // Whether a body is one of the blocks that can touch. It is known from the first step on.
     bool covers(int body) const { return std::binary_search(ids_.begin(), ids_.end(), body); }
-    // Twice the largest distance of a corner of a block from its centre [m]; 0 where it cannot touch. By id.
-    std::vector<double> diameters() const;
+    // Sizes of blocks by id; 0 where they cannot touch.
+    std::vector<FallenBlocks::Size> sizes() const;
     // Goes on from the next step where these joints stood, which have no forces any more (JointConversion). To be
     // called when the scene has been read again.
     void takeOver(const SceneContents&, const std::vector<Joint>&);
+    // Of all contacts on a body while its axes were blocked, so far [N s].
+    Vector3r impulseOn(int body) const;
     // Elastic energy of all contacts in the last step [J].
     double elastic(const SceneContents&);
     // Bound of the largest eigenvalue of stiffness over mass that contacts bring, now and later [1/s²].
@@ -117,7 +120,8 @@ private:
     std::vector<int> ids_;             // of all blocks that can touch
     std::vector<Matrix3r> turns_;      // from the axes of a body to the global ones, by its id
     std::vector<Pair> pairs_;
-    std::vector<Effect> effects_; // of `pairs_`
+    std::vector<Effect> effects_;    // of `pairs_`
+    std::vector<Vector3r> impulses_; // of contacts on every body while it was held, so far, by id [N s]
     std::vector<OverlapFinder> finders_;
     std::vector<Placed> placed_;              // of `ids_`
     std::vector<std::pair<int, int>> joined_; // bodies that have a joint, sorted

@@ -23,8 +23,10 @@ double kineticEnergy(const BodyColumns& bodies, int body) {
 
 } // namespace
 
-void FallenBlocks::look(const SceneContents& contents, const std::vector<int>& loose,
-                        const std::vector<double>& diameters) {
+void FallenBlocks::look(const SceneContents& contents, const std::vector<int>& loose, const std::vector<Size>& sizes,
+                        const Vector3r& gravity) {
+    Eigen::Index down;
+    gravity.cwiseAbs().maxCoeff(&down);
     const double now = contents.scene().time;
     auto known = all_.begin();
     for (int body : loose) {
@@ -39,7 +41,11 @@ void FallenBlocks::look(const SceneContents& contents, const std::vector<int>& l
         if (fall.fell >= 0) continue;
         const auto& s = contents.bodies.state(body);
         const bool turned = std::abs((s.refOri.conjugate() * s.ori).w()) < std::cos(0.5 * turn);
-        if (turned || (s.pos - s.refPos).norm() > travel * diameters[std::size_t(body)]) fall.fell = now;
+        const auto& size = sizes[std::size_t(body)];
+        const Vector3r moved = s.pos - s.refPos;
+        const double sunk = gravity[down] > 0 ? moved[down] : -moved[down];
+        const bool cameDown = gravity.isZero(0) || sunk > drop * size.thickness;
+        if (turned || (cameDown && moved.norm() > travel * size.diameter)) fall.fell = now;
     }
 }
 

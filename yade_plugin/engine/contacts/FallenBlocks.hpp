@@ -20,12 +20,19 @@ struct Fall {
 
 class FallenBlocks {
 public:
+    // Twice the largest distance of a corner of a block from its centre, and its thickness [m].
+    struct Size {
+        double diameter, thickness;
+    };
     // A block has fallen when it has turned by so much since the reference state [rad], ...
     static constexpr double turn = 1.0471975511965976; // 60°
-    static constexpr double travel = 1; // ... or when its centre has moved by so many of its diameters [-]
+    static constexpr double travel = 1; // ... or when its centre has moved by so many of its diameters [-], ...
+    static constexpr double drop = 0.5; // ... and come down by so many of its thicknesses [-]: it has not just slid
 
-    // Looks at bodies, sorted by their ids, whose diameters are given by id [m].
-    void look(const SceneContents&, const std::vector<int>& loose, const std::vector<double>& diameters);
+    // Looks at bodies, sorted by their ids, whose sizes are given by id. Down is the axis that is nearest to gravity;
+    // without gravity nothing need come down.
+    void look(const SceneContents&, const std::vector<int>& loose, const std::vector<Size>& sizes,
+              const yade::Vector3r& gravity);
     const std::vector<Fall>& all() const { return all_; } // sorted by body
 
     void visitState(StateNumbers& visit) { visit(all_); }

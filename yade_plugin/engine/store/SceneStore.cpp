@@ -157,23 +157,30 @@ void SceneStore::readEngines() {
             last = engine.get();
         } else if (role != ClassRole::ForceResetter) {
             foreign = foreign || !first;
-            const auto base = engine->getBaseClassName();
+            const auto base = engine->getBaseClassName(), name = engine->getClassName();
+            const bool moved = integrator || hostIntegrator; // forces that are added from here on do nothing
             if (base == "PartialEngine" || base == "KinematicEngine" || base == "TranslationEngine" ||
-                base == "RotationEngine")
-                (first ? uncounted : before) = engine->getClassName();
+                base == "RotationEngine" || (name == "PyRunner" && !moved))
+                (first ? uncounted : before) = name;
         }
     }
     if (!loop && uncounted.empty()) uncounted = before;
 }
 
-// If joints run as functors, their forces are already summed with others when our first engine runs.
+// YADE's sums begin with the permanent forces. If joints run as functors, their forces are already summed with others
+// when our first engine runs, so the permanent ones alone are known.
 void SceneStore::readForeignForces() {
     foreignForces.clear();
-    if (!foreign || !loop || bodies.size() == 0) return;
-    const auto on = scene_.forces().sums(bodies.size());
-    for (int b = 0; b < bodies.size(); ++b)
-        if (bodies.has(b) && !bodies.isUnit[b] && !(on.forces[b].isZero(0) && on.torques[b].isZero(0)))
-            foreignForces.push_back({b, on.forces[b], on.torques[b]});
+    auto& forces = scene_.forces();
+    const bool permanent = forces.getPermForceUsed();
+    if (!(permanent || (foreign && loop)) || bodies.size() == 0) return;
+    const auto on = forces.sums(bodies.size());
+    for (int b = 0; b < bodies.size(); ++b) {
+        if (!bodies.has(b) || bodies.isUnit[b]) continue;
+        const Vector3r& force = loop ? on.forces[b] : forces.getPermForce(b);
+        const Vector3r& torque = loop ? on.torques[b] : forces.getPermTorque(b);
+        if (!(force.isZero(0) && torque.isZero(0))) foreignForces.push_back({b, force, torque});
+    }
 }
 
 namespace {

@@ -50,7 +50,7 @@ public:
     const yade::Engine* first = nullptr;     // the first of this plugin's engines in a step
     const yade::Engine* last = nullptr;      // the last of this plugin's engines in a step; recorders do not count
     bool foreign = false;                    // whether engines of others stand before the first, and may load bodies
-    std::vector<ForeignForce> foreignForces; // theirs in the present step
+    std::vector<ForeignForce> foreignForces; // theirs and permanent ones in the present step
     std::string uncounted;                   // an engine of others whose work is not counted; empty: there is none
     std::optional<RunEnded> endsWith;        // why the run ends after this step
     bool watched = false;                    // whether an engine watches over the run: it looks for a collapse itself

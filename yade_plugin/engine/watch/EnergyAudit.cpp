@@ -284,16 +284,16 @@ void EnergyAudit::countBodies(const SceneStore& store) {
         add(stepOf(s, on, gravity, scene.dt, damping).energies);
     }
     fallen = workOfGravity(fallen, gravity, moment, before);
+    const auto now = [&](int body) -> const State& { return *bodyAt(scene, body, ".body", ClassRole::Load).state; };
+    const auto then = [&](int body) {
+        const BodyForces on{forces.getForce(body), forces.getTorque(body)};
+        return stepOf(now(body), on, gravity, scene.dt, damping);
+    };
+    external += halfWork(store.foreignForces, scene.dt, now);
+    pendingExternal += halfWork(store.foreignForces, scene.dt, then);
     for (auto* load : store.loads) {
-        const auto before = [&](int body) -> const State& {
-            return *bodyAt(scene, body, ".body", ClassRole::Load).state;
-        };
-        const auto after = [&](int body) {
-            const BodyForces on{forces.getForce(body), forces.getTorque(body)};
-            return stepOf(before(body), on, gravity, scene.dt, damping);
-        };
-        load->workBefore(scene.dt, before);
-        load->workAfter(scene.dt, after);
+        load->workBefore(scene.dt, now);
+        load->workAfter(scene.dt, then);
     }
 }
 
