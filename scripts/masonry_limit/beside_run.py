@@ -89,18 +89,19 @@ class Bounds(Answers):
             entries.append(self.find(Load(name, pressed=(target, normal), **of), **how))
         return entries
 
-    def lean(self, towards, tilts=False, **how):
+    def lean(self, towards, tilts=False, beside=None, **how):
         """Find the bound of a horizontal acceleration [g].
 
         :param towards: unit vector
         :param tilts: whether gravity turns, and does not grow; the factor is then the horizontal
             over the vertical part
+        :param beside: acceleration that acts beside it [m/s²]; None: gravity alone
         """
         scaled = GRAVITY / self.model.args.density_scaling
         # of a tilt, the weight is that of the scene at every angle
         share = self.model.gravity / scaled if tilts else 1.0
         live = lambda a: share * a.weights(scaled * np.array(towards))
-        down = (0, 0, -self.model.gravity)  # it replaces another acceleration
+        down = tuple(beside or (0, 0, -self.model.gravity))
         name, unit = nameOfLean(towards, tilts), "" if tilts else "g"
         return self.find(Load(name, unit, live, tilts, gravity=down), **how)
 
@@ -139,6 +140,9 @@ class Bounds(Answers):
         if state.supportsMoved:
             why = "supports have moved, and joints that are open would be taken as closed"
             entry["note"] = f"no limit analysis: {why}"
+            return entry
+        if load.tilts and any(load.gravity[:2]):
+            entry["note"] = "no limit analysis of a tilt beside another acceleration"
             return entry
         count = len(model.interactions)
         if count > MAX_JOINTS and not lowerUpTo:
