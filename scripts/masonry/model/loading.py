@@ -83,8 +83,10 @@ class Loading:
         self.supports = self.structure.supports
         for target in self.description.targets.values():
             if target.force is not None:
-                self._grown[f"{target.name}_force"] = Vector3(*target.force)
+                force = self._grown[f"{target.name}_force"] = Vector3(*target.force)
+                self.checkFree(target, force, "load")
             if target.pressed is not None:
+                self.checkFree(target, Vector3.UnitZ, "press")
                 label, own = f"{target.name}_press", self.supports.weightOf(target)
                 load = self.loads[label]
                 down = target.pressed * self._centre(load, target) - own
@@ -167,11 +169,19 @@ class Loading:
         """Whether a drive holds or moves a target along an axis."""
         return any(isAlong(load, axis, target.body) for load in self.loads.values())
 
-    def heldAlong(self, target, force):
-        """Axes along which a force has a part that a support or a drive of its target takes."""
-        blocked = O.bodies[target.body].state.blockedDOFs
+    def checkFree(self, target, force, name):
+        """Raise ValueError if a force on a target has a part that a support or a drive takes."""
+        if held := self.heldAlong(target.body, force):
+            raise ValueError(
+                f"{name}: {target.name} is held along {', '.join(held)} by a support or a drive,"
+                " which would take the load"
+            )
+
+    def heldAlong(self, body, force):
+        """Axes along which a force has a part that a support or a drive of its body takes."""
+        blocked, loads = O.bodies[body].state.blockedDOFs, self.loads.values()
         along = [a for a, v in zip("xyz", force) if abs(v) > 1e-12 * force.norm()]
-        return [a for a in along if a in blocked or self.isDriven(target, a)]
+        return [a for a in along if a in blocked or any(isAlong(one, a, body) for one in loads)]
 
     def driveOf(self, target, axis):
         """The load that drives a target along an axis, or None."""

@@ -66,7 +66,7 @@ def _forceOn(scene, target, force, name):
     force = checkedForce(scene.description, force, name)
     if not force.norm() > 0 and name != "load":
         raise ValueError(f"{name}: force must not be zero")
-    _checkFree(scene, target, force, name)
+    scene.model.loading.checkFree(target, force, name)
     engine = scene.model.loading.forceOf(target, name == "grow")
     # a load that is taken away keeps its direction
     along = force if force.norm() > 0 else engine.force
@@ -75,15 +75,6 @@ def _forceOn(scene, target, force, name):
     made = Forces([engine], [1e3 * towards], what, "kN", 1e-3 * force.norm(), towards)
     made.target = target
     return made
-
-
-def _checkFree(scene, target, force, name):
-    """Refuse a force that a support or a drive would take."""
-    if held := scene.model.loading.heldAlong(target, force):
-        raise ValueError(
-            f"{name}: {target.name} is held along {', '.join(held)} by a support or a drive, which"
-            " would take the load; release() lets it go"
-        )
 
 
 @stage(bounded=True, answers=putOnAnswers)
@@ -137,10 +128,13 @@ def _onFaces(scene, forces, kind, towards, part, grown=False):
     axes = ", ".join(f"{v + 0.0:.6g}" for v in along)
     on = f" on {part}" if part is not None else ""
     label = _labelOf(f"{'grown ' * grown}{kind} ({axes}){on}")
-    places = [(one.brick, one.point) for one in forces]
-    engines = scene.model.loading.onBricks(label, places)
+    loading, whole = scene.model.loading, [Vector3(*one.force) for one in forces]
+    # what stages have released before a checkpoint is still held while the run that goes on is built
+    takes = (loading.heldAlong(loading.ids[one.brick], f) for one, f in zip(forces, whole))
+    if not scene.isGone and all(takes):
+        raise ValueError(f"{kind}: all bricks that it loads are held, and supports would take it")
+    engines = loading.onBricks(label, [(one.brick, one.point) for one in forces])
     what = f"{kind} towards {nameOf(towards)}{on}"
-    whole = [Vector3(*one.force) for one in forces]
     return Forces(engines, whole, what, "-", 1.0, along)
 
 
@@ -192,7 +186,7 @@ def _pressOn(scene, platen, stress, name):
     if not stress > 0:
         raise ValueError(f"{name}: stress {stress!r} Pa must be above 0")
     doubtPress(stress, name)
-    _checkFree(scene, platen, -Vector3.UnitZ, name)
+    scene.model.loading.checkFree(platen, Vector3.UnitZ, name)
     engine, area = scene.model.loading.pressOf(platen, name == "grow")
     what, whole = f"press of {platen.name}", [-1e6 * area * Vector3.UnitZ]
     made = Forces([engine], whole, what, "MPa", 1e-6 * stress, -Vector3.UnitZ)
