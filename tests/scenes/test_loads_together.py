@@ -21,9 +21,9 @@ def stack(folder, **settings):
 
 
 def letGoWith(scene, top):
-    """A push that ends with a force of 200 N in place of the drive."""
+    """A push that ends with a force of 120 N in place of the drive."""
     scene.push(top, 0.002, rate=1)
-    scene.release(top, "x", force=(200, 0, 0))
+    scene.release(top, "x", force=(120, 0, 0))
     return scene.settle(longest=4)
 
 
@@ -46,7 +46,7 @@ COMMANDS = {
     "load": (lambda s, t: s.load(t, (150, 0, -900)), "dead", False, (150, -900), HEAD),
     "load less": (lambda s, t: s.load(t, (-80, 0, -500)), "dead", False, (-80, -500), HEAD),
     "grow a load": (lambda s, t: s.grow({t: (90, 0, -400)}), "grown", True, (90, -400), HEAD),
-    "release": (letGoWith, "dead", True, (200, 0), HEAD),
+    "release": (letGoWith, "dead", True, (120, 0), HEAD),
     "wind": (lambda s, t: s.wind(600, (1, 0, 0)), "wind", False, (600 * FACE, 0), (0, MIDDLE)),
     "suction": (lambda s, t: s.wind(-300, (1, 0, 0)), "wind", False, (-300 * FACE, 0), (0, MIDDLE)),
     "pressure": (
@@ -152,7 +152,7 @@ def test_a_record_acts_beside_accelerations_that_stay(tmp_path):
     turned = Quaternion(Vector3.UnitY, -math.radians(1)) * Vector3(*before)
     assert gravity() == approx(list(turned))
     first = len(scene.results.rows)
-    scene.shake([0, 1, 0], 0.01, after=0.01)
+    scene.shake([0, 1, 0], 0.01, unit="m/s²", after=0.01)
     assert gravity() == approx(list(turned))
     acceleration = G * np.array(scene.results.column("acceleration_x_g")[first:])
     assert acceleration.min() == approx(turned[0] - 1, abs=0.05)
