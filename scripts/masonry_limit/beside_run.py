@@ -114,7 +114,8 @@ class Bounds(Answers):
         """
         acting = [(load.body, load.point, force) for load, force in forces]
         live = lambda a: loads.sumOf(a, acting)
-        return self.find(Load(what, unit, live), **how)
+        own = tuple([body, *point, *force] for body, point, force in acting)
+        return self.find(Load(what, unit, live, forces=own), **how)
 
     def find(self, load, lowerUpTo=0, background=False):
         """Find the bound of a :class:`Load`. Returns its entry of run.json.
@@ -126,7 +127,7 @@ class Bounds(Answers):
         self.take(True)
         what, model, state = load.name, self.model, self.state
         known = self.entries.get(what)
-        acting = arrays.beside(model, load.gravity or model.scheme.now)
+        acting = [*arrays.beside(model, load.gravity or model.scheme.now), [*load.forces]]
         same = state.auxiliary.get(what, acting) == acting
         state.auxiliary = {**state.auxiliary, what: acting}
         if known and same and not lowerUpTo and known.get("note") != NOTE_INTERRUPTED:

@@ -275,7 +275,9 @@ def grow(
     for engine, force in pairs:
         forces[engine.label] = forces.get(engine.label, Vector3.Zero) + force
     engines = [scene.model.loading.loads[label] for label in forces]
-    what = " and ".join([one.name for one in made] + ["the dead loads"] * dead)
+    amount = lambda one: f" ({one.most:.4g} {one.unit})" * (one.unit != "-")
+    names = [one.name + amount(one) for one in made]
+    what = " and ".join(names + ["the dead loads"] * dead)
     total = sum(forces.values(), Vector3.Zero)
     along = total.normalized() if total.norm() > 0 else -Vector3.UnitZ
     whole = Forces(engines, [*forces.values()], what, "-", most, along)
