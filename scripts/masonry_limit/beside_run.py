@@ -138,12 +138,8 @@ class Bounds(Answers):
         if load.pressed:
             entry["pressed_kN"] = load.pressed[1]
         self.endless.discard(what)
-        if state.supportsMoved:
-            why = "supports have moved, and joints that are open would be taken as closed"
+        if why := self._whyUnknown(load):
             entry["note"] = f"no limit analysis: {why}"
-            return entry
-        if load.tilts and any(load.gravity[:2]):
-            entry["note"] = "no limit analysis of a tilt beside another acceleration"
             return entry
         count = len(model.interactions)
         if count > MAX_JOINTS and not lowerUpTo:
@@ -166,6 +162,14 @@ class Bounds(Answers):
                 self.entries[what] = known
             raise
         return entry
+
+    def _whyUnknown(self, load):
+        """Why there is no bound of a load, or nothing."""
+        if self.state.supportsMoved:
+            return "supports have moved, and joints that are open would be taken as closed"
+        if load.tilts and any(load.gravity[:2]):
+            return "it knows no tilt beside another acceleration"
+        return ""
 
     def isGivenUp(self):
         """Whether a bound is missing because the run was interrupted before it was found."""

@@ -37,8 +37,8 @@ def atRest(command):
 
 
 #: Of each command what it does, the load that it sets or adds to, whether it adds, and its force
-#: along x and z [N] at a place from the middle of the base [m]. A press has the weight of its platen
-#: in it, and accelerations act on all masses.
+#: along x and z [N] at a place from the middle of the base [m]. A press has the weight of its
+#: platen in it, and accelerations act on all masses.
 COMMANDS = {
     "press": (lambda s, t: s.press(t, 3e4), "press", False, (0, -3e4 * AREA), (0, HEAD[1])),
     "press more": (lambda s, t: s.press(t, 4e4), "press", False, (0, -4e4 * AREA), (0, HEAD[1])),

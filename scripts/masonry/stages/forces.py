@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Loads after the first stage. ``load``, ``wind``, ``press`` and ``pressure`` give a load its new
 value and wait for rest, so that ``bracket`` can search for the largest that is held. ``grow`` adds
-loads to what is there until the structure falls, and searches by itself; what has grown stays beside
-what those commands replace. ``hold`` holds what was free."""
+loads to what is there until the structure falls, and searches by itself; what has grown stays
+beside what those commands replace. ``hold`` holds what was free."""
 
 import math
 import re
@@ -109,7 +109,7 @@ def _pressureOn(scene, value, towards, part, normal, grown=False):
     return _onFaces(scene, forces, kind, towards, part, grown)
 
 
-def _evenOn(scene, value, towards, part, normal, grown):
+def _evenOn(scene, value, towards, part, normal, grown=False):
     """The load of a pressure that is the same everywhere and not 0, in kPa. Raises ValueError."""
     one = _pressureOn(scene, math.copysign(1e3, value), towards, part, normal, grown)
     return _inKilopascals(one, value)
@@ -129,7 +129,7 @@ def _onFaces(scene, forces, kind, towards, part, grown=False):
     on = f" on {part}" if part is not None else ""
     label = _labelOf(f"{'grown ' * grown}{kind} ({axes}){on}")
     loading, whole = scene.model.loading, [Vector3(*one.force) for one in forces]
-    # what stages have released before a checkpoint is still held while the run that goes on is built
+    # what was released before a checkpoint is still held while the run that goes on is built
     takes = (loading.heldAlong(loading.ids[one.brick], f) for one, f in zip(forces, whole))
     if not scene.isGone and all(takes):
         raise ValueError(f"{kind}: all bricks that it loads are held, and supports would take it")
@@ -171,8 +171,8 @@ def pressure(
     longest: Duration | None = None,
 ) -> str:
     """Give faces another pressure, and wait as :meth:`load` does. Pressures that grew in
-    :meth:`settle` or :meth:`grow` stay; a later :meth:`pressure` of the same direction, part and ``normal``
-    replaces this one.
+    :meth:`settle` or :meth:`grow` stay; a later :meth:`pressure` of the same direction, part and
+    ``normal`` replaces this one.
 
     :param value: [Pa], or a function of the place; 0 takes it away; ``towards``, ``part`` and
         ``normal``: as before the first stage

@@ -87,9 +87,10 @@ def shake(
     """Shake the ground by a record.
 
     Every block feels the negative ground acceleration, beside those of :meth:`lean`,
-    :meth:`accelerate` and :meth:`tilt`, which stay, and displacements are relative to the ground. Time is real, so masses must not be scaled. Between the samples the acceleration changes
-    evenly, and each step has that of its middle: nothing is filtered, and the time step does not
-    depend on the samples.
+    :meth:`accelerate` and :meth:`tilt`, which stay, and displacements are relative to the ground.
+    Time is real, so masses must not be scaled. Between the samples the acceleration changes evenly,
+    and each step has that of its middle: nothing is filtered, and the time step does not depend on
+    the samples.
 
     Joints that slide, crack and crush take energy, and so do those without bond that close, as
     their ``restitution`` says. The default adds no other damping, since none is measured for
