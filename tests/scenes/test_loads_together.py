@@ -13,9 +13,10 @@ FACE = SIDE * HEIGHT  # [m²] on which a wind presses
 MIDDLE = 0.5 * HEIGHT
 
 
-def stack(folder, **settings):
+def stack(folder, springs=None, **settings):
     """Three stones between platens, the upper of which is loaded beside its middle."""
-    scene = standing(folder, bricks.stack(3, (SIDE, SIDE, HEIGHT / 3)), STONE, **settings)
+    scene = lean(folder, bricks.stack(3, (SIDE, SIDE, HEIGHT / 3)), STONE, **settings)
+    scene.platen("bottom", springs=springs)
     point = (SIDE / 2 + HEAD[0], SIDE / 2, HEAD[1])
     return scene, scene.platen("top", rotation="free", point=point, height=PLATEN)
 
@@ -79,8 +80,8 @@ class Expected:
     """The sum of loads that act, by what sets them."""
 
     def __init__(self, scene):
-        masses = [b.state.mass for b in O.bodies if set(b.state.blockedDOFs) != set("xyzXYZ")]
-        *self.stones, self.platen = masses
+        self.stones = [O.bodies[n].state.mass for n in scene.model.ids]
+        self.platen = O.bodies[scene.targets["top"].body].state.mass
         self.loads = {}
 
     def take(self, command):
@@ -102,6 +103,9 @@ class Expected:
         held = [1e3 * last(scene, f"base_force_{a}_kN") for a in "xz"]
         assert held == approx(need[:2], abs=0.006 * weight), (after, self.loads)
         assert scene.model.energy.largestError < 1e-3
+        # all supports, also springs and ties, carry all loads
+        carried = scene.model.supports.carried()
+        assert [-carried[0], -carried[2]] == approx(need[:2], abs=0.006 * weight), after
 
 
 def last(scene, column):
@@ -122,6 +126,31 @@ def test_the_base_carries_the_sum_of_all_loads_in_any_order(tmp_path, first):
     scene, top = stack(tmp_path)
     scene.settle()
     carryOut(scene, top, Expected(scene), [first, *others, first])
+
+
+@mark.parametrize(
+    "settings", [dict(plane=False), dict(springs={"x": 1e8, "Y": 1e7})], ids=["space", "springs"]
+)
+def test_the_base_carries_the_sum_of_all_loads_in_space_and_on_springs(tmp_path, settings):
+    scene, top = stack(tmp_path, **settings)
+    scene.settle()
+    order = "press grow_a_load load wind release load_less travel grow_a_press press_more"
+    carryOut(scene, top, Expected(scene), [one.replace("_", " ") for one in order.split()])
+
+
+def test_what_a_tie_takes_is_missing_at_the_base_alone(tmp_path):
+    scene, top = stack(tmp_path)
+    scene.tie(2, anchor=(-1, SIDE / 2, 0.5), stiffness=1e7, name="rod")
+    scene.settle()
+    scene.press(top, 3e4)
+    for load, total in (
+        (lambda: scene.load(top, (150, 0, 0)), 150),
+        (lambda: scene.grow({top: (90, 0, 0)}), 240),
+        (lambda: scene.load(top, (50, 0, 0)), 140),
+    ):
+        assert load() == AT_REST
+        assert -scene.model.supports.carried()[0] == approx(total, rel=0.01)
+    assert 1e3 * last(scene, "base_force_x_kN") < 0.95 * total
 
 
 @mark.parametrize("described", [["press"], ["load"], ["load", "press"], ["press", "load"]])
