@@ -12,6 +12,7 @@ from yade.wrapper import MasonryLoad
 
 from .._masonry import loadScene, saveScene
 from ..errors import checkPlane
+from ..terminal import say
 
 PATTERN = "_drive"  # label of the drive of a push in a pattern
 DRIVE = re.compile("_drive(_[xyz])?$").search  # whether a label is that of a drive
@@ -84,9 +85,9 @@ class Loading:
         for target in self.description.targets.values():
             if target.force is not None:
                 force = self._grown[f"{target.name}_force"] = Vector3(*target.force)
-                self.checkFree(target, force, "load")
+                self._warnHeld(target, force, "load")
             if target.pressed is not None:
-                self.checkFree(target, Vector3.UnitZ, "press")
+                self._warnHeld(target, Vector3.UnitZ, "press")
                 label, own = f"{target.name}_press", self.supports.weightOf(target)
                 load = self.loads[label]
                 down = target.pressed * self._centre(load, target) - own
@@ -174,8 +175,15 @@ class Loading:
         if held := self.heldAlong(target.body, force):
             raise ValueError(
                 f"{name}: {target.name} is held along {', '.join(held)} by a support or a drive,"
-                " which would take the load"
+                " which takes the load there until release() lets go"
             )
+
+    def _warnHeld(self, target, force, name):
+        """Say that a support or a drive takes a load that is described."""
+        try:
+            self.checkFree(target, force, name)
+        except ValueError as taken:
+            say(f"warning: {taken}")
 
     def heldAlong(self, body, force):
         """Axes along which a force has a part that a support or a drive of its body takes."""
