@@ -89,18 +89,19 @@ class Bounds(Answers):
             entries.append(self.find(Load(name, pressed=(target, normal), **of), **how))
         return entries
 
-    def lean(self, towards, tilts=False, **how):
+    def lean(self, towards, tilts=False, beside=None, **how):
         """Find the bound of a horizontal acceleration [g].
 
         :param towards: unit vector
         :param tilts: whether gravity turns, and does not grow; the factor is then the horizontal
             over the vertical part
+        :param beside: acceleration that acts beside it [m/s²]; None: gravity alone
         """
         scaled = GRAVITY / self.model.args.density_scaling
         # of a tilt, the weight is that of the scene at every angle
         share = self.model.gravity / scaled if tilts else 1.0
         live = lambda a: share * a.weights(scaled * np.array(towards))
-        down = (0, 0, -self.model.gravity)  # it replaces another acceleration
+        down = tuple(beside or (0, 0, -self.model.gravity))
         name, unit = nameOfLean(towards, tilts), "" if tilts else "g"
         return self.find(Load(name, unit, live, tilts, gravity=down), **how)
 
@@ -113,7 +114,8 @@ class Bounds(Answers):
         """
         acting = [(load.body, load.point, force) for load, force in forces]
         live = lambda a: loads.sumOf(a, acting)
-        return self.find(Load(what, unit, live), **how)
+        own = tuple([body, *point, *force] for body, point, force in acting)
+        return self.find(Load(what, unit, live, forces=own), **how)
 
     def find(self, load, lowerUpTo=0, background=False):
         """Find the bound of a :class:`Load`. Returns its entry of run.json.
@@ -125,7 +127,7 @@ class Bounds(Answers):
         self.take(True)
         what, model, state = load.name, self.model, self.state
         known = self.entries.get(what)
-        acting = arrays.beside(model, load.gravity or model.scheme.now)
+        acting = [*arrays.beside(model, load.gravity or model.scheme.now), [*load.forces]]
         same = state.auxiliary.get(what, acting) == acting
         state.auxiliary = {**state.auxiliary, what: acting}
         if known and same and not lowerUpTo and known.get("note") != NOTE_INTERRUPTED:
@@ -136,8 +138,7 @@ class Bounds(Answers):
         if load.pressed:
             entry["pressed_kN"] = load.pressed[1]
         self.endless.discard(what)
-        if state.supportsMoved:
-            why = "supports have moved, and joints that are open would be taken as closed"
+        if why := self._whyUnknown(load):
             entry["note"] = f"no limit analysis: {why}"
             return entry
         count = len(model.interactions)
@@ -161,6 +162,14 @@ class Bounds(Answers):
                 self.entries[what] = known
             raise
         return entry
+
+    def _whyUnknown(self, load):
+        """Why there is no bound of a load, or nothing."""
+        if self.state.supportsMoved:
+            return "supports have moved, and joints that are open would be taken as closed"
+        if load.tilts and any(load.gravity[:2]):
+            return "it knows no tilt beside another acceleration"
+        return ""
 
     def isGivenUp(self):
         """Whether a bound is missing because the run was interrupted before it was found."""

@@ -29,6 +29,7 @@ class Load:
     :param pushed: target and direction of a push, whose own drive is no prop, or None
     :param gravity: acceleration that acts beside it [m/s²]; None: that of the scene
     :param pressed: target and normal force [kN] that replaces its press, or None
+    :param forces: what tells it from others of its name: its forces, as data
     """
 
     name: str
@@ -38,6 +39,7 @@ class Load:
     pushed: tuple | None = None
     gravity: tuple | None = None
     pressed: tuple | None = None
+    forces: tuple = ()
 
 
 @dataclass

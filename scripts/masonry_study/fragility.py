@@ -138,8 +138,11 @@ def nrml(fits: dict[str, Fit], measure: str, state: str, what: str, highest: flo
         f"<description>{html.escape(what)}</description>",
         f"<limitStates>{state}</limitStates>",
     ]
-    for name, fit in fits.items():
-        spread, name = fit.dispersion.value, re.sub(r"[^A-Za-z0-9_-]+", "_", name)[:100]
+    ids = [re.sub(r"[^A-Za-z0-9_-]+", "_", name)[:100] for name in fits]
+    if len({*ids}) < len(ids):
+        raise Refused(f"OpenQuake cannot tell names apart: {', '.join(fits)} are {', '.join(ids)}")
+    for name, fit in zip(ids, fits.values()):
+        spread = fit.dispersion.value
         mean = fit.median.value * math.exp(spread**2 / 2)
         deviation = mean * math.sqrt(math.expm1(spread**2))
         lines += [

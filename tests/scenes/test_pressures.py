@@ -188,7 +188,7 @@ def test_a_load_that_travels_stands_on_the_highest_face_below(tmp_path):
     description = described(blocks, False)
     below = lambda point: pressures.placesBelow(description, [point])
     for x, brick, z in ((0.1, 2, 0.6), (0.5, 3, 0.2)):
-        assert below((x, 0.1, 5)) == [(brick, (x, 0.1, approx(z)))]
+        assert below((x, 0.1, 5)) == [([brick], (x, 0.1, approx(z)))]
     for point in ((0.9, 0.1, 5), (0.5, 0.1, 0.1)):
         with raises(ValueError, match="no face that looks up is below"):
             below(point)

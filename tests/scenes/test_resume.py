@@ -13,9 +13,9 @@ from masonry import Scene, bricks, materials
 SEED = int(os.environ.get("RESUME_SEED", 1000))
 MOST = 20_000  # steps of a script
 SCRIPTS = int(os.environ.get("RESUME_SCRIPTS", 20))
-#: Stages from whose beginning displacements count on; supports and a search of later stages; steps
-#: so long that a run is stopped within a look at rest; a vertical load that keeps its line, so that
-#: it moves with every row; a fall to the ground.
+#: Stages from whose beginning displacements count on; supports and a search of later stages; loads
+#: and accelerations beside each other; steps so long that a run is stopped within a look at rest; a
+#: vertical load that keeps its line, so that it moves with every row; a fall to the ground.
 KNOWN = {
     "stages": """
 scene = Scene("s", bricks.Wall(0.44, 0.324), materials.calciumSilicate())
@@ -53,6 +53,27 @@ scene.settle()
 scene.pressure(lambda x, y, z: 900 * z, (-1, 0, 0))
 scene.travel(500, [(0.1, 0.1, 1), (0.2, 0.1, 1)])
 scene.grow({top: (2000, 0, 0)}, dead=True, pressure=lambda x, y, z: 1e3 * z, most=3)
+scene.finish()
+""",
+    "beside": """
+stone = materials.dry(friction=0.7, normalStiffness=1e11, density=2600)
+scene = Scene("s", bricks.stack(2, (0.3, 0.3, 0.3)), stone, rate=1)
+scene.platen("bottom")
+top = scene.platen("top", rotation="free", height=0.1)
+scene.press(top, 2e4)
+scene.settle()
+scene.push(top, 0.002)
+scene.release(top, "x", force=(80, 0, 0))
+scene.settle()
+scene.grow({top: (50, 0, 0)})
+scene.grow({top: 1e4})
+scene.load(top, (20, 0, -300))
+scene.press(top, 3e4)
+scene.lean(0.02)
+scene.tilt(1, rate=5)
+scene.accelerate(0.02, rate=0.2)
+scene.shake([0, 0.1, 0], 0.01, unit="m/s²")
+scene.travel(500, [(0.15, 0.1, 1)])
 scene.finish()
 """,
     "soft": """
@@ -116,6 +137,7 @@ def resumed(script, whole):
         ("stages", (0.4, 0.6, 0.97)),
         ("search", (0.2, 0.5, 0.8)),
         ("together", (0.2, 0.3, 0.4, 0.6, 0.8)),
+        ("beside", (0.2, 0.5, 0.8, 0.95)),
         ("soft", (0.01, 0.13, 0.75)),
         ("line", (0.3, 0.8, 0.9, 0.95)),
         ("fall", (0.5, 0.95)),

@@ -123,7 +123,7 @@ def test_a_press_over_rollers_keeps_its_line_while_what_it_presses_leans(tmp_pat
     scene.press(roof, 1e4, riding=False)
     scene.load(roof, (3e3, 0, 0))
     assert scene.settle() == AT_REST
-    load = scene.model.loading.loads["roof_force"]
+    load = scene.model.loading.loads["roof_press"]
     moved = load.displacement()[0]
     middle = approx(SIDE / 2, abs=1e-2 * moved)
     assert moved > 1e-3 and load.point[0] + moved == middle

@@ -35,7 +35,7 @@ def test_every_stage_has_a_cell_that_is_allowed():
 @mark.parametrize(
     "spoil, message",
     [
-        (lambda s: s.model.loading.loads.pop("top_force"), "from outside"),
+        (lambda s: s.model.loading.loads.pop("top_press"), "from outside"),
         (lambda s: s.model.supports.held.pop(0), "from outside"),
         (lambda s: s.columns.pop(_base(s)), "has no column|sum up"),
     ],

@@ -187,9 +187,9 @@ def test_a_support_is_released_and_the_other_one_carries_all(tmp_path):
 
 def test_loads_stay_when_a_structure_settles_again(tmp_path):
     scene, top = small(tmp_path)
-    before = scene.model.loading.loads["top_force"].force[2]
+    before = scene.model.loading.loads["top_press"].force[2]
     assert scene.settle() == AT_REST
-    assert scene.model.loading.loads["top_force"].force[2] == before < 0
+    assert scene.model.loading.loads["top_press"].force[2] == before < 0
 
 
 def test_a_drive_that_is_released_leaves_a_force(tmp_path):

@@ -317,7 +317,7 @@ def checkWork(scene, first):
         raise Wrong(f"a push has {len(top)} rows")
     work = float(np.sum(0.5 * (top[1:] + top[:-1]) * np.diff(moved)))
     size = float(np.sum(np.abs(0.5 * (top[1:] + top[:-1]) * np.diff(moved))))
-    press = scene.model.loading.loads.get("top_force")
+    press = scene.model.loading.loads.get("top_press")
     if press:  # which does work, too, and keeps its force
         work += 1e-3 * press.force[2] * (column("top_z_mm")[-1] - column("top_z_mm")[first])
     between = float(

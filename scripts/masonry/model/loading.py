@@ -2,6 +2,7 @@
 """Loads: displacement-controlled groups, presses, dead loads, wind; and the point whose
 displacement is recorded."""
 
+import re
 from dataclasses import dataclass
 from typing import Any
 
@@ -11,8 +12,10 @@ from yade.wrapper import MasonryLoad
 
 from .._masonry import loadScene, saveScene
 from ..errors import checkPlane
+from ..terminal import say
 
 PATTERN = "_drive"  # label of the drive of a push in a pattern
+DRIVE = re.compile("_drive(_[xyz])?$").search  # whether a label is that of a drive
 
 
 def smooth(x):
@@ -23,7 +26,10 @@ def smooth(x):
 class Loading:
     """Loads and drives of a structure, from its description and from stages.
 
-    - ``loads``: MasonryLoad engines by label, in their order; ``push``: the one that drives the
+    A target has an engine each for its press, its dead load, a press and a force that stages let
+    grow beside these, and its drives: what changes one of them leaves the others.
+
+    - ``loads``: MasonryLoad engines by label; ``push``: the one that drives the
       pushed target, or None
     - ``target``: what is pushed; at first the target that a drive holds
     - ``followed``: the target whose displacement is recorded, or None; ``direction`` of the present
@@ -53,35 +59,40 @@ class Loading:
         self._lines = {}  # points of the presses, as they were built [m]
 
     def _made(self):
-        """Loads of targets and wind, and drives of targets that can be pushed."""
-        for target in self.description.targets.values():
-            if not target.loaded:
-                continue
+        """Loads of targets and wind, then drives of targets that can be pushed: a drive meets its
+        velocity under the loads that act before it."""
+        targets = [target for target in self.description.targets.values() if target.loaded]
+        for target in targets:
+            if target.pressed is not None:
+                yield MasonryLoad(label=f"{target.name}_press", **_on(target))
+            if target.force is not None:
+                yield MasonryLoad(label=f"{target.name}_force", **_on(target))
+        for n, (brick, _, point) in enumerate(self.description.winds):
+            on = dict(body=self.ids[brick], point=point)
+            yield MasonryLoad(label=f"wind_{n}", damped=True, **on)
+        for target in targets:
             on = _on(target)
-            if target.pressed is not None or target.force is not None:
-                yield MasonryLoad(label=f"{target.name}_force", **on)
             for axis in target.drives:
                 on["direction"] = Vector3(*(float(axis == a) for a in "xyz"))
                 label = f"{target.name}_drive_{axis}"
                 yield MasonryLoad(label=label, driven=True, **on)
             if not target.drives:
                 yield MasonryLoad(label=f"{target.name}_drive", **on)
-        for n, (brick, _, point) in enumerate(self.description.winds):
-            on = dict(body=self.ids[brick], point=point)
-            yield MasonryLoad(label=f"wind_{n}", damped=True, **on)
 
     def begin(self):
         """Find the grown presses, dead loads and wind, when all joints are there."""
         self.supports = self.structure.supports
         for target in self.description.targets.values():
-            if target.pressed is None and target.force is None:
-                continue
-            label, force = f"{target.name}_force", Vector3(*(target.force or (0, 0, 0)))
+            if target.force is not None:
+                force = self._grown[f"{target.name}_force"] = Vector3(*target.force)
+                self._warnHeld(target, force, "load")
             if target.pressed is not None:
-                load, own = self.loads[label], self.supports.weightOf(target)
-                force -= (target.pressed * self._centre(load, target) - own) * Vector3.UnitZ
+                self._warnHeld(target, Vector3.UnitZ, "press")
+                label, own = f"{target.name}_press", self.supports.weightOf(target)
+                load = self.loads[label]
+                down = target.pressed * self._centre(load, target) - own
+                self._grown[label] = -down * Vector3.UnitZ
                 self._lines[target.name] = Vector3(*load.point)
-            self._grown[label] = force
         for n, (_, force, _) in enumerate(self.description.winds):
             self._grown[f"wind_{n}"] = Vector3(*force)
 
@@ -105,14 +116,17 @@ class Loading:
             grown = load.force if self.grown else self._grown.get(label, load.force)
             yield load, grown
 
-    def forceOf(self, target):
-        """The engine of the dead load on a target, made if missing."""
-        return self._loadsOf({f"{target.name}_force": _on(target)})[0]
+    def forceOf(self, target, grown=False):
+        """The engine of the dead load on a target, or of what has grown beside it, made if
+        missing."""
+        return self._loadsOf({f"{target.name}_force" + "_grown" * grown: _on(target)})[0]
 
-    def pressOf(self, target):
-        """The engine of a press, and the pressed area [m²]."""
-        known = f"{target.name}_force" in self.loads
-        load = self.forceOf(target)
+    def pressOf(self, target, grown=False):
+        """The engine of a press, or of what has grown beside it, made if missing, and the pressed
+        area [m²]."""
+        label = f"{target.name}_press" + "_grown" * grown
+        known = label in self.loads
+        (load,) = self._loadsOf({label: _on(target)})
         return load, self.supports.contactOf(target)[0] if known else self._centre(load, target)
 
     def onBricks(self, label, places):
@@ -132,12 +146,13 @@ class Loading:
         return self._loadsOf({PATTERN: on})[0]
 
     def _loadsOf(self, made):
-        """Loads by their labels; missing ones are made from their attributes, before the engine of
-        the energy balance."""
+        """Loads by their labels; missing ones are made from their attributes, drives before the
+        engine of the energy balance and others before the drives."""
         new = {n: MasonryLoad(label=n, **of) for n, of in made.items() if n not in self.loads}
         if new:
-            before = list(O.engines)
-            at = next(n for n, one in enumerate(before) if one.label == "energy")
+            before, drives = list(O.engines), PATTERN in new
+            ahead = lambda label: label == "energy" or DRIVE(label) and not drives
+            at = next(n for n, one in enumerate(before) if ahead(one.label))
             engines = [*before[:at], *new.values(), *before[at:]]
             # the state at rest gets the engines, too
             if self.structure.atRest is not None:
@@ -155,6 +170,27 @@ class Loading:
         """Whether a drive holds or moves a target along an axis."""
         return any(isAlong(load, axis, target.body) for load in self.loads.values())
 
+    def checkFree(self, target, force, name):
+        """Raise ValueError if a force on a target has a part that a support or a drive takes."""
+        if held := self.heldAlong(target.body, force):
+            raise ValueError(
+                f"{name}: {target.name} is held along {', '.join(held)} by a support or a drive,"
+                " which takes the load there until release() lets go"
+            )
+
+    def _warnHeld(self, target, force, name):
+        """Say that a support or a drive takes a load that is described."""
+        try:
+            self.checkFree(target, force, name)
+        except ValueError as taken:
+            say(f"warning: {taken}")
+
+    def heldAlong(self, body, force):
+        """Axes along which a force has a part that a support or a drive of its body takes."""
+        blocked, loads = O.bodies[body].state.blockedDOFs, self.loads.values()
+        along = [a for a, v in zip("xyz", force) if abs(v) > 1e-12 * force.norm()]
+        return [a for a in along if a in blocked or any(isAlong(one, a, body) for one in loads)]
+
     def driveOf(self, target, axis):
         """The load that drives a target along an axis, or None."""
         return self.loads.get(f"{target.name}_drive_{axis}")
@@ -166,7 +202,7 @@ class Loading:
 
     def stopDrives(self):
         """Stop all drives, which hold from now on. Returns them."""
-        drives = [load for label, load in self.loads.items() if "_drive" in label]
+        drives = [load for label, load in self.loads.items() if DRIVE(label)]
         for load in drives:
             load.velocity = load.ramp = 0
         return drives
@@ -217,11 +253,13 @@ class Loading:
         for target in self.description.targets.values():
             if target.pressed is None or target.riding:
                 continue
-            load = self.loads[f"{target.name}_force"]
+            load = self.loads[f"{target.name}_press"]
             drive = self.push if target is self.target else load
             along = (load if drive.others else drive).displacement()
             away = (along[0], 0 if self.description.plane else along[1], 0)
-            load.point = self._lines[target.name] - Vector3(*away)
+            for one in (load, self.loads.get(f"{target.name}_press_grown")):
+                if one:
+                    one.point = self._lines[target.name] - Vector3(*away)
 
     def besideThePush(self):
         """Force of weights, dead loads and other drives beside a push [N]; 0 without a push."""

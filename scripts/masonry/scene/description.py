@@ -202,7 +202,8 @@ class Description:
 
     def _nearest(self, point):
         """The brick whose box is nearest to a point, and its distance [m]; among boxes that contain
-        the point, the one with the nearest middle."""
+        the point, the one with the nearest middle, and of two that are alike the lower one, or that
+        of the lower x, then y."""
         if self._boxes[0] is not self.bricks:
             corners = [np.asarray(block.corners, float) for block in self.bricks]
             boxes = [np.array([f(c, axis=0) for c in corners]) for f in (np.min, np.max, np.mean)]
@@ -210,7 +211,9 @@ class Description:
         low, high, middle = self._boxes[1]
         away = np.maximum(0, np.maximum(low - point, point - high).max(axis=1))
         away += 1e-6 * np.linalg.norm(middle - point, axis=1)
-        return int(away.argmin()), away.min()
+        alike = np.flatnonzero(away <= away.min() + 1e-12 * (1 + np.abs(point).max()))
+        place = lambda n: [*np.round(middle[n], 9)[[2, 0, 1]]]
+        return int(min(alike, key=place)), away.min()
 
 
 def accelerations(structure, plane):

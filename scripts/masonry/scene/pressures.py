@@ -110,21 +110,23 @@ def atPlace(value, place, kind, name):
 
 
 def placesBelow(description, points):
-    """Where loads stand that are let down from some points: pairs of the number of a brick and the
-    point on the highest face that looks up [m]. Raises ValueError if there is none."""
+    """Where loads stand that are let down from some points: of each the numbers of the bricks that
+    have it on their highest face that looks up, and share it where it is on a joint, and the point
+    there [m]. Raises ValueError if there is none."""
     faces, found = Bricks(description.bricks).freeFaces((0, 0, 1), GRAZING), []
     near = 1e-6 * math.dist(description.low, description.high)
     for x, y, z in points:
-        below = []
+        below: dict[int, float] = {}
         for face in faces:
             corners, normal = np.array(face.face), np.array(face.normal)
             high = corners[0, 2] - normal[:2] @ ((x, y) - corners[0, :2]) / normal[2]
             sides = np.roll(corners, -1, axis=0) - corners
             inward = np.cross(sides, (x, y, high) - corners) @ normal
             if high <= z + near and min(inward) >= -near * np.abs(sides).max():
-                below.append((float(high), face.block))
+                below[face.block] = max(float(high), below.get(face.block, -math.inf))
         if not below:
             raise ValueError(f"travel: no face that looks up is below ({x:g}, {y:g}, {z:g}) m")
-        high, brick = max(below)
-        found.append((brick, (float(x), float(y), high)))
+        high = max(below.values())
+        bricks = [brick for brick, level in below.items() if level >= high - near]
+        found.append((bricks, (float(x), float(y), high)))
     return found

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Loads after the first stage. ``load``, ``wind``, ``press`` and ``pressure`` give a load its new
 value and wait for rest, so that ``bracket`` can search for the largest that is held. ``grow`` adds
-loads to what is there until the structure falls, and searches by itself. ``hold`` holds what was
-free."""
+loads to what is there until the structure falls, and searches by itself; what has grown stays
+beside what those commands replace. ``hold`` holds what was free."""
 
 import math
 import re
@@ -64,9 +64,10 @@ class Forces(Acting):
 def _forceOn(scene, target, force, name):
     """The load of a force on a target, in kN. Raises ValueError."""
     force = checkedForce(scene.description, force, name)
-    engine = scene.model.loading.forceOf(target)
     if not force.norm() > 0 and name != "load":
         raise ValueError(f"{name}: force must not be zero")
+    scene.model.loading.checkFree(target, force, name)
+    engine = scene.model.loading.forceOf(target, name == "grow")
     # a load that is taken away keeps its direction
     along = force if force.norm() > 0 else engine.force
     towards = along.normalized() if along.norm() > 0 else Vector3.UnitZ
@@ -78,8 +79,8 @@ def _forceOn(scene, target, force, name):
 
 @stage(bounded=True, answers=putOnAnswers)
 def load(scene: Any, target: Loaded, force: Force, longest: Duration | None = None) -> str:
-    """Give a target another dead load, which replaces the one that it has, and wait until the
-    structure is at rest or falls.
+    """Give a target another dead load, which replaces the one of :meth:`load` and :meth:`release`,
+    and no other load, and wait until the structure is at rest or falls.
 
     The load changes within 0.02 s, and longer for tall structures. ``bracket(lambda f:
     scene.load(target, (0, 0, -f)) == AT_REST, 1e3, 9e3)`` finds the largest that is held.
@@ -101,16 +102,16 @@ def _windOn(scene, pressure, towards, part):
     return _inKilopascals(_onFaces(scene, forces, "wind", towards, part), pressure)
 
 
-def _pressureOn(scene, value, towards, part, normal):
+def _pressureOn(scene, value, towards, part, normal, grown=False):
     """The load of a pressure, of which 1 is the whole. Raises ValueError."""
     forces = pressures(scene.description, value, towards, part, normal)
     kind = "pressure" if normal else "pressure in plan"
-    return _onFaces(scene, forces, kind, towards, part)
+    return _onFaces(scene, forces, kind, towards, part, grown)
 
 
-def _evenOn(scene, value, towards, part, normal):
+def _evenOn(scene, value, towards, part, normal, grown=False):
     """The load of a pressure that is the same everywhere and not 0, in kPa. Raises ValueError."""
-    one = _pressureOn(scene, math.copysign(1e3, value), towards, part, normal)
+    one = _pressureOn(scene, math.copysign(1e3, value), towards, part, normal, grown)
     return _inKilopascals(one, value)
 
 
@@ -121,17 +122,25 @@ def _inKilopascals(load, value):
     return load
 
 
-def _onFaces(scene, forces, kind, towards, part):
+def _onFaces(scene, forces, kind, towards, part, grown=False):
     """The load of forces on faces, by what labels its engines and names it."""
     along = Vector3(*towards).normalized()
-    axes = "_".join(f"{v + 0.0:.6g}".replace("-", "minus") for v in along)
-    # YADE makes names of labels
-    label = re.sub(r"\W", "_", f"{kind}_towards_{axes}_{part or 'all'}")
-    places = [(one.brick, one.point) for one in forces]
-    engines = scene.model.loading.onBricks(label, places)
-    what = f"{kind} towards {nameOf(towards)}" + (f" on {part}" if part else "")
-    whole = [Vector3(*one.force) for one in forces]
+    axes = ", ".join(f"{v + 0.0:.6g}" for v in along)
+    on = f" on {part}" if part is not None else ""
+    label = _labelOf(f"{'grown ' * grown}{kind} ({axes}){on}")
+    loading, whole = scene.model.loading, [Vector3(*one.force) for one in forces]
+    # what was released before a checkpoint is still held while the run that goes on is built
+    takes = (loading.heldAlong(loading.ids[one.brick], f) for one, f in zip(forces, whole))
+    if not scene.isGone and all(takes):
+        raise ValueError(f"{kind}: all bricks that it loads are held, and supports would take it")
+    engines = loading.onBricks(label, [(one.brick, one.point) for one in forces])
+    what = f"{kind} towards {nameOf(towards)}{on}"
     return Forces(engines, whole, what, "-", 1.0, along)
+
+
+def _labelOf(text):
+    """A text as YADE's names of Python can hold it: no two have the same."""
+    return re.sub(r"[^a-zA-Z0-9]", lambda found: f"_{ord(found[0]):x}_", text)
 
 
 @stage(bounded=True, answers=putOnAnswers)
@@ -143,8 +152,8 @@ def wind(
     longest: Duration | None = None,
 ) -> str:
     """Give the faces that look against a horizontal direction another pressure, and wait as
-    :meth:`load` does. The wind that grew in :meth:`settle` stays; a later :meth:`wind` of the same
-    direction and part replaces this one.
+    :meth:`load` does. Winds that grew in :meth:`settle` or :meth:`grow` stay; a later :meth:`wind`
+    of the same direction and part replaces this one.
 
     :param pressure: [Pa]; 0 takes the wind away; ``towards`` and ``part``: as before the first
         stage
@@ -162,8 +171,8 @@ def pressure(
     longest: Duration | None = None,
 ) -> str:
     """Give faces another pressure, and wait as :meth:`load` does. Pressures that grew in
-    :meth:`settle` stay; a later :meth:`pressure` of the same direction, part and ``normal``
-    replaces this one.
+    :meth:`settle` or :meth:`grow` stay; a later :meth:`pressure` of the same direction, part and
+    ``normal`` replaces this one.
 
     :param value: [Pa], or a function of the place; 0 takes it away; ``towards``, ``part`` and
         ``normal``: as before the first stage
@@ -177,7 +186,8 @@ def _pressOn(scene, platen, stress, name):
     if not stress > 0:
         raise ValueError(f"{name}: stress {stress!r} Pa must be above 0")
     doubtPress(stress, name)
-    engine, area = scene.model.loading.pressOf(platen)
+    scene.model.loading.checkFree(platen, Vector3.UnitZ, name)
+    engine, area = scene.model.loading.pressOf(platen, name == "grow")
     what, whole = f"press of {platen.name}", [-1e6 * area * Vector3.UnitZ]
     made = Forces([engine], whole, what, "MPa", 1e-6 * stress, -Vector3.UnitZ)
     made.target = platen
@@ -186,10 +196,10 @@ def _pressOn(scene, platen, stress, name):
 
 @stage(bounded=True, answers=putOnAnswers)
 def press(scene: Any, platen: MovingPlaten, stress: Stress, longest: Duration | None = None) -> str:
-    """Press a platen with another mean stress on the bricks below it, and wait as :meth:`load`.
+    """Press a platen with another mean stress on the bricks below it, and wait as :meth:`load`. It
+    replaces the press before; dead loads, and what :meth:`grow` has added, stay beside it.
 
-    :param stress: mean vertical stress that the bricks feel [Pa]; the weight of the platen is part
-        of it
+    :param stress: mean vertical stress on the bricks, with the weight of the platen [Pa]
     """
     made = _pressOn(scene, platen, stress, "press")
     made.beside = [0, 0, scene.model.supports.weightOf(platen)]
@@ -236,7 +246,8 @@ def grow(
         factor of 1; it may be empty
     :param most: factor of all of them at the end [-]
     :param dead: whether what acts already grows, too: at a factor of 1 dead loads, presses without
-        the weight of their platens, and pressures are twice what they were. Gravity stays
+        the weight of their platens, pressures, and what has grown before are twice what they were.
+        Gravity stays
     :param pressure: [Pa] at a factor of 1, or a function of the place, with ``towards``, ``part``
         and ``normal`` as in :meth:`pressure`
     :param over: time in which they grow to that [s]
@@ -251,7 +262,7 @@ def grow(
     if pressure is not None:
         even = isNumber(pressure) and pressure != 0
         make = _evenOn if even and not loads and not dead else _pressureOn
-        made.append(make(scene, pressure, towards, part, normal))
+        made.append(make(scene, pressure, towards, part, normal, True))
     if len(made) == 1 and not dead:
         made[0].most *= most
         return _grow(scene, made[0], over, within)
@@ -264,7 +275,9 @@ def grow(
     for engine, force in pairs:
         forces[engine.label] = forces.get(engine.label, Vector3.Zero) + force
     engines = [scene.model.loading.loads[label] for label in forces]
-    what = " and ".join([one.name for one in made] + ["the dead loads"] * dead)
+    amount = lambda one: f" ({one.most:.4g} {one.unit})" * (one.unit != "-")
+    names = [one.name + amount(one) for one in made]
+    what = " and ".join(names + ["the dead loads"] * dead)
     total = sum(forces.values(), Vector3.Zero)
     along = total.normalized() if total.norm() > 0 else -Vector3.UnitZ
     whole = Forces(engines, [*forces.values()], what, "-", most, along)
@@ -345,16 +358,18 @@ def prepare(scene, word, arguments):
     if word in PUSHES and (isinstance(target, dict) or target not in scene.targets):
         loading.patternDrive()
         return
-    alone = {"load": None, "press": 0}
-    loads = {target: alone[word]} if word in alone else get("loads", {})
+    alone = {"load": None, "press": 0, "pressJoint": None}
+    if word == "release" and get("force") is not None:
+        alone[word] = None
+    loads, grown = {target: alone[word]} if word in alone else get("loads", {}), word == "grow"
     for name, amount in loads.items():
         if name in scene.targets:
             make = loading.pressOf if isNumber(amount) else loading.forceOf
-            make(scene.targets[name])
+            make(scene.targets[name], grown)
     if word == "wind":
         _windOn(scene, *(arguments[n] for n in ("pressure", "towards", "part")))
     elif word == "pressure" or get("pressure") is not None:
         # its value, which may be a function, has no part in where its engines are
-        _pressureOn(scene, 0.0, *(arguments[n] for n in ("towards", "part", "normal")))
+        _pressureOn(scene, 0.0, *(arguments[n] for n in ("towards", "part", "normal")), grown)
     elif word == "travel":
         placed(scene, arguments["along"])

@@ -47,7 +47,7 @@ class Acting:
 
 
 class Acceleration(Acting):
-    """Gravity, with a horizontal acceleration that grows to ``most`` [g]."""
+    """A horizontal acceleration that grows to ``most`` [g] beside what acts already."""
 
     def __init__(self, model, most, towards, name, unit="g"):
         super().__init__(name, most, unit, towards)
@@ -60,22 +60,32 @@ class Acceleration(Acting):
         self.model.scheme.setGravity(Vector3(*values))
 
     def at(self, began, share):
-        down = self.model.description.gravity * Vector3.UnitZ
-        whole = self.factor(share) * GRAVITY * self.towards - down
-        return list(whole / self.model.args.density_scaling)
+        more = self.factor(share) * GRAVITY * self.towards
+        return list(Vector3(*began) + more / self.model.args.density_scaling)
+
+
+class Leaning(Acceleration):
+    """A horizontal acceleration [g] in place of what acts beside gravity."""
+
+    def at(self, began, share):
+        return super().at([0, 0, -self.model.gravity], share)
 
 
 class Tilting(Acceleration):
-    """Gravity that turns to an angle [rad]. The factor is the horizontal over the vertical part."""
+    """Gravity that turns by an angle [rad], with what acts beside it. The factor is the tangent of
+    the angle."""
 
     def __init__(self, model, angle, towards, name):
         super().__init__(model, math.tan(angle), towards, name, "-")
         self.angle = angle
 
     def at(self, began, share):
-        down, angle = self.model.description.gravity, share * self.angle
-        turned = math.sin(angle) * self.towards - math.cos(angle) * Vector3.UnitZ
-        return list(down * turned / self.model.args.density_scaling)
+        whole, along, up = Vector3(*began), self.towards, Vector3.UnitZ
+        angle = share * self.angle
+        level, down = whole.dot(along), -whole.dot(up)
+        turned = math.sin(angle) * along - math.cos(angle) * up
+        raised = math.cos(angle) * along + math.sin(angle) * up
+        return list(whole - level * along + down * up + down * turned + level * raised)
 
     def factor(self, share):
         angle = share * self.angle
@@ -101,6 +111,13 @@ def sideways(scene, towards, name):
     return Vector3(*towards).normalized()
 
 
+def _before(scene):
+    """Gravity and accelerations when the present stage began [m/s²]."""
+    running = scene.running
+    goesOn = running.resumedHere and running.isResumed
+    return goesOn and running.state.memory.get("begun") or list(scene.model.scheme.now)
+
+
 Width = Annotated[float, number("", 1e-4, 1, below=True)]  # of a bracket
 
 
@@ -113,7 +130,11 @@ def tilt(
     within: Width = WITHIN,
 ) -> str:
     """Tilt the ground, until the structure falls or the angle is reached; then search for the tilt
-    that it holds.
+    that it holds. The tilt stays, and adds to what acts already.
+
+    Gravity turns, with the accelerations that act. Forces of :meth:`load`, :meth:`press` and
+    :meth:`pressure` keep their directions in the axes of the scene: weights that shall lean are
+    blocks, for example a :class:`masonry.bricks.Floor`.
 
     :param towards: horizontal direction in which the structure leans
     :param rate: [degrees/s]
@@ -122,9 +143,12 @@ def tilt(
         whole load, else ``DONE``. ``scene.factor`` is the largest horizontal over vertical
         acceleration that it held, by :mod:`masonry.stages.growing`; the scene stays as it was
         at the end of the growth
+    :raises Refused: if there is no gravity
     """
     towards = sideways(scene, towards, "tilt")
-    findBound(scene, "lean", towards, True)
+    if not scene.model.scheme.now.norm() > 0:
+        raise Refused("tilt: there is no gravity that turns; forces of load() and press() do not")
+    findBound(scene, "lean", towards, True, _before(scene))
     name = nameOfLean(towards, tilts=True)
     load = Tilting(scene.model, math.radians(degrees), towards, name)
     return grow(scene, "tilt", load, degrees / rate, within)
@@ -138,15 +162,15 @@ def accelerate(
     rate: Annotated[float, number("g/s", 1e-6, 1e6)] = 0.5,
     within: Width = WITHIN,
 ) -> str:
-    """Let a horizontal acceleration grow evenly, until the structure falls or ``most`` is reached;
-    then search for that which it holds.
+    """Let a horizontal acceleration grow evenly beside what acts already, until the structure falls
+    or ``most`` is reached; then search for that which it holds.
 
     :param most: [g]
     :param towards: horizontal direction of the force on the blocks
     :param rate: [g/s]; the rest as in :meth:`tilt`
     """
     towards = sideways(scene, towards, "accelerate")
-    findBound(scene, "lean", towards)
+    findBound(scene, "lean", towards, False, _before(scene))
     load = Acceleration(scene.model, most, towards, nameOfLean(towards))
     return grow(scene, "accelerate", load, most / rate, within)
 
@@ -158,14 +182,16 @@ def lean(
     towards: Level = (1, 0, 0),
     longest: Duration | None = None,
 ) -> str:
-    """Put a horizontal acceleration on the structure, and wait until it is at rest or falls.
+    """Put a horizontal acceleration on the structure, in place of the accelerations and tilts that
+    act, and wait until it is at rest or falls. It stays in the stages that follow, and adds to what
+    they put on.
 
     :param factor: [g]
     :param longest: time in the scene after which it is given up [s]; None: 4 s
     """
     towards = sideways(scene, towards, "lean")
     findBound(scene, "lean", towards)
-    load = Acceleration(scene.model, factor, towards, nameOfLean(towards))
+    load = Leaning(scene.model, factor, towards, nameOfLean(towards))
     return putOn(scene, "lean", load, longest, LEAN_GROWS)
 
 

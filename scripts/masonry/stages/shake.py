@@ -59,6 +59,7 @@ class Damped(Timed):
     """What a stage remembers that has a damping of its own."""
 
     limit: float = 0.0  # the stable limit of its time step [s]; 0 before that is known
+    gravity: list | None = None  # that acts beside the record [m/s²]
 
 
 def inRealTime(scene, name, damping, massDamping=0.0, stiffnessDamping=0.0):
@@ -108,10 +109,11 @@ def shake(
 ) -> str:
     """Shake the ground by a record.
 
-    Every block feels the negative ground acceleration, and displacements are relative to the
-    ground. Time is real, so masses must not be scaled. Between the samples the acceleration changes
-    evenly, and each step has that of its middle: nothing is filtered, and the time step does not
-    depend on the samples.
+    Every block feels the negative ground acceleration, beside those of :meth:`lean`,
+    :meth:`accelerate` and :meth:`tilt`, which stay, and displacements are relative to the ground.
+    Time is real, so masses must not be scaled. Between the samples the acceleration changes evenly,
+    and each step has that of its middle: nothing is filtered, and the time step does not depend on
+    the samples.
 
     Joints that slide, crack and crush take energy, and so do those without bond that close, as
     their ``restitution`` says. The default adds no other damping, since none is measured for
@@ -155,7 +157,8 @@ def shake(
             f"warning: shake: the time step, {O.dt:.3g} s, is longer than the time between samples,"
             f" {every:.3g} s, so that some samples are left out; a smaller --dt-fraction helps"
         )
-    down = -scene.description.gravity * Vector3.UnitZ
+    at.gravity = at.gravity or list(scene.model.scheme.now)
+    down = Vector3(*at.gravity)
 
     def before(done, beyond):
         place = (done + 0.5) * O.dt / every

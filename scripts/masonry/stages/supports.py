@@ -32,7 +32,8 @@ def release(scene: Any, target: AnyTarget, axes: Freedoms, force: Force | None =
     :param target: a brick or platen that is held, a platen with a drive, or what a push has left
         under its drive
     :param axes: along which it becomes free, some of xyz, and about which, XYZ
-    :param force: three numbers [N] of a load that stays in place of a drive; None: none
+    :param force: three numbers [N] that stay in place of a drive, as a part of the dead load, which
+        :meth:`load` replaces; None: none
     """
     letGo(scene, target, axes, force)  # first: what it refuses is no stage
     scene.running.stage("release", SimpleNamespace())
@@ -57,10 +58,11 @@ def letGo(scene, target, axes, force):
     for axis, drive in drives.items():
         if drive:
             drive.driven, drive.velocity = False, 0
-            drive.force = Vector3(*(force or (0, 0, 0)))
             scene.model.motion.far = SWUNG  # what it held swings back
         else:
             state.blockedDOFs = state.blockedDOFs.replace(axis, "")
+    if force is not None:
+        loading.forceOf(target).force += Vector3(*force)
     return DONE
 
 

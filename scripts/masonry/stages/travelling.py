@@ -3,6 +3,7 @@
 
 import zlib
 from dataclasses import dataclass
+from statistics import fmean
 from typing import Annotated, Any, Sequence
 
 from yade import Vector3
@@ -66,10 +67,13 @@ def standings(scene, rows):
 
 
 def placed(scene, along):
-    """The engines of a load that travels along some points. Raises ValueError."""
+    """The engines of a load that travels along some points: of each place a list, in equal parts.
+    Raises ValueError."""
     places = placesBelow(scene.description, along)
     label = f"travel_{zlib.crc32(repr(places).encode())}"
-    return scene.model.loading.onBricks(label, places)
+    loaded = [(brick, point) for bricks, point in places for brick in bricks]
+    engines = iter(scene.model.loading.onBricks(label, loaded))
+    return [[next(engines) for _ in bricks] for bricks, _ in places]
 
 
 @stage(bounded=True, answers=standings)
@@ -88,33 +92,38 @@ def travel(
 
     :param force: downwards [N]
     :param along: points (x, y, z) [m]: the load stands on the highest face of a rigid brick below
-        each of them
+        each of them; where that is on a joint, the bricks there have equal parts of it
     :param longest: as in :meth:`load`, at each place
     :returns: ``DONE``; ``MOVING`` if the structure did not come to rest with the load at a place,
         where the stage ends then; ``COLLAPSED``
     """
-    engines, loading = placed(scene, along), scene.model.loading
+    stands, loading = placed(scene, along), scene.model.loading
     down = Vector3(0, 0, -force)
     if scene.limitAnalysisOnly or len(scene.model.interactions) <= scene.bounds.SMALL:
-        for engine in engines:  # before the load comes
-            where = ", ".join(f"{v:.4g}" for v in engine.point)
-            live = [(engine, Vector3(0, 0, -1e3))]
+        for engines in stands:  # before the load comes
+            where = ", ".join(f"{v:.4g}" for v in engines[0].point)
+            live = [(engine, Vector3(0, 0, -1e3 / len(engines))) for engine in engines]
             findBound(scene, "forces", f"{TRAVELS}({where}) m", "kN", live)
     if scene.limitAnalysisOnly:
         return DONE
     at = scene.running.stage("travel", Travelling())
-    places = lambda: [1e3 * engine.displacement()[2] for engine in engines]
+    places = lambda: [1e3 * fmean(one.displacement()[2] for one in engines) for engines in stands]
+
+    def put(engines, share):
+        for engine in engines:
+            engine.force = share / len(engines) * down
+
     at.began = at.began or places()
-    while at.place <= len(engines):
+    while at.place <= len(stands):
         place = at.place
 
         def arriving(x):
             share, loading.loadFactor = smooth(x), 0.0
-            if place < len(engines):
-                engines[place].force = share * down
+            if place < len(stands):
+                put(stands[place], share)
                 loading.loadFactor = place + share
             if place:
-                engines[place - 1].force = (1 - share) * down
+                put(stands[place - 1], 1 - share)
 
         ended = waitForRest(scene, at, longest, arriving)
         if ended != AT_REST:
