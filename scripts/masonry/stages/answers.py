@@ -39,6 +39,13 @@ class Answer:
     uncertainty: float | None = None
 
 
+def keep(scene, key, stage, number, answers):
+    """Keep the answers of a stage, in place of those that had its key: its number, and perhaps a
+    word after it."""
+    kept = [{"stage": stage, "number": number, **vars(one)} for one in answers]
+    scene.running.state.answers = {**scene.running.state.answers, key: kept}
+
+
 def answerText(answer, what=None):
     """An entry of ``answers`` of run.json as a line; ``what``: what it is of, if not its stage."""
     head = f"{what or answer['stage']}: {answer['name'].replace('_', ' ')}"
