@@ -359,3 +359,59 @@ def test_a_perfect_column_holds_no_more_than_its_buckling_load(tmp_path, stage):
     else:
         ends = [scene.load(head, (0, 0, -share * euler)) for share in (0.97, 1.03)]
         assert ends == [AT_REST, MOVING]
+
+
+# -- what is held does not hang on the rate --------------------------------------------------------
+
+
+def towerOnSoil(folder, rate):
+    """On springs without tension, where the rocking gets slower the nearer the load is to what is
+    held."""
+    stones = materials.dry(friction=0.9, density=1000, normalStiffness=3e9, young=1e13)
+    scene = Scene(
+        "tower",
+        bricks.stack(1, (3.6, 3.6, 20.0)),
+        stones,
+        arguments=["--lean", "--out", str(folder)],
+        plane=True,
+    )
+    scene.platen("bottom", springs={"z": 2e9}, uplift=True, height=0.2)
+    scene.settle()
+    return scene, lambda: scene.tilt(12, rate=8 * rate, within=WITHIN)
+
+
+def columnUnderAnEccentricLoad(folder, rate):
+    scene = standing(folder, bricks.stack(8, (0.2, 0.2, 0.2)), SOFT)
+    head = scene.handle((0.15, 0.1, 1.59))
+    scene.settle()
+    return scene, lambda: scene.grow({head: (0, 0, -6e5)}, over=1 / rate, within=WITHIN)
+
+
+def parapet(folder, rate):
+    scene = standing(folder, bricks.stack(6, (0.1, 0.1, 0.2)), SOFT)
+    scene.settle()
+    return scene, lambda: scene.accelerate(0.3, rate=rate, within=WITHIN)
+
+
+def pressOverRollers(folder, rate):
+    scene = standing(folder, bricks.stack(6, (0.2, 0.2, 0.2)), SOFT)
+    top = scene.platen("top", height=0.05)
+    scene.press(top, 0.02e6)
+    scene.settle()
+    return scene, lambda: scene.accelerate(0.5, rate=rate, within=WITHIN)
+
+
+SOFT = materials.dry(friction=0.7, normalStiffness=1e9, density=2000)
+WITHIN = 0.01  # of both brackets
+
+
+@mark.parametrize("make", [towerOnSoil, columnUnderAnEccentricLoad, parapet, pressOverRollers])
+def test_what_is_held_does_not_hang_on_the_rate(make, tmp_path):
+    ends = []
+    for rate in (0.05, 1.0):
+        scene, grow = make(tmp_path / str(rate), rate)
+        grow()
+        ends.append([found(scene, f"factor_{name}held")[-1] for name in ("", "not_")])
+        scene.finish()
+    (low, high), (other, above) = ends
+    assert max(low, other) <= min(high, above) * (1 + WITHIN), ends
