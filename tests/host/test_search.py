@@ -8,7 +8,7 @@ from masonry.model.motion import REST
 from masonry.errors import Collapsed
 from masonry.stages import growing
 from masonry.stages.growing import Reason
-from masonry.stages.rest import CONSECUTIVE_CHECKS, EVERY, REST_ENERGY_RATIO, rampTime
+from masonry.stages.rest import CONSECUTIVE_CHECKS, EVERY, REST_ENERGY_RATIO, Waiting, rampTime
 
 # -- the growth ------------------------------------------------------------------------------------
 
@@ -117,6 +117,29 @@ def test_a_trial_without_checks_at_rest_in_a_row_is_given_up_in_its_time(scaling
     assert going.done * O.dt == approx(
         growing.TRIAL * math.sqrt(scaling), rel=EVERY * O.dt / growing.TRIAL
     )
+
+
+@mark.parametrize(
+    "kinetic, waits, rests",
+    [
+        # the energy at a time [s], how often half of TRIAL is waited for, and whether it rests then
+        (lambda t: 1.0, 2, False),
+        (lambda t: math.exp(t), 2, False),
+        (lambda t: 0.6 ** (t / (growing.TRIAL / 2)), 2, False),
+        (lambda t: 1e-3 * 0.4 ** (t / (growing.TRIAL / 2)), 6, True),
+        # what creeps away out of rest
+        (lambda t: 0.9 * REST_ENERGY_RATIO * t / growing.TRIAL, 2, False),
+    ],
+)
+def test_a_wait_ends_when_motion_does_not_die_away(kinetic, waits, rests):
+    O.dt, wait, atRest = 1e-4, Waiting(), False
+    while not atRest:
+        wait.done += EVERY
+        atRest = wait.isAtRest(0.0, kinetic(wait.done * O.dt), True)
+        if wait.isGivenUp(growing.TRIAL):
+            break
+    assert atRest == rests
+    assert wait.halves == waits - rests
 
 
 def test_a_trial_puts_its_load_on_in_a_slow_period_and_waits_for_ten():
