@@ -40,11 +40,12 @@ from .stage import Timed, timed
 WITHIN = 0.005  # width of the bracket, over its upper end [-]
 #: Share of the whole growth: below it the bracket is as wide as there.
 LEAST = 0.05
-#: [s] in the scene after which a trial is given up, or later on soft springs
+#: [s] in the scene after which a trial is given up, or later on soft springs, and while the motion
+#: dies away
 TRIAL = 4.0
 MOST_KEPT, LEAST_KEPT = 128, 8  # states that are kept during a growth
-KEPT_BYTES = 100e6  # of all of them, which checkpoints of the growth and the search have; and of
-# all states at rest
+#: Of all of them, and of all states at rest; checkpoints of the growth and the search have both.
+KEPT_BYTES = 100e6
 #: A trial is not held as soon as a block has moved as far as one that has fallen, has at least this
 #: share of its speed [-], and is twice as fast as the fastest one in the first half of the trial
 #: (:meth:`masonry.model.motion.Motion.fastest`). Blocks at a crack that opens suddenly can be as
