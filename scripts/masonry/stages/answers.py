@@ -85,12 +85,15 @@ def answersText(answers, stages=()):
 
 
 def _searchText(answers, what):
-    """The line of stages that looked for one load."""
-    texts = []
+    """The line of stages that looked for one load. What was not held and is held in a later one, in
+    a smaller step, does not count."""
+    texts, held = [], -math.inf
     for name, choose in (("factor_held", max), ("factor_not_held", min)):
         found = [one for one in answers if one["name"] == name]
-        known = [one for one in found if one["value"] is not None]
-        one = choose(known, key=lambda one: one["value"]) if known else found[-1]
+        known = [one for one in found if one["value"] is not None and one["value"] > held]
+        unknown = [one for one in found if one["value"] is None] or found
+        one = choose(known, key=lambda one: one["value"]) if known else unknown[-1]
+        held = one["value"] if known else held
         texts.append(answerText(one, what))
     count = len({one["number"] for one in answers})
     stages = f" ({count} stages)" if count > 1 else ""

@@ -261,8 +261,8 @@ def bracket(
         held = Answer("factor_held", "-", low, f"the largest {how} carried")
         failed = Answer("factor_not_held", "-", lost, f"the smallest {how} did not carry")
         if not scene.limitAnalysisOnly:
-            number = scene.running.entered
-            keep(scene, f"{number} bracket", "bracket", number, [held, failed])
+            # of no stage: how many trials there are differs from row to row of a study
+            keep(scene, f"{scene.running.entered} bracket", "bracket", 0, [held, failed])
         return low, lost
     finally:
         scene.bracketing = False
